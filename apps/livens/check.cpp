@@ -1,0 +1,64 @@
+// livens check: everything that can be said about a scenario without solving it.
+#include <fmt/format.h>
+
+#include "commands.h"
+#include "console.h"
+#include "failure.h"
+#include "livens/multibody/assembly.h"
+
+namespace livens::program {
+
+namespace {
+
+std::string json_of(const Scenario& scenario, const Assembly& assembly,
+                    const std::vector<Diagnostic>& warnings)
+{
+    JsonWriter json(2);
+    json.begin_object();
+    json.member("valid", true).member("title", scenario.title);
+    json.member("bodies", scenario.model.n_bodies()).member("joints", scenario.model.joints().size());
+    json.member("loads", scenario.model.loads().size()).member("rows", scenario.model.n_rows());
+    json.member("degrees_of_freedom", assembly.degrees_of_freedom);
+    json.member("start", scenario.mesh.start()).member("end", scenario.mesh.end());
+    json.member("elements", scenario.mesh.n_elements()).member("output_times", scenario.output.size());
+    json.key("options").raw(scenario.resolved.empty() ? "null" : scenario.resolved);
+    json.key("redundant_rows").begin_array();
+    for (const RedundantRow& row : assembly.redundant) json.value(row.message);
+    json.end_array();
+    json.key("notes").begin_array();
+    for (const std::string& note : assembly.notes) json.value(note);
+    json.end_array();
+    json.key("warnings");
+    write_diagnostics(json, warnings);
+    json.key("errors").begin_array().end_array();
+    json.end_object();
+    return json.text() + "\n";
+}
+
+}   // namespace
+
+int check_command(const std::string& file, const Common& common)
+{
+    std::vector<Diagnostic> warnings;
+    const Scenario scenario = load_scenario(file, common, &warnings);
+    State start = scenario.model.start();
+    start.t = scenario.mesh.start();
+    const Assembly assembly = assemble(scenario.model, start, scenario.options.initial);
+    if (common.json) {
+        print(json_of(scenario, assembly, warnings));
+        return exit_ok;
+    }
+    if (common.quiet) return exit_ok;
+    std::string text = fmt::format(
+        "{}: no errors\n  {} bodies, {} joints with {} rows, {} loads, {} degrees of freedom\n"
+        "  {:.6g} s to {:.6g} s in {} elements, {} output times\n",
+        plain(file), scenario.model.n_bodies(), scenario.model.joints().size(), scenario.model.n_rows(),
+        scenario.model.loads().size(), assembly.degrees_of_freedom, scenario.mesh.start(),
+        scenario.mesh.end(), scenario.mesh.n_elements(), scenario.output.size());
+    for (const RedundantRow& row : assembly.redundant) text += "  note: " + plain(row.message) + "\n";
+    for (const std::string& note : assembly.notes) text += "  note: " + plain(note) + "\n";
+    print(text);
+    return exit_ok;
+}
+
+}   // namespace livens::program

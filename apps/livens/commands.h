@@ -1,0 +1,50 @@
+// The subcommands: each takes its arguments, prints and returns the exit code; failures are thrown (see
+// failure.h).
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "livens/io/diagnostic.h"
+
+namespace livens::program {
+
+struct Common {
+    bool json = false;
+    bool quiet = false;
+    bool verbose = false;
+    DiagnosticFormat diagnostics = DiagnosticFormat::human;
+};
+
+struct SolveArguments {
+    std::string scenario;
+    std::string output;   ///< empty: the scenario's stem with .nc in the current folder
+    std::string csv;      ///< empty: none
+};
+int solve_command(const SolveArguments& arguments, const Common& common);
+
+int check_command(const std::string& scenario, const Common& common);
+
+int info_command(const std::string& run, const Common& common);
+
+struct SampleArguments {
+    std::string run;
+    std::string body;   ///< one of body and joint is given
+    std::string joint;
+    std::vector<std::string> at;   ///< instants as typed, s
+    bool exact = false;
+    bool csv = false;
+};
+int sample_command(const SampleArguments& arguments, const Common& common);
+
+struct ExportArguments {
+    std::string run;
+    std::string csv;
+};
+int export_command(const ExportArguments& arguments, const Common& common);
+
+int schema_command(bool markdown);
+int explain_command(const std::string& code);
+int version_command(const Common& common);
+
+}   // namespace livens::program

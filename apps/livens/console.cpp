@@ -1,0 +1,85 @@
+#include "console.h"
+
+#include <cerrno>
+#include <system_error>
+
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+#include <unistd.h>
+
+#include "livens/io/json.h"
+
+namespace livens::program {
+
+namespace {
+
+/// The default logger of spdlog writes to standard output; this one does not.
+spdlog::logger& logger()
+{
+    static const std::shared_ptr<spdlog::logger> instance = [] {
+        auto made = std::make_shared<spdlog::logger>("livens",
+                                                     std::make_shared<spdlog::sinks::stderr_color_sink_mt>());
+        made->set_pattern("%n: %^%l%$: %v");
+        made->set_level(spdlog::level::info);
+        return made;
+    }();
+    return *instance;
+}
+
+void write_all(int descriptor, std::string_view text)
+{
+    while (!text.empty()) {
+        const ssize_t n = ::write(descriptor, text.data(), text.size());
+        if (n < 0 && errno == EINTR) continue;
+        if (n < 0)
+            throw OutputError{"cannot write to standard output: " + std::generic_category().message(errno)};
+        text.remove_prefix(static_cast<std::size_t>(n));
+    }
+}
+
+}   // namespace
+
+void print(std::string_view text) { write_all(STDOUT_FILENO, text); }
+
+void set_verbosity(Verbosity verbosity)
+{
+    logger().set_level(verbosity == Verbosity::quiet     ? spdlog::level::warn
+                       : verbosity == Verbosity::verbose ? spdlog::level::debug
+                                                         : spdlog::level::info);
+}
+
+void say_error(std::string_view message) { logger().error("{}", plain(message)); }
+void say_warning(std::string_view message) { logger().warn("{}", plain(message)); }
+void say_note(std::string_view message) { logger().info("{}", plain(message)); }
+void say_detail(std::string_view message) { logger().debug("{}", plain(message)); }
+
+void say_raw(std::string_view text)
+{
+    try {
+        write_all(STDERR_FILENO, text);
+    } catch (const OutputError&) {
+        // Nowhere is left to complain.
+    }
+}
+
+bool error_is_terminal() { return ::isatty(STDERR_FILENO) == 1; }
+
+std::string plain(std::string_view text)
+{
+    std::string out;
+    while (!text.empty()) {
+        const int length = utf8_length(text);
+        const unsigned char c = static_cast<unsigned char>(text.front());
+        // U+0080 to U+009f are control characters too; UTF-8 writes them as c2 80 to c2 9f.
+        const bool is_control =
+            c < 0x20 || c == 0x7f || (c == 0xc2 && length == 2 && (text[1] & 0xe0) == 0x80);
+        if (length == 0 || is_control)
+            out += c == '\n' || c == '\t' ? ' ' : '?';
+        else
+            out.append(text.substr(0, static_cast<std::size_t>(length)));
+        text.remove_prefix(length == 0 ? 1 : static_cast<std::size_t>(length));
+    }
+    return out;
+}
+
+}   // namespace livens::program

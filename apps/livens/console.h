@@ -1,0 +1,32 @@
+// Where words go: data to standard output, everything else to standard error.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace livens::program {
+
+/// Standard output cannot take the data: a full disk, a closed pipe.
+struct OutputError {
+    std::string message;
+};
+
+/// All of `text` to standard output, at once and without a buffer. Throws OutputError.
+void print(std::string_view text);
+
+/// Lines on standard error with the program's name before them.
+enum class Verbosity { quiet, normal, verbose };
+void set_verbosity(Verbosity verbosity);
+void say_error(std::string_view message);
+void say_warning(std::string_view message);
+void say_note(std::string_view message);     ///< not with --quiet
+void say_detail(std::string_view message);   ///< with --verbose alone
+/// Text as it is, without the program's name: diagnostics that have their own layout.
+void say_raw(std::string_view text);
+
+bool error_is_terminal();
+
+/// Text without control characters, so that a name in a file cannot steer a terminal.
+std::string plain(std::string_view text);
+
+}   // namespace livens::program

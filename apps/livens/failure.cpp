@@ -1,0 +1,200 @@
+#include "failure.h"
+
+#include <algorithm>
+#include <exception>
+#include <new>
+#include <stdexcept>
+
+#include "console.h"
+#include "livens/base/error.h"
+#include "livens/io/results.h"
+
+namespace livens::program {
+
+namespace {
+
+const char* status_of(int exit_code)
+{
+    switch (exit_code) {
+    case exit_usage:
+        return "usage";
+    case exit_scenario:
+        return "scenario invalid";
+    case exit_not_converged:
+        return "not converged";
+    case exit_resources:
+        return "resource limit";
+    case exit_input_output:
+        return "input or output failed";
+    default:
+        return "internal error";
+    }
+}
+
+Diagnostic plain_error(const std::string& code, const std::string& message)
+{
+    Diagnostic d;
+    d.code = code;
+    d.message = message;
+    return d;
+}
+
+/// A complaint of the core that no reader has placed in a file.
+Diagnostic from_complaint(const Complaint& c)
+{
+    Diagnostic d = plain_error(c.code, c.path.empty() ? c.message : c.path + ": " + c.message);
+    if (!c.value.empty()) d.message += " (given: " + c.value + ")";
+    if (!c.bound.empty()) d.message += " (allowed: " + c.bound + ")";
+    d.note = c.note;
+    d.help = c.help;
+    return d;
+}
+
+bool is_error(const Diagnostic& d) { return d.severity == Severity::error; }
+
+int exit_code_of(const std::vector<Diagnostic>& diagnostics)
+{
+    const auto first = std::ranges::find_if(diagnostics, is_error);
+    if (first->code.starts_with("io-")) return exit_input_output;
+    return first->code == "resource-limit" ? exit_resources : exit_scenario;
+}
+
+Failure current_failure()
+{
+    try {
+        throw;
+    } catch (const Failure& f) {
+        return f;
+    } catch (const OutputError& e) {
+        return failure(exit_input_output, e.message);
+    } catch (const InputError& e) {
+        return {exit_scenario, status_of(exit_scenario), {from_complaint(e.complaint())}};
+    } catch (const IoError& e) {
+        return failure(exit_input_output, e.what());
+    } catch (const std::bad_alloc&) {
+        return failure(exit_resources,
+                       "memory is exhausted; fewer elements, output times or bodies need less");
+    } catch (const std::length_error&) {
+        return failure(exit_resources, "the problem is larger than memory can ever be");
+    } catch (const std::exception& e) {
+        return failure(exit_internal, std::string("internal error, please report it: ") + e.what());
+    } catch (...) {
+        return failure(exit_internal, "internal error of unknown kind, please report it");
+    }
+}
+
+/// Findings about a file are laid out by render(); all else is a line with the program's name.
+void show(const Failure& f, const Common& common)
+{
+    const bool concerns_file =
+        std::ranges::any_of(f.diagnostics, [](const Diagnostic& d) { return !d.file.empty(); });
+    if (concerns_file || common.diagnostics != DiagnosticFormat::human) {
+        std::string text = render(f.diagnostics, f.source, common.diagnostics, error_is_terminal());
+        if (!text.ends_with('\n')) text += '\n';
+        say_raw(text);
+        return;
+    }
+    for (const Diagnostic& d : f.diagnostics) {
+        say_error(d.message);
+        if (!d.note.empty()) say_error("note: " + d.note);
+        if (!d.help.empty()) say_error("help: " + d.help);
+    }
+}
+
+std::string json_of(const Failure& f)
+{
+    const auto first = std::ranges::find_if(f.diagnostics, is_error);
+    std::vector<Diagnostic> errors, warnings;
+    for (const Diagnostic& d : f.diagnostics) (is_error(d) ? errors : warnings).push_back(d);
+    JsonWriter json(2);
+    json.begin_object();
+    json.member("converged", false).member("status", f.status).member("exit_code", f.exit_code);
+    json.member("message", first == f.diagnostics.end() ? f.status : first->message);
+    json.key("output").null();
+    json.key("errors");
+    write_diagnostics(json, errors);
+    json.key("warnings");
+    write_diagnostics(json, warnings);
+    json.end_object();
+    return json.text() + "\n";
+}
+
+/// Ends the command; nothing may be thrown here.
+int finish(const Failure& f, const Common& common)
+{
+    try {
+        show(f, common);
+        if (common.json) print(json_of(f));
+    } catch (const OutputError& e) {
+        say_error(e.message);
+        return exit_input_output;
+    } catch (...) {
+        say_raw("livens: error: the failure could not be reported in full\n");
+    }
+    return f.exit_code;
+}
+
+}   // namespace
+
+Failure failure(int exit_code, const std::string& message)
+{
+    const std::string code = exit_code == exit_usage           ? "usage"
+                             : exit_code == exit_not_converged ? "not-converged"
+                             : exit_code == exit_input_output  ? "io"
+                             : exit_code == exit_resources     ? "resource-limit"
+                                                               : "internal";
+    return {exit_code, status_of(exit_code), {plain_error(code, message)}};
+}
+
+int guarded(const Common& common, const std::function<int()>& command)
+{
+    try {
+        return command();
+    } catch (const OutputError& e) {   // a second attempt at standard output would fail as well
+        say_error(e.message);
+        return exit_input_output;
+    } catch (...) {
+        return finish(current_failure(), common);
+    }
+}
+
+Scenario load_scenario(const std::string& file, const Common& common, std::vector<Diagnostic>* warnings)
+{
+    ScenarioResult result = read_scenario(file);
+    if (!result.scenario) {
+        const int code = exit_code_of(result.diagnostics);
+        throw Failure{code, status_of(code), std::move(result.diagnostics), std::move(result.text)};
+    }
+    if (!result.diagnostics.empty() && !common.quiet) {
+        std::string text = render(result.diagnostics, result.text, common.diagnostics, error_is_terminal());
+        if (!text.ends_with('\n')) text += '\n';
+        say_raw(text);
+    }
+    if (warnings != nullptr) *warnings = std::move(result.diagnostics);
+    return std::move(*result.scenario);
+}
+
+Scenario scenario_of_run(const std::string& text, const std::string& run_file)
+{
+    ScenarioResult result = parse_scenario(text, "scenario in " + run_file);
+    if (!result.scenario)
+        throw Failure{exit_input_output, "the run's scenario cannot be read by this version",
+                      std::move(result.diagnostics), std::move(result.text)};
+    return std::move(*result.scenario);
+}
+
+void write_diagnostics(JsonWriter& json, const std::vector<Diagnostic>& diagnostics)
+{
+    json.begin_array();
+    for (const Diagnostic& d : diagnostics) {
+        json.begin_object();
+        json.member("severity", is_error(d) ? "error" : "warning");
+        json.member("code", d.code).member("message", d.message).member("file", d.file);
+        json.member("line", d.line).member("column", d.column);
+        json.member("note", d.note).member("help", d.help);
+        json.end_object();
+    }
+    json.end_array();
+}
+
+}   // namespace livens::program

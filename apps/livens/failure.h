@@ -1,0 +1,40 @@
+// How a command ends without doing its work.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "commands.h"
+#include "exit_code.h"
+#include "livens/io/diagnostic.h"
+#include "livens/io/json.h"
+#include "livens/io/scenario.h"
+
+namespace livens::program {
+
+/// Thrown by commands; everything else that is thrown is turned into one.
+struct Failure {
+    int exit_code = exit_internal;
+    std::string status;                    ///< "usage", "scenario invalid", "input or output failed", ...
+    std::vector<Diagnostic> diagnostics;   ///< at least one; the first error is the message
+    std::string source = {};               ///< text that the diagnostics' lines refer to
+};
+
+Failure failure(int exit_code, const std::string& message);
+
+/// Runs a command. A failure is printed: diagnostics on standard error and, with --json, one object on
+/// standard output.
+int guarded(const Common& common, const std::function<int()>& command);
+
+/// Reads a scenario; warnings are shown, errors thrown.
+Scenario load_scenario(const std::string& file, const Common& common,
+                       std::vector<Diagnostic>* warnings = nullptr);
+
+/// The model of a run, made again from the text in its file. `run_file` serves for messages.
+Scenario scenario_of_run(const std::string& text, const std::string& run_file);
+
+/// `diagnostics` as a JSON array.
+void write_diagnostics(JsonWriter& json, const std::vector<Diagnostic>& diagnostics);
+
+}   // namespace livens::program

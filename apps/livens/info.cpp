@@ -1,0 +1,100 @@
+// livens info: what a result file holds. livens export: its samples for other programs.
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include "commands.h"
+#include "console.h"
+#include "failure.h"
+#include "livens/io/results.h"
+#include "words.h"
+
+namespace livens::program {
+
+namespace {
+
+void names(JsonWriter& json, const char* key, const std::vector<std::string>& values)
+{
+    json.key(key).begin_array();
+    for (const std::string& s : values) json.value(s);
+    json.end_array();
+}
+
+std::string json_of(const Run& run)
+{
+    const RunSummary& s = run.summary;
+    JsonWriter json(2);
+    json.begin_object();
+    json.member("converged", s.converged).member("status", s.status).member("message", s.message);
+    json.member("title", run.title).member("version", run.version).member("method", s.method);
+    json.member("start", run.motion.start()).member("end", run.motion.end());
+    json.member("elements", s.elements).member("unknowns", s.unknowns);
+    json.member("newton_iterations", s.newton_iterations).member("factorisations", s.factorisations);
+    json.member("residual_norm", s.residual_norm)
+        .member("max_constraint_violation", s.max_constraint_violation);
+    json.member("max_velocity_violation", s.max_velocity_violation).member("energy_drift", s.energy_drift);
+    json.member("angular_momentum_drift", s.angular_momentum_drift);
+    json.member("order_at_element_ends", run.motion.order_at_ends);
+    json.member("output_times", run.output.size());
+    names(json, "bodies", run.body_names);
+    names(json, "joints", run.joint_names);
+    names(json, "notes", s.notes);
+    json.key("options").raw(run.resolved.starts_with('{') ? run.resolved : "null");
+    json.end_object();
+    return json.text() + "\n";
+}
+
+std::string list(const std::vector<std::string>& values)
+{
+    constexpr std::size_t shown = 20;
+    std::string text;
+    for (std::size_t i = 0; i < values.size() && i < shown; ++i)
+        text += (i > 0 ? ", " : "") + plain(values[i]);
+    return values.size() > shown ? text + fmt::format(" and {} more", values.size() - shown) : text;
+}
+
+}   // namespace
+
+int info_command(const std::string& file, const Common& common)
+{
+    const Run run = read_run(file);
+    if (common.json) {
+        print(json_of(run));
+        return exit_ok;
+    }
+    const RunSummary& s = run.summary;
+    std::string text = plain(run.title.empty() ? file : run.title) + "\n";
+    text += fmt::format("  written by        livens {}\n", plain(run.version));
+    text += fmt::format("  bodies            {}\n", list(run.body_names));
+    if (!run.joint_names.empty()) text += fmt::format("  joints            {}\n", list(run.joint_names));
+    text += fmt::format("  time              {:.6g} s to {:.6g} s, {} output times\n", run.motion.start(),
+                        run.motion.end(), run.output.size());
+    text += fmt::format("  method            {}, {} elements, {} unknowns each\n", plain(s.method),
+                        s.elements, s.unknowns);
+    text += figures(s);
+    for (const std::string& note : s.notes) text += "  note              " + plain(note) + "\n";
+    print(text + verdict(s) + "\n");
+    return exit_ok;
+}
+
+int export_command(const ExportArguments& arguments, const Common& common)
+{
+    const Run run = read_run(arguments.run);
+    std::error_code error;
+    if (std::filesystem::equivalent(arguments.csv, arguments.run, error) && !error)
+        throw failure(exit_input_output, "cannot write '" + arguments.csv + "': it is the run itself");
+    write_csv(arguments.csv, scenario_of_run(run.scenario_text, arguments.run).model, run);
+    if (common.json) {
+        JsonWriter json(2);
+        json.begin_object()
+            .member("csv", arguments.csv)
+            .member("converged", run.summary.converged)
+            .end_object();
+        print(json.text() + "\n");
+    } else {
+        say_note("wrote " + arguments.csv);
+    }
+    return exit_ok;
+}
+
+}   // namespace livens::program

@@ -1,0 +1,256 @@
+// livens sample: a body or a joint of a run at any instant.
+#include <charconv>
+#include <cmath>
+#include <span>
+
+#include <fmt/format.h>
+
+#include "commands.h"
+#include "console.h"
+#include "failure.h"
+#include "livens/base/error.h"
+#include "livens/io/results.h"
+#include "livens/io/sample.h"
+#include "livens/spacetime/solve.h"
+
+namespace livens::program {
+
+namespace {
+
+/// A whole finite number; independent of the locale.
+double instant(const std::string& text)
+{
+    std::string_view digits = text;
+    if (digits.starts_with('+')) digits.remove_prefix(1);
+    double t = 0;
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), t);
+    if (error != std::errc() || end != digits.data() + digits.size() || !std::isfinite(t))
+        throw failure(exit_usage, "--at wants a time in seconds, not '" + text + "'");
+    return t;
+}
+
+double instant_inside(const std::string& text, const Motion& motion)
+{
+    const double t = instant(text);
+    try {
+        return snap_to_element_end(motion.mesh, t);
+    } catch (const InputError& error) {
+        throw failure(exit_usage, error.what());
+    }
+}
+
+int index_of(const std::vector<std::string>& names, const std::string& name, const char* kind)
+{
+    for (std::size_t i = 0; i < names.size(); ++i)
+        if (names[i] == name) return static_cast<int>(i);
+    std::string known;
+    for (std::size_t i = 0; i < names.size() && i < 20; ++i) known += (i > 0 ? ", '" : "'") + names[i] + "'";
+    throw failure(exit_usage, fmt::format("the run has no {} '{}'; it has {}", kind, name,
+                                          known.empty() ? "none" : known));
+}
+
+template <int Rows>
+void add(JsonWriter& json, const char* key, const Matrix<Rows, 1>& v)
+{
+    json.key(key).value(std::span<const double>(v.a));
+}
+
+void add_triad(JsonWriter& json, const char* key, const Matrix3& d)
+{
+    json.key(key).begin_array();
+    for (int i = 0; i < 3; ++i) json.value(std::span<const double>(d.column(i).a));
+    json.end_array();
+}
+
+struct Query {
+    const SampleArguments& arguments;
+    const Run& run;
+    const Scenario& scenario;
+    int index;   ///< of the body or joint
+};
+
+BodySample body_at(const Query& q, double t)
+{
+    if (!q.arguments.exact)
+        return sample_bodies(q.scenario.model, q.run.motion, t)[static_cast<std::size_t>(q.index)];
+    const ExactSample exact =
+        sample_exactly(q.scenario.model, q.run.motion, q.scenario.method, t, q.scenario.options);
+    if (!exact.report.converged()) throw failure(exit_not_converged, exact.report.message);
+    const Body& body = q.scenario.model.bodies()[q.index];
+    const Matrix34 &X = exact.state.X[q.index], &V = exact.state.V[q.index];
+    return sample_body(body, X, V, V * body.mass);
+}
+
+void body_members(JsonWriter& json, const Query& q, double t)
+{
+    const BodySample s = body_at(q, t);
+    json.member("t", t);
+    add(json, "position", s.position);
+    add(json, "center_of_mass", s.center_of_mass);
+    if (q.scenario.model.bodies()[q.index].is_point) {
+        for (const char* key : {"directors", "directors_raw", "quaternion"}) json.key(key).null();
+        add(json, "velocity", s.velocity);
+        for (const char* key : {"angular_velocity", "angular_velocity_body"}) json.key(key).null();
+    } else {
+        add_triad(json, "directors", s.directors);
+        add_triad(json, "directors_raw", s.directors_raw);
+        add(json, "quaternion", s.quaternion);
+        add(json, "velocity", s.velocity);
+        add(json, "angular_velocity", s.angular_velocity);
+        add(json, "angular_velocity_body", s.angular_velocity_body);
+    }
+    add(json, "linear_momentum", s.linear_momentum);
+    add(json, "angular_momentum", s.angular_momentum);
+    const bool is_end = element_end_at(q.run.motion.mesh, t) >= 0;
+    json.member("source", is_end ? "element end" : q.arguments.exact ? "solved" : "polynomial");
+}
+
+JointSample joint_at(const Query& q, double t)
+{
+    if (q.arguments.exact && element_end_at(q.run.motion.mesh, t) < 0)
+        throw failure(exit_usage,
+                      "--exact gives the state of bodies; reactions are exact at element ends alone");
+    const std::vector<JointSample> samples = sample_joints(q.scenario.model, q.run.motion, t);
+    if (samples.empty())
+        throw failure(exit_input_output, "the run holds no multipliers, so it knows no reactions");
+    return samples[static_cast<std::size_t>(q.index)];
+}
+
+void joint_members(JsonWriter& json, const Query& q, double t)
+{
+    const JointSample s = joint_at(q, t);
+    json.member("t", t);
+    add(json, "force", s.right.force);
+    add(json, "torque", s.right.torque);
+    const auto side = [&](const char* key, const Reaction& r) {
+        json.key(key).begin_object();
+        add(json, "force", r.force);
+        add(json, "torque", r.torque);
+        json.end_object();
+    };
+    side("left", s.left);
+    side("right", s.right);
+    json.member("source", s.is_acceleration_level ? "acceleration level" : "interpolated multipliers");
+}
+
+/// One instant: its members stand at the top; several: a list `samples`.
+std::string json_of(const Query& q, const std::vector<double>& times)
+{
+    const bool is_body = !q.arguments.body.empty();
+    const auto members = [&](JsonWriter& json, double t) {
+        is_body ? body_members(json, q, t) : joint_members(json, q, t);
+    };
+    JsonWriter json(2);
+    json.begin_object();
+    json.member(is_body ? "body" : "joint", is_body ? q.arguments.body : q.arguments.joint);
+    json.member("converged", q.run.summary.converged);
+    if (times.size() == 1) {
+        members(json, times.front());
+    } else {
+        json.key("samples").begin_array();
+        for (const double t : times) {
+            json.begin_object();
+            members(json, t);
+            json.end_object();
+        }
+        json.end_array();
+    }
+    json.end_object();
+    return json.text() + "\n";
+}
+
+template <int Rows>
+void add_row(std::string& out, const char* name, const char* unit, const Matrix<Rows, 1>& v)
+{
+    out += fmt::format("  {:<22}", name);
+    for (const double x : v.a) out += fmt::format(" {:>24}", shortest(x));
+    out += fmt::format("  {}\n", unit);
+}
+
+std::string text_of(const Query& q, double t)
+{
+    std::string out = fmt::format("t = {} s\n", shortest(t));
+    if (q.arguments.body.empty()) {
+        const JointSample s = joint_at(q, t);
+        add_row(out, "force", "N", s.right.force);
+        add_row(out, "torque", "N m", s.right.torque);
+        if (!(s.left.force == s.right.force && s.left.torque == s.right.torque)) {
+            add_row(out, "force before", "N", s.left.force);
+            add_row(out, "torque before", "N m", s.left.torque);
+        }
+        return out + (s.is_acceleration_level ? "" : "  (interpolated multipliers: between element ends)\n");
+    }
+    const BodySample s = body_at(q, t);
+    add_row(out, "position", "m", s.position);
+    add_row(out, "center of mass", "m", s.center_of_mass);
+    add_row(out, "velocity", "m/s", s.velocity);
+    if (!q.scenario.model.bodies()[q.index].is_point) {
+        for (int i = 0; i < 3; ++i)
+            add_row(out, i == 0 ? "d1" : i == 1 ? "d2" : "d3", "", s.directors.column(i));
+        add_row(out, "quaternion w x y z", "", s.quaternion);
+        add_row(out, "angular velocity", "rad/s", s.angular_velocity);
+        add_row(out, "  in body axes", "rad/s", s.angular_velocity_body);
+    }
+    add_row(out, "linear momentum", "N s", s.linear_momentum);
+    add_row(out, "angular momentum", "N m s", s.angular_momentum);
+    return out;
+}
+
+template <int Rows>
+void add_cells(std::string& line, const Matrix<Rows, 1>& v)
+{
+    for (const double x : v.a) line += "," + (std::isfinite(x) ? shortest(x) : "");
+}
+
+std::string csv_of(const Query& q, const std::vector<double>& times)
+{
+    const bool is_body = !q.arguments.body.empty();
+    std::string out =
+        is_body ? "t [s],x [m],y [m],z [m],qw,qx,qy,qz,vx [m/s],vy [m/s],vz [m/s],wx [rad/s],wy [rad/s],"
+                  "wz [rad/s]\r\n"
+                : "t [s],fx [N],fy [N],fz [N],mx [N m],my [N m],mz [N m]\r\n";
+    for (const double t : times) {
+        out += shortest(t);
+        if (is_body) {
+            const BodySample s = body_at(q, t);
+            add_cells(out, s.position);
+            add_cells(out, s.quaternion);
+            add_cells(out, s.velocity);
+            add_cells(out, s.angular_velocity);
+        } else {
+            const JointSample s = joint_at(q, t);
+            add_cells(out, s.right.force);
+            add_cells(out, s.right.torque);
+        }
+        out += "\r\n";
+    }
+    return out;
+}
+
+}   // namespace
+
+int sample_command(const SampleArguments& arguments, const Common& common)
+{
+    if (arguments.body.empty() == arguments.joint.empty())
+        throw failure(exit_usage, "sample wants either --body NAME or --joint NAME");
+    const Run run = read_run(arguments.run);
+    const int index = arguments.joint.empty() ? index_of(run.body_names, arguments.body, "body")
+                                              : index_of(run.joint_names, arguments.joint, "joint");
+    std::vector<double> times;
+    for (const std::string& text : arguments.at) times.push_back(instant_inside(text, run.motion));
+    const Scenario scenario = scenario_of_run(run.scenario_text, arguments.run);
+    const Query query{arguments, run, scenario, index};
+    if (!run.summary.converged) say_warning("the run is not converged: " + run.summary.status);
+    if (common.json) {
+        print(json_of(query, times));
+    } else if (arguments.csv) {
+        print(csv_of(query, times));
+    } else {
+        std::string text;
+        for (const double t : times) text += text_of(query, t);
+        print(text);
+    }
+    return exit_ok;
+}
+
+}   // namespace livens::program

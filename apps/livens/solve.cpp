@@ -1,0 +1,245 @@
+// livens solve: a scenario in, a solved and checked motion out.
+#include <chrono>
+#include <ctime>
+#include <filesystem>
+#include <fstream>
+
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "commands.h"
+#include "console.h"
+#include "failure.h"
+#include "interrupt.h"
+#include "livens/base/version.h"
+#include "livens/io/results.h"
+#include "progress.h"
+#include "words.h"
+
+namespace livens::program {
+
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point begin)
+{
+    return std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+/// Same file by any path; missing ones are compared by their folders.
+bool same_file(const fs::path& a, const fs::path& b)
+{
+    std::error_code error;
+    if (fs::equivalent(a, b, error) && !error) return true;
+    const fs::path full_a = fs::weakly_canonical(a, error), full_b = fs::weakly_canonical(b, error);
+    return !full_a.empty() && full_a == full_b;
+}
+
+struct Places {
+    fs::path scenario, output, record, csv;
+};
+
+/// Where everything goes; refuses what would destroy something or cannot be written, before anything is
+/// solved.
+Places places(const SolveArguments& arguments)
+{
+    Places p;
+    p.scenario = arguments.scenario;
+    p.output =
+        arguments.output.empty() ? fs::path(p.scenario.stem().string() + ".nc") : fs::path(arguments.output);
+    p.record = fs::path(p.output).replace_extension(".json");
+    if (p.record == p.output) p.record += ".json";
+    p.csv = arguments.csv;
+    const auto refuse = [](const fs::path& file, const char* why) {
+        throw failure(exit_input_output, "cannot write '" + file.string() + "': " + why);
+    };
+    if (same_file(p.output, p.scenario)) refuse(p.output, "it is the scenario itself");
+    check_writable(p.output);
+    if (!p.csv.empty()) {
+        if (same_file(p.csv, p.scenario)) refuse(p.csv, "it is the scenario itself");
+        if (same_file(p.csv, p.output)) refuse(p.csv, "it is the result file as well");
+        if (same_file(p.csv, p.record)) refuse(p.csv, "it is the record beside the result file as well");
+        check_writable(p.csv);
+    }
+    return p;
+}
+
+struct Solved {
+    Run run;
+    double solve_seconds = 0;
+    int signal = 0;   ///< that cancelled the solution
+};
+
+Solved solve_scenario(const Scenario& scenario, const Common& common)
+{
+    Solved solved;
+    Solution solution;
+    const InterruptWatch watch;
+    {
+        ProgressLine line(scenario.mesh.start(), scenario.mesh.end(), error_is_terminal() && !common.quiet);
+        SolveOptions options = scenario.options;
+        options.progress = [&line](const Progress& progress) {
+            line.show(progress);
+            return InterruptWatch::signal() == 0;
+        };
+        State start = scenario.model.start();
+        start.t = scenario.mesh.start();
+        const Clock::time_point begin = Clock::now();
+        solution = solve(scenario.model, Boundary{std::move(start)}, scenario.mesh, scenario.method, options);
+        solved.solve_seconds = seconds_since(begin);
+    }
+    say_detail(fmt::format("solved in {:.3g} s", solved.solve_seconds));
+    if (solution.report.status == SolveStatus::cancelled) solved.signal = InterruptWatch::signal();
+
+    const Clock::time_point begin = Clock::now();
+    solved.run = make_run(scenario.model, std::move(solution), scenario.method);
+    solved.run.scenario_text = scenario.text;
+    solved.run.title = scenario.title;
+    solved.run.resolved = scenario.resolved;
+    solved.run.output = scenario.output;
+    say_detail(fmt::format("checked in {:.3g} s", seconds_since(begin)));
+    return solved;
+}
+
+int exit_code_of(const Solved& solved)
+{
+    if (solved.signal != 0) return exit_signal + solved.signal;
+    if (!solved.run.summary.converged) return exit_not_converged;
+    return solved.run.summary.status == "suspect" ? exit_suspect : exit_ok;
+}
+
+/// The object that --json prints and that lies beside the result; `date` is empty for the former.
+std::string json_of(const Solved& solved, const Places& p, const std::vector<Diagnostic>& warnings,
+                    const std::string& date)
+{
+    const RunSummary& s = solved.run.summary;
+    JsonWriter json(2);
+    json.begin_object();
+    json.member("converged", s.converged)
+        .member("status", s.status)
+        .member("exit_code", exit_code_of(solved));
+    json.member("message", s.message).member("title", solved.run.title).member("method", s.method);
+    json.member("elements", s.elements).member("unknowns", s.unknowns);
+    json.member("newton_iterations", s.newton_iterations).member("factorisations", s.factorisations);
+    json.member("solve_seconds", solved.solve_seconds).member("residual_norm", s.residual_norm);
+    json.member("max_constraint_violation", s.max_constraint_violation);
+    json.member("max_velocity_violation", s.max_velocity_violation);
+    json.member("energy_drift", s.energy_drift).member("angular_momentum_drift", s.angular_momentum_drift);
+    json.member("start", solved.run.motion.start()).member("end", solved.run.motion.end());
+    json.member("output", p.output.string());
+    json.key("csv");
+    if (p.csv.empty())
+        json.null();
+    else
+        json.value(p.csv.string());
+    json.key("notes").begin_array();
+    for (const std::string& note : s.notes) json.value(note);
+    json.end_array();
+    json.key("warnings");
+    write_diagnostics(json, warnings);
+    json.key("errors").begin_array().end_array();
+    json.member("version", version);
+    if (!date.empty()) json.member("date", date);
+    json.end_object();
+    return json.text() + "\n";
+}
+
+std::string now_utc()
+{
+    const std::time_t now = std::time(nullptr);
+    std::tm parts{};
+    ::gmtime_r(&now, &parts);
+    return fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}Z", parts.tm_year + 1900, parts.tm_mon + 1,
+                       parts.tm_mday, parts.tm_hour, parts.tm_min, parts.tm_sec);
+}
+
+/// Whether the record may take this name: nothing is there, or an older record. `livens solve ... --json >
+/// run.json` has the shell open the very file, which a rename would take away from it.
+bool may_record(const fs::path& file)
+{
+    struct stat there {
+    }, output{};
+    if (::stat(file.c_str(), &there) != 0) return true;
+    if (!S_ISREG(there.st_mode)) return false;
+    if (::fstat(STDOUT_FILENO, &output) == 0 && output.st_dev == there.st_dev &&
+        output.st_ino == there.st_ino)
+        return false;
+    std::ifstream in(file, std::ios::binary);
+    std::string head(16, '\0');
+    in.read(head.data(), static_cast<std::streamsize>(head.size()));
+    return head.starts_with("{\n  \"converged\"");
+}
+
+/// What would make the result differ from run to run lies beside it. Its loss is worth a word, not the
+/// result.
+void write_record(const Solved& solved, const Places& p, const std::vector<Diagnostic>& warnings)
+{
+    if (!may_record(p.record)) {
+        say_detail("'" + p.record.string() +
+                   "' is left alone: it was not written by livens, or is standard output");
+        return;
+    }
+    try {
+        replace_file(p.record, json_of(solved, p, warnings, now_utc()));
+    } catch (const IoError& error) {
+        say_warning(error.what());
+    }
+}
+
+void show(const Solved& solved, const Places& p)
+{
+    const Run& run = solved.run;
+    const RunSummary& s = run.summary;
+    std::string text;
+    if (!run.title.empty()) text += plain(run.title) + "\n";
+    text += fmt::format("  method            {}, {} elements, {} unknowns each\n", s.method, s.elements,
+                        s.unknowns);
+    text += fmt::format("  solved            {:.6g} s to {:.6g} s of motion in {:.3g} s\n",
+                        run.motion.start(), run.motion.end(), solved.solve_seconds);
+    text += fmt::format("  iterations        {} by Newton{}, {} factorisations\n", s.newton_iterations,
+                        s.elements > 0 ? fmt::format(" ({:.1f} an element)",
+                                                     static_cast<double>(s.newton_iterations) / s.elements)
+                                       : "",
+                        s.factorisations);
+    text += figures(s);
+    text += fmt::format("  written           {}{}\n", plain(p.output.string()),
+                        p.csv.empty() ? "" : ", " + plain(p.csv.string()));
+    for (const std::string& note : s.notes) text += "  note              " + plain(note) + "\n";
+    text += verdict(s) + "\n";
+    print(text);
+}
+
+}   // namespace
+
+int solve_command(const SolveArguments& arguments, const Common& common)
+{
+    std::vector<Diagnostic> warnings;
+    const Clock::time_point begin = Clock::now();
+    const Scenario scenario = load_scenario(arguments.scenario, common, &warnings);
+    say_detail(fmt::format("read and checked the scenario in {:.3g} s", seconds_since(begin)));
+    const Places p = places(arguments);
+    const Solved solved = solve_scenario(scenario, common);
+    {
+        const SignalPause pause;
+        const Clock::time_point writing = Clock::now();
+        write_run(p.output, scenario.model, solved.run);
+        write_record(solved, p, warnings);
+        if (!p.csv.empty()) write_csv(p.csv, scenario.model, solved.run);
+        say_detail(fmt::format("written in {:.3g} s", seconds_since(writing)));
+    }
+    const int code = exit_code_of(solved);
+    if (code != exit_ok) {
+        const RunSummary& s = solved.run.summary;
+        say_error(s.message.empty() ? "the run is " + s.status : s.message);
+    }
+    if (common.json)
+        print(json_of(solved, p, warnings, ""));
+    else if (!common.quiet)
+        show(solved, p);
+    return code;
+}
+
+}   // namespace livens::program

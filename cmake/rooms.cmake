@@ -1,0 +1,92 @@
+# A room is a folder of src/livens, compiled once as an object library; libraries and tests are made of rooms.
+
+find_package(Threads REQUIRED)
+
+add_library(livens_flags INTERFACE)
+target_include_directories(livens_flags INTERFACE ${PROJECT_SOURCE_DIR}/src)
+target_compile_options(livens_flags INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
+                       $<$<BOOL:${LIVENS_WARNINGS_AS_ERRORS}>:-Werror>)
+# GCC 12 sees overlapping copies in every sum of std::strings (its bug 105651), from -O2 on.
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+    target_compile_options(livens_flags INTERFACE -Wno-restrict)
+endif()
+
+# livens_room(NAME [EIGEN]): EIGEN rooms use Eigen inside their sources, never in a header. Eigen is given another
+# namespace there: its inline functions depend on processor flags, and a program that uses Eigen with other flags must
+# not share them through the linker.
+function(livens_room name)
+    cmake_parse_arguments(arg "EIGEN" "" "" ${ARGN})
+    file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/livens/${name}/*.cpp)
+    if(NOT sources)
+        add_library(livens_room_${name} INTERFACE)
+        return()
+    endif()
+    add_library(livens_room_${name} OBJECT ${sources})
+    set_target_properties(livens_room_${name} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+    target_link_libraries(livens_room_${name} PRIVATE $<BUILD_INTERFACE:livens_flags>)
+    if(arg_EIGEN)
+        find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+        get_target_property(eigen Eigen3::Eigen INTERFACE_INCLUDE_DIRECTORIES)
+        target_include_directories(livens_room_${name} SYSTEM PRIVATE ${eigen})
+        target_compile_definitions(livens_room_${name} PRIVATE Eigen=livens_eigen)
+    endif()
+endfunction()
+
+# livens_library(NAME ROOM...): the installed library livens::NAME.
+function(livens_library name)
+    set(objects)
+    foreach(room ${ARGN})
+        get_target_property(type livens_room_${room} TYPE)
+        if(type STREQUAL "OBJECT_LIBRARY")
+            list(APPEND objects $<TARGET_OBJECTS:livens_room_${room}>)
+        endif()
+    endforeach()
+    add_library(livens_${name} ${objects})
+    add_library(livens::${name} ALIAS livens_${name})
+    set_target_properties(livens_${name} PROPERTIES EXPORT_NAME ${name} LINKER_LANGUAGE CXX VERSION ${PROJECT_VERSION})
+    target_compile_features(livens_${name} PUBLIC cxx_std_20)
+    target_include_directories(livens_${name} INTERFACE $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src>
+                               $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+    target_link_libraries(livens_${name} PUBLIC Threads::Threads)
+endfunction()
+
+# livens_test(NAME SOURCES file... ROOMS room... [LIBRARIES lib...] [SLOW]): a GoogleTest program. With ROOMS it links
+# these rooms alone (a room's unit tests build before the rooms above exist).
+function(livens_test name)
+    cmake_parse_arguments(arg "SLOW" "" "SOURCES;ROOMS;LIBRARIES" ${ARGN})
+    if(arg_SLOW AND NOT LIVENS_SLOW_TESTS)
+        return()
+    endif()
+    add_executable(${name} ${arg_SOURCES})
+    foreach(room ${arg_ROOMS})
+        get_target_property(type livens_room_${room} TYPE)
+        if(type STREQUAL "OBJECT_LIBRARY")
+            target_sources(${name} PRIVATE $<TARGET_OBJECTS:livens_room_${room}>)
+        endif()
+    endforeach()
+    target_link_libraries(${name} PRIVATE livens_flags ${arg_LIBRARIES} GTest::gtest GTest::gtest_main Threads::Threads)
+    target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
+    target_compile_definitions(${name} PRIVATE LIVENS_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+    set(label fast)
+    if(arg_SLOW)
+        set(label slow)
+    endif()
+    gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60 PROPERTIES LABELS ${label} TIMEOUT 600)
+endfunction()
+
+# Every header compiles alone, and twice.
+function(livens_check_headers)
+    file(GLOB_RECURSE headers CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}/src ${PROJECT_SOURCE_DIR}/src/livens/*.h)
+    set(sources)
+    foreach(header ${headers})
+        if(header MATCHES "livens/io/" AND NOT LIVENS_BUILD_PROGRAM)
+            continue()
+        endif()
+        string(MAKE_C_IDENTIFIER ${header} id)
+        set(source ${PROJECT_BINARY_DIR}/headers/${id}.cpp)
+        file(CONFIGURE OUTPUT ${source} CONTENT "#include \"${header}\"\n#include \"${header}\"\n" @ONLY)
+        list(APPEND sources ${source})
+    endforeach()
+    add_library(livens_headers OBJECT ${sources})
+    target_link_libraries(livens_headers PRIVATE livens_flags)
+endfunction()

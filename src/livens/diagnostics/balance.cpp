@@ -1,0 +1,220 @@
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+#include "livens/diagnostics/detail/forces.h"
+#include "livens/diagnostics/detail/largest.h"
+#include "livens/diagnostics/detail/sampler.h"
+#include "livens/diagnostics/diagnostics.h"
+#include "livens/time/quadrature.h"
+
+namespace livens {
+namespace {
+
+/// Below this fraction of the reference a motion counts as rest, whose energy and momentum are rounding.
+constexpr double rest = 1e-9;
+
+/// What flows into a mechanism: rates at an instant, or their integrals.
+struct Supply {
+    double work = 0;   // of loads without potential
+    Vector3 linear{};
+    Vector3 angular{};         // about the world's origin
+    double gross_moment = 0;   // sum of |x_c| |F_c|, what rounding in `angular` is relative to
+
+    void add_force(const Matrix34& X, const Matrix34& F)
+    {
+        linear += F.column(0);
+        for (int c = 0; c < 4; ++c) {
+            const Vector3 x = X.column(c), f = F.column(c);
+            angular += cross(x, f);
+            gross_moment += norm(x) * norm(f);
+        }
+    }
+
+    void add(double weight, const Supply& other)
+    {
+        work += weight * other.work;
+        linear += weight * other.linear;
+        angular += weight * other.angular;
+        gross_moment += weight * other.gross_moment;
+    }
+};
+
+/// Where supplies are taken. lobatto's own nodes are its quadrature points, which makes its momentum balances
+/// exact; one multiplier an element marks a stepping rule with one stage: endpoint (order 1) takes forces at
+/// the end of the step, midpoint in its middle, and there its balances are exact as well.
+Quadrature supply_rule(const Motion& motion)
+{
+    const bool one_stage = motion.X.degree == 1 && motion.multipliers.degree == 0;
+    if (!one_stage) return gauss_lobatto(motion.X.degree + 1);
+    return {{motion.order_at_ends == 1 ? 1.0 : 0.5}, {1.0}};
+}
+
+class SupplyIntegral {
+public:
+    SupplyIntegral(const Model& model, const Motion& motion)
+        : SupplyIntegral(model, motion, supply_rule(motion))
+    {}
+
+    /// Integral over one element.
+    Supply over(int element)
+    {
+        Supply sum;
+        const double h = motion_.mesh.length(element);
+        for (int k = 0; k < sampler_.size(); ++k) sum.add(h * weights_[k], rates(element, k));
+        return sum;
+    }
+
+private:
+    SupplyIntegral(const Model& model, const Motion& motion, Quadrature rule)
+        : model_(model), motion_(motion), weights_(rule.weights), sampler_(motion, rule.points),
+          X_(static_cast<std::size_t>(motion.n_bodies)), V_(X_.size()),
+          lambda_(motion.multipliers.empty() ? 0 : static_cast<std::size_t>(motion.n_rows))
+    {
+        for (const Body& body : model.bodies()) weights_of_bodies_.push_back(weight(body, model.gravity()));
+    }
+
+    Supply rates(int element, int k)
+    {
+        Supply now;
+        sampler_.positions(element, k, X_);
+        sampler_.velocities(element, k, V_);
+        for (std::size_t b = 0; b < X_.size(); ++b) now.add_force(X_[b], weights_of_bodies_[b]);
+        add_loads(sampler_.instant(element, k), now);
+        add_joints(element, k, now);
+        return now;
+    }
+
+    void add_loads(Instant at, Supply& now) const
+    {
+        for (const Load& load : model_.loads()) {
+            const LoadArguments arguments = load_arguments(load, at, X_, V_);
+            LoadForces F{};
+            load.forces(arguments, F);
+            for (int b = 0; b < 2; ++b) {
+                if (load.bodies[b] != world) now.add_force(arguments.X[b], F[b]);
+            }
+            now.work += power_without_potential(load, arguments);
+        }
+    }
+
+    /// -G^T lambda on all bodies: between two bodies it adds up to nothing, so what stays is the world's.
+    void add_joints(int element, int k, Supply& now)
+    {
+        if (lambda_.empty()) return;
+        if (motion_.multipliers.degree == motion_.X.degree && sampler_.size() == motion_.X.degree + 1) {
+            std::ranges::copy(motion_.multipliers.coefficient(element, k), lambda_.begin());
+        } else {
+            motion_.multipliers.evaluate(element, sampler_.point(k), 0, lambda_);
+        }
+        for (int r = 0; r < model_.n_rows(); ++r) {
+            if (lambda_[r] == 0) continue;
+            const ConstraintRow& row = model_.row(r);
+            const RowGradient g = row_gradient(row, X_);
+            now.add_force(X_[row.body_j], -lambda_[r] * g.j);
+            if (row.body_i != world) now.add_force(X_[row.body_i], -lambda_[r] * g.i);
+        }
+    }
+
+    const Model& model_;
+    const Motion& motion_;
+    std::vector<double> weights_;
+    ElementSampler sampler_;
+    std::vector<Matrix34> X_, V_;
+    std::vector<double> lambda_;
+    std::vector<Matrix34> weights_of_bodies_;
+};
+
+double moment_of_momentum(std::span<const Matrix34> X, std::span<const Matrix34> P)
+{
+    double sum = 0;
+    for (std::size_t b = 0; b < X.size(); ++b) {
+        for (int c = 0; c < 4; ++c) sum += norm(X[b].column(c)) * norm(P[b].column(c));
+    }
+    return sum;
+}
+
+/// Energies and momenta at one element end.
+void append_state(const Model& model, const Motion& motion, int end, std::span<Matrix34> X, Balance& balance)
+{
+    const std::span<const Matrix34> V = velocities_at_end(motion, end);
+    const std::span<const Matrix34> P =
+        std::span<const Matrix34>(motion.momenta).subspan(static_cast<std::size_t>(end) * X.size(), X.size());
+    positions_at_end(motion, end, X);
+    const Instant at{motion.mesh.ends[end], end == motion.n_elements() ? Side::left : Side::right};
+
+    balance.t.push_back(at.t);
+    balance.kinetic.push_back(kinetic_energy(model, X, V));
+    balance.potential.push_back(potential_energy(model, at, X, V));
+    balance.energy.push_back(balance.kinetic.back() + balance.potential.back());
+    balance.linear_momentum.push_back(linear_momentum(P));
+    balance.angular_momentum.push_back(angular_momentum(X, P));
+    raise_to(balance.largest_kinetic, balance.kinetic.back());
+    raise_to(balance.largest_moment, moment_of_momentum(X, P));
+}
+
+void append_supply(const Supply& total, Balance& balance)
+{
+    const std::size_t end = balance.work.size();
+    balance.work.push_back(total.work);
+    balance.linear_impulse.push_back(total.linear);
+    balance.angular_impulse.push_back(total.angular);
+    balance.energy_drift.push_back(std::abs(balance.energy[end] - balance.energy[0] - total.work));
+    balance.linear_momentum_drift.push_back(
+        norm(balance.linear_momentum[end] - balance.linear_momentum[0] - total.linear));
+    balance.angular_momentum_drift.push_back(
+        norm(balance.angular_momentum[end] - balance.angular_momentum[0] - total.angular));
+}
+
+double reference_energy(const Model& model, const Balance& balance)
+{
+    double reference = 0;
+    for (const double v : balance.potential) raise_to(reference, std::abs(v));
+    for (const Body& body : model.bodies()) {
+        reference += norm(weight(body, model.gravity()).column(0)) * model.length();
+    }
+    return reference;
+}
+
+double relative(const std::vector<double>& drift, double largest, double reference)
+{
+    double worst = 0;
+    for (const double d : drift) raise_to(worst, d);
+    const double scale = largest > rest * reference ? largest : reference;
+    return scale > 0 ? worst / scale : worst;
+}
+
+}   // namespace
+
+double Balance::relative_energy_drift() const
+{
+    return relative(energy_drift, largest_kinetic, reference_energy);
+}
+
+double Balance::relative_angular_momentum_drift() const
+{
+    return relative(angular_momentum_drift, largest_moment, reference_moment);
+}
+
+Balance balance(const Model& model, const Motion& motion)
+{
+    assert(model.n_bodies() == motion.n_bodies && model.n_rows() == motion.n_rows);
+    assert(motion.momenta.size() == motion.mesh.ends.size() * static_cast<std::size_t>(motion.n_bodies));
+    Balance result;
+    if (motion.mesh.ends.empty()) return result;
+    std::vector<Matrix34> X(static_cast<std::size_t>(motion.n_bodies));
+    SupplyIntegral supply(model, motion);
+    Supply total;
+    append_state(model, motion, 0, X, result);
+    append_supply(total, result);
+    for (int e = 0; e < motion.n_elements(); ++e) {
+        append_state(model, motion, e + 1, X, result);
+        total.add(1, supply.over(e));
+        append_supply(total, result);
+    }
+    result.reference_energy = reference_energy(model, result);
+    result.reference_moment = total.gross_moment;
+    return result;
+}
+
+}   // namespace livens

@@ -1,0 +1,92 @@
+#include "livens/io/json.h"
+#include "livens/io/results.h"
+#include "livens/io/sample.h"
+
+namespace livens {
+
+namespace {
+
+/// RFC 4180: quotes around what holds a separator; line breaks cannot be in a header that other programs
+/// should read.
+std::string header_cell(std::string name)
+{
+    std::string quoted;
+    bool needs_quotes = false;
+    for (const char c : name) {
+        if (c == ',' || c == '"' || c == ';') needs_quotes = true;
+        if (c == '"') quoted += '"';
+        quoted += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+    }
+    return needs_quotes ? '"' + quoted + '"' : quoted;
+}
+
+std::string header(const Run& run)
+{
+    std::string line = "t [s]";
+    const auto add = [&](const std::string& body, const char* quantity,
+                         std::initializer_list<const char*> parts, const char* unit) {
+        for (const char* part : parts)
+            line += "," + header_cell(body + "." + quantity + "." + part + " [" + unit + "]");
+    };
+    for (const std::string& body : run.body_names) {
+        add(body, "position", {"x", "y", "z"}, "m");
+        add(body, "quaternion", {"w", "x", "y", "z"}, "1");
+        add(body, "velocity", {"x", "y", "z"}, "m/s");
+        add(body, "angular_velocity", {"x", "y", "z"}, "rad/s");
+    }
+    return line + ",kinetic energy [J],potential energy [J],energy [J]\r\n";
+}
+
+template <int Rows, int Cols>
+void add_cells(std::string& line, const Matrix<Rows, Cols>& values)
+{
+    for (const double x : values.a) {
+        line += ',';
+        if (x == x) line += shortest(x);   // nan: an empty cell, which every reader takes for "none"
+    }
+}
+
+/// Energies are known at element ends; elsewhere they are formed from the state.
+void add_energies(std::string& line, const Model& model, const Run& run, double t)
+{
+    const int end = element_end_at(run.motion.mesh, t);
+    double kinetic = 0, potential = 0;
+    if (end >= 0 && !run.balance.kinetic.empty() && !run.balance.potential.empty()) {
+        kinetic = run.balance.kinetic[end];
+        potential = run.balance.potential[end];
+    } else {
+        const State state = sample_state(run.motion, t);
+        kinetic = kinetic_energy(model, state.X, state.V);
+        potential = potential_energy(model, {t, Side::middle}, state.X, state.V);
+    }
+    add_cells(line, Vector3{kinetic, potential, kinetic + potential});
+}
+
+}   // namespace
+
+void write_csv(const std::filesystem::path& file, const Model& model, const Run& run)
+{
+    check_writable(file);
+    std::string text = header(run);
+    std::vector<Vector4> previous(run.body_names.size(), Vector4{1, 0, 0, 0});
+    for (const double asked : run.output) {
+        if (asked < run.motion.start() || asked > run.motion.end()) continue;
+        const double t = snap_to_element_end(run.motion.mesh, asked);
+        text += shortest(asked);
+        const std::vector<BodySample> bodies = sample_bodies(model, run.motion, t);
+        for (std::size_t b = 0; b < bodies.size(); ++b) {
+            const BodySample& s = bodies[b];
+            const Vector4 q = dot(previous[b], s.quaternion) < 0 ? -1.0 * s.quaternion : s.quaternion;
+            previous[b] = q;
+            add_cells(text, s.position);
+            add_cells(text, q);
+            add_cells(text, s.velocity);
+            add_cells(text, s.angular_velocity);
+        }
+        add_energies(text, model, run, t);
+        text += "\r\n";
+    }
+    replace_file(file, text);
+}
+
+}   // namespace livens

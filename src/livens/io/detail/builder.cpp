@@ -1,0 +1,173 @@
+#include "livens/io/detail/builder.h"
+
+#include <algorithm>
+
+namespace livens {
+
+namespace {
+
+constexpr std::size_t longest_name = 200;
+
+std::string with_bounds(const Complaint& complaint)
+{
+    std::string text = complaint.message;
+    if (complaint.value.empty() && complaint.bound.empty()) return text;
+    text += " (";
+    if (!complaint.value.empty()) text += "given: " + complaint.value;
+    if (!complaint.value.empty() && !complaint.bound.empty()) text += ", ";
+    if (!complaint.bound.empty()) text += "allowed: " + complaint.bound;
+    return text + ")";
+}
+
+/// `body[upper].mass` as people say it: 'mass' of body 'upper'.
+std::string spoken(const std::string& path)
+{
+    const std::size_t open = path.find('['), close = path.rfind(']');
+    if (open == std::string::npos || close == std::string::npos || close < open) return path;
+    const std::string name = path.substr(0, open) + " '" + path.substr(open + 1, close - open - 1) + "'";
+    return close + 2 < path.size() ? "'" + path.substr(close + 2) + "' of " + name : name;
+}
+
+}   // namespace
+
+Builder::Builder(const Section& top, Findings& findings)
+    : top_(top),
+      findings_(findings),
+      model_(top.vector("gravity"))
+{
+    remember("", top);
+    for (const std::string_view name : {"time", "method", "start"})
+        for (const Section& section : top.sections(name)) remember(std::string(name), section);
+}
+
+void Builder::remember(const std::string& path, const Section& section)
+{
+    places_[path] = section.has("name") ? section.place("name") : section.place();
+    for (const Value& value : section.values()) {
+        const std::string prefix = path.empty() ? "" : path + ".";
+        places_[prefix + std::string(value.key->name)] = value.node->place;
+    }
+}
+
+/// The core writes `body[upper].mass`, or `load.until` where it does not know the name. The longest part of
+/// the path that is known counts.
+Place Builder::find_place(std::string path, const std::string& context) const
+{
+    for (const std::string_view kind : {"body.", "joint.", "load."})
+        if (path.substr(0, kind.size()) == kind) path = context + path.substr(kind.size() - 1);
+    while (!path.empty()) {
+        const auto found = places_.find(path);
+        if (found != places_.end()) return found->second;
+        const std::size_t dot = path.rfind('.');
+        path.resize(dot == std::string::npos ? 0 : dot);
+    }
+    const auto found = places_.find(context);
+    return found != places_.end() ? found->second : Place{};
+}
+
+void Builder::report(const Complaint& complaint, const std::string& path)
+{
+    const std::string subject = spoken(complaint.path.find('[') == std::string::npos ? path : complaint.path);
+    const bool is_named = complaint.message.find('\'') != std::string::npos;
+    findings_.error(find_place(complaint.path, path), complaint.code,
+                    (is_named || subject.empty() ? "" : subject + ": ") + with_bounds(complaint),
+                    {complaint.note, complaint.help});
+}
+
+BodyReference Builder::find_body(const std::string& name, const Place& place, const Section& section)
+{
+    if (name == "world") return {world, true};
+    const auto found = bodies_.find(name);
+    if (found != bodies_.end()) return {found->second.index, found->second.is_built};
+    std::vector<std::string_view> known;
+    for (const Section& body : top_.sections("body"))
+        if (const Value* v = body.find("name")) known.push_back(v->text);
+    known.push_back("world");
+    findings_.error(place, "body-unknown",
+                    section.label() + " refers to '" + name + "', but there is no such body",
+                    {"", suggest(name, known)});
+    return {};
+}
+
+bool Builder::find_pair(const Section& section, BodyReference& first, BodyReference& second)
+{
+    const Value* between = section.find("between");
+    if (between == nullptr) return false;
+    const std::vector<Node>& names = between->node->items();
+    first = find_body(between->texts[0], names[0].place, section);
+    second = find_body(between->texts[1], names[1].place, section);
+    if (between->texts[0] != between->texts[1]) return first.is_usable && second.is_usable;
+    if (between->texts[0] == "world" || bodies_.count(between->texts[0]) > 0)
+        findings_.error(names[1].place, section.text("type") == "spring" ? "load-self" : "joint-self",
+                        section.label() + " connects '" + between->texts[0] + "' with itself",
+                        {"", "'between' names two different bodies, or one and \"world\""});
+    return false;
+}
+
+void Builder::close_bodies()
+{
+    const double length = model_.n_bodies() > 0 ? model_.length() : 0;
+    length_ = length > 0 ? length : 1;
+}
+
+const Matrix34& Builder::start_configuration(int body) const
+{
+    return body == world ? world_configuration : model_.bodies()[body].X;
+}
+
+bool check_name(const Section& section, Findings& findings)
+{
+    const Value* name = section.find("name");
+    if (name == nullptr) return !section.has("name");
+    const std::string& text = name->text;
+    const bool is_printable = std::none_of(
+        text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; });
+    std::string problem;
+    if (text.empty()) problem = "a name must not be empty";
+    else if (text == "world") problem = "the name 'world' is reserved for the fixed world";
+    else if (text.size() > longest_name)
+        problem = "a name has at most " + std::to_string(longest_name) + " bytes";
+    else if (!is_printable) problem = "a name must not contain control characters";
+    if (problem.empty()) return true;
+    findings.error(section.place("name"),
+                   text.empty()      ? "name-empty"
+                   : text == "world" ? "name-reserved"
+                                     : "name-invalid",
+                   problem);
+    return false;
+}
+
+bool at_most_one(const Section& section, std::initializer_list<std::string_view> keys, std::string_view code,
+                 Findings& findings)
+{
+    std::string_view first;
+    for (const std::string_view key : keys) {
+        if (!section.has(key)) continue;
+        if (first.empty()) {
+            first = key;
+            continue;
+        }
+        findings.error(section.place(key), code,
+                       "'" + std::string(key) + "' and '" + std::string(first) + "' of " + section.label() +
+                           " exclude each other",
+                       {"", "keep one of them"});
+        return false;
+    }
+    return true;
+}
+
+bool refuse_keys(const Section& section, std::initializer_list<std::string_view> keys, std::string_view code,
+                 const std::string& reason, Findings& findings)
+{
+    bool is_clean = true;
+    for (const std::string_view key : keys) {
+        if (!section.has(key)) continue;
+        is_clean = false;
+        findings.error(section.place(key), code,
+                       "'" + std::string(key) + "' of " + section.label() + " has no meaning: " + reason,
+                       {"", "leave it out"});
+    }
+    return is_clean;
+}
+
+}   // namespace livens

@@ -1,0 +1,97 @@
+// From the sections of a scenario to a model: one object that the parts of the reader fill together.
+#pragma once
+
+#include <map>
+#include <string>
+#include <unordered_map>
+#include <unordered_set>
+#include <vector>
+
+#include "livens/base/error.h"
+#include "livens/io/detail/section.h"
+#include "livens/io/scenario.h"
+
+namespace livens {
+
+/// A body as the file declares it. Joints and loads may refer to one that is not in order: that is no second
+/// error.
+struct DeclaredBody {
+    int index = 0;   ///< in the model
+    bool is_built = false;
+};
+
+/// What a name in `between` or `body` stands for.
+struct BodyReference {
+    int index = world;
+    bool is_usable = false;   ///< the world, or a body that is in order
+};
+
+class Builder {
+public:
+    Builder(const Section& top, Findings& findings);
+
+    const Section& top() const { return top_; }
+    Findings& findings() { return findings_; }
+    Model& model() { return model_; }
+    /// Call once all bodies are there: computes length().
+    void close_bodies();
+    std::unordered_map<std::string, DeclaredBody>& bodies() { return bodies_; }
+
+    /// Makes `path` known as the place of the section, and its keys as `path.key`.
+    void remember(const std::string& path, const Section& section);
+    /// Calls `build` and turns an InputError into a finding at the place it names, else at that of `path`.
+    /// False if there was one.
+    template <class Build>
+    bool guard(const std::string& path, Build build)
+    {
+        try {
+            build();
+            return true;
+        } catch (const InputError& error) {
+            report(error.complaint(), path);
+            return false;
+        }
+    }
+
+    /// The body of a name in a section; an unknown one is reported at `place`.
+    BodyReference find_body(const std::string& name, const Place& place, const Section& section);
+    /// Both of `between`; false unless both can be used.
+    bool find_pair(const Section& section, BodyReference& first, BodyReference& second);
+
+    /// X of a body at the start, or of the world.
+    const Matrix34& start_configuration(int body) const;
+    /// What violations of joints are measured by: the model's length; 1 m for a model without extent.
+    double length() const { return length_; }
+    std::string body_name(int body) const { return model_.body_name(body); }
+    bool is_point(int body) const { return body != world && model_.bodies()[body].is_point; }
+
+private:
+    void report(const Complaint& complaint, const std::string& path);
+    Place find_place(std::string path, const std::string& context) const;
+
+    const Section& top_;
+    Findings& findings_;
+    Model model_;
+    std::unordered_map<std::string, DeclaredBody> bodies_;
+    std::map<std::string, Place> places_;
+    double length_ = 1;
+};
+
+/// A name fit for results and messages; else an error at the name's place.
+bool check_name(const Section& section, Findings& findings);
+
+/// Reports the second of those keys that stands in the section; true if there is one at most.
+bool at_most_one(const Section& section, std::initializer_list<std::string_view> keys, std::string_view code,
+                 Findings& findings);
+/// Reports all of those keys that stand in the section, with the reason.
+bool refuse_keys(const Section& section, std::initializer_list<std::string_view> keys, std::string_view code,
+                 const std::string& reason, Findings& findings);
+
+// The parts of the reader. Each reports all it finds; `names` are those of joints and loads after defaults.
+void read_bodies(Builder& builder);
+void read_joints(Builder& builder);
+void read_loads(Builder& builder);
+/// Time, method, start: everything of the scenario but the model.
+void read_run(Builder& builder, Scenario& scenario);
+
+}   // namespace livens

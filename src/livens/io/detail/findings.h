@@ -1,0 +1,55 @@
+// Collecting what is wrong with a file, all of it, and putting it in order.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "livens/io/diagnostic.h"
+
+namespace livens {
+
+/// Where something stands in a file; line and column count characters from 1, line 0 is the whole file.
+struct Place {
+    int line = 0;
+    int column = 0;
+    int length = 1;
+};
+
+/// What to say beside the message.
+struct Advice {
+    std::string note;
+    std::string help;
+};
+
+class Findings {
+public:
+    void error(const Place& place, std::string_view code, std::string message, Advice advice = {});
+    void warning(const Place& place, std::string_view code, std::string message, Advice advice = {});
+
+    /// Errors so far: a reader compares before and after to learn whether a part was in order.
+    int n_errors() const { return n_errors_; }
+
+    /// At most 20, errors first if there are more, in the order of the file; the last one says how many are
+    /// missing.
+    std::vector<Diagnostic> take(const std::string& file);
+
+private:
+    void add(Severity severity, const Place& place, std::string_view code, std::string message,
+             Advice advice);
+
+    std::vector<Diagnostic> found_;
+    int n_errors_ = 0;
+    int n_dropped_ = 0;
+};
+
+/// The candidate that `word` is most likely a misspelling of: nearest by insertions, deletions, replacements
+/// and exchanges of neighbours, at most a third of its length (at least 1, and 2 from four letters on) away;
+/// else empty.
+std::string_view closest(std::string_view word, std::span<const std::string_view> candidates);
+
+/// "did you mean 'position'?", or else what is allowed.
+std::string suggest(std::string_view word, std::span<const std::string_view> candidates);
+
+}   // namespace livens

@@ -1,0 +1,74 @@
+// A table of the scenario after the schema has been applied: known keys with values in SI units.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "livens/base/linear.h"
+#include "livens/io/detail/document.h"
+#include "livens/io/detail/findings.h"
+#include "livens/io/detail/schema.h"
+
+namespace livens {
+
+class Section;
+
+/// What one key was given; which member counts follows from the key's type.
+struct Value {
+    const Key* key = nullptr;
+    const Node* node = nullptr;
+    Place key_place;
+    bool is_valid = false;
+    std::vector<double> numbers;      ///< SI; rows one after the other
+    int n_rows = 0;                   ///< 0: a plain number
+    std::string text;                 ///< text, choice
+    std::vector<std::string> texts;   ///< names
+    std::vector<Section> sections;    ///< table, tables, number_or_table
+};
+
+class Section {
+public:
+    /// Applies the schema: unknown, misplaced, mistyped, missing keys and values out of range go to
+    /// `findings`. `label` names the table in messages: "body 'upper'".
+    Section(const Node& node, TableId table, std::string label, Findings& findings);
+
+    const std::string& label() const { return label_; }
+    Place place() const { return node_->place; }
+    /// Nothing was wrong with this table and those inside it.
+    bool is_valid() const { return is_valid_; }
+
+    /// The key stands in the file, in order or not.
+    bool has(std::string_view key) const { return value(key) != nullptr; }
+    /// The key's value; null if it is missing or not valid.
+    const Value* find(std::string_view key) const;
+    /// Of the value; of the table if the key is missing.
+    Place place(std::string_view key) const;
+
+    // Values, or the schema's fallback (zero without one) where the key is missing or not valid.
+    double number(std::string_view key) const;
+    int integer(std::string_view key) const { return static_cast<int>(number(key)); }
+    std::string text(std::string_view key) const;
+    Vector3 vector(std::string_view key) const { return row(key, 0); }
+    Vector3 row(std::string_view key, int i) const;
+    /// Rows of the value as the columns of a matrix: [d1, d2, d3].
+    Matrix3 columns(std::string_view key) const;
+    std::span<const Section> sections(std::string_view key) const;
+
+    /// All keys with values, for the table of places.
+    const std::vector<Value>& values() const { return values_; }
+
+private:
+    const Value* value(std::string_view key) const;
+    std::vector<double> numbers(std::string_view key) const;
+
+    TableId table_;
+    const Node* node_;
+    std::string label_;
+    std::string type_;   ///< of the discriminator; empty if there is none or it is not valid
+    std::vector<Value> values_;
+    bool is_valid_ = true;
+};
+
+}   // namespace livens

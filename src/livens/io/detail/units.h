@@ -1,0 +1,44 @@
+// Quantities in strings: "30 deg", "5 mm", "7850 kg/m^3".
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace livens {
+
+/// Exponents of the base quantities. Angles count, so that an angle cannot stand for a number or a spin for a
+/// frequency.
+struct Dimension {
+    int length = 0;
+    int mass = 0;
+    int time = 0;
+    int angle = 0;
+
+    friend constexpr bool operator==(const Dimension&, const Dimension&) = default;
+};
+
+/// A unit is numerator / denominator * 10^power SI units. The power is kept apart so that "5 mm" is 5 / 1000,
+/// the double nearest to 0.005, and not 5 * 0.001.
+struct Unit {
+    double numerator = 1;
+    double denominator = 1;
+    int power_of_ten = 0;
+    Dimension dimension;
+};
+
+/// Reads products, quotients and powers of units with SI prefixes: "kN/m", "kg m^2", "N s/m", "kg/(m s)",
+/// "1/s". What stands behind a slash is one factor or in parentheses: "J/kg m" is ambiguous and refused.
+/// Empty for what is no unit; `reason` then says why.
+std::optional<Unit> parse_unit(std::string_view text, std::string& reason);
+
+struct Quantity {
+    double value = 0;    ///< SI, finite
+    std::string error;   ///< empty if it could be read
+    std::string help;
+};
+
+/// A number and a unit of the dimension of `si_unit`.
+Quantity parse_quantity(std::string_view text, std::string_view si_unit);
+
+}   // namespace livens

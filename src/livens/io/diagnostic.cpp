@@ -1,0 +1,199 @@
+#include "livens/io/diagnostic.h"
+
+#include <algorithm>
+
+#include "livens/io/json.h"
+
+namespace livens {
+
+namespace {
+
+constexpr int widest_line = 120;   // characters shown of a line; longer ones are cut around the place
+constexpr int lead = 40;           // characters before the place then
+
+/// One character of a text, made visible: control characters, bidirectional controls and bytes that are not
+/// UTF-8 are written out. Terminals obey the first two.
+std::string visible(std::string_view character)
+{
+    static constexpr char digits[] = "0123456789abcdef";
+    const unsigned char first = static_cast<unsigned char>(character.front());
+    if (character == "\t") return " ";
+    if (first < 0x20 || first == 0x7f || (character.size() == 1 && first >= 0x80))
+        return {'\\', 'x', digits[first >> 4], digits[first & 15]};
+    const bool is_c1 = character.size() == 2 && first == 0xc2 &&
+                       static_cast<unsigned char>(character[1]) < 0xa0;
+    const bool is_direction =
+        (character >= "\xe2\x80\xa8" && character <= "\xe2\x80\xae") ||   // U+2028 .. U+202E
+        (character >= "\xe2\x81\xa6" && character <= "\xe2\x81\xa9") ||   // U+2066 .. U+2069
+        character == "\xe2\x80\x8e" || character == "\xe2\x80\x8f" || character == "\xd8\x9c";
+    if (!is_c1 && !is_direction) return std::string(character);
+    std::string text;
+    for (const char c : character) {
+        const unsigned char byte = static_cast<unsigned char>(c);
+        text += {'\\', 'x', digits[byte >> 4], digits[byte & 15]};
+    }
+    return text;
+}
+
+std::size_t character_length(std::string_view text)
+{
+    return static_cast<std::size_t>(
+        std::max(1, utf8_length(text)));   // a byte that is not UTF-8 counts as one
+}
+
+std::string escaped(std::string_view text)
+{
+    std::string all;
+    for (; !text.empty(); text.remove_prefix(character_length(text)))
+        all += visible(text.substr(0, character_length(text)));
+    return all;
+}
+
+/// Width of visible text, one column for each code point.
+int width(std::string_view text)
+{
+    return static_cast<int>(std::count_if(
+        text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; }));
+}
+
+std::string_view find_line(std::string_view source, int line)
+{
+    if (source.substr(0, 3) == "\xef\xbb\xbf") source.remove_prefix(3);
+    for (int i = 1; i < line; ++i) {
+        const std::size_t end = source.find('\n');
+        if (end == std::string_view::npos) return {};
+        source.remove_prefix(end + 1);
+    }
+    source = source.substr(0, source.find('\n'));
+    if (!source.empty() && source.back() == '\r') source.remove_suffix(1);
+    return source;
+}
+
+/// At most widest_line characters of a line around the columns in question, and the underline below.
+struct Excerpt {
+    std::string text;
+    std::string underline;
+};
+
+Excerpt excerpt(std::string_view line, int column, int length)
+{
+    int first = 1;   // column of the first character shown
+    Excerpt e;
+    if (column > widest_line - lead) {
+        std::string_view rest = line;
+        int position = 1;
+        for (; position < column - lead && !rest.empty(); ++position)
+            rest.remove_prefix(character_length(rest));
+        if (position > 1) {
+            line = rest;
+            first = position;
+            e.text = "... ";
+        }
+    }
+    int at = first;
+    for (; at < first + widest_line && !line.empty(); ++at) {
+        const std::string shown = visible(line.substr(0, character_length(line)));
+        if (at == column) e.underline.assign(static_cast<std::size_t>(width(e.text)), ' ');
+        if (at >= column && at - column < length)
+            e.underline.append(static_cast<std::size_t>(width(shown)), '^');
+        e.text += shown;
+        line.remove_prefix(character_length(line));
+    }
+    if (column >= at) e.underline.assign(static_cast<std::size_t>(width(e.text)), ' ').append("^");
+    if (!line.empty()) e.text += " ...";
+    return e;
+}
+
+struct Colours {
+    const char* error = "";
+    const char* warning = "";
+    const char* frame = "";
+    const char* strong = "";
+    const char* plain = "";
+};
+constexpr Colours ansi{"\x1b[1;31m", "\x1b[1;33m", "\x1b[1;34m", "\x1b[1m", "\x1b[0m"};
+
+const char* name(Severity severity) { return severity == Severity::error ? "error" : "warning"; }
+
+std::string place(const Diagnostic& d, std::string_view separator)
+{
+    std::string text = escaped(d.file);
+    if (d.line <= 0) return text;
+    text += separator;
+    text += std::to_string(d.line);
+    text += separator;
+    return text + std::to_string(d.column);
+}
+
+std::string render_human(const Diagnostic& d, std::string_view source, const Colours& c)
+{
+    const std::string number = d.line > 0 ? std::to_string(d.line) : "";
+    const std::string margin(number.size(), ' ');
+    const std::string bar = c.frame + margin + " |" + c.plain;
+    std::string out = d.severity == Severity::error ? c.error : c.warning;
+    out += std::string(name(d.severity)) + "[" + d.code + "]" + c.plain + c.strong + ": " +
+           escaped(d.message) + c.plain;
+    out += "\n" + margin + c.frame + "--> " + c.plain + place(d, ":") + "\n";
+    if (d.line > 0) {
+        const Excerpt e = excerpt(find_line(source, d.line), d.column, d.length);
+        out += bar + "\n" + c.frame + number + " |" + c.plain + (e.text.empty() ? "" : " ") + e.text + "\n";
+        out += bar + " " + (d.severity == Severity::error ? c.error : c.warning) + e.underline + c.plain +
+               "\n";
+    }
+    const auto say = [&](const char* kind, const std::string& text) {
+        if (!text.empty())
+            out += margin + c.frame + " = " + c.plain + c.strong + kind + c.plain + ": " + escaped(text) +
+                   "\n";
+    };
+    say("note", d.note);
+    say("help", d.help);
+    return out;
+}
+
+std::string render_gnu(const Diagnostic& d)
+{
+    std::string out = place(d, ":") + ": " + name(d.severity) + ": " + escaped(d.message) + " [" + d.code +
+                      "]\n";
+    const std::string at = place(d, ":") + ": note: ";
+    if (!d.note.empty()) out += at + escaped(d.note) + "\n";
+    if (!d.help.empty()) out += at + escaped(d.help) + "\n";
+    return out;
+}
+
+std::string render_json(const std::vector<Diagnostic>& diagnostics)
+{
+    JsonWriter json(2);
+    json.begin_array();
+    for (const Diagnostic& d : diagnostics) {
+        json.begin_object()
+            .member("severity", name(d.severity))
+            .member("code", d.code)
+            .member("message", d.message);
+        json.member("file", d.file)
+            .member("line", d.line)
+            .member("column", d.column)
+            .member("length", d.length);
+        json.member("note", d.note).member("help", d.help).end_object();
+    }
+    return json.end_array().text() + "\n";
+}
+
+}   // namespace
+
+std::string render(const std::vector<Diagnostic>& diagnostics, std::string_view source,
+                   DiagnosticFormat format, bool colour)
+{
+    if (format == DiagnosticFormat::json) return render_json(diagnostics);
+    std::string out;
+    for (const Diagnostic& d : diagnostics) {
+        if (format == DiagnosticFormat::gnu) {
+            out += render_gnu(d);
+            continue;
+        }
+        if (!out.empty()) out += "\n";
+        out += render_human(d, source, colour ? ansi : Colours{});
+    }
+    return out;
+}
+
+}   // namespace livens

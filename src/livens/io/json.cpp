@@ -1,0 +1,159 @@
+#include "livens/io/json.h"
+
+#include <cassert>
+#include <charconv>
+#include <cmath>
+
+namespace livens {
+
+namespace {
+
+void append_escaped(std::string& out, std::string_view text)
+{
+    static constexpr char digits[] = "0123456789abcdef";
+    out += '"';
+    while (!text.empty()) {
+        const int length = utf8_length(text);
+        const unsigned char c = static_cast<unsigned char>(text.front());
+        if (length == 0) {
+            out += "\\ufffd";
+        } else if (c == '"' || c == '\\') {
+            out += '\\';
+            out += static_cast<char>(c);
+        } else if (c == '\n') {
+            out += "\\n";
+        } else if (c == '\t') {
+            out += "\\t";
+        } else if (c < 0x20 || c == 0x7f) {
+            out += "\\u00";
+            out += digits[c >> 4];
+            out += digits[c & 15];
+        } else {
+            out.append(text.substr(0, length));
+        }
+        text.remove_prefix(length > 0 ? length : 1);
+    }
+    out += '"';
+}
+
+}   // namespace
+
+int utf8_length(std::string_view text)
+{
+    const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+    const unsigned char first = byte(0);
+    if (first < 0x80) return 1;
+    const int length = first >= 0xf0 ? 4 : first >= 0xe0 ? 3 : 2;
+    if (first < 0xc2 || first > 0xf4 || text.size() < static_cast<std::size_t>(length)) return 0;
+    for (int i = 1; i < length; ++i)
+        if ((byte(i) & 0xc0) != 0x80) return 0;
+    if (first == 0xe0 && byte(1) < 0xa0) return 0;    // overlong
+    if (first == 0xed && byte(1) >= 0xa0) return 0;   // surrogate
+    if (first == 0xf0 && byte(1) < 0x90) return 0;    // overlong
+    if (first == 0xf4 && byte(1) >= 0x90) return 0;   // beyond U+10FFFF
+    return length;
+}
+
+std::string shortest(double number)
+{
+    char buffer[32];
+    const std::to_chars_result end = std::to_chars(buffer, buffer + sizeof buffer, number);
+    assert(end.ec == std::errc());
+    return {buffer, end.ptr};
+}
+
+void JsonWriter::new_line()
+{
+    if (indent_ == 0) return;
+    text_ += '\n';
+    text_.append(static_cast<std::size_t>(indent_) * levels_.size(), ' ');
+}
+
+void JsonWriter::before_value()
+{
+    if (levels_.empty()) {
+        assert(text_.empty() && "one value only");
+        return;
+    }
+    Level& level = levels_.back();
+    assert(level.is_object == has_key_ && "values of an object need a key, those of an array have none");
+    if (!level.is_object) {
+        if (!level.is_empty) text_ += indent_ == 0 ? ", " : ",";
+        new_line();
+    }
+    level.is_empty = false;
+    has_key_ = false;
+}
+
+JsonWriter& JsonWriter::key(std::string_view name)
+{
+    assert(!levels_.empty() && levels_.back().is_object && !has_key_);
+    if (!levels_.back().is_empty) text_ += indent_ == 0 ? ", " : ",";
+    new_line();
+    append_escaped(text_, name);
+    text_ += ": ";
+    has_key_ = true;
+    return *this;
+}
+
+JsonWriter& JsonWriter::begin_object()
+{
+    before_value();
+    text_ += '{';
+    levels_.push_back({true});
+    return *this;
+}
+
+JsonWriter& JsonWriter::begin_array()
+{
+    before_value();
+    text_ += '[';
+    levels_.push_back({false});
+    return *this;
+}
+
+JsonWriter& JsonWriter::end(char bracket)
+{
+    assert(!levels_.empty() && levels_.back().is_object == (bracket == '}') && !has_key_);
+    const bool is_empty = levels_.back().is_empty;
+    levels_.pop_back();
+    if (!is_empty) new_line();
+    text_ += bracket;
+    return *this;
+}
+
+JsonWriter& JsonWriter::end_object() { return end('}'); }
+JsonWriter& JsonWriter::end_array() { return end(']'); }
+
+JsonWriter& JsonWriter::value(std::string_view text)
+{
+    before_value();
+    append_escaped(text_, text);
+    return *this;
+}
+
+JsonWriter& JsonWriter::value(double number)
+{
+    return std::isfinite(number) ? raw(shortest(number)) : null();
+}
+
+JsonWriter& JsonWriter::value(std::span<const double> numbers)
+{
+    before_value();
+    text_ += '[';
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+        if (i > 0) text_ += ", ";
+        text_ += std::isfinite(numbers[i]) ? shortest(numbers[i]) : "null";
+    }
+    text_ += ']';
+    return *this;
+}
+
+JsonWriter& JsonWriter::raw(std::string_view json)
+{
+    before_value();
+    text_ += json;
+    return *this;
+}
+
+}   // namespace livens

@@ -1,0 +1,88 @@
+#include <cmath>
+
+#include "livens/io/detail/results_layout.h"
+
+namespace livens {
+
+namespace {
+
+/// As in Motion: the degrees that bases exist for.
+constexpr int max_degree = 32;
+
+void require(bool truth, const char* what)
+{
+    if (!truth) throw IoError(std::string("the run contradicts itself: ") + what);
+}
+
+void check_mesh(const TimeMesh& mesh)
+{
+    require(!mesh.ends.empty(), "it has no element ends");
+    for (std::size_t i = 0; i < mesh.ends.size(); ++i) {
+        require(std::isfinite(mesh.ends[i]), "an element end is not finite");
+        require(i == 0 || mesh.ends[i] > mesh.ends[i - 1], "element ends do not ascend");
+    }
+}
+
+/// `n_values`: what a coefficient must hold. A motion of no elements may hold its start.
+void check_field(const Field& field, std::size_t n_values, std::size_t n_elements, const char* what)
+{
+    if (field.empty()) return;
+    require(field.degree >= 0 && field.degree <= max_degree, what);
+    require(!(field.continuous && field.degree == 0), what);
+    require(field.n_values >= 0 && static_cast<std::size_t>(field.n_values) == n_values && n_values > 0,
+            what);
+    const std::size_t degree = static_cast<std::size_t>(field.degree);
+    const std::size_t n_coefficients = field.continuous ? n_elements * degree + 1 : n_elements * (degree + 1);
+    require(field.values.size() % n_values == 0 && field.values.size() / n_values == n_coefficients, what);
+}
+
+void check_motion(const Motion& m)
+{
+    check_mesh(m.mesh);
+    require(m.n_bodies >= 0 && m.n_rows >= 0, "negative numbers of bodies or rows");
+    const std::size_t bodies = static_cast<std::size_t>(m.n_bodies),
+                      rows = static_cast<std::size_t>(m.n_rows);
+    const std::size_t ends = m.mesh.ends.size();
+    require(m.X.empty() == (bodies == 0), "the configuration is missing");
+    check_field(m.X, 12 * bodies, ends - 1, "the size of the configuration X");
+    require(m.X.empty() || m.X.continuous, "the configuration X must be continuous");
+    check_field(m.P, 12 * bodies, ends - 1, "the size of the momentum P");
+    check_field(m.multipliers, rows, ends - 1, "the size of the multipliers");
+    require(m.momenta.size() == ends * bodies, "the number of momenta at element ends");
+    require(m.velocities.size() == ends * bodies, "the number of velocities at element ends");
+    require(m.accelerations.empty() || m.accelerations.size() == 2 * ends * bodies,
+            "the number of accelerations at element ends");
+    require(m.end_multipliers.empty() || m.end_multipliers.size() == 2 * ends * rows,
+            "the number of multipliers at element ends");
+    for (const int row : m.redundant_rows)
+        require(row >= 0 && row < m.n_rows, "a redundant row that does not exist");
+}
+
+void check_balance(const Balance& b, std::size_t ends)
+{
+    const auto fits = [&](const auto&... lists) { return ((lists.empty() || lists.size() == ends) && ...); };
+    require(fits(b.t, b.kinetic, b.potential, b.energy, b.work, b.linear_momentum, b.angular_momentum,
+                 b.linear_impulse, b.angular_impulse, b.energy_drift, b.linear_momentum_drift,
+                 b.angular_momentum_drift),
+            "the number of energies or momenta at element ends");
+}
+
+}   // namespace
+
+void check_run(const Run& run)
+{
+    check_motion(run.motion);
+    const std::size_t bodies = static_cast<std::size_t>(run.motion.n_bodies);
+    require(run.body_names.size() == bodies && run.body_is_point.size() == bodies &&
+                run.centers_of_mass.size() == bodies,
+            "the number of bodies");
+    require(run.row_labels.size() == static_cast<std::size_t>(run.motion.n_rows),
+            "the number of constraint rows");
+    check_balance(run.balance, run.motion.mesh.ends.size());
+    for (std::size_t i = 0; i < run.output.size(); ++i) {
+        require(std::isfinite(run.output[i]), "an output time is not finite");
+        require(i == 0 || run.output[i] > run.output[i - 1], "output times do not ascend");
+    }
+}
+
+}   // namespace livens

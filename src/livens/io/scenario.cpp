@@ -1,0 +1,161 @@
+#include "livens/io/scenario.h"
+
+#include <fstream>
+#include <new>
+
+#include "livens/io/detail/builder.h"
+
+namespace livens {
+
+namespace {
+
+bool check_counts(const Section& top, Findings& findings)
+{
+    bool is_clean = true;
+    for (const std::string_view kind : {"body", "joint", "load"}) {
+        const std::span<const Section> sections = top.sections(kind);
+        if (sections.size() <= max_bodies) continue;
+        findings.error(sections[max_bodies].place(), "resource-limit",
+                       "there are " + std::to_string(sections.size()) + " tables [[" + std::string(kind) +
+                           "]], more than " + std::to_string(max_bodies));
+        is_clean = false;
+    }
+    if (top.has("body") && top.sections("body").empty() && top.find("body") != nullptr) {
+        findings.error(top.place("body"), "no-bodies", "a scenario needs at least one body");
+        is_clean = false;
+    }
+    return is_clean;
+}
+
+/// The version decides how everything else is read: it comes first, and another one is not read at all.
+bool check_format(const Node& root, Findings& findings)
+{
+    const Node* format = root.find("format");
+    if (format == nullptr) return true;   // a missing key, found with the others
+    if (format->kind == Node::Kind::integer && format->number != 1) {
+        findings.error(format->place, "format-version",
+                       "this file has another format than 1, the only one known",
+                       {"", "a newer livens may read it"});
+        return false;
+    }
+    if (root.entries().front().key != "format")
+        findings.warning(format->place, "format-first", "'format' should be the first key of the file",
+                         {"it decides how the rest is read", ""});
+    return true;
+}
+
+/// Everything behind the parser. The scenario counts if there is no error.
+void build(const Node& root, Scenario& scenario, Findings& findings)
+{
+    if (!check_format(root, findings)) return;
+    const Section top(root, TableId::root, "the scenario", findings);
+    if (!check_counts(top, findings)) return;
+    Builder builder(top, findings);
+    read_bodies(builder);
+    read_joints(builder);
+    read_loads(builder);
+    read_run(builder, scenario);
+    if (findings.n_errors() > 0) return;
+    builder.guard("start", [&] {
+        State start = builder.model().start();
+        start.t = scenario.mesh.start();
+        assemble(builder.model(), start, scenario.options.initial);
+    });
+    scenario.model = std::move(builder.model());
+}
+
+void parse(Scenario& scenario, Findings& findings)
+{
+    const std::string_view text = scenario.text;
+    if (text.size() > max_scenario_bytes) {
+        findings.error({}, "resource-limit",
+                       "the scenario has more than " + std::to_string(max_scenario_bytes) + " bytes");
+        return;
+    }
+    if (text.find_first_not_of(" \t\r\n") == std::string_view::npos) {
+        findings.error({}, "empty-file", "the file is empty",
+                       {"", "the folder examples holds scenarios to begin with"});
+        return;
+    }
+    if (!scan(text, findings)) return;
+    const std::optional<Node> root = parse_toml(text, findings);
+    if (root) build(*root, scenario, findings);
+}
+
+/// Reads a file to its end or to one byte over the limit. False after an error.
+bool read_text(const std::filesystem::path& file, std::string& text, Findings& findings)
+{
+    std::error_code error;
+    const std::filesystem::file_status status = std::filesystem::status(file, error);
+    if (!std::filesystem::exists(status)) {
+        findings.error({}, "io-not-found", "there is no such file");
+        return false;
+    }
+    if (std::filesystem::is_directory(status)) {
+        findings.error({}, "io-directory", "this is a directory, not a file");
+        return false;
+    }
+    if (std::filesystem::is_regular_file(status)) {
+        const std::uintmax_t size = std::filesystem::file_size(file, error);
+        if (!error && size > max_scenario_bytes) {
+            findings.error({}, "resource-limit",
+                           "the file has " + std::to_string(size) + " bytes, more than " +
+                               std::to_string(max_scenario_bytes));
+            return false;
+        }
+    }
+    std::ifstream stream(file, std::ios::binary);
+    constexpr std::size_t portion = 1u << 16;
+    while (stream && text.size() <= max_scenario_bytes) {   // pipes have no size to ask for
+        const std::size_t before = text.size();
+        text.resize(before + portion);
+        stream.read(text.data() + before, portion);
+        text.resize(before + static_cast<std::size_t>(stream.gcount()));
+    }
+    if (stream.is_open() && !stream.bad()) return true;
+    findings.error({}, "io-unreadable", "the file cannot be read");
+    return false;
+}
+
+/// Runs `work` so that nothing is thrown.
+template <class Work>
+void shield(Findings& findings, Work work) noexcept
+{
+    try {
+        work();
+    } catch (const std::bad_alloc&) {
+        findings.error({}, "resource-limit", "there is not enough memory to read this scenario");
+    } catch (const std::exception& e) {
+        findings.error({}, "internal", std::string("this should not happen: ") + e.what());
+    }
+}
+
+}   // namespace
+
+ScenarioResult parse_scenario(std::string text, const std::string& file_name)
+{
+    Findings findings;
+    ScenarioResult result;
+    Scenario scenario;
+    scenario.file = file_name;
+    scenario.text = std::move(text);
+    shield(findings, [&] { parse(scenario, findings); });
+    result.text = scenario.text;
+    if (findings.n_errors() == 0) result.scenario = std::move(scenario);
+    result.diagnostics = findings.take(file_name);
+    return result;
+}
+
+ScenarioResult read_scenario(const std::filesystem::path& file)
+{
+    Findings findings;
+    ScenarioResult result;
+    std::string text;
+    bool is_read = false;
+    shield(findings, [&] { is_read = read_text(file, text, findings); });
+    if (is_read) return parse_scenario(std::move(text), file.string());
+    result.diagnostics = findings.take(file.string());
+    return result;
+}
+
+}   // namespace livens

@@ -1,0 +1,48 @@
+// Scenario files (TOML): one file describes bodies, joints, loads, time and method.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "livens/io/diagnostic.h"
+#include "livens/multibody/model.h"
+#include "livens/spacetime/solve.h"
+
+namespace livens {
+
+/// A scenario that has been read, checked and closed as far as it can be without solving.
+struct Scenario {
+    std::string file;   ///< as given by the caller; messages only, never written to results
+    std::string text;   ///< the file itself
+    std::string title;
+    Model model;
+    TimeMesh mesh;   ///< element ends hold jumps of loads (unless breaks = "ignore") and output times
+    std::vector<double> output;   ///< output times; all element ends if the scenario lists none
+    Method method;
+    SolveOptions options;   ///< tolerance, max_iterations, initial
+    std::string resolved;   ///< all options after defaults, as one JSON object
+};
+
+struct ScenarioResult {
+    std::optional<Scenario> scenario;      ///< empty if there is an error
+    std::vector<Diagnostic> diagnostics;   ///< up to 20
+    std::string text;                      ///< what was read, for render()
+};
+
+/// Largest scenario in bytes, and deepest nesting; both are checked before parsing.
+inline constexpr std::size_t max_scenario_bytes = 16u << 20;
+inline constexpr int max_scenario_depth = 64;
+
+/// Reads and checks (including assemble()). Throws nothing: every problem is a diagnostic; codes `io-...`
+/// mean the file could not be read at all.
+ScenarioResult read_scenario(const std::filesystem::path& file);
+ScenarioResult parse_scenario(std::string text, const std::string& file_name);
+
+/// The schema of scenarios: for editors (JSON Schema draft 2020-12) and for people (Markdown).
+std::string schema_json();
+std::string schema_markdown();
+
+}   // namespace livens

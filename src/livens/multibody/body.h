@@ -1,0 +1,46 @@
+// One rigid body or point mass: its mass matrix and its state at the start.
+#pragma once
+
+#include <string>
+
+#include "livens/base/linear.h"
+#include "livens/multibody/mass_properties.h"
+
+namespace livens {
+
+/// A rigid body is a reference point and three directors, X = [phi d1 d2 d3] (P3).
+/// A point mass has no directors: its X, V and m are zero outside the first column (and row), and it has
+/// three unknowns a node instead of six.
+struct Body {
+    std::string name;
+    bool is_point = false;
+    Matrix4 mass{};   ///< m (P7)
+    Matrix34 X{};     ///< configuration at the start
+    Matrix34 V{};     ///< dX/dt at the start
+};
+
+/// What a state is usually given by; all in world axes.
+struct Placement {
+    Vector3 position{};                  ///< of the reference point, m
+    Matrix3 directors = identity<3>();   ///< columns d1, d2, d3, orthonormal and right-handed
+    Vector3 velocity{};                  ///< of the reference point, m/s
+    Vector3 angular_velocity{};          ///< rad/s, world axes
+};
+
+/// Throws InputError (path `body[name]`) for impossible mass properties and for directors that are not
+/// orthonormal and right-handed within 1e-10; within that they are orthonormalised.
+Body rigid_body(const std::string& name, const MassProperties& properties, const Placement& placement = {});
+Body point_mass(const std::string& name, double mass, const Vector3& position, const Vector3& velocity = {});
+
+/// Orientations. Quaternions are (w, x, y, z), body to world.
+Matrix3 directors_from_quaternion(const Vector4& quaternion);   ///< normalised first; InputError if zero
+Matrix3 directors_from_rotation_vector(const Vector3& rotation_vector);   ///< rad, world axes
+Vector4 quaternion_from_directors(const Matrix3& directors);              ///< of an orthonormal triad, w >= 0
+/// The orthonormal triad nearest to the given one (polar factor).
+Matrix3 project_directors(const Matrix3& directors);
+
+/// dX/dt = [velocity, w x d1, w x d2, w x d3], and the angular velocity that fits directors' rates best.
+Matrix34 rate(const Matrix34& X, const Vector3& velocity, const Vector3& angular_velocity);
+Vector3 angular_velocity(const Matrix34& X, const Matrix34& V);
+
+}   // namespace livens

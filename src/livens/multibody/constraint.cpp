@@ -1,0 +1,137 @@
+#include "livens/multibody/constraint.h"
+
+#include <utility>
+
+#include "livens/base/error.h"
+
+namespace livens {
+
+namespace {
+
+/// A row without terms, on two bodies that differ.
+ConstraintRow empty_row(int body_i, int body_j, double scale, const char* label)
+{
+    if (body_i == body_j)
+        throw InputError({"joint-self", "", "a constraint row needs two different bodies",
+                          std::to_string(body_i), "", "",
+                          "a point or an axis of the world belongs to body -1"});
+    ConstraintRow row;
+    row.body_i = body_i;
+    row.body_j = body_j;
+    row.scale = scale;
+    row.label = label;
+    return row;
+}
+
+/// The same function of the same bodies, stored so that body_j is a body and the world's terms are in B_j, c.
+ConstraintRow with_world_folded(ConstraintRow row)
+{
+    if (row.body_j == world) {
+        std::swap(row.body_i, row.body_j);
+        std::swap(row.c_ii, row.c_jj);
+        std::swap(row.b_i, row.b_j);
+        row.c_ij = transpose(row.c_ij);
+    }
+    if (row.body_i != world) return row;
+    const Matrix34& X_world = world_configuration;
+    row.b_j += X_world * row.c_ij;
+    row.c += 0.5 * dot(X_world * row.c_ii, X_world) + dot(row.b_i, X_world);
+    row.c_ii = {};
+    row.c_ij = {};
+    row.b_i = {};
+    return row;
+}
+
+}   // namespace
+
+double constraint_value(const ConstraintRow& row, const Matrix34& X_i, const Matrix34& X_j)
+{
+    double phi = 0.5 * dot(X_j * row.c_jj, X_j) + dot(row.b_j, X_j);
+    if (row.body_i != world) phi += dot(0.5 * (X_i * row.c_ii) + X_j * transpose(row.c_ij) + row.b_i, X_i);
+    return phi + row.c;
+}
+
+void constraint_gradient(const ConstraintRow& row, const Matrix34& X_i, const Matrix34& X_j, Matrix34& g_i,
+                         Matrix34& g_j)
+{
+    g_j = X_j * row.c_jj + row.b_j;
+    if (row.body_i == world) {
+        g_i = {};
+        return;
+    }
+    g_j += X_i * row.c_ij;
+    g_i = X_i * row.c_ii + X_j * transpose(row.c_ij) + row.b_i;
+}
+
+double constraint_curvature(const ConstraintRow& row, const Matrix34& V_i, const Matrix34& V_j)
+{
+    double curvature = dot(V_j * row.c_jj, V_j);
+    if (row.body_i != world) curvature += dot(V_i * row.c_ii, V_i) + 2 * dot(V_i * row.c_ij, V_j);
+    return curvature;
+}
+
+ConstraintRow inner_product_row(int body_i, const Vector4& a, int body_j, const Vector4& b, double value,
+                                double scale)
+{
+    ConstraintRow row = empty_row(body_i, body_j, scale, "axis");
+    row.c_ij = outer(a, b);
+    row.c = -value;
+    return with_world_folded(row);
+}
+
+std::vector<ConstraintRow> coincidence_rows(int body_i, const Vector4& a, int body_j, const Vector4& b,
+                                            double scale)
+{
+    static constexpr const char* labels[3] = {"x", "y", "z"};
+    std::vector<ConstraintRow> rows;
+    for (int k = 0; k < 3; ++k) {
+        Vector3 e{};
+        e[k] = 1;
+        ConstraintRow row = empty_row(body_i, body_j, scale, labels[k]);
+        row.b_i = -outer(e, a);
+        row.b_j = outer(e, b);
+        rows.push_back(with_world_folded(row));
+    }
+    return rows;
+}
+
+ConstraintRow distance_row(int body_i, const Vector4& a, int body_j, const Vector4& b, double length)
+{
+    ConstraintRow row = empty_row(body_i, body_j, length * length, "distance");
+    row.c_ii = outer(a, a);
+    row.c_ij = -outer(a, b);
+    row.c_jj = outer(b, b);
+    row.c = -0.5 * length * length;
+    return with_world_folded(row);
+}
+
+ConstraintRow plane_row(int body_i, const Vector4& n, const Vector4& a, int body_j, const Vector4& b,
+                        double distance, double scale)
+{
+    ConstraintRow row = empty_row(body_i, body_j, scale, "plane");
+    row.c_ii = -(outer(n, a) + outer(a, n));
+    row.c_ij = outer(n, b);
+    row.c = -distance;
+    return with_world_folded(row);
+}
+
+std::vector<ConstraintRow> rigidity_rows(int body)
+{
+    struct Pair {
+        int a, b;
+        const char* label;
+    };
+    static constexpr Pair pairs[6] = {{1, 1, "rigidity 11"}, {2, 2, "rigidity 22"}, {3, 3, "rigidity 33"},
+                                      {1, 2, "rigidity 12"}, {1, 3, "rigidity 13"}, {2, 3, "rigidity 23"}};
+    std::vector<ConstraintRow> rows;
+    for (const Pair& pair : pairs) {
+        ConstraintRow row = empty_row(world, body, 1, pair.label);
+        row.c_jj(pair.a, pair.b) += 0.5;
+        row.c_jj(pair.b, pair.a) += 0.5;
+        row.c = pair.a == pair.b ? -0.5 : 0.0;
+        rows.push_back(row);
+    }
+    return rows;
+}
+
+}   // namespace livens

@@ -1,0 +1,32 @@
+// What the makers of loads share.
+#pragma once
+
+#include <string>
+
+#include "livens/multibody/loads.h"
+
+namespace livens {
+
+/// A load without functions, its bodies checked.
+Load start_load(const std::string& name, const char* type, const std::array<int, 2>& bodies);
+
+/// Each throws InputError (path `load[name]`).
+void check_load_vector(const Load& load, const Vector3& value, const std::string& what);
+void check_not_negative(const Load& load, double value, const std::string& key);
+
+/// Checks what can be checked of a time vector and takes over its breaks.
+void set_load_value(Load& load, const TimeVector& value);
+
+inline Vector3 load_value(const TimeVector& value, Instant at)
+{
+    return {value[0](at).value, value[1](at).value, value[2](at).value};
+}
+
+/// Adds the derivative of column i of F by column j of X (or V) to its place among the stacked columns.
+inline void add_block(Matrix<12, 12>& tangent, int i, int j, const Matrix3& block)
+{
+    for (int col = 0; col < 3; ++col)
+        for (int row = 0; row < 3; ++row) tangent(3 * i + row, 3 * j + col) += block(row, col);
+}
+
+}   // namespace livens

@@ -1,0 +1,19 @@
+#include "livens/multibody/detail/joint_frame.h"
+
+namespace livens {
+
+/// The axis of the second body is held perpendicular to two axes across the axis of the first. The rows also
+/// admit the axis turned end for end; which of the two is meant is told at assembly.
+Joint revolute(const std::string& name, int first, int second, const JointFrame& frame, double scale)
+{
+    JointFrame f = frame;
+    Joint joint = start_joint(name, "revolute", first, second, f, scale);
+    normalise_axes(joint, f);
+    hold_point(joint, scale);
+    const AxisPair across = perpendicular_axes(f.axis_first);
+    hold_perpendicular(joint, across.u, f.axis_second, "axis 1");
+    hold_perpendicular(joint, across.v, f.axis_second, "axis 2");
+    return joint;
+}
+
+}   // namespace livens

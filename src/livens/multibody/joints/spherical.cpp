@@ -1,0 +1,13 @@
+#include "livens/multibody/detail/joint_frame.h"
+
+namespace livens {
+
+Joint spherical(const std::string& name, int first, int second, const JointFrame& frame, double scale)
+{
+    JointFrame f = frame;
+    Joint joint = start_joint(name, "spherical", first, second, f, scale);
+    hold_point(joint, scale);
+    return joint;
+}
+
+}   // namespace livens

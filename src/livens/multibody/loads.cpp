@@ -1,0 +1,73 @@
+#include "livens/multibody/loads.h"
+
+#include <algorithm>
+
+#include "livens/base/error.h"
+#include "livens/multibody/detail/load_values.h"
+#include "livens/multibody/detail/wording.h"
+
+namespace livens {
+
+Load start_load(const std::string& name, const char* type, const std::array<int, 2>& bodies)
+{
+    if (bodies[0] == bodies[1])
+        throw InputError({"load-self", "load[" + name + "]",
+                          bodies[0] == world ? "a load needs a body to act on"
+                                             : "a load between two points needs two bodies",
+                          "", "", "", ""});
+    Load load;
+    load.name = name;
+    load.type = type;
+    load.bodies = bodies;
+    return load;
+}
+
+void check_load_vector(const Load& load, const Vector3& value, const std::string& what)
+{
+    require_finite(value, "load[" + load.name + "]", what);
+}
+
+void check_not_negative(const Load& load, double value, const std::string& key)
+{
+    if (value >= 0 && std::isfinite(value)) return;
+    throw InputError({"load-negative", "load[" + load.name + "]." + key, key + " must not be negative",
+                      to_text(value), ">= 0", "", ""});
+}
+
+void set_load_value(Load& load, const TimeVector& value)
+{
+    for (const TimeFunction& component : value) {
+        const double sample = component(Instant{}).value;
+        if (!std::isfinite(sample))
+            throw InputError({"not-finite", "load[" + load.name + "].value",
+                              "the value of a load must be finite", to_text(sample), "finite numbers", "",
+                              ""});
+        load.breaks.insert(load.breaks.end(), component.breaks().begin(), component.breaks().end());
+    }
+    std::ranges::sort(load.breaks);
+    const auto repeated = std::unique(load.breaks.begin(), load.breaks.end());
+    load.breaks.erase(repeated, load.breaks.end());
+}
+
+TimeVector window(const TimeVector& value, double from, double until)
+{
+    return {window(value[0], from, until), window(value[1], from, until), window(value[2], from, until)};
+}
+
+double load_power(const Load& load, const LoadArguments& arguments)
+{
+    LoadForces F{};
+    load.forces(arguments, F);
+    double power = 0;
+    for (int b = 0; b < 2; ++b)
+        if (load.bodies[b] != world) power += dot(F[b], arguments.V[b]);
+    return power;
+}
+
+double power_without_potential(const Load& load, const LoadArguments& arguments)
+{
+    if (load.power) return load.power(arguments);
+    return load.potential ? 0 : load_power(load, arguments);
+}
+
+}   // namespace livens

@@ -1,0 +1,119 @@
+#include <utility>
+
+#include "livens/multibody/detail/load_values.h"
+
+namespace livens {
+
+namespace {
+
+/// The line from the first point to the second.
+struct Line {
+    Vector3 r{};       ///< m
+    Vector3 w{};       ///< its rate, m/s
+    Vector3 u{};       ///< direction; zero if the points coincide
+    double l = 0;      ///< m
+    double rate = 0;   ///< dl/dt, m/s
+};
+
+struct Spring {
+    std::array<Vector4, 2> points;
+    SpringDamper law;
+
+    Line line(const LoadArguments& arguments) const
+    {
+        Line line;
+        line.r = arguments.X[1] * points[1] - arguments.X[0] * points[0];
+        line.w = arguments.V[1] * points[1] - arguments.V[0] * points[0];
+        line.l = std::hypot(line.r[0], line.r[1], line.r[2]);
+        if (line.l > 0)
+            for (int i = 0; i < 3; ++i) line.u[i] = line.r[i] / line.l;
+        line.rate = dot(line.u, line.w);
+        return line;
+    }
+
+    /// What pulls the first point towards the second. The spring's part is written k r - k l0 u: without free
+    /// length it is smooth where the points meet, and with u = 0 there is no force where they coincide.
+    Vector3 pull(const Line& line) const
+    {
+        return law.stiffness * line.r + (law.damping * line.rate - law.stiffness * law.free_length) * line.u;
+    }
+
+    /// d pull / dr. At coinciding points: k I without free length, else none.
+    Matrix3 pull_by_r(const Line& line) const
+    {
+        const Matrix3 I = identity<3>();
+        if (line.l == 0) return law.free_length == 0 ? law.stiffness * I : Matrix3{};
+        const Matrix3 turn = (1 / line.l) * (I - outer(line.u, line.u));   // du/dr
+        return law.stiffness * I + (law.damping * line.rate - law.stiffness * law.free_length) * turn +
+               law.damping * outer(line.u, turn * line.w);
+    }
+
+    /// d pull / dw.
+    Matrix3 pull_by_w(const Line& line) const { return law.damping * outer(line.u, line.u); }
+
+    void forces(const LoadArguments& arguments, LoadForces& F) const
+    {
+        const Vector3 f = pull(line(arguments));
+        F[0] = outer(f, points[0]);
+        F[1] = -outer(f, points[1]);
+    }
+
+    void tangent(const LoadArguments& arguments, LoadTangent& tangent) const
+    {
+        const Line at = line(arguments);
+        const Matrix3 by_r = pull_by_r(at), by_w = pull_by_w(at);
+        for (int b = 0; b < 2; ++b)
+            for (int c = 0; c < 2; ++c) {
+                const double sign = b == c ? -1 : 1;   // the pull on b is +-f, r is +-X_c p_c
+                for (int i = 0; i < 4; ++i)
+                    for (int j = 0; j < 4; ++j) {
+                        const double arms = sign * points[b][i] * points[c][j];
+                        add_block(tangent.X[b][c], i, j, arms * by_r);
+                        add_block(tangent.V[b][c], i, j, arms * by_w);
+                    }
+            }
+    }
+
+    double potential(const LoadArguments& arguments) const
+    {
+        const double stretch = line(arguments).l - law.free_length;
+        return 0.5 * law.stiffness * stretch * stretch;
+    }
+
+    double damper_power(const LoadArguments& arguments) const
+    {
+        const double rate = line(arguments).rate;
+        return -law.damping * rate * rate;
+    }
+};
+
+}   // namespace
+
+Load spring_damper(const std::string& name, int first, const Vector3& point_first, int second,
+                   const Vector3& point_second, const SpringDamper& spring)
+{
+    Spring law{{point(point_first), point(point_second)}, spring};
+    if (first == world) {   // the load's first place is a body's
+        std::swap(first, second);
+        std::swap(law.points[0], law.points[1]);
+    }
+    Load load = start_load(name, "spring_damper", {first, second});
+    check_load_vector(load, point_first, "the point on the first body");
+    check_load_vector(load, point_second, "the point on the second body");
+    check_not_negative(load, spring.stiffness, "stiffness");
+    check_not_negative(load, spring.damping, "damping");
+    check_not_negative(load, spring.free_length, "free_length");
+    load.depends_on_X = spring.stiffness > 0 || spring.damping > 0;
+    load.depends_on_V = spring.damping > 0;
+    for (int b = 0; b < 2; ++b)
+        load.needs_directors[b] = law.points[b] != point({}) && load.bodies[b] != world;
+    load.forces = [law](const LoadArguments& arguments, LoadForces& F) { law.forces(arguments, F); };
+    load.tangent = [law](const LoadArguments& arguments, LoadTangent& tangent) {
+        law.tangent(arguments, tangent);
+    };
+    load.potential = [law](const LoadArguments& arguments) { return law.potential(arguments); };
+    load.power = [law](const LoadArguments& arguments) { return law.damper_power(arguments); };
+    return load;
+}
+
+}   // namespace livens

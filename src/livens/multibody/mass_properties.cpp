@@ -1,0 +1,176 @@
+#include "livens/multibody/mass_properties.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <numbers>
+
+#include "livens/base/error.h"
+#include "livens/multibody/detail/wording.h"
+
+namespace livens {
+
+namespace {
+
+constexpr double relative_slack = 1e-12;   // of the largest moment, in every inequality on moments below
+
+Matrix3 diagonal(double a, double b, double c) { return {a, 0, 0, 0, b, 0, 0, 0, c}; }
+
+void require_size(double size, const char* shape, const char* what)
+{
+    if (size > 0 && std::isfinite(size)) return;
+    throw InputError({"size-not-positive", "", std::string(what) + " of a " + shape + " must be positive",
+                      to_text(size), "> 0", "", ""});
+}
+
+void check_principal_moments(const Matrix3& inertia, const std::string& path)
+{
+    using Map = Eigen::Map<const Eigen::Matrix3d>;
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(Map(inertia.data()), Eigen::EigenvaluesOnly);
+    const Eigen::Vector3d j = solver.eigenvalues();   // ascending
+    const double slack = relative_slack * j.cwiseAbs().maxCoeff();
+    const std::string moments = to_text(Vector3{j[0], j[1], j[2]});
+    if (j[0] < -slack)
+        throw InputError({"inertia-negative", path, "a principal moment of inertia is negative", moments,
+                          ">= 0", "the moment about an axis is the sum of m r^2 over the body", ""});
+    if (j[0] + j[1] < j[2] - slack)
+        throw InputError(
+            {"inertia-triangle", path, "the largest principal moment exceeds the sum of the other two",
+             moments, "J1 + J2 >= J3",
+             "principal moments of inertia satisfy the triangle inequality for every distribution of mass",
+             "the inertia is taken about the centre of mass, in body axes"});
+}
+
+}   // namespace
+
+Matrix4 mass_matrix(const MassProperties& properties)
+{
+    const Vector3& c = properties.center_of_mass;
+    const Matrix3& J = properties.inertia;
+    const Matrix3 E = 0.5 * trace(J) * identity<3>() - J + properties.mass * outer(c, c);
+    Matrix4 m{};
+    m(0, 0) = properties.mass;
+    for (int i = 0; i < 3; ++i) {
+        m(0, i + 1) = m(i + 1, 0) = properties.mass * c[i];
+        for (int j = 0; j < 3; ++j) m(i + 1, j + 1) = 0.5 * (E(i, j) + E(j, i));
+    }
+    return m;
+}
+
+MassProperties mass_properties(const Matrix4& mass_matrix)
+{
+    MassProperties properties;
+    properties.mass = mass_matrix(0, 0);
+    Matrix3 E{};
+    for (int i = 0; i < 3; ++i) {
+        properties.center_of_mass[i] = mass_matrix(i + 1, 0) / properties.mass;
+        for (int j = 0; j < 3; ++j) E(i, j) = mass_matrix(i + 1, j + 1);
+    }
+    const Vector3& c = properties.center_of_mass;
+    E -= properties.mass * outer(c, c);
+    properties.inertia = trace(E) * identity<3>() - E;
+    return properties;
+}
+
+void check_mass_properties(const MassProperties& properties, const std::string& path)
+{
+    const Matrix3& J = properties.inertia;
+    require_finite(Matrix<1, 1>{properties.mass}, path + ".mass", "the mass");
+    require_finite(properties.center_of_mass, path + ".center_of_mass", "the centre of mass");
+    require_finite(J, path + ".inertia", "the inertia");
+    if (!(properties.mass > 0))
+        throw InputError({"mass-not-positive", path + ".mass", "the mass of a body must be positive",
+                          to_text(properties.mass), "> 0", "", "a fixed body is the world"});
+    const double largest = std::ranges::max(J.a, {}, [](double entry) { return std::abs(entry); });
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < i; ++j)
+            if (std::abs(J(i, j) - J(j, i)) > relative_slack * std::abs(largest))
+                throw InputError({"inertia-not-symmetric", path + ".inertia", "the inertia must be symmetric",
+                                  to_text(J(i, j)) + " and " + to_text(J(j, i)), "equal entries",
+                                  "J_ij = -sum of m x_i x_j for i != j, the same both ways", ""});
+    check_principal_moments(J, path + ".inertia");
+}
+
+MassProperties box(double density, const Vector3& edges)
+{
+    require_size(density, "box", "the density");
+    for (int i = 0; i < 3; ++i) require_size(edges[i], "box", "an edge");
+    const double mass = density * edges[0] * edges[1] * edges[2];
+    const double x = edges[0] * edges[0], y = edges[1] * edges[1], z = edges[2] * edges[2];
+    return {mass, {}, mass / 12 * diagonal(y + z, z + x, x + y)};
+}
+
+MassProperties sphere(double density, double radius)
+{
+    require_size(density, "sphere", "the density");
+    require_size(radius, "sphere", "the radius");
+    return ellipsoid(density, {radius, radius, radius});
+}
+
+MassProperties cylinder(double density, double radius, double length, double inner_radius)
+{
+    require_size(density, "cylinder", "the density");
+    require_size(radius, "cylinder", "the radius");
+    require_size(length, "cylinder", "the length");
+    if (!(inner_radius >= 0 && inner_radius < radius))
+        throw InputError({"size-inner-radius", "",
+                          "the inner radius of a cylinder must lie between zero and the outer one",
+                          to_text(inner_radius), ">= 0 and < " + to_text(radius), "", ""});
+    // (R - r)(R + r), not R^2 - r^2: thin tubes keep their digits.
+    const double mass =
+        density * std::numbers::pi * (radius - inner_radius) * (radius + inner_radius) * length;
+    const double squares = radius * radius + inner_radius * inner_radius;
+    const double across = mass * (3 * squares + length * length) / 12;
+    return {mass, {}, diagonal(across, across, mass * squares / 2)};
+}
+
+MassProperties capsule(double density, double radius, double length)
+{
+    require_size(density, "capsule", "the density");
+    require_size(radius, "capsule", "the radius");
+    require_size(length, "capsule", "the length");
+    const double square = radius * radius;
+    const double tube = density * std::numbers::pi * square * length;
+    const double caps = density * std::numbers::pi * 4 / 3 * square * radius;   // both half spheres
+    // The centroid of a half sphere lies 3/8 of the radius above its flat side.
+    const double across = tube * (3 * square + length * length) / 12 +
+                          caps * (0.4 * square + 0.25 * length * length + 0.375 * length * radius);
+    return {tube + caps, {}, diagonal(across, across, 0.5 * tube * square + 0.4 * caps * square)};
+}
+
+MassProperties ellipsoid(double density, const Vector3& semi_axes)
+{
+    require_size(density, "ellipsoid", "the density");
+    for (int i = 0; i < 3; ++i) require_size(semi_axes[i], "ellipsoid", "a semi-axis");
+    const double mass = density * std::numbers::pi * 4 / 3 * semi_axes[0] * semi_axes[1] * semi_axes[2];
+    const double x = semi_axes[0] * semi_axes[0], y = semi_axes[1] * semi_axes[1],
+                 z = semi_axes[2] * semi_axes[2];
+    return {mass, {}, mass / 5 * diagonal(y + z, z + x, x + y)};
+}
+
+MassProperties cone(double density, double radius, double height)
+{
+    require_size(density, "cone", "the density");
+    require_size(radius, "cone", "the radius");
+    require_size(height, "cone", "the height");
+    const double mass = density * std::numbers::pi * radius * radius * height / 3;
+    const double across = mass * (3 * radius * radius / 20 + 3 * height * height / 80);
+    return {mass, {}, diagonal(across, across, 3 * mass * radius * radius / 10)};
+}
+
+MassProperties with_mass(MassProperties properties, double mass)
+{
+    if (!(properties.mass > 0))
+        throw InputError({"mass-not-positive", "", "only a body that has mass can be scaled to another mass",
+                          to_text(properties.mass), "> 0", "", ""});
+    properties.inertia *= mass / properties.mass;
+    properties.mass = mass;
+    return properties;
+}
+
+MassProperties with_center(MassProperties properties, const Vector3& center_of_mass)
+{
+    properties.center_of_mass = center_of_mass;
+    return properties;
+}
+
+}   // namespace livens

@@ -1,0 +1,253 @@
+#include "livens/multibody/model.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+
+#include "livens/base/error.h"
+#include "livens/multibody/detail/directors.h"
+#include "livens/multibody/detail/wording.h"
+
+namespace livens {
+
+namespace {
+
+template <typename T>
+int find_by_name(const std::vector<T>& all, const std::string& name)
+{
+    for (std::size_t i = 0; i < all.size(); ++i)
+        if (all[i].name == name) return static_cast<int>(i);
+    return -2;
+}
+
+template <typename T>
+void check_name(const std::vector<T>& all, const std::string& name, const std::string& kind)
+{
+    if (name.empty())
+        throw InputError({"name-empty", kind + "[]", "a " + kind + " needs a name", "", "", "", ""});
+    if (name == "world")
+        throw InputError(
+            {"name-reserved", kind + "[world]", "the name is reserved for the fixed world", "", "", "", ""});
+    if (find_by_name(all, name) >= 0)
+        throw InputError({"name-duplicate", kind + "[" + name + "]",
+                          "the name is given twice among this kind", name, "",
+                          "results and joints refer to a " + kind + " by its name", "rename one of them"});
+}
+
+void refuse(const std::string& code, const std::string& path, const std::string& message,
+            const std::string& help = "")
+{
+    throw InputError({code, path, message, "", "", "", help});
+}
+
+/// Second moments about the centre of mass, E - S S^T / M.
+Eigen::Matrix3d central_moments(const Matrix4& m)
+{
+    const Eigen::Map<const Eigen::Matrix4d> whole(m.data());
+    return whole.bottomRightCorner<3, 3>() - whole.block<3, 1>(1, 0) * whole.block<1, 3>(0, 1) / whole(0, 0);
+}
+
+Vector3 center_of_mass(const Body& body) { return (1 / body.mass(0, 0)) * (body.X * body.mass.column(0)); }
+
+bool uses_directors(const Matrix34& m)
+{
+    return std::any_of(m.a + 3, m.a + 12, [](double entry) { return entry != 0; });
+}
+
+/// The first row belongs to the reference point; the rest is the directors'.
+bool uses_directors(const Matrix4& m)
+{
+    for (int j = 0; j < 4; ++j)
+        for (int i = 1; i < 4; ++i)
+            if (m(i, j) != 0) return true;
+    return false;
+}
+
+void check_mass(const Body& body, const std::string& path)
+{
+    const Matrix4& m = body.mass;
+    if (!(m(0, 0) > 0))
+        throw InputError({"mass-not-positive", path + ".mass", "the mass of a body must be positive",
+                          to_text(m(0, 0)), "> 0", "", ""});
+    double largest = 0;
+    for (const double entry : m.a) largest = std::max(largest, std::abs(entry));
+    for (int i = 0; i < 4; ++i)
+        for (int j = 0; j < i; ++j)
+            if (std::abs(m(i, j) - m(j, i)) > 1e-12 * largest)
+                refuse("inertia-not-symmetric", path + ".mass", "the mass matrix must be symmetric");
+    // Second moments that are not negative say the same as the triangle inequality of J = tr(E) I - E. The
+    // slack is relative to the moments about the reference point, whose rounding the shift to the centre lays
+    // bare.
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(central_moments(m), Eigen::EigenvaluesOnly);
+    const double slack = 1e-12 * (m(1, 1) + m(2, 2) + m(3, 3));
+    if (solver.eigenvalues()[0] < -std::abs(slack))
+        throw InputError(
+            {"inertia-triangle", path + ".mass",
+             "the largest principal moment exceeds the sum of the other two", "", "J1 + J2 >= J3",
+             "principal moments of inertia satisfy the triangle inequality for every distribution of mass",
+             ""});
+}
+
+void check_body(const Body& body, const std::string& path)
+{
+    require_finite(body.mass, path + ".mass", "the mass matrix");
+    require_finite(body.X, path + ".position", "position and directors");
+    require_finite(body.V, path + ".velocity", "velocity and rates of the directors");
+    check_mass(body, path);
+    if (body.is_point) {
+        if (uses_directors(body.X) || uses_directors(body.V) || uses_directors(body.mass) ||
+            uses_directors(transpose(body.mass)))
+            refuse("point-with-directors", path, "a point mass has no directors and no moments of inertia");
+        return;
+    }
+    check_directors(directors(body.X), path + ".directors");
+}
+
+void check_body_index(int body, int n_bodies, const std::string& path)
+{
+    if (body >= world && body < n_bodies) return;
+    throw InputError({"body-unknown", path, "there is no body of this index", std::to_string(body),
+                      "-1 (the world) to " + std::to_string(n_bodies - 1), "",
+                      "add bodies before what refers to them"});
+}
+
+void check_row(const ConstraintRow& row, const Joint& joint, const std::vector<Body>& bodies,
+               const std::string& path)
+{
+    require_finite(row.c_ii, path, "the coefficients of a row");
+    require_finite(row.c_ij, path, "the coefficients of a row");
+    require_finite(row.c_jj, path, "the coefficients of a row");
+    require_finite(row.b_i, path, "the coefficients of a row");
+    require_finite(row.b_j, path, "the coefficients of a row");
+    require_finite(Matrix<2, 1>{row.c, row.scale}, path, "the constant and the scale of a row");
+    const auto known = [&](int body) { return body == joint.first || body == joint.second; };
+    if (!known(row.body_i) && row.body_i != world)
+        refuse("joint-row", path, "a row acts on a body that is not the joint's");
+    if (!known(row.body_j) || row.body_j == world)
+        refuse("joint-row", path, "the second body of a row must be a body of the joint",
+               "the makers of rows see to it");
+    if (row.body_i == row.body_j) refuse("joint-self", path, "a row needs two different bodies");
+    if (!(row.scale > 0)) refuse("joint-scale", path, "the scale of a row must be positive");
+    if (row.c_ii != transpose(row.c_ii) || row.c_jj != transpose(row.c_jj))
+        refuse("joint-row", path, "C_ii and C_jj of a row must be symmetric");
+    if (row.body_i == world && (row.c_ii != Matrix4{} || row.c_ij != Matrix4{} || row.b_i != Matrix34{}))
+        refuse("joint-row", path, "a row has terms in the world that are not folded into B_j and c");
+
+    const auto is_point = [&](int body) { return body != world && bodies[body].is_point; };
+    const bool i_turns = uses_directors(row.c_ii) || uses_directors(row.c_ij) || uses_directors(row.b_i);
+    const bool j_turns =
+        uses_directors(row.c_jj) || uses_directors(transpose(row.c_ij)) || uses_directors(row.b_j);
+    for (const auto& [body, turns] : {std::pair(row.body_i, i_turns), std::pair(row.body_j, j_turns)})
+        if (turns && is_point(body))
+            refuse("joint-needs-directors", path,
+                   "the joint needs the orientation of '" + bodies[body].name + "', a point mass",
+                   "a point mass takes spherical joints and rods at its own point");
+}
+
+}   // namespace
+
+int Model::add_body(Body body)
+{
+    check_name(bodies_, body.name, "body");
+    require_finite(gravity_, "gravity", "gravity");
+    check_body(body, "body[" + body.name + "]");
+    bodies_.push_back(std::move(body));
+    return n_bodies() - 1;
+}
+
+int Model::add_joint(Joint joint)
+{
+    check_name(joints_, joint.name, "joint");
+    const std::string path = "joint[" + joint.name + "]";
+    check_body_index(joint.first, n_bodies(), path);
+    check_body_index(joint.second, n_bodies(), path);
+    if (joint.first == joint.second) refuse("joint-self", path, "a joint needs two different bodies");
+    if (joint.second == world)
+        refuse("joint-second", path, "the second of a joint must be a body",
+               "exchange the world and the body");
+    if (joint.rows.empty()) refuse("joint-empty", path, "a joint needs at least one row");
+    require_finite(joint.point_first, path, "the point on the first body");
+    require_finite(joint.point_second, path, "the point on the second body");
+    for (const ConstraintRow& row : joint.rows) check_row(row, joint, bodies_, path);
+
+    const int index = static_cast<int>(joints_.size());
+    first_rows_.push_back(n_rows());
+    for (int k = 0; k < static_cast<int>(joint.rows.size()); ++k) rows_.push_back({index, k});
+    joints_.push_back(std::move(joint));
+    return index;
+}
+
+int Model::add_load(Load load)
+{
+    check_name(loads_, load.name, "load");
+    const std::string path = "load[" + load.name + "]";
+    for (const int body : load.bodies) check_body_index(body, n_bodies(), path);
+    if (load.bodies[0] == load.bodies[1])
+        refuse("load-self", path,
+               load.bodies[0] == world ? "a load needs a body to act on"
+                                       : "a load needs two different bodies");
+    if (!load.forces) refuse("load-empty", path, "a load needs a function for its forces");
+    if ((load.depends_on_X || load.depends_on_V) && !load.tangent)
+        refuse("load-without-tangent", path,
+               "a load that depends on position or velocity needs its derivative");
+    for (const double t : load.breaks) require_finite(Matrix<1, 1>{t}, path, "an instant");
+    for (int b = 0; b < 2; ++b)
+        if (load.needs_directors[b] && load.bodies[b] != world && bodies_[load.bodies[b]].is_point)
+            refuse("load-needs-directors", path,
+                   "the load needs the orientation of '" + bodies_[load.bodies[b]].name + "', a point mass",
+                   "a point mass takes forces in world axes at its own point");
+    loads_.push_back(std::move(load));
+    return static_cast<int>(loads_.size()) - 1;
+}
+
+int Model::find_body(const std::string& name) const
+{
+    return name == "world" ? world : find_by_name(bodies_, name);
+}
+
+int Model::find_joint(const std::string& name) const { return find_by_name(joints_, name); }
+
+State Model::start() const
+{
+    State state;
+    for (const Body& body : bodies_) {
+        state.X.push_back(body.X);
+        state.V.push_back(body.V);
+    }
+    return state;
+}
+
+std::vector<double> Model::load_breaks() const
+{
+    std::vector<double> all;
+    for (const Load& load : loads_) all.insert(all.end(), load.breaks.begin(), load.breaks.end());
+    std::ranges::sort(all);
+    const auto repeated = std::unique(all.begin(), all.end());
+    all.erase(repeated, all.end());
+    return all;
+}
+
+double Model::length() const
+{
+    double length = 0;
+    Vector3 middle{};
+    for (const Body& body : bodies_) {
+        const double square = central_moments(body.mass).trace() / body.mass(0, 0);
+        length = std::max(length, std::sqrt(std::max(square, 0.0)));
+        middle += (1.0 / n_bodies()) * center_of_mass(body);
+    }
+    for (const Body& body : bodies_) length = std::max(length, 2 * norm(center_of_mass(body) - middle));
+    for (const Joint& joint : joints_) {
+        const Body& second = bodies_[joint.second];
+        const Vector3 place = second.X * point(joint.point_second);
+        const Matrix34& X_first = joint.first == world ? world_configuration : bodies_[joint.first].X;
+        const Vector3 other = X_first * point(joint.point_first);
+        length = std::max({length, norm(place - center_of_mass(second)), norm(place - other)});
+        if (joint.first != world)
+            length = std::max(length, norm(other - center_of_mass(bodies_[joint.first])));
+    }
+    return length > 0 ? length : 1;
+}
+
+Matrix34 weight(const Body& body, const Vector3& gravity) { return outer(gravity, body.mass.column(0)); }
+
+}   // namespace livens

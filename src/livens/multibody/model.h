@@ -1,0 +1,79 @@
+// The mechanism: bodies, joints, loads and gravity.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "livens/base/linear.h"
+#include "livens/multibody/body.h"
+#include "livens/multibody/joints.h"
+#include "livens/multibody/loads.h"
+
+namespace livens {
+
+/// Positions and their rates of all bodies at one instant.
+struct State {
+    double t = 0;
+    std::vector<Matrix34> X;
+    std::vector<Matrix34> V;
+};
+
+/// A mechanism is built by the three add_ functions and constant from then on; all others take it const.
+class Model {
+public:
+    explicit Model(const Vector3& gravity = {0, 0, 0}) : gravity_(gravity) {}
+
+    /// Each returns the index of what was added. They throw InputError: a name given twice, empty or "world";
+    /// an index of a body that does not exist; a body that no MassProperties describe; a joint without rows
+    /// or with rows that break the rules of ConstraintRow; a load without forces; what needs directors on a
+    /// point mass; numbers that are not finite.
+    int add_body(Body body);
+    int add_joint(Joint joint);
+    int add_load(Load load);
+
+    const Vector3& gravity() const { return gravity_; }   ///< m/s^2
+    const std::vector<Body>& bodies() const { return bodies_; }
+    const std::vector<Joint>& joints() const { return joints_; }
+    const std::vector<Load>& loads() const { return loads_; }
+
+    int n_bodies() const { return static_cast<int>(bodies_.size()); }
+    int n_rows() const { return static_cast<int>(rows_.size()); }   ///< of all joints, in their order
+    /// Row r of the model belongs to joint `row_joint(r)` and is its row number `row_in_joint(r)`.
+    const ConstraintRow& row(int r) const { return joints_[rows_[r].joint].rows[rows_[r].row]; }
+    int row_joint(int r) const { return rows_[r].joint; }
+    int row_in_joint(int r) const { return rows_[r].row; }
+    int first_row(int joint) const { return first_rows_[joint]; }
+
+    /// Index by name; -2 if there is none. `find_body("world")` is the world.
+    int find_body(const std::string& name) const;
+    int find_joint(const std::string& name) const;
+    std::string body_name(int body) const { return body == world ? "world" : bodies_[body].name; }
+
+    /// X and V of all bodies as they were given.
+    State start() const;
+    /// All instants where a load jumps or bends, ascending, without repetition.
+    std::vector<double> load_breaks() const;
+    /// A length typical of the model (m), at the start: the largest of the bodies' radii of gyration, twice
+    /// the distances of their centres of mass from the mean of these, the arms from centres of mass to joint
+    /// points, and the lengths between the two points of a joint. Always positive: 1 if there is nothing to
+    /// measure. Tolerances are relative to it. Moving and turning the model changes it by rounding only.
+    double length() const;
+
+private:
+    struct RowPlace {
+        int joint;
+        int row;
+    };
+
+    Vector3 gravity_;
+    std::vector<Body> bodies_;
+    std::vector<Joint> joints_;
+    std::vector<Load> loads_;
+    std::vector<RowPlace> rows_;
+    std::vector<int> first_rows_;
+};
+
+/// Weight of a body: F = g (m e_0)^T.
+Matrix34 weight(const Body& body, const Vector3& gravity);
+
+}   // namespace livens

@@ -1,0 +1,140 @@
+#include "livens/multibody/motion.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+
+#include "livens/base/error.h"
+#include "livens/multibody/detail/wording.h"
+#include "livens/time/basis.h"
+
+namespace livens {
+
+namespace {
+
+constexpr int max_degree = 32;
+
+/// Lagrange bases on Gauss-Lobatto points, built once, all at the first call.
+const LagrangeBasis& basis_of_degree(int degree)
+{
+    static const std::vector<LagrangeBasis> bases = [] {
+        std::vector<LagrangeBasis> all;
+        for (int p = 1; p <= max_degree; ++p) all.push_back(lobatto_basis(p));
+        return all;
+    }();
+    assert(degree >= 1 && degree <= max_degree);
+    return bases[degree - 1];
+}
+
+Matrix34 body_of(std::span<const double> stacked, int body)
+{
+    Matrix34 X{};
+    std::copy_n(stacked.data() + 12 * body, 12, X.data());
+    return X;
+}
+
+}   // namespace
+
+std::span<const double> Field::coefficient(int element, int a) const
+{
+    const int index = element * (continuous ? degree : degree + 1) + a;
+    return std::span<const double>(values).subspan(static_cast<std::size_t>(index) * n_values, n_values);
+}
+
+std::span<double> Field::coefficient(int element, int a)
+{
+    const int index = element * (continuous ? degree : degree + 1) + a;
+    return std::span<double>(values).subspan(static_cast<std::size_t>(index) * n_values, n_values);
+}
+
+void Field::evaluate(int element, double s, int derivative, std::span<double> out) const
+{
+    assert(derivative == 0 || derivative == 1);
+    assert(static_cast<int>(out.size()) == n_values);
+    const std::span<const double> first = coefficient(element, 0);
+    if (derivative == 0)
+        std::ranges::copy(first, out.begin());
+    else
+        std::ranges::fill(out, 0.0);
+    if (degree == 0) return;
+
+    std::array<double, max_degree + 1> M{};
+    const LagrangeBasis& basis = basis_of_degree(degree);
+    const std::span<double> weights(M.data(), static_cast<std::size_t>(degree) + 1);
+    if (derivative == 0)
+        basis.values(s, weights);
+    else
+        basis.derivatives(s, weights);
+    // In differences from the first coefficient, as the basis adds up to one: rounding is that of the change.
+    for (int a = 1; a <= degree; ++a) {
+        const std::span<const double> c = coefficient(element, a);
+        for (int i = 0; i < n_values; ++i) out[i] += M[a] * (c[i] - first[i]);
+    }
+}
+
+State Motion::at(double t) const
+{
+    if (!(t >= start() && t <= end()))
+        throw InputError({"time-outside", "", "the motion is not known at this instant", to_text(t),
+                          to_text(start()) + " <= t <= " + to_text(end()), "", ""});
+    const int element = mesh.element_at(t);
+    if (t == mesh.ends[element]) return at_end(element);
+    if (t == mesh.ends[element + 1]) return at_end(element + 1);
+
+    const double h = mesh.length(element);
+    const double s = (t - mesh.ends[element]) / h;
+    std::vector<double> x(X.n_values), rates(X.n_values);
+    X.evaluate(element, s, 0, x);
+    X.evaluate(element, s, 1, rates);
+    State state;
+    state.t = t;
+    for (int b = 0; b < n_bodies; ++b) {
+        state.X.push_back(body_of(x, b));
+        state.V.push_back((1 / h) * body_of(rates, b));
+    }
+    return state;
+}
+
+State Motion::at_end(int end) const
+{
+    assert(end >= 0 && end <= n_elements());
+    assert(static_cast<int>(velocities.size()) == (n_elements() + 1) * n_bodies);
+    State state;
+    state.t = mesh.ends[end];
+    const std::span<const double> x =
+        end < n_elements() ? X.coefficient(end, 0) : X.coefficient(end - 1, X.degree);
+    for (int b = 0; b < n_bodies; ++b) {
+        state.X.push_back(body_of(x, b));
+        state.V.push_back(velocities[end * n_bodies + b]);
+    }
+    return state;
+}
+
+Reaction joint_reaction(const Model& model, int joint, std::span<const Matrix34> X,
+                        std::span<const double> multipliers)
+{
+    const Joint& j = model.joints()[joint];
+    const auto place = [&](int body) -> const Matrix34& {
+        return body == world ? world_configuration : X[body];
+    };
+    Matrix34 F{};
+    for (int k = 0; k < static_cast<int>(j.rows.size()); ++k) {
+        const ConstraintRow& row = j.rows[k];
+        Matrix34 g_i{}, g_j{};
+        constraint_gradient(row, place(row.body_i), place(row.body_j), g_i, g_j);
+        const double lambda = multipliers[model.first_row(joint) + k];
+        if (row.body_j == j.second)
+            F -= lambda * g_j;
+        else if (row.body_i == j.second)
+            F -= lambda * g_i;
+    }
+    const Matrix34& X_second = X[j.second];
+    Reaction reaction;
+    reaction.force = F.column(0);
+    for (int i = 1; i < 4; ++i) reaction.torque += cross(X_second.column(i), F.column(i));
+    const Vector3 arm = X_second * point(j.point_second) - X_second.column(0);
+    reaction.torque -= cross(arm, reaction.force);
+    return reaction;
+}
+
+}   // namespace livens

@@ -1,0 +1,80 @@
+// A motion: what every method returns and every diagnosis reads.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "livens/base/linear.h"
+#include "livens/multibody/model.h"
+#include "livens/time/time_mesh.h"
+
+namespace livens {
+
+/// A function of time that is a polynomial in every element, by its values at that element's local nodes.
+///
+/// Local nodes are Gauss-Lobatto points of `degree` (degree 0: one value an element). If continuous,
+/// neighbours share the value at their common end: coefficient (e, a) is entry e * degree + a; else e *
+/// (degree + 1) + a.
+struct Field {
+    int n_values = 0;   ///< numbers a coefficient
+    int degree = 0;
+    bool continuous = true;
+    std::vector<double> values;   ///< coefficient after coefficient
+
+    bool empty() const { return values.empty(); }
+    std::span<const double> coefficient(int element, int a) const;
+    std::span<double> coefficient(int element, int a);
+    /// Value (derivative = 0) or derivative by the local coordinate s in [0, 1] (divide by the element's
+    /// length).
+    void evaluate(int element, double s, int derivative, std::span<double> out) const;
+};
+
+/// The whole motion of a model.
+///
+/// Bodies are stacked in the order of the model, 12 numbers each (columns of X); joint multipliers in the
+/// order of its rows. At element ends `momenta`, `accelerations` and `multipliers` below win over the
+/// polynomials: they are of the full order of the method.
+struct Motion {
+    int n_bodies = 0;
+    int n_rows = 0;
+    TimeMesh mesh;
+
+    Field X;             ///< m | 1
+    Field P;             ///< momentum X' m inside elements; empty: it is the derivative of X times m
+    Field multipliers;   ///< of joint rows at the local nodes, one-sided at element ends; dropped rows are 0
+
+    // At element ends, entry (end * n_bodies + body), or (2 * end + side) with side 0 = left, 1 = right.
+    std::vector<Matrix34> momenta;         ///< tangent momentum P = X' m
+    std::vector<Matrix34> velocities;      ///< X' = [v, w x d_i], from the momentum
+    std::vector<Matrix34> accelerations;   ///< X'', entry ((2 * end + side) * n_bodies + body); may be empty
+    std::vector<double> end_multipliers;   ///< acceleration level, (2 * end + side) * n_rows + row; or empty
+
+    // What may be believed.
+    int order_at_ends = 0;             ///< of X and momenta at element ends
+    int dense_order_X = 0;             ///< of X between nodes
+    int dense_order_V = 0;             ///< of its derivative between nodes
+    std::string constraints_hold;      ///< "element nodes", "element ends", "element midpoints"
+    std::vector<int> redundant_rows;   ///< their multipliers are not unique
+
+    int n_elements() const { return mesh.n_elements(); }
+    double start() const { return mesh.start(); }
+    double end() const { return mesh.end(); }
+
+    /// X and V at any instant: at element ends the end values, else the polynomial and its derivative.
+    State at(double t) const;
+    State at_end(int end) const;
+};
+
+/// What the joint exerts on its second body.
+struct Reaction {
+    Vector3 force{};    ///< N, world axes
+    Vector3 torque{};   ///< N m about the joint point on the second body, world axes
+};
+
+/// Force and torque of -G^T lambda on the joint's second body, in state X and with all multipliers of the
+/// model.
+Reaction joint_reaction(const Model& model, int joint, std::span<const Matrix34> X,
+                        std::span<const double> multipliers);
+
+}   // namespace livens

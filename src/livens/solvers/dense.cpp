@@ -1,0 +1,313 @@
+#include "livens/solvers/dense.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+
+namespace livens {
+
+namespace {
+
+/// sum of x_i y_i, two running sums so that two multiplications are in flight.
+inline double inner(const double* x, const double* y, int n)
+{
+    double s0 = 0, s1 = 0;
+    int i = 0;
+    for (; i + 1 < n; i += 2) {
+        s0 += x[i] * y[i];
+        s1 += x[i + 1] * y[i + 1];
+    }
+    if (i < n) s0 += x[i] * y[i];
+    return s0 + s1;
+}
+
+/// y <- y - a x
+inline void subtract_scaled(double* __restrict y, double a, const double* __restrict x, int n)
+{
+    for (int i = 0; i < n; ++i) y[i] -= a * x[i];
+}
+
+std::size_t count(int rows, int cols)
+{
+    return static_cast<std::size_t>(rows) * static_cast<std::size_t>(cols);
+}
+
+}   // namespace
+
+void DenseLU::resize(int n)
+{
+    n_ = n;
+    a_.assign(count(n, n), 0.0);
+    pivot_.assign(static_cast<std::size_t>(n), 0);
+    permuted_.assign(static_cast<std::size_t>(n), 0.0);
+}
+
+/// Brings the row with the largest entry in column k of rows k.. to place k.
+bool DenseLU::choose_pivot(int k)
+{
+    int best = k;
+    double largest = -1;
+    for (int i = k; i < n_; ++i) {
+        const double size = std::abs(row(i)[k]);
+        if (size > largest) {
+            largest = size;
+            best = i;
+        }
+    }
+    pivot_[k] = best;
+    if (best != k) {
+        std::swap_ranges(row(k), row(k) + n_, row(best));
+    }
+    return largest > 0 && std::isfinite(largest);
+}
+
+/// Takes two pivots off all rows below in one pass over them.
+void DenseLU::eliminate_pair(int k)
+{
+    const double* __restrict u0 = row(k) + k + 2;
+    const double* __restrict u1 = row(k + 1) + k + 2;
+    const int m = n_ - k - 2;
+    for (int i = k + 2; i < n_; ++i) {
+        double* a = row(i) + k;
+        const double l0 = a[0], l1 = a[1];
+        if (l0 == 0 && l1 == 0) continue;
+        double* __restrict y = a + 2;
+        for (int j = 0; j < m; ++j) y[j] -= l0 * u0[j] + l1 * u1[j];
+    }
+}
+
+bool DenseLU::factorise()
+{
+    int k = 0;
+    for (; k + 1 < n_; k += 2) {
+        if (!choose_pivot(k)) return false;
+        const double d0 = 1 / row(k)[k], top = row(k)[k + 1];
+        for (int i = k + 1; i < n_; ++i) {
+            double* a = row(i) + k;
+            a[0] *= d0;
+            a[1] -= a[0] * top;
+        }
+        if (!choose_pivot(k + 1)) return false;
+        const double d1 = 1 / row(k + 1)[k + 1];
+        for (int i = k + 2; i < n_; ++i) row(i)[k + 1] *= d1;
+        // the second pivot row itself still lacks the first elimination
+        subtract_scaled(row(k + 1) + k + 2, row(k + 1)[k], row(k) + k + 2, n_ - k - 2);
+        eliminate_pair(k);
+    }
+    return k >= n_ || choose_pivot(k);
+}
+
+void DenseLU::solve(double* x) const
+{
+    for (int k = 0; k < n_; ++k) {
+        if (pivot_[k] != k) std::swap(x[k], x[pivot_[k]]);
+    }
+    for (int i = 1; i < n_; ++i) x[i] -= inner(row(i), x, i);
+    for (int i = n_ - 1; i >= 0; --i) {
+        const double* r = row(i);
+        x[i] = (x[i] - inner(r + i + 1, x + i + 1, n_ - i - 1)) / r[i];
+    }
+}
+
+void OrthogonalBasis::resize(int n, int most)
+{
+    n_ = n;
+    most_ = most;
+    k_ = 0;
+    g_.assign(count(n, most), 0.0);
+    beta_.assign(static_cast<std::size_t>(most), 0.0);
+    signs_.assign(static_cast<std::size_t>(most), 1.0);
+    leads_.assign(static_cast<std::size_t>(most), 0);
+    norms_.assign(static_cast<std::size_t>(most), 0.0);
+    scratch_.assign(static_cast<std::size_t>(n), 0.0);
+}
+
+/// Brings the largest of the entries j.. of column j to place j.
+void OrthogonalBasis::lead(int j, bool keep)
+{
+    double* v = column(j);
+    if (!keep) {
+        int best = j;
+        for (int i = j + 1; i < n_; ++i)
+            if (std::abs(v[i]) > std::abs(v[best])) best = i;
+        leads_[j] = best;
+    }
+    std::swap(v[j], v[leads_[j]]);
+}
+
+/// Makes the reflector of column j from its entries j.. and puts R_jj in place.
+void OrthogonalBasis::reflect(int j, bool keep_sign)
+{
+    double* v = column(j) + j;
+    const int m = n_ - j;
+    const double tail = inner(v + 1, v + 1, m - 1);
+    const double head = v[0];
+    const double length = std::sqrt(head * head + tail);
+    // the kept sign would cancel where head has come close to it
+    if (!keep_sign || signs_[j] * head > 0.99 * length) signs_[j] = head > 0 ? -1 : 1;
+    const double r = signs_[j] * length;
+    const double v0 = head - r;
+    if (length == 0) {
+        beta_[j] = 0;
+        return;
+    }
+    const double scale = 1 / v0;
+    for (int i = 1; i < m; ++i) v[i] *= scale;
+    beta_[j] = -v0 / r;
+    v[0] = r;
+}
+
+/// Exchange j, then reflection j.
+void OrthogonalBasis::reflect_column(int j, double* x) const
+{
+    std::swap(x[j], x[leads_[j]]);
+    reflect_only(j, x);
+}
+
+void OrthogonalBasis::reflect_only(int j, double* x) const
+{
+    if (beta_[j] == 0) return;
+    const double* v = column(j) + j;
+    double* y = x + j;
+    const int m = n_ - j - 1;
+    const double t = beta_[j] * (y[0] + inner(v + 1, y + 1, m));
+    if (t == 0) return;
+    y[0] -= t;
+    subtract_scaled(y + 1, t, v + 1, m);
+}
+
+double OrthogonalBasis::factorise(int k, bool keep_choices)
+{
+    k_ = k;
+    double smallest = 1;
+    for (int j = 0; j < k; ++j) {
+        for (int i = 0; i < j; ++i) reflect_column(i, column(j));
+        lead(j, keep_choices);
+        reflect(j, keep_choices);
+        smallest = std::min(smallest, std::abs(column(j)[j]));
+    }
+    return smallest;
+}
+
+double OrthogonalBasis::factorise_pivoted(int k, std::span<int> order)
+{
+    k_ = k;
+    for (int j = 0; j < most_; ++j) {
+        order[j] = j;
+        norms_[j] = inner(column(j), column(j), n_);
+    }
+    double smallest = 1;
+    for (int j = 0; j < k; ++j) {
+        // ties go to the earlier row, so that the choice does not hang on rounding
+        int best = j;
+        for (int c = j + 1; c < most_; ++c) {
+            if (norms_[c] > norms_[best] * (1 + 1e-10)) best = c;
+        }
+        if (best != j) {
+            std::swap_ranges(column(j), column(j) + n_, column(best));
+            std::swap(norms_[j], norms_[best]);
+            std::swap(order[j], order[best]);
+        }
+        lead(j, false);
+        reflect(j, false);
+        smallest = std::min(smallest, std::abs(column(j)[j]));
+        for (int c = j + 1; c < most_; ++c) {
+            reflect_column(j, column(c));
+            norms_[c] = inner(column(c) + j + 1, column(c) + j + 1, n_ - j - 1);
+        }
+    }
+    return smallest;
+}
+
+void OrthogonalBasis::apply_transposed(double* x) const
+{
+    for (int j = 0; j < k_; ++j) reflect_column(j, x);
+}
+
+void OrthogonalBasis::apply(double* x) const
+{
+    for (int j = k_ - 1; j >= 0; --j) {
+        reflect_only(j, x);
+        std::swap(x[j], x[leads_[j]]);
+    }
+}
+
+void OrthogonalBasis::solve_R(double* y) const
+{
+    for (int j = k_ - 1; j >= 0; --j) {
+        const double* c = column(j);
+        y[j] /= c[j];
+        subtract_scaled(y, y[j], c, j);
+    }
+}
+
+void OrthogonalBasis::solve_R_transposed(double* y) const
+{
+    for (int j = 0; j < k_; ++j) {
+        const double* c = column(j);
+        y[j] = (y[j] - inner(c, y, j)) / c[j];
+    }
+}
+
+void OrthogonalBasis::null_space(double* z) const
+{
+    const int f = n_ - k_;
+    std::fill(z, z + count(n_, f), 0.0);
+    for (int i = 0; i < f; ++i) z[count(k_ + i, f) + static_cast<std::size_t>(i)] = 1;
+    for (int j = k_ - 1; j >= 0; --j) {
+        if (beta_[j] != 0) reflect_rows(j, z);
+        if (leads_[j] != j) std::swap_ranges(z + count(j, f), z + count(j + 1, f), z + count(leads_[j], f));
+    }
+}
+
+/// Reflection j of the rows of z, whose row j is zero.
+void OrthogonalBasis::reflect_rows(int j, double* z) const
+{
+    const int f = n_ - k_;
+    double* w = scratch_.data();
+    const double* v = column(j);
+    std::fill(w, w + f, 0.0);
+    for (int i = j + 1; i < n_; ++i)
+        if (v[i] != 0) subtract_scaled(w, -v[i], z + count(i, f), f);
+    double* zj = z + count(j, f);
+    for (int c = 0; c < f; ++c) {
+        w[c] *= beta_[j];
+        zj[c] = -w[c];
+    }
+    for (int i = j + 1; i < n_; ++i)
+        if (v[i] != 0) subtract_scaled(z + count(i, f), v[i], w, f);
+}
+
+void Cholesky::resize(int n)
+{
+    n_ = n;
+    a_.assign(count(n, n), 0.0);
+}
+
+bool Cholesky::factorise()
+{
+    for (int j = 0; j < n_; ++j) {
+        double* rj = row(j);
+        const double d = rj[j] - inner(rj, rj, j);
+        if (!(d > 0)) return false;
+        rj[j] = std::sqrt(d);
+        const double s = 1 / rj[j];
+        for (int i = j + 1; i < n_; ++i) {
+            double* ri = row(i);
+            ri[j] = (ri[j] - inner(ri, rj, j)) * s;
+        }
+    }
+    return true;
+}
+
+void Cholesky::solve(double* x) const
+{
+    for (int i = 0; i < n_; ++i) x[i] = (x[i] - inner(row(i), x, i)) / row(i)[i];
+    for (int i = n_ - 1; i >= 0; --i) {
+        x[i] /= row(i)[i];
+        subtract_scaled(x, x[i], row(i), i);
+    }
+}
+
+}   // namespace livens

@@ -1,0 +1,110 @@
+// Small dense factorisations on plain arrays: LU, orthogonal bases of constraint rows, Cholesky.
+//
+// They run thousands of times a second on matrices of 2 to a few hundred unknowns, so they allocate nothing
+// after `resize` and leave exact zeros exact (a planar motion stays planar to the bit).
+#pragma once
+
+#include <span>
+#include <vector>
+
+namespace livens {
+
+/// LU with row exchanges of a square matrix stored row by row.
+class DenseLU {
+public:
+    void resize(int n);
+    int size() const { return n_; }
+    /// Entry (i, j) is row(i)[j]; fill before factorise(), which overwrites it.
+    double* row(int i) { return a_.data() + static_cast<std::size_t>(i) * static_cast<std::size_t>(n_); }
+
+    /// False if a pivot is zero or not finite. Rows should be of like size (here: in the mass metric).
+    bool factorise();
+    /// x <- A^-1 x.
+    void solve(double* x) const;
+
+private:
+    const double* row(int i) const
+    {
+        return a_.data() + static_cast<std::size_t>(i) * static_cast<std::size_t>(n_);
+    }
+    void eliminate_pair(int k);
+    bool choose_pivot(int k);
+
+    int n_ = 0;
+    std::vector<double> a_;
+    std::vector<int> pivot_;
+    mutable std::vector<double> permuted_;
+};
+
+/// QR of a tall matrix, given by its k columns of length n, by Householder reflections: A = Q [R; 0].
+/// The last n - k columns of Q span the null space of A^T.
+///
+/// Each reflection leads with the largest entry of its column [Powell and Reid 1969]. It then touches only
+/// rows where the column is not zero, so unknowns that do not see each other (a plane and its normal) stay
+/// apart to the bit.
+class OrthogonalBasis {
+public:
+    /// `most` columns at most.
+    void resize(int n, int most);
+    int n() const { return n_; }
+    int rank() const { return k_; }
+    /// Column j is filled in by the caller before factorise(); overwritten by it.
+    double* column(int j) { return g_.data() + static_cast<std::size_t>(j) * static_cast<std::size_t>(n_); }
+
+    /// Factorises the first k columns in their order. Returns the smallest |R_jj| (1 if k = 0).
+    /// `keep_choices` leads with the entries, and takes the signs, of the last call, so that the basis varies
+    /// smoothly with the matrix; the usual choices jump where two entries are of one size.
+    double factorise(int k, bool keep_choices = false);
+    /// Factorises `most` columns with column exchanges and stops at `k` columns; order[j] tells which came
+    /// j-th.
+    double factorise_pivoted(int k, std::span<int> order);
+
+    void apply_transposed(double* x) const;     ///< x <- Q^T x
+    void apply(double* x) const;                ///< x <- Q x
+    void solve_R(double* y) const;              ///< y <- R^-1 y
+    void solve_R_transposed(double* y) const;   ///< y <- R^-T y
+    /// The null space, n x (n - k), row by row.
+    void null_space(double* z) const;
+
+private:
+    void lead(int j, bool keep);
+    void reflect(int j, bool keep_sign);
+    void reflect_column(int j, double* x) const;
+    void reflect_only(int j, double* x) const;
+    void reflect_rows(int j, double* z) const;
+    const double* column(int j) const
+    {
+        return g_.data() + static_cast<std::size_t>(j) * static_cast<std::size_t>(n_);
+    }
+
+    int n_ = 0;
+    int most_ = 0;
+    int k_ = 0;
+    std::vector<double> g_;   // R above the diagonal, reflectors (first entry 1 implied) below
+    std::vector<double> signs_;
+    std::vector<int> leads_;     // row exchanged with row j before reflection j
+    std::vector<double> beta_;   // H_j = I - beta v v^T
+    std::vector<double> norms_;
+    mutable std::vector<double> scratch_;
+};
+
+/// Cholesky factorisation of a symmetric positive definite matrix stored row by row.
+class Cholesky {
+public:
+    void resize(int n);
+    double* row(int i) { return a_.data() + static_cast<std::size_t>(i) * static_cast<std::size_t>(n_); }
+    /// Uses the lower triangle; false if the matrix is not positive definite.
+    bool factorise();
+    void solve(double* x) const;
+
+private:
+    const double* row(int i) const
+    {
+        return a_.data() + static_cast<std::size_t>(i) * static_cast<std::size_t>(n_);
+    }
+
+    int n_ = 0;
+    std::vector<double> a_;
+};
+
+}   // namespace livens

@@ -1,0 +1,22 @@
+#include "livens/solvers/report.h"
+
+namespace livens {
+
+const char* to_string(SolveStatus status)
+{
+    switch (status) {
+    case SolveStatus::converged:
+        return "converged";
+    case SolveStatus::not_converged:
+        return "not converged";
+    case SolveStatus::singular:
+        return "singular";
+    case SolveStatus::not_finite:
+        return "not finite";
+    case SolveStatus::cancelled:
+        return "cancelled";
+    }
+    return "unknown";
+}
+
+}   // namespace livens

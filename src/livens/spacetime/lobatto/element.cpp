@@ -1,0 +1,395 @@
+#include "livens/spacetime/lobatto/element.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "livens/time/basis.h"
+
+namespace livens {
+
+Element::Element(const Mechanism& mechanism, const LobattoRule& rule)
+    : mechanism_(mechanism), rule_(rule), elimination_(mechanism, rule.degree), n_(mechanism.n_twists)
+{
+    const auto nodes = static_cast<std::size_t>(rule.size());
+    const std::size_t size = 12 * mechanism.bodies.size();
+    const auto twists = static_cast<std::size_t>(n_);
+    const auto rank = static_cast<std::size_t>(mechanism.rank);
+    increments_.resize(nodes * mechanism.bodies.size());
+    X0_.assign(size, 0.0);
+    for (auto* v : {&dX_, &X_, &raw_, &frames_}) v->assign(nodes * size, 0.0);
+    V_.assign(size, 0.0);
+    blocks_.assign(3 * size, 0.0);
+    q_.assign(nodes * twists, 0.0);
+    bases_.resize(nodes);
+    for (std::size_t A = 1; A < nodes; ++A) bases_[A].resize(mechanism, false);
+    orthogonal_.assign(nodes, nullptr);
+    if (rule.degree >= 4) {
+        coarse_ = std::make_unique<Element>(mechanism, lobatto_rule(rule.degree / 2));
+        const LagrangeBasis basis(coarse_->rule_.nodes);
+        to_fine_.assign(static_cast<std::size_t>(rule.size() * basis.size()), 0.0);
+        for (int A = 0; A < rule.size(); ++A)
+            basis.values(rule.nodes[A],
+                         {to_fine_.data() + A * basis.size(), static_cast<std::size_t>(basis.size())});
+    }
+    for (double k : rule.k) largest_k_ = std::max(largest_k_, std::abs(k));
+    for (auto* v : {&phi_, &lambda_}) v->assign(nodes * rank, 0.0);
+    phi0_.assign(rank, 0.0);
+    rho_.assign(static_cast<std::size_t>(rule.degree * mechanism.freedoms()), 0.0);
+    work_.assign(twists, 0.0);
+    twist_.assign(twists, 0.0);
+    scratch_.assign(std::max(twists, size), 0.0);
+}
+
+/// Makes the start and the interval current.
+void Element::attach(const EndState& start, double t_end)
+{
+    start_ = &start;
+    t0_ = start.t;
+    t1_ = t_end;
+    h_ = t_end - start.t;
+    X0_ = start.X;
+    std::copy(X0_.begin(), X0_.end(), X_.begin());
+    std::copy(start.frames.begin(), start.frames.end(), frames_.begin());
+    orthogonal_[0] = &start.basis.q;
+    keep_choices_ = false;
+    smallest_pivot_ = start.smallest_pivot;
+    for (int c = 0; c < mechanism_.rank; ++c)
+        phi0_[c] = mechanism_.value(start.basis.rows[c], X0_.data(), start.basis.gradients.data() + 24 * c);
+}
+
+void Element::begin(const EndState& start, double t_end)
+{
+    attach(start, t_end);
+    predict();
+}
+
+void Element::configure(int B)
+{
+    double* dX = dX_.data() + node(B);
+    double* X = X_.data() + node(B);
+    for (int b = 0; b < mechanism_.n_bodies(); ++b) {
+        const auto& increment = increments_[static_cast<std::size_t>(B * mechanism_.n_bodies() + b)];
+        twist::displacement(increment, X0_.data() + 12 * b, dX + 12 * b);
+    }
+    for (std::size_t i = 0; i < X0_.size(); ++i) X[i] = X0_[i] + dX[i];
+}
+
+void Element::move(int B, const double* xi)
+{
+    for (int b = 0; b < mechanism_.n_bodies(); ++b) {
+        const auto& body = mechanism_.bodies[b];
+        double twist[6] = {0, 0, 0, 0, 0, 0};
+        std::copy(xi + body.first, xi + body.first + body.dofs, twist);
+        twist::update(increments_[static_cast<std::size_t>(B * mechanism_.n_bodies() + b)], twist);
+    }
+    configure(B);
+}
+
+/// Constraint values, gradients and their bases at nodes 1..p.
+///
+/// Phi is a quadratic polynomial, so Phi(X) = Phi(X_0) + 1/2 <grad Phi(X_0) + grad Phi(X), X - X_0>, which
+/// does not lose the digits of a small increment.
+bool Element::evaluate_constraints()
+{
+    const ConstraintBasis& first = start_->basis;
+    const int k = mechanism_.rank;
+    double sum = 0;
+    for (int B = 1; B <= rule_.degree; ++B) {
+        ConstraintBasis& basis = bases_[B];
+        mechanism_.frames_of(X(B), frames_.data() + node(B));
+        smallest_pivot_ =
+            std::min(smallest_pivot_, basis.build(mechanism_, X(B), frames(B), first.rows, keep_choices_));
+        orthogonal_[B] = &basis.q;
+        for (int c = 0; c < k; ++c) {
+            const auto& table = mechanism_.rows[basis.rows[c]];
+            const double* g0 = first.gradients.data() + 24 * c;
+            const double* g = basis.gradients.data() + 24 * c;
+            double phi = 0;
+            for (int side = table.first_side(); side < 2; ++side) {
+                const double* d = dX_.data() + node(B) + 12 * table.body(side);
+                for (int i = 0; i < 12; ++i) phi += (g0[12 * side + i] + g[12 * side + i]) * d[i];
+            }
+            phi = phi0_[c] + 0.5 * phi;
+            phi_[static_cast<std::size_t>(B * k + c)] = phi * basis.row_scale[c];
+            sum += std::abs(phi);
+        }
+    }
+    return std::isfinite(sum);
+}
+
+/// Rows at node A: the bracket without multipliers, N^T of it, and what the multipliers leave.
+void Element::evaluate_row(int A)
+{
+    const std::size_t size = X0_.size();
+    const int n_nodes = rule_.size();
+    double* __restrict y = scratch_.data();
+    std::fill(y, y + size, 0.0);
+    for (int B = 1; B < n_nodes; ++B) {
+        const double k = rule_.k[A * n_nodes + B];
+        const double* __restrict d = dX_.data() + node(B);
+        for (std::size_t i = 0; i < size; ++i) y[i] += k * d[i];
+    }
+    double* raw = raw_.data() + node(A);
+    mechanism_.times_mass(y, 1 / h_, raw);
+    const double* V = nullptr;
+    if (mechanism_.has_velocity_loads) {
+        std::fill(V_.begin(), V_.end(), 0.0);
+        for (int B = 1; B < n_nodes; ++B) {
+            const double d = rule_.D[A * n_nodes + B] / h_;
+            for (std::size_t i = 0; i < size; ++i) V_[i] += d * dX_[node(B) + i];
+        }
+        V = V_.data();
+    }
+    const bool last = A == rule_.degree;
+    const Instant at{A == 0 ? t0_ : (last ? t1_ : t0_ + rule_.nodes[A] * h_),
+                     A == 0 ? Side::right : (last ? Side::left : Side::middle)};
+    mechanism_.add_forces(at, X(A), V, h_ * rule_.weights[A], raw);
+    double* q = q_.data() + twist_node(A);
+    mechanism_.rows_of(X(A), raw, q);
+    if (!last) eliminate_multipliers(A);
+}
+
+/// lambda_A from the rows in the constraint directions; what is left are the reduced rows.
+void Element::eliminate_multipliers(int A)
+{
+    const ConstraintBasis& basis = A == 0 ? start_->basis : bases_[A];
+    const int k = mechanism_.rank, f = mechanism_.freedoms();
+    const double* q = q_.data() + twist_node(A);
+    double* y = work_.data();
+    mechanism_.scale_rows(frames(A), q, y);
+    if (A == 0)
+        for (int i = 0; i < n_; ++i) y[i] += start_->momentum[i];
+    for (int i = 0; i < n_; ++i) terms_ = std::max(terms_, std::abs(y[i]));
+    basis.q.apply_transposed(y);
+    std::copy(y + k, y + n_, rho_.begin() + A * f);
+    basis.q.solve_R(y);
+    const double weight = h_ * rule_.weights[A];
+    for (int c = 0; c < k; ++c)
+        lambda_[static_cast<std::size_t>(A * k + c)] = y[c] * basis.row_scale[c] / weight;
+}
+
+bool Element::evaluate() { return evaluate_constraints() && finish_evaluation(false); }
+
+/// Rows at the nodes. `correct` first takes the constraint violations off, with bases that are then stale by
+/// as much; near the solution that is nothing, and the rows do not feel the violations through k_AB / h.
+bool Element::finish_evaluation(bool correct)
+{
+    if (correct) correct_constraints();
+    terms_ = 0;
+    for (double p : start_->momentum) terms_ = std::max(terms_, std::abs(p));
+    for (int A = 0; A < rule_.degree; ++A) evaluate_row(A);
+    double sum = terms_;
+    for (double r : rho_) sum += std::abs(r);
+    return std::isfinite(sum);
+}
+
+/// raw <- raw_A - h w_A G^T lambda_A.
+void Element::total_residual(int A, double* raw) const
+{
+    std::copy_n(raw_.begin() + static_cast<std::ptrdiff_t>(node(A)), X0_.size(), raw);
+    const ConstraintBasis& basis = A == 0 ? start_->basis : bases_[A];
+    for (int c = 0; c < mechanism_.rank; ++c) {
+        const auto& table = mechanism_.rows[basis.rows[c]];
+        const double s = h_ * rule_.weights[A] * lambda_[static_cast<std::size_t>(A * mechanism_.rank + c)];
+        for (int side = table.first_side(); side < 2; ++side) {
+            double* r = raw + 12 * table.body(side);
+            for (int i = 0; i < 12; ++i)
+                r[i] -= s * basis.gradients[static_cast<std::size_t>(24 * c + 12 * side + i)];
+        }
+    }
+}
+
+void Element::multipliers(int A, double* lambda) const
+{
+    std::fill(lambda, lambda + mechanism_.n_rows(), 0.0);
+    for (int c = 0; c < mechanism_.rank; ++c)
+        lambda[start_->basis.rows[c]] = lambda_[static_cast<std::size_t>(A * mechanism_.rank + c)];
+}
+
+/// Motion and impulse of node B into the largest so far.
+void Element::measure(int B, Step& step) const
+{
+    for (int b = 0; b < mechanism_.n_bodies(); ++b) {
+        const double* d = dX_.data() + node(B) + 12 * b;
+        const auto& body = mechanism_.bodies[b];
+        double u = 0, turn = 0;
+        for (int i = 0; i < 3; ++i) u = std::max(u, std::abs(d[i]));
+        for (int i = 3; i < 12; ++i) turn = std::max(turn, std::abs(d[i]));
+        const double reach = std::abs(body.center[0]) + std::abs(body.center[1]) + std::abs(body.center[2]);
+        const double root_inertia =
+            body.dofs == 6 ? 1 / std::min({body.spin[0], body.spin[4], body.spin[8]}) : 0;
+        step.motion = std::max(step.motion, std::max(u / mechanism_.length, turn));
+        step.impulse =
+            std::max(step.impulse, ((u + reach * turn) / body.inverse_root_mass + root_inertia * turn) / h_);
+    }
+}
+
+/// Newton's direction from the reduced rows, applied to all nodes along the constraints.
+Element::Step Element::solve_step()
+{
+    const int k = mechanism_.rank, f = mechanism_.freedoms();
+    for (double& r : rho_) r = -r;
+    elimination_.solve(rho_.data());
+    Step step;
+    for (int B = 1; B <= rule_.degree; ++B) {
+        const OrthogonalBasis& q = bases_[B].q;
+        double* y = work_.data();
+        std::fill(y, y + k, 0.0);
+        std::copy(rho_.begin() + (B - 1) * f, rho_.begin() + B * f, y + k);
+        q.apply(y);
+        mechanism_.unscale(frames(B), y, twist_.data());
+        step.size = std::max(step.size, size_of(twist_.data()));
+        move(B, twist_.data());
+        measure(B, step);
+    }
+    return step;
+}
+
+/// Moves each node by itself back to the constraints, with the bases at hand.
+void Element::correct_constraints()
+{
+    const int k = mechanism_.rank;
+    correction_ = 0;
+    for (int B = 1; B <= rule_.degree; ++B) {
+        double* y = work_.data();
+        std::fill(y, y + n_, 0.0);
+        double size = 0;
+        for (int c = 0; c < k; ++c) {
+            y[c] = -phi_[static_cast<std::size_t>(B * k + c)];
+            size = std::max(size, std::abs(y[c]));
+        }
+        if (size == 0) continue;
+        bases_[B].q.solve_R_transposed(y);
+        bases_[B].q.apply(y);
+        mechanism_.unscale(frames(B), y, twist_.data());
+        correction_ = std::max(correction_, size_of(twist_.data()));
+        move(B, twist_.data());
+    }
+}
+
+/// Predicted nodes may lie far from the constraints: repeat until the bases fit the nodes.
+bool Element::settle()
+{
+    for (int round = 0; round < 6; ++round) {
+        if (!evaluate_constraints()) return false;
+        correct_constraints();
+        if (correction_ < 1e-3) break;
+    }
+    return finish_evaluation(false);
+}
+
+ElementReport Element::fail(SolveStatus status, ElementReport report) const
+{
+    report.status = status;
+    double worst = 0;
+    for (int B = 1; B <= rule_.degree; ++B) {
+        for (int c = 0; c < mechanism_.rank; ++c) {
+            const double v = std::abs(phi_[static_cast<std::size_t>(B * mechanism_.rank + c)]);
+            if (v > worst || !std::isfinite(v)) {
+                worst = v;
+                report.worst_row = start_->basis.rows[c];
+            }
+        }
+    }
+    worst = 0;
+    for (int A = 0; A < rule_.degree; ++A) {
+        for (int b = 0; b < mechanism_.n_bodies(); ++b) {
+            for (int i = 0; i < mechanism_.bodies[b].dofs; ++i) {
+                const double v =
+                    std::abs(q_[twist_node(A) + static_cast<std::size_t>(mechanism_.bodies[b].first + i)]);
+                if (v > worst || !std::isfinite(v)) {
+                    worst = v;
+                    report.worst_body = b;
+                }
+            }
+        }
+    }
+    return report;
+}
+
+double Element::size_of_rows() const
+{
+    double size = 0;
+    for (double r : rho_) size = std::max(size, std::abs(r));
+    return size;
+}
+
+/// Size of a twist: in lengths of the model and radians.
+double Element::size_of(const double* xi) const
+{
+    double size = 0;
+    for (const auto& body : mechanism_.bodies) {
+        for (int i = 0; i < 3; ++i) size = std::max(size, std::abs(xi[body.first + i]) / mechanism_.length);
+        for (int i = 3; i < body.dofs; ++i) size = std::max(size, std::abs(xi[body.first + i]));
+    }
+    return size;
+}
+
+ElementReport Element::solve(const EndState& start, double t_end, const NewtonOptions& options)
+{
+    ElementReport report;
+    attach(start, t_end);
+    guess(report);
+    report = iterate(report, options);
+    for (int pieces = 4; report.status != SolveStatus::converged && options.rescue && pieces <= 64;
+         pieces *= 4) {
+        if (!guess_from_march(pieces)) continue;
+        report.rescued = true;
+        report.iterations = 0;
+        report = iterate(report, options);
+    }
+    return report;
+}
+
+/// The last row, which is not solved but hands on the momentum.
+ElementReport Element::finish(const ElementReport& report)
+{
+    evaluate_row(rule_.degree);
+    double sum = 0;
+    for (int i = 0; i < n_; ++i) sum += std::abs(final_momentum()[i]);
+    return std::isfinite(sum) ? report : fail(SolveStatus::not_finite, report);
+}
+
+/// Newton's iteration from the nodes as they stand.
+ElementReport Element::iterate(ElementReport report, const NewtonOptions& options)
+{
+    report.status = SolveStatus::converged;
+    keep_choices_ = false;
+    if (!settle()) return fail(SolveStatus::not_finite, report);
+    bool renew = true;
+    double rows = size_of_rows(), previous = 0;
+    while (report.iterations < options.max_iterations) {
+        if (renew) {
+            ++report.factorisations;
+            keep_choices_ = true;
+            if (!factorise()) return fail(SolveStatus::singular, report);
+        }
+        const Step step = solve_step();
+        ++report.iterations;
+        if (!evaluate_constraints() || !finish_evaluation(true)) return fail(SolveStatus::not_finite, report);
+        if (step.size > 1e3) break;   // hopeless: a thousand lengths or radians in one step
+        // the next increment, foretold by the rows that are left
+        const double rows_left = size_of_rows();
+        const double rate = rows > 0 ? rows_left / rows : 0;
+        const double next = step.size * rate + correction_;
+        const double scale = std::max(step.motion, 1e-6);
+        // the sums over k_AB cancel: their rounding is that of their largest term
+        const double rounding = 1e-16 * (largest_k_ * step.impulse + terms_);
+        const double impulse = std::max(step.impulse, terms_);
+        const bool small = next <= options.tolerance * scale && rows_left <= options.tolerance * impulse;
+        if (small || (rate > 0.25 && rows_left < 4 * rounding)) {
+            report.residual = impulse > 0 ? rows_left / impulse : 0;
+            report.smallest_pivot = smallest_pivot_;
+            return finish(report);
+        }
+        // a new tangent where the old one contracts too slowly to be worth its iterations
+        const double contraction = previous > 0 ? step.size / previous : 0.1 * rate;
+        const double left = std::log(options.tolerance * scale / next) / std::log(std::min(contraction, 0.9));
+        renew = contraction > 0.3 || report.iterations + left > 9 || step.size > 0.1;
+        previous = renew ? 0 : step.size;
+        rows = rows_left;
+    }
+    return fail(SolveStatus::not_converged, report);
+}
+
+}   // namespace livens

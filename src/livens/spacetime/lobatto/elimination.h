@@ -1,0 +1,65 @@
+// The linear algebra of one element, behind a small interface so that it can be replaced: blocks of the
+// tangent go in, increments of the reduced unknowns come out.
+#pragma once
+
+#include <vector>
+
+#include "livens/solvers/dense.h"
+#include "livens/spacetime/lobatto/mechanism.h"
+
+namespace livens {
+
+/// Dense elimination on null spaces: rows Z_A^T at nodes 0..p-1, columns Z_B at nodes 1..p.
+///
+/// Where the tangent couples no bodies (degree 1 without loads that depend on the velocity) its bodies are
+/// inverted one by one instead and the constraints added by their Schur complement, which is small.
+class Elimination {
+public:
+    Elimination(const Mechanism& mechanism, int degree);
+
+    /// Takes the null spaces of all nodes (0..p).
+    void begin(const std::vector<const OrthogonalBasis*>& bases);
+    /// Starts the block of rows of node A and columns of node B; every pair of A = 0..p-1, B = 1..p comes
+    /// once.
+    void open(int A, int B);
+    /// Adds factor * [1 0 ; 0 H] for a body, H 3 x 3 column by column.
+    void add_mass(int body, double factor, const double* H);
+    /// Adds the block of rows of body i and columns of body j, 6 x 6 row by row, in scaled twists.
+    void add(int body_i, int body_j, const double* block);
+    /// Writes the reduced block into the matrix.
+    void close();
+    /// False if the tangent is singular or not finite.
+    bool factorise();
+    /// x <- J^-1 x; row block A of x at A * f, column block B at (B - 1) * f.
+    void solve(double* x);
+
+    int unknowns() const { return degree_ * f_; }
+
+private:
+    const double* null_space(int A, int body) const;
+    void form_null_spaces();
+    void couple_bodies();
+    void reduce(int A, int B);
+    void multiply_pair(int A, int B, int r);
+    bool factorise_bodies();
+    void solve_bodies(double* x);
+    void invert_bodies(double* y) const;
+
+    const Mechanism& mechanism_;
+    int degree_;
+    int f_;
+    int A_ = 0, B_ = 1;              // the open pair
+    bool by_bodies_ = false;         // nothing but mass so far, and degree 1
+    double factor_ = 1;              // of the mass; likewise
+    std::vector<double> inverse_;    // of H, 9 a body; likewise
+    OrthogonalBasis first_, last_;   // of nodes 0 and 1; likewise
+    DenseLU schur_;
+    std::vector<double> range_;   // Q_1^T J^-1 Y_0, rank columns of length n; likewise
+    std::vector<double> work_;
+    std::vector<const OrthogonalBasis*> bases_;
+    DenseLU lu_;
+    std::vector<double> z_;         // null space of node A at A * n * f
+    std::vector<double> product_;   // block of the tangent times the null space at B, n x f
+};
+
+}   // namespace livens

@@ -1,0 +1,62 @@
+// The state at an element end: velocity from the momentum, acceleration and reactions from the equations of
+// motion.
+#pragma once
+
+#include <vector>
+
+#include "livens/spacetime/lobatto/mechanism.h"
+
+namespace livens {
+
+/// Everything the next element, and the motion, need of one instant.
+struct EndState {
+    double t = 0;
+    std::vector<double> X;                 ///< 12 a body
+    std::vector<double> frames;            ///< of the scaled twists, 12 a body
+    std::vector<double> velocity;          ///< twists [v, w]
+    std::vector<double> momentum;          ///< N^T P, tangent to the constraints, in scaled rows
+    std::vector<double> acceleration[2];   ///< twists [a, alpha]; left and right of a jump of loads
+    std::vector<double> multipliers[2];    ///< at the acceleration level, all rows of the model; likewise
+    std::vector<double> jerk,
+        snap;   ///< second and third derivative of the twist, extrapolated; zero without past
+    bool has_past = false;
+    ConstraintBasis basis;   ///< rows chosen here serve the next element
+    double smallest_pivot = 1;
+
+    void resize(const Mechanism& mechanism);
+    /// jerk and snap of the cubic through velocity and acceleration here and at an earlier end; for guesses.
+    void look_back(const EndState& earlier);
+    void forget_past();
+};
+
+/// Solves at one instant (docs/theory.md, "Element ends").
+class EndSolver {
+public:
+    explicit EndSolver(const Mechanism& mechanism);
+
+    /// Prepares frames and basis for state.X. False if a free motion carries no inertia. `known` is exchanged
+    /// with the state's basis where it serves: built for this X with all rows of the model.
+    bool prepare(EndState& state, ConstraintBasis* known = nullptr);
+    /// velocity and momentum <- the tangent parts of a given twist momentum N^T P. `lambda` <- the
+    /// multipliers of the rest, W Ghat^T lambda = N^T P - Mr velocity; all rows of the model, zero for rows
+    /// that are not chosen.
+    void from_momentum(EndState& state, const double* p, double weight, double* lambda);
+    /// momentum <- that of state.velocity, which is consistent.
+    void from_velocity(EndState& state);
+    /// Accelerations and multipliers on one side.
+    void accelerate(EndState& state, Side side);
+
+private:
+    bool prepare_singular(const EndState& state);
+    void apply_mass(const EndState& state, const double* y, double* out);
+    void solve(const EndState& state, const double* forces, double* y, double* multipliers);
+    void particular(const EndState& state, double* y) const;
+    void scatter(const EndState& state, const double* y, double weight, double* lambda) const;
+
+    const Mechanism& mechanism_;
+    Cholesky reduced_;        // Z^T M Z, used only where an inertia is singular
+    std::vector<double> z_;   // null space, n x f; likewise
+    std::vector<double> a_, b_, c_, V_, centripetal_, raw_;
+};
+
+}   // namespace livens

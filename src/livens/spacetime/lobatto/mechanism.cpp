@@ -1,0 +1,367 @@
+#include "livens/spacetime/lobatto/mechanism.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "livens/spacetime/lobatto/twist.h"
+
+namespace livens {
+
+namespace {
+
+/// The entries of K between two sides of a row.
+void collect(const Matrix4& C, int from, int to, bool transposed,
+             std::vector<Mechanism::RowTable::Entry>& form)
+{
+    for (int b = 0; b < 4; ++b)
+        for (int a = 0; a < 4; ++a)
+            if (C(a, b) != 0)
+                form.push_back(transposed
+                                   ? Mechanism::RowTable::Entry{12 * from + 3 * b, 12 * to + 3 * a, C(a, b)}
+                                   : Mechanism::RowTable::Entry{12 * from + 3 * a, 12 * to + 3 * b, C(a, b)});
+}
+
+Mechanism::RowTable row_table(const ConstraintRow& row)
+{
+    Mechanism::RowTable table;
+    table.row = &row;
+    table.has_i = row.body_i != world;
+    collect(row.c_jj, 1, 1, false, table.form);
+    if (table.has_i) {
+        collect(row.c_ii, 0, 0, false, table.form);
+        collect(row.c_ij, 0, 1, false, table.form);
+        collect(row.c_ij, 1, 0, true, table.form);
+    }
+    auto used = [](double x) { return x != 0; };
+    table.has_b =
+        std::any_of(row.b_i.a, row.b_i.a + 12, used) || std::any_of(row.b_j.a, row.b_j.a + 12, used);
+    return table;
+}
+
+Matrix34 at(const double* X, int body)
+{
+    Matrix34 m{};
+    std::copy(X + 12 * body, X + 12 * body + 12, m.a);
+    return m;
+}
+
+/// The constants of the scaled twists. A singular inertia is enlarged for the coordinates alone: the
+/// equations keep m.
+bool scale_body(const Body& body, double length, Mechanism::BodyTable& table)
+{
+    const MassProperties p = mass_properties(body.mass);
+    table.inverse_root_mass = 1 / std::sqrt(p.mass);
+    if (body.is_point) return true;
+    const Vector3 c = p.center_of_mass;
+    std::copy(c.a, c.a + 3, table.center);
+    Matrix3 J = p.inertia;
+    const Matrix3 E = 0.5 * trace(J) * identity<3>() - J;
+    std::copy(E.a, E.a + 9, table.euler);
+    bool regular = true;
+    Matrix3 L{};
+    const double floor = 1e-7 * trace(J);
+    for (int j = 0; j < 3; ++j) {
+        double d = J(j, j);
+        for (int k = 0; k < j; ++k) d -= L(j, k) * L(j, k);
+        if (!(d > floor)) {
+            regular = false;
+            d = std::max(1e-3 * trace(J), 1e-6 * p.mass * length * length);
+        }
+        L(j, j) = std::sqrt(d);
+        for (int i = j + 1; i < 3; ++i) {
+            double s = J(i, j);
+            for (int k = 0; k < j; ++k) s -= L(i, k) * L(j, k);
+            L(i, j) = s / L(j, j);
+        }
+    }
+    const Matrix3 spin = transpose(inverse(L));
+    std::copy(spin.a, spin.a + 9, table.spin);
+    return regular;
+}
+
+/// out <- l r for 3 x 3 matrices, column by column.
+void multiply(const double* l, const double* r, double* out)
+{
+    for (int j = 0; j < 9; j += 3)
+        for (int i = 0; i < 3; ++i) out[j + i] = l[i] * r[j] + l[3 + i] * r[j + 1] + l[6 + i] * r[j + 2];
+}
+
+/// out <- l^T r.
+void multiply_transposed(const double* l, const double* r, double* out)
+{
+    for (int j = 0; j < 9; j += 3)
+        for (int i = 0; i < 3; ++i)
+            out[j + i] = l[3 * i] * r[j] + l[3 * i + 1] * r[j + 1] + l[3 * i + 2] * r[j + 2];
+}
+
+}   // namespace
+
+Mechanism::Mechanism(const Model& the_model, int the_rank) : model(&the_model), rank(the_rank)
+{
+    length = the_model.length();
+    for (const Body& body : the_model.bodies()) {
+        BodyTable table;
+        table.first = n_twists;
+        table.dofs = body.is_point ? 3 : 6;
+        for (int to = 0; to < 4; ++to)
+            for (int from = 0; from < 4; ++from)
+                if (body.mass(from, to) != 0) table.mass.push_back({from, to, body.mass(from, to)});
+        const Matrix34 w = livens::weight(body, the_model.gravity());
+        std::copy(w.a, w.a + 12, table.weight);
+        regular = scale_body(body, length, table) && regular;
+        bodies.push_back(table);
+        n_twists += table.dofs;
+    }
+    for (int r = 0; r < the_model.n_rows(); ++r) rows.push_back(row_table(the_model.row(r)));
+    for (int l = 0; l < static_cast<int>(the_model.loads().size()); ++l) {
+        const Load& load = the_model.loads()[l];
+        if (load.depends_on_X || load.depends_on_V) loads_with_tangent.push_back(l);
+        has_velocity_loads = has_velocity_loads || load.depends_on_V;
+    }
+}
+
+void Mechanism::gradient(int r, const double* X, double* g) const
+{
+    const RowTable& t = rows[r];
+    std::copy(t.row->b_j.a, t.row->b_j.a + 12, g + 12);
+    const double* sides[2] = {t.has_i ? X + 12 * t.row->body_i : X, X + 12 * t.row->body_j};
+    if (t.has_i) std::copy(t.row->b_i.a, t.row->b_i.a + 12, g);
+    for (const auto& entry : t.form) {
+        const double* x = sides[entry.from / 12] + entry.from % 12;
+        for (int i = 0; i < 3; ++i) g[entry.to + i] += entry.value * x[i];
+    }
+}
+
+void Mechanism::frames_of(const double* X, double* frames) const
+{
+    for (int b = 0; b < n_bodies(); ++b) {
+        if (bodies[b].dofs == 3) continue;
+        const double* R = X + 12 * b + 3;
+        const double* c = bodies[b].center;
+        double* f = frames + 12 * b;
+        multiply(R, bodies[b].spin, f);
+        for (int i = 0; i < 3; ++i) f[9 + i] = R[i] * c[0] + R[3 + i] * c[1] + R[6 + i] * c[2];
+    }
+}
+
+void Mechanism::unscale(const double* frames, const double* y, double* xi) const
+{
+    for (int b = 0; b < n_bodies(); ++b) {
+        const BodyTable& body = bodies[b];
+        const double* f = frames + 12 * b;
+        const double* in = y + body.first;
+        double* out = xi + body.first;
+        const double r = body.inverse_root_mass;
+        if (body.dofs == 3) {
+            for (int i = 0; i < 3; ++i) out[i] = r * in[i];
+            continue;
+        }
+        const double y0 = in[3], y1 = in[4], y2 = in[5];
+        const double* c = f + 9;
+        double w[3];
+        for (int i = 0; i < 3; ++i) w[i] = f[i] * y0 + f[3 + i] * y1 + f[6 + i] * y2;
+        out[0] = r * in[0] + (c[1] * w[2] - c[2] * w[1]);
+        out[1] = r * in[1] + (c[2] * w[0] - c[0] * w[2]);
+        out[2] = r * in[2] + (c[0] * w[1] - c[1] * w[0]);
+        for (int i = 0; i < 3; ++i) out[3 + i] = w[i];
+    }
+}
+
+namespace {
+
+/// D^T of one body.
+void scale_row(const Mechanism::BodyTable& body, const double* f, const double* q, double* y)
+{
+    const double r = body.inverse_root_mass;
+    if (body.dofs == 3) {
+        for (int i = 0; i < 3; ++i) y[i] = r * q[i];
+        return;
+    }
+    const double* c = f + 9;
+    const double m0 = q[3] - (c[1] * q[2] - c[2] * q[1]);
+    const double m1 = q[4] - (c[2] * q[0] - c[0] * q[2]);
+    const double m2 = q[5] - (c[0] * q[1] - c[1] * q[0]);
+    for (int i = 0; i < 3; ++i) y[i] = r * q[i];
+    for (int i = 0; i < 3; ++i) y[3 + i] = f[3 * i] * m0 + f[3 * i + 1] * m1 + f[3 * i + 2] * m2;
+}
+
+}   // namespace
+
+void Mechanism::scale_rows(const double* frames, const double* q, double* y) const
+{
+    for (int b = 0; b < n_bodies(); ++b)
+        scale_row(bodies[b], frames + 12 * b, q + bodies[b].first, y + bodies[b].first);
+}
+
+void Mechanism::scaled_gradient(int r, const double* X, const double* frames, const double* g,
+                                double* out) const
+{
+    std::fill(out, out + n_twists, 0.0);
+    const RowTable& t = rows[r];
+    for (int side = t.first_side(); side < 2; ++side) {
+        const int body = t.body(side);
+        double q[6] = {0, 0, 0, 0, 0, 0};
+        if (bodies[body].dofs == 6)
+            twist::add_rows(X + 12 * body, g + 12 * side, 1.0, q);
+        else
+            std::copy(g + 12 * side, g + 12 * side + 3, q);
+        scale_row(bodies[body], frames + 12 * body, q, out + bodies[body].first);
+    }
+}
+
+/// With Q = R_A^T R_B it is L^-1 Q (tr(E Q) 1 - E Q) L^-T.
+void Mechanism::spin_mass(int body, const double* X_A, const double* X_B, double* H) const
+{
+    const BodyTable& b = bodies[body];
+    double Q[9], EQ[9], T[9];
+    multiply_transposed(X_A + 12 * body + 3, X_B + 12 * body + 3, Q);
+    multiply(b.euler, Q, EQ);
+    const double tr = EQ[0] + EQ[4] + EQ[8];
+    for (int i = 0; i < 9; ++i) EQ[i] = (i % 4 == 0 ? tr : 0.0) - EQ[i];
+    multiply(Q, EQ, T);
+    multiply(T, b.spin, EQ);
+    multiply_transposed(b.spin, EQ, H);
+}
+
+double Mechanism::value(int r, const double* X, const double* g) const
+{
+    const RowTable& t = rows[r];
+    double sum = 0;
+    for (int side = t.first_side(); side < 2; ++side) {
+        const double* x = X + 12 * t.body(side);
+        const double* b = side == 0 ? t.row->b_i.a : t.row->b_j.a;
+        for (int i = 0; i < 12; ++i) sum += (g[12 * side + i] + b[i]) * x[i];
+    }
+    return 0.5 * sum + t.row->c;
+}
+
+double Mechanism::value(int r, const double* X) const
+{
+    double g[24];
+    gradient(r, X, g);
+    return value(r, X, g);
+}
+
+double Mechanism::curvature(int r, const double* V) const
+{
+    const RowTable& t = rows[r];
+    double sum = 0;
+    for (const auto& entry : t.form) {
+        const double* from = V + 12 * t.body(entry.from / 12) + entry.from % 12;
+        const double* to = V + 12 * t.body(entry.to / 12) + entry.to % 12;
+        sum += entry.value * (from[0] * to[0] + from[1] * to[1] + from[2] * to[2]);
+    }
+    return sum;
+}
+
+void Mechanism::add_forces(Instant instant, const double* X, const double* V, double factor,
+                           double* raw) const
+{
+    for (int b = 0; b < n_bodies(); ++b)
+        for (int i = 0; i < 12; ++i) raw[12 * b + i] += factor * bodies[b].weight[i];
+    for (const Load& load : model->loads()) {
+        LoadArguments arguments;
+        arguments.at = instant;
+        for (int side = 0; side < 2; ++side) {
+            const int body = load.bodies[side];
+            if (body == world) continue;
+            arguments.X[side] = at(X, body);
+            if (V != nullptr) arguments.V[side] = at(V, body);
+        }
+        LoadForces forces{};
+        load.forces(arguments, forces);
+        for (int side = 0; side < 2; ++side) {
+            if (load.bodies[side] == world) continue;
+            double* f = raw + 12 * load.bodies[side];
+            for (int i = 0; i < 12; ++i) f[i] += factor * forces[side].a[i];
+        }
+    }
+}
+
+void Mechanism::rows_of(const double* X, const double* raw, double* q) const
+{
+    std::fill(q, q + n_twists, 0.0);
+    for (int b = 0; b < n_bodies(); ++b) {
+        double* o = q + bodies[b].first;
+        if (bodies[b].dofs == 6)
+            twist::add_rows(X + 12 * b, raw + 12 * b, 1.0, o);
+        else
+            std::copy(raw + 12 * b, raw + 12 * b + 3, o);
+    }
+}
+
+void Mechanism::columns_of(const double* X, const double* xi, double* dX) const
+{
+    for (int b = 0; b < n_bodies(); ++b) {
+        const double* w = xi + bodies[b].first;
+        if (bodies[b].dofs == 6) {
+            twist::columns(X + 12 * b, w, dX + 12 * b);
+        } else {
+            std::fill(dX + 12 * b, dX + 12 * b + 12, 0.0);
+            std::copy(w, w + 3, dX + 12 * b);
+        }
+    }
+}
+
+void Mechanism::times_mass(const double* Y, double factor, double* out) const
+{
+    std::fill(out, out + 12 * bodies.size(), 0.0);
+    for (const BodyTable& body : bodies) {
+        for (const auto& entry : body.mass) {
+            const double s = factor * entry.value;
+            for (int i = 0; i < 3; ++i) out[3 * entry.to + i] += s * Y[3 * entry.from + i];
+        }
+        Y += 12;
+        out += 12;
+    }
+}
+
+void ConstraintBasis::resize(const Mechanism& mechanism, bool all_rows)
+{
+    const int most = all_rows ? mechanism.n_rows() : mechanism.rank;
+    q.resize(mechanism.n_twists, most);
+    rows.assign(static_cast<std::size_t>(mechanism.rank), 0);
+    row_scale.assign(static_cast<std::size_t>(most), 1.0);
+    gradients.assign(static_cast<std::size_t>(24 * most), 0.0);
+    order_.assign(static_cast<std::size_t>(most), 0);
+}
+
+double ConstraintBasis::fill(const Mechanism& mechanism, int column, int row, const double* X,
+                             const double* frames)
+{
+    double* g = gradients.data() + 24 * column;
+    double* out = q.column(column);
+    mechanism.gradient(row, X, g);
+    mechanism.scaled_gradient(row, X, frames, g, out);
+    double sum = 0;
+    for (int i = 0; i < mechanism.n_twists; ++i) sum += out[i] * out[i];
+    const double scale = sum > 0 ? 1 / std::sqrt(sum) : 1.0;
+    for (int i = 0; i < mechanism.n_twists; ++i) out[i] *= scale;
+    return scale;
+}
+
+double ConstraintBasis::build(const Mechanism& mechanism, const double* X, const double* frames,
+                              const std::vector<int>& which, bool keep_choices)
+{
+    rows = which;
+    for (int c = 0; c < mechanism.rank; ++c) row_scale[c] = fill(mechanism, c, which[c], X, frames);
+    return q.factorise(mechanism.rank, keep_choices);
+}
+
+double ConstraintBasis::choose(const Mechanism& mechanism, const double* X, const double* frames)
+{
+    const int all = mechanism.n_rows();
+    for (int r = 0; r < all; ++r) row_scale[r] = fill(mechanism, r, r, X, frames);
+    const double smallest = q.factorise_pivoted(mechanism.rank, order_);
+    unsorted_ = gradients;
+    unsorted_.insert(unsorted_.end(), row_scale.begin(), row_scale.end());
+    const double* scales = unsorted_.data() + gradients.size();
+    for (int c = 0; c < mechanism.rank; ++c) {
+        rows[c] = order_[c];
+        row_scale[c] = scales[order_[c]];
+        std::copy_n(unsorted_.begin() + 24 * order_[c], 24, gradients.begin() + 24 * c);
+    }
+    return smallest;
+}
+
+}   // namespace livens

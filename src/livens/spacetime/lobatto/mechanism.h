@@ -1,0 +1,118 @@
+// The model as the element reads it: flat tables, unknowns numbered, and the coordinates that it is solved
+// in.
+//
+// Unknowns are twists in mass-orthonormal coordinates: y = (sqrt(M) v_c, L^T w_body) with the velocity v_c of
+// the centre of mass, the spin in body axes and the Cholesky factor L of the inertia about the centre. A
+// body's kinetic energy is 1/2 |y|^2, so null spaces of constraints are orthonormal in the mass metric, and
+// no unit or size weighs more than another.
+#pragma once
+
+#include <vector>
+
+#include "livens/multibody/assembly.h"
+#include "livens/multibody/model.h"
+#include "livens/solvers/dense.h"
+
+namespace livens {
+
+/// Tables made once per solution. Arrays over bodies hold 12 numbers each (columns of X); arrays over twists
+/// hold `n_twists` numbers, six a body and three a point mass.
+struct Mechanism {
+    struct BodyTable {
+        int first = 0;   ///< twist unknowns from here
+        int dofs = 6;
+        struct Entry {
+            int from, to;   ///< columns of X
+            double value;
+        };
+        std::vector<Entry> mass;   ///< entries of m that are not zero
+        double weight[12] = {};
+        double inverse_root_mass = 0;   ///< 1 / sqrt(M)
+        double center[3] = {};          ///< of mass, body coordinates
+        double spin[9] = {};            ///< L^-T, column by column: w_body = spin y_2
+        double euler[9] = {};           ///< E about the centre of mass, column by column
+    };
+    struct RowTable {
+        const ConstraintRow* row = nullptr;
+        bool has_i = false;   ///< body_i is a body
+        struct Entry {
+            int from, to;   ///< places in the 24 numbers of X_i and X_j: 12 * side + 3 * column
+            double value;
+        };
+        std::vector<Entry> form;   ///< entries of K that are not zero, by rows and columns
+        bool has_b = false;        ///< B is not zero
+        int body(int side) const { return side == 0 ? row->body_i : row->body_j; }
+        int first_side() const { return has_i ? 0 : 1; }
+    };
+
+    Mechanism(const Model& the_model, int rank);
+
+    const Model* model;
+    std::vector<BodyTable> bodies;
+    std::vector<RowTable> rows;   ///< all joint rows of the model
+    std::vector<int> loads_with_tangent;
+    double length = 1;
+    int n_twists = 0;
+    int rank = 0;          ///< of the joint rows; the element picks that many of them
+    bool regular = true;   ///< every inertia is definite; else L is that of a slightly larger one
+
+    int n_bodies() const { return static_cast<int>(bodies.size()); }
+    int n_rows() const { return static_cast<int>(rows.size()); }
+    int freedoms() const { return n_twists - rank; }
+
+    /// Gradients of row r by X_i and X_j, 12 numbers each, one after the other; g_i is zero where there is no
+    /// body i.
+    void gradient(int r, const double* X, double* g) const;
+    /// The gradient as rows of scaled twists, n_twists numbers.
+    void scaled_gradient(int r, const double* X, const double* frames, const double* g, double* out) const;
+    /// Phi from the absolute configuration and its gradient there: 1/2 <g + B, X> + c.
+    double value(int r, const double* X, const double* g) const;
+    double value(int r, const double* X) const;
+    /// The part of d2 Phi/dt2 that is quadratic in X' = V.
+    double curvature(int r, const double* V) const;
+
+    /// raw += factor * (weight and loads) at the instant; X, V: 12 a body. V may be null if no load asks for
+    /// it.
+    void add_forces(Instant at, const double* X, const double* V, double factor, double* raw) const;
+    /// q <- N(X)^T raw.
+    void rows_of(const double* X, const double* raw, double* q) const;
+
+    /// The map D of scaled to plain twists at X, 12 numbers a body: K = R L^-T, then R times the centre of
+    /// mass.
+    void frames_of(const double* X, double* frames) const;
+    /// xi = D y: w = K y_2, v = y_1 / sqrt(M) + c x w.
+    void unscale(const double* frames, const double* y, double* xi) const;
+    /// y = D^T q for rows q.
+    void scale_rows(const double* frames, const double* q, double* y) const;
+    /// The middle part K_A^T (tr(W) 1 - W) K_B, W = R_B E R_A^T, of a body's mass between two configurations.
+    void spin_mass(int body, const double* X_A, const double* X_B, double* H) const;
+    /// dX <- N(X) xi.
+    void columns_of(const double* X, const double* xi, double* dX) const;
+    /// out <- Y m, body by body.
+    void times_mass(const double* Y, double factor, double* out) const;
+
+    bool has_velocity_loads = false;
+};
+
+/// An orthogonal basis of the constraint directions at one configuration, with the scaling of its rows.
+struct ConstraintBasis {
+    OrthogonalBasis q;               ///< of the columns D^T Ghat^T / s
+    std::vector<int> rows;           ///< rank rows of the mechanism, in the order of the columns
+    std::vector<double> row_scale;   ///< 1 / s, in the same order
+    std::vector<double> gradients;   ///< 24 numbers a row, in the same order
+
+    void resize(const Mechanism& mechanism, bool all_rows);
+    /// The basis for given rows. Returns the smallest scaled pivot.
+    double build(const Mechanism& mechanism, const double* X, const double* frames,
+                 const std::vector<int>& which, bool keep_choices);
+    /// Chooses the rows by column pivoting among all.
+    double choose(const Mechanism& mechanism, const double* X, const double* frames);
+
+private:
+    double fill(const Mechanism& mechanism, int column, int row, const double* X, const double* frames);
+
+    std::vector<int> order_;
+    std::vector<double> unsorted_;
+};
+
+}   // namespace livens

@@ -1,0 +1,145 @@
+#include "livens/spacetime/lobatto/twist.h"
+
+#include <cmath>
+
+namespace livens::twist {
+
+void displacement(const Increment& q, const double* X0, double* dX)
+{
+    const double x = q.v[0], y = q.v[1], z = q.v[2], s = q.s;
+    // R - 1 = 2 (v v^T - |v|^2 1 + s [v]), its diagonal without cancellation
+    const double t[9] = {-2 * (y * y + z * z), 2 * (x * y + s * z),  2 * (x * z - s * y),
+                         2 * (x * y - s * z),  -2 * (x * x + z * z), 2 * (y * z + s * x),
+                         2 * (x * z + s * y),  2 * (y * z - s * x),  -2 * (x * x + y * y)};
+    for (int i = 0; i < 3; ++i) dX[i] = q.u[i];
+    for (int a = 3; a < 12; a += 3)
+        for (int i = 0; i < 3; ++i) dX[a + i] = t[i] * X0[a] + t[3 + i] * X0[a + 1] + t[6 + i] * X0[a + 2];
+}
+
+namespace {
+
+/// Quaternion of exp(w).
+void exponential(const double* w, double& s, double* v)
+{
+    const double angle2 = w[0] * w[0] + w[1] * w[1] + w[2] * w[2];
+    double factor;
+    if (angle2 < 1e-4) {
+        // sin(a/2)/a and cos(a/2) to below 1e-18
+        factor = 0.5 - angle2 * (1.0 / 48 - angle2 * (1.0 / 3840 - angle2 / 645120));
+        s = 1 - angle2 * (1.0 / 8 - angle2 * (1.0 / 384 - angle2 / 46080));
+    } else {
+        const double angle = std::sqrt(angle2);
+        factor = std::sin(0.5 * angle) / angle;
+        s = std::cos(0.5 * angle);
+    }
+    for (int i = 0; i < 3; ++i) v[i] = factor * w[i];
+}
+
+}   // namespace
+
+void update(Increment& q, const double* twist)
+{
+    for (int i = 0; i < 3; ++i) q.u[i] += twist[i];
+    double ws, wv[3];
+    exponential(twist + 3, ws, wv);
+    const double s = ws * q.s - (wv[0] * q.v[0] + wv[1] * q.v[1] + wv[2] * q.v[2]);
+    const double x = ws * q.v[0] + q.s * wv[0] + (wv[1] * q.v[2] - wv[2] * q.v[1]);
+    const double y = ws * q.v[1] + q.s * wv[1] + (wv[2] * q.v[0] - wv[0] * q.v[2]);
+    const double z = ws * q.v[2] + q.s * wv[2] + (wv[0] * q.v[1] - wv[1] * q.v[0]);
+    // |q| = 1 to rounding; one Newton step of the inverse root keeps it there
+    const double scale = 1.5 - 0.5 * (s * s + x * x + y * y + z * z);
+    q.s = scale * s;
+    q.v[0] = scale * x;
+    q.v[1] = scale * y;
+    q.v[2] = scale * z;
+}
+
+Increment from_vectors(const double* linear, const double* angular)
+{
+    Increment q;
+    for (int i = 0; i < 3; ++i) q.u[i] = linear[i];
+    exponential(angular, q.s, q.v);
+    return q;
+}
+
+void add_rows(const double* X, const double* r, double factor, double* out)
+{
+    double m[3] = {0, 0, 0};
+    for (int a = 3; a < 12; a += 3) {
+        m[0] += X[a + 1] * r[a + 2] - X[a + 2] * r[a + 1];
+        m[1] += X[a + 2] * r[a] - X[a] * r[a + 2];
+        m[2] += X[a] * r[a + 1] - X[a + 1] * r[a];
+    }
+    for (int i = 0; i < 3; ++i) {
+        out[i] += factor * r[i];
+        out[3 + i] += factor * m[i];
+    }
+}
+
+void columns(const double* X, const double* twist, double* dX)
+{
+    const double* w = twist + 3;
+    for (int i = 0; i < 3; ++i) dX[i] = twist[i];
+    for (int a = 3; a < 12; a += 3) {
+        dX[a] = w[1] * X[a + 2] - w[2] * X[a + 1];
+        dX[a + 1] = w[2] * X[a] - w[0] * X[a + 2];
+        dX[a + 2] = w[0] * X[a + 1] - w[1] * X[a];
+    }
+}
+
+void add_block(const double* c, const double* X_row, const double* X_column, double factor, double* out,
+               int stride)
+{
+    // N_0 = [1 0], N_a = [0 -[d_a]]: first moments s_a = sum_b c_0b d_b and s_b = sum_a c_a0 d_a, and the
+    // middle part sum_ab c_ab ((d_a . d_b) 1 - d_b d_a^T)
+    double s_column[3] = {0, 0, 0}, s_row[3] = {0, 0, 0};
+    double w[9];    // sum_ab c_ab d_b d_a^T, row by row
+    double cd[9];   // column b of [sum_a c_ab d_a]
+    for (int b = 0; b < 3; ++b) {
+        const double* cb = c + 4 * (b + 1);
+        for (int i = 0; i < 3; ++i) {
+            cd[3 * b + i] = cb[1] * X_row[3 + i] + cb[2] * X_row[6 + i] + cb[3] * X_row[9 + i];
+            s_column[i] += cb[0] * X_column[3 + 3 * b + i];
+            s_row[i] += c[b + 1] * X_row[3 + 3 * b + i];
+        }
+    }
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j)
+            w[3 * i + j] =
+                X_column[3 + i] * cd[j] + X_column[6 + i] * cd[3 + j] + X_column[9 + i] * cd[6 + j];
+    const double tr = w[0] + w[4] + w[8];
+    for (int i = 0; i < 3; ++i) {
+        double* lower = out + (3 + i) * stride + 3;
+        out[i * stride + i] += factor * c[0];
+        for (int j = 0; j < 3; ++j) lower[j] -= factor * w[3 * i + j];
+        lower[i] += factor * tr;
+    }
+    const double a0 = factor * s_column[0], a1 = factor * s_column[1], a2 = factor * s_column[2];
+    out[4] += a2;
+    out[5] -= a1;
+    out[stride + 3] -= a2;
+    out[stride + 5] += a0;
+    out[2 * stride + 3] += a1;
+    out[2 * stride + 4] -= a0;
+    const double b0 = factor * s_row[0], b1 = factor * s_row[1], b2 = factor * s_row[2];
+    out[3 * stride + 1] -= b2;
+    out[3 * stride + 2] += b1;
+    out[4 * stride] += b2;
+    out[4 * stride + 2] -= b0;
+    out[5 * stride] -= b1;
+    out[5 * stride + 1] += b0;
+}
+
+void add_geometric(const double* X, const double* r, double* out, int stride)
+{
+    double tr = 0;
+    for (int a = 3; a < 12; ++a) tr += X[a] * r[a];
+    for (int i = 0; i < 3; ++i) {
+        double* lower = out + (3 + i) * stride + 3;
+        for (int j = 0; j < 3; ++j)
+            lower[j] += X[3 + i] * r[3 + j] + X[6 + i] * r[6 + j] + X[9 + i] * r[9 + j];
+        lower[i] -= tr;
+    }
+}
+
+}   // namespace livens::twist

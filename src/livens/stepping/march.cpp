@@ -1,0 +1,331 @@
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <string>
+
+#include <Eigen/Dense>
+#include <Eigen/SparseLU>
+
+#include "livens/base/error.h"
+#include "livens/stepping/step_equations.h"
+#include "livens/stepping/stepping.h"
+
+namespace livens {
+
+namespace {
+
+using System = StepEquations::System;
+
+std::string number(double x)
+{
+    char text[32];
+    std::snprintf(text, sizeof text, "%.6g", x);
+    return text;
+}
+
+/// Every entry of the mass matrix takes part in the equations of a director, so a vanishing second moment is
+/// a missing equation. Singular: smallest eigenvalue of m, scaled to ones on its diagonal, at most 1e-12.
+void refuse_singular_masses(const Model& model)
+{
+    for (const Body& body : model.bodies()) {
+        if (body.is_point) continue;
+        Eigen::Matrix4d m = Eigen::Map<const Eigen::Matrix4d>(body.mass.data());
+        const Eigen::Vector4d diagonal = m.diagonal();
+        double smallest = 0;
+        if (diagonal.minCoeff() > 1e-14 * (diagonal[1] + diagonal[2] + diagonal[3])) {
+            const Eigen::Vector4d s = diagonal.cwiseSqrt().cwiseInverse();
+            m = s.asDiagonal() * m * s.asDiagonal();
+            smallest =
+                Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d>(m, Eigen::EigenvaluesOnly).eigenvalues()[0];
+        }
+        if (smallest > 1e-12) continue;
+        throw InputError(
+            {"mass-singular", "body[" + body.name + "].inertia",
+             "the mass matrix of body '" + body.name + "' is singular, which classical stepping cannot use",
+             "", "J1 + J2 > J3 for every principal moment",
+             "a lamina or a needle has no extent along some axis, so one of its directors has no inertia",
+             "use the method lobatto, or give the body a little thickness"});
+    }
+}
+
+/// Solves the system; false if the matrix is singular. Rows are divided by their largest entry first, so that
+/// the choice of pivots does not depend on the units.
+class LinearSolver {
+public:
+    explicit LinearSolver(int size) : size_(size) {}
+
+    bool solve(const System& system, std::vector<double>& solution)
+    {
+        Eigen::VectorXd largest = Eigen::VectorXd::Zero(size_);
+        for (const MatrixEntry& e : system.tangent)
+            largest[e.row] = std::max(largest[e.row], std::abs(e.value));
+        if (size_ > 0 && !(largest.minCoeff() > 0 && largest.allFinite())) return false;
+        const Eigen::VectorXd rhs =
+            Eigen::Map<const Eigen::VectorXd>(system.residual.data(), size_).cwiseQuotient(largest);
+        Eigen::VectorXd x;
+        if (!(size_ <= dense_until ? dense(system, largest, rhs, x) : sparse(system, largest, rhs, x)))
+            return false;
+        solution.assign(x.data(), x.data() + x.size());
+        return x.allFinite();
+    }
+
+private:
+    static constexpr int dense_until = 200;
+
+    bool dense(const System& system, const Eigen::VectorXd& scale, const Eigen::VectorXd& rhs,
+               Eigen::VectorXd& x) const
+    {
+        Eigen::MatrixXd A = Eigen::MatrixXd::Zero(size_, size_);
+        for (const MatrixEntry& e : system.tangent) A(e.row, e.column) += e.value / scale[e.row];
+        const Eigen::PartialPivLU<Eigen::MatrixXd> lu(A);
+        x = lu.solve(rhs);
+        const auto pivots = lu.matrixLU().diagonal().cwiseAbs();
+        return size_ == 0 ||
+               pivots.minCoeff() > std::numeric_limits<double>::epsilon() * 1e-3 * pivots.maxCoeff();
+    }
+
+    bool sparse(const System& system, const Eigen::VectorXd& scale, const Eigen::VectorXd& rhs,
+                Eigen::VectorXd& x) const
+    {
+        std::vector<Eigen::Triplet<double>> entries;
+        entries.reserve(system.tangent.size());
+        for (const MatrixEntry& e : system.tangent)
+            entries.emplace_back(e.row, e.column, e.value / scale[e.row]);
+        Eigen::SparseMatrix<double> A(size_, size_);
+        A.setFromTriplets(entries.begin(), entries.end());
+        Eigen::SparseLU<Eigen::SparseMatrix<double>> lu(A);
+        if (lu.info() != Eigen::Success) return false;
+        x = lu.solve(rhs);
+        return true;
+    }
+
+    int size_;
+};
+
+/// What Newton's iteration came to in one step.
+struct StepOutcome {
+    SolveStatus status = SolveStatus::converged;
+    int iterations = 0;
+    StepEquations::Worst worst;   ///< of the residual at the end
+    std::string load;             ///< that is not finite
+};
+
+/// The march: its state, and the motion and report it fills.
+class Marcher {
+public:
+    Marcher(const Model& model, const Assembly& assembly, const TimeMesh& mesh, SteppingRule rule,
+            const SteppingOptions& options)
+        : model_(model), mesh_(mesh), options_(options), equations_(model, assembly, rule),
+          solver_(equations_.size()), unknowns_(equations_.size(), 0.0)
+    {
+        now_.X = assembly.start.X;
+        now_.t = mesh.start();
+        for (int b = 0; b < model.n_bodies(); ++b)
+            now_.P.push_back(assembly.start.V[b] * model.bodies()[b].mass);
+        begin_motion(assembly, rule);
+        result_.report.unknowns = equations_.size();
+        guess_from(assembly.start.V);
+    }
+
+    SteppingResult run()
+    {
+        for (int e = 0; e < mesh_.n_elements() && result_.report.converged(); ++e) step(e);
+        return std::move(result_);
+    }
+
+private:
+    void begin_motion(const Assembly& assembly, SteppingRule rule)
+    {
+        Motion& motion = result_.motion;
+        motion.n_bodies = model_.n_bodies();
+        motion.n_rows = model_.n_rows();
+        motion.mesh.ends = {mesh_.start()};
+        motion.X.n_values = 12 * motion.n_bodies;
+        motion.X.degree = 1;
+        motion.multipliers.n_values = motion.n_rows;
+        motion.multipliers.degree = 0;
+        motion.multipliers.continuous = false;
+        motion.order_at_ends = rule == SteppingRule::midpoint ? 2 : 1;
+        motion.dense_order_X = motion.order_at_ends;
+        motion.dense_order_V = 1;
+        motion.constraints_hold = "element ends";
+        for (const RedundantRow& r : assembly.redundant) {
+            motion.redundant_rows.push_back(r.row);
+            result_.report.notes.push_back(r.message);
+        }
+        for (const std::string& note : assembly.notes) result_.report.notes.push_back(note);
+        append_end(assembly.start.V);
+    }
+
+    void append_end(const std::vector<Matrix34>& velocities)
+    {
+        Motion& motion = result_.motion;
+        for (const Matrix34& X : now_.X)
+            motion.X.values.insert(motion.X.values.end(), std::begin(X.a), std::end(X.a));
+        motion.momenta.insert(motion.momenta.end(), now_.P.begin(), now_.P.end());
+        motion.velocities.insert(motion.velocities.end(), velocities.begin(), velocities.end());
+    }
+
+    /// First guess: the velocity at the start goes on. Later steps begin with the step before them.
+    void guess_from(const std::vector<Matrix34>& V)
+    {
+        int at = 0;
+        for (int b = 0; b < model_.n_bodies(); ++b)
+            for (int c = 0; c < (model_.bodies()[b].is_point ? 3 : 12); ++c) unknowns_[at++] = V[b][c];
+        displacements_ = at;
+        guess_h_ = 1;
+    }
+
+    /// The guess for a step of length h: displacements grow with h, Lambda with h^2.
+    std::vector<double> guess(double h) const
+    {
+        const double ratio = h / guess_h_;
+        std::vector<double> x = unknowns_;
+        for (int i = 0; i < static_cast<int>(x.size()); ++i)
+            x[i] *= i < displacements_ ? ratio : ratio * ratio;
+        return x;
+    }
+
+    void step(int element)
+    {
+        now_.t = mesh_.ends[element];
+        now_.h = mesh_.length(element);
+        std::vector<double> x = guess(now_.h);
+        StepOutcome outcome = newton(x);
+        SolveReport& report = result_.report;
+        report.newton_iterations += outcome.iterations;
+        report.most_iterations = std::max(report.most_iterations, outcome.iterations);
+
+        StepStart next;
+        std::vector<Matrix34> V;
+        if (outcome.status == SolveStatus::converged) {
+            next = equations_.next(now_, x);
+            if (!velocities(next, V)) outcome.status = SolveStatus::singular;
+        }
+        if (outcome.status != SolveStatus::converged) {
+            fail(outcome);
+            return;
+        }
+        unknowns_ = x;
+        guess_h_ = now_.h;
+        accept(element, outcome, next, V);
+    }
+
+    /// Newton's iteration with a fresh tangent each time.
+    ///
+    /// Ends when the scaled increment (see StepEquations::increment_size) is at most the tolerance:
+    /// convergence is quadratic, so what remains is its square. Or at the rounding level: below 1e-9 and no
+    /// longer halved.
+    StepOutcome newton(std::vector<double>& x)
+    {
+        StepOutcome outcome;
+        double last = std::numeric_limits<double>::infinity();
+        System system = equations_.evaluate(now_, x);
+        for (bool done = false; !done;) {
+            outcome.load = system.not_finite;
+            outcome.worst = equations_.worst_residual(system.residual);
+            if (!system.not_finite.empty() || !std::isfinite(outcome.worst.value)) {
+                outcome.status = SolveStatus::not_finite;
+                return outcome;
+            }
+            if (outcome.iterations == options_.max_iterations) {
+                outcome.status = SolveStatus::not_converged;
+                return outcome;
+            }
+            std::vector<double> increment;
+            ++result_.report.factorisations;
+            ++outcome.iterations;
+            if (!solver_.solve(system, increment)) {
+                outcome.status = SolveStatus::singular;
+                return outcome;
+            }
+            for (std::size_t i = 0; i < x.size(); ++i) x[i] -= increment[i];
+            const double size = equations_.increment_size(increment);
+            done = size <= options_.tolerance || (size < 1e-9 && size > 0.5 * last);
+            last = size;
+            system = equations_.evaluate(now_, x);
+        }
+        outcome.worst = equations_.worst_residual(system.residual);
+        return outcome;
+    }
+
+    /// The velocity that belongs to the momentum and keeps the constraints: [v, w x d_i].
+    bool velocities(const StepStart& end, std::vector<Matrix34>& V)
+    {
+        std::vector<double> solution;
+        if (!solver_.solve(equations_.projection(end.X, end.P), solution)) return false;
+        V = equations_.displacements(solution);
+        return true;
+    }
+
+    void accept(int element, const StepOutcome& outcome, const StepStart& next,
+                const std::vector<Matrix34>& V)
+    {
+        Motion& motion = result_.motion;
+        SolveReport& report = result_.report;
+        const std::vector<double> lambda = equations_.multipliers(unknowns_, now_.h);
+        motion.multipliers.values.insert(motion.multipliers.values.end(), lambda.begin(), lambda.end());
+        motion.mesh.ends.push_back(mesh_.ends[element + 1]);
+        now_ = next;
+        append_end(V);
+        report.iterations.push_back(outcome.iterations);
+        report.residual_norm = std::max(report.residual_norm, outcome.worst.value);
+        report.n_elements = element + 1;
+        if (!options_.progress) return;
+        const Progress progress{element, mesh_.n_elements(), mesh_.ends[element + 1], outcome.iterations,
+                                outcome.worst.value};
+        if (options_.progress(progress) || element + 1 == mesh_.n_elements()) return;
+        report.status = SolveStatus::cancelled;
+        report.failed_at = mesh_.ends[element + 1];
+        report.message = "cancelled at t = " + number(report.failed_at) + " s";
+    }
+
+    void fail(const StepOutcome& outcome)
+    {
+        SolveReport& report = result_.report;
+        report.status = outcome.status;
+        report.failed_at = now_.t;
+        const std::string where =
+            " in the step from t = " + number(now_.t) + " s to " + number(now_.t + now_.h) + " s";
+        const std::string worst =
+            outcome.worst.name.empty()
+                ? ""
+                : "; the largest residual is " + number(outcome.worst.value) + " in " + outcome.worst.name;
+        if (!outcome.load.empty()) {
+            report.message = "the load '" + outcome.load + "' is not finite" + where;
+        } else if (outcome.status == SolveStatus::not_finite) {
+            report.message = "the state is not finite" + where + worst + "; take shorter steps";
+        } else if (outcome.status == SolveStatus::singular) {
+            report.message =
+                "the tangent is singular" + where + worst + "; the joints may have lost rank there";
+        } else {
+            report.message = "Newton's iteration did not converge in " + std::to_string(outcome.iterations) +
+                             " iterations" + where + worst + "; take shorter steps";
+        }
+    }
+
+    const Model& model_;
+    const TimeMesh& mesh_;
+    const SteppingOptions& options_;
+    StepEquations equations_;
+    LinearSolver solver_;
+    SteppingResult result_;
+    StepStart now_;
+    std::vector<double> unknowns_;   ///< of the step before
+    double guess_h_ = 1;             ///< and its length
+    int displacements_ = 0;
+};
+
+}   // namespace
+
+SteppingResult march_stepping(const Model& model, const Assembly& assembly, const TimeMesh& mesh,
+                              SteppingRule rule, const SteppingOptions& options)
+{
+    assert(!mesh.ends.empty() && static_cast<int>(assembly.start.X.size()) == model.n_bodies());
+    refuse_singular_masses(model);
+    return Marcher(model, assembly, mesh, rule, options).run();
+}
+
+}   // namespace livens

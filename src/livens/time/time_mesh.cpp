@@ -1,0 +1,109 @@
+#include "livens/time/time_mesh.h"
+
+#include <algorithm>
+#include <cassert>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <set>
+#include <string>
+
+#include "livens/base/error.h"
+
+namespace livens {
+namespace {
+
+constexpr double merge_fraction = 1e-9;        // of end - start; closer instants are one
+constexpr double max_elements = 100'000'000;   // 0.8 GB of element ends; above it is a slip of the pen
+
+std::string text(double x)
+{
+    char buffer[32];
+    const std::to_chars_result r = std::to_chars(buffer, buffer + sizeof buffer, x);
+    return {buffer, r.ptr};
+}
+
+void check_interval(double start, double end, int n_elements)
+{
+    if (!std::isfinite(start)) {
+        throw InputError({"time-start", "time.start", "the motion must start at a finite time", text(start),
+                          "finite", "", ""});
+    }
+    if (!std::isfinite(end)) {
+        throw InputError(
+            {"time-end", "time.end", "the motion must end at a finite time", text(end), "finite", "", ""});
+    }
+    if (!(end > start)) {
+        throw InputError({"time-end", "time.end", "the end must lie after the start", text(end),
+                          "> " + text(start), "", ""});
+    }
+    if (!std::isfinite(end - start)) {
+        throw InputError({"time-end", "time.end", "the time from start to end is beyond all numbers",
+                          text(end), "", "", ""});
+    }
+    if (n_elements < 1 || n_elements > max_elements) {
+        throw InputError({"time-elements", "time.elements", "the number of time elements is out of range",
+                          std::to_string(n_elements), "1 .. " + text(max_elements), "", ""});
+    }
+}
+
+/// Start, end and the required instants between them, merged.
+std::vector<double> fixed_ends(double start, double end, std::span<const double> required)
+{
+    const double gap = merge_fraction * (end - start);
+    std::set<double> fixed{start, end};
+    for (const double t : required) {
+        if (!std::isfinite(t)) {
+            throw InputError({"time-output", "time.output",
+                              "an instant that must be an element end is not finite", text(t), "finite", "",
+                              ""});
+        }
+        if (t < start || t > end) continue;
+        const auto after = fixed.lower_bound(t);   // exists, since t <= end
+        const bool close_after = *after - t < gap;
+        const bool close_before = after != fixed.begin() && t - *std::prev(after) < gap;
+        if (!close_after && !close_before) fixed.insert(after, t);
+    }
+    return {fixed.begin(), fixed.end()};
+}
+
+}   // namespace
+
+int TimeMesh::element_at(double t) const
+{
+    assert(n_elements() >= 1);
+    const auto after = std::upper_bound(ends.begin(), ends.end(), t);
+    return std::clamp(static_cast<int>(after - ends.begin()) - 1, 0, n_elements() - 1);
+}
+
+TimeMesh make_time_mesh(double start, double end, int n_elements, std::span<const double> required)
+{
+    check_interval(start, end, n_elements);
+    const std::vector<double> fixed = fixed_ends(start, end, required);
+
+    TimeMesh mesh;
+    mesh.ends.reserve(static_cast<std::size_t>(n_elements) + fixed.size());
+    mesh.ends.push_back(start);
+    for (std::size_t i = 1; i < fixed.size(); ++i) {
+        const double from = fixed[i - 1], length = fixed[i] - from;
+        // An instant on the grid may be off it by rounding or by a merge; that must not cost an element.
+        const double parts = length / (end - start) * n_elements;
+        const std::int64_t n =
+            std::max<std::int64_t>(1, std::llround(std::ceil(parts - merge_fraction * n_elements)));
+        for (std::int64_t k = 1; k < n; ++k) {
+            mesh.ends.push_back(from + length * static_cast<double>(k) / static_cast<double>(n));
+        }
+        mesh.ends.push_back(fixed[i]);
+    }
+    const auto stuck = std::adjacent_find(mesh.ends.begin(), mesh.ends.end(), std::greater_equal<>());
+    if (stuck != mesh.ends.end()) {
+        throw InputError(
+            {"time-resolution", "time.elements",
+             "time elements at t = " + text(*stuck) + " are shorter than the spacing of numbers there",
+             std::to_string(n_elements), "", "", "use fewer elements or start nearer to zero"});
+    }
+    return mesh;
+}
+
+}   // namespace livens

@@ -1,0 +1,46 @@
+# An outside project finds the installed livens, solves the free box and compares a number: with the
+# compiler's default flags and with processor flags that the library was not built with, which a program that
+# uses Eigen itself may have.
+
+include(CheckCXXSourceRuns)
+
+set(livens_install_prefix ${CMAKE_CURRENT_BINARY_DIR}/install/prefix)
+add_test(NAME install.prefix
+         COMMAND ${CMAKE_COMMAND} -DBUILD=${PROJECT_BINARY_DIR} -DPREFIX=${livens_install_prefix}
+                 -DCONFIG=$<CONFIG> -P ${CMAKE_CURRENT_LIST_DIR}/install_prefix.cmake)
+set_tests_properties(install.prefix PROPERTIES FIXTURES_SETUP livens_installed LABELS slow TIMEOUT 120)
+
+# The library's own Eigen has another namespace; were it not so, the flags below could change the library's
+# results.
+add_test(NAME install.shares_no_eigen_symbols
+         COMMAND ${CMAKE_COMMAND} -DNM=${CMAKE_NM} -DPREFIX=${livens_install_prefix}
+                 -P ${CMAKE_CURRENT_LIST_DIR}/check_symbols.cmake)
+set_tests_properties(install.shares_no_eigen_symbols PROPERTIES
+                     FIXTURES_REQUIRED livens_installed LABELS slow TIMEOUT 60)
+
+function(livens_install_test name flags)
+    add_test(NAME install.free_box_${name}
+             COMMAND ${CMAKE_COMMAND} -DPROJECT=${CMAKE_CURRENT_FUNCTION_LIST_DIR}/outside
+                     -DBUILD=${CMAKE_CURRENT_BINARY_DIR}/install/${name} -DPREFIX=${livens_install_prefix}
+                     -DCOMPILER=${CMAKE_CXX_COMPILER} -DGENERATOR=${CMAKE_GENERATOR}
+                     "-DFLAGS=${CMAKE_CXX_FLAGS} ${flags}"
+                     -P ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/run_outside.cmake)
+    set_tests_properties(install.free_box_${name} PROPERTIES
+                         FIXTURES_REQUIRED livens_installed LABELS slow TIMEOUT 300)
+endfunction()
+
+# A flag is tried only where the machine can run its code.
+function(livens_install_test_if_supported name flags feature)
+    set(source "int main() { return __builtin_cpu_supports(\"${feature}\") ? 0 : 1; }")
+    check_cxx_source_runs("${source}" LIVENS_HAS_${feature})
+    if(LIVENS_HAS_${feature})
+        livens_install_test(${name} "${flags}")
+    endif()
+endfunction()
+
+if(LIVENS_SLOW_TESTS)
+    livens_install_test(default "")
+    livens_install_test(native "-march=native")
+    livens_install_test_if_supported(mavx "-mavx" avx)
+    livens_install_test_if_supported(x86_64_v3 "-march=x86-64-v3" avx2)
+endif()

@@ -1,0 +1,374 @@
+"""The table of floors (docs/architecture.md) and the sizes, checked on the sources. Standard library only.
+
+    check_floors.py ROOT               includes, names and sizes of files
+    check_floors.py ROOT --functions   lengths of functions, by universal-ctags (exit 77 where it is missing)
+    ... --controls                     small trees with one fault each, every one of which must be refused
+
+A size may be exceeded for a reason given in the file: `// layout allows long-file: <reason>`; likewise
+long-function and long-line (for the whole file). Floors have no such exception.
+"""
+import argparse
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+# Lowest first. Rooms on one floor do not see each other, unless an arrow is drawn below.
+FLOORS = [
+    ["base"],
+    ["time", "solvers"],
+    ["multibody"],
+    ["spacetime", "stepping", "diagnostics"],
+    ["io"],
+    ["apps"],
+]
+# solve() hands the classical methods to the witnesses; they know nothing of it.
+ARROWS = {("spacetime", "stepping")}
+
+FLOOR = {room: number for number, rooms in enumerate(FLOORS) for room in rooms}
+
+# What is not the standard library: where it comes from, and the rooms whose sources may include it.
+FOREIGN = [
+    (r"Eigen/", {"multibody", "stepping"}),   # their targets rename its namespace, see cmake/rooms.cmake
+    (r"toml\+\+/|toml\.hpp", {"io"}),
+    (r"netcdf|hdf5|H5", {"io"}),
+    (r"fmt/", {"io", "apps"}),
+    (r"spdlog/|CLI/", {"apps"}),
+    (r"gtest/|gmock/|benchmark/", set()),
+    (r"iostream$|print$", {"apps"}),   # the library prints nothing
+]
+
+LINE, HEADER, SOURCE, FUNCTION, BASE = 110, 300, 600, 60, 300
+BAD_NAMES = {"util", "utils", "utility", "utilities", "common", "misc", "helper", "helpers"}
+ALLOWANCE = re.compile(r"//\s*layout allows (long-file|long-function|long-line): \S.{9,}")
+
+
+def without_comments(text):
+    """The text with comments blanked; lines stay where they are, strings are kept."""
+    pattern = re.compile(r'''R"([^(\s]*)\(.*?\)\1" | "(?:\\.|[^"\\\n])*" | '(?:\\.|[^'\\\n])+'
+                             | //[^\n]* | /\*.*?\*/''', re.S | re.X)
+
+    def blank(match):
+        found = match.group(0)
+        return re.sub(r"[^\n]", " ", found) if found.startswith("/") else found
+
+    # Digit separators (1'000) would start a character literal.
+    return pattern.sub(blank, re.sub(r"(?<=\d)'(?=\d)", "_", text))
+
+
+class Check:
+    def __init__(self, root):
+        self.root = root
+        self.faults = []
+        self.allowed = {}   # path -> what its allowance comments let pass
+
+    def fault(self, path, line, rule, message):
+        if rule not in self.allowed.get(path, ()):
+            self.faults.append(f"{path.relative_to(self.root)}:{line}: {message} [{rule}]")
+
+    def read(self, path):
+        text = path.read_text(encoding="utf-8")
+        self.allowed[path] = {match.group(1) for match in ALLOWANCE.finditer(text)}
+        return text
+
+
+def files_with_rooms(root):
+    """(path, room, may be seen by others) of every C++ file that has a floor."""
+    for folder in ("src", "apps"):
+        for path in sorted((root / folder).rglob("*")):
+            if path.suffix in (".h", ".hpp", ".cpp", ".cc", ".cxx", ".inl") and path.is_file():
+                parts = path.relative_to(root).parts
+                if folder == "apps":
+                    yield path, "apps"
+                else:
+                    yield path, parts[2] if parts[1] == "livens" and len(parts) > 3 else ""
+    # A room's unit tests live on its floor.
+    for path in sorted((root / "tests" / "unit").glob("*/**/*.cpp")):
+        yield path, path.relative_to(root / "tests" / "unit").parts[0]
+
+
+def may_see(room, other):
+    return other == room or FLOOR[other] < FLOOR[room] or (room, other) in ARROWS
+
+
+def check_includes(check, path, room, text):
+    """Checks every include of a file; returns the files of this project that it includes."""
+    seen = []
+    is_test = check.root / "tests" in path.parents
+    for number, line in enumerate(without_comments(text).split("\n"), 1):
+        match = re.match(r"\s*#\s*include(?:_next)?\s*(.*?)\s*$", line)
+        if not match:
+            continue
+        target = re.match(r'(["<])([^">]+)[">]', match.group(1))
+        if not target:
+            check.fault(path, number, "include", f"include of a macro, {match.group(1)}")
+            continue
+        quoted, name = target.group(1) == '"', target.group(2)
+        if room == "apps" and quoted and (check.root / "apps" / name).is_file() and ".." not in name:
+            seen.append((number, check.root / "apps" / name))
+        elif name.startswith("livens/"):
+            parts = name.split("/")
+            other = parts[1]
+            if ".." in parts or "." in parts:
+                check.fault(path, number, "relative", f"include leaves its room by a relative path, {name}")
+            elif other not in FLOOR or other == "apps" or len(parts) < 3:
+                check.fault(path, number, "room", f"include of an unknown room, {name}")
+            elif not may_see(room, other):
+                way = "upward" if FLOOR[other] > FLOOR[room] else "sideways"
+                check.fault(path, number, way, f"{room} (F{FLOOR[room]}) includes {name} (F{FLOOR[other]})")
+            elif "detail" in parts[2:-1] and other != room:
+                check.fault(path, number, "detail", f"{room} includes the inside of another room, {name}")
+            elif not quoted:
+                check.fault(path, number, "include", f'write "{name}", not <{name}>')
+            elif not (check.root / "src" / name).is_file():
+                check.fault(path, number, "include", f"no such file, src/{name}")
+            seen.append((number, check.root / "src" / name))
+        elif quoted and (is_test or (room == "apps" and "/" not in name)):
+            # Tests include what lies beside them; the program is one folder.
+            if "../" in name:
+                check.fault(path, number, "relative", f"include by a relative path, {name}")
+            seen.append((number, path.parent / name))
+        elif quoted:
+            rule = "relative" if (path.parent / name).exists() or "../" in name else "include"
+            check.fault(path, number, rule, f'only "livens/<room>/<file>.h" is quoted, not "{name}"')
+        elif not is_test:
+            check_foreign(check, path, number, room, name)
+    return seen
+
+
+def check_foreign(check, path, number, room, name):
+    for pattern, rooms in FOREIGN:
+        if re.match(pattern, name):
+            if room not in rooms:
+                check.fault(path, number, "foreign", f"{room} may not use <{name}>")
+            elif path.suffix != ".cpp" and room != "apps":
+                check.fault(path, number, "foreign", f"<{name}> in a header: keep it in sources")
+
+
+def check_names(check, path, room):
+    parts = path.relative_to(check.root).with_suffix("").parts
+    if BAD_NAMES & {word for part in parts for word in [part.lower(), *part.lower().split("_")]}:
+        check.fault(path, 1, "name", "name it after what it is for: no utils, common, misc, helpers")
+    if path.suffix not in (".h", ".cpp"):
+        check.fault(path, 1, "name", "headers end in .h, sources in .cpp")
+    if room not in FLOOR:
+        check.fault(path, 1, "room", f"'{room}' is no room of the table of floors")
+
+
+def check_sizes(check, path, text):
+    lines = text.split("\n")
+    if lines and not lines[-1]:
+        lines.pop()
+    for number, line in enumerate(lines, 1):
+        if len(line) > LINE:
+            check.fault(path, number, "long-line", f"{len(line)} columns, {LINE} are allowed")
+    limit = HEADER if path.suffix == ".h" else SOURCE
+    if len(lines) > limit:
+        check.fault(path, limit, "long-file", f"{len(lines)} lines, {limit} are allowed")
+    if path.suffix == ".h":
+        if not re.search(r"^#pragma once$", text, re.M):
+            check.fault(path, 1, "header", "no #pragma once")
+        if re.search(r"^\s*using namespace\b", without_comments(text), re.M):
+            check.fault(path, 1, "header", "using namespace in a header")
+    return len(lines)
+
+
+def check_circles(check, graph):
+    """graph: file -> [(line, included file)]. Reports each circle once, at its first edge found."""
+    state = {}
+
+    def visit(path, trail):
+        state[path] = "open"
+        for number, other in graph.get(path, ()):
+            if state.get(other) == "open":
+                circle = [*trail[trail.index(other):], other]
+                names = " -> ".join(p.name for p in circle)
+                check.fault(path, number, "circle", f"includes form a circle: {names}")
+            elif other in graph and other not in state:
+                visit(other, [*trail, other])
+        state[path] = "done"
+
+    for path in graph:
+        if path not in state:
+            visit(path, [path])
+
+
+def check_floors(root):
+    check = Check(root)
+    graph = {}
+    base_lines = 0
+    for path, room in files_with_rooms(root):
+        text = check.read(path)
+        is_test = root / "tests" in path.parents
+        check_names(check, path, room)
+        if room not in FLOOR:
+            continue
+        graph[path] = check_includes(check, path, room, text)
+        lines = check_sizes(check, path, text)
+        if room == "base" and not is_test:
+            base_lines += lines
+    if base_lines > BASE:
+        check.faults.append(f"src/livens/base: {base_lines} lines in all, {BASE} are allowed for ever [base]")
+    if not graph:
+        check.faults.append(f"{root}: no sources found [room]")
+    check_circles(check, graph)
+    return check.faults
+
+
+def check_functions(root):
+    """None where universal-ctags is missing."""
+    ctags = shutil.which("ctags")
+    if not ctags:
+        return None
+    version = subprocess.run([ctags, "--version"], capture_output=True, text=True)
+    if "Universal Ctags" not in version.stdout:
+        return None
+    check = Check(root)
+    paths = [path for path, _ in files_with_rooms(root)]
+    for path in paths:
+        check.read(path)
+    command = [ctags, "--language-force=C++", "--kinds-C++=f", "--fields=+ne", "-x",
+               "--_xformat=%{end}\t%n\t%N\t%F", "-L", "-"]
+    names = "\n".join(map(str, paths))
+    listing = subprocess.run(command, input=names, capture_output=True, text=True, check=True)
+    for line in listing.stdout.splitlines():
+        end, start, name, file = line.split("\t")
+        if end and int(end) - int(start) + 1 > FUNCTION:
+            length = int(end) - int(start) + 1
+            check.fault(pathlib.Path(file), int(start), "long-function",
+                        f"{name} has {length} lines, {FUNCTION} are allowed")
+    return check.faults
+
+
+# Negative controls: one fault a tree, and the rule that must name it.
+
+GOOD = {
+    "src/livens/base/error.h": "#pragma once\n#include <string>\n",
+    "src/livens/time/mesh.h": '#pragma once\n#include "livens/base/error.h"\n',
+    "src/livens/solvers/newton.h": "#pragma once\n",
+    "src/livens/multibody/model.h": '#pragma once\n#include "livens/time/mesh.h"\n',
+    "src/livens/multibody/model.cpp": '#include "livens/multibody/model.h"\n#include <Eigen/Dense>\n',
+    "src/livens/stepping/rule.h": '#pragma once\n#include "livens/multibody/model.h"\n',
+    "src/livens/spacetime/solve.h": '#pragma once\n#include "livens/multibody/model.h"\n',
+    "src/livens/spacetime/solve.cpp": '#include "livens/spacetime/solve.h"\n'
+                                      '#include "livens/stepping/rule.h"\n',
+    "src/livens/diagnostics/energy.h": '#pragma once\n// #include "livens/io/file.h" is only a remark\n',
+    "src/livens/io/file.h": '#pragma once\n#include "livens/spacetime/solve.h"\n',
+    "src/livens/io/file.cpp": '#include "livens/io/file.h"\n#include <toml++/toml.h>\n',
+    "apps/livens/main.cpp": '#include "livens/io/file.h"\n#include "parts.h"\n#include "livens/parts.h"\n'
+                            '#include <CLI/CLI.hpp>\n',
+    "apps/livens/parts.h": "#pragma once\n",
+    "tests/unit/time/mesh_test.cpp": '#include "livens/time/mesh.h"\n#include <gtest/gtest.h>\n',
+}
+
+CONTROLS = [
+    ("upward", {"src/livens/base/up.h": '#pragma once\n#include "livens/time/mesh.h"\n'}),
+    ("upward", {"src/livens/multibody/up.cpp": '#  include   "livens/diagnostics/energy.h"\n'}),
+    ("upward", {"src/livens/time/up.cpp": 'const char* s = "/*";\n#include "livens/io/file.h"\n'}),
+    ("upward", {"tests/unit/time/up_test.cpp": '#include "livens/multibody/model.h"\n'}),
+    ("sideways", {"src/livens/stepping/side.cpp": '#include "livens/spacetime/solve.h"\n'}),
+    ("sideways", {"src/livens/spacetime/side.cpp": '#include "livens/diagnostics/energy.h"\n'}),
+    ("sideways", {"src/livens/time/side.cpp": '#include "livens/solvers/newton.h"\n'}),
+    ("circle", {"src/livens/time/a.h": '#pragma once\n#include "livens/time/b.h"\n',
+                "src/livens/time/b.h": '#pragma once\n#include "livens/time/a.h"\n'}),
+    ("circle", {"src/livens/time/self.h": '#pragma once\n#include "livens/time/self.h"\n'}),
+    ("relative", {"src/livens/multibody/rel.cpp": '#include "../time/mesh.h"\n'}),
+    ("relative", {"src/livens/multibody/rel.cpp": '#include "model.h"\n'}),
+    ("relative", {"src/livens/multibody/rel.cpp": '#include "livens/multibody/../io/file.h"\n'}),
+    ("include", {"src/livens/multibody/angle.cpp": "#include <livens/time/mesh.h>\n"}),
+    ("include", {"src/livens/multibody/gone.cpp": '#include "livens/time/gone.h"\n'}),
+    ("include", {"src/livens/multibody/macro.cpp": "#include CONFIG_HEADER\n"}),
+    ("room", {"src/livens/attic/box.cpp": "int box;\n"}),
+    ("room", {"src/livens/loose.cpp": "int loose;\n"}),
+    ("room", {"src/livens/io/attic.cpp": '#include "livens/attic/box.h"\n'}),
+    ("detail", {"src/livens/time/detail/inner.h": "#pragma once\n",
+                "src/livens/io/peek.cpp": '#include "livens/time/detail/inner.h"\n'}),
+    ("name", {"src/livens/time/utils.h": "#pragma once\n"}),
+    ("name", {"src/livens/time/string_helpers.cpp": "int x;\n"}),
+    ("name", {"src/livens/io/common/x.h": "#pragma once\n"}),
+    ("name", {"src/livens/time/odd.hpp": "#pragma once\n"}),
+    ("long-line", {"src/livens/time/wide.cpp": "// " + "x" * 108 + "\n"}),
+    ("long-file", {"src/livens/time/tall.h": "#pragma once\n" + "//\n" * 300}),
+    ("long-file", {"src/livens/time/tall.cpp": "//\n" * 601}),
+    ("long-file", {"src/livens/time/tall.cpp": "//\n" * 600 + "// layout allows long-file: no\n"}),
+    ("base", {"src/livens/base/a.h": "#pragma once\n" + "//\n" * 160, "src/livens/base/b.cpp": "//\n" * 160}),
+    ("header", {"src/livens/time/twice.h": "int twice();\n"}),
+    ("header", {"src/livens/time/open.h": "#pragma once\nusing namespace std;\n"}),
+    ("foreign", {"src/livens/multibody/eigen.h": "#pragma once\n#include <Eigen/Core>\n"}),
+    ("foreign", {"src/livens/spacetime/eigen.cpp": "#include <Eigen/Core>\n"}),
+    ("foreign", {"src/livens/io/public.h": "#pragma once\n#include <fmt/format.h>\n"}),
+    ("foreign", {"src/livens/io/public.h": "#pragma once\n#include <toml++/toml.h>\n"}),
+    ("foreign", {"src/livens/io/public.h": "#pragma once\n#include <netcdf.h>\n"}),
+    ("foreign", {"src/livens/io/log.cpp": "#include <spdlog/spdlog.h>\n"}),
+    ("foreign", {"src/livens/time/print.cpp": "#include <iostream>\n"}),
+]
+
+LONG_FUNCTION = "int f()\n{\n" + "    // line\n" * 56 + "    return 0;\n}\n"   # 60 lines
+FUNCTION_CONTROLS = [
+    ("long-function", {"src/livens/time/long.cpp": LONG_FUNCTION.replace("{\n", "{\n    // one more\n")}),
+    ("long-function", {"src/livens/time/long.h": "#pragma once\ntemplate <int N>\nstruct S {\n"
+                       "    int g() const\n    {\n" + "        // line\n" * 60
+                       + "        return N;\n    }\n};\n"}),
+]
+
+
+def faults_of(check, tree):
+    with tempfile.TemporaryDirectory() as folder:
+        root = pathlib.Path(folder)
+        for name, text in tree.items():
+            (root / name).parent.mkdir(parents=True, exist_ok=True)
+            (root / name).write_text(text, encoding="utf-8")
+        return check(root)
+
+
+def run_controls(check, controls, good_trees):
+    """Every made-up fault must be refused by its own rule alone, and the good trees must pass."""
+    wrong = []
+    for tree in good_trees:
+        faults = faults_of(check, tree)
+        if faults is None:
+            return None
+        if faults:
+            wrong.append("the good tree was refused: " + "; ".join(faults))
+    for rule, change in controls:
+        faults = faults_of(check, {**good_trees[0], **change})
+        if not faults or any(not fault.endswith(f"[{rule}]") for fault in faults):
+            wrong.append(f"{sorted(change)} should be refused by [{rule}] alone, but: {faults or 'accepted'}")
+    return wrong
+
+
+def report(faults, what):
+    if faults is None:
+        print(f"SKIPPED: {what} (universal-ctags is not installed)")
+        return 77
+    for fault in faults:
+        print(fault)
+    print(f"{what}: {len(faults)} faults" if faults else f"{what}: good")
+    return 1 if faults else 0
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("root", type=pathlib.Path)
+    parser.add_argument("--functions", action="store_true")
+    parser.add_argument("--controls", action="store_true")
+    options = parser.parse_args()
+    root = options.root.resolve()
+    if options.controls and options.functions:
+        good = [GOOD, {**GOOD, "src/livens/time/long.cpp": LONG_FUNCTION}]
+        wrong = run_controls(check_functions, FUNCTION_CONTROLS, good)
+        return report(wrong, "negative controls of functions")
+    if options.controls:
+        reasoned = "//\n" * 600 + "// layout allows long-file: a table of points that belongs together\n"
+        good = [GOOD, {**GOOD, "src/livens/time/tall.cpp": reasoned}]
+        return report(run_controls(check_floors, CONTROLS, good), "negative controls of floors")
+    if options.functions:
+        return report(check_functions(root), "lengths of functions")
+    return report(check_floors(root), "floors")
+
+
+if __name__ == "__main__":
+    sys.exit(main())

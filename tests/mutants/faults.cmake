@@ -1,0 +1,91 @@
+# The faults, room by room. A fault is small, compiles, and is one that somebody could make; see mutants.cmake.
+
+# Gauss-Lobatto weights of a rule with one point more; right for no degree.
+livens_mutant(NAME lobatto_weight
+              FILE time/quadrature.cpp
+              OLD [[2 / (n * (n + 1) * p * p)]]
+              NEW [[2 / ((n + 1) * (n + 2) * p * p)]]
+              TESTS_OF unit_time
+              MUST_FAIL GaussLobatto.IsExactToItsDegreeAndNoFurther
+                        GaussLobatto.PointsAndWeightsAreRightToTheLastBits)
+
+# Steiner's term with the wrong sign: right while the reference point is the centre of mass.
+livens_mutant(NAME second_moment_sign
+              FILE multibody/mass_properties.cpp
+              OLD [[- J + properties.mass * outer(c, c)]]
+              NEW [[- J - properties.mass * outer(c, c)]]
+              TESTS_OF unit_multibody
+              MUST_FAIL MassProperties.MassMatrixHoldsTheSecondMomentsAboutTheReferencePoint)
+
+# The factor 1/2 of (P21) forgotten.
+livens_mutant(NAME torque_half
+              FILE multibody/loads/torque.cpp
+              OLD [[0.5 * cross(mu, D.column(i))]]
+              NEW [[cross(mu, D.column(i))]]
+              TESTS_OF unit_multibody
+              MUST_FAIL Torque.HasItsMomentForEveryTriadThatIsNotFlat
+                        Torque.DoesTheWorkOfItsSpinOnRigidStates)
+
+# The mixed term of d2 Phi/dt2 counted once instead of twice: wrong reactions, right motion.
+livens_mutant(NAME curvature_mixed_term
+              FILE multibody/constraint.cpp
+              OLD [[2 * dot(V_i * row.c_ij, V_j)]]
+              NEW [[dot(V_i * row.c_ij, V_j)]]
+              TESTS_OF unit_multibody
+              MUST_FAIL ConstraintRow.GradientAndCurvatureAreThoseOfAQuadraticForm)
+
+# The last weight off by one part in a thousand: the order is gone.
+livens_mutant(NAME one_weight
+              FILE spacetime/lobatto/rule.cpp
+              OLD [[rule.k.assign(]]
+              NEW [[rule.weights[degree] *= 1.001; rule.k.assign(]]
+              TESTS_OF convergence
+              MUST_FAIL Lobatto.ConvergesWithOrder2POnTheFreeBox Lobatto.ConvergesWithOrder2POnTwoBricksInSpace
+                        Lobatto.ConvergesWithOrder2POnRevolutes)
+
+# One wrong sign in d_i x r_i.
+livens_mutant(NAME sign_of_a_moment
+              FILE spacetime/lobatto/twist.cpp
+              OLD [[m[1] += X[a + 2] * r[a] - X[a] * r[a + 2];]]
+              NEW [[m[1] += X[a + 2] * r[a] + X[a] * r[a + 2];]]
+              TESTS_OF convergence
+              MUST_FAIL Lobatto.ConvergesWithOrder2POnTheFreeBox Lobatto.ConvergesWithOrder2POnTwoBricksInSpace)
+
+# The turning of the rows left out of the tangent: the answer stays, convergence is linear.
+livens_mutant(NAME missing_geometric_term
+              FILE spacetime/lobatto/tangent.cpp
+              OLD [[twist::add_geometric(X(A) + 12 * b, total + 12 * b, blocks_.data() + 36 * b, 6);]]
+              NEW [[(void)b;]]
+              TESTS_OF convergence
+              MUST_FAIL Newton.NeedsThreeIterationsAnElementOnTheAverage
+                        Newton.FactorisesOnceAnElementWhereErrorsAreSmall)
+livens_mutant(NAME missing_geometric_term_by_differences
+              FILE spacetime/lobatto/tangent.cpp
+              OLD [[twist::add_geometric(X(A) + 12 * b, total + 12 * b, blocks_.data() + 36 * b, 6);]]
+              NEW [[(void)b;]]
+              TESTS_OF unit_spacetime
+              MUST_FAIL Lobatto/TangentOf.MatchesDifferencesWithEveryKindOfTerm/*)
+
+# Loads taken where the element starts, their moments where the node is: a spring that turns what it holds.
+livens_mutant(NAME loads_at_the_start
+              FILE spacetime/lobatto/element.cpp
+              OLD [[mechanism_.add_forces(at, X(A), V, h_ * rule_.weights[A], raw);]]
+              NEW [[mechanism_.add_forces(at, X0_.data(), V, h_ * rule_.weights[A], raw);]]
+              TESTS_OF conservation
+              MUST_FAIL Lobatto.BalancesAngularMomentumOverTenSeconds Lobatto.KeepsMomentaOfAFloatingChain)
+
+# Phi from the gradient at the node alone, not from the mean of both ends: right for linear rows only.
+livens_mutant(NAME constraint_without_mean_gradient
+              FILE spacetime/lobatto/element.cpp
+              OLD [[phi += (g0[12 * side + i] + g[12 * side + i]) * d[i];]]
+              NEW [[phi += 2 * g[12 * side + i] * d[i];]]
+              TESTS_OF conservation
+              MUST_FAIL Lobatto.HoldsConstraintsAtNodesOverTenSeconds Lobatto.KeepsPinsTogetherAndRodsLong)
+
+# Reflections that lead with whichever entry comes next, which mixes directions across the plane into those in it.
+livens_mutant(NAME reflections_without_choice
+              FILE solvers/dense.cpp
+              OLD [[leads_[j] = best;]]
+              NEW [[leads_[j] = j;]]
+              TESTS_OF conservation
+              MUST_FAIL Lobatto.KeepsPlanarMotionsPlanarForTenSeconds)

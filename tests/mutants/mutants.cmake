@@ -1,0 +1,75 @@
+# Negative controls by mutation: one deliberate fault a program, and the tests that must notice it.
+#
+# livens_mutant(NAME name             the test is mutant.<name>
+#               FILE room/file.cpp    under src/livens; a header needs RECOMPILE as well
+#               OLD text NEW text     OLD stands exactly once in FILE, otherwise the build stops
+#               TESTS_OF target       a program made by livens_test; its objects are linked again
+#               MUST_FAIL name...     tests of it as --gtest_filter spells them; each must match a FAILED test
+#               [RECOMPILE file...])  sources under src/livens to compile with the fault; default: FILE
+#
+# A mutant is linked from its own object, the test program's objects and livens_core; the linker takes the
+# faulty object and leaves the good one in the archive. Only the faulty source is compiled again.
+
+function(livens_mutant)
+    # PARSE_ARGV keeps semicolons in the texts.
+    cmake_parse_arguments(PARSE_ARGV 0 arg "" "NAME;FILE;OLD;NEW;TESTS_OF" "MUST_FAIL;RECOMPILE")
+    foreach(required NAME FILE OLD NEW TESTS_OF MUST_FAIL)
+        if(NOT DEFINED arg_${required})
+            message(FATAL_ERROR "mutant '${arg_NAME}': ${required} is missing")
+        endif()
+    endforeach()
+    set(original ${PROJECT_SOURCE_DIR}/src/livens/${arg_FILE})
+    if(NOT EXISTS ${original} OR NOT TARGET ${arg_TESTS_OF})
+        message(FATAL_ERROR "mutant '${arg_NAME}': no ${original} or no test program ${arg_TESTS_OF}")
+    endif()
+    set(folder ${CMAKE_CURRENT_BINARY_DIR}/mutants/${arg_NAME})
+    set(mutated ${folder}/livens/${arg_FILE})
+    # Kept as files, written when they change only: a command line would mangle quotes, semicolons and line
+    # ends.
+    foreach(side OLD NEW)
+        string(TOLOWER ${side} text)
+        set(text ${folder}/${text}.txt)
+        set(known)
+        if(EXISTS ${text})
+            file(READ ${text} known)
+        endif()
+        if(NOT EXISTS ${text} OR NOT known STREQUAL "${arg_${side}}")
+            file(WRITE ${text} "${arg_${side}}")
+        endif()
+    endforeach()
+    add_custom_command(
+        OUTPUT ${mutated}
+        COMMAND ${CMAKE_COMMAND} -DNAME=${arg_NAME} -DORIGINAL=${original} -DFOLDER=${folder}
+                -DMUTATED=${mutated} -P ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/mutate.cmake
+        DEPENDS ${original} ${folder}/old.txt ${folder}/new.txt
+                ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/mutate.cmake
+        COMMENT "Mutating ${arg_FILE}: ${arg_NAME}" VERBATIM)
+
+    set(sources ${mutated})
+    if(arg_RECOMPILE)
+        list(TRANSFORM arg_RECOMPILE PREPEND ${PROJECT_SOURCE_DIR}/src/livens/ OUTPUT_VARIABLE sources)
+        list(APPEND sources ${mutated})
+    elseif(NOT arg_FILE MATCHES "\\.cpp$")
+        message(FATAL_ERROR "mutant '${arg_NAME}': say which sources RECOMPILE with the header ${arg_FILE}")
+    endif()
+    string(REGEX REPLACE "/.*" "" room ${arg_FILE})
+    set(target mutant_${arg_NAME})
+    add_executable(${target} ${sources} $<TARGET_OBJECTS:${arg_TESTS_OF}>)
+    # As the room is compiled, but with the faulty folder first, and without warnings: a fault may leave
+    # things unused.
+    target_include_directories(${target} BEFORE PRIVATE ${folder})
+    target_include_directories(${target} SYSTEM
+                               PRIVATE $<TARGET_PROPERTY:livens_room_${room},INCLUDE_DIRECTORIES>)
+    target_compile_definitions(${target} PRIVATE $<TARGET_PROPERTY:livens_room_${room},COMPILE_DEFINITIONS>)
+    target_link_libraries(${target} PRIVATE livens_flags livens_core
+                          GTest::gtest GTest::gtest_main Threads::Threads)
+    target_compile_options(${target} PRIVATE -w)
+    add_test(NAME mutant.${arg_NAME}
+             COMMAND ${CMAKE_COMMAND} -DPROGRAM=$<TARGET_FILE:${target}> "-DMUST_FAIL=${arg_MUST_FAIL}"
+                     -P ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/run_mutant.cmake)
+    set_tests_properties(mutant.${arg_NAME} PROPERTIES LABELS mutant TIMEOUT 300)
+endfunction()
+
+if(LIVENS_SLOW_TESTS)
+    include(${CMAKE_CURRENT_LIST_DIR}/faults.cmake)
+endif()

@@ -1,0 +1,271 @@
+#include "properties/joint_kit.h"
+
+#include <cmath>
+#include <set>
+
+namespace livens {
+
+namespace {
+
+constexpr int repetitions = 25;
+
+/// A joint between body 0 (or the world) and the last body, closed where the bodies stand.
+struct Mechanism {
+    Joint joint;
+    JointFrame frame;
+    std::vector<Matrix34> X;   ///< of the bodies; the world is none
+
+    const Matrix34& place(int body) const { return body == world ? world_configuration : X[body]; }
+};
+
+Mechanism closed_mechanism(const JointCase& joint, Random& random, bool on_world)
+{
+    Mechanism m;
+    const int first = on_world ? world : 0, second = on_world ? 0 : 1;
+    for (int b = 0; b <= second; ++b) m.X.push_back(random.rigid());
+    m.frame = joint.place(random, m.place(first), m.place(second));
+    m.joint = joint.make(first, second, m.frame, m.place(first), m.place(second));
+    return m;
+}
+
+double value(const ConstraintRow& row, const Mechanism& m)
+{
+    return constraint_value(row, m.place(row.body_i), m.place(row.body_j));
+}
+
+double norm_of_rows(const Joint& joint, const Mechanism& m)
+{
+    double sum = 0;
+    for (const ConstraintRow& row : joint.rows) sum += std::pow(value(row, m), 2);
+    return std::sqrt(sum);
+}
+
+/// Derivative of a row by the twist (v, w) of each body, in world axes.
+std::vector<double> twist_row(const ConstraintRow& row, const Mechanism& m)
+{
+    std::vector<double> result(6 * m.X.size());
+    Matrix34 g[2]{};
+    constraint_gradient(row, m.place(row.body_i), m.place(row.body_j), g[0], g[1]);
+    const int bodies[2] = {row.body_i, row.body_j};
+    for (int side = 0; side < 2; ++side) {
+        if (bodies[side] == world) continue;
+        for (int k = 0; k < 6; ++k) {
+            Vector3 v{}, w{};
+            (k < 3 ? v : w)[k % 3] = 1;
+            result[6 * bodies[side] + k] += dot(g[side], rate(m.X[bodies[side]], v, w));
+        }
+    }
+    return result;
+}
+
+double inner(const std::vector<double>& a, const std::vector<double>& b)
+{
+    double sum = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
+    return sum;
+}
+
+/// Orthonormalises rows in place (twice, for safety); returns the smallest length left, and the triangle in
+/// `R`.
+double orthonormalise(std::vector<std::vector<double>>& rows, std::vector<std::vector<double>>& R)
+{
+    double smallest = 1e300;
+    R.assign(rows.size(), std::vector<double>(rows.size()));
+    for (std::size_t r = 0; r < rows.size(); ++r) {
+        for (int pass = 0; pass < 2; ++pass)
+            for (std::size_t s = 0; s < r; ++s) {
+                const double part = inner(rows[r], rows[s]);
+                R[r][s] += part;
+                for (std::size_t i = 0; i < rows[r].size(); ++i) rows[r][i] -= part * rows[s][i];
+            }
+        R[r][r] = std::sqrt(inner(rows[r], rows[r]));
+        smallest = std::min(smallest, R[r][r]);
+        for (double& entry : rows[r]) entry /= R[r][r];
+    }
+    return smallest;
+}
+
+void move(Matrix34& X, const double* twist)
+{
+    const Matrix3 R = directors_from_rotation_vector({twist[3], twist[4], twist[5]});
+    X = configuration(X.column(0) + Vector3{twist[0], twist[1], twist[2]}, R * directors(X));
+}
+
+/// Moves the bodies to a configuration that the joint allows, by Newton's method with the shortest steps.
+void close(const Joint& joint, Mechanism& m)
+{
+    for (int iteration = 0; iteration < 30; ++iteration) {
+        std::vector<std::vector<double>> Q, R;
+        for (const ConstraintRow& row : joint.rows) Q.push_back(twist_row(row, m));
+        orthonormalise(Q, R);
+        std::vector<double> step(6 * m.X.size()), y(Q.size());
+        for (std::size_t r = 0; r < Q.size(); ++r) {   // R y = -Phi, step = Q^T y
+            y[r] = -value(joint.rows[r], m);
+            for (std::size_t s = 0; s < r; ++s) y[r] -= R[r][s] * y[s];
+            y[r] /= R[r][r];
+            for (std::size_t i = 0; i < step.size(); ++i) step[i] += y[r] * Q[r][i];
+        }
+        for (std::size_t b = 0; b < m.X.size(); ++b) move(m.X[b], &step[6 * b]);
+    }
+}
+
+std::string number(double x)
+{
+    return std::to_string(x) + " (" + std::to_string(std::log10(std::abs(x) + 1e-300)) + " decades)";
+}
+
+JointFrame exchanged(const JointFrame& frame)
+{
+    return {frame.point_second, frame.point_first, frame.axis_second, frame.axis_first};
+}
+
+}   // namespace
+
+Failures check_joint_labels(const JointCase& joint)
+{
+    Random random(1);
+    const Mechanism m = closed_mechanism(joint, random, false);
+    Failures failures;
+    if (m.joint.type != joint.type) failures.push_back("its type is '" + m.joint.type + "'");
+    if (static_cast<int>(m.joint.rows.size()) != joint.n_rows)
+        failures.push_back("the number of rows is another");
+    std::set<std::string> labels;
+    for (const ConstraintRow& row : m.joint.rows) {
+        if (row.label.empty() || !labels.insert(row.label).second)
+            failures.push_back("label '" + row.label + "' repeats");
+        if (!(row.scale > 0)) failures.push_back("the scale of '" + row.label + "' is not positive");
+    }
+    return failures;
+}
+
+Failures check_joint_closure(const JointCase& joint)
+{
+    Random random(2);
+    Failures failures;
+    for (int n = 0; n < repetitions; ++n) {
+        const Mechanism m = closed_mechanism(joint, random, n % 2);
+        for (const ConstraintRow& row : m.joint.rows)
+            if (!(std::abs(value(row, m)) < 1e-14))
+                failures.push_back("row '" + row.label +
+                                   "' is not zero at assembly: " + number(value(row, m)));
+    }
+    return failures;
+}
+
+Failures check_joint_gradient(const JointCase& joint)
+{
+    Random random(3);
+    Failures failures;
+    for (int n = 0; n < repetitions; ++n) {
+        const Mechanism m = closed_mechanism(joint, random, n % 2);
+        for (const ConstraintRow& row : m.joint.rows) {
+            const Matrix34 X = random.matrix<3, 4>(), Y = random.matrix<3, 4>();
+            const Matrix34 U = random.matrix<3, 4>(), V = random.matrix<3, 4>();
+            const double ahead = constraint_value(row, X + U, Y + V),
+                         behind = constraint_value(row, X - U, Y - V);
+            const double here = constraint_value(row, X, Y);
+            Matrix34 g_i{}, g_j{};
+            constraint_gradient(row, X, Y, g_i, g_j);
+            // Quadratic forms: differences are exact for any step, and the second one does not depend on X.
+            const double first = dot(g_i, U) + dot(g_j, V) - 0.5 * (ahead - behind);
+            const double second = constraint_curvature(row, U, V) - (ahead - 2 * here + behind);
+            if (!(std::abs(first) < 1e-12))
+                failures.push_back("gradient of '" + row.label + "' off by " + number(first));
+            if (!(std::abs(second) < 1e-12))
+                failures.push_back("Hessian of '" + row.label + "' off by " + number(second));
+        }
+    }
+    return failures;
+}
+
+Failures check_joint_rank(const JointCase& joint)
+{
+    Random random(4);
+    Failures failures;
+    for (int n = 0; n < repetitions; ++n) {
+        const Mechanism m = closed_mechanism(joint, random, n % 2);
+        std::vector<std::vector<double>> Q, R;
+        for (const ConstraintRow& row : m.joint.rows) Q.push_back(twist_row(row, m));
+        const double smallest = orthonormalise(Q, R);
+        if (!(smallest > 1e-6))
+            failures.push_back("a row is implied by the others: pivot " + number(smallest));
+    }
+    return failures;
+}
+
+Failures check_joint_objectivity(const JointCase& joint)
+{
+    Random random(5);
+    Failures failures;
+    for (int n = 0; n < repetitions; ++n) {
+        Mechanism m = closed_mechanism(joint, random, false);
+        for (Matrix34& X : m.X) X += 0.3 * random.matrix<3, 4>();   // off the constraints, and skew
+        const double before = norm_of_rows(m.joint, m);
+        const Matrix3 R = random.rotation();
+        const Vector3 shift = random.vector();
+        for (Matrix34& X : m.X) X = configuration(R * X.column(0) + shift, R * directors(X));
+        const double change = norm_of_rows(m.joint, m) - before;
+        if (!(std::abs(change) < 1e-13))
+            failures.push_back("a motion of both bodies changes |Phi| by " + number(change));
+    }
+    return failures;
+}
+
+Failures check_joint_world(const JointCase& joint)
+{
+    Random random(6);
+    Failures failures;
+    for (int n = 0; n < repetitions; ++n) {
+        const Mechanism fixed = closed_mechanism(joint, random, true);
+        const Joint floating = joint.make(0, 1, fixed.frame, world_configuration, fixed.X[0]);
+        const Matrix34 X = random.matrix<3, 4>(), junk = random.matrix<3, 4>();
+        for (std::size_t r = 0; r < floating.rows.size(); ++r) {
+            const ConstraintRow &a = fixed.joint.rows[r], &b = floating.rows[r];
+            Matrix34 ga{}, gb{}, other{};
+            constraint_gradient(a, junk, X, other, ga);
+            constraint_gradient(b, world_configuration, X, other, gb);
+            const double gap = constraint_value(a, junk, X) - constraint_value(b, world_configuration, X);
+            if (a.body_i != world || a.body_j != 0)
+                failures.push_back("row '" + a.label + "' is not on the body");
+            if (!(std::abs(gap) < 1e-13) || !(largest(ga - gb) < 1e-13))
+                failures.push_back("row '" + a.label + "' differs for the world by " + number(gap));
+        }
+    }
+    return failures;
+}
+
+Failures check_joint_order(const JointCase& joint)
+{
+    Random random(7);
+    Failures failures;
+    for (int n = 0; n < repetitions; ++n) {
+        Mechanism m = closed_mechanism(joint, random, n % 2);
+        const int first = m.joint.first, second = m.joint.second;
+        const Joint other = joint.make(second, first, exchanged(m.frame), m.place(second), m.place(first));
+        // Near assembly, where both sets of rows stand for one joint: allowed by one, allowed by the other.
+        for (Matrix34& X : m.X) {
+            const Matrix<6, 1> twist = 0.2 * random.matrix<6, 1>();
+            move(X, twist.data());
+        }
+        const Joint* both[2] = {&m.joint, &other};
+        for (int k = 0; k < 2; ++k) {
+            close(*both[k], m);
+            const double own = norm_of_rows(*both[k], m), others = norm_of_rows(*both[1 - k], m);
+            if (!(own < 1e-12)) failures.push_back("no allowed configuration found nearby");
+            if (!(others < 1e-11))
+                failures.push_back("bodies exchanged, another motion is allowed: " + number(others));
+        }
+    }
+    return failures;
+}
+
+Failures check_joint(const JointCase& joint)
+{
+    Failures all;
+    for (const auto check : {check_joint_labels, check_joint_closure, check_joint_gradient, check_joint_rank,
+                             check_joint_objectivity, check_joint_world, check_joint_order})
+        for (const std::string& failure : check(joint)) all.push_back(joint.type + ": " + failure);
+    return all;
+}
+
+}   // namespace livens

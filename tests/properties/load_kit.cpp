@@ -1,0 +1,220 @@
+#include "properties/load_kit.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace livens {
+
+namespace {
+
+LoadForces forces(const Load& load, const LoadArguments& at)
+{
+    LoadForces F{};
+    load.forces(at, F);
+    return F;
+}
+
+/// Skew and moving bodies, some way apart so that no two points meet.
+LoadArguments random_state(Random& random, const Load& load)
+{
+    LoadArguments at;
+    at.at.t = random.number();
+    for (int b = 0; b < 2; ++b) {
+        if (load.bodies[b] == world) continue;
+        at.X[b] = random.skew();
+        at.V[b] = random.matrix<3, 4>();
+    }
+    at.X[0](0, 0) += 4;
+    return at;
+}
+
+/// f'(0) by central differences of order 8.
+template <typename Function>
+auto derivative(Function f, double h)
+{
+    static constexpr double weights[4] = {4.0 / 5, -1.0 / 5, 4.0 / 105, -1.0 / 280};
+    auto sum = (weights[0] / h) * (f(h) - f(-h));
+    for (int k = 1; k < 4; ++k) sum += (weights[k] / h) * (f((k + 1) * h) - f(-(k + 1) * h));
+    return sum;
+}
+
+/// Forces on both bodies as one column.
+Matrix<24, 1> stacked(const LoadForces& F)
+{
+    Matrix<24, 1> column{};
+    for (int i = 0; i < 24; ++i) column[i] = F[i / 12][i % 12];
+    return column;
+}
+
+std::string decades(double error) { return "10^" + std::to_string(std::log10(std::abs(error) + 1e-300)); }
+
+/// Compares the tangent by one variable of body c with differences; `of_V`: the variable is one of V.
+void compare_column(const Load& load, const LoadArguments& at, const LoadTangent& tangent, bool of_V, int c,
+                    int variable, Failures& failures)
+{
+    const Matrix<24, 1> expected = derivative(
+        [&](double h) {
+            LoadArguments moved = at;
+            (of_V ? moved.V : moved.X)[c][variable] += h;
+            return stacked(forces(load, moved));
+        },
+        2e-3);
+    double error = 0, size = 1;
+    for (int i = 0; i < 24; ++i) {
+        if (load.bodies[i / 12] == world) continue;
+        const double given = (of_V ? tangent.V : tangent.X)[i / 12][c](i % 12, variable);
+        error = std::isnan(given) ? given : std::max(error, std::abs(given - expected[i]));
+        size = std::max(size, std::abs(expected[i]));
+    }
+    if (!(error < 1e-9 * size))
+        failures.push_back(std::string(of_V ? "dF/dV" : "dF/dX") + " of body " + std::to_string(c) +
+                           ", variable " + std::to_string(variable) + " is off by " + decades(error));
+}
+
+/// With the flags down F must not change at all.
+void compare_flag(const Load& load, const LoadArguments& at, bool of_V, Random& random, Failures& failures)
+{
+    LoadArguments moved = at;
+    for (int b = 0; b < 2; ++b)
+        if (load.bodies[b] != world) (of_V ? moved.V : moved.X)[b] += 0.1 * random.matrix<3, 4>();
+    if (stacked(forces(load, moved)) != stacked(forces(load, at)))
+        failures.push_back(std::string("it depends on ") + (of_V ? "V" : "X") + " and says that it does not");
+}
+
+double potential(const Load& load, const LoadArguments& at)
+{
+    return load.potential ? load.potential(at) : 0;
+}
+
+}   // namespace
+
+Failures check_load_tangent(const LoadCase& load_case)
+{
+    Random random(1);
+    Failures failures;
+    for (int n = 0; n < 1000 && failures.size() < 10; ++n) {
+        const Load load = load_case.make(random);
+        const LoadArguments at = random_state(random, load);
+        LoadTangent tangent;
+        if (load.depends_on_X || load.depends_on_V) load.tangent(at, tangent);
+        for (const bool of_V : {false, true}) {
+            if (!(of_V ? load.depends_on_V : load.depends_on_X)) {
+                compare_flag(load, at, of_V, random, failures);
+                continue;
+            }
+            for (int c = 0; c < 2; ++c)
+                for (int variable = 0; load.bodies[c] != world && variable < 12; ++variable)
+                    compare_column(load, at, tangent, of_V, c, variable, failures);
+        }
+    }
+    return failures;
+}
+
+Failures check_load_energy(const LoadCase& load_case)
+{
+    Random random(2);
+    Failures failures;
+    for (int n = 0; n < 200; ++n) {
+        const Load load = load_case.make(random);
+        const LoadArguments at = random_state(random, load);
+        const double gain = derivative(
+            [&](double h) {
+                LoadArguments moved = at;
+                for (int b = 0; b < 2; ++b) moved.X[b] += h * at.V[b];
+                return potential(load, moved);
+            },
+            2e-3);
+        const double gap = load_power(load, at) + gain - power_without_potential(load, at);
+        if (!(std::abs(gap) < 1e-9 * (1 + std::abs(gain))))
+            failures.push_back("energy is lost: " + decades(gap));
+    }
+    return failures;
+}
+
+Failures check_load_potential(const LoadCase& load_case)
+{
+    Random random(3);
+    Failures failures;
+    for (int n = 0; n < 200; ++n) {
+        const Load load = load_case.make(random);
+        if (!load.potential) continue;
+        LoadArguments at = random_state(random, load);
+        at.V = {};
+        const LoadForces F = forces(load, at);
+        for (int i = 0; i < 24; ++i) {
+            if (load.bodies[i / 12] == world) continue;
+            const double slope = derivative(
+                [&](double h) {
+                    LoadArguments moved = at;
+                    moved.X[i / 12][i % 12] += h;
+                    return load.potential(moved);
+                },
+                2e-3);
+            const double gap = F[i / 12][i % 12] + slope;
+            if (!(std::abs(gap) < 1e-9 * (1 + std::abs(slope))))
+                failures.push_back("F is not -dV/dX: " + decades(gap));
+        }
+    }
+    return failures;
+}
+
+Failures check_load_breaks(const LoadCase& load_case)
+{
+    Random random(4);
+    const Load load = load_case.make(random);
+    const LoadArguments state = random_state(random, load);
+    const auto force_at = [&](double t, Side side) {
+        LoadArguments at = state;
+        at.at = {t, side};
+        return stacked(forces(load, at));
+    };
+    Failures failures;
+    if (!std::ranges::is_sorted(load.breaks)) failures.push_back("breaks do not ascend");
+    const double step = 1e-3;
+    for (double t = -2; t < 4; t += step) {
+        const bool broken =
+            std::ranges::any_of(load.breaks, [&](double b) { return b >= t && b <= t + 2 * step; });
+        if (broken) continue;
+        const Matrix<24, 1> a = force_at(t, Side::middle), b = force_at(t + 2 * step, Side::middle);
+        const Matrix<24, 1> bend = a - 2.0 * force_at(t + step, Side::middle) + b;
+        if (!(largest(bend) < 1e-4 * (1 + largest(a))))
+            failures.push_back("F bends or jumps at " + std::to_string(t));
+    }
+    for (const double t : load.breaks)
+        for (const Side side : {Side::left, Side::right}) {
+            const double beside = t + (side == Side::left ? -1e-9 : 1e-9);
+            const double gap = largest(force_at(t, side) - force_at(beside, Side::middle));
+            if (!(gap < 1e-6)) failures.push_back("a side is not its limit at " + std::to_string(t));
+        }
+    return failures;
+}
+
+Failures check_load_directors(const LoadCase& load_case)
+{
+    Random random(5);
+    Failures failures;
+    for (int n = 0; n < 20; ++n) {
+        const Load load = load_case.make(random);
+        const LoadForces F = forces(load, random_state(random, load));
+        for (int b = 0; b < 2; ++b) {
+            if (load.bodies[b] == world || load.needs_directors[b]) continue;
+            if (std::any_of(F[b].a + 3, F[b].a + 12, [](double entry) { return entry != 0; }))
+                failures.push_back("it acts on directors and says that it needs none");
+        }
+    }
+    return failures;
+}
+
+Failures check_load(const LoadCase& load)
+{
+    Failures all;
+    for (const auto check : {check_load_tangent, check_load_energy, check_load_potential, check_load_breaks,
+                             check_load_directors})
+        for (const std::string& failure : check(load)) all.push_back(load.what + ": " + failure);
+    Random random(6);
+    if (load.make(random).type != load.type)
+        all.push_back(load.what + ": its type is not '" + load.type + "'");
+    return all;
+}
+
+}   // namespace livens

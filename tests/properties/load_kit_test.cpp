@@ -1,0 +1,119 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "properties/load_kit.h"
+
+namespace livens {
+namespace {
+
+std::string joined(const Failures& failures)
+{
+    std::string text;
+    for (const std::string& failure : failures) text += failure + "\n";
+    return text;
+}
+
+TEST(LoadKit, EveryLoadPasses)
+{
+    for (const LoadCase& load : load_cases()) EXPECT_EQ(joined(check_load(load)), "");
+}
+
+TEST(LoadKit, EveryFileOfALoadIsInTheRegistry)
+{
+    const std::filesystem::path folder =
+        std::filesystem::path(LIVENS_SOURCE_DIR) / "src/livens/multibody/loads";
+    int files = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+        const std::string type = entry.path().stem().string();
+        if (entry.path().extension() != ".cpp") continue;
+        ++files;
+        EXPECT_TRUE(std::ranges::any_of(load_cases(), [&](const LoadCase& c) { return c.type == type; }))
+            << type;
+    }
+    EXPECT_GE(files, 3);
+}
+
+const LoadCase& find_case(const std::string& what)
+{
+    return *std::ranges::find_if(load_cases(), [&](const LoadCase& c) { return c.what == what; });
+}
+
+/// A load of the registry, changed after it is made.
+template <typename Change>
+LoadCase broken(const std::string& what, Change change)
+{
+    LoadCase result = find_case(what);
+    result.make = [make = result.make, change](Random& random) {
+        Load load = make(random);
+        change(load);
+        return load;
+    };
+    return result;
+}
+
+TEST(LoadKit, OneWrongSignFailsTheTangent)
+{
+    const LoadCase load = broken("torque in body axes", [](Load& l) {
+        l.tangent = [tangent = l.tangent](const LoadArguments& at, LoadTangent& T) {
+            tangent(at, T);
+            T.X[0][0](4, 8) *= -1;
+        };
+    });
+    EXPECT_FALSE(check_load_tangent(load).empty());
+}
+
+TEST(LoadKit, AMissingTermFailsTheTangent)
+{
+    const LoadCase load = broken("spring and damper", [](Load& l) {
+        l.tangent = [tangent = l.tangent](const LoadArguments& at, LoadTangent& T) {
+            LoadArguments still = at;
+            still.V = {};   // the damper's geometric part is gone
+            tangent(still, T);
+        };
+    });
+    EXPECT_FALSE(check_load_tangent(load).empty());
+}
+
+TEST(LoadKit, AFlagThatIsDownFailsTheTangent)
+{
+    EXPECT_FALSE(check_load_tangent(broken("torque", [](Load& l) { l.depends_on_X = false; })).empty());
+    EXPECT_FALSE(check_load_tangent(broken("damper", [](Load& l) { l.depends_on_V = false; })).empty());
+}
+
+TEST(LoadKit, AWrongSignOfPowerFailsTheEnergy)
+{
+    const LoadCase load = broken("spring and damper", [](Load& l) {
+        l.power = [power = l.power](const LoadArguments& at) { return -power(at); };
+    });
+    EXPECT_FALSE(check_load_energy(load).empty());
+    EXPECT_TRUE(check_load_potential(load).empty()) << "at rest nothing is lost";
+}
+
+TEST(LoadKit, AWrongSignOfThePotentialFails)
+{
+    const LoadCase load = broken("spring", [](Load& l) {
+        l.potential = [potential = l.potential](const LoadArguments& at) { return -potential(at); };
+    });
+    EXPECT_FALSE(check_load_energy(load).empty());
+    EXPECT_FALSE(check_load_potential(load).empty());
+}
+
+TEST(LoadKit, AMissingBreakFails)
+{
+    for (std::size_t missing = 0; missing < 4; ++missing) {
+        const LoadCase load = broken("torque that varies", [=](Load& l) {
+            l.breaks.erase(l.breaks.begin() + static_cast<long>(missing));
+        });
+        EXPECT_FALSE(check_load_breaks(load).empty()) << missing;
+    }
+}
+
+TEST(LoadKit, AnUndeclaredNeedOfDirectorsFails)
+{
+    EXPECT_FALSE(check_load_directors(broken("torque", [](Load& l) { l.needs_directors = {}; })).empty());
+}
+
+}   // namespace
+}   // namespace livens

@@ -1,0 +1,6 @@
+# Examples as shipped against numbers from elsewhere; they are read by io, the numbers by a JSON library of their own.
+file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/reference/*.cpp)
+if(LIVENS_BUILD_PROGRAM AND sources)
+    find_package(nlohmann_json 3 REQUIRED)
+    livens_test(reference SOURCES ${sources} LIBRARIES livens_io livens_core nlohmann_json::nlohmann_json)
+endif()

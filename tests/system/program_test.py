@@ -1,0 +1,719 @@
+"""The program as a user meets it: commands, exit codes, wrong input, full disks, signals.
+
+    LIVENS_PROGRAM=build/release/livens python3 program_test.py [CLASS ...]
+"""
+import hashlib
+import json
+import math
+import os
+import pathlib
+import pty
+import re
+import resource
+import shutil
+import signal
+import subprocess
+import tempfile
+import time
+import unittest
+
+PROGRAM = os.environ.get("LIVENS_PROGRAM", "build/release/livens")
+SOURCE = pathlib.Path(os.environ.get("LIVENS_SOURCE_DIR", pathlib.Path(__file__).resolve().parents[2]))
+DATA = SOURCE / "tests" / "system" / "data"
+
+USAGE, SCENARIO, NOT_CONVERGED, RESOURCES, IO, SUSPECT = 2, 3, 4, 5, 6, 7
+
+SMALL = """format = 1
+title = "a brick on a rod"
+gravity = [0, 0, -9.81]
+
+[[body]]
+name = "brick"
+shape = { box = [0.3, 0.2, 0.1] }
+density = 1000
+position = [1, 0, 0]
+angular_velocity = [0, 0, 2]
+
+[[body]]
+name = "bob"
+shape = { point = true }
+mass = 0.5
+position = [1, 0, -1]
+
+[[joint]]
+name = "upper"
+type = "rod"
+between = ["world", "brick"]
+
+[[joint]]
+name = "lower"
+type = "rod"
+between = ["brick", "bob"]
+
+[time]
+end = 0.5
+elements = 10
+output = 0.1
+
+[method]
+family = "lobatto"
+degree = 4
+"""
+
+LONG = SMALL.replace("end = 0.5\nelements = 10\noutput = 0.1", "end = 50000\nelements = 1000000\noutput = 1000")
+
+
+def text_with(old, new, text=SMALL):
+    assert text.count(old) >= 1, old
+    return text.replace(old, new, 1)
+
+
+class ProgramTest(unittest.TestCase):
+    def setUp(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="livens-system-"))
+        self.addCleanup(shutil.rmtree, self.folder, ignore_errors=True)
+
+    def write(self, name, text):
+        path = self.folder / name
+        path.write_bytes(text.encode() if isinstance(text, str) else text)
+        return path
+
+    def run_program(self, *arguments, **options):
+        options.setdefault("stdout", subprocess.PIPE)
+        options.setdefault("stderr", subprocess.PIPE)
+        options.setdefault("cwd", self.folder)
+        options.setdefault("timeout", 100)
+        done = subprocess.run([PROGRAM, *map(str, arguments)], **options)
+        done.out = (done.stdout or b"").decode(errors="replace")
+        done.err = (done.stderr or b"").decode(errors="replace")
+        return done
+
+    def expect(self, code, *arguments, **options):
+        done = self.run_program(*arguments, **options)
+        self.assertEqual(done.returncode, code, f"{arguments}\n{done.out}\n{done.err}")
+        return done
+
+    def solve(self, text=SMALL, name="small.toml", output="run.nc", code=0):
+        self.write(name, text)
+        return json.loads(self.expect(code, "solve", name, "-o", output, "--json").out)
+
+    def files(self):
+        return sorted(p.name for p in self.folder.iterdir())
+
+    def assert_no_temporaries(self):
+        self.assertEqual([name for name in self.files() if name.endswith(".tmp")], [])
+
+
+class Solve(ProgramTest):
+    def test_json_has_what_is_promised(self):
+        result = self.solve()
+        self.assertIs(result["converged"], True)
+        self.assertEqual(result["status"], "converged")
+        self.assertEqual(result["method"], "lobatto(4)")
+        self.assertEqual(result["elements"], 10)
+        self.assertEqual(result["output"], "run.nc")
+        for key in ("unknowns", "newton_iterations", "factorisations"):
+            self.assertIsInstance(result[key], int, key)
+            self.assertGreater(result[key], 0, key)
+        self.assertGreater(result["solve_seconds"], 0)
+        self.assertLess(result["max_constraint_violation"], 1e-12)
+        self.assertLess(result["energy_drift"], 1e-6)
+        self.assertLess(result["angular_momentum_drift"], 1e-10)
+        self.assertGreaterEqual(result["residual_norm"], 0)
+        self.assertEqual(result["errors"], [])
+
+    def test_default_name_is_the_stem_here(self):
+        self.write("small.toml", SMALL)
+        done = self.expect(0, "solve", "small.toml")
+        self.assertEqual(self.files(), ["small.json", "small.nc", "small.toml"])
+        self.assertIn("small.nc", done.out)
+        self.assertIn("Converged", done.out)
+        self.assertEqual(done.err, "")
+
+    def test_quiet_says_nothing(self):
+        self.write("small.toml", SMALL)
+        done = self.expect(0, "solve", "small.toml", "-q")
+        self.assertEqual((done.out, done.err), ("", ""))
+
+    def test_same_input_gives_same_bytes(self):
+        self.solve(output="first.nc")
+        time.sleep(1.05)
+        elsewhere = self.folder / "elsewhere"
+        elsewhere.mkdir()
+        shutil.copy(self.folder / "small.toml", elsewhere / "other.toml")
+        self.expect(0, "solve", elsewhere / "other.toml", "-o", elsewhere / "second.nc")
+        self.assertEqual((self.folder / "first.nc").read_bytes(), (elsewhere / "second.nc").read_bytes())
+
+    def test_record_beside_the_result(self):
+        printed = self.solve()
+        record = json.loads((self.folder / "run.json").read_text())
+        self.assertRegex(record.pop("date"), r"^\d{4}-\d\d-\d\dT\d\d:\d\d:\d\dZ$")
+        self.assertEqual(record, printed)
+
+    def test_record_leaves_strangers_alone(self):
+        self.write("small.toml", SMALL)
+        self.write("run.json", '{"mine": 1}')
+        self.expect(0, "solve", "small.toml", "-o", "run.nc")
+        self.assertEqual((self.folder / "run.json").read_text(), '{"mine": 1}')
+
+    def test_json_may_be_redirected_to_the_records_name(self):
+        self.write("small.toml", SMALL)
+        with open(self.folder / "run.json", "wb") as out:
+            self.expect(0, "solve", "small.toml", "-o", "run.nc", "--json", stdout=out)
+        self.assertIs(json.loads((self.folder / "run.json").read_text())["converged"], True)
+
+    def test_odd_names(self):
+        for name in ("a b.nc", "größe ☃.nc", "with'quote\".nc", "x#mode=zarr.nc", "http:.nc"):
+            self.solve(name="szenario mit ü.toml", output=name)
+            self.expect(0, "info", name)
+
+    def test_locale_does_not_matter(self):
+        self.solve(output="c.nc")
+        self.expect(0, "solve", "small.toml", "-o", "de.nc", env={**os.environ, "LC_ALL": "de_DE.UTF-8"})
+        self.assertEqual((self.folder / "c.nc").read_bytes(), (self.folder / "de.nc").read_bytes())
+
+    def test_midpoint_and_endpoint(self):
+        text = SMALL.replace('family = "lobatto"\ndegree = 4', 'family = "midpoint"')
+        text = text.replace("shape = { point = true }\nmass = 0.5", "shape = { sphere = 0.1 }\ndensity = 100")
+        self.assertEqual(self.solve(text)["method"], "midpoint")
+        # Implicit Euler eats energy: with so few steps the result must say so itself.
+        coarse = text.replace("midpoint", "endpoint").replace("end = 0.5", "end = 2")
+        result = self.solve(coarse, code=SUSPECT)
+        self.assertEqual((result["converged"], result["status"]), (True, "suspect"))
+        self.assertTrue(any("energy" in note for note in result["notes"]), result["notes"])
+
+    def test_csv(self):
+        self.write("small.toml", SMALL)
+        self.expect(0, "solve", "small.toml", "-o", "run.nc", "--csv", "run.csv")
+        self.expect(0, "export", "run.nc", "--csv", "again.csv")
+        self.assertEqual((self.folder / "run.csv").read_bytes(), (self.folder / "again.csv").read_bytes())
+        lines = (self.folder / "run.csv").read_text().splitlines()
+        self.assertEqual(len(lines), 1 + 6)
+        self.assertEqual(lines[0].split(",")[:2], ["t [s]", "brick.position.x [m]"])
+        self.assertEqual([line.split(",")[0] for line in lines[1:]], ["0", "0.1", "0.2", "0.3", "0.4", "0.5"])
+        self.assertEqual(lines[1].split(",")[17:21], [""] * 4)   # a point mass has no orientation
+
+    def test_not_converged_writes_what_there_is(self):
+        one_leap = SMALL.replace("end = 0.5\nelements = 10\noutput = 0.1", "end = 50\nelements = 1")
+        spring = ('[[load]]\ntype = "spring"\nbetween = ["world", "brick"]\npoints = [[3, 0, 0], [0, 0, 0]]\n'
+                  "stiffness = 1e200\nfree_length = 1\n")
+        for text, status, has_motion in (
+            (one_leap.replace("degree = 4", "degree = 1\nmax_iterations = 3"), "not converged", False),
+            (SMALL + spring, "not finite", True),
+        ):
+            self.write("run.nc", "an older result")
+            result = self.solve(text, code=NOT_CONVERGED)
+            self.assertIs(result["converged"], False)
+            self.assertEqual(result["status"], status)
+            self.assertIn("upper" if not has_motion else "element", result["message"])
+            info = json.loads(self.expect(0, "info", "run.nc", "--json").out)
+            self.assertEqual((info["converged"], info["status"]), (False, status))
+            self.assertEqual(info["elements"] > 0, has_motion)
+            s = json.loads(self.expect(0, "sample", "run.nc", "--body", "brick", f"--at={info['end']!r}", "--json").out)
+            self.assertIs(s["converged"], False)
+            self.expect(0, "export", "run.nc", "--csv", "run.csv")
+
+    def test_examples_check(self):
+        examples = sorted((SOURCE / "examples").glob("*.toml"))
+        self.assertGreater(len(examples), 0)
+        for example in examples:
+            done = self.expect(0, "check", example, "--json")
+            self.assertIs(json.loads(done.out)["valid"], True, example)
+
+
+class Reading(ProgramTest):
+    """info, sample, export and what they refuse."""
+
+    def sample(self, *arguments):
+        return json.loads(self.expect(0, "sample", "run.nc", *arguments, "--json").out)
+
+    def test_sample_of_a_body(self):
+        self.solve()
+        s = self.sample("--body", "brick", "--at", "0")
+        self.assertEqual(s["position"], [1, 0, 0])
+        self.assertEqual(s["directors"], [[1, 0, 0], [0, 1, 0], [0, 0, 1]])
+        self.assertEqual(s["quaternion"], [1, 0, 0, 0])
+        self.assertEqual(s["source"], "element end")
+        for a, b in zip(s["angular_velocity"], (0, 0, 2)):
+            self.assertAlmostEqual(a, b, delta=1e-14)
+        self.assertEqual(s["center_of_mass"], [1, 0, 0])
+        self.assertAlmostEqual(s["angular_velocity_body"][2], 2, delta=1e-14)
+        self.assertIsNone(self.sample("--body", "bob", "--at", "0")["quaternion"])
+
+    def test_between_ends_exact_beats_the_polynomial(self):
+        self.solve()
+        truth = SMALL.replace("elements = 10", "elements = 100").replace("output = 0.1", "output = 0.005")
+        self.solve(truth, name="fine.toml", output="fine.nc")
+        fine = json.loads(self.expect(0, "sample", "fine.nc", "--body", "brick", "--at", "0.225", "--json").out)
+        error = {}
+        for how in ((), ("--exact",)):
+            s = self.sample("--body", "brick", "--at", "0.225", *how)
+            error[how] = math.dist(s["velocity"], fine["velocity"])
+            self.assertEqual(s["source"], "solved" if how else "polynomial")
+        self.assertLess(error[("--exact",)], 0.1 * error[()])
+
+    def test_reactions_hold_the_weight(self):
+        still = SMALL.replace("angular_velocity = [0, 0, 2]\n", "").replace("position = [1, 0, 0]", "position = [0, 0, -1]")
+        still = still.replace("position = [1, 0, -1]", "position = [0, 0, -2]")
+        self.solve(still)
+        mass = 0.3 * 0.2 * 0.1 * 1000
+        for t in ("0.1", "0.12"):
+            upper, lower = self.sample("--joint", "upper", "--at", t), self.sample("--joint", "lower", "--at", t)
+            self.assertAlmostEqual(upper["force"][2], (mass + 0.5) * 9.81, delta=1e-9)
+            self.assertAlmostEqual(lower["force"][2], 0.5 * 9.81, delta=1e-9)
+            self.assertEqual(upper["source"], "acceleration level" if t == "0.1" else "interpolated multipliers")
+
+    def test_several_instants(self):
+        self.solve()
+        one = self.sample("--body", "bob", "--at", "0.3")
+        many = self.sample("--body", "bob", "--at", "0.1", "--at", "0.3")
+        self.assertEqual([s["t"] for s in many["samples"]], [0.1, 0.3])
+        self.assertEqual(many["samples"][1]["position"], one["position"])
+        rows = self.expect(0, "sample", "run.nc", "--body", "bob", "--at", "0.1", "0.3", "--csv").out.splitlines()
+        self.assertEqual(len(rows), 3)
+        self.assertEqual(float(rows[2].split(",")[1]), one["position"][0])
+
+    def test_usage_errors(self):
+        self.solve()
+        for arguments in (
+            ("sample", "run.nc", "--body", "nobody", "--at", "0"),
+            ("sample", "run.nc", "--joint", "brick", "--at", "0"),
+            ("sample", "run.nc", "--at", "0"),
+            ("sample", "run.nc", "--body", "bob", "--joint", "upper", "--at", "0"),
+            ("sample", "run.nc", "--body", "bob"),
+            *(("sample", "run.nc", "--body", "bob", "--at=" + t)
+              for t in ("-1", "0.6", "nan", "inf", "1e400", "0,1", "0x1", "", "0.1s")),
+            ("sample", "run.nc", "--joint", "upper", "--at", "0.12", "--exact"),
+            (), ("frobnicate",), ("solve",), ("solve", "small.toml", "--nope"), ("solve", "small.toml", "more"),
+            ("solve", "small.toml", "--diagnostics", "xml"), ("export", "run.nc"), ("explain", "no-such-code"),
+            ("schema", "--json", "--md"),
+        ):
+            done = self.expect(USAGE, *arguments)
+            if "--json" not in arguments:
+                self.assertEqual(done.out, "", arguments)
+            self.assertNotEqual(done.err, "", arguments)
+
+    def test_json_failure_is_one_object(self):
+        for arguments, code in ((("solve", "missing.toml"), IO), (("sample", "x.nc", "--body", "b"), USAGE),
+                                (("info", "missing.nc"), IO), (("solve",), USAGE)):
+            result = json.loads(self.expect(code, *arguments, "--json").out)
+            self.assertIs(result["converged"], False)
+            self.assertEqual(result["exit_code"], code)
+            self.assertEqual(len(result["errors"]), 1)
+            self.assertNotEqual(result["message"], "")
+
+    def test_strange_files_are_refused(self):
+        self.solve()
+        whole = (self.folder / "run.nc").read_bytes()
+        self.write("empty.nc", b"")
+        self.write("text.nc", SMALL)
+        self.write("signature.nc", b"\x89HDF\r\n\x1a\n")
+        self.write("garbage.nc", b"\x89HDF\r\n\x1a\n" + hashlib.sha512(b"livens").digest() * 1000)
+        for k in range(1, 16):
+            self.write(f"cut{k}.nc", whole[: len(whole) * k // 16])
+        (self.folder / "folder.nc").mkdir()
+        for name in self.files():
+            if name.endswith(".nc") and name != "run.nc":
+                for command in (("info", name), ("sample", name, "--body", "bob", "--at", "0"),
+                                ("export", name, "--csv", "x.csv")):
+                    done = self.expect(IO, *command)
+                    self.assertIn(name, done.err)
+        self.expect(IO, "info", "/dev/zero")
+        self.assertFalse((self.folder / "x.csv").exists())
+
+    def test_flipped_bytes_never_crash(self):
+        self.solve(SMALL.replace("elements = 10", "elements = 2").replace("output = 0.1", "output = 0.5"))
+        whole = (self.folder / "run.nc").read_bytes()
+        outcomes = set()
+        for k in range(60):   # a fixed set of places: the header, and all over the file
+            place = 8 + 37 * k if k < 40 else (k - 39) * len(whole) // 21
+            self.write("flipped.nc", whole[:place] + bytes([whole[place] ^ 0x55]) + whole[place + 1:])
+            code = self.run_program("info", "flipped.nc").returncode
+            self.assertIn(code, (0, RESOURCES, IO), f"byte {place}")
+            outcomes.add(code)
+        self.assertIn(IO, outcomes)
+
+    def test_frozen_files_load_for_ever(self):
+        frozen = sorted(DATA.glob("format_*.nc"))
+        self.assertGreater(len(frozen), 0)
+        for file in frozen:
+            expected = json.loads(file.with_suffix(".json").read_text())
+            info = json.loads(self.expect(0, "info", file, "--json").out)
+            for key, value in expected["info"].items():
+                self.assertEqual(info[key], value, key)
+            for query in expected["samples"]:
+                s = json.loads(self.expect(0, "sample", file, *query["arguments"], "--json").out)
+                for key, value in query["values"].items():
+                    for a, b in zip(s[key], value, strict=True):
+                        self.assertAlmostEqual(a, b, delta=1e-12, msg=key)
+
+    def test_netcdf4_python_reads_it(self):
+        try:
+            import netCDF4
+        except ImportError:
+            self.skipTest("netCDF4 is not installed")
+        self.solve()
+        with netCDF4.Dataset(self.folder / "run.nc") as run:
+            self.assertEqual(run.livens_format, 1)
+            self.assertEqual(run.converged, 1)
+            self.assertEqual(run["body"][:].tolist(), ["brick", "bob"])   # `_Encoding` makes strings of characters
+            self.assertEqual(str(run["scenario"][:]), SMALL)
+            self.assertEqual(json.loads(str(run["options"][:]))["method"]["degree"], 4)
+            self.assertEqual(json.loads(str(run["manifest"][:]))["convergence"]["blocks"], 10)
+            for name, variable in run.variables.items():
+                for attribute in ("units", "long_name", "frame"):
+                    self.assertTrue(getattr(variable, attribute), name)
+            end = json.loads(self.expect(0, "sample", "run.nc", "--body", "brick", "--at", "0.5", "--json").out)
+            self.assertEqual(run["position"][-1, 0].tolist(), end["position"])
+            self.assertEqual(run["directors"][-1, 0].tolist(), end["directors"])
+            self.assertTrue(all(math.isnan(x) for x in run["quaternion"][-1, 1].data))
+
+    def test_texts(self):
+        self.assertRegex(self.expect(0, "version").out, r"^livens \d+\.\d+\.\d+\n$")
+        self.assertEqual(json.loads(self.expect(0, "version", "--json").out)["format"], 1)
+        self.assertEqual(json.loads(self.expect(0, "schema", "--json").out)["type"], "object")
+        self.assertIn("#", self.expect(0, "schema").out)
+        codes = self.expect(0, "explain").out.split()
+        self.assertIn("unknown-key", codes)
+        for code in codes:
+            self.assertGreater(len(self.expect(0, "explain", code).out), 20, code)
+        for command in ("solve", "check", "info", "sample", "export", "schema", "explain", "version"):
+            self.assertIn(f"livens {command}", self.expect(0, command, "--help").out)
+            self.assertIn(f"livens {command}", (SOURCE / "docs" / "program.md").read_text())
+
+
+class WrongInput(ProgramTest):
+    """Every wrong scenario: exit code, place, and an older result that stays as it is."""
+
+    def refuse(self, text, code=SCENARIO, line=None, diagnostic=None):
+        """`line`: the text of the line that must be named."""
+        path = self.write("wrong.toml", text)
+        old = self.write("run.nc", "an older result")
+        done = self.expect(code, "solve", path.name, "-o", "run.nc", "--diagnostics", "gnu")
+        self.assertEqual(old.read_text(), "an older result")
+        self.assertEqual(self.files(), ["run.nc", "wrong.toml"])
+        self.assertTrue(any(self.names(finding, text, line, diagnostic) for finding in done.err.splitlines()),
+                        f"expected {diagnostic} at {line!r}:\n{done.err}")
+        self.expect(code, "check", path.name)
+        return done
+
+    def names(self, finding, text, line, diagnostic):
+        """Whether this message names the line and the code; columns must lie inside their lines."""
+        if diagnostic is not None and f"[{diagnostic}]" not in finding:
+            return False
+        if line is None:
+            return True
+        match = re.match(r"wrong\.toml:(\d+):(\d+): error: ", finding)
+        if match is None:
+            return False
+        lines = text.splitlines() + [""]
+        self.assertLessEqual(int(match[2]), len(lines[int(match[1]) - 1]) + 1, finding)
+        return line in lines[int(match[1]) - 1]
+
+    def test_unknown_key(self):
+        done = self.refuse(text_with("density =", "densty ="), line="densty", diagnostic="unknown-key")
+        self.assertIn("density", done.err)
+
+    def test_wrong_types(self):
+        self.refuse(text_with("density = 1000", 'density = true'), line="density")
+        self.refuse(text_with("position = [1, 0, 0]", "position = 1"), line="position")
+        self.refuse(text_with("position = [1, 0, 0]", "position = [1, 0]"), line="position")
+        self.refuse(text_with("elements = 10", "elements = 10.5"), line="elements")
+        self.refuse(text_with("[time]", "time = 3\n[other]"), line="")
+
+    def test_missing_body(self):
+        self.refuse(text_with('["brick", "bob"]', '["brick", "bop"]'), line="bop")
+
+    def test_no_body_at_all(self):
+        self.refuse("format = 1\n[time]\nend = 1\nelements = 1\n")
+
+    def test_two_bodies_of_one_name(self):
+        self.refuse(text_with('name = "bob"', 'name = "brick"'), line='name = "brick"')
+
+    def test_mass(self):
+        for mass in ("0", "-1", "nan", "inf", "-0.0", "1e400"):
+            self.refuse(text_with("mass = 0.5", f"mass = {mass}"), line="mass")
+        self.refuse(text_with("density = 1000", "density = 0"), line="density")
+        self.refuse(text_with("density = 1000", "density = -5"), line="density")
+
+    def test_impossible_inertia(self):
+        brick = 'shape = { box = [0.3, 0.2, 0.1] }\ndensity = 1000'
+        done = self.refuse(text_with(brick, "mass = 1\ninertia = [1, 1, 3]"), line="inertia")
+        self.assertIn("triangle", done.err)
+        self.refuse(text_with(brick, "mass = 1\ninertia = [-1, 1, 1]"), line="inertia")
+
+    def test_directors_that_are_not_orthonormal(self):
+        for directors in ("[[1, 0, 0], [0, 1, 0], [0, 0.1, 1]]", "[[2, 0, 0], [0, 1, 0], [0, 0, 1]]",
+                          "[[0, 1, 0], [1, 0, 0], [0, 0, 1]]"):
+            self.refuse(text_with("position = [1, 0, 0]", f"position = [1, 0, 0]\ndirectors = {directors}"),
+                        line="directors")
+
+    def test_self_joint(self):
+        self.refuse(text_with('["brick", "bob"]', '["bob", "bob"]'), line="bob")
+
+    def test_contradictory_joints(self):
+        # The same two points held at two distances.
+        second = '[[joint]]\nname = "again"\ntype = "rod"\nbetween = ["brick", "bob"]\nlength = 1.5\n\n[time]'
+        self.refuse(text_with("[time]", second))
+
+    def test_inconsistent_start(self):
+        self.refuse(text_with('type = "rod"\nbetween = ["world", "brick"]',
+                              'type = "rod"\nbetween = ["world", "brick"]\nlength = 2'))
+        self.refuse(text_with("angular_velocity = [0, 0, 2]", "velocity = [1, 0, 0]"))
+
+    def test_degree_zero_and_beyond(self):
+        for degree in ("0", "17", "-1", "99999999999999999999"):
+            self.refuse(text_with("degree = 4", f"degree = {degree}"), line="degree")
+
+    def test_elements(self):
+        for elements in ("0", "-1"):
+            self.refuse(text_with("elements = 10", f"elements = {elements}"), line="elements")
+
+    def test_end_before_start(self):
+        self.refuse(text_with("end = 0.5", "end = -0.5"), line="end")
+        self.refuse(text_with("end = 0.5", "end = 0"), line="end")
+
+    def test_nan_and_inf(self):
+        for value in ("nan", "inf", "-inf", "+nan"):
+            self.refuse(text_with("gravity = [0, 0, -9.81]", f"gravity = [0, 0, {value}]"), line="gravity")
+            self.refuse(text_with("end = 0.5", f"end = {value}"), line="end")
+
+    def test_syntax(self):
+        self.refuse(text_with("density = 1000", "density = = 1000"), line="density")
+        self.refuse(text_with("[time]", "[time"), line="")
+        self.refuse(text_with("end = 0.5", "end = 0.5\nend = 0.6"), line="end = 0.6")
+
+    def test_format(self):
+        self.refuse(text_with("format = 1\n", ""))
+        self.refuse(text_with("format = 1", "format = 2"), line="format")
+
+    def test_files_that_are_no_scenarios(self):
+        self.refuse("")
+        self.refuse(" \n\n")
+        self.refuse(bytes(range(256)) * 10)
+        self.refuse(b"\x7fELF" + bytes(1000))
+        self.refuse(SMALL.encode("utf-16"))
+        self.expect(IO, "solve", self.folder, "-o", "run.nc")
+        self.expect(IO, "solve", "missing.toml", "-o", "run.nc")
+        self.expect(IO, "solve", "run.nc/missing.toml", "-o", "run.nc")
+
+    def test_file_over_the_limit(self):
+        self.refuse(SMALL + "#" * (16 << 20), code=RESOURCES)
+
+    def test_deep_nesting(self):
+        for opening, closing in (("[", "]"), ("{ a = ", "}")):
+            deep = opening * 100_000 + "1" + closing * 100_000
+            self.refuse(SMALL + "\n[deep]\nx = " + deep + "\n", line="x = ")
+        self.refuse("x" + ".x" * 100_000 + " = 1\n" + SMALL, line="x.x")
+
+    def test_too_many_elements(self):
+        done = self.run_program("check", self.write("many.toml", text_with("elements = 10", "elements = 2000000000")))
+        self.assertIn(done.returncode, (SCENARIO, RESOURCES), done.err)
+
+    def test_hostile_names_are_escaped(self):
+        done = self.refuse(text_with('["brick", "bob"]', '["brick", "\\u001b[31mred"]'))
+        self.assertNotIn("\x1b", done.err)
+
+
+class Files(ProgramTest):
+    """Places that cannot be written, and disks that are full."""
+
+    def setUp(self):
+        super().setUp()
+        self.write("small.toml", SMALL)
+        self.solve()
+        self.old = (self.folder / "run.nc").read_bytes()
+        # Another scenario, so that an overwritten result would differ.
+        self.write("other.toml", SMALL.replace("[1, 0, 0]", "[2, 0, 0]"))
+        self.before = self.files()
+
+    def assert_untouched(self):
+        self.assertEqual((self.folder / "run.nc").read_bytes(), self.old)
+        self.assertEqual(self.files(), self.before)
+
+    def test_places_that_are_refused(self):
+        (self.folder / "folder").mkdir()
+        self.before = self.files()
+        for output in ("missing/run.nc", "folder", "folder/", ".", "..", "small.toml/run.nc", "/dev/null", "",
+                       "n" * 300, "other.toml", "./other.toml"):
+            for arguments in (("-o", output), ("-o", "x.nc", "--csv", output)):
+                if output == "":
+                    continue
+                done = self.expect(IO, "solve", "other.toml", *arguments)
+                self.assertIn("cannot write", done.err)
+                self.assert_untouched()
+        self.assertEqual(list((self.folder / "folder").iterdir()), [])
+
+    def test_the_scenario_is_never_overwritten(self):
+        os.link(self.folder / "other.toml", self.folder / "hard.nc")
+        os.symlink("other.toml", self.folder / "soft.nc")
+        text = (self.folder / "other.toml").read_text()
+        for output in ("other.toml", "hard.nc", "soft.nc", str(self.folder / "other.toml")):
+            self.expect(IO, "solve", "other.toml", "-o", output)
+            self.assertEqual((self.folder / "other.toml").read_text(), text)
+
+    def test_size_limit(self):
+        # What a full disk looks like to a process; from 0 bytes to nearly the whole file.
+        for limit in (0, 1000, len(self.old) - 4096):
+            done = self.expect(IO, "solve", "other.toml", "-o", "run.nc", "--json", preexec_fn=lambda: resource.setrlimit(
+                resource.RLIMIT_FSIZE, (limit, limit)))
+            self.assertIs(json.loads(done.out)["converged"], False)
+            self.assertIn("run.nc", done.err)
+            self.assert_untouched()
+
+    def test_full_disk(self):
+        disk = self.folder / "disk"
+        disk.mkdir()
+        size = 3 * len(self.old) // 2 // 4096 * 4096
+        try:
+            mounted = subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={size}", "tmpfs", disk],
+                                     stderr=subprocess.DEVNULL).returncode == 0
+        except OSError:
+            mounted = False
+        if not mounted:
+            self.skipTest("mounting is not permitted; test_size_limit covers the program's part")
+        self.addCleanup(lambda: subprocess.run(["umount", disk], check=True))
+        self.expect(0, "solve", "small.toml", "-o", "disk/run.nc")
+        (disk / "run.json").unlink()
+        self.assertEqual((disk / "run.nc").read_bytes(), self.old)
+        done = self.expect(IO, "solve", "other.toml", "-o", "disk/run.nc")
+        self.assertIn("space", done.err)
+        self.assertEqual((disk / "run.nc").read_bytes(), self.old)
+        self.assertEqual([p.name for p in disk.iterdir()], ["run.nc"])
+
+    def test_no_permission(self):
+        options = {}
+        if os.geteuid() == 0:   # root may write everywhere: become nobody
+            options["preexec_fn"] = lambda: os.setuid(65534)
+            try:
+                subprocess.run([PROGRAM, "version"], stdout=subprocess.DEVNULL, check=True, **options)
+            except (OSError, subprocess.SubprocessError):
+                self.skipTest("another user cannot run the program where it lies")
+        self.folder.chmod(0o555)
+        self.addCleanup(self.folder.chmod, 0o755)
+        for output in ("run.nc", "new.nc"):
+            self.assertIn("ermission", self.expect(IO, "solve", "other.toml", "-o", output, **options).err)
+            self.assert_untouched()
+
+    def test_output_that_cannot_be_printed(self):
+        with open("/dev/full", "wb") as full:
+            for command in (("info", "run.nc"), ("info", "run.nc", "--json"), ("check", "small.toml"), ("schema",),
+                            ("sample", "run.nc", "--body", "bob", "--at", "0"), ("version",), ("--help",)):
+                done = self.expect(IO, *command, stdout=full)
+                self.assertIn("standard output", done.err)
+            # The result is safe by then.
+            self.expect(IO, "solve", "other.toml", "-o", "new.nc", "--json", stdout=full)
+        self.expect(0, "info", "new.nc")
+
+    def test_closed_pipe(self):
+        for command in (("schema",), ("solve", "other.toml", "-o", "new.nc", "--json")):
+            reading, writing = os.pipe()
+            os.close(reading)
+            with os.fdopen(writing, "wb") as pipe:
+                self.expect(IO, *command, stdout=pipe)
+        self.expect(0, "info", "new.nc")
+
+    def test_closed_streams(self):
+        for redirection in (">&-", "2>&-", "<&-", ">&- 2>&- <&-"):
+            done = subprocess.run(f'"{PROGRAM}" solve other.toml -o new.nc {redirection}', shell=True, cwd=self.folder,
+                                  stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+            self.assertEqual(done.returncode, IO if ">&-" in redirection.split() else 0, redirection)
+            self.expect(0, "info", "new.nc")
+
+    def test_memory_limit(self):
+        many = SMALL.replace("elements = 10", "elements = 3000000").replace("output = 0.1\n", "")
+        self.write("many.toml", many.replace("degree = 4", "degree = 1"))
+        if "asan" in PROGRAM:
+            self.skipTest("the sanitizer needs address space of its own")
+        done = self.expect(RESOURCES, "solve", "many.toml", "-o", "run.nc", "--json", preexec_fn=lambda:
+                           resource.setrlimit(resource.RLIMIT_AS, (300 << 20, 300 << 20)))
+        self.assertIs(json.loads(done.out)["converged"], False)
+        self.before = sorted(self.before + ["many.toml"])
+        self.assert_untouched()
+
+
+class Signals(ProgramTest):
+    def start(self, *arguments):
+        return subprocess.Popen([PROGRAM, *map(str, arguments)], cwd=self.folder, stdout=subprocess.PIPE,
+                                stderr=subprocess.PIPE)
+
+    def test_interrupt_leaves_a_readable_result(self):
+        self.write("long.toml", LONG)
+        for number in (signal.SIGINT, signal.SIGTERM):
+            old = self.write("run.nc", "an older result")
+            program = self.start("solve", "long.toml", "-o", "run.nc", "--json")
+            time.sleep(0.6)
+            self.assertIsNone(program.poll(), "the run must be long enough to be interrupted")
+            self.assertEqual(old.read_text(), "an older result")
+            program.send_signal(number)
+            out, err = program.communicate(timeout=60)
+            self.assertEqual(program.returncode, 128 + number, err)
+            result = json.loads(out)
+            self.assertEqual((result["converged"], result["status"]), (False, "cancelled"))
+            info = json.loads(self.expect(0, "info", "run.nc", "--json").out)
+            self.assertEqual((info["converged"], info["status"]), (False, "cancelled"))
+            self.assertGreater(info["elements"], 0)
+            self.assertLess(info["end"], 50000)
+            s = json.loads(self.expect(0, "sample", "run.nc", "--body", "bob", f"--at={info['end']!r}", "--json").out)
+            self.assertTrue(all(math.isfinite(x) for x in s["position"]))
+            self.assert_no_temporaries()
+
+    def test_interrupt_while_reading_touches_nothing(self):
+        os.mkfifo(self.folder / "pipe.toml")
+        old = self.write("run.nc", "an older result")
+        program = self.start("solve", "pipe.toml", "-o", "run.nc")
+        time.sleep(0.3)
+        program.send_signal(signal.SIGINT)
+        program.communicate(timeout=20)
+        self.assertIn(program.returncode, (-signal.SIGINT, 130))
+        self.assertEqual(old.read_text(), "an older result")
+
+    def test_progress_is_for_terminals(self):
+        self.write("long.toml", LONG)
+        for options, expected in (((), True), (("-q",), False)):
+            terminal, stderr = pty.openpty()
+            program = subprocess.Popen([PROGRAM, "solve", "long.toml", *options], cwd=self.folder, stderr=stderr,
+                                       stdout=subprocess.PIPE)
+            os.close(stderr)
+            time.sleep(0.6)
+            program.send_signal(signal.SIGINT)
+            program.communicate(timeout=60)
+            seen = b""
+            try:
+                while chunk := os.read(terminal, 65536):
+                    seen += chunk
+            except OSError:   # how Linux says that the other end is closed
+                pass
+            os.close(terminal)
+            self.assertEqual(program.returncode, 130)
+            if expected:
+                self.assertRegex(seen.decode(), r"\r\x1b\[K +\d+ %  element \d+ of 1000000  t = .* s to go")
+                self.assertIn("\r\x1b[K", seen.decode().split("to go")[-1], "the line is taken away at the end")
+            else:
+                self.assertNotIn("to go", seen.decode())
+
+    def test_kill_leaves_old_or_new(self):
+        text = SMALL.replace("elements = 10", "elements = 2000").replace("output = 0.1", "output = 0.0005")
+        self.solve(text)
+        old = (self.folder / "run.nc").read_bytes()
+        self.write("other.toml", text.replace("[1, 0, 0]", "[2, 0, 0]"))
+        self.expect(0, "solve", "other.toml", "-o", "new.nc")
+        new = (self.folder / "new.nc").read_bytes()
+        begin = time.monotonic()
+        self.expect(0, "solve", "other.toml", "-o", "run.nc")
+        whole = time.monotonic() - begin
+        seen = set()
+        for k in range(15):
+            (self.folder / "run.nc").write_bytes(old)
+            program = self.start("solve", "other.toml", "-o", "run.nc", "-q")
+            time.sleep(whole * (0.3 + 0.8 * k / 14))
+            program.kill()
+            program.communicate()
+            now = (self.folder / "run.nc").read_bytes()
+            self.assertTrue(now in (old, new), f"{k}: neither the old result nor the new one")
+            seen.add(now == new)
+        self.assertIn(False, seen)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,157 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "livens/base/error.h"
+#include "livens/diagnostics/diagnostics.h"
+#include "unit/diagnostics/hand_made.h"
+
+namespace livens {
+namespace {
+
+using hand_made::mesh;
+using hand_made::motion;
+
+/// A body on a ball joint at its end turns about z, and a point mass hangs from it by a rod of 2 m.
+struct Arm {
+    Model model;
+    static constexpr double spin = 2;
+
+    Arm()
+    {
+        Placement place;
+        place.position = {0.5, 0, 0};
+        model.add_body(rigid_body("arm", box(1, {1, 0.1, 0.1}), place));
+        model.add_body(point_mass("bob", 1, {1, 0, -2}));
+        model.add_joint(spherical("ball", world, 0, {{0, 0, 0}, {-0.5, 0, 0}, {0, 0, 1}, {0, 0, 1}}));
+        model.add_joint(rod("rod", 0, 1, {{0.5, 0, 0}, {}, {0, 0, 1}, {0, 0, 1}}, 2));
+    }
+    State at(double t) const
+    {
+        const Matrix3 d = directors_from_rotation_vector({0, 0, spin * t});
+        const Vector3 tip = d.column(0), w{0, 0, spin};
+        const Matrix34 X = configuration(0.5 * tip, d);
+        Matrix34 bob{}, v{};
+        bob.set_column(0, tip + Vector3{0, 0, -2});
+        v.set_column(0, cross(w, tip));
+        return {t, {X, bob}, {rate(X, cross(w, 0.5 * tip), w), v}};
+    }
+    Motion turn(int degree) const
+    {
+        return motion(model, mesh(0, 1, 4), degree, [this](double t) { return at(t); });
+    }
+};
+
+TEST(Violations, OfAnExactMotionVanishAtNodes)
+{
+    const Arm arm;
+    const ViolationReport v = violations(arm.model, arm.turn(3));
+    EXPECT_LT(v.joints_at_nodes, 1e-15);
+    EXPECT_LT(v.rigidity_at_nodes, 1e-15);
+    EXPECT_LT(v.velocity_level, 1e-15);
+}
+
+TEST(Violations, BetweenNodesFallWithTheDegree)
+{
+    const Arm arm;
+    const ViolationReport coarse = violations(arm.model, arm.turn(2)),
+                          fine = violations(arm.model, arm.turn(6));
+    EXPECT_GT(coarse.rigidity_between, 1e-5);
+    EXPECT_LT(fine.rigidity_between, 1e-8);
+    EXPECT_LT(coarse.joints_between, 1e-15);   // all joints are linear in this motion
+    EXPECT_EQ(violations(arm.model, arm.turn(2), 0).rigidity_between, 0);
+}
+
+TEST(Violations, NameTheWorstRowAndItsInstant)
+{
+    const Arm arm;
+    Motion turn = arm.turn(2);
+    turn.X.coefficient(2, 1)[12 + 2] -= 1e-3;   // the bob, a millimetre lower in the middle of element 2
+    turn.X.coefficient(1, 0)[2] += 1e-4;        // the arm, a tenth of it off its ball joint
+    const ViolationReport v = violations(arm.model, turn);
+    EXPECT_EQ(v.worst_row, 3);   // the rod
+    EXPECT_EQ(v.worst_time, 0.625);
+    // 1/2 (l^2 - 4) / 4 with l = 2.001
+    EXPECT_NEAR(v.joints_at_nodes, 0.5 * (2.001 * 2.001 - 4) / 4, 1e-12);
+    EXPECT_GT(v.joints_between, 1e-4);
+    EXPECT_LT(v.rigidity_at_nodes, 1e-15);
+}
+
+TEST(Violations, AreRelativeToTheRowsScale)
+{
+    Model model;
+    model.add_body(point_mass("bob", 1, {0, 0, 0}));
+    model.add_joint(spherical("ball", world, 0, {}, 10));
+    const Motion off = motion(model, mesh(0, 1, 1), 1, [](double t) {
+        return hand_made::state_of_point(t, {0, 0.5, 0}, {0, 0, 3});
+    });
+    const ViolationReport v = violations(model, off);
+    EXPECT_DOUBLE_EQ(v.joints_at_nodes, 0.05);
+    EXPECT_EQ(v.worst_row, 1);
+    EXPECT_DOUBLE_EQ(v.velocity_level, 0.3);
+    EXPECT_EQ(v.rigidity_at_nodes, 0);   // a point mass has no directors to be orthonormal
+}
+
+TEST(Violations, SeeEveryEntryOfTheMetric)
+{
+    const Arm arm;
+    for (int i = 1; i < 4; ++i) {
+        for (int j = 1; j < 4; ++j) {
+            Motion turn = arm.turn(2);
+            const std::span<double> x = turn.X.coefficient(0, 0);   // here d_j = e_j
+            x[3 * i + (j - 1)] += 1e-6;
+            const double exact = i == j ? 1e-6 : 0.5e-6;
+            EXPECT_NEAR(violations(arm.model, turn).rigidity_at_nodes, exact, 1e-11) << i << j;
+        }
+    }
+}
+
+TEST(Violations, OfVelocitiesAreSeenAtBothBodies)
+{
+    const Arm arm;
+    Motion turn = arm.turn(2);
+    turn.velocities[2 * 3](2, 0) += 1e-3;   // the arm's reference point off its joint, along z
+    EXPECT_NEAR(violations(arm.model, turn).velocity_level, 1e-3, 1e-12);
+    turn = arm.turn(2);
+    turn.velocities[2 * 3 + 1](2, 0) += 1;   // the bob along the rod: 1 m/s times 2 m over (2 m)^2
+    EXPECT_NEAR(violations(arm.model, turn).velocity_level, 0.5, 1e-12);
+}
+
+TEST(Violations, OfARodAreTheRateAtWhichItsEndsPart)
+{
+    Model model;
+    model.add_body(point_mass("a", 1, {0, 0, 0}));
+    model.add_body(point_mass("b", 1, {0, 0, -2}));
+    model.add_joint(rod("rod", 0, 1, {}, 2));
+    const auto with_velocities = [&](const Vector3& v_a, const Vector3& v_b) {
+        return motion(model, mesh(0, 1, 1), 1, [&](double t) {
+            State s = hand_made::state_of_point(t, {0, 0, 0}, v_a);
+            const State b = hand_made::state_of_point(t, {0, 0, -2}, v_b);
+            s.X.push_back(b.X[0]);
+            s.V.push_back(b.V[0]);
+            return s;
+        });
+    };
+    EXPECT_EQ(violations(model, with_velocities({1, 0, 3}, {0, 5, 3})).velocity_level, 0);
+    EXPECT_EQ(violations(model, with_velocities({0, 0, 3}, {0, 0, 2.5})).velocity_level, 0.5 * 2 / 4);
+}
+
+TEST(Violations, ANumberThatIsNoneIsAViolation)
+{
+    const Arm arm;
+    Motion turn = arm.turn(2);
+    turn.X.coefficient(1, 1)[0] = NAN;
+    EXPECT_TRUE(std::isnan(violations(arm.model, turn).joints_at_nodes));
+    turn = arm.turn(2);
+    turn.X.coefficient(1, 1)[5] = NAN;
+    EXPECT_TRUE(std::isnan(violations(arm.model, turn).rigidity_at_nodes));
+}
+
+TEST(Violations, RefuseANegativeNumberOfSamples)
+{
+    const Arm arm;
+    EXPECT_THROW(violations(arm.model, arm.turn(2), -1), InputError);
+}
+
+}   // namespace
+}   // namespace livens

@@ -1,0 +1,301 @@
+#include "livens/io/results.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "livens/base/error.h"
+#include "livens/io/detail/netcdf_file.h"
+#include "livens/io/detail/results_layout.h"
+#include "livens/io/sample.h"
+#include "livens/spacetime/solve.h"
+#include "livens/time/time_mesh.h"
+#include "unit/io/sample_run.h"
+
+namespace livens {
+namespace {
+
+// --- what is written is read
+// ----------------------------------------------------------------------------------------
+
+TEST_F(Results, RunComesBackToTheBit)
+{
+    const Model model = sample_model();
+    const RunFile run = sample_run(model);
+    write_run(in_folder("run.nc"), model, run);
+    const RunFile back = read_run(in_folder("run.nc"));
+
+    EXPECT_EQ(digest(back), digest(run));   // everything; what follows guards the digest itself
+    EXPECT_EQ(back.scenario_text, run.scenario_text);
+    EXPECT_EQ(back.body_names, run.body_names);
+    EXPECT_EQ(back.body_is_point, run.body_is_point);
+    EXPECT_EQ(back.output, run.output);
+    EXPECT_EQ(back.motion.mesh.ends, run.motion.mesh.ends);
+    EXPECT_EQ(back.motion.X.values, run.motion.X.values);
+    EXPECT_EQ(back.motion.X.degree, 2);
+    EXPECT_TRUE(back.motion.X.continuous);
+    EXPECT_EQ(back.motion.P.values, run.motion.P.values);
+    EXPECT_FALSE(back.motion.P.continuous);
+    EXPECT_EQ(back.motion.multipliers.values, run.motion.multipliers.values);
+    EXPECT_EQ(back.motion.momenta, run.motion.momenta);
+    EXPECT_EQ(back.motion.velocities, run.motion.velocities);
+    EXPECT_EQ(back.motion.accelerations, run.motion.accelerations);
+    EXPECT_EQ(back.motion.end_multipliers, run.motion.end_multipliers);
+    EXPECT_EQ(back.motion.redundant_rows, run.motion.redundant_rows);
+    EXPECT_EQ(back.report.status, SolveStatus::not_converged);
+    EXPECT_EQ(back.report.newton_iterations, 123456789012);
+    EXPECT_EQ(back.report.notes, run.report.notes);
+    EXPECT_EQ(back.summary.notes, run.summary.notes);
+    EXPECT_TRUE(std::isnan(back.summary.angular_momentum_drift));
+    EXPECT_EQ(back.balance.linear_impulse, run.balance.linear_impulse);
+    EXPECT_EQ(back.balance.largest_moment, run.balance.largest_moment);
+}
+
+TEST_F(Results, DigestSeesEveryPart)
+{
+    const Model model = sample_model();
+    const RunFile run = sample_run(model);
+    const auto changed = [&](auto&& change) {
+        RunFile other = run;
+        change(other);
+        return digest(other) != digest(run);
+    };
+    EXPECT_TRUE(changed([](RunFile& r) { r.title += " "; }));
+    EXPECT_TRUE(changed([](RunFile& r) { r.scenario_text.back() = ' '; }));
+    EXPECT_TRUE(changed([](RunFile& r) { r.body_is_point[0] = true; }));
+    EXPECT_TRUE(changed([](RunFile& r) { r.motion.X.values[5] = std::nextafter(r.motion.X.values[5], 9); }));
+    EXPECT_TRUE(changed([](RunFile& r) { r.motion.P.continuous = true; }));
+    EXPECT_TRUE(changed([](RunFile& r) { r.motion.accelerations[3][2] = -0.0; }));
+    EXPECT_TRUE(changed([](RunFile& r) { r.report.status = SolveStatus::singular; }));
+    EXPECT_TRUE(changed([](RunFile& r) { r.summary.converged = true; }));
+    EXPECT_TRUE(changed([](RunFile& r) { r.balance.work[1] += 1; }));
+    EXPECT_TRUE(changed([](RunFile& r) { r.report.notes.pop_back(); }));
+}
+
+TEST_F(Results, SameRunGivesSameBytes)
+{
+    const Model model = sample_model();
+    const RunFile run = sample_run(model);
+    write_run(in_folder("first.nc"), model, run);
+    write_run(in_folder("second.nc"), model, run);
+    EXPECT_EQ(bytes_of(in_folder("first.nc")), bytes_of(in_folder("second.nc")));
+    EXPECT_EQ(n_files(), 2);
+}
+
+TEST_F(Results, LongTextsAndManyNamesComeBack)
+{
+    const Model model = sample_model();
+    RunFile run = sample_run(model);
+    run.title = std::string(100'000, 'x');
+    run.summary.message = std::string(16u << 10, 'y');
+    run.report.message = std::string("a\0b", 3);
+    run.scenario_text = std::string(3'000'000, '#');
+    run.summary.notes.assign(3000, "note");
+    write_run(in_folder("run.nc"), model, run);
+    EXPECT_EQ(digest(read_run(in_folder("run.nc"))), digest(run));
+}
+
+TEST_F(Results, EmptyPartsComeBack)
+{
+    Model model;
+    model.add_body(point_mass("bob", 1, {0, 0, 0}));
+    RunFile run;
+    run.body_names = {"bob"};
+    run.body_is_point = {true};
+    run.centers_of_mass = {{0, 0, 0}};
+    run.motion.n_bodies = 1;
+    run.motion.mesh.ends = {0};   // nothing was solved: the start alone
+    run.motion.X = {12, 4, true, std::vector<double>(12, 0.5)};
+    run.motion.momenta = run.motion.velocities = {Matrix34{1, 2, 3}};
+    run.output = {0, 1};
+    write_run(in_folder("run.nc"), model, run);
+    const RunFile back = read_run(in_folder("run.nc"));
+    EXPECT_EQ(digest(back), digest(run));
+    EXPECT_EQ(sample_bodies(model, back.motion, 0).front().velocity, (Vector3{1, 2, 3}));
+    write_csv(in_folder("run.csv"), model, back);
+}
+
+// --- every reader finds its way
+// -------------------------------------------------------------------------------------
+
+TEST_F(Results, FileSaysWhatItHolds)
+{
+    const Model model = sample_model();
+    const RunFile run = sample_run(model);
+    std::string image = run_image(model, run);
+    const NetcdfReader file(image);
+    const std::string manual = bytes_of(fs::path(LIVENS_SOURCE_DIR) / "docs/results.md");
+    for (const std::string& name : file.variables()) {
+        EXPECT_NE(manual.find("`" + name + "`"), std::string::npos)
+            << name << " is missing in docs/results.md";
+        for (const char* attribute : {"units", "long_name", "frame"})
+            EXPECT_FALSE(file.text_attribute_of(name, attribute).empty()) << name << ": " << attribute;
+    }
+    for (const std::string& name : file.attributes())
+        EXPECT_NE(manual.find("`" + name + "`"), std::string::npos)
+            << name << " is missing in docs/results.md";
+    EXPECT_EQ(file.text_attribute_of("quaternion", "order"), "w, x, y, z");
+    EXPECT_EQ(file.int_attribute("livens_format"), 1);
+    EXPECT_EQ(file.int_attribute("converged"), 0);
+    EXPECT_EQ(file.text_attribute("title"), "Größe");
+}
+
+std::vector<double> numbers_of(const NetcdfReader& file, const std::string& name,
+                               std::vector<std::string> dimensions)
+{
+    return file.doubles({name, std::move(dimensions)});
+}
+
+TEST_F(Results, SamplesHoldPosesAndReactions)
+{
+    const Model model = sample_model();
+    const RunFile run = sample_run(model);
+    std::string image = run_image(model, run);
+    const NetcdfReader file(image);
+    const std::vector<double> t = numbers_of(file, "time", {"time"});
+    const std::vector<double> p = numbers_of(file, "position", {"time", "body", "xyz"});
+    const std::vector<double> c = numbers_of(file, "center_of_mass", {"time", "body", "xyz"});
+    const std::vector<double> d = numbers_of(file, "directors", {"time", "body", "director", "xyz"});
+    const std::vector<double> q = numbers_of(file, "quaternion", {"time", "body", "quaternion_part"});
+    const std::vector<double> w = numbers_of(file, "angular_velocity_body", {"time", "body", "xyz"});
+    const std::vector<double> f = numbers_of(file, "reaction_force", {"time", "joint", "side", "xyz"});
+    ASSERT_EQ(t, run.output);
+    for (std::size_t i = 0; i < t.size(); ++i) {
+        const double angle = 2 * t[i];
+        EXPECT_NEAR(p[6 * i], 3 * t[i], 1e-14);
+        EXPECT_NEAR(c[6 * i], 3 * t[i] - 0.5 * std::sin(angle), 1e-14);
+        EXPECT_NEAR(c[6 * i + 1], 0.5 * std::cos(angle), 1e-14);
+        EXPECT_NEAR(d[18 * i], std::cos(angle), 1e-14);   // d1
+        EXPECT_NEAR(d[18 * i + 1], std::sin(angle), 1e-14);
+        EXPECT_NEAR(d[18 * i + 3], -std::sin(angle), 1e-14);   // d2
+        EXPECT_NEAR(q[8 * i], std::cos(angle / 2), 1e-14);     // w; its sign follows the motion through w = 0
+        EXPECT_NEAR(q[8 * i + 3], std::sin(angle / 2), 1e-14);
+        EXPECT_TRUE(std::isnan(d[18 * i + 9]) && std::isnan(q[8 * i + 4]))
+            << "a point mass has no orientation";
+        EXPECT_NEAR(w[6 * i + 2], 2, 1e-14);
+        EXPECT_NEAR(f[6 * i + 2], -2 * 5, 1e-13);   // -lambda (x_bob - x_body) from the left
+        EXPECT_NEAR(f[6 * i + 5], -2 * 7, 1e-13);   // and from the right
+    }
+}
+
+TEST_F(Results, SamplesInsideElementsComeFromThePolynomial)
+{
+    const Model model = sample_model();
+    const RunFile run = sample_run(model);
+    const double t = 0.5 + 0.1;
+    const std::vector<BodySample> samples = sample_bodies(model, run.motion, t);
+    EXPECT_NEAR(samples[0].position[0], 3 * t, 1e-14);
+    EXPECT_NEAR(samples[0].velocity[0], 3, 1e-13);
+    EXPECT_NEAR(samples[0].angular_velocity[2], 2, 0.1);
+    EXPECT_GT(std::abs(norm(samples[0].directors_raw.column(0)) - 1),
+              1e-6);   // the violation is there to be seen
+    EXPECT_NEAR(norm(samples[0].directors.column(0)), 1, 1e-15);
+    EXPECT_NEAR(determinant(samples[0].directors), 1, 1e-15);
+    const std::vector<JointSample> joints = sample_joints(model, run.motion, t);
+    EXPECT_FALSE(joints[0].is_acceleration_level);
+    EXPECT_NEAR(joints[0].left.force[2], -2 * 7, 1e-13);   // element 1 holds 7
+}
+
+TEST_F(Results, SamplingSnapsToElementEnds)
+{
+    const Model model = sample_model();
+    const RunFile run = sample_run(model);
+    const double beside = std::nextafter(0.5, 1.0);
+    EXPECT_EQ(snap_to_element_end(run.motion.mesh, beside), 0.5);
+    EXPECT_EQ(snap_to_element_end(run.motion.mesh, 0.5 + 1e-12), 0.5 + 1e-12);
+    EXPECT_EQ(snap_to_element_end(run.motion.mesh, std::nextafter(4.0, 5.0)), 4.0);
+    EXPECT_TRUE(sample_joints(model, run.motion, beside)[0].is_acceleration_level);
+    for (const double t :
+         {-0.1, 4.1, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()})
+        EXPECT_THROW(sample_bodies(model, run.motion, t), InputError) << t;
+}
+
+TEST_F(Results, OutputBeyondTheMotionIsLeftOut)
+{
+    const Model model = sample_model();
+    RunFile run = sample_run(model);
+    run.output = {0, 1, 2, 77};
+    std::string image = run_image(model, run);
+    EXPECT_EQ(numbers_of(NetcdfReader(image), "time", {"time"}), (std::vector<double>{0, 1, 2}));
+    EXPECT_EQ(run_from_image(image, "").output, run.output);
+}
+
+TEST_F(Results, CsvHasOneLinePerTime)
+{
+    const Model model = sample_model();
+    RunFile run = sample_run(model);
+    run.body_names[1] = "bob";
+    write_csv(in_folder("run.csv"), model, run);
+    const std::string text = bytes_of(in_folder("run.csv"));
+    EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 10);
+    EXPECT_EQ(text.substr(0, 7), "t [s],k");
+    const std::string line =
+        text.substr(text.find("\r\n") + 2, text.find("\r\n", text.find("\r\n") + 2) - text.find("\r\n") - 2);
+    EXPECT_EQ(std::count(line.begin(), line.end(), ','), 2 * 13 + 3);
+    EXPECT_EQ(line.substr(0, 25), "0,0,0,0,1,0,0,0,3,0,0,0,0");
+}
+
+// --- acceptance
+// -----------------------------------------------------------------------------------------------------
+
+Solution solved(const Model& model, const Method& method, double end, int elements)
+{
+    return solve(model, {model.start()}, make_time_mesh(0, end, elements), method);
+}
+
+/// A pendulum of length 2: a box on a rod, let go at the given angle from straight down.
+Model pendulum(double angle)
+{
+    Model model({0, 0, -9.81});
+    Placement placement;
+    placement.position = {2 * std::sin(angle), 0, -2 * std::cos(angle)};
+    model.add_body(rigid_body("bob", box(1000, {0.1, 0.2, 0.3}), placement));
+    model.add_joint(rod("rod", world, 0, {}, 2));
+    return model;
+}
+
+TEST_F(Results, GoodRunIsConverged)
+{
+    const Model model = pendulum(1);
+    const RunFile run = make_run(model, solved(model, Lobatto{4}, 1, 10), Lobatto{4});
+    EXPECT_EQ(run.summary.status, "converged");
+    EXPECT_EQ(run.summary.method, "lobatto(4)");
+    EXPECT_LT(run.summary.energy_drift, 1e-6);
+    EXPECT_EQ(run.body_names, std::vector<std::string>{"bob"});
+    EXPECT_EQ(run.row_labels, std::vector<std::string>{"rod: distance"});
+    EXPECT_EQ(run.output.size(), 11u);
+}
+
+TEST_F(Results, MechanismAtRestIsNotSuspect)
+{
+    const Model model = pendulum(0);   // every scale of the motion itself is zero or rounding
+    const RunFile run = make_run(model, solved(model, Lobatto{4}, 1, 10), Lobatto{4});
+    EXPECT_EQ(run.summary.status, "converged")
+        << (run.summary.notes.empty() ? "" : run.summary.notes.front());
+}
+
+TEST_F(Results, LossOfEnergyIsSuspect)
+{
+    const Model model = pendulum(1);
+    const RunFile run = make_run(model, solved(model, Endpoint{}, 2, 20), Endpoint{});
+    EXPECT_TRUE(run.summary.converged);
+    EXPECT_EQ(run.summary.status, "suspect");
+    EXPECT_TRUE(std::ranges::any_of(run.summary.notes, [](const std::string& note) {
+        return note.find("energy") != std::string::npos;
+    }));
+}
+
+TEST_F(Results, FiguresThatAreNoNumbersAreSuspect)
+{
+    const Model model = pendulum(1);
+    const Solution solution = solved(model, Lobatto{2}, 1, 10);
+    Balance balanced = balance(model, solution.motion);
+    EXPECT_EQ(summarise(model, solution, Lobatto{2}, balanced).status, "converged");
+    balanced.energy_drift[3] = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_EQ(summarise(model, solution, Lobatto{2}, balanced).status, "suspect");
+}
+
+}   // namespace
+}   // namespace livens

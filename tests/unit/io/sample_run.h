@@ -1,0 +1,181 @@
+// A run made by hand that fills every part of a result file, and a folder to put it in.
+#pragma once
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "livens/io/results.h"
+
+namespace livens {
+
+namespace fs = std::filesystem;
+using RunFile = Run;   // testing::Test has a Run of its own
+
+/// A folder of its own, empty at the end.
+class Results : public testing::Test {
+protected:
+    Results()
+    {
+        std::string pattern = (fs::temp_directory_path() / "livens-results-XXXXXX").string();
+        folder_ = ::mkdtemp(pattern.data());
+    }
+    ~Results() override { fs::remove_all(folder_); }
+
+    fs::path in_folder(const std::string& name) const { return folder_ / name; }
+    int n_files() const { return static_cast<int>(std::distance(fs::directory_iterator(folder_), {})); }
+
+    fs::path folder_;
+};
+
+inline std::string bytes_of(const fs::path& file)
+{
+    std::ifstream in(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+}
+
+inline void put_bytes(const fs::path& file, const std::string& bytes)
+{
+    std::ofstream(file, std::ios::binary) << bytes;
+}
+
+inline std::string error_of_reading(const fs::path& file)
+{
+    try {
+        read_run(file);
+    } catch (const IoError& error) {
+        return error.what();
+    }
+    return "";
+}
+
+/// A rigid body that turns about z with angular velocity 2 and moves along x with velocity 3, and a point
+/// mass above it, held by a rod whose multiplier is 5 before and 7 after each instant.
+inline Model sample_model()
+{
+    Model model({0, 0, -9.81});
+    Placement placement;
+    placement.velocity = {3, 0, 0};
+    placement.angular_velocity = {0, 0, 2};
+    model.add_body(rigid_body("körper eins", with_center(box(2.0, {1, 2, 3}), {0, 0.5, 0}), placement));
+    model.add_body(point_mass("bob", 0.25, {0, 0, 2}, {3, 0, 0}));
+    model.add_joint(rod("rod", 0, 1, {{0, 0, 0}, {0, 0, 0}, {0, 0, 1}, {0, 0, 1}}, 2));
+    return model;
+}
+
+inline Matrix34 turned(double t)
+{
+    const double c = std::cos(2 * t), s = std::sin(2 * t);
+    return {3 * t, 0, 0, c, s, 0, -s, c, 0, 0, 0, 1};
+}
+
+inline Matrix34 turned_rate(double t)
+{
+    const double c = 2 * std::cos(2 * t), s = 2 * std::sin(2 * t);
+    return {3, 0, 0, -s, c, 0, -c, -s, 0, 0, 0, 0};
+}
+
+inline void push(std::vector<double>& out, const Matrix34& m) { out.insert(out.end(), m.a, m.a + 12); }
+
+inline void fill_motion(Motion& m, const Model& model, int n_elements)
+{
+    m.n_bodies = 2;
+    m.n_rows = 1;
+    for (int e = 0; e <= n_elements; ++e) m.mesh.ends.push_back(0.5 * e);
+    m.X = {24, 2, true, {}};
+    m.P = {24, 1, false, {}};
+    m.multipliers = {1, 0, false, {}};
+    const auto momentum = [&](double t, int b) {
+        const Matrix34 V = b == 0 ? turned_rate(t) : Matrix34{3, 0, 0};
+        return V * model.bodies()[b].mass;
+    };
+    for (int node = 0; node <= 2 * n_elements; ++node) {
+        push(m.X.values, turned(0.25 * node));
+        push(m.X.values, {3 * 0.25 * node, 0, 2});
+    }
+    for (int e = 0; e < n_elements; ++e) {
+        for (const double t : {0.5 * e, 0.5 * e + 0.5})
+            for (int b = 0; b < 2; ++b) push(m.P.values, momentum(t, b));
+        m.multipliers.values.push_back(6 + e);
+    }
+    for (const double t : m.mesh.ends)
+        for (int b = 0; b < 2; ++b) {
+            m.momenta.push_back(momentum(t, b));
+            m.velocities.push_back(b == 0 ? turned_rate(t) : Matrix34{3, 0, 0});
+        }
+    for (int i = 0; i < 4 * (n_elements + 1); ++i) m.accelerations.push_back({0.1 * i, 1, 2, 3});
+    for (int i = 0; i <= n_elements; ++i) m.end_multipliers.insert(m.end_multipliers.end(), {5, 7});
+    m.order_at_ends = 4;
+    m.dense_order_X = 3;
+    m.dense_order_V = 2;
+    m.constraints_hold = "element nodes";
+    m.redundant_rows = {0};
+}
+
+inline void fill_balance(Balance& b, int n_ends)
+{
+    for (int i = 0; i < n_ends; ++i) {
+        const double x = 0.1 * i;
+        b.t.push_back(0.5 * i);
+        for (auto* list : {&b.kinetic, &b.potential, &b.energy, &b.work, &b.energy_drift,
+                           &b.linear_momentum_drift, &b.angular_momentum_drift})
+            list->push_back(x + static_cast<double>(list->size()));
+        for (auto* list : {&b.linear_momentum, &b.angular_momentum, &b.linear_impulse, &b.angular_impulse})
+            list->push_back({x, -x, 1 / (x + 3)});
+    }
+    b.largest_kinetic = 12.5;
+    b.largest_moment = std::numeric_limits<double>::denorm_min();
+}
+
+inline RunFile sample_run(const Model& model, int n_elements = 8)
+{
+    RunFile run;
+    run.scenario_text = "format = 1\ntitle = \"Größe\"\n";
+    run.title = "Größe";
+    run.resolved = R"({"method": {"family": "lobatto", "degree": 2}})";
+    run.body_names = {"körper eins", "bob"};
+    run.body_is_point = {false, true};
+    run.centers_of_mass = {{0, 0.5, 0}, {0, 0, 0}};
+    run.joint_names = {"rod"};
+    run.row_labels = {"rod: distance"};
+    for (int i = 0; i <= n_elements; ++i) run.output.push_back(0.5 * i);
+    fill_motion(run.motion, model, n_elements);
+    run.report.status = SolveStatus::not_converged;
+    run.report.message = "element 9 at 4 s: joint 'rod'";
+    run.report.n_elements = n_elements;
+    run.report.unknowns = 14;
+    run.report.newton_iterations = 123456789012;
+    run.report.most_iterations = 9;
+    run.report.factorisations = 8;
+    run.report.residual_norm = 1e-13;
+    run.report.smallest_pivot = 0.25;
+    run.report.failed_at = 4;
+    run.report.iterations = std::vector<int>(static_cast<std::size_t>(n_elements), 3);
+    run.report.notes = {"", "row 'distance' is implied"};
+    run.summary = {false,
+                   "not converged",
+                   "lobatto(2)",
+                   n_elements,
+                   14,
+                   123456789012,
+                   8,
+                   1e-13,
+                   2e-16,
+                   3e-15,
+                   1e-9,
+                   std::numeric_limits<double>::quiet_NaN(),
+                   {"first", "second\nline"},
+                   "stopped"};
+    fill_balance(run.balance, n_elements + 1);
+    run.version = "0.1.0";
+    return run;
+}
+
+}   // namespace livens

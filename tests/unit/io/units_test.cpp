@@ -1,0 +1,87 @@
+#include "livens/io/detail/units.h"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+namespace livens {
+
+namespace {
+
+double si(std::string_view text, std::string_view unit)
+{
+    const Quantity q = parse_quantity(text, unit);
+    EXPECT_EQ(q.error, "") << text;
+    return q.value;
+}
+
+TEST(Units, DecimalPrefixesRoundOnce)
+{
+    EXPECT_EQ(si("5 mm", "m"), 0.005);   // 5 * 0.001 is one bit off for many others
+    EXPECT_EQ(si("0.3 cm", "m"), 0.003);
+    EXPECT_EQ(si("9 um", "m"), 9e-6);
+    EXPECT_EQ(si("9 \xc2\xb5m", "m"), 9e-6);
+    EXPECT_EQ(si("7 g", "kg"), 0.007);
+    EXPECT_EQ(si("3 cm^2", "m^2"), 3e-4);
+    for (int i = 1; i < 1000; ++i) EXPECT_EQ(si(std::to_string(i) + " ms", "s"), i / 1000.0);
+}
+
+TEST(Units, AnglesAreInRadians)
+{
+    EXPECT_EQ(si("180 deg", "rad"), std::numbers::pi);
+    EXPECT_EQ(si("1 rev", "rad"), 2 * std::numbers::pi);
+    EXPECT_DOUBLE_EQ(si("60 rpm", "rad/s"), 2 * std::numbers::pi);
+    EXPECT_DOUBLE_EQ(si("360 deg/min", "rad/s"), std::numbers::pi / 30);
+}
+
+TEST(Units, ProductsQuotientsAndPowers)
+{
+    EXPECT_EQ(si("7850 kg/m^3", "kg/m^3"), 7850);
+    EXPECT_EQ(si("3 N m", "N m"), 3);
+    EXPECT_EQ(si("3 N*m", "kg m^2/s^2"), 3);
+    EXPECT_EQ(si("3 J", "N m"), 3);
+    EXPECT_EQ(si("2 kN/m", "N/m"), 2000);
+    EXPECT_EQ(si("2 N/mm", "N/m"), 2000);
+    EXPECT_EQ(si("1 g/cm^3", "kg/m^3"), 1000);
+    EXPECT_EQ(si("4 N s/m", "N s/m"), 4);
+}
+
+TEST(Units, ParenthesesAndInverses)
+{
+    EXPECT_EQ(si("4 kg/(m s)", "Pa s"), 4);
+    EXPECT_EQ(si("4 1/s", "1/s"), 4);
+    EXPECT_EQ(si("4 s^-1", "1/s"), 4);
+    EXPECT_EQ(si("36 m/h", "m/s"), 0.01);
+    EXPECT_EQ(si("+1.5e2mm", "m"), 0.15);
+    EXPECT_EQ(si("  -2 t", "kg"), -2000);
+}
+
+TEST(Units, AmbiguousAndUnknownOnesAreRefused)
+{
+    for (const char* text :
+         {"1 J/kg m", "1 m/s/s", "1 N/(m/s)", "1 m^", "1 m^1.5", "1 m^99", "1 M", "1 furlong", "1 mmm",
+          "1 (m)", "1 m *", "1 m/", "1 kg/(m s", "1 m)", "1 \xc2", "1 kmin", "1 kt", "1 \xc3\xbc"}) {
+        std::string reason;
+        EXPECT_FALSE(parse_unit(std::string_view(text).substr(2), reason).has_value()) << text;
+        EXPECT_NE(reason, "") << text;
+        EXPECT_NE(parse_quantity(text, "m").error, "") << text;
+    }
+}
+
+TEST(Units, OtherDimensionsAreRefused)
+{
+    EXPECT_NE(parse_quantity("1 s", "m").error, "");
+    EXPECT_NE(parse_quantity("1 1/s", "rad/s").error, "") << "a frequency is not a spin";
+    EXPECT_NE(parse_quantity("1 deg", "m").error, "");
+}
+
+TEST(Units, NumbersAreReadWholeAndFinite)
+{
+    for (const char* text : {"", " ", "m", "1,5 m", "nan m", "inf m", "-inf m", "1e999 m", "1e300 Mm^9",
+                             "--1 m", "+-1 m", "0x10 m", "1 000 m", "1", "1_0 m", "1e m"})
+        EXPECT_NE(parse_quantity(text, "m").error, "") << "\"" << text << "\"";
+}
+
+}   // namespace
+
+}   // namespace livens

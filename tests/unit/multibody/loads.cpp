@@ -1,0 +1,245 @@
+#include "livens/multibody/loads.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "unit/multibody/random_states.h"
+
+namespace livens {
+namespace {
+
+constexpr int states = 1000;
+
+LoadArguments random_arguments(Random& random)
+{
+    LoadArguments arguments;
+    arguments.at.t = random.number();
+    for (int b = 0; b < 2; ++b) {
+        arguments.X[b] = random.skew();
+        arguments.V[b] = random.matrix<3, 4>();
+    }
+    return arguments;
+}
+
+LoadForces forces(const Load& load, const LoadArguments& arguments)
+{
+    LoadForces F{};
+    load.forces(arguments, F);
+    return F;
+}
+
+/// Moment of a generalised force about the reference point.
+Vector3 moment(const Matrix34& X, const Matrix34& F)
+{
+    Vector3 sum{};
+    for (int i = 1; i < 4; ++i) sum += cross(X.column(i), F.column(i));
+    return sum;
+}
+
+TimeVector constant(const Vector3& v) { return {v[0], v[1], v[2]}; }
+
+TEST(PointForce, DoesTheWorkOfItsPoint)
+{
+    Random random(1);
+    for (int n = 0; n < states; ++n) {
+        const Vector3 f = random.vector(), theta = random.vector();
+        const LoadArguments at = random_arguments(random);
+        const Vector3 velocity = at.V[0] * point(theta);
+        const Load inertial = point_force("f", 0, theta, constant(f), Frame::inertial);
+        EXPECT_NEAR(load_power(inertial, at), dot(f, velocity), 1e-14);
+        const Load follower = point_force("f", 0, theta, constant(f), Frame::body_fixed);
+        EXPECT_NEAR(load_power(follower, at), dot(directors(at.X[0]) * f, velocity), 1e-14);
+    }
+}
+
+TEST(PointForce, InWorldAxesDependsOnNothing)
+{
+    const Load load = point_force("f", 0, {1, 2, 3}, constant({1, 0, 0}), Frame::inertial);
+    EXPECT_FALSE(load.depends_on_X);
+    EXPECT_FALSE(load.depends_on_V);
+    EXPECT_EQ(forces(load, {})[0], (Matrix34{1, 0, 0, 1, 0, 0, 2, 0, 0, 3, 0, 0}));
+    EXPECT_EQ(forces(load, {})[1], Matrix34{});
+}
+
+TEST(Torque, HasItsMomentForEveryTriadThatIsNotFlat)
+{
+    Random random(2);
+    for (int n = 0; n < states; ++n) {
+        const Vector3 mu = random.vector();
+        LoadArguments at;
+        do at.X[0] = random.matrix<3, 4>();   // any directors, left-handed ones too
+        while (std::abs(determinant(directors(at.X[0]))) < 0.05);
+        const Matrix34 inertial = forces(torque("t", 0, constant(mu), Frame::inertial), at)[0];
+        EXPECT_LT(largest(moment(at.X[0], inertial) - mu), 2e-13);
+        EXPECT_EQ(inertial.column(0), Vector3{});
+        const Matrix34 follower = forces(torque("t", 0, constant(mu), Frame::body_fixed), at)[0];
+        EXPECT_LT(largest(moment(at.X[0], follower) - directors(at.X[0]) * mu), 2e-13);
+    }
+}
+
+TEST(Torque, DoesTheWorkOfItsSpinOnRigidStates)
+{
+    Random random(3);
+    for (int n = 0; n < states; ++n) {
+        const Vector3 mu = random.vector(), w = random.vector();
+        LoadArguments at;
+        at.X[0] = random.rigid();
+        at.V[0] = rate(at.X[0], random.vector(), w);
+        EXPECT_NEAR(load_power(torque("t", 0, constant(mu), Frame::inertial), at), dot(mu, w), 2e-15);
+        // On a triad d^i = d_i, so F_i is half the cross product of (P21).
+        const Matrix34 F = forces(torque("t", 0, constant(mu), Frame::inertial), at)[0];
+        EXPECT_LT(largest(F.column(2) - 0.5 * cross(mu, at.X[0].column(2))), 2e-15);
+    }
+}
+
+TEST(SpringDamper, PullsAlongTheLineByItsLaw)
+{
+    const Load load = spring_damper("s", 0, {0.5, 0, 0}, 1, {-0.5, 0, 0}, {100, 7, 1.5});
+    LoadArguments at;
+    at.X[1].set_column(0, {4, 0, 0});   // 3 m between the points, 1.5 too long
+    at.V[1].set_column(0, {2, 5, 0});   // parting at 2 m/s
+    const LoadForces F = forces(load, at);
+    EXPECT_DOUBLE_EQ(F[0](0, 0), 100 * 1.5 + 7 * 2);
+    EXPECT_DOUBLE_EQ(F[1](0, 0), -(100 * 1.5 + 7 * 2));
+    EXPECT_DOUBLE_EQ(F[0](0, 1), 0.5 * F[0](0, 0));
+    EXPECT_EQ(F[0](1, 0), 0);
+    EXPECT_DOUBLE_EQ(load.potential(at), 0.5 * 100 * 1.5 * 1.5);
+    EXPECT_DOUBLE_EQ(load.power(at), -7 * 2 * 2);
+    EXPECT_DOUBLE_EQ(power_without_potential(load, at), -28);
+}
+
+TEST(SpringDamper, ForcesAndMomentsOfTwoBodiesCancel)
+{
+    Random random(4);
+    for (int n = 0; n < states; ++n) {
+        const Load load = spring_damper("s", 0, random.vector(), 1, random.vector(), {30, 2, 0.4});
+        const LoadArguments at = random_arguments(random);
+        const LoadForces F = forces(load, at);
+        Vector3 about_origin{};
+        for (int b = 0; b < 2; ++b)
+            for (int c = 0; c < 4; ++c) about_origin += cross(at.X[b].column(c), F[b].column(c));
+        EXPECT_EQ(F[0].column(0), -F[1].column(0));
+        EXPECT_LT(largest(about_origin), 1e-12);
+    }
+}
+
+TEST(SpringDamper, IsDefinedWherePointsCoincide)
+{
+    LoadArguments at;
+    at.V[0] = Matrix34{1, 2, 3};
+    const Load slack = spring_damper("s", 0, {}, 1, {}, {100, 7, 0.5});
+    const Load straight = spring_damper("s", 0, {}, 1, {}, {100, 7, 0});
+    for (const Load* load : {&slack, &straight}) {
+        EXPECT_EQ(forces(*load, at)[0], Matrix34{});
+        EXPECT_EQ(forces(*load, at)[1], Matrix34{});
+        LoadTangent tangent;
+        load->tangent(at, tangent);
+        for (int b = 0; b < 2; ++b)
+            for (int c = 0; c < 2; ++c)
+                EXPECT_TRUE(std::isfinite(largest(tangent.X[b][c])) &&
+                            std::isfinite(largest(tangent.V[b][c])));
+        EXPECT_EQ(load->power(at), 0);
+    }
+    LoadTangent tangent;
+    straight.tangent(at, tangent);
+    EXPECT_EQ(tangent.X[0][0](0, 0), -100) << "without free length the spring is linear, here too";
+    EXPECT_DOUBLE_EQ(slack.potential(at), 0.5 * 100 * 0.25);
+}
+
+TEST(SpringDamper, IsDefinedForPointsThatNearlyCoincide)
+{
+    LoadArguments at;
+    at.X[1](0, 0) = 1e-200;   // the square would vanish
+    const Load load = spring_damper("s", 0, {}, 1, {}, {100, 0, 0.5});
+    EXPECT_DOUBLE_EQ(forces(load, at)[0](0, 0), -50);
+}
+
+TEST(SpringDamper, PutsTheBodyBeforeTheWorld)
+{
+    const Load load = spring_damper("s", world, {1, 0, 0}, 2, {0, 0.5, 0}, {10, 1, 0});
+    EXPECT_EQ(load.bodies, (std::array<int, 2>{2, world}));
+    LoadArguments at;
+    const LoadForces F = forces(load, at);
+    EXPECT_DOUBLE_EQ(F[0](0, 0), 10);
+    EXPECT_DOUBLE_EQ(F[0](1, 0), -5);
+    EXPECT_EQ(load.needs_directors, (std::array<bool, 2>{true, false}));
+}
+
+TEST(Load, BreaksAreThoseOfItsComponents)
+{
+    const TimeVector value = window({linear_table({0, 0.5, 2}, {0, 1, 0}), 1.0, 2.0}, -1, 0.5);
+    EXPECT_EQ(torque("t", 0, value, Frame::inertial).breaks, (std::vector<double>{-1, 0, 0.5}));
+    EXPECT_TRUE(torque("t", 0, constant({1, 2, 3}), Frame::inertial).breaks.empty());
+}
+
+TEST(Load, HasTwoSidesAtAJump)
+{
+    const Load load = point_force("f", 0, {}, window(constant({1, 2, 3}), 0.5, 1), Frame::inertial);
+    LoadArguments at;
+    at.at = {0.5, Side::left};
+    EXPECT_EQ(forces(load, at)[0].column(0), Vector3{});
+    at.at = {0.5, Side::right};
+    EXPECT_EQ(forces(load, at)[0].column(0), (Vector3{1, 2, 3}));
+    at.at = {1, Side::left};
+    EXPECT_EQ(forces(load, at)[0].column(0), (Vector3{1, 2, 3}));
+    at.at = {1, Side::right};
+    EXPECT_EQ(forces(load, at)[0].column(0), Vector3{});
+}
+
+TEST(Load, WrongInputIsRefused)
+{
+    const double nan = std::numeric_limits<double>::quiet_NaN(),
+                 inf = std::numeric_limits<double>::infinity();
+    expect_complaint([=] { point_force("f", 0, {}, constant({nan, 0, 0}), Frame::inertial); }, "not-finite");
+    const TimeVector bad{TimeFunction([=](Instant) { return TimeValue{nan, 0, 0}; }, {}), 0.0, 0.0};
+    expect_complaint([=] { torque("t", 0, bad, Frame::inertial); }, "not-finite", "load[t].value");
+    expect_complaint(
+        [=] {
+            point_force("f", 0, {inf, 0, 0}, constant({}), Frame::inertial);
+        },
+        "not-finite", "load[f]");
+    expect_complaint([] { torque("t", world, constant({}), Frame::inertial); }, "load-self", "load[t]");
+    const Vector3 o{};
+    expect_complaint(
+        [=] {
+            spring_damper("s", 0, o, 1, o, {-1, 0, 0});
+        },
+        "load-negative", "load[s].stiffness");
+    expect_complaint([=] { spring_damper("s", 0, o, 1, o, {0, -1, 0}); }, "load-negative", "load[s].damping");
+    expect_complaint(
+        [=] {
+            spring_damper("s", 0, o, 1, o, {0, 0, -1});
+        },
+        "load-negative", "load[s].free_length");
+    expect_complaint(
+        [=] {
+            spring_damper("s", 0, o, 1, o, {nan, 0, 0});
+        },
+        "load-negative", "load[s].stiffness");
+    expect_complaint([=] { spring_damper("s", 1, o, 1, o, {1, 0, 0}); }, "load-self", "load[s]");
+    expect_complaint([=] { spring_damper("s", 0, {nan, 0, 0}, 1, o, {1, 0, 0}); }, "not-finite", "load[s]");
+}
+
+TEST(Load, PowerWithoutPotentialFollowsTheRule)
+{
+    Random random(5);
+    const LoadArguments at = random_arguments(random);
+    Load load = point_force("f", 0, {}, constant({1, 2, 3}), Frame::inertial);
+    EXPECT_EQ(power_without_potential(load, at), load_power(load, at)) << "no potential: all of it";
+    load.potential = [](const LoadArguments&) { return 0.0; };
+    EXPECT_EQ(power_without_potential(load, at), 0) << "a potential and nothing else";
+    load.power = [](const LoadArguments&) { return 5.0; };
+    EXPECT_EQ(power_without_potential(load, at), 5);
+}
+
+TEST(Load, PowerLeavesOutTheWorld)
+{
+    const Load load = spring_damper("s", 0, {}, world, {1, 0, 0}, {10, 0, 0});
+    LoadArguments at;
+    at.V[0](0, 0) = 3;
+    EXPECT_DOUBLE_EQ(load_power(load, at), 30);
+}
+
+}   // namespace
+}   // namespace livens
