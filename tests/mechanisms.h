@@ -1,4 +1,5 @@
-// The mechanisms that the proofs of the engine run on, built by hand. The shipped examples say the same in TOML.
+// The mechanisms that the proofs of the engine run on, built by hand. The shipped examples say the same in
+// TOML.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -49,7 +50,10 @@ inline Model two_bricks(const Setting& setting = {})
 }
 
 /// End of brick `body`, where the next one hangs.
-inline Vector3 tip(const State& state, int body, double metre = 1) { return state.X[body] * point({metre, 0, 0}); }
+inline Vector3 tip(const State& state, int body, double metre = 1)
+{
+    return state.X[body] * point({metre, 0, 0});
+}
 
 /// A box of 2 x 1 x 1 m and 3 kg at rest under a torque of 2 N m along (1, 1, 1).
 inline Model free_box()
@@ -75,7 +79,8 @@ inline Model hinged_links()
     return model;
 }
 
-/// The paper's double pendulum in the plane y = 0: cubes on rods of 4 m, the lower one hinged `offset` from its centre.
+/// The paper's double pendulum in the plane y = 0: cubes on rods of 4 m, the lower one hinged `offset` from
+/// its centre.
 inline Model cubes_on_rods(double offset)
 {
     const double c = 4 / std::sqrt(2.0);
@@ -103,7 +108,9 @@ inline Model heavy_top()
 /// A planar loop of four hinges in space: 20 rows of rank 17.
 inline Model four_bar()
 {
-    auto bar = [](double length) { return with_center(box(7850, {length, 0.04, 0.02}), {0.5 * length, 0, 0}); };
+    auto bar = [](double length) {
+        return with_center(box(7850, {length, 0.04, 0.02}), {0.5 * length, 0, 0});
+    };
     auto along = [](double x, double z) { return Matrix3{x, 0, z, 0, 1, 0, -z, 0, x}; };
     Model model({0, 0, -9.81});
     const int crank = model.add_body(rigid_body("crank", bar(0.42), {{0, 0, 0}, along(0, 1)}));
@@ -111,7 +118,8 @@ inline Model four_bar()
     const int rocker = model.add_body(rigid_body("rocker", bar(1), {{1, 0, 0}, along(-0.28, 0.96)}));
     auto hinge = [&](const std::string& name, int first, int second, const Vector3& at) {
         const Matrix34 x = first == world ? world_configuration : model.bodies()[first].X;
-        model.add_joint(revolute(name, first, second, joint_frame(x, model.bodies()[second].X, at, {0, 1, 0})));
+        model.add_joint(
+            revolute(name, first, second, joint_frame(x, model.bodies()[second].X, at, {0, 1, 0})));
     };
     hinge("crank shaft", world, crank, {0, 0, 0});
     hinge("crank pin", crank, coupler, {0, 0, 0.42});
@@ -120,14 +128,15 @@ inline Model four_bar()
     return model;
 }
 
-/// Joints and loads of many kinds: a brick on a universal joint, a second welded at an angle to it, a point mass on a
-/// rod, a spring with damper, a torque in body axes that varies in time.
+/// Joints and loads of many kinds: a brick on a universal joint, a second welded at an angle to it, a point
+/// mass on a rod, a spring with damper, a torque in body axes that varies in time.
 inline Model medley()
 {
     Model model({0, 0, -9.81});
     const Setting si;
     const int first = model.add_body(rigid_body("first", brick(si)));
-    const int second = model.add_body(rigid_body("second", brick(si), placed(si, {1, 0, 0}, {0, 1, 0, -1, 0, 0, 0, 0, 1})));
+    const int second =
+        model.add_body(rigid_body("second", brick(si), placed(si, {1, 0, 0}, {0, 1, 0, -1, 0, 0, 0, 0, 1})));
     const int bob = model.add_body(point_mass("bob", 0.3, {1, 1, -0.5}));
     JointFrame gimbal;
     gimbal.axis_first = {0, 1, 0};

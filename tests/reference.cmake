@@ -1,4 +1,4 @@
-# Examples as shipped against numbers from elsewhere; they are read by io, the numbers by a JSON library of their own.
+# Examples as shipped against numbers from elsewhere: io reads the examples, a JSON library the numbers.
 file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/reference/*.cpp)
 if(LIVENS_BUILD_PROGRAM AND sources)
     find_package(nlohmann_json 3 REQUIRED)

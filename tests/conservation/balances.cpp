@@ -17,10 +17,14 @@ struct LongRun {
 
 std::vector<LongRun> runs()
 {
-    return {{"two bricks", two_bricks(), 6, 400},    {"two bricks, high degree", two_bricks(), 12, 200},
-            {"hinged links", hinged_links(), 4, 400}, {"cubes on rods", cubes_on_rods(0), 6, 200},
-            {"cubes, off centre", cubes_on_rods(0.1), 6, 400}, {"four-bar", four_bar(), 4, 400},
-            {"heavy top", heavy_top(), 6, 2000},     {"medley", medley(), 6, 400}};
+    return {{"two bricks", two_bricks(), 6, 400},
+            {"two bricks, high degree", two_bricks(), 12, 200},
+            {"hinged links", hinged_links(), 4, 400},
+            {"cubes on rods", cubes_on_rods(0), 6, 200},
+            {"cubes, off centre", cubes_on_rods(0.1), 6, 400},
+            {"four-bar", four_bar(), 4, 400},
+            {"heavy top", heavy_top(), 6, 2000},
+            {"medley", medley(), 6, 400}};
 }
 
 /// Sum over bodies of sum over columns x_c cross p_c, here by hand.
@@ -40,17 +44,19 @@ TEST(Lobatto, BalancesAngularMomentumOverTenSeconds)
         const Solution s = solve_evenly(run.model, 10, run.n, run.degree);
         const Balance b = balance(run.model, s.motion);
         ASSERT_EQ(b.angular_momentum_drift.size(), static_cast<std::size_t>(run.n) + 1) << run.name;
-        const double drift = *std::max_element(b.angular_momentum_drift.begin(), b.angular_momentum_drift.end());
+        const double drift =
+            *std::max_element(b.angular_momentum_drift.begin(), b.angular_momentum_drift.end());
         EXPECT_LE(drift, 1e-11 * b.largest_moment) << run.name;
         EXPECT_GT(b.largest_moment, 0.1) << run.name;
-        const double linear = *std::max_element(b.linear_momentum_drift.begin(), b.linear_momentum_drift.end());
+        const double linear =
+            *std::max_element(b.linear_momentum_drift.begin(), b.linear_momentum_drift.end());
         // a body that spins fast about a slow centre shows the rounding of its spin here
         EXPECT_LE(linear, 1e-11 * b.largest_moment / run.model.length()) << run.name;
     }
 }
 
-// The same by hand where it is easy: the ball joint at the origin has no moment about it, so all that changes the
-// angular momentum of two bricks is gravity, whose impulse the elements sum with their own weights.
+// The same by hand where it is easy: the ball joint at the origin has no moment about it, so all that changes
+// the angular momentum of two bricks is gravity, whose impulse the elements sum with their own weights.
 TEST(Lobatto, BalancesAngularMomentumOfTwoBricksWithGravityAlone)
 {
     const Model model = two_bricks();
@@ -105,7 +111,8 @@ TEST(Lobatto, KeepsMomentaOfAFloatingChain)
         // the chain flies off with some 3 m/s, so moments about the origin grow out of large terms
         EXPECT_LE(norm(end - start), 1e-11 * norm(start)) << "lobatto(" << degree << ")";
         const double moments = norm(end) * norm(m.at_end(m.n_elements()).X[0].column(0));
-        EXPECT_LE(norm(moment(m, m.n_elements()) - moment(m, 0)), 1e-11 * moments) << "lobatto(" << degree << ")";
+        EXPECT_LE(norm(moment(m, m.n_elements()) - moment(m, 0)), 1e-11 * moments)
+            << "lobatto(" << degree << ")";
     }
 }
 
@@ -114,7 +121,8 @@ TEST(Lobatto, HoldsConstraintsAtNodesOverTenSeconds)
     for (const LongRun& run : runs()) {
         const Solution s = solve_evenly(run.model, 10, run.n, run.degree);
         const ViolationReport v = violations(run.model, s.motion);
-        EXPECT_LE(v.joints_at_nodes, 1e-12) << run.name << ", row " << v.worst_row << ", t = " << v.worst_time;
+        EXPECT_LE(v.joints_at_nodes, 1e-12)
+            << run.name << ", row " << v.worst_row << ", t = " << v.worst_time;
         EXPECT_LE(v.rigidity_at_nodes, 1e-12) << run.name;
         EXPECT_LE(v.velocity_level, 1e-11) << run.name;
     }
@@ -123,7 +131,8 @@ TEST(Lobatto, HoldsConstraintsAtNodesOverTenSeconds)
 // By hand: the pins of two bricks meet at all nodes, and the rods of the cubes keep their length.
 TEST(Lobatto, KeepsPinsTogetherAndRodsLong)
 {
-    auto largest_at_nodes = [](const Motion& m, const std::function<double(const Matrix34&, const Matrix34&)>& gap) {
+    auto largest_at_nodes = [](const Motion& m,
+                               const std::function<double(const Matrix34&, const Matrix34&)>& gap) {
         double worst = 0;
         for (int e = 0; e < m.n_elements(); ++e) {
             for (int a = 0; a <= m.X.degree; ++a) {
@@ -148,8 +157,8 @@ TEST(Lobatto, KeepsPinsTogetherAndRodsLong)
     EXPECT_LE(largest_at_nodes(solve_evenly(cubes_on_rods(0.1), 10, 400, 6).motion, rods), 1e-12);
 }
 
-/// Largest coordinate across the plane whose normal is the world axis `normal`: of points, and of directors. A director
-/// starts along the normal and has no other component then.
+/// Largest coordinate across the plane whose normal is the world axis `normal`: of points, and of directors.
+/// A director starts along the normal and has no other component then.
 double out_of_plane(const Motion& m, int normal)
 {
     double worst = 0;
@@ -196,8 +205,10 @@ TEST(Lobatto, ConvergesInEnergyWithOrder2P)
 {
     const Model model = two_bricks();
     for (auto [degree, n] : {std::pair{1, 500}, {2, 125}, {3, 24}, {4, 12}}) {
-        const double coarse = largest_energy_error(balance(model, solve_evenly(model, 0.5, n, degree).motion), 0, 1);
-        const double finer = largest_energy_error(balance(model, solve_evenly(model, 0.5, n + n / 4, degree).motion), 0, 1);
+        const double coarse =
+            largest_energy_error(balance(model, solve_evenly(model, 0.5, n, degree).motion), 0, 1);
+        const double finer =
+            largest_energy_error(balance(model, solve_evenly(model, 0.5, n + n / 4, degree).motion), 0, 1);
         const double refinement = std::log(1.0 * (n + n / 4) / n);
         EXPECT_GE(std::log(coarse / finer) / refinement, 2 * degree - 0.7) << "lobatto(" << degree << ")";
     }

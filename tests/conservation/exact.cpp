@@ -28,7 +28,8 @@ TEST(Lobatto, ReproducesConstantVelocity)
         const State end = solved(model, degree);
         for (int b = 0; b < 2; ++b) {
             EXPECT_LE(norm(end.X[b].column(0) - X), allowed(degree) * norm(X)) << "lobatto(" << degree << ")";
-            EXPECT_LE(norm(end.V[b].column(0) - placement.velocity), allowed(degree) * norm(placement.velocity));
+            EXPECT_LE(norm(end.V[b].column(0) - placement.velocity),
+                      allowed(degree) * norm(placement.velocity));
         }
         EXPECT_LE(norm(directors(end.X[0]) - identity<3>()), allowed(degree));
     }
@@ -53,7 +54,8 @@ TEST(Lobatto, ReproducesUniformAcceleration)
     }
 }
 
-// A turn is no polynomial: below degree 4 it is met with the order of the method only (see tests/convergence).
+// A turn is no polynomial: below degree 4 it is met with the order of the method only (see
+// tests/convergence).
 TEST(Lobatto, ReproducesSteadySpin)
 {
     const Vector3 w{0, 0, 1.7};
@@ -64,8 +66,10 @@ TEST(Lobatto, ReproducesSteadySpin)
     const Matrix3 turn = directors_from_rotation_vector(end_time * w);
     for (int degree = 5; degree <= 16; ++degree) {
         const State end = solved(model, degree);
-        EXPECT_LE(norm(directors(end.X[0]) - turn), 2 * allowed(degree) * norm(end_time * w)) << "lobatto(" << degree << ")";
-        EXPECT_LE(norm(angular_velocity(end.X[0], end.V[0]) - w), allowed(degree) * norm(w)) << "lobatto(" << degree << ")";
+        EXPECT_LE(norm(directors(end.X[0]) - turn), 2 * allowed(degree) * norm(end_time * w))
+            << "lobatto(" << degree << ")";
+        EXPECT_LE(norm(angular_velocity(end.X[0], end.V[0]) - w), allowed(degree) * norm(w))
+            << "lobatto(" << degree << ")";
     }
 }
 

@@ -4,12 +4,13 @@
 namespace livens::tests {
 namespace {
 
-// Tips and long axes to 1e-11. The roll of a brick about its long axis, with a hundredth of the other inertias, shows
-// rounding 50 times larger by then, in the true motion as well.
+// Tips and long axes to 1e-11. The roll of a brick about its long axis, with a hundredth of the other
+// inertias, shows rounding 50 times larger by then, in the true motion as well.
 TEST(Lobatto, TurnsItsMotionWithTheMechanism)
 {
     const State plain = last(solve_evenly(two_bricks(), 2, 80, 8));
-    for (const Vector3& rotation : {Vector3{0.3, -1.1, 2.0}, Vector3{-2.2, 0.9, 0.4}, Vector3{1.3, 1.7, -0.8}}) {
+    for (const Vector3& rotation :
+         {Vector3{0.3, -1.1, 2.0}, Vector3{-2.2, 0.9, 0.4}, Vector3{1.3, 1.7, -0.8}}) {
         const Matrix3 turn = directors_from_rotation_vector(rotation);
         const State turned = last(solve_evenly(two_bricks({turn, 1}), 2, 80, 8));
         for (int b = 0; b < 2; ++b) {
@@ -17,7 +18,8 @@ TEST(Lobatto, TurnsItsMotionWithTheMechanism)
             EXPECT_LE(norm(turned.X[b].column(0) - turn * plain.X[b].column(0)), 1e-11);
             EXPECT_LE(norm(turned.X[b].column(1) - turn * plain.X[b].column(1)), 1e-11);
             EXPECT_LE(norm(turned.V[b].column(0) - turn * plain.V[b].column(0)), 1e-10);
-            EXPECT_LE(norm(turned.X[b] - configuration(turned.X[b].column(0), turn * directors(plain.X[b]))), 1e-9);
+            EXPECT_LE(norm(turned.X[b] - configuration(turned.X[b].column(0), turn * directors(plain.X[b]))),
+                      1e-9);
         }
     }
 }
@@ -37,13 +39,15 @@ TEST(Lobatto, MovesAlikeForAnyReferencePointAndAxes)
 {
     const State plain = last(solve_evenly(two_bricks(), 2, 80, 8));
     const Model given = two_bricks();
-    const Matrix3 axes = directors_from_rotation_vector({0.7, -0.4, 1.9});   // of the new axes in the old ones
-    const Vector3 origin{0.4, -0.3, 0.8};                                    // of the new axes in the old ones
+    const Matrix3 axes =
+        directors_from_rotation_vector({0.7, -0.4, 1.9});   // of the new axes in the old ones
+    const Vector3 origin{0.4, -0.3, 0.8};                   // of the new axes in the old ones
     auto seen = [&](const Vector3& theta) { return transpose(axes) * (theta - origin); };
 
     Model model(given.gravity());
     const MassProperties brick_1 = brick({});
-    const MassProperties other{brick_1.mass, seen(brick_1.center_of_mass), transpose(axes) * brick_1.inertia * axes};
+    const MassProperties other{brick_1.mass, seen(brick_1.center_of_mass),
+                               transpose(axes) * brick_1.inertia * axes};
     for (const Body& body : given.bodies())
         model.add_body(rigid_body(body.name, other, {body.X * point(origin), directors(body.X) * axes}));
     JointFrame shoulder, elbow;

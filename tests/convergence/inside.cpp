@@ -34,11 +34,14 @@ constexpr double floor_X = 1e-11, floor_V = 1e-9;
 TEST(Lobatto, ConvergesAtInnerNodesWithOrderPPlus2)
 {
     const Bricks bricks;
-    for (auto [p, n] : {std::pair{2, std::vector{64, 80, 100, 125}}, {3, {38, 47, 58, 72}}, {4, {18, 22, 27, 33}},
+    for (auto [p, n] : {std::pair{2, std::vector{64, 80, 100, 125}},
+                        {3, {38, 47, 58, 72}},
+                        {4, {18, 22, 27, 33}},
                         {5, {10, 12, 15, 18}}}) {
         const std::vector<double> nodes = lobatto_basis(p).nodes();
         const std::vector<double> inner(nodes.begin() + 1, nodes.end() - 1);
-        const Study s = study(n, [&, degree = p](int m) { return largest(bricks, bricks.solved(m, degree), inner); });
+        const Study s =
+            study(n, [&, degree = p](int m) { return largest(bricks, bricks.solved(m, degree), inner); });
         EXPECT_EQ(n_above(s, &Distance::X, floor_X), n.size());
         EXPECT_GE(slope(s, &Distance::X, floor_X), p + 2 - 0.3) << "lobatto(" << p << ")";
     }
@@ -48,9 +51,12 @@ TEST(Lobatto, ConvergesBetweenNodesWithOrderPPlus1AndItsDerivativeWithP)
 {
     const Bricks bricks;
     const std::vector<double> between{0.05, 0.11, 0.23, 0.31, 0.42, 0.57, 0.64, 0.78, 0.87, 0.96};
-    for (auto [p, n] : {std::pair{1, std::vector{256, 320, 400, 500}}, {2, {64, 80, 100, 125}}, {3, {32, 40, 50, 62}},
+    for (auto [p, n] : {std::pair{1, std::vector{256, 320, 400, 500}},
+                        {2, {64, 80, 100, 125}},
+                        {3, {32, 40, 50, 62}},
                         {4, {16, 20, 25, 31}}}) {
-        const Study s = study(n, [&, degree = p](int m) { return largest(bricks, bricks.solved(m, degree), between); });
+        const Study s =
+            study(n, [&, degree = p](int m) { return largest(bricks, bricks.solved(m, degree), between); });
         EXPECT_GE(slope(s, &Distance::X, floor_X), p + 1 - 0.3) << "lobatto(" << p << ")";
         EXPECT_GE(slope(s, &Distance::V, floor_V), p - 0.3) << "lobatto(" << p << ")";
         const Motion m = bricks.solved(n.front(), p);
@@ -70,7 +76,8 @@ TEST(Lobatto, SamplesExactlyWithOrder2P)
         const Study s = study(n, [&, degree = p](int m) {
             SolveOptions options;
             options.tolerance = 1e-14;
-            const ExactSample sample = sample_exactly(bricks.model, bricks.solved(m, degree), Lobatto{degree}, t, options);
+            const ExactSample sample =
+                sample_exactly(bricks.model, bricks.solved(m, degree), Lobatto{degree}, t, options);
             EXPECT_TRUE(sample.report.converged()) << sample.report.message;
             EXPECT_EQ(sample.state.t, t);
             return distance(sample.state, there);

@@ -9,7 +9,8 @@ Solution two_bricks_to_2(int degree, double h, double tolerance)
     const Model model = two_bricks();
     SolveOptions options;
     options.tolerance = tolerance;
-    return solve(model, {model.start()}, make_time_mesh(0, 2, static_cast<int>(std::lround(2 / h))), Lobatto{degree}, options);
+    return solve(model, {model.start()}, make_time_mesh(0, 2, static_cast<int>(std::lround(2 / h))),
+                 Lobatto{degree}, options);
 }
 
 // Elements of 0.1 s turn the bricks by up to a radian; a guess by extrapolation diverges there.
@@ -25,13 +26,16 @@ TEST(Newton, ConvergesInTenIterationsOnLongElementsOfHighDegree)
     }
 }
 
-// With the exact tangent two or three iterations do; with one term missing convergence is linear and takes more.
+// With the exact tangent two or three iterations do; with one term missing convergence is linear and takes
+// more.
 TEST(Newton, NeedsThreeIterationsAnElementOnTheAverage)
 {
-    for (auto [degree, h] : {std::pair{1, 0.001}, {2, 0.01}, {4, 0.025}, {6, 0.025}, {8, 0.025}, {12, 0.05}, {16, 0.1}}) {
+    for (auto [degree, h] :
+         {std::pair{1, 0.001}, {2, 0.01}, {4, 0.025}, {6, 0.025}, {8, 0.025}, {12, 0.05}, {16, 0.1}}) {
         const SolveReport report = two_bricks_to_2(degree, h, 1e-12).report;
         EXPECT_TRUE(report.converged()) << report.message;
-        EXPECT_LE(report.newton_iterations, 3.0 * report.n_elements) << "lobatto(" << degree << "), h = " << h;
+        EXPECT_LE(report.newton_iterations, 3.0 * report.n_elements)
+            << "lobatto(" << degree << "), h = " << h;
     }
 }
 
@@ -42,9 +46,12 @@ TEST(Newton, FactorisesOnceAnElementWhereErrorsAreSmall)
         Model model;
         double end;
     };
-    const std::vector<Case> cases{{"two bricks", two_bricks(), 2},          {"free box", free_box(), 1},
-                                  {"hinged links", hinged_links(), 2},      {"cubes on rods", cubes_on_rods(0), 2},
-                                  {"cubes, off centre", cubes_on_rods(0.1), 2}, {"heavy top", heavy_top(), 1}};
+    const std::vector<Case> cases{{"two bricks", two_bricks(), 2},
+                                  {"free box", free_box(), 1},
+                                  {"hinged links", hinged_links(), 2},
+                                  {"cubes on rods", cubes_on_rods(0), 2},
+                                  {"cubes, off centre", cubes_on_rods(0.1), 2},
+                                  {"heavy top", heavy_top(), 1}};
     for (const Case& c : cases) {
         const State reference = last(solve_evenly(c.model, c.end, 120, 12));
         int n_accurate = 0;
@@ -52,10 +59,12 @@ TEST(Newton, FactorisesOnceAnElementWhereErrorsAreSmall)
             for (double h : {0.1, 0.05, 0.025, 0.01, 0.002}) {
                 const int n = static_cast<int>(std::lround(c.end / h));
                 if (n * degree > 1200) continue;   // nothing new there, but time
-                const Solution s = solve(c.model, {c.model.start()}, make_time_mesh(0, c.end, n), Lobatto{degree});
+                const Solution s =
+                    solve(c.model, {c.model.start()}, make_time_mesh(0, c.end, n), Lobatto{degree});
                 if (!s.report.converged() || distance(last(s), reference).X > 1e-6) continue;
                 ++n_accurate;
-                EXPECT_LE(s.report.factorisations, 1.1 * n) << c.name << ", lobatto(" << degree << "), h = " << h;
+                EXPECT_LE(s.report.factorisations, 1.1 * n)
+                    << c.name << ", lobatto(" << degree << "), h = " << h;
             }
         }
         EXPECT_GE(n_accurate, 10) << c.name;

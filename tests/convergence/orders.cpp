@@ -4,25 +4,33 @@
 namespace livens::tests {
 namespace {
 
-/// Errors below this many gaps between two fine motions are left out of a rate: one part in 50 moves a rate by 0.1.
+/// Errors below this many gaps between two fine motions are left out of a rate: one part in 50 moves a rate
+/// by 0.1.
 constexpr double gaps = 50;
 
 /// The rate of the last two errors above the floor, on both sides of 2p; `refinements` of them at least.
-void expect_order(const Study& s, const Fine& reference, int degree, double tolerance, std::size_t refinements = 4)
+void expect_order(const Study& s, const Fine& reference, int degree, double tolerance,
+                  std::size_t refinements = 4)
 {
     const double X = gaps * reference.floor.X, V = gaps * reference.floor.V;
-    EXPECT_GT(n_above(s, &Distance::X, X), refinements) << "lobatto(" << degree << "): too few errors above the floor " << X;
-    EXPECT_GT(n_above(s, &Distance::V, V), refinements) << "lobatto(" << degree << "): too few errors above the floor " << V;
-    EXPECT_NEAR(last_rate(s, &Distance::X, X), 2 * degree, tolerance) << "position, lobatto(" << degree << ")";
-    EXPECT_NEAR(last_rate(s, &Distance::V, V), 2 * degree, tolerance) << "velocity, lobatto(" << degree << ")";
+    EXPECT_GT(n_above(s, &Distance::X, X), refinements)
+        << "lobatto(" << degree << "): too few errors above the floor " << X;
+    EXPECT_GT(n_above(s, &Distance::V, V), refinements)
+        << "lobatto(" << degree << "): too few errors above the floor " << V;
+    EXPECT_NEAR(last_rate(s, &Distance::X, X), 2 * degree, tolerance)
+        << "position, lobatto(" << degree << ")";
+    EXPECT_NEAR(last_rate(s, &Distance::V, V), 2 * degree, tolerance)
+        << "velocity, lobatto(" << degree << ")";
 }
 
 /// The slope by least squares, where the last two errors are too near the floor for a rate.
 void expect_slope(const Study& s, const Fine& reference, int degree)
 {
     const double X = gaps * reference.floor.X, V = gaps * reference.floor.V;
-    EXPECT_GT(n_above(s, &Distance::X, X), 3u) << "lobatto(" << degree << "): too few errors above the floor " << X;
-    EXPECT_GT(n_above(s, &Distance::V, V), 3u) << "lobatto(" << degree << "): too few errors above the floor " << V;
+    EXPECT_GT(n_above(s, &Distance::X, X), 3u)
+        << "lobatto(" << degree << "): too few errors above the floor " << X;
+    EXPECT_GT(n_above(s, &Distance::V, V), 3u)
+        << "lobatto(" << degree << "): too few errors above the floor " << V;
     EXPECT_GE(slope(s, &Distance::X, X), 2 * degree - 0.7) << "position, lobatto(" << degree << ")";
     EXPECT_GE(slope(s, &Distance::V, V), 2 * degree - 0.7) << "velocity, lobatto(" << degree << ")";
 }
@@ -38,9 +46,11 @@ struct Case {
     double end;
     Fine reference;
 
-    void expect_order(int degree, const std::vector<int>& n, double tolerance, std::size_t refinements = 4) const
+    void expect_order(int degree, const std::vector<int>& n, double tolerance,
+                      std::size_t refinements = 4) const
     {
-        tests::expect_order(lobatto_study(model, end, reference, degree, n), reference, degree, tolerance, refinements);
+        tests::expect_order(lobatto_study(model, end, reference, degree, n), reference, degree, tolerance,
+                            refinements);
     }
     void expect_slope(int degree, const std::vector<int>& n) const
     {
@@ -87,7 +97,8 @@ TEST(Lobatto, ConvergesWithOrder2POnTheFreeBox)
     c.expect_order(2, {20, 25, 31, 38, 47, 58}, 0.15);
     c.expect_order(3, {8, 10, 12, 15, 18, 22}, 0.15);
     c.expect_order(4, {4, 5, 6, 7, 8, 10}, 0.25);
-    // Five elements or six leave 1e-12, so there is no room for more within this second; the next test has it.
+    // Five elements or six leave 1e-12, so there is no room for more within this second; the next test has
+    // it.
     c.expect_order(5, {4, 5, 6}, 0.25, 1);
 }
 
@@ -178,7 +189,8 @@ TEST(Lobatto, ConvergesWithOrder2PAcrossAJumpOfTheLoad)
         return distance(last(solve(model, {model.start()}, mesh, Lobatto{degree}, options)), f.end);
     };
     // multiples of 4, so that the mesh stays uniform
-    for (auto [degree, n] : {std::pair{1, std::vector{64, 80, 100, 124, 152}}, {2, {40, 48, 60, 72, 88}},
+    for (auto [degree, n] : {std::pair{1, std::vector{64, 80, 100, 124, 152}},
+                             {2, {40, 48, 60, 72, 88}},
                              {3, {16, 20, 24, 28, 32}}}) {
         const Study s = study(n, [&, p = degree](int elements) { return solve_between_jumps(p, elements); });
         expect_order(s, f, degree, 0.15);

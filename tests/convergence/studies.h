@@ -8,7 +8,8 @@
 
 namespace livens::tests {
 
-/// Errors at the end of a motion for meshes of n equal elements, each at most 1.25 times as fine as the one before.
+/// Errors at the end of a motion for meshes of n equal elements, each at most 1.25 times as fine as the one
+/// before.
 struct Study {
     std::vector<int> n;
     std::vector<Distance> error;
@@ -55,7 +56,8 @@ inline double slope(const Study& s, double Distance::*part, double floor)
     return k < 2 ? 0 : (m * xy - x * y) / (m * xx - x * x);
 }
 
-/// The motion to the end by a method of degree 12, good to `floor`: another degree and mesh must agree with it so well.
+/// The motion to the end by a method of degree 12, good to `floor`: another degree and mesh must agree with
+/// it so well.
 struct Fine {
     State end;
     Distance floor;
@@ -68,9 +70,12 @@ inline Fine fine(const Model& model, double end, int n)
 }
 
 /// The study of lobatto(p) against a fine motion.
-inline Study lobatto_study(const Model& model, double end, const Fine& reference, int degree, const std::vector<int>& n)
+inline Study lobatto_study(const Model& model, double end, const Fine& reference, int degree,
+                           const std::vector<int>& n)
 {
-    return study(n, [&](int elements) { return distance(last(solve_evenly(model, end, elements, degree)), reference.end); });
+    return study(n, [&](int elements) {
+        return distance(last(solve_evenly(model, end, elements, degree)), reference.end);
+    });
 }
 
 }   // namespace livens::tests

@@ -40,7 +40,8 @@ livens_mutant(NAME one_weight
               OLD [[rule.k.assign(]]
               NEW [[rule.weights[degree] *= 1.001; rule.k.assign(]]
               TESTS_OF convergence
-              MUST_FAIL Lobatto.ConvergesWithOrder2POnTheFreeBox Lobatto.ConvergesWithOrder2POnTwoBricksInSpace
+              MUST_FAIL Lobatto.ConvergesWithOrder2POnTheFreeBox
+                        Lobatto.ConvergesWithOrder2POnTwoBricksInSpace
                         Lobatto.ConvergesWithOrder2POnRevolutes)
 
 # One wrong sign in d_i x r_i.
@@ -49,7 +50,8 @@ livens_mutant(NAME sign_of_a_moment
               OLD [[m[1] += X[a + 2] * r[a] - X[a] * r[a + 2];]]
               NEW [[m[1] += X[a + 2] * r[a] + X[a] * r[a + 2];]]
               TESTS_OF convergence
-              MUST_FAIL Lobatto.ConvergesWithOrder2POnTheFreeBox Lobatto.ConvergesWithOrder2POnTwoBricksInSpace)
+              MUST_FAIL Lobatto.ConvergesWithOrder2POnTheFreeBox
+                        Lobatto.ConvergesWithOrder2POnTwoBricksInSpace)
 
 # The turning of the rows left out of the tangent: the answer stays, convergence is linear.
 livens_mutant(NAME missing_geometric_term
@@ -82,7 +84,7 @@ livens_mutant(NAME constraint_without_mean_gradient
               TESTS_OF conservation
               MUST_FAIL Lobatto.HoldsConstraintsAtNodesOverTenSeconds Lobatto.KeepsPinsTogetherAndRodsLong)
 
-# Reflections that lead with whichever entry comes next, which mixes directions across the plane into those in it.
+# Reflections that lead with whichever entry comes next: directions across the plane mix with those in it.
 livens_mutant(NAME reflections_without_choice
               FILE solvers/dense.cpp
               OLD [[leads_[j] = best;]]

@@ -20,12 +20,14 @@ Reaction reaction(const Model& model, const Motion& motion, int joint, int end, 
     return joint_reaction(model, joint, motion.at_end(end).X, {lambda, rows});
 }
 
-/// Reaction of a joint at the inner nodes of an element, from the multipliers that the element was solved with.
+/// Reaction of a joint at the inner nodes of an element, from the multipliers that the element was solved
+/// with.
 Reaction inner_reaction(const Model& model, const Motion& motion, int joint, int element, int node)
 {
     std::vector<Matrix34> X(static_cast<std::size_t>(motion.n_bodies));
     const auto values = motion.X.coefficient(element, node);
-    for (std::size_t b = 0; b < X.size(); ++b) std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(12 * b), 12, X[b].a);
+    for (std::size_t b = 0; b < X.size(); ++b)
+        std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(12 * b), 12, X[b].a);
     return joint_reaction(model, joint, X, motion.multipliers.coefficient(element, node));
 }
 
@@ -53,65 +55,86 @@ void expect_near(const Reaction& computed, const Reaction& expected, double tole
     EXPECT_LE(norm(computed.torque - expected.torque), tolerance);
 }
 
-// A beam welded to the wall; from its tip hangs a plate on a hinge about x, not below the hinge but beside it along x;
-// from the plate a bar on a ball joint, and from the bar a bob on a rod. Besides, a sign on a universal joint with its
-// axes along x and z, so that it may hang beside its joint along x.
-TEST(Reactions, OfAHangingChainAreItsWeights)
-{
-    const Hanging beam{2, {0.5, 0.2, 0}}, plate{3, {1.3, 0, -0.5}}, bar{1.5, {1.4, 0, -1.6}}, bob{0.8, {1.4, 0, -2.5}};
-    const Hanging sign{0.7, {-0.8, 0, -0.4}};
+/// A beam welded to the wall; from its tip hangs a plate on a hinge about x, not below the hinge but beside
+/// it along x; from the plate a bar on a ball joint, and from the bar a bob on a rod. Besides, a sign on a
+/// universal joint with its axes along x and z, so that it may hang beside its joint along x.
+class HangingChain {
+public:
+    const Hanging beam{2, {0.5, 0.2, 0}}, plate{3, {1.3, 0, -0.5}};
+    const Hanging bar{1.5, {1.4, 0, -1.6}}, bob{0.8, {1.4, 0, -2.5}}, sign{0.7, {-0.8, 0, -0.4}};
     const Vector3 wall{0, 0, 0}, hinge{1, 0, 0}, ball{1.4, 0, -1}, eye{1.4, 0, -2}, hook{-1, 0, 0};
+    Model model{{0, 0, -g}};
 
-    Model model({0, 0, -g});
-    auto add = [&](const char* name, const Hanging& thing) {
-        // reference points away from centres, and axes that are nobody's
+    HangingChain()
+    {
+        add("beam", beam);
+        add("plate", plate);
+        add("bar", bar);
+        model.add_body(point_mass("bob", bob.mass, bob.center));
+        add("sign", sign);
+        model.add_joint(weld("wall", world, 0, frame(world, 0, wall), X(world), X(0)));
+        model.add_joint(revolute("hinge", 0, 1, frame(0, 1, hinge, {1, 0, 0})));
+        // the bar is named first here: the reaction is the one on the plate, downwards
+        model.add_joint(spherical("ball", 2, 1, frame(2, 1, ball)));
+        JointFrame string = frame(2, 3, eye);
+        string.point_second = {0, 0, 0};
+        model.add_joint(rod("string", 2, 3, string, 0.5));
+        JointFrame gimbal = frame(world, 4, hook, {1, 0, 0});
+        gimbal.axis_second = frame(world, 4, hook, {0, 0, 1}).axis_second;
+        model.add_joint(universal("hook", world, 4, gimbal));
+    }
+
+    /// In the order of the joints.
+    std::vector<Reaction> reactions() const
+    {
+        Reaction on_plate = by_hand(ball, {bar, bob});
+        on_plate.force *= -1;
+        on_plate.torque *= -1;
+        return {by_hand(wall, {beam, plate, bar, bob}), by_hand(hinge, {plate, bar, bob}), on_plate,
+                by_hand(bob.center, {bob}), by_hand(hook, {sign})};
+    }
+
+private:
+    /// Reference points away from centres, and axes that are nobody's.
+    void add(const char* name, const Hanging& thing)
+    {
         const Matrix3 axes = directors_from_rotation_vector({0.3 * thing.mass, -0.2, 0.5});
         const Vector3 position = thing.center + Vector3{0.1, -0.2, 0.3};
         const MassProperties shape = with_center(with_mass(box(1, {0.4, 0.3, 0.2}), thing.mass),
                                                  transpose(axes) * (thing.center - position));
-        return model.add_body(rigid_body(name, shape, {position, axes, {}, {}}));
-    };
-    const int beam_body = add("beam", beam), plate_body = add("plate", plate), bar_body = add("bar", bar);
-    const int bob_body = model.add_body(point_mass("bob", bob.mass, bob.center));
-    const int sign_body = add("sign", sign);
-    auto X = [&](int body) { return body == world ? world_configuration : model.bodies()[body].X; };
-    auto frame = [&](int first, int second, const Vector3& at, const Vector3& axis = {0, 0, 1}) {
+        model.add_body(rigid_body(name, shape, {position, axes, {}, {}}));
+    }
+    Matrix34 X(int body) const { return body == world ? world_configuration : model.bodies()[body].X; }
+    JointFrame frame(int first, int second, const Vector3& at, const Vector3& axis = {0, 0, 1}) const
+    {
         return joint_frame(X(first), X(second), at, axis);
-    };
-    const int weld_joint = model.add_joint(weld("wall", world, beam_body, frame(world, beam_body, wall), X(world), X(beam_body)));
-    const int hinge_joint =
-        model.add_joint(revolute("hinge", beam_body, plate_body, frame(beam_body, plate_body, hinge, {1, 0, 0})));
-    // the bar is named first here: the reaction is the one on the plate, downwards
-    const int ball_joint = model.add_joint(spherical("ball", bar_body, plate_body, frame(bar_body, plate_body, ball)));
-    JointFrame string = frame(bar_body, bob_body, eye);
-    string.point_second = {0, 0, 0};
-    const int rod_joint = model.add_joint(rod("string", bar_body, bob_body, string, 0.5));
-    JointFrame gimbal = frame(world, sign_body, hook, {1, 0, 0});
-    gimbal.axis_second = frame(world, sign_body, hook, {0, 0, 1}).axis_second;
-    const int universal_joint = model.add_joint(universal("hook", world, sign_body, gimbal));
+    }
+};
 
+TEST(Reactions, OfAHangingChainAreItsWeights)
+{
+    const HangingChain chain;
+    const Model& model = chain.model;
     SolveOptions options;
     options.tolerance = 1e-14;
     const Solution s = solve(model, {model.start()}, make_time_mesh(0, 1, 10), Lobatto{4}, options);
     ASSERT_TRUE(s.report.converged()) << s.report.message;
     EXPECT_EQ(s.report.unknowns, 4 * (4 * 6 + 3 - 6 - 5 - 3 - 1 - 4));
 
-    Reaction on_plate = by_hand(ball, {bar, bob});
-    on_plate.force *= -1;
-    on_plate.torque *= -1;
-    const std::vector<std::pair<int, Reaction>> expected{
-        {weld_joint, by_hand(wall, {beam, plate, bar, bob})}, {hinge_joint, by_hand(hinge, {plate, bar, bob})},
-        {ball_joint, on_plate},                               {rod_joint, by_hand(bob.center, {bob})},
-        {universal_joint, by_hand(hook, {sign})}};
-    EXPECT_GT(norm(expected[1].second.torque), 1) << "the hinge carries no moment";
-    EXPECT_GT(norm(expected[4].second.torque), 1) << "the universal joint carries no moment";
-    for (const auto& [joint, r] : expected) {
+    const std::vector<Reaction> expected = chain.reactions();
+    EXPECT_GT(norm(expected[1].torque), 1) << "the hinge carries no moment";
+    EXPECT_GT(norm(expected[4].torque), 1) << "the universal joint carries no moment";
+    for (int joint = 0; joint < 5; ++joint) {
         SCOPED_TRACE(model.joints()[joint].name);
+        const Reaction& r = expected[joint];
         for (int end = 0; end <= 10; ++end)
-            for (int side = 0; side < 2; ++side) expect_near(reaction(model, s.motion, joint, end, side), r, 1e-10);
-        for (int node = 0; node <= 4; ++node) expect_near(inner_reaction(model, s.motion, joint, 5, node), r, 1e-9);
+            for (int side = 0; side < 2; ++side)
+                expect_near(reaction(model, s.motion, joint, end, side), r, 1e-10);
+        for (int node = 0; node <= 4; ++node)
+            expect_near(inner_reaction(model, s.motion, joint, 5, node), r, 1e-9);
     }
-    for (std::size_t b = 0; b < 5; ++b) EXPECT_LE(norm(s.motion.at_end(10).X[b] - model.start().X[b]), 1e-12);
+    for (std::size_t b = 0; b < 5; ++b)
+        EXPECT_LE(norm(s.motion.at_end(10).X[b] - model.start().X[b]), 1e-12) << "not at rest";
 }
 
 // A bob circles below its pivot: the rod pulls with m g / cos(angle), which holds it up and turns it round.
@@ -132,12 +155,13 @@ TEST(Reactions, OfAConicalPendulumAreWeightAndCentripetalForce)
         const Vector3 inwards{-std::cos(turn), -std::sin(turn), 0};
         const Vector3 force = mass * rate * rate * radius * inwards + Vector3{0, 0, mass * g};
         EXPECT_NEAR(norm(force), mass * g / std::cos(angle), 1e-12);
-        for (int side = 0; side < 2; ++side) expect_near(reaction(model, s.motion, 0, end, side), {force, {}}, 1e-9);
+        for (int side = 0; side < 2; ++side)
+            expect_near(reaction(model, s.motion, 0, end, side), {force, {}}, 1e-9);
     }
 }
 
-// An askew box turns steadily on an upright hinge: its bearing carries the weight, holds the centre on its circle, and
-// turns the angular momentum that does not lie along the axis: torque = w x J w - r x W.
+// An askew box turns steadily on an upright hinge: its bearing carries the weight, holds the centre on its
+// circle, and turns the angular momentum that does not lie along the axis: torque = w x J w - r x W.
 TEST(Reactions, OfAnUnbalancedRotorAreThoseOfEuler)
 {
     const double w = 4, mass = 2.5;
@@ -157,9 +181,12 @@ TEST(Reactions, OfAnUnbalancedRotorAreThoseOfEuler)
     for (int end = 0; end <= 80; ++end) {
         const Matrix3 turn = directors_from_rotation_vector(s.motion.mesh.ends[end] * spin);
         const Vector3 r = turn * center, weight{0, 0, -mass * g};
-        const Vector3 turning = turn * (about_center * (transpose(turn) * spin)) + mass * cross(r, cross(spin, r));
-        const Reaction expected{mass * cross(spin, cross(spin, r)) - weight, cross(spin, turning) - cross(r, weight)};
-        for (int side = 0; side < 2; ++side) expect_near(reaction(model, s.motion, 0, end, side), expected, 1e-9);
+        const Vector3 turning =
+            turn * (about_center * (transpose(turn) * spin)) + mass * cross(r, cross(spin, r));
+        const Reaction expected{mass * cross(spin, cross(spin, r)) - weight,
+                                cross(spin, turning) - cross(r, weight)};
+        for (int side = 0; side < 2; ++side)
+            expect_near(reaction(model, s.motion, 0, end, side), expected, 1e-9);
     }
 }
 
@@ -169,7 +196,8 @@ TEST(Reactions, JumpWithTheLoad)
     Model model({0, 0, -g});
     const int body = model.add_body(rigid_body("block", box(1000, {0.1, 0.1, 0.1})));
     model.add_joint(weld("glue", world, body, {}, world_configuration, model.bodies()[body].X));
-    model.add_load(point_force("push", body, {0, 0, 0.05}, window(TimeVector{7, 0, 0}, 0.5, 1), Frame::inertial));
+    model.add_load(
+        point_force("push", body, {0, 0, 0.05}, window(TimeVector{7, 0, 0}, 0.5, 1), Frame::inertial));
     const TimeMesh mesh = make_time_mesh(0, 1.5, 6, model.load_breaks());
     const Solution s = solve(model, {model.start()}, mesh, Lobatto{3});
     ASSERT_TRUE(s.report.converged()) << s.report.message;

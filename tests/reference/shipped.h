@@ -54,8 +54,8 @@ struct Shipped {
     int end_at(double t) const
     {
         const auto& ends = solution.motion.mesh.ends;
-        const auto near = std::min_element(ends.begin(), ends.end(),
-                                           [&](double l, double r) { return std::abs(l - t) < std::abs(r - t); });
+        const auto near = std::min_element(
+            ends.begin(), ends.end(), [&](double l, double r) { return std::abs(l - t) < std::abs(r - t); });
         EXPECT_NEAR(*near, t, 1e-12) << "not an element end";
         return static_cast<int>(near - ends.begin());
     }

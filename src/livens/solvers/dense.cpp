@@ -119,6 +119,7 @@ void OrthogonalBasis::resize(int n, int most)
     beta_.assign(static_cast<std::size_t>(most), 0.0);
     signs_.assign(static_cast<std::size_t>(most), 1.0);
     leads_.assign(static_cast<std::size_t>(most), 0);
+    ends_.assign(static_cast<std::size_t>(most), 0);
     norms_.assign(static_cast<std::size_t>(most), 0.0);
     scratch_.assign(static_cast<std::size_t>(n), 0.0);
 }
@@ -140,7 +141,9 @@ void OrthogonalBasis::lead(int j, bool keep)
 void OrthogonalBasis::reflect(int j, bool keep_sign)
 {
     double* v = column(j) + j;
-    const int m = n_ - j;
+    int m = n_ - j;
+    while (m > 1 && v[m - 1] == 0) --m;
+    ends_[j] = j + m;
     const double tail = inner(v + 1, v + 1, m - 1);
     const double head = v[0];
     const double length = std::sqrt(head * head + tail);
@@ -170,7 +173,7 @@ void OrthogonalBasis::reflect_only(int j, double* x) const
     if (beta_[j] == 0) return;
     const double* v = column(j) + j;
     double* y = x + j;
-    const int m = n_ - j - 1;
+    const int m = ends_[j] - j - 1;
     const double t = beta_[j] * (y[0] + inner(v + 1, y + 1, m));
     if (t == 0) return;
     y[0] -= t;
@@ -268,14 +271,14 @@ void OrthogonalBasis::reflect_rows(int j, double* z) const
     double* w = scratch_.data();
     const double* v = column(j);
     std::fill(w, w + f, 0.0);
-    for (int i = j + 1; i < n_; ++i)
+    for (int i = j + 1; i < ends_[j]; ++i)
         if (v[i] != 0) subtract_scaled(w, -v[i], z + count(i, f), f);
     double* zj = z + count(j, f);
     for (int c = 0; c < f; ++c) {
         w[c] *= beta_[j];
         zj[c] = -w[c];
     }
-    for (int i = j + 1; i < n_; ++i)
+    for (int i = j + 1; i < ends_[j]; ++i)
         if (v[i] != 0) subtract_scaled(z + count(i, f), v[i], w, f);
 }
 

@@ -82,6 +82,7 @@ private:
     int k_ = 0;
     std::vector<double> g_;   // R above the diagonal, reflectors (first entry 1 implied) below
     std::vector<double> signs_;
+    std::vector<int> ends_;      // entries of reflection j from here on are zero
     std::vector<int> leads_;     // row exchanged with row j before reflection j
     std::vector<double> beta_;   // H_j = I - beta v v^T
     std::vector<double> norms_;

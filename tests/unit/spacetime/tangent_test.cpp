@@ -65,7 +65,7 @@ double tangent_error(const Model& model, int degree)
     for (int B = 1; B <= degree; ++B) {
         for (int j = 0; j < n; ++j) {
             // four points: error eps^4 / 30 of the fifth derivative, rounding 1e-16 / eps
-            const double eps = 1e-3, weight[4] = {1, -8, 8, -1};
+            const double eps = 2e-4, weight[4] = {1, -8, 8, -1};
             auto move_along = [&](double size) {
                 std::fill(unit.begin(), unit.end(), 0.0);
                 unit[static_cast<std::size_t>(j)] = size;

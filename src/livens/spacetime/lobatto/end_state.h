@@ -46,6 +46,10 @@ public:
     /// Accelerations and multipliers on one side.
     void accelerate(EndState& state, Side side);
 
+    /// X' and [0, w x (w x d_a)] of the last state that was accelerated, 12 numbers a body.
+    const double* rates() const { return V_.data(); }
+    const double* centripetal() const { return centripetal_.data(); }
+
 private:
     bool prepare_singular(const EndState& state);
     void apply_mass(const EndState& state, const double* y, double* out);

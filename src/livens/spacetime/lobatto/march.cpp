@@ -87,6 +87,12 @@ private:
         const auto n = static_cast<std::size_t>(mesh_.n_elements());
         m.X.values.reserve((n * static_cast<std::size_t>(p) + 1) * static_cast<std::size_t>(12 * nb));
         m.mesh.ends.reserve(n + 1);
+        const auto bodies = static_cast<std::size_t>(nb), rows = static_cast<std::size_t>(m.n_rows);
+        m.multipliers.values.reserve(n * static_cast<std::size_t>(p + 1) * rows);
+        m.velocities.reserve((n + 1) * bodies);
+        m.momenta.reserve((n + 1) * bodies);
+        m.accelerations.reserve(2 * (n + 1) * bodies);
+        m.end_multipliers.reserve(2 * (n + 1) * rows);
         solution_.report.iterations.reserve(n);
         solution_.report.unknowns = element_.unknowns();
     }
@@ -119,6 +125,7 @@ private:
         solution_.report.status = SolveStatus::singular;
         solution_.report.failed_at = mesh_.start();
         solution_.report.message = "the mass matrix on the free motions is singular at the start";
+        ends_.from_velocity(here());
         const double* X = here().X.data();
         solution_.motion.X.values.insert(solution_.motion.X.values.end(), X, X + here().X.size());
         record(here());
@@ -137,28 +144,25 @@ private:
         }
     }
 
-    /// Appends the end values of `state` to the motion.
+    /// Appends the end values of `state`, for which `ends_` has just made the accelerations, to the motion.
     void record(const EndState& state)
     {
         Motion& m = solution_.motion;
-        const std::size_t size = state.X.size();
-        V_.resize(4 * size);
-        double *V = V_.data(), *P = V + size, *turn = P + size, *A = turn + size;
-        mechanism_.columns_of(state.X.data(), state.velocity.data(), V);
-        mechanism_.times_mass(V, 1.0, P);
+        const double *V = ends_.rates(), *turn = ends_.centripetal();
+        V_.resize(state.X.size());
+        mechanism_.times_mass(V, 1.0, V_.data());
         m.mesh.ends.push_back(state.t);
         for (int b = 0; b < m.n_bodies; ++b) {
             m.velocities.push_back(body_matrix(V, b));
-            m.momenta.push_back(body_matrix(P, b));
+            m.momenta.push_back(body_matrix(V_.data(), b));
         }
-        mechanism_.columns_of(V, state.velocity.data(), turn);
         for (int side = 0; side < 2; ++side) {
-            // X'' = [a, alpha x d + w x (w x d)]
-            mechanism_.columns_of(state.X.data(), state.acceleration[side].data(), A);
-            for (int b = 0; b < m.n_bodies; ++b) {
-                for (int i = 3; i < 12; ++i) A[12 * b + i] += turn[12 * b + i];
-                m.accelerations.push_back(body_matrix(A, b));
+            if (side == 0 || is_jump(state.t)) {
+                // X'' = [a, alpha x d + w x (w x d)]
+                mechanism_.columns_of(state.X.data(), state.acceleration[side].data(), V_.data());
+                for (std::size_t i = 0; i < state.X.size(); ++i) V_[i] += turn[i];
             }
+            for (int b = 0; b < m.n_bodies; ++b) m.accelerations.push_back(body_matrix(V_.data(), b));
             m.end_multipliers.insert(m.end_multipliers.end(), state.multipliers[side].begin(),
                                      state.multipliers[side].end());
         }

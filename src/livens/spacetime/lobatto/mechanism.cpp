@@ -32,6 +32,14 @@ Mechanism::RowTable row_table(const ConstraintRow& row)
         collect(row.c_ij, 0, 1, false, table.form);
         collect(row.c_ij, 1, 0, true, table.form);
     }
+    for (int side = 0; side < 2; ++side) {
+        const double* b = side == 0 ? row.b_i.a : row.b_j.a;
+        for (int a = 3; a < 12; a += 3) {
+            bool touched = b[a] != 0 || b[a + 1] != 0 || b[a + 2] != 0;
+            for (const auto& entry : table.form) touched = touched || entry.to == 12 * side + a;
+            if (touched) table.columns[side].push_back(a);
+        }
+    }
     auto used = [](double x) { return x != 0; };
     table.has_b =
         std::any_of(row.b_i.a, row.b_i.a + 12, used) || std::any_of(row.b_j.a, row.b_j.a + 12, used);
@@ -76,6 +84,9 @@ bool scale_body(const Body& body, double length, Mechanism::BodyTable& table)
     }
     const Matrix3 spin = transpose(inverse(L));
     std::copy(spin.a, spin.a + 9, table.spin);
+    table.principal = true;
+    for (int i = 0; i < 9; ++i)
+        table.principal = table.principal && (i % 4 == 0 || (spin.a[i] == 0 && E.a[i] == 0));
     return regular;
 }
 
@@ -200,11 +211,15 @@ void Mechanism::scaled_gradient(int r, const double* X, const double* frames, co
     const RowTable& t = rows[r];
     for (int side = t.first_side(); side < 2; ++side) {
         const int body = t.body(side);
-        double q[6] = {0, 0, 0, 0, 0, 0};
-        if (bodies[body].dofs == 6)
-            twist::add_rows(X + 12 * body, g + 12 * side, 1.0, q);
-        else
-            std::copy(g + 12 * side, g + 12 * side + 3, q);
+        // the rows of twist::add_rows, of the columns that are not zero
+        const double* gs = g + 12 * side;
+        double q[6] = {gs[0], gs[1], gs[2], 0, 0, 0};
+        for (const int a : t.columns[side]) {
+            const double *d = X + 12 * body + a, *load = gs + a;
+            q[3] += d[1] * load[2] - d[2] * load[1];
+            q[4] += d[2] * load[0] - d[0] * load[2];
+            q[5] += d[0] * load[1] - d[1] * load[0];
+        }
         scale_row(bodies[body], frames + 12 * body, q, out + bodies[body].first);
     }
 }
@@ -215,6 +230,18 @@ void Mechanism::spin_mass(int body, const double* X_A, const double* X_B, double
     const BodyTable& b = bodies[body];
     double Q[9], EQ[9], T[9];
     multiply_transposed(X_A + 12 * body + 3, X_B + 12 * body + 3, Q);
+    if (b.principal) {
+        const double *e = b.euler, *l = b.spin;
+        const double t = e[0] * Q[0] + e[4] * Q[4] + e[8] * Q[8];
+        for (int j = 0; j < 3; ++j) {
+            for (int i = 0; i < 3; ++i) EQ[3 * j + i] = -e[4 * i] * Q[3 * j + i];
+            EQ[4 * j] += t;
+        }
+        multiply(Q, EQ, T);
+        for (int j = 0; j < 3; ++j)
+            for (int i = 0; i < 3; ++i) H[3 * j + i] = l[4 * i] * T[3 * j + i] * l[4 * j];
+        return;
+    }
     multiply(b.euler, Q, EQ);
     const double tr = EQ[0] + EQ[4] + EQ[8];
     for (int i = 0; i < 9; ++i) EQ[i] = (i % 4 == 0 ? tr : 0.0) - EQ[i];

@@ -30,6 +30,7 @@ struct Mechanism {
         double inverse_root_mass = 0;   ///< 1 / sqrt(M)
         double center[3] = {};          ///< of mass, body coordinates
         double spin[9] = {};            ///< L^-T, column by column: w_body = spin y_2
+        bool principal = false;         ///< spin and euler are diagonal
         double euler[9] = {};           ///< E about the centre of mass, column by column
     };
     struct RowTable {
@@ -39,8 +40,9 @@ struct Mechanism {
             int from, to;   ///< places in the 24 numbers of X_i and X_j: 12 * side + 3 * column
             double value;
         };
-        std::vector<Entry> form;   ///< entries of K that are not zero, by rows and columns
-        bool has_b = false;        ///< B is not zero
+        std::vector<int> columns[2];   ///< directors of body i and j that the gradient may touch: 3, 6, 9
+        std::vector<Entry> form;       ///< entries of K that are not zero, by rows and columns
+        bool has_b = false;            ///< B is not zero
         int body(int side) const { return side == 0 ? row->body_i : row->body_j; }
         int first_side() const { return has_i ? 0 : 1; }
     };
