@@ -23,7 +23,10 @@ std::string json_of(const Scenario& scenario, const Assembly& assembly,
     json.member("elements", scenario.mesh.n_elements()).member("output_times", scenario.output.size());
     json.key("options").raw(scenario.resolved.empty() ? "null" : scenario.resolved);
     json.key("redundant_rows").begin_array();
-    for (const RedundantRow& row : assembly.redundant) json.value(row.message);
+    for (const int r : assembly.redundant) {
+        const Joint& joint = scenario.model.joints()[scenario.model.row_joint(r)];
+        json.value(joint.name + ": " + scenario.model.row(r).label);
+    }
     json.end_array();
     json.key("notes").begin_array();
     for (const std::string& note : assembly.notes) json.value(note);
@@ -55,7 +58,6 @@ int check_command(const std::string& file, const Common& common)
         plain(file), scenario.model.n_bodies(), scenario.model.joints().size(), scenario.model.n_rows(),
         scenario.model.loads().size(), assembly.degrees_of_freedom, scenario.mesh.start(),
         scenario.mesh.end(), scenario.mesh.n_elements(), scenario.output.size());
-    for (const RedundantRow& row : assembly.redundant) text += "  note: " + plain(row.message) + "\n";
     for (const std::string& note : assembly.notes) text += "  note: " + plain(note) + "\n";
     print(text);
     return exit_ok;

@@ -89,7 +89,7 @@ TEST(Lobatto, AgreesWithTheExtrapolatedMidpointRule)
 TEST(Lobatto, AgreesWithTheExtrapolatedMidpointRuleOnARedundantLoop)
 {
     const Model model = four_bar();
-    const Extrapolated midpoint(model, 0.5, 250);
+    const Extrapolated midpoint(model, 0.5, 100);
     const State lobatto = last(solve_evenly(model, 0.5, 10, 8));
     EXPECT_LE(distance(lobatto, midpoint.limit).X, 1e-8);
     EXPECT_LE(distance(lobatto, midpoint.limit).V, 1e-7);

@@ -71,8 +71,8 @@ livens_mutant(NAME missing_geometric_term_by_differences
 # Loads taken where the element starts, their moments where the node is: a spring that turns what it holds.
 livens_mutant(NAME loads_at_the_start
               FILE spacetime/lobatto/element.cpp
-              OLD [[mechanism_.add_forces(at, X(A), V, h_ * rule_.weights[A], raw);]]
-              NEW [[mechanism_.add_forces(at, X0_.data(), V, h_ * rule_.weights[A], raw);]]
+              OLD [[mechanism_.add_forces(at, X(A), V, h_ * rule_.weights[A], forces);]]
+              NEW [[mechanism_.add_forces(at, X0_.data(), V, h_ * rule_.weights[A], forces);]]
               TESTS_OF conservation
               MUST_FAIL Lobatto.BalancesAngularMomentumOverTenSeconds Lobatto.KeepsMomentaOfAFloatingChain)
 

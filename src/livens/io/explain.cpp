@@ -56,6 +56,9 @@ products of inertia with the wrong sign, or moments and axes in different order.
     Page{"io-not-found", R"(There is no file of this name.)"},
     Page{"io-unreadable", R"(
 The file exists, but reading it failed: permission is missing or the device reports an error.)"},
+    Page{"joint-branch", R"(
+A revolute joint makes one axis of each body coincide. Its conditions also hold when one of the two points the
+other way, and at the start they do. Reverse one of the two `axes`, or turn one of the bodies.)"},
     Page{"joint-contradiction", R"(
 Joints are redundant where some of their conditions follow from others; that is legal, and such conditions
 are dropped. Here one of them contradicts the others: no position of the bodies fulfils them all. Check

@@ -306,6 +306,37 @@ void refuse_weightless_motion(const Model& model, std::span<const double> motion
          "give the body inertia about this axis, hold the spin by a joint, or use a point mass"});
 }
 
+/// Rows a . b = 0 hold for an axis turned end for end as well; a start in that branch was not meant.
+void refuse_opposite_axes(const Model& model, const State& state)
+{
+    for (const Joint& joint : model.joints()) {
+        if (dot(joint.axis_first, joint.axis_first) == 0) continue;
+        const Matrix34& X = joint.first == world ? world_configuration : state.X[joint.first];
+        if (dot(X * direction(joint.axis_first), state.X[joint.second] * direction(joint.axis_second)) > 0)
+            continue;
+        throw InputError({"joint-branch", "joint[" + joint.name + "].axes",
+                          "the axes of joint '" + joint.name + "' point in opposite directions at the start",
+                          "", "", "its rows would hold, but turned by half a turn",
+                          "reverse one of the two axes, or turn one of the bodies"});
+    }
+}
+
+/// One sentence a joint on its redundant rows, which ascend.
+void note_redundancy(const Model& model, Assembly& assembly)
+{
+    for (std::size_t i = 0; i < assembly.redundant.size();) {
+        const int joint = model.row_joint(assembly.redundant[i]);
+        std::string rows;
+        int count = 0;
+        for (; i < assembly.redundant.size() && model.row_joint(assembly.redundant[i]) == joint; ++i, ++count)
+            rows += (count == 0 ? "" : ", ") + model.row(assembly.redundant[i]).label;
+        assembly.notes.push_back(
+            "joint '" + model.joints()[joint].name + "': row" + (count == 1 ? " " : "s ") + rows +
+            (count == 1 ? " is" : " are") +
+            " implied by the other rows; reactions of the joints in this loop are not unique");
+    }
+}
+
 }   // namespace
 
 Assembly assemble(const Model& model, const State& start, StartPolicy policy)
@@ -316,14 +347,14 @@ Assembly assemble(const Model& model, const State& start, StartPolicy policy)
     settle_directors(model, policy, assembly.start, assembly.notes);
     settle_positions(model, policy, assembly.start, assembly.notes);
 
+    refuse_opposite_axes(model, assembly.start);
+
     const RowRank rank = row_rank(model, assembly.start.X);
     refuse_weightless_motion(model, rank.weightless_motion);
     assembly.independent = rank.independent;
     assembly.degrees_of_freedom = TwistLayout(model).size - static_cast<int>(rank.independent.size());
-    for (int r : rank.dependent) {
-        assembly.redundant.push_back(
-            {r, row_name(model, r) + " is implied by the other rows; its reactions are not unique"});
-    }
+    assembly.redundant = rank.dependent;
+    note_redundancy(model, assembly);
     if (rank.smallest_pivot < 1e-6) {
         assembly.notes.push_back("the joints are close to a singular configuration at the start (pivot " +
                                  number(rank.smallest_pivot) + ")");

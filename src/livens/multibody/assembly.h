@@ -13,15 +13,10 @@ enum class StartPolicy {
     project   ///< positions and velocities are moved to the nearest consistent ones in the mass metric
 };
 
-struct RedundantRow {
-    int row = 0;           ///< of the model
-    std::string message;   ///< "joint 'd', row 'axis 1' is implied by the others"
-};
-
 struct Assembly {
     State start;                           ///< consistent; directors orthonormal, V = [v, w x d_i]
     std::vector<int> independent;          ///< rows of the model, ascending
-    std::vector<RedundantRow> redundant;   ///< dropped, their multipliers are not unique
+    std::vector<int> redundant;     ///< rows implied by the others: dropped, multipliers not unique
     int degrees_of_freedom = 0;            ///< twist unknowns less independent rows
     std::vector<std::string> notes;        ///< what the projection moved, what deserves a word
 };
@@ -32,6 +27,7 @@ struct Assembly {
 /// Throws InputError:
 ///   `start-position`      |Phi| / scale > 1e-9 under StartPolicy::check, or the projection does not converge
 ///   `start-velocity`      |dPhi/dt| too large (1e-9 of the largest speed), or rates that deform the triad
+///   `joint-branch`        axes that must coincide are opposite
 ///   `joint-contradiction` a redundant row that cannot be fulfilled with the others
 ///   `spin-without-inertia` a motion that no joint holds and that carries no inertia (a needle's free spin)
 Assembly assemble(const Model& model, const State& start, StartPolicy policy);

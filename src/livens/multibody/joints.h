@@ -22,6 +22,10 @@ struct Joint {
                               ///< world)
     Vector3 point_second{};   ///< joint point in body coordinates of `second`
     std::vector<ConstraintRow> rows;
+    /// Directions fixed in each body that must point the same way at assembly, where rows a . b = 0 alone
+    /// would admit the opposite; zero where there are none.
+    Vector3 axis_first{};
+    Vector3 axis_second{};
 };
 
 /// Where a joint sits, in coordinates of each body. For the world they are world coordinates.

@@ -39,7 +39,7 @@ private:
 /// QR of a tall matrix, given by its k columns of length n, by Householder reflections: A = Q [R; 0].
 /// The last n - k columns of Q span the null space of A^T.
 ///
-/// Each reflection leads with the largest entry of its column [Powell and Reid 1969]. It then touches only
+/// Each reflection leads with the largest entry of its column [Powell1969]. It then touches only
 /// rows where the column is not zero, so unknowns that do not see each other (a plane and its normal) stay
 /// apart to the bit.
 class OrthogonalBasis {

@@ -151,10 +151,7 @@ private:
         motion.dense_order_X = motion.order_at_ends;
         motion.dense_order_V = 1;
         motion.constraints_hold = "element ends";
-        for (const RedundantRow& r : assembly.redundant) {
-            motion.redundant_rows.push_back(r.row);
-            result_.report.notes.push_back(r.message);
-        }
+        motion.redundant_rows = assembly.redundant;
         for (const std::string& note : assembly.notes) result_.report.notes.push_back(note);
         append_end(assembly.start.V);
     }

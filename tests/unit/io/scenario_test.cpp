@@ -396,6 +396,10 @@ std::vector<Case> cases_of_joints_and_loads()
          "[[1, 0, 0], [1, 1"},
         change("axis-zero", "axis = [0, 1, 0]", "axis = [0, 0, 0]", "[0, 0, 0]\n\n[[joint]]"),
         change("body-unknown", "body = \"lower\"", "body = \"lover\"", "\"lover\""),
+        {"joint-branch",
+         joined(given_mass, "type = \"revolute\"\npoints = [[0, 0, 0], [0, 0, 0]]\n"
+                            "axes = [[0, 0, 1], [0, 0, -1]]"),
+         "[[0, 0, 1], [0"},
         {"joint-contradiction", contradiction, "\"two\""},
         {"joint-needs-directors", joined(point_body, "type = \"weld\"\nat = [1, 0, 0]"), "\"j\""},
         change("joint-placement", "at = [1, 0, 0]\n", "", "[[joint]]\nname = \"elbow\""),

@@ -16,7 +16,7 @@ Element::Element(const Mechanism& mechanism, const LobattoRule& rule)
     const auto rank = static_cast<std::size_t>(mechanism.rank);
     increments_.resize(nodes * mechanism.bodies.size());
     X0_.assign(size, 0.0);
-    for (auto* v : {&dX_, &X_, &raw_, &frames_}) v->assign(nodes * size, 0.0);
+    for (auto* v : {&dX_, &X_, &raw_, &forces_, &frames_}) v->assign(nodes * size, 0.0);
     V_.assign(size, 0.0);
     blocks_.assign(3 * size, 0.0);
     q_.assign(nodes * twists, 0.0);
@@ -91,6 +91,8 @@ void Element::move(int B, const double* xi)
 /// does not lose the digits of a small increment.
 bool Element::evaluate_constraints()
 {
+    constexpr double rounding = 1e-16;   // of Phi at the start itself: nothing to correct
+
     const ConstraintBasis& first = start_->basis;
     const int k = mechanism_.rank;
     double sum = 0;
@@ -110,6 +112,7 @@ bool Element::evaluate_constraints()
                 for (int i = 0; i < 12; ++i) phi += (g0[12 * side + i] + g[12 * side + i]) * d[i];
             }
             phi = phi0_[c] + 0.5 * phi;
+            if (std::abs(phi) < rounding * table.row->scale) phi = 0;
             phi_[static_cast<std::size_t>(B * k + c)] = phi * basis.row_scale[c];
             sum += std::abs(phi);
         }
@@ -131,6 +134,19 @@ void Element::evaluate_row(int A)
     }
     double* raw = raw_.data() + node(A);
     mechanism_.times_mass(y, 1 / h_, raw);
+    double* forces = forces_.data() + node(A);
+    evaluate_forces(A, forces);
+    for (std::size_t i = 0; i < size; ++i) raw[i] += forces[i];
+    double* q = q_.data() + twist_node(A);
+    mechanism_.rows_of(X(A), frames(A), raw, q);
+    eliminate_multipliers(A);
+}
+
+/// forces <- h w_A F at node A, each load on the element's own side of a jump.
+void Element::evaluate_forces(int A, double* forces)
+{
+    const std::size_t size = X0_.size();
+    const int n_nodes = rule_.size();
     const double* V = nullptr;
     if (mechanism_.has_velocity_loads) {
         std::fill(V_.begin(), V_.end(), 0.0);
@@ -143,10 +159,8 @@ void Element::evaluate_row(int A)
     const bool last = A == rule_.degree;
     const Instant at{A == 0 ? t0_ : (last ? t1_ : t0_ + rule_.nodes[A] * h_),
                      A == 0 ? Side::right : (last ? Side::left : Side::middle)};
-    mechanism_.add_forces(at, X(A), V, h_ * rule_.weights[A], raw);
-    double* q = q_.data() + twist_node(A);
-    mechanism_.rows_of(X(A), raw, q);
-    if (!last) eliminate_multipliers(A);
+    std::fill(forces, forces + size, 0.0);
+    mechanism_.add_forces(at, X(A), V, h_ * rule_.weights[A], forces);
 }
 
 /// lambda_A from the rows in the constraint directions; what is left are the reduced rows.
@@ -183,18 +197,17 @@ bool Element::finish_evaluation(bool correct)
     return std::isfinite(sum);
 }
 
-/// raw <- raw_A - h w_A G^T lambda_A.
-void Element::total_residual(int A, double* raw) const
+/// raw -= h w_A G^T lambda_A.
+void Element::subtract_reactions(int A, double* raw) const
 {
-    std::copy_n(raw_.begin() + static_cast<std::ptrdiff_t>(node(A)), X0_.size(), raw);
     const ConstraintBasis& basis = A == 0 ? start_->basis : bases_[A];
     for (int c = 0; c < mechanism_.rank; ++c) {
         const auto& table = mechanism_.rows[basis.rows[c]];
         const double s = h_ * rule_.weights[A] * lambda_[static_cast<std::size_t>(A * mechanism_.rank + c)];
         for (int side = table.first_side(); side < 2; ++side) {
             double* r = raw + 12 * table.body(side);
-            for (int i = 0; i < 12; ++i)
-                r[i] -= s * basis.gradients[static_cast<std::size_t>(24 * c + 12 * side + i)];
+            const double* g = basis.gradients.data() + 24 * c + 12 * side;
+            for (int i = 0; i < 12; ++i) r[i] -= s * g[i];
         }
     }
 }
@@ -341,12 +354,26 @@ ElementReport Element::solve(const EndState& start, double t_end, const NewtonOp
     return report;
 }
 
-/// The last row, which is not solved but hands on the momentum.
+/// The momentum at the end from the balance of all rows, which is the last row once the others are solved:
+///
+///     p = p_0 + sum_A f_A,      s = s_0 + sum_A tau_A
+///
+/// with wrenches (f_A, tau_A) of loads and multipliers about the centre of mass (docs/theory.md, "The
+/// element"). The last row itself would carry the rounding of k_AB / h, and what Newton's iteration left.
 ElementReport Element::finish(const ElementReport& report)
 {
-    evaluate_row(rule_.degree);
+    const int p = rule_.degree;
+    evaluate_forces(p, forces_.data() + node(p));
+    double* end = q_.data() + twist_node(p);
+    std::copy(start_->p.begin(), start_->p.end(), end);
+    for (int A = 0; A <= p; ++A) {
+        double* wrench = forces_.data() + node(A);
+        if (A < p) subtract_reactions(A, wrench);
+        mechanism_.rows_of(X(A), frames(A), wrench, twist_.data());
+        for (int i = 0; i < n_; ++i) end[i] += twist_[static_cast<std::size_t>(i)];
+    }
     double sum = 0;
-    for (int i = 0; i < n_; ++i) sum += std::abs(final_momentum()[i]);
+    for (int i = 0; i < n_; ++i) sum += std::abs(end[i]);
     return std::isfinite(sum) ? report : fail(SolveStatus::not_finite, report);
 }
 
@@ -372,7 +399,8 @@ ElementReport Element::iterate(ElementReport report, const NewtonOptions& option
         const double rows_left = size_of_rows();
         const double rate = rows > 0 ? rows_left / rows : 0;
         const double next = step.size * rate + correction_;
-        const double scale = std::max(step.motion, 1e-6);
+        // a body may fly many lengths while its turns need their digits all the same
+        const double scale = std::clamp(step.motion, 1e-6, 1.0);
         // the sums over k_AB cancel: their rounding is that of their largest term
         const double rounding = 1e-16 * (largest_k_ * step.impulse + terms_);
         const double impulse = std::max(step.impulse, terms_);

@@ -48,9 +48,11 @@ public:
 
     /// X at local node A: 12 numbers a body.
     const double* X(int A) const { return X_.data() + node(A); }
+    /// X less the start, which holds more digits.
+    const double* dX(int A) const { return dX_.data() + node(A); }
     /// Joint multipliers at nodes 0..p-1, all rows of the model.
     void multipliers(int A, double* lambda) const;
-    /// N^T r_p without multiplier and end momentum: the momentum handed on, before its tangent projection.
+    /// Momentum and spin (about the centre of mass) handed on, before their tangent projection.
     const double* final_momentum() const { return q_.data() + twist_node(rule_.degree); }
 
     /// The constraint basis of the last node, if it fits the node's final place to rounding; for taking away.
@@ -97,7 +99,8 @@ private:
     void evaluate_row(int A);
     ElementReport finish(const ElementReport& report);
     void eliminate_multipliers(int A);
-    void total_residual(int A, double* raw) const;
+    void evaluate_forces(int A, double* forces);
+    void subtract_reactions(int A, double* raw) const;
     double size_of(const double* xi) const;
     void scale_block(int A, int i, int B, int j, const double* block, double* out) const;
     template <class Sink>
@@ -130,6 +133,7 @@ private:
     std::vector<double> X0_;                     // 12 a body
     std::vector<double> dX_, X_;                 // (p + 1) x 12 a body
     std::vector<double> raw_;                    // (p + 1) x 12 a body: the bracket without multipliers
+    std::vector<double> forces_;                 // (p + 1) x 12 a body: h w_A F
     std::vector<double> V_;                      // 12 a body, derivative at one node
     std::vector<double> frames_;                 // (p + 1) x 12 a body: maps of the scaled twists
     std::vector<double> q_;                      // (p + 1) x n: N^T raw

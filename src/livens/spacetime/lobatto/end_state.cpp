@@ -11,8 +11,10 @@ void EndState::resize(const Mechanism& mechanism)
 {
     const auto n = static_cast<std::size_t>(mechanism.n_twists);
     X.assign(12 * mechanism.bodies.size(), 0.0);
+    X_low.assign(X.size(), 0.0);
     frames.assign(X.size(), 0.0);
     velocity.assign(n, 0.0);
+    p.assign(n, 0.0);
     momentum.assign(n, 0.0);
     for (int side = 0; side < 2; ++side) {
         acceleration[side].assign(n, 0.0);
@@ -75,7 +77,7 @@ void EndSolver::apply_mass(const EndState& state, const double* y, double* out)
     mechanism_.unscale(state.frames.data(), y, xi.data());
     mechanism_.columns_of(state.X.data(), xi.data(), dX.data());
     mechanism_.times_mass(dX.data(), 1.0, P.data());
-    mechanism_.rows_of(state.X.data(), P.data(), rows.data());
+    mechanism_.rows_of(state.X.data(), state.frames.data(), P.data(), rows.data());
     mechanism_.scale_rows(state.frames.data(), rows.data(), out);
 }
 
@@ -151,16 +153,45 @@ void EndSolver::from_momentum(EndState& state, const double* p, double weight, d
     state.basis.q.solve_R(rest);
     scatter(state, rest, weight, lambda);
     mechanism_.unscale(state.frames.data(), y, state.velocity.data());
-    apply_mass(state, y, state.momentum.data());
+    // what the multipliers take off is taken off p itself: without joints p stays as it is, to the bit
+    std::copy(p, p + mechanism_.n_twists, state.p.begin());
+    for (int c = 0; c < mechanism_.rank; ++c) {
+        const int r = state.basis.rows[c];
+        add_reaction(state, c, -weight * lambda[r], state.p.data());
+    }
+    mechanism_.scale_rows(state.frames.data(), state.p.data(), state.momentum.data());
+}
+
+/// rows += factor Ghat_c for column c of the basis, about the centres of mass.
+void EndSolver::add_reaction(const EndState& state, int c, double factor, double* rows) const
+{
+    const auto& table = mechanism_.rows[state.basis.rows[c]];
+    for (int side = table.first_side(); side < 2; ++side) {
+        const int b = table.body(side);
+        const auto& body = mechanism_.bodies[b];
+        const double* g = state.basis.gradients.data() + 24 * c + 12 * side;
+        double* out = rows + body.first;
+        if (body.dofs == 3) {
+            for (int i = 0; i < 3; ++i) out[i] += factor * g[i];
+            continue;
+        }
+        double q[6] = {0, 0, 0, 0, 0, 0};
+        twist::add_rows(state.X.data() + 12 * b, g, factor, q);
+        const double* centre = state.frames.data() + 12 * b + 9;
+        for (int i = 0; i < 3; ++i) {
+            const int j = (i + 1) % 3, k = (i + 2) % 3;
+            out[i] += q[i];
+            out[3 + i] += q[3 + i] - (centre[j] * q[k] - centre[k] * q[j]);
+        }
+    }
 }
 
 void EndSolver::from_velocity(EndState& state)
 {
-    std::vector<double> rows(static_cast<std::size_t>(mechanism_.n_twists));
     mechanism_.columns_of(state.X.data(), state.velocity.data(), V_.data());
     mechanism_.times_mass(V_.data(), 1.0, raw_.data());
-    mechanism_.rows_of(state.X.data(), raw_.data(), rows.data());
-    mechanism_.scale_rows(state.frames.data(), rows.data(), state.momentum.data());
+    mechanism_.rows_of(state.X.data(), state.frames.data(), raw_.data(), state.p.data());
+    mechanism_.scale_rows(state.frames.data(), state.p.data(), state.momentum.data());
 }
 
 /// First places of Q^T y for an acceleration with d2 Phi/dt2 = 0, from the velocities in V_ and centripetal_.
@@ -196,7 +227,7 @@ void EndSolver::accelerate(EndState& state, Side side)
     mechanism_.add_forces({state.t, side}, X, V_.data(), 1.0, raw_.data());
     double* y = a_.data();
     double* forces = b_.data();
-    mechanism_.rows_of(X, raw_.data(), y);
+    mechanism_.rows_of(X, state.frames.data(), raw_.data(), y);
     mechanism_.scale_rows(state.frames.data(), y, forces);
     particular(state, y);
     solve(state, forces, y, forces);

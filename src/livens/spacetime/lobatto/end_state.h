@@ -11,10 +11,12 @@ namespace livens {
 /// Everything the next element, and the motion, need of one instant.
 struct EndState {
     double t = 0;
-    std::vector<double> X;                 ///< 12 a body
-    std::vector<double> frames;            ///< of the scaled twists, 12 a body
-    std::vector<double> velocity;          ///< twists [v, w]
-    std::vector<double> momentum;          ///< N^T P, tangent to the constraints, in scaled rows
+    std::vector<double> X;          ///< 12 a body
+    std::vector<double> X_low;      ///< what rounding took off X, see add_increments()
+    std::vector<double> frames;     ///< of the scaled twists, 12 a body
+    std::vector<double> velocity;   ///< twists [v, w]
+    std::vector<double> p;          ///< momentum and spin of each body, tangent to the constraints; handed on
+    std::vector<double> momentum;   ///< p in scaled rows
     std::vector<double> acceleration[2];   ///< twists [a, alpha]; left and right of a jump of loads
     std::vector<double> multipliers[2];    ///< at the acceleration level, all rows of the model; likewise
     std::vector<double> jerk,
@@ -52,6 +54,7 @@ public:
 
 private:
     bool prepare_singular(const EndState& state);
+    void add_reaction(const EndState& state, int c, double factor, double* rows) const;
     void apply_mass(const EndState& state, const double* y, double* out);
     void solve(const EndState& state, const double* forces, double* y, double* multipliers);
     void particular(const EndState& state, double* y) const;

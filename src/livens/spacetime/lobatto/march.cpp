@@ -28,13 +28,27 @@ Matrix34 body_matrix(const double* stacked, int body)
     return m;
 }
 
-/// Re-orthonormalises directors that have drifted by rounding: one Newton step of the polar factor.
-void polish(Matrix34& X)
+/// end + low <- start + low + increment without the rounding of the sum [Kahan1965]: over many elements a
+/// motion adds up many small increments, whose own rounding is much smaller.
+void add_increments(const EndState& start, const double* increments, EndState& end)
 {
-    const Matrix3 d = directors(X);
-    const Matrix3 gram = transpose(d) * d;
-    Matrix3 correction = 1.5 * identity<3>() - 0.5 * gram;
-    X = configuration(X.column(0), d * correction);
+    for (std::size_t i = 0; i < end.X.size(); ++i) {
+        const double x = start.X[i], d = increments[i] + start.X_low[i];
+        const double sum = x + d, back = sum - x;
+        end.X[i] = sum;
+        end.X_low[i] = (x - (sum - back)) + (d - back);
+    }
+}
+
+/// Re-orthonormalises directors that have drifted beyond rounding: one Newton step of the polar factor.
+void polish(double* X)
+{
+    Matrix3 d{};
+    std::copy_n(X + 3, 9, d.a);
+    const Matrix3 error = transpose(d) * d - identity<3>();
+    if (norm(error) < 2e-15) return;
+    d -= 0.5 * d * error;
+    std::copy_n(d.a, 9, X + 3);
 }
 
 class March {
@@ -79,10 +93,7 @@ private:
         m.dense_order_X = p + 1;
         m.dense_order_V = p;
         m.constraints_hold = "element nodes";
-        for (const RedundantRow& r : assembly.redundant) {
-            m.redundant_rows.push_back(r.row);
-            solution_.report.notes.push_back(r.message);
-        }
+        m.redundant_rows = assembly.redundant;
         for (const std::string& note : assembly.notes) solution_.report.notes.push_back(note);
         const auto n = static_cast<std::size_t>(mesh_.n_elements());
         m.X.values.reserve((n * static_cast<std::size_t>(p) + 1) * static_cast<std::size_t>(12 * nb));
@@ -204,13 +215,9 @@ private:
     {
         const int p = rule_.degree;
         next().t = t_end;
-        std::copy_n(element_.X(p), next().X.size(), next().X.begin());
-        for (int b = 0; b < model_.n_bodies(); ++b) {
-            if (mechanism_.bodies[b].dofs == 3) continue;
-            Matrix34 X = body_matrix(next().X.data(), b);
-            polish(X);
-            std::copy_n(X.a, 12, next().X.begin() + 12 * b);
-        }
+        add_increments(here(), element_.dX(p), next());
+        for (int b = 0; b < model_.n_bodies(); ++b)
+            if (mechanism_.bodies[b].dofs == 6) polish(next().X.data() + 12 * b);
         if (!ends_.prepare(next(), element_.final_basis()) || !rows_compatible(next(), e)) {
             if (solution_.report.message.empty()) {
                 solution_.report.message = "at t = " + number(t_end) + " s the free motions carry no inertia";

@@ -116,7 +116,9 @@ Mechanism::Mechanism(const Model& the_model, int the_rank) : model(&the_model), 
         table.dofs = body.is_point ? 3 : 6;
         for (int to = 0; to < 4; ++to)
             for (int from = 0; from < 4; ++from)
-                if (body.mass(from, to) != 0) table.mass.push_back({from, to, body.mass(from, to)});
+                if (from != to && body.mass(from, to) != 0)
+                    table.mass.push_back({from, to, body.mass(from, to)});
+        for (int a = 0; a < 4; ++a) table.diagonal[a] = body.mass(a, a);
         const Matrix34 w = livens::weight(body, the_model.gravity());
         std::copy(w.a, w.a + 12, table.weight);
         regular = scale_body(body, length, table) && regular;
@@ -180,20 +182,21 @@ void Mechanism::unscale(const double* frames, const double* y, double* xi) const
 
 namespace {
 
-/// D^T of one body.
+/// Rows about the reference point to rows about the centre of mass, of one body.
+void centre(const double* f, double* q)
+{
+    const double* c = f + 9;
+    q[3] -= c[1] * q[2] - c[2] * q[1];
+    q[4] -= c[2] * q[0] - c[0] * q[2];
+    q[5] -= c[0] * q[1] - c[1] * q[0];
+}
+
 void scale_row(const Mechanism::BodyTable& body, const double* f, const double* q, double* y)
 {
     const double r = body.inverse_root_mass;
-    if (body.dofs == 3) {
-        for (int i = 0; i < 3; ++i) y[i] = r * q[i];
-        return;
-    }
-    const double* c = f + 9;
-    const double m0 = q[3] - (c[1] * q[2] - c[2] * q[1]);
-    const double m1 = q[4] - (c[2] * q[0] - c[0] * q[2]);
-    const double m2 = q[5] - (c[0] * q[1] - c[1] * q[0]);
     for (int i = 0; i < 3; ++i) y[i] = r * q[i];
-    for (int i = 0; i < 3; ++i) y[3 + i] = f[3 * i] * m0 + f[3 * i + 1] * m1 + f[3 * i + 2] * m2;
+    if (body.dofs == 3) return;
+    for (int i = 0; i < 3; ++i) y[3 + i] = f[3 * i] * q[3] + f[3 * i + 1] * q[4] + f[3 * i + 2] * q[5];
 }
 
 }   // namespace
@@ -220,6 +223,7 @@ void Mechanism::scaled_gradient(int r, const double* X, const double* frames, co
             q[4] += d[2] * load[0] - d[0] * load[2];
             q[5] += d[0] * load[1] - d[1] * load[0];
         }
+        if (bodies[body].dofs == 6) centre(frames + 12 * body, q);
         scale_row(bodies[body], frames + 12 * body, q, out + bodies[body].first);
     }
 }
@@ -305,15 +309,17 @@ void Mechanism::add_forces(Instant instant, const double* X, const double* V, do
     }
 }
 
-void Mechanism::rows_of(const double* X, const double* raw, double* q) const
+void Mechanism::rows_of(const double* X, const double* frames, const double* raw, double* q) const
 {
-    std::fill(q, q + n_twists, 0.0);
     for (int b = 0; b < n_bodies(); ++b) {
         double* o = q + bodies[b].first;
-        if (bodies[b].dofs == 6)
+        std::fill(o, o + bodies[b].dofs, 0.0);
+        if (bodies[b].dofs == 6) {
             twist::add_rows(X + 12 * b, raw + 12 * b, 1.0, o);
-        else
+            centre(frames + 12 * b, o);
+        } else {
             std::copy(raw + 12 * b, raw + 12 * b + 3, o);
+        }
     }
 }
 
@@ -330,10 +336,15 @@ void Mechanism::columns_of(const double* X, const double* xi, double* dX) const
     }
 }
 
-void Mechanism::times_mass(const double* Y, double factor, double* out) const
+void Mechanism::times_mass(const double* __restrict Y, double factor, double* __restrict out) const
 {
-    std::fill(out, out + 12 * bodies.size(), 0.0);
     for (const BodyTable& body : bodies) {
+        for (int a = 0; a < 4; ++a) {
+            const double s = factor * body.diagonal[a];
+            out[3 * a] = s * Y[3 * a];
+            out[3 * a + 1] = s * Y[3 * a + 1];
+            out[3 * a + 2] = s * Y[3 * a + 2];
+        }
         for (const auto& entry : body.mass) {
             const double s = factor * entry.value;
             for (int i = 0; i < 3; ++i) out[3 * entry.to + i] += s * Y[3 * entry.from + i];

@@ -25,7 +25,8 @@ struct Mechanism {
             int from, to;   ///< columns of X
             double value;
         };
-        std::vector<Entry> mass;   ///< entries of m that are not zero
+        std::vector<Entry> mass;   ///< entries of m beside the diagonal that are not zero
+        double diagonal[4] = {};   ///< of m
         double weight[12] = {};
         double inverse_root_mass = 0;   ///< 1 / sqrt(M)
         double center[3] = {};          ///< of mass, body coordinates
@@ -76,15 +77,15 @@ struct Mechanism {
     /// raw += factor * (weight and loads) at the instant; X, V: 12 a body. V may be null if no load asks for
     /// it.
     void add_forces(Instant at, const double* X, const double* V, double factor, double* raw) const;
-    /// q <- N(X)^T raw.
-    void rows_of(const double* X, const double* raw, double* q) const;
+    /// q <- the rows of raw: force, and moment about the centre of mass (not the reference point).
+    void rows_of(const double* X, const double* frames, const double* raw, double* q) const;
 
     /// The map D of scaled to plain twists at X, 12 numbers a body: K = R L^-T, then R times the centre of
     /// mass.
     void frames_of(const double* X, double* frames) const;
     /// xi = D y: w = K y_2, v = y_1 / sqrt(M) + c x w.
     void unscale(const double* frames, const double* y, double* xi) const;
-    /// y = D^T q for rows q.
+    /// Central rows in scaled twists: y_1 = f / sqrt(M), y_2 = K^T tau.
     void scale_rows(const double* frames, const double* q, double* y) const;
     /// The middle part K_A^T (tr(W) 1 - W) K_B, W = R_B E R_A^T, of a body's mass between two configurations.
     void spin_mass(int body, const double* X_A, const double* X_B, double* H) const;

@@ -1,5 +1,6 @@
 #include "livens/spacetime/lobatto/rule.h"
 
+#include <cmath>
 #include <string>
 
 #include "livens/base/error.h"
@@ -7,6 +8,29 @@
 #include "livens/time/quadrature.h"
 
 namespace livens {
+
+namespace {
+
+/// Makes sum_A k_AB = 0 hold for the rounded numbers too: what is left of a column goes into its smallest
+/// entry. A sum that is not zero is a force proportional to the displacement, and drives the momentum element
+/// by element.
+void balance_columns(LobattoRule& rule)
+{
+    const int n = rule.size();
+    for (int round = 0; round < 3; ++round) {
+        for (int b = 0; b < n; ++b) {
+            long double sum = 0;
+            int smallest = 0;
+            for (int a = 0; a < n; ++a) {
+                sum += rule.k[a * n + b];
+                if (std::abs(rule.k[a * n + b]) < std::abs(rule.k[smallest * n + b])) smallest = a;
+            }
+            rule.k[smallest * n + b] = static_cast<double>(rule.k[smallest * n + b] - sum);
+        }
+    }
+}
+
+}   // namespace
 
 LobattoRule lobatto_rule(int degree)
 {
@@ -25,6 +49,7 @@ LobattoRule lobatto_rule(int degree)
             rule.k[a * n + b] = rule.k[b * n + a] = static_cast<double>(sum);
         }
     }
+    balance_columns(rule);
     return rule;
 }
 

@@ -71,7 +71,8 @@ template <class Sink>
 void Element::node_terms(int A, Sink&& sink)
 {
     double* total = scratch_.data();
-    total_residual(A, total);
+    std::copy_n(raw_.data() + node(A), X0_.size(), total);
+    subtract_reactions(A, total);
     std::fill(blocks_.begin(), blocks_.end(), 0.0);
     for (int b = 0; b < mechanism_.n_bodies(); ++b)
         if (mechanism_.bodies[b].dofs == 6)
@@ -247,7 +248,7 @@ std::vector<double> Element::rows_with(int A, const std::vector<double>& lambda,
         }
     }
     std::vector<double> q(static_cast<std::size_t>(n_), 0.0);
-    mechanism_.rows_of(X(A), raw.data(), q.data());
+    mechanism_.rows_of(X(A), frames, raw.data(), q.data());
     std::vector<double> scaled(q.size());
     mechanism_.scale_rows(frames, q.data(), scaled.data());
     if (A == 0)
