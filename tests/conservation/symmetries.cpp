@@ -19,7 +19,7 @@ TEST(Lobatto, TurnsItsMotionWithTheMechanism)
             EXPECT_LE(norm(turned.X[b].column(1) - turn * plain.X[b].column(1)), 1e-11);
             EXPECT_LE(norm(turned.V[b].column(0) - turn * plain.V[b].column(0)), 1e-10);
             EXPECT_LE(norm(turned.X[b] - configuration(turned.X[b].column(0), turn * directors(plain.X[b]))),
-                      1e-9);
+                      1e-11);
         }
     }
 }
