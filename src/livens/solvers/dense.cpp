@@ -125,8 +125,26 @@ void OrthogonalBasis::resize(int n, int most)
     signs_.assign(static_cast<std::size_t>(most), 1.0);
     leads_.assign(static_cast<std::size_t>(most), 0);
     ends_.assign(static_cast<std::size_t>(most), 0);
+    counts_.assign(static_cast<std::size_t>(most), -1);
+    places_.assign(count(n, most), 0);
     norms_.assign(static_cast<std::size_t>(most), 0.0);
     scratch_.assign(static_cast<std::size_t>(n), 0.0);
+}
+
+void OrthogonalBasis::exchange(OrthogonalBasis& other)
+{
+    std::swap(n_, other.n_);
+    std::swap(most_, other.most_);
+    std::swap(k_, other.k_);
+    g_.swap(other.g_);
+    ends_.swap(other.ends_);
+    counts_.swap(other.counts_);
+    places_.swap(other.places_);
+    leads_.swap(other.leads_);
+    signs_.swap(other.signs_);
+    beta_.swap(other.beta_);
+    norms_.swap(other.norms_);
+    scratch_.swap(other.scratch_);
 }
 
 /// Brings the largest of the entries j.. of column j to place j.
@@ -145,12 +163,19 @@ void OrthogonalBasis::lead(int j, bool keep)
 /// Makes the reflector of column j from its entries j.. and puts R_jj in place.
 void OrthogonalBasis::reflect(int j, bool keep_sign)
 {
-    double* v = column(j) + j;
-    int m = n_ - j;
-    while (m > 1 && v[m - 1] == 0) --m;
-    ends_[j] = j + m;
-    const double tail = inner(v + 1, v + 1, m - 1);
-    const double head = v[0];
+    double* v = column(j);
+    int* places = places_.data() + count(n_, j);
+    int used = 0, end = j + 1;
+    double tail = 0;
+    for (int i = j + 1; i < n_; ++i) {
+        if (v[i] == 0) continue;
+        tail += v[i] * v[i];
+        places[used++] = i;
+        end = i + 1;
+    }
+    ends_[j] = end;
+    counts_[j] = 2 * used <= end - j ? used : -1;
+    const double head = v[j];
     const double length = std::sqrt(head * head + tail);
     // the kept sign would cancel where head has come close to it
     if (!keep_sign || signs_[j] * head > 0.99 * length) signs_[j] = head > 0 ? -1 : 1;
@@ -161,9 +186,9 @@ void OrthogonalBasis::reflect(int j, bool keep_sign)
         return;
     }
     const double scale = 1 / v0;
-    for (int i = 1; i < m; ++i) v[i] *= scale;
+    for (int i = 0; i < used; ++i) v[places[i]] *= scale;
     beta_[j] = -v0 / r;
-    v[0] = r;
+    v[j] = r;
 }
 
 /// Exchange j, then reflection j.
@@ -173,16 +198,25 @@ void OrthogonalBasis::reflect_column(int j, double* x) const
     reflect_only(j, x);
 }
 
-void OrthogonalBasis::reflect_only(int j, double* x) const
+inline void OrthogonalBasis::reflect_only(int j, double* x) const
 {
     if (beta_[j] == 0) return;
-    const double* v = column(j) + j;
-    double* y = x + j;
-    const int m = ends_[j] - j - 1;
-    const double t = beta_[j] * (y[0] + inner(v + 1, y + 1, m));
-    if (t == 0) return;
-    y[0] -= t;
-    subtract_scaled(y + 1, t, v + 1, m);
+    const double* v = column(j);
+    const int used = counts_[j];
+    if (used < 0) {
+        const int m = ends_[j] - j - 1;
+        const double t = beta_[j] * (x[j] + inner(v + j + 1, x + j + 1, m));
+        if (t == 0) return;
+        x[j] -= t;
+        subtract_scaled(x + j + 1, t, v + j + 1, m);
+        return;
+    }
+    const int* places = places_.data() + count(n_, j);
+    double t = x[j];
+    for (int i = 0; i < used; ++i) t += v[places[i]] * x[places[i]];
+    t *= beta_[j];
+    x[j] -= t;
+    for (int i = 0; i < used; ++i) x[places[i]] -= t * v[places[i]];
 }
 
 double OrthogonalBasis::factorise(int k, bool keep_choices)

@@ -46,6 +46,7 @@ class OrthogonalBasis {
 public:
     /// `most` columns at most.
     void resize(int n, int most);
+    void exchange(OrthogonalBasis& other);
     int n() const { return n_; }
     int rank() const { return k_; }
     /// Column j is filled in by the caller before factorise(); overwritten by it.
@@ -83,6 +84,8 @@ private:
     std::vector<double> g_;   // R above the diagonal, reflectors (first entry 1 implied) below
     std::vector<double> signs_;
     std::vector<int> ends_;      // entries of reflection j from here on are zero
+    std::vector<int> counts_;    // how many entries of it are not zero, if they are few; else -1
+    std::vector<int> places_;    // where they are, n a reflection
     std::vector<int> leads_;     // row exchanged with row j before reflection j
     std::vector<double> beta_;   // H_j = I - beta v v^T
     std::vector<double> norms_;

@@ -92,6 +92,8 @@ void Element::move(int B, const double* xi)
 bool Element::evaluate_constraints()
 {
     constexpr double rounding = 1e-16;   // of Phi at the start itself: nothing to correct
+    constexpr double close = 1e-4;       // relative, for one linear step onto the constraints
+    near_ = true;
 
     const ConstraintBasis& first = start_->basis;
     const int k = mechanism_.rank;
@@ -109,10 +111,15 @@ bool Element::evaluate_constraints()
             double phi = 0;
             for (int side = table.first_side(); side < 2; ++side) {
                 const double* d = dX_.data() + node(B) + 12 * table.body(side);
-                for (int i = 0; i < 12; ++i) phi += (g0[12 * side + i] + g[12 * side + i]) * d[i];
+                auto add_column = [&](int a) {
+                    for (int i = a; i < a + 3; ++i) phi += (g0[12 * side + i] + g[12 * side + i]) * d[i];
+                };
+                add_column(0);
+                for (const int a : table.columns[side]) add_column(a);
             }
             phi = phi0_[c] + 0.5 * phi;
             if (std::abs(phi) < rounding * table.row->scale) phi = 0;
+            if (std::abs(phi) > close * table.row->scale) near_ = false;
             phi_[static_cast<std::size_t>(B * k + c)] = phi * basis.row_scale[c];
             sum += std::abs(phi);
         }
@@ -242,12 +249,23 @@ Element::Step Element::solve_step()
 {
     const int k = mechanism_.rank, f = mechanism_.freedoms();
     for (double& r : rho_) r = -r;
-    elimination_.solve(rho_.data());
+    if (pending_) {
+        // one node: its violations go into the linear system with the rows
+        for (int c = 0; c < k; ++c)
+            twist_[static_cast<std::size_t>(c)] = -phi_[static_cast<std::size_t>(k + c)];
+        bases_[1].q.solve_R_transposed(twist_.data());
+        elimination_.solve(rho_.data(), twist_.data());
+    } else {
+        elimination_.solve(rho_.data(), nullptr);
+    }
     Step step;
     for (int B = 1; B <= rule_.degree; ++B) {
         const OrthogonalBasis& q = bases_[B].q;
         double* y = work_.data();
-        std::fill(y, y + k, 0.0);
+        if (pending_)
+            std::copy_n(twist_.begin(), k, y);
+        else
+            std::fill(y, y + k, 0.0);
         std::copy(rho_.begin() + (B - 1) * f, rho_.begin() + B * f, y + k);
         q.apply(y);
         mechanism_.unscale(frames(B), y, twist_.data());
@@ -255,6 +273,7 @@ Element::Step Element::solve_step()
         move(B, twist_.data());
         measure(B, step);
     }
+    pending_ = false;
     return step;
 }
 
@@ -285,6 +304,8 @@ bool Element::settle()
 {
     for (int round = 0; round < 6; ++round) {
         if (!evaluate_constraints()) return false;
+        pending_ = near_ && elimination_.takes_constraints();
+        if (pending_) break;
         correct_constraints();
         if (correction_ < 1e-3) break;
     }

@@ -150,6 +150,8 @@ private:
     double largest_k_ = 0;
     double terms_ = 0;   // size of the terms in the rows, for the rounding level
     double smallest_pivot_ = 1;
+    bool near_ = true;            // violations are small enough for one linear step
+    bool pending_ = false;        // and are left to the next one
     bool keep_choices_ = false;   // null spaces vary smoothly while a tangent is in use
 };
 

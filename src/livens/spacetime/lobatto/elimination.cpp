@@ -137,10 +137,10 @@ void Elimination::reduce(int A, int B)
 
 bool Elimination::factorise() { return by_bodies_ ? factorise_bodies() : lu_.factorise(); }
 
-void Elimination::solve(double* x)
+void Elimination::solve(double* x, const double* range)
 {
     if (by_bodies_)
-        solve_bodies(x);
+        solve_bodies(x, range);
     else
         lu_.solve(x);
 }
@@ -193,7 +193,7 @@ bool Elimination::factorise_bodies()
     return factor_ != 0 && schur_.factorise();
 }
 
-void Elimination::solve_bodies(double* x)
+void Elimination::solve_bodies(double* x, const double* range)
 {
     const int k = mechanism_.rank, n = mechanism_.n_twists;
     double* y = work_.data();
@@ -203,6 +203,7 @@ void Elimination::solve_bodies(double* x)
     invert_bodies(y);
     last_.apply_transposed(y);
     std::copy(y + k, y + n, x);
+    for (int c = 0; range != nullptr && c < k; ++c) y[c] -= range[c];
     schur_.solve(y);
     for (int c = 0; c < k; ++c)
         for (int i = k; i < n; ++i) x[i - k] -= y[c] * range_[static_cast<std::size_t>(c * n + i)];

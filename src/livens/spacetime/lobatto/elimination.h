@@ -30,8 +30,11 @@ public:
     void close();
     /// False if the tangent is singular or not finite.
     bool factorise();
-    /// x <- J^-1 x; row block A of x at A * f, column block B at (B - 1) * f.
-    void solve(double* x);
+    /// x <- J^-1 x; row block A of x at A * f, column block B at (B - 1) * f. `range` holds the part of the
+    /// increment across the null space at node 1 (in the basis), null for none; see takes_constraints().
+    void solve(double* x, const double* range);
+    /// Whether solve() can take violations of the constraints in; else they are taken off before.
+    bool takes_constraints() const { return degree_ == 1 && !mechanism_.has_velocity_loads; }
 
     int unknowns() const { return degree_ * f_; }
 
@@ -42,7 +45,7 @@ private:
     void reduce(int A, int B);
     void multiply_pair(int A, int B, int r);
     bool factorise_bodies();
-    void solve_bodies(double* x);
+    void solve_bodies(double* x, const double* range);
     void invert_bodies(double* y) const;
 
     const Mechanism& mechanism_;

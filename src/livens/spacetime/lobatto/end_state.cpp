@@ -59,7 +59,7 @@ bool EndSolver::prepare(EndState& state, ConstraintBasis* known)
 {
     mechanism_.frames_of(state.X.data(), state.frames.data());
     if (known != nullptr && mechanism_.rank == mechanism_.n_rows())
-        std::swap(state.basis, *known);
+        state.basis.exchange(*known);
     else
         state.smallest_pivot = state.basis.choose(mechanism_, state.X.data(), state.frames.data());
     return mechanism_.regular || prepare_singular(state);

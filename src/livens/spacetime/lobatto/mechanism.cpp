@@ -62,6 +62,7 @@ bool scale_body(const Body& body, double length, Mechanism::BodyTable& table)
     if (body.is_point) return true;
     const Vector3 c = p.center_of_mass;
     std::copy(c.a, c.a + 3, table.center);
+    table.offset = dot(c, c) > 0;
     Matrix3 J = p.inertia;
     const Matrix3 E = 0.5 * trace(J) * identity<3>() - J;
     std::copy(E.a, E.a + 9, table.euler);
@@ -150,9 +151,14 @@ void Mechanism::frames_of(const double* X, double* frames) const
     for (int b = 0; b < n_bodies(); ++b) {
         if (bodies[b].dofs == 3) continue;
         const double* R = X + 12 * b + 3;
-        const double* c = bodies[b].center;
+        const double *c = bodies[b].center, *l = bodies[b].spin;
         double* f = frames + 12 * b;
-        multiply(R, bodies[b].spin, f);
+        if (bodies[b].principal)
+            for (int a = 0; a < 3; ++a)
+                for (int i = 0; i < 3; ++i) f[3 * a + i] = l[4 * a] * R[3 * a + i];
+        else
+            multiply(R, l, f);
+        if (!bodies[b].offset) continue;   // the frames start as zero
         for (int i = 0; i < 3; ++i) f[9 + i] = R[i] * c[0] + R[3 + i] * c[1] + R[6 + i] * c[2];
     }
 }
@@ -223,7 +229,7 @@ void Mechanism::scaled_gradient(int r, const double* X, const double* frames, co
             q[4] += d[2] * load[0] - d[0] * load[2];
             q[5] += d[0] * load[1] - d[1] * load[0];
         }
-        if (bodies[body].dofs == 6) centre(frames + 12 * body, q);
+        if (bodies[body].offset) centre(frames + 12 * body, q);
         scale_row(bodies[body], frames + 12 * body, q, out + bodies[body].first);
     }
 }
@@ -316,7 +322,7 @@ void Mechanism::rows_of(const double* X, const double* frames, const double* raw
         std::fill(o, o + bodies[b].dofs, 0.0);
         if (bodies[b].dofs == 6) {
             twist::add_rows(X + 12 * b, raw + 12 * b, 1.0, o);
-            centre(frames + 12 * b, o);
+            if (bodies[b].offset) centre(frames + 12 * b, o);
         } else {
             std::copy(raw + 12 * b, raw + 12 * b + 3, o);
         }
@@ -362,6 +368,16 @@ void ConstraintBasis::resize(const Mechanism& mechanism, bool all_rows)
     row_scale.assign(static_cast<std::size_t>(most), 1.0);
     gradients.assign(static_cast<std::size_t>(24 * most), 0.0);
     order_.assign(static_cast<std::size_t>(most), 0);
+}
+
+void ConstraintBasis::exchange(ConstraintBasis& other)
+{
+    q.exchange(other.q);
+    rows.swap(other.rows);
+    row_scale.swap(other.row_scale);
+    gradients.swap(other.gradients);
+    order_.swap(other.order_);
+    unsorted_.swap(other.unsorted_);
 }
 
 double ConstraintBasis::fill(const Mechanism& mechanism, int column, int row, const double* X,

@@ -31,6 +31,7 @@ struct Mechanism {
         double inverse_root_mass = 0;   ///< 1 / sqrt(M)
         double center[3] = {};          ///< of mass, body coordinates
         double spin[9] = {};            ///< L^-T, column by column: w_body = spin y_2
+        bool offset = false;            ///< the centre of mass is not the reference point
         bool principal = false;         ///< spin and euler are diagonal
         double euler[9] = {};           ///< E about the centre of mass, column by column
     };
@@ -105,6 +106,7 @@ struct ConstraintBasis {
     std::vector<double> gradients;   ///< 24 numbers a row, in the same order
 
     void resize(const Mechanism& mechanism, bool all_rows);
+    void exchange(ConstraintBasis& other);
     /// The basis for given rows. Returns the smallest scaled pivot.
     double build(const Mechanism& mechanism, const double* X, const double* frames,
                  const std::vector<int>& which, bool keep_choices);
