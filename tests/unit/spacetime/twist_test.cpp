@@ -98,7 +98,7 @@ TEST(Twist, RowsAreTheTransposeOfColumns)
         Matrix34 dX{};
         twist::columns(X.data(), xi, dX.data());
         double rows[6] = {};
-        twist::add_rows(X.data(), r.data(), 1.0, rows);
+        twist::rows(X.data(), r.data(), rows);
         double sum = 0;
         for (int i = 0; i < 6; ++i) sum += rows[i] * xi[i];
         EXPECT_NEAR(sum, dot(r, dX), 1e-14);
@@ -114,13 +114,13 @@ TEST(Twist, RowsLoseTheRigidityMultipliers)
         for (int b = 0; b <= a; ++b) lambda(a, b) = lambda(b, a) = dice();
     const Matrix34 r = configuration({0, 0, 0}, directors(X) * lambda);
     double rows[6] = {};
-    twist::add_rows(X.data(), r.data(), 1.0, rows);
+    twist::rows(X.data(), r.data(), rows);
     for (double v : rows) EXPECT_NEAR(v, 0, 1e-15);
     // negative control: a matrix that is not symmetric is no rigidity multiplier
     lambda(0, 1) += 1;
     const Matrix34 wrong = configuration({0, 0, 0}, directors(X) * lambda);
     double seen[6] = {};
-    twist::add_rows(X.data(), wrong.data(), 1.0, seen);
+    twist::rows(X.data(), wrong.data(), seen);
     EXPECT_GT(std::abs(seen[3]) + std::abs(seen[4]) + std::abs(seen[5]), 0.5);
 }
 
@@ -163,7 +163,7 @@ TEST(Twist, GeometricTermIsTheDerivativeOfTheRows)
             Matrix34 dX{};
             twist::displacement(q, X.data(), dX.data());
             const Matrix34 moved = X + dX;
-            twist::add_rows(moved.data(), r.data(), 1.0, rows[side]);
+            twist::rows(moved.data(), r.data(), rows[side]);
         }
         for (int i = 0; i < 6; ++i)
             EXPECT_NEAR(block[6 * i + j], (rows[1][i] - rows[0][i]) / (2 * eps), 1e-9);

@@ -7,6 +7,16 @@
 
 namespace livens {
 
+namespace {
+
+/// sum += x, for arrays that do not overlap.
+inline void accumulate(double* __restrict sum, const double* __restrict x, std::size_t n)
+{
+    for (std::size_t i = 0; i < n; ++i) sum[i] += x[i];
+}
+
+}   // namespace
+
 Element::Element(const Mechanism& mechanism, const LobattoRule& rule)
     : mechanism_(mechanism), rule_(rule), elimination_(mechanism, rule.degree), n_(mechanism.n_twists)
 {
@@ -52,6 +62,8 @@ void Element::attach(const EndState& start, double t_end)
     std::copy(start.frames.begin(), start.frames.end(), frames_.begin());
     orthogonal_[0] = &start.basis.q;
     keep_choices_ = false;
+    start_terms_ = 0;
+    for (double p : start.momentum) start_terms_ = std::max(start_terms_, std::abs(p));
     smallest_pivot_ = start.smallest_pivot;
     for (int c = 0; c < mechanism_.rank; ++c)
         phi0_[c] = mechanism_.value(start.basis.rows[c], X0_.data(), start.basis.gradients.data() + 24 * c);
@@ -71,7 +83,11 @@ void Element::configure(int B)
         const auto& increment = increments_[static_cast<std::size_t>(B * mechanism_.n_bodies() + b)];
         twist::displacement(increment, X0_.data() + 12 * b, dX + 12 * b);
     }
-    for (std::size_t i = 0; i < X0_.size(); ++i) X[i] = X0_[i] + dX[i];
+    const double* __restrict from = X0_.data();
+    const double* __restrict by = dX;
+    double* __restrict to = X;
+    const std::size_t size = X0_.size();
+    for (std::size_t i = 0; i < size; ++i) to[i] = from[i] + by[i];
 }
 
 void Element::move(int B, const double* xi)
@@ -114,7 +130,6 @@ bool Element::evaluate_constraints()
                 auto add_column = [&](int a) {
                     for (int i = a; i < a + 3; ++i) phi += (g0[12 * side + i] + g[12 * side + i]) * d[i];
                 };
-                add_column(0);
                 for (const int a : table.columns[side]) add_column(a);
             }
             phi = phi0_[c] + 0.5 * phi;
@@ -133,8 +148,10 @@ void Element::evaluate_row(int A)
     const std::size_t size = X0_.size();
     const int n_nodes = rule_.size();
     double* __restrict y = scratch_.data();
-    std::fill(y, y + size, 0.0);
-    for (int B = 1; B < n_nodes; ++B) {
+    const double* __restrict first = dX_.data() + node(1);
+    const double k1 = rule_.k[A * n_nodes + 1];
+    for (std::size_t i = 0; i < size; ++i) y[i] = k1 * first[i];
+    for (int B = 2; B < n_nodes; ++B) {
         const double k = rule_.k[A * n_nodes + B];
         const double* __restrict d = dX_.data() + node(B);
         for (std::size_t i = 0; i < size; ++i) y[i] += k * d[i];
@@ -143,7 +160,7 @@ void Element::evaluate_row(int A)
     mechanism_.times_mass(y, 1 / h_, raw);
     double* forces = forces_.data() + node(A);
     evaluate_forces(A, forces);
-    for (std::size_t i = 0; i < size; ++i) raw[i] += forces[i];
+    accumulate(raw, forces, size);
     double* q = q_.data() + twist_node(A);
     mechanism_.rows_of(X(A), frames(A), raw, q);
     eliminate_multipliers(A);
@@ -178,11 +195,13 @@ void Element::eliminate_multipliers(int A)
     const double* q = q_.data() + twist_node(A);
     double* y = work_.data();
     mechanism_.scale_rows(frames(A), q, y);
-    if (A == 0)
-        for (int i = 0; i < n_; ++i) y[i] += start_->momentum[i];
-    for (int i = 0; i < n_; ++i) terms_ = std::max(terms_, std::abs(y[i]));
+    if (A == 0) accumulate(y, start_->momentum.data(), static_cast<std::size_t>(n_));
+    double terms = terms_;
+    for (int i = 0; i < n_; ++i) terms = std::max(terms, std::abs(y[i]));
+    terms_ = terms;
     basis.q.apply_transposed(y);
-    std::copy(y + k, y + n_, rho_.begin() + A * f);
+    double* rho = rho_.data() + A * f;
+    for (int i = 0; i < f; ++i) rho[i] = -y[k + i];
     basis.q.solve_R(y);
     const double weight = h_ * rule_.weights[A];
     for (int c = 0; c < k; ++c)
@@ -196,11 +215,14 @@ bool Element::evaluate() { return evaluate_constraints() && finish_evaluation(fa
 bool Element::finish_evaluation(bool correct)
 {
     if (correct) correct_constraints();
-    terms_ = 0;
-    for (double p : start_->momentum) terms_ = std::max(terms_, std::abs(p));
+    terms_ = start_terms_;
     for (int A = 0; A < rule_.degree; ++A) evaluate_row(A);
-    double sum = terms_;
-    for (double r : rho_) sum += std::abs(r);
+    double sum = terms_, largest = 0;
+    for (const double r : rho_) {
+        sum += std::abs(r);   // keeps a nan, which a maximum would lose
+        largest = std::max(largest, std::abs(r));
+    }
+    rows_size_ = largest;
     return std::isfinite(sum);
 }
 
@@ -214,7 +236,8 @@ void Element::subtract_reactions(int A, double* raw) const
         for (int side = table.first_side(); side < 2; ++side) {
             double* r = raw + 12 * table.body(side);
             const double* g = basis.gradients.data() + 24 * c + 12 * side;
-            for (int i = 0; i < 12; ++i) r[i] -= s * g[i];
+            for (const int a : table.columns[side])
+                for (int i = a; i < a + 3; ++i) r[i] -= s * g[i];
         }
     }
 }
@@ -235,12 +258,9 @@ void Element::measure(int B, Step& step) const
         double u = 0, turn = 0;
         for (int i = 0; i < 3; ++i) u = std::max(u, std::abs(d[i]));
         for (int i = 3; i < 12; ++i) turn = std::max(turn, std::abs(d[i]));
-        const double reach = std::abs(body.center[0]) + std::abs(body.center[1]) + std::abs(body.center[2]);
-        const double root_inertia =
-            body.dofs == 6 ? 1 / std::min({body.spin[0], body.spin[4], body.spin[8]}) : 0;
         step.motion = std::max(step.motion, std::max(u / mechanism_.length, turn));
-        step.impulse =
-            std::max(step.impulse, ((u + reach * turn) / body.inverse_root_mass + root_inertia * turn) / h_);
+        step.impulse = std::max(
+            step.impulse, ((u + body.reach * turn) / body.inverse_root_mass + body.root_inertia * turn) / h_);
     }
 }
 
@@ -248,7 +268,6 @@ void Element::measure(int B, Step& step) const
 Element::Step Element::solve_step()
 {
     const int k = mechanism_.rank, f = mechanism_.freedoms();
-    for (double& r : rho_) r = -r;
     if (pending_) {
         // one node: its violations go into the linear system with the rows
         for (int c = 0; c < k; ++c)
@@ -341,13 +360,6 @@ ElementReport Element::fail(SolveStatus status, ElementReport report) const
     return report;
 }
 
-double Element::size_of_rows() const
-{
-    double size = 0;
-    for (double r : rho_) size = std::max(size, std::abs(r));
-    return size;
-}
-
 /// Size of a twist: in lengths of the model and radians.
 double Element::size_of(const double* xi) const
 {
@@ -391,7 +403,7 @@ ElementReport Element::finish(const ElementReport& report)
         double* wrench = forces_.data() + node(A);
         if (A < p) subtract_reactions(A, wrench);
         mechanism_.rows_of(X(A), frames(A), wrench, twist_.data());
-        for (int i = 0; i < n_; ++i) end[i] += twist_[static_cast<std::size_t>(i)];
+        accumulate(end, twist_.data(), static_cast<std::size_t>(n_));
     }
     double sum = 0;
     for (int i = 0; i < n_; ++i) sum += std::abs(end[i]);
@@ -405,7 +417,7 @@ ElementReport Element::iterate(ElementReport report, const NewtonOptions& option
     keep_choices_ = false;
     if (!settle()) return fail(SolveStatus::not_finite, report);
     bool renew = true;
-    double rows = size_of_rows(), previous = 0;
+    double rows = rows_size_, previous = 0;
     while (report.iterations < options.max_iterations) {
         if (renew) {
             ++report.factorisations;
@@ -417,7 +429,7 @@ ElementReport Element::iterate(ElementReport report, const NewtonOptions& option
         if (!evaluate_constraints() || !finish_evaluation(true)) return fail(SolveStatus::not_finite, report);
         if (step.size > 1e3) break;   // hopeless: a thousand lengths or radians in one step
         // the next increment, foretold by the rows that are left
-        const double rows_left = size_of_rows();
+        const double rows_left = rows_size_;
         const double rate = rows > 0 ? rows_left / rows : 0;
         const double next = step.size * rate + correction_;
         // a body may fly many lengths while its turns need their digits all the same

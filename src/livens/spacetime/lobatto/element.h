@@ -117,7 +117,6 @@ private:
     void correct_constraints();
     bool finish_evaluation(bool correct);
     bool settle();
-    double size_of_rows() const;
     ElementReport fail(SolveStatus status, ElementReport report) const;
 
     const Mechanism& mechanism_;
@@ -143,12 +142,14 @@ private:
     std::vector<double> phi0_;     // rank
     double correction_ = 0;        // largest move back to the constraints
     std::vector<double> lambda_;   // (p + 1) x rank
-    std::vector<double> rho_;      // p x f reduced rows
+    std::vector<double> rho_;      // p x f reduced rows, negative: the right-hand side
     std::vector<double> work_, twist_, scratch_;
     std::vector<double> blocks_;               // 36 a body
     std::vector<LoadTangent> load_tangents_;   // at one node
     double largest_k_ = 0;
-    double terms_ = 0;   // size of the terms in the rows, for the rounding level
+    double terms_ = 0;         // size of the terms in the rows, for the rounding level
+    double rows_size_ = 0;     // largest reduced row
+    double start_terms_ = 0;   // of the momentum at the start
     double smallest_pivot_ = 1;
     bool near_ = true;            // violations are small enough for one linear step
     bool pending_ = false;        // and are left to the next one

@@ -179,15 +179,13 @@ void Elimination::invert_bodies(double* y) const
 bool Elimination::factorise_bodies()
 {
     const int k = mechanism_.rank, n = mechanism_.n_twists;
-    first_ = *bases_[0];
-    last_ = *bases_[1];
     for (int c = 0; c < k; ++c) {
         double* column = range_.data() + c * n;
         std::fill(column, column + n, 0.0);
         column[c] = 1;
-        first_.apply(column);
+        bases_[0]->apply(column);
         invert_bodies(column);
-        last_.apply_transposed(column);
+        bases_[1]->apply_transposed(column);
         for (int r = 0; r < k; ++r) schur_.row(r)[c] = column[r];
     }
     return factor_ != 0 && schur_.factorise();
@@ -199,9 +197,9 @@ void Elimination::solve_bodies(double* x, const double* range)
     double* y = work_.data();
     std::fill(y, y + k, 0.0);
     std::copy(x, x + f_, y + k);
-    first_.apply(y);
+    bases_[0]->apply(y);
     invert_bodies(y);
-    last_.apply_transposed(y);
+    bases_[1]->apply_transposed(y);
     std::copy(y + k, y + n, x);
     for (int c = 0; range != nullptr && c < k; ++c) y[c] -= range[c];
     schur_.solve(y);

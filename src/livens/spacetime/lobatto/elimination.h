@@ -51,11 +51,10 @@ private:
     const Mechanism& mechanism_;
     int degree_;
     int f_;
-    int A_ = 0, B_ = 1;              // the open pair
-    bool by_bodies_ = false;         // nothing but mass so far, and degree 1
-    double factor_ = 1;              // of the mass; likewise
-    std::vector<double> inverse_;    // of H, 9 a body; likewise
-    OrthogonalBasis first_, last_;   // of nodes 0 and 1; likewise
+    int A_ = 0, B_ = 1;             // the open pair
+    bool by_bodies_ = false;        // nothing but mass so far, and degree 1
+    double factor_ = 1;             // of the mass; likewise
+    std::vector<double> inverse_;   // of H, 9 a body; likewise
     DenseLU schur_;
     std::vector<double> range_;   // Q_1^T J^-1 Y_0, rank columns of length n; likewise
     std::vector<double> work_;

@@ -28,12 +28,16 @@ void EndState::resize(const Mechanism& mechanism)
 void EndState::look_back(const EndState& earlier)
 {
     has_past = true;
-    const double h = t - earlier.t;
-    for (std::size_t i = 0; i < velocity.size(); ++i) {
-        const double slope = (velocity[i] - earlier.velocity[i]) / h;
-        const double a0 = earlier.acceleration[1][i], a1 = acceleration[0][i];
-        jerk[i] = (2 * a0 + 4 * a1 - 6 * slope) / h;
-        snap[i] = (6 * a0 + 6 * a1 - 12 * slope) / (h * h);
+    const double inverse = 1 / (t - earlier.t);
+    const std::size_t n = velocity.size();
+    const double *v0 = earlier.velocity.data(), *v1 = velocity.data();
+    const double *a0 = earlier.acceleration[1].data(), *a1 = acceleration[0].data();
+    double* __restrict j = jerk.data();
+    double* __restrict s = snap.data();
+    for (std::size_t i = 0; i < n; ++i) {
+        const double slope = (v1[i] - v0[i]) * inverse;
+        j[i] = (2 * a0[i] + 4 * a1[i] - 6 * slope) * inverse;
+        s[i] = (6 * a0[i] + 6 * a1[i] - 12 * slope) * (inverse * inverse);
     }
 }
 
@@ -165,24 +169,14 @@ void EndSolver::from_momentum(EndState& state, const double* p, double weight, d
 /// rows += factor Ghat_c for column c of the basis, about the centres of mass.
 void EndSolver::add_reaction(const EndState& state, int c, double factor, double* rows) const
 {
-    const auto& table = mechanism_.rows[state.basis.rows[c]];
+    const int r = state.basis.rows[c];
+    const auto& table = mechanism_.rows[r];
     for (int side = table.first_side(); side < 2; ++side) {
-        const int b = table.body(side);
-        const auto& body = mechanism_.bodies[b];
-        const double* g = state.basis.gradients.data() + 24 * c + 12 * side;
-        double* out = rows + body.first;
-        if (body.dofs == 3) {
-            for (int i = 0; i < 3; ++i) out[i] += factor * g[i];
-            continue;
-        }
-        double q[6] = {0, 0, 0, 0, 0, 0};
-        twist::add_rows(state.X.data() + 12 * b, g, factor, q);
-        const double* centre = state.frames.data() + 12 * b + 9;
-        for (int i = 0; i < 3; ++i) {
-            const int j = (i + 1) % 3, k = (i + 2) % 3;
-            out[i] += q[i];
-            out[3 + i] += q[3 + i] - (centre[j] * q[k] - centre[k] * q[j]);
-        }
+        const auto& body = mechanism_.bodies[table.body(side)];
+        double q[6];
+        mechanism_.wrench(r, side, state.X.data(), state.frames.data(), state.basis.gradients.data() + 24 * c,
+                          q);
+        for (int i = 0; i < body.dofs; ++i) rows[body.first + i] += factor * q[i];
     }
 }
 
@@ -204,7 +198,8 @@ void EndSolver::particular(const EndState& state, double* y) const
         double gamma = mechanism_.curvature(basis.rows[c], V_.data());
         for (int side = table.first_side(); side < 2; ++side) {
             const double* a = centripetal_.data() + 12 * table.body(side);
-            for (int i = 0; i < 12; ++i) gamma += g[12 * side + i] * a[i];
+            for (const int column : table.columns[side])
+                for (int i = column; i < column + 3; ++i) gamma += g[12 * side + i] * a[i];
         }
         y[c] = -gamma * basis.row_scale[c];
     }

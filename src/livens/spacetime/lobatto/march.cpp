@@ -23,7 +23,7 @@ std::string number(double x)
 
 Matrix34 body_matrix(const double* stacked, int body)
 {
-    Matrix34 m{};
+    Matrix34 m;
     std::copy_n(stacked + 12 * body, 12, m.a);
     return m;
 }
@@ -32,11 +32,17 @@ Matrix34 body_matrix(const double* stacked, int body)
 /// motion adds up many small increments, whose own rounding is much smaller.
 void add_increments(const EndState& start, const double* increments, EndState& end)
 {
-    for (std::size_t i = 0; i < end.X.size(); ++i) {
-        const double x = start.X[i], d = increments[i] + start.X_low[i];
+    const std::size_t n = end.X.size();
+    const double* __restrict from = start.X.data();
+    const double* __restrict from_low = start.X_low.data();
+    const double* __restrict by = increments;
+    double* __restrict to = end.X.data();
+    double* __restrict low = end.X_low.data();
+    for (std::size_t i = 0; i < n; ++i) {
+        const double x = from[i], d = by[i] + from_low[i];
         const double sum = x + d, back = sum - x;
-        end.X[i] = sum;
-        end.X_low[i] = (x - (sum - back)) + (d - back);
+        to[i] = sum;
+        low[i] = (x - (sum - back)) + (d - back);
     }
 }
 
@@ -171,7 +177,9 @@ private:
             if (side == 0 || is_jump(state.t)) {
                 // X'' = [a, alpha x d + w x (w x d)]
                 mechanism_.columns_of(state.X.data(), state.acceleration[side].data(), V_.data());
-                for (std::size_t i = 0; i < state.X.size(); ++i) V_[i] += turn[i];
+                double* __restrict A = V_.data();
+                const std::size_t size = state.X.size();
+                for (std::size_t i = 0; i < size; ++i) A[i] += turn[i];
             }
             for (int b = 0; b < m.n_bodies; ++b) m.accelerations.push_back(body_matrix(V_.data(), b));
             m.end_multipliers.insert(m.end_multipliers.end(), state.multipliers[side].begin(),

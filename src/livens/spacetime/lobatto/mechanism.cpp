@@ -13,12 +13,13 @@ namespace {
 void collect(const Matrix4& C, int from, int to, bool transposed,
              std::vector<Mechanism::RowTable::Entry>& form)
 {
-    for (int b = 0; b < 4; ++b)
-        for (int a = 0; a < 4; ++a)
-            if (C(a, b) != 0)
-                form.push_back(transposed
-                                   ? Mechanism::RowTable::Entry{12 * from + 3 * b, 12 * to + 3 * a, C(a, b)}
-                                   : Mechanism::RowTable::Entry{12 * from + 3 * a, 12 * to + 3 * b, C(a, b)});
+    for (int b = 0; b < 4; ++b) {
+        for (int a = 0; a < 4; ++a) {
+            if (C(a, b) == 0) continue;
+            const int row = transposed ? b : a, column = transposed ? a : b;
+            form.push_back({from, 3 * row, to, 3 * column, C(a, b)});
+        }
+    }
 }
 
 Mechanism::RowTable row_table(const ConstraintRow& row)
@@ -34,9 +35,10 @@ Mechanism::RowTable row_table(const ConstraintRow& row)
     }
     for (int side = 0; side < 2; ++side) {
         const double* b = side == 0 ? row.b_i.a : row.b_j.a;
-        for (int a = 3; a < 12; a += 3) {
+        for (int a = 0; a < 12; a += 3) {
             bool touched = b[a] != 0 || b[a + 1] != 0 || b[a + 2] != 0;
-            for (const auto& entry : table.form) touched = touched || entry.to == 12 * side + a;
+            for (const auto& entry : table.form)
+                touched = touched || (entry.to_side == side && entry.to == a);
             if (touched) table.columns[side].push_back(a);
         }
     }
@@ -63,6 +65,7 @@ bool scale_body(const Body& body, double length, Mechanism::BodyTable& table)
     const Vector3 c = p.center_of_mass;
     std::copy(c.a, c.a + 3, table.center);
     table.offset = dot(c, c) > 0;
+    table.reach = std::abs(c[0]) + std::abs(c[1]) + std::abs(c[2]);
     Matrix3 J = p.inertia;
     const Matrix3 E = 0.5 * trace(J) * identity<3>() - J;
     std::copy(E.a, E.a + 9, table.euler);
@@ -85,6 +88,7 @@ bool scale_body(const Body& body, double length, Mechanism::BodyTable& table)
     }
     const Matrix3 spin = transpose(inverse(L));
     std::copy(spin.a, spin.a + 9, table.spin);
+    table.root_inertia = std::max({L(0, 0), L(1, 1), L(2, 2)});
     table.principal = true;
     for (int i = 0; i < 9; ++i)
         table.principal = table.principal && (i % 4 == 0 || (spin.a[i] == 0 && E.a[i] == 0));
@@ -137,12 +141,16 @@ Mechanism::Mechanism(const Model& the_model, int the_rank) : model(&the_model), 
 void Mechanism::gradient(int r, const double* X, double* g) const
 {
     const RowTable& t = rows[r];
-    std::copy(t.row->b_j.a, t.row->b_j.a + 12, g + 12);
     const double* sides[2] = {t.has_i ? X + 12 * t.row->body_i : X, X + 12 * t.row->body_j};
-    if (t.has_i) std::copy(t.row->b_i.a, t.row->b_i.a + 12, g);
+    for (int side = t.first_side(); side < 2; ++side) {
+        const double* b = side == 0 ? t.row->b_i.a : t.row->b_j.a;
+        for (const int a : t.columns[side])
+            for (int i = a; i < a + 3; ++i) g[12 * side + i] = b[i];
+    }
     for (const auto& entry : t.form) {
-        const double* x = sides[entry.from / 12] + entry.from % 12;
-        for (int i = 0; i < 3; ++i) g[entry.to + i] += entry.value * x[i];
+        const double* x = sides[entry.from_side] + entry.from;
+        double* out = g + 12 * entry.to_side + entry.to;
+        for (int i = 0; i < 3; ++i) out[i] += entry.value * x[i];
     }
 }
 
@@ -213,23 +221,34 @@ void Mechanism::scale_rows(const double* frames, const double* q, double* y) con
         scale_row(bodies[b], frames + 12 * b, q + bodies[b].first, y + bodies[b].first);
 }
 
+/// The rows of twist::rows, of the columns that are touched.
+void Mechanism::wrench(int r, int side, const double* X, const double* frames, const double* g,
+                       double* q) const
+{
+    const RowTable& t = rows[r];
+    const int body = t.body(side);
+    const double *x = X + 12 * body, *load = g + 12 * side;
+    std::fill(q, q + 6, 0.0);
+    for (const int a : t.columns[side]) {
+        if (a == 0) {
+            for (int i = 0; i < 3; ++i) q[i] = load[i];
+            continue;
+        }
+        q[3] += x[a + 1] * load[a + 2] - x[a + 2] * load[a + 1];
+        q[4] += x[a + 2] * load[a] - x[a] * load[a + 2];
+        q[5] += x[a] * load[a + 1] - x[a + 1] * load[a];
+    }
+    if (bodies[body].offset) centre(frames + 12 * body, q);
+}
+
 void Mechanism::scaled_gradient(int r, const double* X, const double* frames, const double* g,
                                 double* out) const
 {
     std::fill(out, out + n_twists, 0.0);
-    const RowTable& t = rows[r];
-    for (int side = t.first_side(); side < 2; ++side) {
-        const int body = t.body(side);
-        // the rows of twist::add_rows, of the columns that are not zero
-        const double* gs = g + 12 * side;
-        double q[6] = {gs[0], gs[1], gs[2], 0, 0, 0};
-        for (const int a : t.columns[side]) {
-            const double *d = X + 12 * body + a, *load = gs + a;
-            q[3] += d[1] * load[2] - d[2] * load[1];
-            q[4] += d[2] * load[0] - d[0] * load[2];
-            q[5] += d[0] * load[1] - d[1] * load[0];
-        }
-        if (bodies[body].offset) centre(frames + 12 * body, q);
+    for (int side = rows[r].first_side(); side < 2; ++side) {
+        const int body = rows[r].body(side);
+        double q[6];
+        wrench(r, side, X, frames, g, q);
         scale_row(bodies[body], frames + 12 * body, q, out + bodies[body].first);
     }
 }
@@ -267,7 +286,8 @@ double Mechanism::value(int r, const double* X, const double* g) const
     for (int side = t.first_side(); side < 2; ++side) {
         const double* x = X + 12 * t.body(side);
         const double* b = side == 0 ? t.row->b_i.a : t.row->b_j.a;
-        for (int i = 0; i < 12; ++i) sum += (g[12 * side + i] + b[i]) * x[i];
+        for (const int a : t.columns[side])
+            for (int i = a; i < a + 3; ++i) sum += (g[12 * side + i] + b[i]) * x[i];
     }
     return 0.5 * sum + t.row->c;
 }
@@ -284,8 +304,8 @@ double Mechanism::curvature(int r, const double* V) const
     const RowTable& t = rows[r];
     double sum = 0;
     for (const auto& entry : t.form) {
-        const double* from = V + 12 * t.body(entry.from / 12) + entry.from % 12;
-        const double* to = V + 12 * t.body(entry.to / 12) + entry.to % 12;
+        const double* from = V + 12 * t.body(entry.from_side) + entry.from;
+        const double* to = V + 12 * t.body(entry.to_side) + entry.to;
         sum += entry.value * (from[0] * to[0] + from[1] * to[1] + from[2] * to[2]);
     }
     return sum;
@@ -294,8 +314,11 @@ double Mechanism::curvature(int r, const double* V) const
 void Mechanism::add_forces(Instant instant, const double* X, const double* V, double factor,
                            double* raw) const
 {
-    for (int b = 0; b < n_bodies(); ++b)
-        for (int i = 0; i < 12; ++i) raw[12 * b + i] += factor * bodies[b].weight[i];
+    for (int b = 0; b < n_bodies(); ++b) {
+        // without an offset the weight has no part on the directors
+        const int n = bodies[b].offset ? 12 : 3;
+        for (int i = 0; i < n; ++i) raw[12 * b + i] += factor * bodies[b].weight[i];
+    }
     for (const Load& load : model->loads()) {
         LoadArguments arguments;
         arguments.at = instant;
@@ -319,9 +342,8 @@ void Mechanism::rows_of(const double* X, const double* frames, const double* raw
 {
     for (int b = 0; b < n_bodies(); ++b) {
         double* o = q + bodies[b].first;
-        std::fill(o, o + bodies[b].dofs, 0.0);
         if (bodies[b].dofs == 6) {
-            twist::add_rows(X + 12 * b, raw + 12 * b, 1.0, o);
+            twist::rows(X + 12 * b, raw + 12 * b, o);
             if (bodies[b].offset) centre(frames + 12 * b, o);
         } else {
             std::copy(raw + 12 * b, raw + 12 * b + 3, o);

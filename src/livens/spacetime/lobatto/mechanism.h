@@ -31,18 +31,21 @@ struct Mechanism {
         double inverse_root_mass = 0;   ///< 1 / sqrt(M)
         double center[3] = {};          ///< of mass, body coordinates
         double spin[9] = {};            ///< L^-T, column by column: w_body = spin y_2
-        bool offset = false;            ///< the centre of mass is not the reference point
-        bool principal = false;         ///< spin and euler are diagonal
-        double euler[9] = {};           ///< E about the centre of mass, column by column
+        double reach = 0;               ///< sizes for the rounding level: |c| and the largest of L
+        double root_inertia = 0;
+        bool offset = false;      ///< the centre of mass is not the reference point
+        bool principal = false;   ///< spin and euler are diagonal
+        double euler[9] = {};     ///< E about the centre of mass, column by column
     };
     struct RowTable {
         const ConstraintRow* row = nullptr;
         bool has_i = false;   ///< body_i is a body
         struct Entry {
-            int from, to;   ///< places in the 24 numbers of X_i and X_j: 12 * side + 3 * column
+            int from_side, from;   ///< 0 or 1, and place of the column in the 12 numbers of X
+            int to_side, to;
             double value;
         };
-        std::vector<int> columns[2];   ///< directors of body i and j that the gradient may touch: 3, 6, 9
+        std::vector<int> columns[2];   ///< columns of X_i and X_j that the gradient may touch: 0, 3, 6, 9
         std::vector<Entry> form;       ///< entries of K that are not zero, by rows and columns
         bool has_b = false;            ///< B is not zero
         int body(int side) const { return side == 0 ? row->body_i : row->body_j; }
@@ -64,9 +67,11 @@ struct Mechanism {
     int n_rows() const { return static_cast<int>(rows.size()); }
     int freedoms() const { return n_twists - rank; }
 
-    /// Gradients of row r by X_i and X_j, 12 numbers each, one after the other; g_i is zero where there is no
-    /// body i.
+    /// Gradients of row r by X_i and X_j, 12 numbers each, one after the other. Only the columns that the row
+    /// touches (RowTable::columns) are written, and only they may be read.
     void gradient(int r, const double* X, double* g) const;
+    /// Force and moment about the centre of mass of one side's gradient, 6 numbers.
+    void wrench(int r, int side, const double* X, const double* frames, const double* g, double* q) const;
     /// The gradient as rows of scaled twists, n_twists numbers.
     void scaled_gradient(int r, const double* X, const double* frames, const double* g, double* out) const;
     /// Phi from the absolute configuration and its gradient there: 1/2 <g + B, X> + c.

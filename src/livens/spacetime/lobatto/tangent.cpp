@@ -118,7 +118,7 @@ void reduce_load(const Matrix<12, 12>& K, const double* X_row, const double* X_c
             dF[r] = 0;
             for (int c = 0; c < 12; ++c) dF[r] += K(r, c) * dX[c];
         }
-        twist::add_rows(X_row, dF, 1.0, row);
+        twist::rows(X_row, dF, row);
         for (int r = 0; r < 6; ++r) block[6 * r + j] = row[r];
     }
 }
@@ -243,8 +243,9 @@ std::vector<double> Element::rows_with(int A, const std::vector<double>& lambda,
         const double s = h_ * rule_.weights[A] * lambda[static_cast<std::size_t>(basis.rows[c])];
         for (int side = table.first_side(); side < 2; ++side) {
             double* r = raw.data() + 12 * table.body(side);
-            for (int i = 0; i < 12; ++i)
-                r[i] -= s * basis.gradients[static_cast<std::size_t>(24 * c + 12 * side + i)];
+            const double* g = basis.gradients.data() + 24 * c + 12 * side;
+            for (const int a : table.columns[side])
+                for (int i = a; i < a + 3; ++i) r[i] -= s * g[i];
         }
     }
     std::vector<double> q(static_cast<std::size_t>(n_), 0.0);

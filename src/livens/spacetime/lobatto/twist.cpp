@@ -62,31 +62,6 @@ Increment from_vectors(const double* linear, const double* angular)
     return q;
 }
 
-void add_rows(const double* X, const double* r, double factor, double* out)
-{
-    double m[3] = {0, 0, 0};
-    for (int a = 3; a < 12; a += 3) {
-        m[0] += X[a + 1] * r[a + 2] - X[a + 2] * r[a + 1];
-        m[1] += X[a + 2] * r[a] - X[a] * r[a + 2];
-        m[2] += X[a] * r[a + 1] - X[a + 1] * r[a];
-    }
-    for (int i = 0; i < 3; ++i) {
-        out[i] += factor * r[i];
-        out[3 + i] += factor * m[i];
-    }
-}
-
-void columns(const double* X, const double* twist, double* dX)
-{
-    const double* w = twist + 3;
-    for (int i = 0; i < 3; ++i) dX[i] = twist[i];
-    for (int a = 3; a < 12; a += 3) {
-        dX[a] = w[1] * X[a + 2] - w[2] * X[a + 1];
-        dX[a + 1] = w[2] * X[a] - w[0] * X[a + 2];
-        dX[a + 2] = w[0] * X[a + 1] - w[1] * X[a];
-    }
-}
-
 void add_block(const double* c, const double* X_row, const double* X_column, double factor, double* out,
                int stride)
 {

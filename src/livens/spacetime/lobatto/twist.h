@@ -25,11 +25,32 @@ void update(Increment& increment, const double* twist);
 /// The increment of the screw u = linear, R = exp(angular).
 Increment from_vectors(const double* linear, const double* angular);
 
-/// Rows: out += factor * [r_0 ; sum_a d_a x r_a]. X and r are 3 x 4, column by column.
-void add_rows(const double* X, const double* r, double factor, double* out);
+/// Rows: out = [r_0 ; sum_a d_a x r_a]. X and r are 3 x 4, column by column.
+inline void rows(const double* X, const double* r, double* out)
+{
+    double m[3] = {0, 0, 0};
+    for (int a = 3; a < 12; a += 3) {
+        m[0] += X[a + 1] * r[a + 2] - X[a + 2] * r[a + 1];
+        m[1] += X[a + 2] * r[a] - X[a] * r[a + 2];
+        m[2] += X[a] * r[a + 1] - X[a + 1] * r[a];
+    }
+    for (int i = 0; i < 3; ++i) {
+        out[i] = r[i];
+        out[3 + i] = m[i];
+    }
+}
 
 /// Columns: [dphi, w x d_a] as 3 x 4.
-void columns(const double* X, const double* twist, double* dX);
+inline void columns(const double* X, const double* twist, double* dX)
+{
+    const double* w = twist + 3;
+    for (int i = 0; i < 3; ++i) dX[i] = twist[i];
+    for (int a = 3; a < 12; a += 3) {
+        dX[a] = w[1] * X[a + 2] - w[2] * X[a + 1];
+        dX[a + 1] = w[2] * X[a] - w[0] * X[a + 2];
+        dX[a + 2] = w[0] * X[a + 1] - w[1] * X[a];
+    }
+}
 
 /// out += factor * sum_ab c_ab N_a(X_row)^T N_b(X_column), the 6 x 6 block of a bilinear form c (4 x 4, c_ab
 /// at c[a + 4 b]) between two configurations; `out` has the given row stride.
