@@ -1,6 +1,7 @@
 #include "livens/spacetime/lobatto/elimination.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cstddef>
 
 namespace livens {
@@ -23,7 +24,7 @@ Elimination::Elimination(const Mechanism& mechanism, int degree)
 void Elimination::begin(const std::vector<const OrthogonalBasis*>& bases)
 {
     bases_ = bases;
-    by_bodies_ = degree_ == 1;
+    by_bodies_ = takes_constraints();
     if (!by_bodies_) form_null_spaces();
 }
 
@@ -77,7 +78,7 @@ void Elimination::add_mass(int body, double factor, const double* H)
 
 void Elimination::add(int body_i, int body_j, const double* block)
 {
-    if (by_bodies_) couple_bodies();
+    assert(!by_bodies_ && "nothing but mass comes to elements that are inverted body by body");
     const double* z = null_space(B_, body_j);
     for (int i = 0; i < mechanism_.bodies[body_i].dofs; ++i) {
         double* __restrict v = product_.data() + (mechanism_.bodies[body_i].first + i) * f_;
@@ -143,22 +144,6 @@ void Elimination::solve(double* x, const double* range)
         solve_bodies(x, range);
     else
         lu_.solve(x);
-}
-
-/// A term came that couples bodies after all: the mass so far is put where it would have gone.
-void Elimination::couple_bodies()
-{
-    by_bodies_ = false;
-    form_null_spaces();
-    std::fill(product_.begin(), product_.end(), 0.0);
-    for (int b = 0; b < mechanism_.n_bodies(); ++b) {
-        Matrix3 h = identity<3>();
-        if (mechanism_.bodies[b].dofs == 6) {
-            std::copy_n(inverse_.begin() + 9 * b, 9, h.a);
-            h = inverse(h);
-        }
-        add_mass(b, factor_, h.a);
-    }
 }
 
 /// y <- J^-1 y, body by body.

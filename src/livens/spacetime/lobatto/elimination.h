@@ -41,7 +41,6 @@ public:
 private:
     const double* null_space(int A, int body) const;
     void form_null_spaces();
-    void couple_bodies();
     void reduce(int A, int B);
     void multiply_pair(int A, int B, int r);
     bool factorise_bodies();
@@ -52,7 +51,7 @@ private:
     int degree_;
     int f_;
     int A_ = 0, B_ = 1;             // the open pair
-    bool by_bodies_ = false;        // nothing but mass so far, and degree 1
+    bool by_bodies_ = false;        // as takes_constraints()
     double factor_ = 1;             // of the mass; likewise
     std::vector<double> inverse_;   // of H, 9 a body; likewise
     DenseLU schur_;
