@@ -3,6 +3,9 @@
 include(CMakePackageConfigHelpers)
 
 set(libraries livens_core)
+if(LIVENS_UMFPACK)
+    list(APPEND libraries livens_umfpack)
+endif()
 if(LIVENS_BUILD_PROGRAM)
     list(APPEND libraries livens_io livens_netcdf)
     install(TARGETS livens RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})

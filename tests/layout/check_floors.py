@@ -31,7 +31,8 @@ FLOOR = {room: number for number, rooms in enumerate(FLOORS) for room in rooms}
 
 # What is not the standard library: where it comes from, and the rooms whose sources may include it.
 FOREIGN = [
-    (r"Eigen/", {"multibody", "stepping"}),   # their targets rename its namespace, see cmake/rooms.cmake
+    (r"Eigen/", {"solvers", "multibody", "stepping"}),   # their targets rename its namespace, see cmake/rooms.cmake
+    (r"suitesparse/|umfpack|metis", {"solvers"}),
     (r"toml\+\+/|toml\.hpp", {"io"}),
     (r"netcdf|hdf5|H5", {"io"}),
     (r"fmt/", {"io", "apps"}),
@@ -301,6 +302,8 @@ CONTROLS = [
     ("foreign", {"src/livens/io/public.h": "#pragma once\n#include <fmt/format.h>\n"}),
     ("foreign", {"src/livens/io/public.h": "#pragma once\n#include <toml++/toml.h>\n"}),
     ("foreign", {"src/livens/io/public.h": "#pragma once\n#include <netcdf.h>\n"}),
+    ("foreign", {"src/livens/multibody/sparse.cpp": "#include <suitesparse/umfpack.h>\n"}),
+    ("foreign", {"src/livens/solvers/sparse.h": "#pragma once\n#include <suitesparse/umfpack.h>\n"}),
     ("foreign", {"src/livens/io/log.cpp": "#include <spdlog/spdlog.h>\n"}),
     ("foreign", {"src/livens/time/print.cpp": "#include <iostream>\n"}),
 ]
