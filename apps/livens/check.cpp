@@ -38,15 +38,27 @@ std::string json_of(const Scenario& scenario, const Assembly& assembly,
     return json.text() + "\n";
 }
 
+/// Closes the mechanism where its positions are known: rank and redundant rows, for people.
+Assembly assembly_of(const Scenario& scenario)
+{
+    const Boundary& b = scenario.boundary;
+    const bool at_start = b.at_start == Given::state || b.at_start == Given::positions;
+    const bool at_end = !at_start && (b.at_end == Given::state || b.at_end == Given::positions);
+    State state = at_end ? b.end : b.start;
+    if (b.at_start == Given::state || b.at_end == Given::state)
+        return assemble(scenario.model, state, scenario.options.initial);
+    for (Matrix34& V : state.V) V = {};   // velocities are guesses; positions may be
+    return assemble(scenario.model, state,
+                    at_start || at_end ? scenario.options.initial : StartPolicy::project);
+}
+
 }   // namespace
 
 int check_command(const std::string& file, const Common& common)
 {
     std::vector<Diagnostic> warnings;
     const Scenario scenario = load_scenario(file, common, &warnings);
-    State start = scenario.model.start();
-    start.t = scenario.mesh.start();
-    const Assembly assembly = assemble(scenario.model, start, scenario.options.initial);
+    const Assembly assembly = assembly_of(scenario);
     if (common.json) {
         print(json_of(scenario, assembly, warnings));
         return exit_ok;

@@ -30,10 +30,7 @@ std::string json_of(const Run& run)
     json.member("start", run.motion.start()).member("end", run.motion.end());
     json.member("elements", s.elements).member("unknowns", s.unknowns);
     json.member("newton_iterations", s.newton_iterations).member("factorisations", s.factorisations);
-    json.member("residual_norm", s.residual_norm)
-        .member("max_constraint_violation", s.max_constraint_violation);
-    json.member("max_velocity_violation", s.max_velocity_violation).member("energy_drift", s.energy_drift);
-    json.member("angular_momentum_drift", s.angular_momentum_drift);
+    write_figures(json, s);
     json.member("order_at_element_ends", run.motion.order_at_ends);
     json.member("output_times", run.output.size());
     names(json, "bodies", run.body_names);

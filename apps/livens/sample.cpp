@@ -73,6 +73,9 @@ BodySample body_at(const Query& q, double t)
 {
     if (!q.arguments.exact)
         return sample_bodies(q.scenario.model, q.run.motion, t)[static_cast<std::size_t>(q.index)];
+    if (std::holds_alternative<Mixed>(q.scenario.method))
+        throw failure(exit_usage, "--exact cannot be had of the family mixed: each element depends on all "
+                                  "others of its block; make the instant an output time");
     const ExactSample exact =
         sample_exactly(q.scenario.model, q.run.motion, q.scenario.method, t, q.scenario.options);
     if (!exact.report.converged()) throw failure(exit_not_converged, exact.report.message);

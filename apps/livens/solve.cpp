@@ -85,10 +85,8 @@ Solved solve_scenario(const Scenario& scenario, const Common& common)
             line.show(progress);
             return InterruptWatch::signal() == 0;
         };
-        State start = scenario.model.start();
-        start.t = scenario.mesh.start();
         const Clock::time_point begin = Clock::now();
-        solution = solve(scenario.model, Boundary{std::move(start)}, scenario.mesh, scenario.method, options);
+        solution = solve(scenario.model, scenario.boundary, scenario.mesh, scenario.method, options);
         solved.solve_seconds = seconds_since(begin);
     }
     say_detail(fmt::format("solved in {:.3g} s", solved.solve_seconds));
@@ -124,10 +122,9 @@ std::string json_of(const Solved& solved, const Places& p, const std::vector<Dia
     json.member("message", s.message).member("title", solved.run.title).member("method", s.method);
     json.member("elements", s.elements).member("unknowns", s.unknowns);
     json.member("newton_iterations", s.newton_iterations).member("factorisations", s.factorisations);
-    json.member("solve_seconds", solved.solve_seconds).member("residual_norm", s.residual_norm);
-    json.member("max_constraint_violation", s.max_constraint_violation);
-    json.member("max_velocity_violation", s.max_velocity_violation);
-    json.member("energy_drift", s.energy_drift).member("angular_momentum_drift", s.angular_momentum_drift);
+    json.member("blocks", solved.run.report.iterations.size());
+    json.member("solve_seconds", solved.solve_seconds);
+    write_figures(json, s);
     json.member("start", solved.run.motion.start()).member("end", solved.run.motion.end());
     json.member("output", p.output.string());
     json.key("csv");
@@ -195,14 +192,19 @@ void show(const Solved& solved, const Places& p)
     const RunSummary& s = run.summary;
     std::string text;
     if (!run.title.empty()) text += plain(run.title) + "\n";
-    text += fmt::format("  method            {}, {} elements, {} unknowns each\n", s.method, s.elements,
+    const std::size_t n_blocks = run.report.iterations.size();
+    const bool is_blocked = n_blocks != static_cast<std::size_t>(s.elements);
+    text += fmt::format("  method            {}, {} elements{}, {} unknowns each\n", s.method, s.elements,
+                        is_blocked ? fmt::format(" in {} block{}", n_blocks, n_blocks == 1 ? "" : "s") : "",
                         s.unknowns);
     text += fmt::format("  solved            {:.6g} s to {:.6g} s of motion in {:.3g} s\n",
                         run.motion.start(), run.motion.end(), solved.solve_seconds);
     text += fmt::format("  iterations        {} by Newton{}, {} factorisations\n", s.newton_iterations,
-                        s.elements > 0 ? fmt::format(" ({:.1f} an element)",
-                                                     static_cast<double>(s.newton_iterations) / s.elements)
-                                       : "",
+                        n_blocks > 0 ? fmt::format(" ({:.1f} {})",
+                                                   static_cast<double>(s.newton_iterations) /
+                                                       static_cast<double>(n_blocks),
+                                                   is_blocked ? "a block" : "an element")
+                                     : "",
                         s.factorisations);
     text += figures(s);
     text += fmt::format("  written           {}{}\n", plain(p.output.string()),

@@ -213,6 +213,71 @@ class Solve(ProgramTest):
             self.assertIs(s["converged"], False)
             self.expect(0, "export", "run.nc", "--csv", "run.csv")
 
+    def test_mixed_elements_in_blocks(self):
+        text = SMALL.replace('family = "lobatto"\ndegree = 4', 'family = "mixed"\nblock = 4\ncondition = true')
+        result = self.solve(text)
+        self.assertEqual((result["status"], result["method"]), ("converged", "mixed(lagrange, 2, natural, equal)"))
+        self.assertEqual((result["elements"], result["blocks"]), (10, 3))
+        self.assertGreater(result["max_constraint_violation"], 1e-12)   # they hold weakly
+        self.assertLess(result["max_weak_violation"], result["max_constraint_violation"])
+        self.assertLess(result["zigzag_positions"], 0.3)
+        self.assertGreater(result["condition_1"], result["scaled_condition"])
+        self.assertIsNone(self.solve()["condition_1"])
+        self.solve(text, output="mixed.nc")
+        info = json.loads(self.expect(0, "info", "mixed.nc", "--json").out)
+        for key in ("max_weak_violation", "zigzag_momenta", "condition_2", "scaled_condition"):
+            self.assertEqual(info[key], result[key], key)
+        end = json.loads(self.expect(0, "sample", "mixed.nc", "--body", "bob", "--at", "0.5", "--json").out)
+        exact = self.solve(SMALL.replace("degree = 4", "degree = 8"), output="exact.nc")
+        self.assertEqual(exact["status"], "converged")
+        right = json.loads(self.expect(0, "sample", "exact.nc", "--body", "bob", "--at", "0.5", "--json").out)
+        for a, b in zip(end["position"], right["position"], strict=True):
+            self.assertAlmostEqual(a, b, delta=5e-4)
+        self.expect(0, "sample", "mixed.nc", "--body", "bob", "--at", "0.49")
+        refused = self.run_program("sample", "mixed.nc", "--body", "bob", "--at", "0.49", "--exact")
+        self.assertEqual(refused.returncode, USAGE, refused.err)
+        self.assertIn("mixed", refused.err)
+
+    def test_same_mixed_input_gives_same_bytes(self):
+        text = SMALL.replace('family = "lobatto"\ndegree = 4',
+                             'family = "mixed"\nbasis = "bspline"\nblock = 5\ninterfaces = "project"')
+        self.solve(text, output="first.nc")
+        self.solve(text, output="second.nc")
+        self.assertEqual((self.folder / "first.nc").read_bytes(), (self.folder / "second.nc").read_bytes())
+
+    def test_motions_that_cannot_be_are_never_converged(self):
+        # Linear elements on the chaotic pendulum of the paper, 20 s at once, and too few of them.
+        pendulum = (SOURCE / "examples" / "double_pendulum_blocks.toml").read_text()
+        pendulum = pendulum[:pendulum.index("[time]")]
+        for elements in (80, 160, 200, 250):
+            text = pendulum + f'[time]\nend = 20\nelements = {elements}\n[method]\nfamily = "mixed"\ndegree = 1\n'
+            self.write("window.toml", text)
+            done = self.run_program("solve", "window.toml", "-o", "run.nc", "--json")
+            self.assertIn(done.returncode, (NOT_CONVERGED, SUSPECT), f"{elements} elements: {done.out}")
+            self.assertNotEqual(json.loads(done.out)["status"], "converged")
+            self.expect(0, "info", "run.nc")
+
+    def test_backward_is_the_way_back(self):
+        self.solve(SMALL.replace("degree = 4", "degree = 8"), output="there.nc")
+        ends = {}
+        for body in ("brick", "bob"):
+            s = json.loads(self.expect(0, "sample", "there.nc", "--body", body, "--at", "0.5", "--json").out)
+            keys = ("position", "quaternion", "velocity", "angular_velocity")
+            ends[body] = "[body.end]\n" + "".join(f"{k} = {s[k]}\n" for k in keys if s[k] is not None)
+        back = SMALL.replace("angular_velocity = [0, 0, 2]\n", ends["brick"])
+        back = back.replace("position = [1, 0, -1]\n", "position = [1, 0, -1]\n" + ends["bob"])
+        back = back.replace('family = "lobatto"\ndegree = 4', 'family = "mixed"\nbasis = "bspline"\ndegree = 3')
+        back += '[start]\ngiven = "nothing"\n[end]\ngiven = "state"\n'
+        self.solve(back, output="back.nc")
+        start = json.loads(self.expect(0, "sample", "back.nc", "--body", "brick", "--at", "0", "--json").out)
+        for a, b in zip(start["position"], [1, 0, 0], strict=True):
+            self.assertAlmostEqual(a, b, delta=1e-5)
+        for key in ("lobatto", "midpoint"):
+            wrong = back.replace('family = "mixed"\nbasis = "bspline"\ndegree = 3', f'family = "{key}"')
+            self.write("wrong.toml", wrong)
+            done = self.expect(SCENARIO, "check", "wrong.toml", "--diagnostics", "gnu")
+            self.assertIn("[boundary-method]", done.err)
+
     def test_examples_check(self):
         examples = sorted((SOURCE / "examples").glob("*.toml"))
         self.assertGreater(len(examples), 0)
@@ -464,6 +529,26 @@ class WrongInput(ProgramTest):
     def test_degree_zero_and_beyond(self):
         for degree in ("0", "17", "-1", "99999999999999999999"):
             self.refuse(text_with("degree = 4", f"degree = {degree}"), line="degree")
+
+    def test_mixed_elements(self):
+        def mixed(lines, time="end = 0.5\nelements = 10\noutput = 0.1"):
+            text = SMALL.replace('family = "lobatto"\ndegree = 4', 'family = "mixed"\n' + lines)
+            return text.replace("end = 0.5\nelements = 10\noutput = 0.1", time)
+
+        spline = 'basis = "bspline"\n'
+        self.refuse(mixed(spline + "degree = 8", "end = 0.5\nelements = 4"), line="degree",
+                    diagnostic="spline-degree")
+        self.refuse(mixed(spline + "knots = [0, 0, 0, 0.3, 0.2, 0.5, 0.5, 0.5]", "end = 0.5"), line="knots",
+                    diagnostic="knots-decreasing")
+        nurbs = 'basis = "nurbs"\nknots = [0, 0, 0, 0.2, 0.5, 0.5, 0.5]\n'
+        self.refuse(mixed(nurbs + "weights = [1, 1, 0, 1]", "end = 0.5"), line="weights",
+                    diagnostic="weights-not-positive")
+        self.refuse(mixed("gauss_points = 1"), line="gauss_points", diagnostic="mixed-pairing")
+        self.refuse(mixed("block = 0"), line="block", diagnostic="out-of-range")
+        self.refuse(SMALL + "block = 2\n", line="block", diagnostic="misplaced-key")
+        self.refuse(mixed("") + '[end]\ngiven = "positions"\n', diagnostic="missing-key")
+        self.refuse(mixed("degree = 2", "end = 0.5\nelements = 10000000"), code=RESOURCES, line="elements",
+                    diagnostic="resource-limit")
 
     def test_elements(self):
         for elements in ("0", "-1"):

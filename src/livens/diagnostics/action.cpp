@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cassert>
 
 #include "livens/diagnostics/detail/sampler.h"
@@ -5,28 +6,89 @@
 #include "livens/time/quadrature.h"
 
 namespace livens {
+namespace {
+
+/// Exact for the kinetic energy of polynomials; quotients of polynomials are given twice the points.
+Quadrature action_rule(const Motion& motion)
+{
+    const int n = std::max(motion.X.degree, motion.P.degree) + 2;
+    const bool rational = !motion.X.denominators.empty() || !motion.P.denominators.empty();
+    return gauss(std::min(rational ? 2 * n : n, 64));
+}
+
+/// What is integrated, at one point of an element.
+class Integrands {
+public:
+    Integrands(const Model& model, const Motion& motion, const Quadrature& rule)
+        : model_(model), sampler_(motion, rule.points), X_(static_cast<std::size_t>(motion.n_bodies)),
+          V_(X_.size()), P_(X_.size()), true_V_(X_.size())
+    {
+        if (!sampler_.has_momenta()) return;
+        for (const Body& body : model.bodies()) inverse_.push_back(inverse_mass(body.mass, body.is_point));
+    }
+
+    void evaluate(int element, int k)
+    {
+        sampler_.positions(element, k, X_);
+        sampler_.velocities(element, k, V_);
+        evaluate_momenta(element, k);
+        const double potential = potential_energy(model_, sampler_.instant(element, k), X_, V_);
+        double kinetic = 0, legendre = 0;   // T*(P) = 1/2 tr(P m^-1 P^T) and tr(P X'^T)
+        for (std::size_t b = 0; b < X_.size(); ++b) {
+            kinetic += 0.5 * dot(P_[b], true_V_[b]);
+            legendre += dot(P_[b], V_[b]);
+        }
+        hamiltonian = kinetic + potential;
+        lagrangian = legendre - kinetic - potential;
+        moment = angular_momentum(X_, P_);
+    }
+
+    double lagrangian = 0;
+    double hamiltonian = 0;
+    Vector3 moment{};
+
+private:
+    /// P and the velocity P m^-1 that goes with it: of the motion's own field, or both from dX/dt, whose mass
+    /// matrix may be singular.
+    void evaluate_momenta(int element, int k)
+    {
+        if (sampler_.has_momenta()) {
+            sampler_.momenta(element, k, P_);
+            for (std::size_t b = 0; b < X_.size(); ++b) true_V_[b] = P_[b] * inverse_[b];
+        } else {
+            for (std::size_t b = 0; b < X_.size(); ++b) P_[b] = V_[b] * model_.bodies()[b].mass;
+            true_V_ = V_;
+        }
+    }
+
+    const Model& model_;
+    ElementSampler sampler_;
+    std::vector<Matrix4> inverse_;
+    std::vector<Matrix34> X_, V_, P_, true_V_;
+};
+
+}   // namespace
 
 ActionSeries action(const Model& model, const Motion& motion)
 {
     assert(model.n_bodies() == motion.n_bodies);
     ActionSeries series;
     if (motion.n_elements() < 1) return series;
-    const Quadrature rule = gauss(motion.X.degree + 2);
-    const ElementSampler sampler(motion, rule.points);
-    std::vector<Matrix34> X(static_cast<std::size_t>(motion.n_bodies)), V(X.size());
+    const Quadrature rule = action_rule(motion);
+    Integrands at(model, motion, rule);
     for (int e = 0; e < motion.n_elements(); ++e) {
         double lagrangian = 0, hamiltonian = 0;
-        for (int k = 0; k < sampler.size(); ++k) {
-            sampler.positions(e, k, X);
-            sampler.velocities(e, k, V);
-            const double kinetic = kinetic_energy(model, X, V);
-            const double potential = potential_energy(model, sampler.instant(e, k), X, V);
+        Vector3 moment{};
+        for (std::size_t k = 0; k < rule.points.size(); ++k) {
+            at.evaluate(e, static_cast<int>(k));
             const double weight = motion.mesh.length(e) * rule.weights[k];
-            lagrangian += weight * (kinetic - potential);
-            hamiltonian += weight * (kinetic + potential);
+            lagrangian += weight * at.lagrangian;
+            hamiltonian += weight * at.hamiltonian;
+            moment += weight * at.moment;
         }
         series.lagrangian.push_back(lagrangian);
         series.hamiltonian.push_back(hamiltonian);
+        series.angular_momentum.push_back(moment);
     }
     return series;
 }

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <optional>
 
 #include "livens/diagnostics/detail/forces.h"
 #include "livens/diagnostics/detail/largest.h"
@@ -40,11 +41,13 @@ struct Supply {
     }
 };
 
-/// Where supplies are taken. lobatto's own nodes are its quadrature points, which makes its momentum balances
-/// exact; one multiplier an element marks a stepping rule with one stage: endpoint (order 1) takes forces at
-/// the end of the step, midpoint in its middle, and there its balances are exact as well.
+/// Where supplies are taken: at the quadrature points of the method, where alone its momentum balances are
+/// exact. A method says how many Gauss points it had, or its nodes were its points, as those of lobatto. One
+/// multiplier an element then marks a stepping rule with one stage: endpoint (order 1) takes forces at the
+/// end of the step, midpoint in its middle.
 Quadrature supply_rule(const Motion& motion)
 {
+    if (motion.gauss_points > 0) return gauss(motion.gauss_points);
     const bool one_stage = motion.X.degree == 1 && motion.multipliers.degree == 0;
     if (!one_stage) return gauss_lobatto(motion.X.degree + 1);
     return {{motion.order_at_ends == 1 ? 1.0 : 0.5}, {1.0}};
@@ -68,9 +71,12 @@ public:
 private:
     SupplyIntegral(const Model& model, const Motion& motion, Quadrature rule)
         : model_(model), motion_(motion), weights_(rule.weights), sampler_(motion, rule.points),
-          X_(static_cast<std::size_t>(motion.n_bodies)), V_(X_.size()),
-          lambda_(motion.multipliers.empty() ? 0 : static_cast<std::size_t>(motion.n_rows))
+          X_(static_cast<std::size_t>(motion.n_bodies)), V_(X_.size())
     {
+        if (!motion.multipliers.empty()) {
+            multipliers_.emplace(motion.multipliers, sampler_.points());
+            lambda_.resize(static_cast<std::size_t>(motion.n_rows));
+        }
         for (const Body& body : model.bodies()) weights_of_bodies_.push_back(weight(body, model.gravity()));
     }
 
@@ -101,12 +107,8 @@ private:
     /// -G^T lambda on all bodies: between two bodies it adds up to nothing, so what stays is the world's.
     void add_joints(int element, int k, Supply& now)
     {
-        if (lambda_.empty()) return;
-        if (motion_.multipliers.degree == motion_.X.degree && sampler_.size() == motion_.X.degree + 1) {
-            std::ranges::copy(motion_.multipliers.coefficient(element, k), lambda_.begin());
-        } else {
-            motion_.multipliers.evaluate(element, sampler_.point(k), 0, lambda_);
-        }
+        if (!multipliers_) return;
+        multipliers_->values(element, k, lambda_);
         for (int r = 0; r < model_.n_rows(); ++r) {
             if (lambda_[r] == 0) continue;
             const ConstraintRow& row = model_.row(r);
@@ -120,6 +122,7 @@ private:
     const Motion& motion_;
     std::vector<double> weights_;
     ElementSampler sampler_;
+    std::optional<FieldTable> multipliers_;   // a field of its own degree, at the sampler's points
     std::vector<Matrix34> X_, V_;
     std::vector<double> lambda_;
     std::vector<Matrix34> weights_of_bodies_;

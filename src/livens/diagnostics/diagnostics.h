@@ -13,10 +13,12 @@ namespace livens {
 ///
 /// Balances are what is left when the supply since the start is taken off: energy less the work of loads
 /// without potential; momentum less the impulse of gravity, loads and of joints to the world. Supplies are
-/// integrated with the Gauss-Lobatto rule of the motion's own nodes, which makes lobatto's momentum balances
-/// exact. A motion with X of degree 1 and one multiplier an element was stepped: midpoint's supplies are
-/// taken in the middle (momentum balances exact), those of a method of order 1 at the end of the element
-/// (linear momentum exact). Rows without multipliers leave the joints' impulse in the drift.
+/// integrated with the quadrature of the method: its Gauss points, or the Gauss-Lobatto rule of the motion's
+/// own nodes, which makes momentum balances exact: lobatto's at all element ends, those of the elements
+/// `mixed` with a natural start at the ends of blocks. A motion without Gauss points, with X of degree 1 and
+/// one multiplier an element was stepped: midpoint's supplies are taken in the middle (momentum balances
+/// exact), those of a method of order 1 at the end of the element (linear momentum exact). Rows without
+/// multipliers leave the joints' impulse in the drift.
 struct Balance {
     std::vector<double> t;
     std::vector<double> kinetic;
@@ -52,20 +54,54 @@ Vector3 linear_momentum(std::span<const Matrix34> P);
 /// About the world's origin: sum over bodies of sum over columns x_c cross p_c.
 Vector3 angular_momentum(std::span<const Matrix34> X, std::span<const Matrix34> P);
 
-/// Integrals over each element of L = T - V and of H = T + V by Gauss quadrature with degree + 2 points.
+/// Integrals over each element by Gauss quadrature with degree + 2 points (twice as many for NURBS): of
+/// L = T - V, of H = T + V and of the angular momentum about the world's origin (P36), whose last term,
+/// d_i x lambda_ij d_j, is zero identically. The kinetic energy is that of the momentum where the motion has
+/// a field of it, H = T*(P) + V and L = tr(P X'^T) - H as in Livens' principle, else that of dX/dt.
 struct ActionSeries {
-    std::vector<double> lagrangian;    ///< J s per element
-    std::vector<double> hamiltonian;   ///< J s per element
+    std::vector<double> lagrangian;          ///< J s per element
+    std::vector<double> hamiltonian;         ///< J s per element
+    std::vector<Vector3> angular_momentum;   ///< N m s^2 per element
 };
 ActionSeries action(const Model& model, const Motion& motion);
 
+/// How much a motion alternates from node to node: 0 for a smooth one, 1 for a pure zig-zag.
+///
+/// With g the mean velocities over X.degree equal steps an element, in the metric of the masses, and d2 g
+/// their second differences, the value is the largest over windows of `window` steps of
+///
+///     (mean |d2 g|^2 / 16 / max(mean |g|^2, the same over the whole motion))^(1/2)  <= 1.
+///
+/// It is sin^2(theta / 2) for an oscillation by theta a step (0.23 at 1 rad), and for an alternating part of
+/// the velocity about its share: an alternating error of X of order h^2 shows with order h and means little,
+/// a motion of which as much alternates as does not has 0.7. Centres of mass and spins about them are judged
+/// apart, so that a fast flight does not hide a trembling body (spins relative to at least 1e-3 of all
+/// speed). Velocities that an error of X by 1e-11 of its size would make count as none, and motions of less
+/// than six steps as smooth. Steps lie inside elements and are divided by their lengths, so neither jumps of
+/// X between blocks nor uneven elements alternate; kinks of the velocity are steps of g, which have little.
+///
+/// The same for the momentum, g being its field at P.degree equal steps an element. Without such a field it
+/// is the velocities at element ends for X of degree 1, and else the value of X again.
+struct Zigzag {
+    double positions = 0;
+    double momenta = 0;
+    double worst_time = 0;   ///< middle of the worst window of the larger, s
+};
+/// A motion that is not a number has values that are not. Throws InputError for a window below 6.
+Zigzag zigzag(const Model& model, const Motion& motion, int window = 16);
+
 /// Largest violations of joint rows, each divided by its scale, and of rigidity |1/2 (d_a . d_b - delta_ab)|,
-/// which point masses do not have. A motion that is not a number has violations that are not.
+/// which point masses do not have. A motion that is not a number has violations that are not. Where X jumps
+/// between elements both sides of the instant are nodes.
 struct ViolationReport {
     double joints_at_nodes = 0;
     double rigidity_at_nodes = 0;
     double joints_between = 0;   ///< at `samples` points inside each gap between nodes
     double rigidity_between = 0;
+    /// Largest |integral of Phi over an element| / (h scale), for any method: the mean, which is small where
+    /// a method holds constraints as integrals and Phi itself is not.
+    double joints_weakly = 0;
+    double rigidity_weakly = 0;
     double velocity_level = 0;   ///< |dPhi/dt| / scale at element ends, 1/s
     int worst_row = -1;          ///< of the model, at nodes; -1: no row is violated at all
     double worst_time = 0;       ///< of that row

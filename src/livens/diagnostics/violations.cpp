@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 #include <string>
@@ -12,25 +14,33 @@
 namespace livens {
 namespace {
 
-/// |Phi| / scale.
+/// Phi / scale.
 double joint_violation(const ConstraintRow& row, std::span<const Matrix34> X)
 {
     const Matrix34& X_i = row.body_i == world ? world_configuration : X[row.body_i];
-    return std::abs(constraint_value(row, X_i, X[row.body_j])) / row.scale;
+    return constraint_value(row, X_i, X[row.body_j]) / row.scale;
 }
 
-/// Largest |1/2 (d_a . d_b - delta_ab)|  (P4).
+/// The six 1/2 (d_a . d_b - delta_ab) of a body (P4).
+std::array<double, 6> rigidity_violations(const Matrix34& X)
+{
+    std::array<double, 6> all{};
+    int n = 0;
+    for (int i = 1; i < 4; ++i) {
+        for (int j = i; j < 4; ++j) {
+            all[n++] = 0.5 * (dot(X.column(i), X.column(j)) - (i == j ? 1 : 0));
+        }
+    }
+    return all;
+}
+
+/// Largest |1/2 (d_a . d_b - delta_ab)| of all bodies.
 double rigidity_violation(const Model& model, std::span<const Matrix34> X)
 {
     double largest = 0;
     for (int b = 0; b < model.n_bodies(); ++b) {
         if (model.bodies()[b].is_point) continue;
-        for (int i = 1; i < 4; ++i) {
-            for (int j = i; j < 4; ++j) {
-                const double product = dot(X[b].column(i), X[b].column(j));
-                raise_to(largest, 0.5 * std::abs(product - (i == j ? 1 : 0)));
-            }
-        }
+        for (const double violation : rigidity_violations(X[b])) raise_to(largest, std::abs(violation));
     }
     return largest;
 }
@@ -47,7 +57,7 @@ double velocity_violation(const ConstraintRow& row, std::span<const Matrix34> X,
 void at_node(const Model& model, double t, std::span<const Matrix34> X, ViolationReport& report)
 {
     for (int r = 0; r < model.n_rows(); ++r) {
-        if (!raise_to(report.joints_at_nodes, joint_violation(model.row(r), X))) continue;
+        if (!raise_to(report.joints_at_nodes, std::abs(joint_violation(model.row(r), X)))) continue;
         report.worst_row = r;
         report.worst_time = t;
     }
@@ -57,7 +67,7 @@ void at_node(const Model& model, double t, std::span<const Matrix34> X, Violatio
 void between_nodes(const Model& model, std::span<const Matrix34> X, ViolationReport& report)
 {
     for (int r = 0; r < model.n_rows(); ++r)
-        raise_to(report.joints_between, joint_violation(model.row(r), X));
+        raise_to(report.joints_between, std::abs(joint_violation(model.row(r), X)));
     raise_to(report.rigidity_between, rigidity_violation(model, X));
 }
 
@@ -72,19 +82,13 @@ std::vector<double> points_between(const std::vector<double>& nodes, int samples
     return points;
 }
 
-}   // namespace
-
-ViolationReport violations(const Model& model, const Motion& motion, int samples)
+void at_element_ends(const Model& model, const Motion& motion, std::span<Matrix34> X, ViolationReport& report)
 {
-    assert(model.n_bodies() == motion.n_bodies && model.n_rows() == motion.n_rows);
-    if (samples < 0) {
-        throw InputError({"samples", "samples", "the number of samples between nodes must not be negative",
-                          std::to_string(samples), ">= 0", "", ""});
-    }
-    ViolationReport report;
-    if (motion.mesh.ends.empty()) return report;
-    std::vector<Matrix34> X(static_cast<std::size_t>(motion.n_bodies));
     for (int end = 0; end <= motion.n_elements(); ++end) {
+        if (end > 0 && !motion.X.continuous) {   // blocks may have been put together with a jump
+            positions_before_end(motion, end, X);
+            at_node(model, motion.mesh.ends[end], X, report);
+        }
         positions_at_end(motion, end, X);
         at_node(model, motion.mesh.ends[end], X, report);
         const std::span<const Matrix34> V = velocities_at_end(motion, end);
@@ -92,6 +96,11 @@ ViolationReport violations(const Model& model, const Motion& motion, int samples
             raise_to(report.velocity_level, velocity_violation(model.row(r), X, V));
         }
     }
+}
+
+void inside_elements(const Model& model, const Motion& motion, int samples, std::span<Matrix34> X,
+                     ViolationReport& report)
+{
     const std::vector<double> nodes = gauss_lobatto(motion.X.degree + 1).points;
     const ElementSampler inner(motion, {nodes.begin() + 1, nodes.end() - 1});
     const ElementSampler between(motion, points_between(nodes, samples));
@@ -105,6 +114,50 @@ ViolationReport violations(const Model& model, const Motion& motion, int samples
             between_nodes(model, X, report);
         }
     }
+}
+
+/// Means of all rows over each element: Phi has twice the degree of X, which the rule integrates exactly
+/// (quotients of polynomials nearly).
+void as_integrals(const Model& model, const Motion& motion, std::span<Matrix34> X, ViolationReport& report)
+{
+    const Quadrature rule = gauss(std::min(2 * motion.X.degree, 64));
+    const ElementSampler sampler(motion, rule.points);
+    const std::size_t n_rows = static_cast<std::size_t>(model.n_rows());
+    std::vector<double> joints(n_rows), rigidity(6 * X.size());
+    for (int e = 0; e < motion.n_elements(); ++e) {
+        std::ranges::fill(joints, 0.0);
+        std::ranges::fill(rigidity, 0.0);
+        for (int k = 0; k < sampler.size(); ++k) {
+            sampler.positions(e, k, X);
+            for (std::size_t r = 0; r < n_rows; ++r) {
+                joints[r] += rule.weights[k] * joint_violation(model.row(static_cast<int>(r)), X);
+            }
+            for (std::size_t b = 0; b < X.size(); ++b) {
+                if (model.bodies()[b].is_point) continue;
+                const std::array<double, 6> now = rigidity_violations(X[b]);
+                for (std::size_t i = 0; i < 6; ++i) rigidity[6 * b + i] += rule.weights[k] * now[i];
+            }
+        }
+        for (const double mean : joints) raise_to(report.joints_weakly, std::abs(mean));
+        for (const double mean : rigidity) raise_to(report.rigidity_weakly, std::abs(mean));
+    }
+}
+
+}   // namespace
+
+ViolationReport violations(const Model& model, const Motion& motion, int samples)
+{
+    assert(model.n_bodies() == motion.n_bodies && model.n_rows() == motion.n_rows);
+    if (samples < 0) {
+        throw InputError({"samples", "samples", "the number of samples between nodes must not be negative",
+                          std::to_string(samples), ">= 0", "", ""});
+    }
+    ViolationReport report;
+    if (motion.mesh.ends.empty()) return report;
+    std::vector<Matrix34> X(static_cast<std::size_t>(motion.n_bodies));
+    at_element_ends(model, motion, X, report);
+    inside_elements(model, motion, samples, X, report);
+    as_integrals(model, motion, X, report);
     return report;
 }
 

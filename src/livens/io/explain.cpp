@@ -20,14 +20,28 @@ A universal joint holds one axis of each body perpendicular to the other. The tw
 world are not, so the joint could not be closed at the start. Choose axes with a . b = 0.)"},
     Page{"axis-zero", R"(
 A direction of length zero is no direction. Axes may have any other length; they are normalised.)"},
+    Page{"backend-missing", R"(
+The library for sparse systems that `linear_solver` names was not there when this livens was built. Use
+`linear_solver = "eigen"`, which always is, or build with UMFPACK and METIS.)"},
     Page{"basis-nodes", R"(
 Nodes of a time basis must ascend. Scenario files cannot lead to it; calls of the library can.)"},
     Page{"body-unknown", R"(
 A joint or load refers to a body by a name that no `[[body]]` has. Names are compared to the letter. The
 fixed world is called "world".)"},
+    Page{"boundary-conditions", R"(
+Conditions at start and end must leave one motion: in all, positions and momenta are given once each. Either
+the state at the start, or the state at the end ("where did it come from"), or positions at both ends, or
+positions at one and momenta at the other. Momenta at both ends leave the place of everything that can
+move freely open. `given` in `[start]` and `[end]` says what is known; the default is the state at the start
+and nothing at the end, so that a condition at the end needs one less at the start. `[body.end]` without
+`[end]` would mean nothing and is refused as well.)"},
+    Page{"boundary-method", R"(
+Only elements that are solved all at once can take conditions at the end of time: family `mixed` with
+`block = "all"`. The family `lobatto` and the classical rules march from the state at the start.)"},
     Page{"degree", R"(There is no time basis of this degree.)"},
     Page{"degree-out-of-range", R"(
-Elements of the family lobatto have degree 1 to 16. A degree p has order 2p at element ends.)"},
+Elements of the family lobatto have degree 1 to 16, those of the family mixed 1 to 8. A degree p of lobatto
+has order 2p at element ends.)"},
     Page{"directors-left-handed", R"(
 The directors are perpendicular unit vectors, but d3 = -(d1 x d2): a mirror image, which no rotation
 reaches. Swap two of them or change the sign of one.)"},
@@ -43,6 +57,9 @@ A warning: `format` should be the first key of the file, because it decides how 
     Page{"format-version", R"(
 The file says that it is written in a version of the format that this livens does not know. Nothing else
 of it is checked. A newer livens may read it.)"},
+    Page{"gauss-points-out-of-range", R"(
+The number of Gauss points in an element is out of range. Without `gauss_points` there are as many as
+integrate all polynomials of the method exactly; far fewer leave functions that no point sees.)"},
     Page{"inertia-negative", R"(
 A principal moment of inertia is negative. It is an integral of squares times mass.)"},
     Page{"inertia-not-symmetric", R"(The matrix of inertia must equal its transpose.)"},
@@ -78,6 +95,22 @@ A row of a joint is inconsistent. Scenario files cannot lead to it; calls of the
     Page{"joint-second", R"(
 The second of a joint must be a body. Scenario files cannot lead to it; calls of the library can.)"},
     Page{"joint-self", R"(A joint connects two different bodies, or a body and the world.)"},
+    Page{"knots-decreasing", R"(
+Knots of splines ascend; equal ones may follow each other. See `knots` in docs/scenario.md.)"},
+    Page{"knots-few", R"(
+A clamped knot vector of degree p has at least 2 p + 2 knots: the first and the last p + 1 times.)"},
+    Page{"knots-mesh", R"(
+Knots make the time elements, so that everything that must be an element end must be a knot: start and end of
+`[time]`, output times, and instants where loads jump or bend (unless `breaks = "ignore"`). `elements` may be
+left out; if it is given, it must be the number of knot spans that are not empty. Without `output` all knots
+are output times.)"},
+    Page{"knots-multiplicity", R"(
+An inner knot may stand at most degree times. Once makes the smoothest splines, degree times a kink, as the
+momentum has where a load jumps; once more would tear the motion apart.)"},
+    Page{"knots-not-clamped", R"(
+The first and the last knot must stand degree + 1 times, so that the splines have positions at both ends.)"},
+    Page{"knots-not-finite", R"(
+Knots are instants; nan and inf are none.)"},
     Page{"load-empty", R"(
 A load needs a function for its forces. Scenario files cannot lead to it; calls of the library can.)"},
     Page{"load-needs-directors", R"(
@@ -101,12 +134,24 @@ with `inertia` and without a shape.)"},
 The body's mass properties do not follow from what is given. With a shape it needs `density` or `mass`,
 without one both `mass` and `inertia`; a point mass needs `mass`.)"},
     Page{"mass-not-positive", R"(The mass of a body must be positive.)"},
+    Page{"mass-singular", R"(
+The method divides by the mass matrix of every body, and this one is singular: a needle, a lamina or any body
+with J1 + J2 = J3, whose Euler tensor has no inverse. The family lobatto takes such bodies as they are; or
+give the body a little thickness.)"},
     Page{"max-iterations-out-of-range", R"(Newton's method needs at least one iteration in each element.)"},
     Page{"misplaced-key", R"(
 The key exists in this table, but not for the `type` or `family` that is chosen: a rod has no axis, a
 torque no point. Livens ignores nothing silently, so this is an error.)"},
     Page{"missing-key", R"(
 The table lacks a key that has no default. The line shown is the table's header.)"},
+    Page{"mixed-block", R"(
+The number of elements that are solved at once is out of range. It is at least 1 (splines: at least the
+degree) and at most the number of elements; a knot vector or weights belong to the whole time and need
+`block = "all"`, as conditions at the end do.)"},
+    Page{"mixed-pairing", R"(
+This choice of momentum, multipliers, basis and quadrature makes a system that has no solution, or more than
+one. Regular are: natural with equal or lower multipliers, strong with equal multipliers on Lagrange
+polynomials, strong with lower ones on splines; all with exact quadrature.)"},
     Page{"name-duplicate", R"(
 Two bodies, two joints or two loads have one name. A joint without a name is called by its type and its
 bodies, as in `rod world-upper`; where that is not unique, give names.)"},
@@ -144,10 +189,15 @@ A body's spin at the start is given by one of `angular_velocity` (world axes), `
 `director_rates`.)"},
     Page{"resource-limit", R"(
 The scenario asks for more than livens is prepared to take: 16 MiB of text, 2 000 000 values, 1000 bodies,
-joints or loads, 10 000 000 time elements or output times, 8 GiB of motion. The limits keep a slip of the
+joints or loads, 10 000 000 time elements or output times, 8 GiB of motion, or 8 GiB for the system of one
+block of mixed elements (72 kB a rigid body and time node; use smaller blocks). The limits keep a slip of the
 pen, or a hostile file, from filling the memory of the machine. The program ends with exit code 5.)"},
     Page{"rod-length", R"(
 A rod holds two points at a fixed positive distance. Points that coincide are a spherical joint.)"},
+    Page{"sample-exact-method", R"(
+`livens sample --exact` solves one shortened element from its start. The elements of the family mixed depend
+on all others of their block, so this cannot be had for them. Sample without `--exact`, or make the instant
+an output time.)"},
     Page{"samples", R"(A number of samples must not be negative. Calls of the library only.)"},
     Page{"shape", R"(A shape is exactly one of box, sphere, cylinder, capsule, ellipsoid, cone and point.)"},
     Page{"size-inner-radius", R"(The bore of a tube must be narrower than the tube.)"},
@@ -156,6 +206,8 @@ A rod holds two points at a fixed positive distance. Points that coincide are a 
 The mass matrix may be singular (a needle does not resist a spin about itself), but then joints must hold
 that motion. Here a motion is neither held nor carries inertia, so its acceleration is not determined.
 Give the body a small moment of inertia, make it a point mass, or hold it by another joint.)"},
+    Page{"spline-degree", R"(
+Splines of degree p need at least p elements. Take more elements, larger blocks or a lower degree.)"},
     Page{"start-position", R"(
 The bodies as placed do not fulfil a joint: `|Phi| / scale` is above 1e-9. Correct positions or points, or
 let livens move the bodies to the nearest position that fits with `initial = "project"` in `[start]`. A
@@ -195,6 +247,12 @@ A text stands for a number with a unit, as in "5 mm" or "30 deg". The text could
 the unit is that of another quantity. The page docs/scenario.md lists the units.)"},
     Page{"unknown-choice", R"(The key takes one of a few words. Letters count as they are.)"},
     Page{"unknown-key", R"(This table has no key of that name. The nearest known one is proposed.)"},
+    Page{"weights-count", R"(
+NURBS have one weight for each function: as many as there are knots, less degree + 1.)"},
+    Page{"weights-not-positive", R"(
+Weights of NURBS must be positive and finite: otherwise the denominator could vanish inside an element.)"},
+    Page{"window", R"(
+A window of the zig-zag indicator holds a few samples at least. Calls of the library only.)"},
     Page{"window-order", R"(
 A load that acts `from` one instant `until` another needs the second to be later.)"},
     Page{"wrong-type", R"(

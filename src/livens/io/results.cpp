@@ -39,6 +39,7 @@ public:
     void number(const std::string& name, bool value) { file_.attribute(name, value ? 1 : 0); }
     void number(const std::string& name, int value) { file_.attribute(name, value); }
     void number(const std::string& name, long value) { file_.attribute(name, static_cast<long long>(value)); }
+    void number(const std::string& name, long long value) { file_.attribute(name, value); }
     void number(const std::string& name, double value) { file_.attribute(name, value); }
     void number(const std::string& name, SolveStatus value)
     {
@@ -112,6 +113,7 @@ public:
     {
         value = static_cast<long>(file_.int_attribute(name));
     }
+    void number(const std::string& name, long long& value) { value = file_.int_attribute(name); }
     void number(const std::string& name, double& value) { value = file_.double_attribute(name); }
     void number(const std::string& name, int& value)
     {
@@ -186,15 +188,18 @@ private:
     const NetcdfReader& file_;
 };
 
-/// Does not compile once a member is added that visit_run() does not know: then add it there, raise
-/// format_minor, and let Reading do without it.
+/// Does not compile once a member is added that visit_run() does not know: then raise format_minor and add it
+/// there under the new number.
 [[maybe_unused]] void all_members_are_visited(const Run& run)
 {
     [[maybe_unused]] const auto& [r1, r2, r3, r4, r5, r6, r7, r8, r9, r10, r11, r12, r13, r14] = run;
-    [[maybe_unused]] const auto& [m1, m2, m3, m4, m5, m6, m7, m8, m9, m10, m11, m12, m13, m14, m15] =
-        run.motion;
-    [[maybe_unused]] const auto& [p1, p2, p3, p4, p5, p6, p7, p8, p9, p10, p11, p12, p13, p14] = run.report;
-    [[maybe_unused]] const auto& [s1, s2, s3, s4, s5, s6, s7, s8, s9, s10, s11, s12, s13, s14] = run.summary;
+    [[maybe_unused]] const auto& [m1, m2, m3, m4, m5, m6, m7, m8, m9, m10, m11, m12, m13, m14, m15, m16, m17,
+                                  m18] = run.motion;
+    [[maybe_unused]] const auto& [f1, f2, f3, f4, f5] = run.motion.X;
+    [[maybe_unused]] const auto& [p1, p2, p3, p4, p5, p6, p7, p8, p9, p10, p11, p12, p13, p14, p15, p16, p17,
+                                  p18, p19, p20] = run.report;
+    [[maybe_unused]] const auto& [s1, s2, s3, s4, s5, s6, s7, s8, s9, s10, s11, s12, s13, s14, s15, s16, s17,
+                                  s18, s19, s20, s21] = run.summary;
     [[maybe_unused]] const auto& [b1, b2, b3, b4, b5, b6, b7, b8, b9, b10, b11, b12, b13, b14, b15, b16] =
         run.balance;
 }
@@ -206,7 +211,7 @@ std::size_t expected_bytes(const Run& run)
         run.output.size() * (run.body_names.size() * 62 + run.joint_names.size() * 12);
     const std::size_t ends = (m.momenta.size() + m.velocities.size() + m.accelerations.size()) * 12;
     return 8 * (samples + ends + m.X.values.size() + m.P.values.size() + m.multipliers.values.size() +
-                m.end_multipliers.size() + 24 * m.mesh.ends.size()) +
+                m.rigidity.values.size() + m.end_multipliers.size() + 32 * m.mesh.ends.size()) +
            2 * run.scenario_text.size() + (64u << 10);
 }
 
@@ -227,9 +232,11 @@ std::string run_image(const Model& model, const Run& run)
     NetcdfWriter file(expected_bytes(run));
     file.attribute("livens_format", format_major);
     file.attribute("livens_format_minor", format_minor);
-    file.attribute("livens_digest", digest(run));
     Writing archive(file);
-    visit_run(archive, run);
+    for (int minor = 0; minor <= format_minor; ++minor) {
+        file.attribute(digest_name(minor), digest_of_minor(run, minor));
+        visit_run(archive, run, minor);
+    }
     DerivedNumbers owner;
     write_derived(file, model, run, owner);
     return sealed(file.image());
@@ -244,13 +251,16 @@ try {
     if (major != format_major)
         throw IoError("the file has format " + std::to_string(major) + "; this livens reads format " +
                       std::to_string(format_major));
+    const long long minor_of_file = file.int_attribute("livens_format_minor");
     Run run;
     Reading archive(file);
-    visit_run(archive, run);
+    for (int minor = 0; minor <= format_minor && minor <= minor_of_file; ++minor)
+        visit_run(archive, run, minor);
     check_run(run);
-    if (digest(run) != file.text_attribute("livens_digest"))
-        throw IoError(
-            "the contents do not fit the digest stored with them: the file is damaged or was edited");
+    for (int minor = 0; minor <= format_minor && minor <= minor_of_file; ++minor)
+        if (digest_of_minor(run, minor) != file.text_attribute(digest_name(minor)))
+            throw IoError(
+                "the contents do not fit the digest stored with them: the file is damaged or was edited");
     return run;
 } catch (const IoError& error) {
     throw IoError("cannot read '" + name + "': " + error.what());

@@ -34,6 +34,18 @@ void check_field(const Field& field, std::size_t n_values, std::size_t n_element
     const std::size_t degree = static_cast<std::size_t>(field.degree);
     const std::size_t n_coefficients = field.continuous ? n_elements * degree + 1 : n_elements * (degree + 1);
     require(field.values.size() % n_values == 0 && field.values.size() / n_values == n_coefficients, what);
+    if (field.denominators.empty()) return;
+    require(field.denominators.size() == n_coefficients, "the number of denominators");
+    for (const double w : field.denominators)
+        require(std::isfinite(w) && w > 0, "a denominator is not positive");
+}
+
+void check_blocks(const std::vector<int>& block_ends, int n_elements)
+{
+    for (std::size_t i = 0; i < block_ends.size(); ++i) {
+        require(block_ends[i] >= 0 && block_ends[i] <= n_elements, "a block ends outside the motion");
+        require(i == 0 || block_ends[i] > block_ends[i - 1], "block ends do not ascend");
+    }
 }
 
 void check_motion(const Motion& m)
@@ -45,9 +57,11 @@ void check_motion(const Motion& m)
     const std::size_t ends = m.mesh.ends.size();
     require(m.X.empty() == (bodies == 0), "the configuration is missing");
     check_field(m.X, 12 * bodies, ends - 1, "the size of the configuration X");
-    require(m.X.empty() || m.X.continuous, "the configuration X must be continuous");
     check_field(m.P, 12 * bodies, ends - 1, "the size of the momentum P");
     check_field(m.multipliers, rows, ends - 1, "the size of the multipliers");
+    check_field(m.rigidity, 6 * bodies, ends - 1, "the size of the multipliers of rigidity");
+    require(m.gauss_points >= 0, "a negative number of Gauss points");
+    check_blocks(m.block_ends, m.n_elements());
     require(m.momenta.size() == ends * bodies, "the number of momenta at element ends");
     require(m.velocities.size() == ends * bodies, "the number of velocities at element ends");
     require(m.accelerations.empty() || m.accelerations.size() == 2 * ends * bodies,

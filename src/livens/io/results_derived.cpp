@@ -192,6 +192,29 @@ void write_nodes(NetcdfWriter& file, const char* name, const Field& field, const
         put(file, owner, {name, {name}, "s", "none", "times of the nodes"}, node_times(field, mesh));
 }
 
+/// Integrals over each element, as the paper shows them: of the Lagrangian the action, of the Hamiltonian and
+/// of the angular momentum what divided by the element's length is their mean.
+void write_integrals(NetcdfWriter& file, const Model& model, const Motion& motion, Owner& owner)
+{
+    if (motion.n_elements() < 1) return;
+    const ActionSeries series = action(model, motion);
+    file.dimension("element", series.lagrangian.size());
+    put(file, owner,
+        {"action_integral", {"element"}, "J s", "none", "integral of the Lagrangian T - V over each element"},
+        series.lagrangian);
+    put(file, owner,
+        {"hamiltonian_integral", {"element"}, "J s", "none", "integral of the Hamiltonian over each element"},
+        series.hamiltonian);
+    const std::span<const double> moments = numbers(series.angular_momentum);
+    put(file, owner,
+        {"angular_momentum_integral",
+         {"element", "xyz"},
+         "kg m2",
+         "inertial",
+         "integral of the angular momentum of all bodies about the origin over each element"},
+        std::vector<double>(moments.begin(), moments.end()));
+}
+
 void write_model(NetcdfWriter& file, const Model& model, Owner& owner)
 {
     std::vector<double> masses;
@@ -251,6 +274,8 @@ void write_derived(NetcdfWriter& file, const Model& model, const Run& run, Owner
     write_nodes(file, "X_node", m.X, m.mesh, owner);
     write_nodes(file, "P_node", m.P, m.mesh, owner);
     write_nodes(file, "multiplier_node", m.multipliers, m.mesh, owner);
+    write_nodes(file, "rigidity_node", m.rigidity, m.mesh, owner);
+    write_integrals(file, model, m, owner);
     write_violations(file, model, m, owner);
     write_model(file, model, owner);
     write_samples(file, model, run, owner);

@@ -88,11 +88,23 @@ std::string seal_of(std::string_view image)
 
 }   // namespace
 
-std::string digest(const Run& run)
+std::string digest_of_minor(const Run& run, int minor)
 {
     Digesting archive;
-    visit_run(archive, run);
+    visit_run(archive, run, minor);
     return archive.text();
+}
+
+std::string digest(const Run& run)
+{
+    std::string all;
+    for (int minor = 0; minor <= format_minor; ++minor) all += digest_of_minor(run, minor);
+    return all;
+}
+
+std::string digest_name(int minor)
+{
+    return minor == 0 ? "livens_digest" : "livens_digest_" + std::to_string(minor);
 }
 
 std::string sealed(std::string image)

@@ -56,11 +56,13 @@ void build(const Node& root, Scenario& scenario, Findings& findings)
     read_loads(builder);
     read_run(builder, scenario);
     if (findings.n_errors() > 0) return;
-    builder.guard("start", [&] {
-        State start = builder.model().start();
-        start.t = scenario.mesh.start();
-        assemble(builder.model(), start, scenario.options.initial);
+    scenario.boundary.start = builder.model().start();
+    scenario.boundary.start.t = scenario.mesh.start();
+    scenario.boundary.end.t = scenario.mesh.end();
+    const bool fits = builder.guard("method", [&] {
+        check_method(builder.model(), scenario.boundary, scenario.mesh, scenario.method, scenario.options);
     });
+    if (fits) check_ends(builder, scenario.boundary, scenario.options.initial);
     scenario.model = std::move(builder.model());
 }
 

@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <cassert>
 #include <numbers>
 
 #include "livens/base/error.h"
@@ -10,6 +11,8 @@
 namespace livens {
 
 namespace {
+
+using Map4 = Eigen::Map<const Eigen::Matrix4d>;
 
 constexpr double relative_slack = 1e-12;   // of the largest moment, in every inequality on moments below
 
@@ -21,6 +24,9 @@ void require_size(double size, const char* shape, const char* what)
     throw InputError({"size-not-positive", "", std::string(what) + " of a " + shape + " must be positive",
                       to_text(size), "> 0", "", ""});
 }
+
+/// s with s_i^2 m_ii = 1: scaled by it, m does not depend on the unit of length nor on the body's size.
+Eigen::Vector4d unit_scaling(const Eigen::Matrix4d& m) { return m.diagonal().cwiseSqrt().cwiseInverse(); }
 
 void check_principal_moments(const Matrix3& inertia, const std::string& path)
 {
@@ -69,6 +75,40 @@ MassProperties mass_properties(const Matrix4& mass_matrix)
     E -= properties.mass * outer(c, c);
     properties.inertia = trace(E) * identity<3>() - E;
     return properties;
+}
+
+bool is_singular(const Matrix4& mass_matrix, bool is_point)
+{
+    if (is_point) return !(mass_matrix(0, 0) > 0);
+    const Eigen::Matrix4d m = Map4(mass_matrix.data());
+    const Eigen::Vector4d diagonal = m.diagonal();
+    // Negations, so that a mass that is not a number is singular.
+    if (!(diagonal[0] > 0)) return true;
+    const double trace_E = diagonal[1] + diagonal[2] + diagonal[3];
+    for (int i = 1; i < 4; ++i)
+        if (!(diagonal[i] > 1e-14 * trace_E)) return true;
+    const Eigen::Vector4d s = unit_scaling(m);
+    const Eigen::Matrix4d scaled = s.asDiagonal() * m * s.asDiagonal();
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> solver(scaled, Eigen::EigenvaluesOnly);
+    return !(solver.eigenvalues()[0] > 1e-12);
+}
+
+Matrix4 inverse_mass(const Matrix4& mass_matrix, bool is_point)
+{
+    assert(!is_singular(mass_matrix, is_point));
+    Matrix4 inverse{};
+    if (is_point) {
+        inverse(0, 0) = 1 / mass_matrix(0, 0);
+        return inverse;
+    }
+    const Eigen::Matrix4d m = Map4(mass_matrix.data());
+    const Eigen::Vector4d s = unit_scaling(m);
+    const Eigen::Matrix4d scaled = s.asDiagonal() * m * s.asDiagonal();
+    const Eigen::Matrix4d raw =
+        s.asDiagonal() * scaled.llt().solve(Eigen::Matrix4d::Identity()) * s.asDiagonal();
+    for (int i = 0; i < 4; ++i)
+        for (int j = 0; j < 4; ++j) inverse(i, j) = 0.5 * (raw(i, j) + raw(j, i));
+    return inverse;
 }
 
 void check_mass_properties(const MassProperties& properties, const std::string& path)

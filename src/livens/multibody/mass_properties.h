@@ -21,6 +21,14 @@ Matrix4 mass_matrix(const MassProperties& properties);
 /// The inverse of mass_matrix; undefined for mass 0.
 MassProperties mass_properties(const Matrix4& mass_matrix);
 
+/// Whether m cannot be inverted in director space, as for needles and laminae, which are legal bodies: the
+/// smallest eigenvalue of m, scaled to ones on its diagonal, is not above 1e-12, or a diagonal entry of E is
+/// not above 1e-14 tr E. Point masses (M alone): whether M is not positive.
+bool is_singular(const Matrix4& mass_matrix, bool is_point);
+/// m^-1, symmetric to the bit; for a point mass 1 / M in the first entry and zero elsewhere, so that
+/// X' = P m^-1 for both. m must not be singular.
+Matrix4 inverse_mass(const Matrix4& mass_matrix, bool is_point);
+
 /// Refuses what no body can have: mass not positive, inertia not symmetric, a negative principal moment,
 /// principal moments that break the triangle inequality (all by 1e-12 of the largest). `path` names the body
 /// in the error.

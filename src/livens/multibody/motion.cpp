@@ -37,14 +37,14 @@ Matrix34 body_of(std::span<const double> stacked, int body)
 
 std::span<const double> Field::coefficient(int element, int a) const
 {
-    const int index = element * (continuous ? degree : degree + 1) + a;
-    return std::span<const double>(values).subspan(static_cast<std::size_t>(index) * n_values, n_values);
+    return std::span<const double>(values).subspan(static_cast<std::size_t>(index(element, a)) * n_values,
+                                                   n_values);
 }
 
 std::span<double> Field::coefficient(int element, int a)
 {
-    const int index = element * (continuous ? degree : degree + 1) + a;
-    return std::span<double>(values).subspan(static_cast<std::size_t>(index) * n_values, n_values);
+    return std::span<double>(values).subspan(static_cast<std::size_t>(index(element, a)) * n_values,
+                                             n_values);
 }
 
 void Field::evaluate(int element, double s, int derivative, std::span<double> out) const
@@ -58,18 +58,33 @@ void Field::evaluate(int element, double s, int derivative, std::span<double> ou
         std::ranges::fill(out, 0.0);
     if (degree == 0) return;
 
-    std::array<double, max_degree + 1> M{};
+    const std::size_t n = static_cast<std::size_t>(degree) + 1;
+    std::array<double, max_degree + 1> M{}, D{};
     const LagrangeBasis& basis = basis_of_degree(degree);
-    const std::span<double> weights(M.data(), static_cast<std::size_t>(degree) + 1);
-    if (derivative == 0)
-        basis.values(s, weights);
-    else
-        basis.derivatives(s, weights);
+    if (derivative == 0 || !denominators.empty()) basis.values(s, std::span(M.data(), n));
+    if (derivative == 1) basis.derivatives(s, std::span(D.data(), n));
+    make_rational(element, std::span(M.data(), n), std::span(D.data(), derivative == 1 ? n : 0));
+    const std::array<double, max_degree + 1>& weights = derivative == 0 ? M : D;
     // In differences from the first coefficient, as the basis adds up to one: rounding is that of the change.
     for (int a = 1; a <= degree; ++a) {
         const std::span<const double> c = coefficient(element, a);
-        for (int i = 0; i < n_values; ++i) out[i] += M[a] * (c[i] - first[i]);
+        for (int i = 0; i < n_values; ++i) out[i] += weights[a] * (c[i] - first[i]);
     }
+}
+
+void Field::make_rational(int element, std::span<double> M, std::span<double> derivatives) const
+{
+    if (denominators.empty()) return;
+    assert(denominators.size() * static_cast<std::size_t>(n_values) == values.size());
+    assert(static_cast<int>(M.size()) == degree + 1);
+    const double* W = denominators.data() + index(element, 0);
+    double sum = 0, rate = 0;   // the denominator at this point, and its derivative
+    for (std::size_t a = 0; a < M.size(); ++a) sum += W[a] * M[a];
+    for (std::size_t a = 0; a < M.size(); ++a) M[a] *= W[a] / sum;
+    for (std::size_t a = 0; a < derivatives.size(); ++a) rate += W[a] * derivatives[a];
+    // (W_a M_a / W)' = (W_a M_a' - W' W_a M_a / W) / W
+    for (std::size_t a = 0; a < derivatives.size(); ++a)
+        derivatives[a] = (W[a] * derivatives[a] - rate * M[a]) / sum;
 }
 
 State Motion::at(double t) const

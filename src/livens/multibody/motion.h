@@ -11,23 +11,32 @@
 
 namespace livens {
 
-/// A function of time that is a polynomial in every element, by its values at that element's local nodes.
+/// A function of time that is a polynomial in every element, or a quotient of two, by its values at that
+/// element's local nodes.
 ///
 /// Local nodes are Gauss-Lobatto points of `degree` (degree 0: one value an element). If continuous,
 /// neighbours share the value at their common end: coefficient (e, a) is entry e * degree + a; else e *
-/// (degree + 1) + a.
+/// (degree + 1) + a. With denominators W_a (NURBS, one for each coefficient) the function is
+/// sum_a M_a W_a x_a / sum_a M_a W_a with the Lagrange polynomials M_a of these nodes.
 struct Field {
     int n_values = 0;   ///< numbers a coefficient
     int degree = 0;
     bool continuous = true;
-    std::vector<double> values;   ///< coefficient after coefficient
+    std::vector<double> values;           ///< coefficient after coefficient
+    std::vector<double> denominators{};   ///< positive, one a coefficient; empty: polynomials
 
     bool empty() const { return values.empty(); }
+    /// Place of coefficient (element, a) among all.
+    int index(int element, int a) const { return element * (continuous ? degree : degree + 1) + a; }
     std::span<const double> coefficient(int element, int a) const;
     std::span<double> coefficient(int element, int a);
     /// Value (derivative = 0) or derivative by the local coordinate s in [0, 1] (divide by the element's
     /// length).
     void evaluate(int element, double s, int derivative, std::span<double> out) const;
+    /// Makes of the values M_a (and derivatives M_a', or none) of the Lagrange polynomials at a point of the
+    /// element those of the functions M_a W_a / sum_b M_b W_b, which also add up to one (and to zero).
+    /// Nothing to do without denominators.
+    void make_rational(int element, std::span<double> M, std::span<double> derivatives) const;
 };
 
 /// The whole motion of a model.
@@ -43,6 +52,8 @@ struct Motion {
     Field X;             ///< m | 1
     Field P;             ///< momentum X' m inside elements; empty: it is the derivative of X times m
     Field multipliers;   ///< of joint rows at the local nodes, one-sided at element ends; dropped rows are 0
+    Field rigidity;   ///< multipliers of rigidity_rows(), six a body (0 for points), where bodies are rigid
+                      ///< only by them; empty: see rigidity_multipliers()
 
     // At element ends, entry (end * n_bodies + body), or (2 * end + side) with side 0 = left, 1 = right.
     std::vector<Matrix34> momenta;         ///< tangent momentum P = X' m
@@ -54,8 +65,12 @@ struct Motion {
     int order_at_ends = 0;             ///< of X and momenta at element ends
     int dense_order_X = 0;             ///< of X between nodes
     int dense_order_V = 0;             ///< of its derivative between nodes
-    std::string constraints_hold;      ///< "element nodes", "element ends", "element midpoints"
+    std::string constraints_hold;      ///< "element nodes", "element ends", "weakly" (as integrals)
     std::vector<int> redundant_rows;   ///< their multipliers are not unique
+
+    int gauss_points = 0;          ///< of the method's quadrature in an element; 0: its own nodes
+    std::vector<int> block_ends;   ///< element ends where a block of elements solved together begins or ends,
+                                   ///< ascending; empty: every element is a block
 
     int n_elements() const { return mesh.n_elements(); }
     double start() const { return mesh.start(); }

@@ -22,17 +22,24 @@ struct SolveReport {
     std::string message;          ///< one line for a person: which joint or body, when, what to try
     int n_elements = 0;           ///< solved
     int unknowns = 0;             ///< of one block, after elimination
-    long newton_iterations = 0;   ///< over all elements
-    int most_iterations = 0;      ///< in one element
-    long factorisations = 0;      ///< of the tangent of an element
+    long newton_iterations = 0;   ///< over all blocks
+    int most_iterations = 0;      ///< in one block
+    long factorisations = 0;      ///< of the tangent of a block
     long guess_factorisations =
         0;                         ///< of the smaller tangents behind first guesses (half the degree or less)
     int rescued = 0;               ///< elements that converged only from a guess made by many small elements
     double residual_norm = 0;      ///< largest scaled residual at acceptance
     double smallest_pivot = 1;     ///< of the scaled constraint Jacobian; below 1e-6 deserves a look
-    double failed_at = 0;          ///< start of the failed element, s; only if not converged
-    std::vector<int> iterations;   ///< per element
+    double failed_at = 0;          ///< start of the failed element or block, s; only if not converged
+    std::vector<int> iterations;   ///< per block; lobatto and stepping: per element
     std::vector<std::string> notes;   ///< redundant rows, projections, ...
+    double condition_1 = 0;           ///< of the whole matrix in the 1-norm, if asked for
+    double condition_2 = 0;           ///< and in the 2-norm
+    double scaled_condition = 0;      ///< in the 1-norm, as it is factorised: rows and columns scaled
+    long long factor_entries = 0;     ///< stored numbers of a block's sparse factors; 0: dense
+    double guess_distance = 0;        ///< largest distance of the motion from the march it was guessed by: of
+                                      ///< points by the model's length, of directors; 0: not guessed so
+    double guess_distance_time = 0;   ///< when it first exceeds 0.05, else when it is largest, s
 
     bool converged() const { return status == SolveStatus::converged; }
 };

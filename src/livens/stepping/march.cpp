@@ -9,6 +9,7 @@
 #include <Eigen/SparseLU>
 
 #include "livens/base/error.h"
+#include "livens/multibody/mass_properties.h"
 #include "livens/stepping/step_equations.h"
 #include "livens/stepping/stepping.h"
 
@@ -26,21 +27,11 @@ std::string number(double x)
 }
 
 /// Every entry of the mass matrix takes part in the equations of a director, so a vanishing second moment is
-/// a missing equation. Singular: smallest eigenvalue of m, scaled to ones on its diagonal, at most 1e-12.
+/// a missing equation.
 void refuse_singular_masses(const Model& model)
 {
     for (const Body& body : model.bodies()) {
-        if (body.is_point) continue;
-        Eigen::Matrix4d m = Eigen::Map<const Eigen::Matrix4d>(body.mass.data());
-        const Eigen::Vector4d diagonal = m.diagonal();
-        double smallest = 0;
-        if (diagonal.minCoeff() > 1e-14 * (diagonal[1] + diagonal[2] + diagonal[3])) {
-            const Eigen::Vector4d s = diagonal.cwiseSqrt().cwiseInverse();
-            m = s.asDiagonal() * m * s.asDiagonal();
-            smallest =
-                Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d>(m, Eigen::EigenvaluesOnly).eigenvalues()[0];
-        }
-        if (smallest > 1e-12) continue;
+        if (!is_singular(body.mass, body.is_point)) continue;
         throw InputError(
             {"mass-singular", "body[" + body.name + "].inertia",
              "the mass matrix of body '" + body.name + "' is singular, which classical stepping cannot use",

@@ -315,6 +315,22 @@ double TimeSpace::denominator(int element, double s) const
     return W;
 }
 
+std::vector<double> TimeSpace::highest_derivative(int element) const
+{
+    // The divided difference of the values at degree + 1 places is that derivative over its factorial.
+    const int n = degree_ + 1;
+    std::vector<double> result(static_cast<std::size_t>(n), 0.0), values(result), rates(result);
+    for (int i = 0; i < n; ++i) {
+        const double s = static_cast<double>(i) / degree_;
+        evaluate(element, s, values, rates);
+        double factor = denominator(element, s);
+        for (int j = 0; j < n; ++j)
+            if (j != i) factor *= static_cast<double>(degree_) / (i - j);
+        for (int a = 0; a < n; ++a) result[a] += factor * values[a];
+    }
+    return result;
+}
+
 std::vector<double> TimeSpace::interpolation_points() const
 {
     assert(is_continuous());

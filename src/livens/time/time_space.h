@@ -56,6 +56,10 @@ public:
     /// sum_B w_B N_B, the denominator of NURBS; 1 for others.
     double denominator(int element, double s) const;
 
+    /// The degree()-th derivatives by the local coordinate of the degree() + 1 functions of an element, up to
+    /// a common factor; they are constant. Of NURBS those of the splines w_A N_A.
+    std::vector<double> highest_derivative(int element) const;
+
     /// One instant for each function where interpolation is unique: nodes (Lagrange), Greville abscissae
     /// (splines); first and last are the ends to the bit. Continuous spaces only.
     std::vector<double> interpolation_points() const;

@@ -324,6 +324,71 @@ TEST(Balance, OfEndpointIsExactInLinearMomentumOnly)
     EXPECT_GT(largest(b.angular_momentum_drift), 1e-3);
 }
 
+// Motions whose method says how many Gauss points it had.
+
+TEST(Balance, TakesSuppliesAtTheGaussPointsOfTheMethod)
+{
+    // One Gauss point is midpoint's rule, which is exact for its march; any other is not.
+    const Orbit o;
+    Motion march = o.march(0.5, 20);
+    march.multipliers.degree = 1;
+    march.multipliers.continuous = false;
+    for (const int points : {1, 2, 5}) {
+        march.gauss_points = points;
+        const Balance b = balance(o.model, march);
+        if (points == 1)
+            EXPECT_LT(largest(b.angular_momentum_drift), 1e-13);
+        else
+            EXPECT_GT(largest(b.angular_momentum_drift), 1e-4) << points;
+    }
+}
+
+TEST(Balance, EvaluatesMultipliersAtTheGaussPoints)
+{
+    // A cart is pushed along a rail by lambda = -m x'' that is a parabola in time; x is a quartic.
+    const double m = 2;
+    Model model;
+    model.add_body(point_mass("cart", m, {0, 1, 0}));
+    model.add_joint(spherical("hand", world, 0, {}, 1));
+    const auto x = [](double t) { return t * t / 2 + t * t * t * t; };
+    Motion push = motion(model, mesh(0, 1, 2), 4, [&](double t) {
+        return state_of_point(t, {x(t), 1, 0}, {t + 4 * t * t * t, 0, 0});
+    });
+    for (const int degree : {2, 3, 4})
+        for (const int points : {3, 4, 5, 7}) {   // as many as nodes too: points are not nodes
+            push.multipliers = hand_made::torn_field(push.mesh, 3, degree, [&](int, double t) {
+                return std::vector<double>{-m * (1 + 12 * t * t), 0, 0};
+            });
+            push.gauss_points = points;
+            const Balance b = balance(model, push);
+            EXPECT_LT(largest(b.linear_momentum_drift), 1e-13) << degree << points;
+            EXPECT_LT(largest(b.angular_momentum_drift), 1e-13) << degree << points;
+            expect_near(b.linear_impulse.back(), {m * 5, 0, 0}, 1e-13);
+        }
+}
+
+TEST(Balance, TakesForcesOnTheElementsSideOfAJump)
+{
+    // Positions jump by 1 m along y between the elements, as when blocks are brought onto constraints.
+    Model model{{0, 0, -10}};
+    model.add_body(point_mass("stone", 1, {}));
+    Motion fall = motion(model, mesh(0, 2, 2), 2, [](double t) {
+        return state_of_point(t, {0, t >= 1 ? 1.0 : 0.0, -5 * t * t}, {0, 0, -10 * t});
+    });
+    fall.X = hand_made::torn_field(fall.mesh, 12, 2, [](int e, double t) {
+        return hand_made::stacked(configuration({0, static_cast<double>(e), -5 * t * t}, {}));
+    });
+    for (const int points : {0, 3}) {
+        fall.gauss_points = points;
+        const Balance b = balance(model, fall);
+        EXPECT_LT(largest(b.linear_momentum_drift), 1e-14);
+        expect_near(b.angular_impulse[1], {0, 0, 0}, 1e-14);
+        expect_near(b.angular_impulse[2], {-10, 0, 0}, 1e-13);
+        expect_near(b.angular_momentum[1], {-10, 0, 0}, 1e-14);   // of the element that starts there
+        EXPECT_NEAR(b.angular_momentum_drift[1], 10, 1e-13) << "a jump is no motion: it shows";
+    }
+}
+
 // What is relative to what.
 
 TEST(Balance, OfABodyAtRestIsRelativeToWhatHoldsIt)

@@ -51,6 +51,25 @@ inline Motion motion(const Model& model, const TimeMesh& mesh, int degree, const
     return m;
 }
 
+/// A field that jumps between elements, of what `value` is at its nodes in element e at t.
+using ValuesAt = std::function<std::vector<double>(int e, double t)>;
+inline Field torn_field(const TimeMesh& mesh, int n_values, int degree, const ValuesAt& value)
+{
+    Field field{n_values, degree, false, {}};
+    const std::vector<double> nodes =
+        degree == 0 ? std::vector<double>{0.5} : gauss_lobatto(degree + 1).points;
+    for (int e = 0; e < mesh.n_elements(); ++e) {
+        for (const double s : nodes) {
+            const std::vector<double> now = value(e, mesh.ends[e] + s * mesh.length(e));
+            field.values.insert(field.values.end(), now.begin(), now.end());
+        }
+    }
+    return field;
+}
+
+/// One body's 12 numbers.
+inline std::vector<double> stacked(const Matrix34& X) { return {X.a, X.a + 12}; }
+
 /// State of a model of one body whose only moving part is its reference point.
 inline State state_of_point(double t, const Vector3& x, const Vector3& v, const Matrix3& d = Matrix3{})
 {

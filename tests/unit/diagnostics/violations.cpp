@@ -136,12 +136,91 @@ TEST(Violations, OfARodAreTheRateAtWhichItsEndsPart)
     EXPECT_EQ(violations(model, with_velocities({0, 0, 3}, {0, 0, 2.5})).velocity_level, 0.5 * 2 / 4);
 }
 
+TEST(Violations, AreSeenOnBothSidesOfAJump)
+{
+    const Arm arm;
+    const Motion whole = arm.turn(3);
+    Motion torn = whole;
+    torn.X = hand_made::torn_field(whole.mesh, 24, 3, [&](int, double t) {
+        std::vector<double> all;
+        for (const Matrix34& X : arm.at(t).X) all.insert(all.end(), X.a, X.a + 12);
+        return all;
+    });
+    EXPECT_LT(violations(arm.model, torn).joints_at_nodes, 1e-15);
+    for (const int last : {0, 3}) {   // the first node of element 2 and the last of element 1
+        Motion off = torn;
+        off.X.coefficient(last == 0 ? 2 : 1, last)[2] += 1e-4;   // the arm off its ball joint, along z
+        const ViolationReport v = violations(arm.model, off);
+        EXPECT_NEAR(v.joints_at_nodes, 1e-4, 1e-15);
+        EXPECT_EQ(v.worst_row, 2);
+        EXPECT_EQ(v.worst_time, 0.5);
+    }
+}
+
+TEST(Violations, OfARationalMotionAreThoseOfTheQuotient)
+{
+    // A quarter of a circle as a rational parabola lies on it everywhere; without denominators it does not.
+    Model model;
+    model.add_body(point_mass("bob", 3, {1, 0, 0}));
+    model.add_joint(rod("rod", world, 0, {}, 1));
+    Motion arc = motion(model, mesh(0, 2, 1), 2, [](double t) {
+        const double s = t / 2, W = 1 + s * s;
+        return hand_made::state_of_point(t, {(1 - s * s) / W, 2 * s / W, 0}, {});
+    });
+    const ViolationReport parabola = violations(model, arc);
+    EXPECT_GT(parabola.joints_between, 1e-3);
+    EXPECT_GT(parabola.joints_weakly, 1e-3);
+    for (const double s : gauss_lobatto(3).points) arc.X.denominators.push_back(1 + s * s);
+    EXPECT_LT(violations(model, arc).joints_between, 1e-15);
+    EXPECT_LT(violations(model, arc).joints_weakly, 1e-15);
+}
+
+TEST(Violations, HeldWeaklyAreMeansOverElements)
+{
+    // A point that should stay at the origin swings about it: s - 1/2 has mean 0, s^2 has mean 1/3.
+    Model model;
+    model.add_body(point_mass("bob", 1, {}));
+    model.add_joint(spherical("ball", world, 0, {}, 10));
+    const Motion off = motion(model, mesh(0, 2, 1), 2, [](double t) {
+        const double s = t / 2;
+        return hand_made::state_of_point(t, {s - 0.5, -0.3 * s * s, 0}, {});
+    });
+    const ViolationReport v = violations(model, off);
+    EXPECT_NEAR(v.joints_weakly, 0.1 / 10, 1e-16);
+    EXPECT_NEAR(v.joints_at_nodes, 0.05, 1e-16);
+    EXPECT_EQ(v.rigidity_weakly, 0);
+}
+
+TEST(Violations, OfRigidityHeldWeaklyAreExactIntegrals)
+{
+    // Directors on a chord: 1/2 (|d|^2 - 1) = -2 sin^2(a / 2) s (1 - s), with mean -1/3 sin^2(a / 2).
+    Model model;
+    model.add_body(rigid_body("body", box(1, {1, 1, 1})));
+    const double angle = 0.2;
+    const Motion chord = motion(model, mesh(0, 1, 1), 1, [&](double t) {
+        return State{t, {configuration({}, directors_from_rotation_vector({0, 0, angle * t}))}, {Matrix34{}}};
+    });
+    const double sine = std::sin(angle / 2);
+    const ViolationReport v = violations(model, chord);
+    EXPECT_NEAR(v.rigidity_weakly, sine * sine / 3, 1e-16);
+    EXPECT_LT(v.rigidity_at_nodes, 1e-15);
+    // Moved outwards so that the mean vanishes, as the weak form would have it.
+    const double larger = 1 / std::sqrt(1 - 2.0 / 3 * sine * sine);
+    Motion weak = chord;
+    for (const int a : {0, 1})
+        for (int i = 3; i < 9; ++i) weak.X.coefficient(0, a)[i] *= larger;
+    EXPECT_LT(violations(model, weak).rigidity_weakly, 1e-15);
+    EXPECT_GT(violations(model, weak).rigidity_at_nodes, 1e-3);
+    EXPECT_GT(violations(model, weak).rigidity_between, 1e-3);
+}
+
 TEST(Violations, ANumberThatIsNoneIsAViolation)
 {
     const Arm arm;
     Motion turn = arm.turn(2);
     turn.X.coefficient(1, 1)[0] = NAN;
     EXPECT_TRUE(std::isnan(violations(arm.model, turn).joints_at_nodes));
+    EXPECT_TRUE(std::isnan(violations(arm.model, turn).joints_weakly));
     turn = arm.turn(2);
     turn.X.coefficient(1, 1)[5] = NAN;
     EXPECT_TRUE(std::isnan(violations(arm.model, turn).rigidity_at_nodes));

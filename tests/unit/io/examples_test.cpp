@@ -8,6 +8,7 @@
 #include <map>
 
 #include "livens/io/scenario.h"
+#include "livens/spacetime/solve.h"
 #include "unit/io/scenario_text.h"
 
 namespace livens {
@@ -33,7 +34,7 @@ TEST(Examples, AllAreReadWithoutAWord)
         EXPECT_FALSE(scenario.title.empty()) << entry.path();
         ++n;
     }
-    EXPECT_GE(n, 13);
+    EXPECT_GE(n, 17);
 }
 
 TEST(Examples, BeginWithThreeLinesOnWhatTheyShow)
@@ -102,6 +103,44 @@ TEST(Examples, SpinsAreThoseOfTheSources)
     const Scenario spatial = example("double_pendulum_spatial");
     for (const Body& body : spatial.model.bodies())
         EXPECT_EQ(body.V.column(3), (Vector3{0, 1, 0})) << "d3' as in the source";
+}
+
+/// How far the directors of a body are from others.
+double gap(const Matrix34& X, const Matrix3& triad) { return norm(project_directors(directors(X)) - triad); }
+
+Motion solved(const Scenario& s)
+{
+    Solution solution = solve(s.model, s.boundary, s.mesh, s.method, s.options);
+    EXPECT_TRUE(solution.report.converged()) << s.title << ": " << solution.report.message;
+    return std::move(solution.motion);
+}
+
+TEST(Examples, BackwardLeadsToWhereTheBricksWereLetGo)
+{
+    const Scenario forward = example("ball_pendulum_two");
+    const State start = solved(example("backward")).at_end(0);
+    for (int b = 0; b < 2; ++b) {
+        const Matrix34& X = forward.model.bodies()[b].X;
+        EXPECT_LT(norm(start.X[b].column(0) - X.column(0)), 1e-8) << b;
+        EXPECT_LT(gap(start.X[b], directors(X)), 3e-8) << b;
+        EXPECT_LT(norm(start.V[b]), 1e-4) << "at rest";
+    }
+}
+
+TEST(Examples, TwoPointArrivesWhenItIsThrown)
+{
+    const Scenario s = example("two_point");
+    const Motion motion = solved(s);
+    const Matrix34& P = motion.momenta.front();
+    Vector3 spin{};   // moment of momentum; the mass centre is the reference point
+    for (int c = 1; c < 4; ++c) spin += cross(motion.at_end(0).X[0].column(c), P.column(c));
+    const MassProperties m = mass_properties(s.model.bodies()[0].mass);
+    State thrown = s.boundary.start;
+    thrown.V[0] = rate(thrown.X[0], (1 / m.mass) * P.column(0), inverse(m.inertia) * spin);
+    const Solution forward = solve(s.model, {thrown}, make_time_mesh(0, 1, 10), Lobatto{8});
+    const Matrix34 arrived = forward.motion.at_end(10).X[0];
+    EXPECT_LT(norm(thrown.V[0].column(0) - Vector3{3, 0, 4.905}), 1e-12);
+    EXPECT_LT(norm(arrived - s.boundary.end.X[0]), 1e-10);
 }
 
 TEST(Examples, TheFourBarIsRedundantAndHasOneFreedom)

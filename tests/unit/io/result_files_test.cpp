@@ -139,6 +139,19 @@ TEST_F(Results, RunsThatContradictThemselvesAreRefused)
     EXPECT_TRUE(refused([](RunFile& r) { r.body_names[0] = "other"; }));
     EXPECT_TRUE(refused([](RunFile& r) { r.output[1] = std::numeric_limits<double>::quiet_NaN(); }));
     EXPECT_TRUE(refused([](RunFile& r) { r.balance.work.pop_back(); }));
+    EXPECT_TRUE(refused([](RunFile& r) { r.motion.X.continuous = false; }));
+    EXPECT_TRUE(refused([](RunFile& r) { r.motion.X.denominators.assign(16, 1); }));
+    EXPECT_TRUE(refused([](RunFile& r) { r.motion.X.denominators.assign(17, 0); }));
+    EXPECT_TRUE(refused([](RunFile& r) {
+        r.motion.X.denominators.assign(17, 1);
+        r.motion.X.denominators[3] = std::numeric_limits<double>::quiet_NaN();
+    }));
+    EXPECT_TRUE(refused([](RunFile& r) { r.motion.rigidity.values.pop_back(); }));
+    EXPECT_TRUE(refused([](RunFile& r) { r.motion.rigidity.n_values = 6; }));
+    EXPECT_TRUE(refused([](RunFile& r) { r.motion.gauss_points = -1; }));
+    EXPECT_TRUE(refused([](RunFile& r) { r.motion.block_ends = {0, 9}; }));
+    EXPECT_TRUE(refused([](RunFile& r) { r.motion.block_ends = {-1, 8}; }));
+    EXPECT_TRUE(refused([](RunFile& r) { r.motion.block_ends = {0, 4, 4}; }));
 }
 
 // --- the disk

@@ -89,9 +89,9 @@ inline void fill_motion(Motion& m, const Model& model, int n_elements)
     m.n_bodies = 2;
     m.n_rows = 1;
     for (int e = 0; e <= n_elements; ++e) m.mesh.ends.push_back(0.5 * e);
-    m.X = {24, 2, true, {}};
-    m.P = {24, 1, false, {}};
-    m.multipliers = {1, 0, false, {}};
+    m.X = {24, 2, true, {}, {}};
+    m.P = {24, 1, false, {}, {}};
+    m.multipliers = {1, 0, false, {}, {}};
     const auto momentum = [&](double t, int b) {
         const Matrix34 V = b == 0 ? turned_rate(t) : Matrix34{3, 0, 0};
         return V * model.bodies()[b].mass;
@@ -117,6 +117,10 @@ inline void fill_motion(Motion& m, const Model& model, int n_elements)
     m.dense_order_V = 2;
     m.constraints_hold = "element nodes";
     m.redundant_rows = {0};
+    m.rigidity = {12, 1, false, {}, {}};
+    for (int i = 0; i < 24 * n_elements; ++i) m.rigidity.values.push_back(0.5 * i);
+    m.gauss_points = 3;
+    for (int e = 0; e <= n_elements; e += 2) m.block_ends.push_back(e);
 }
 
 inline void fill_balance(Balance& b, int n_ends)
@@ -159,6 +163,10 @@ inline RunFile sample_run(const Model& model, int n_elements = 8)
     run.report.failed_at = 4;
     run.report.iterations = std::vector<int>(static_cast<std::size_t>(n_elements), 3);
     run.report.notes = {"", "row 'distance' is implied"};
+    run.report.condition_1 = 1e9;
+    run.report.condition_2 = 5e8;
+    run.report.scaled_condition = 2e6;
+    run.report.factor_entries = 123456789013;
     run.summary = {false,
                    "not converged",
                    "lobatto(2)",
@@ -172,7 +180,14 @@ inline RunFile sample_run(const Model& model, int n_elements = 8)
                    1e-9,
                    std::numeric_limits<double>::quiet_NaN(),
                    {"first", "second\nline"},
-                   "stopped"};
+                   "stopped",
+                   1e-5,
+                   0.125,
+                   0.25,
+                   1.5,
+                   1e9,
+                   5e8,
+                   2e6};
     fill_balance(run.balance, n_elements + 1);
     run.version = "0.1.0";
     return run;

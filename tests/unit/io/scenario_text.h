@@ -7,9 +7,21 @@
 #include <string>
 #include <string_view>
 
+#include <vector>
+
 #include "livens/io/scenario.h"
 
 namespace livens::test {
+
+/// A text that leads to a code, and where the finding points.
+struct Case {
+    const char* code;
+    std::string text;
+    std::string where;   ///< empty: the whole file
+};
+
+/// Of the family mixed and of conditions at the end; mixed_scenario_test.cpp.
+std::vector<Case> cases_of_mixed();
 
 inline const std::string valid_scenario = R"(format = 1
 gravity = [0, 0, -9.81]

@@ -191,6 +191,59 @@ interpolation = "spline"
 [time]
 end = 1
 elements = 4
+)",
+    R"(format = 1
+
+[[body]]
+name = "a"
+mass = 1
+inertia = [1, 1, 1]
+[body.end]
+position = [1, 0, 0]
+directors = [[1, 0, 0], [0, 1, 0], [0, 0, 1]]
+velocity = [1, 0, 0]
+angular_velocity = [0, 0, 1]
+
+[[body]]
+name = "b"
+mass = 1
+inertia = [1, 1, 1]
+[body.end]
+quaternion = [1, 0, 0, 0]
+angular_velocity_body = [0, 0, 1]
+
+[[body]]
+name = "c"
+mass = 1
+inertia = [1, 1, 1]
+[body.end]
+rotation_vector = [0.1, 0, 0]
+
+[time]
+end = 1
+elements = 4
+
+[method]
+family = "mixed"
+basis = "nurbs"
+degree = 2
+momentum = "natural"
+multipliers = "equal"
+gauss_points = 6
+block = "all"
+interfaces = "carry"
+first_guess = "march"
+end_multiplier = "smooth"
+knots = [0, 0, 0, 0.25, 0.5, 0.75, 1, 1, 1]
+weights = [1, 1, 1, 1, 1, 1]
+linear_solver = "eigen"
+condition = true
+
+[start]
+given = "positions"
+
+[end]
+given = "positions"
 )"};
 
 std::vector<std::string> lines_of(const std::string& text)
@@ -241,7 +294,9 @@ TableId table_of(const std::string& header, const std::string& type)
                                                        {"[[load]]", TableId::load},
                                                        {"[time]", TableId::time},
                                                        {"[method]", TableId::method},
-                                                       {"[start]", TableId::start}};
+                                                       {"[start]", TableId::start},
+                                                       {"[end]", TableId::end},
+                                                       {"[body.end]", TableId::body_end}};
     if (header == "[load.table]") return type == "\"torque\"" ? TableId::torque_table : TableId::force_table;
     return header.empty() ? TableId::root : tables.at(header);
 }
@@ -361,6 +416,7 @@ TEST(Schema, EveryNeededKeyIsMissedAtTheHeaderOfItsTable)
         expect_at(o.with_line(""), "missing-key", o.header, 1);
     }
     expect_at("format = 1\n", "missing-key", 0, 1);   // [[body]] and [time]
+    test::expect_error(test::replaced(test::valid_scenario, "elements = 10\n", ""), "missing-key", "[time]");
 }
 
 TEST(Schema, EveryRangeIsKept)
@@ -376,7 +432,8 @@ TEST(Schema, EveryRangeIsKept)
             return o.with_value(is_list ? "[" + number + value.substr(value.find(',')) : number);
         };
         const std::string code = o.key->name == "format" ? "format-version" : "out-of-range";
-        const bool is_whole = o.key->type == KeyType::integer;
+        const bool is_whole =
+            o.key->type == KeyType::integer || o.key->type == KeyType::integer_or_choice;
         if (range.low > -1e300) {
             const double below = is_whole ? range.low - 1 : range.above ? range.low : range.low - 1e-3;
             expect_at(

@@ -196,6 +196,63 @@ TEST(MassProperties, WrongMassAndAsymmetryAreRefused)
     expect_complaint(check({1, {}, skew}), "not-finite", "body[x].inertia");
 }
 
+TEST(MassProperties, SingularMassesAreThoseOfNeedlesLaminaeAndPoints)
+{
+    Random random(5);
+    for (const double size : {1.0, 1e-9, 1e9})
+        for (int i = 0; i < 50; ++i) {
+            const Matrix3 R = i == 0 ? identity<3>() : random.rotation();
+            const Vector3 center = i % 2 == 0 ? Vector3{} : std::sqrt(size) * random.vector();
+            const auto singular = [&](const MassProperties& p) {
+                MassProperties q = with_center(turned(p, R), center);
+                q.inertia *= size;
+                return is_singular(mass_matrix(q), false);
+            };
+            EXPECT_TRUE(singular(principal(0, 1, 1))) << "needle";
+            EXPECT_TRUE(singular(principal(1, 2, 3))) << "lamina";
+            EXPECT_TRUE(singular(principal(0, 0, 0))) << "all mass in one point";
+            EXPECT_FALSE(singular(principal(1, 2, 2.999)));
+            EXPECT_FALSE(singular(principal(0.0001, 1, 1)));
+            EXPECT_FALSE(singular(box(1, {1, 1e-3, 1})));
+        }
+    Matrix4 thin = identity<4>();   // scaled to ones on its diagonal it is the identity, however thin
+    thin(2, 2) = 1e-13;
+    EXPECT_FALSE(is_singular(thin, false));
+    thin(2, 2) = 1e-15;
+    EXPECT_TRUE(is_singular(thin, false));
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    Matrix4 m = mass_matrix(box(1, {1, 2, 3}));
+    EXPECT_FALSE(is_singular(m, false));
+    m(2, 2) = nan;
+    EXPECT_TRUE(is_singular(m, false));
+    Matrix4 point{};
+    EXPECT_TRUE(is_singular(point, true));
+    point(0, 0) = 2;
+    EXPECT_FALSE(is_singular(point, true)) << "a point mass has no directors to want inertia";
+    EXPECT_TRUE(is_singular(point, false));
+}
+
+TEST(MassProperties, InverseMassGivesTheVelocityBack)
+{
+    Random random(6);
+    for (const double size : {1.0, 1e-4, 1e4})
+        for (int i = 0; i < 50; ++i) {
+            MassProperties p = turned(box(1, {1, 2, 3}), random.rotation());
+            p.center_of_mass = size * random.vector();
+            p.inertia *= size * size;
+            const Matrix4 m = mass_matrix(p), inverse = inverse_mass(m, false);
+            EXPECT_EQ(inverse, transpose(inverse));
+            Matrix34 V{};
+            for (int k = 0; k < 12; ++k) V[k] = random.number() / (k < 3 ? 1 : size);
+            const Matrix34 error = V * m * inverse - V;
+            for (int k = 0; k < 12; ++k) EXPECT_LT(std::abs(error[k]) * (k < 3 ? 1 : size), 1e-13) << size;
+        }
+    Matrix4 point{}, exact{};
+    point(0, 0) = 4;
+    exact(0, 0) = 0.25;
+    EXPECT_EQ(inverse_mass(point, true), exact);
+}
+
 TEST(MassProperties, SizesMustBePositive)
 {
     const double nan = std::numeric_limits<double>::quiet_NaN();

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
+
 #include "livens/time/basis.h"
 #include "livens/time/quadrature.h"
 #include "unit/multibody/random_states.h"
@@ -85,6 +87,73 @@ TEST(Field, OfConstantsIsConstantToTheBitAndAtRest)
         flat.evaluate(1, s, 1, {&v, 1});
         EXPECT_TRUE(x == 0.2 && v == 0);
     }
+}
+
+/// A field of one number over one element [0, 1] by its nodal values and denominators.
+Field rational(int degree, const std::function<double(double)>& numerator,
+               const std::function<double(double)>& denominator)
+{
+    Field field{1, degree, true, {}, {}};
+    for (const double s : gauss_lobatto(degree + 1).points) {
+        field.denominators.push_back(denominator(s));
+        field.values.push_back(numerator(s) / denominator(s));
+    }
+    return field;
+}
+
+TEST(Field, WithDenominatorsIsTheQuotientOfTwoPolynomials)
+{
+    // A quarter of a circle, which no polynomial is: x = (1 - s^2) / (1 + s^2) and y = 2 s / (1 + s^2).
+    const auto W = [](double s) { return 1 + s * s; };
+    for (const int degree : {2, 3, 8}) {
+        const Field x = rational(degree, [](double s) { return 1 - s * s; }, W);
+        const Field y = rational(degree, [](double s) { return 2 * s; }, W);
+        for (const double s : {0.0, 0.2, 0.5, 0.9, 1.0}) {
+            double a = 0, b = 0, da = 0, db = 0;
+            x.evaluate(0, s, 0, {&a, 1});
+            y.evaluate(0, s, 0, {&b, 1});
+            x.evaluate(0, s, 1, {&da, 1});
+            y.evaluate(0, s, 1, {&db, 1});
+            EXPECT_NEAR(a, (1 - s * s) / W(s), 1e-15);
+            EXPECT_NEAR(a * a + b * b, 1, 2e-15) << "on the circle";
+            EXPECT_NEAR(da, -4 * s / (W(s) * W(s)), 1e-15 * degree * degree);
+            EXPECT_NEAR(db, 2 * (1 - s * s) / (W(s) * W(s)), 2e-15 * degree * degree);
+        }
+    }
+}
+
+TEST(Field, TakesTheDenominatorsOfItsOwnElement)
+{
+    // Two elements with different denominators; discontinuous fields have one more of them each.
+    const Field shared{1, 1, true, {0, 1, 5}, {1, 3, 2}};
+    const Field apart{1, 1, false, {0, 1, 1, 5}, {1, 3, 3, 2}};
+    for (const Field* field : {&shared, &apart}) {
+        double x = 0;
+        field->evaluate(0, 0.5, 0, {&x, 1});
+        EXPECT_DOUBLE_EQ(x, (0 * 1 + 1 * 3) / 4.0);
+        field->evaluate(1, 0.5, 0, {&x, 1});
+        EXPECT_DOUBLE_EQ(x, (1 * 3 + 5 * 2) / 5.0);
+    }
+}
+
+TEST(Field, WithEqualDenominatorsIsThePolynomialAndConstantsStayConstant)
+{
+    const TimeMesh mesh{{-1, 0.5, 2}};
+    const Field plain = sampled(mesh, 5, true, cubic);
+    Field ones = plain;
+    ones.denominators.assign(plain.values.size() / 12, 1.0);
+    Field constant = ones;
+    std::ranges::fill(constant.values, 0.1);
+    constant.denominators = {0.3, 1, 2, 5, 1, 7, 0.1, 2, 3, 4, 5};
+    for (const double s : {0.0, 0.3, 0.77, 1.0})
+        for (const int derivative : {0, 1}) {
+            Matrix34 a{}, b{}, c{};
+            plain.evaluate(1, s, derivative, a.a);
+            ones.evaluate(1, s, derivative, b.a);
+            EXPECT_LT(largest(a - b), 1e-13) << "the denominators add up to one within rounding";
+            constant.evaluate(1, s, derivative, c.a);
+            for (const double entry : c.a) EXPECT_EQ(entry, derivative == 0 ? 0.1 : 0) << "to the bit";
+        }
 }
 
 Motion cubic_motion()

@@ -1,6 +1,7 @@
-// X and its derivative at fixed places of every element.
+// The fields of a motion at fixed places of every element.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -9,8 +10,32 @@
 
 namespace livens {
 
-/// Evaluates a motion's polynomial at the same local points s of each element; the basis is tabulated once,
-/// so that a point costs (degree + 1) sums over the bodies and allocates nothing.
+/// Evaluates a field at the same local points s of each element: the basis is tabulated once, so that a point
+/// costs (degree + 1) sums over the numbers of a coefficient and allocates nothing. Denominators differ from
+/// element to element and are applied to a copy of the table's row.
+class FieldTable {
+public:
+    /// The field must outlive the table.
+    FieldTable(const Field& field, std::span<const double> points);
+
+    /// Value at point k; at a node its coefficient to the bit.
+    void values(int element, int k, std::span<double> out) const;
+    /// The same for the bodies stacked in a field of 12 numbers each.
+    void values(int element, int k, std::span<Matrix34> bodies) const;
+    /// `factor` times the derivative by s: 1 / h makes it one by time.
+    void derivatives(int element, int k, double factor, std::span<Matrix34> bodies) const;
+
+private:
+    /// Makes `row` what coefficients are multiplied with.
+    void fill_row(int element, int k, int derivative, std::span<double> row) const;
+
+    const Field* field_;
+    std::vector<int> nodes_;            // the node that a point is, or -1
+    std::vector<double> values_;        // M_A(s_k) at [k * (degree + 1) + A]
+    std::vector<double> derivatives_;   // M_A'(s_k) likewise
+};
+
+/// X, its derivative and the momentum of a motion at the same local points s of each element.
 class ElementSampler {
 public:
     /// The motion must outlive the sampler.
@@ -18,24 +43,30 @@ public:
 
     int size() const { return static_cast<int>(points_.size()); }
     double point(int k) const { return points_[k]; }
+    const std::vector<double>& points() const { return points_; }
     /// t of point k; at the element's ends to the bit, and from the element's side.
     Instant instant(int element, int k) const;
 
     /// X of all bodies at point k; at a node its coefficient to the bit.
     void positions(int element, int k, std::span<Matrix34> X) const;
-    /// Derivative of the polynomial by time, also at the element's ends.
+    /// dX/dt of the field, also at the element's ends.
     void velocities(int element, int k, std::span<Matrix34> V) const;
+    /// Whether the motion has momenta of its own between element ends.
+    bool has_momenta() const { return P_.has_value(); }
+    /// P of all bodies from that field.
+    void momenta(int element, int k, std::span<Matrix34> P) const;
 
 private:
     const Motion& motion_;
     std::vector<double> points_;
-    std::vector<int> nodes_;            // the node that a point is, or -1
-    std::vector<double> values_;        // M_A(s_k) at [k * (degree + 1) + A]
-    std::vector<double> derivatives_;   // M_A'(s_k) likewise
+    FieldTable X_;
+    std::optional<FieldTable> P_;
 };
 
-/// X of all bodies at element end number `end`.
+/// X of all bodies at element end number `end`, as of the element that starts there; and where fields are not
+/// continuous also as of the element that ends there.
 void positions_at_end(const Motion& motion, int end, std::span<Matrix34> X);
+void positions_before_end(const Motion& motion, int end, std::span<Matrix34> X);
 /// V of all bodies there, from the momentum.
 std::span<const Matrix34> velocities_at_end(const Motion& motion, int end);
 

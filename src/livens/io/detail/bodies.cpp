@@ -103,10 +103,7 @@ bool check_body(const Section& body, Findings& findings)
     check_shape(body, findings);
     if (is_point_mass(body)) check_point_mass(body, findings);
     else check_mass(body, findings);
-    at_most_one(body, {"directors", "quaternion", "rotation_vector"}, "orientation-conflict", findings);
-    at_most_one(body, {"angular_velocity", "angular_velocity_body", "director_rates"}, "rates-conflict",
-                findings);
-    check_quaternion(body, findings);
+    check_pose(body, findings);
     return findings.n_errors() == before && body.is_valid();
 }
 
@@ -158,15 +155,9 @@ Matrix3 read_orientation(const Section& body)
 
 Body build_body(const Section& section, const std::string& name)
 {
-    const Vector3 position = section.vector("position"), velocity = section.vector("velocity");
-    if (is_point_mass(section)) return point_mass(name, section.number("mass"), position, velocity);
-    Placement placement;
-    placement.position = position;
-    placement.velocity = velocity;
-    placement.directors = read_orientation(section);
-    placement.angular_velocity = section.has("angular_velocity_body")
-                                     ? placement.directors * section.vector("angular_velocity_body")
-                                     : section.vector("angular_velocity");
+    const Placement placement = read_placement(section);
+    if (is_point_mass(section))
+        return point_mass(name, section.number("mass"), placement.position, placement.velocity);
     Body body = rigid_body(name, read_mass(section), placement);
     if (section.has("director_rates")) {
         const Matrix3 rates = section.columns("director_rates");
@@ -176,6 +167,28 @@ Body build_body(const Section& section, const std::string& name)
 }
 
 }   // namespace
+
+bool check_pose(const Section& body, Findings& findings)
+{
+    const int before = findings.n_errors();
+    at_most_one(body, {"directors", "quaternion", "rotation_vector"}, "orientation-conflict", findings);
+    at_most_one(body, {"angular_velocity", "angular_velocity_body", "director_rates"}, "rates-conflict",
+                findings);
+    check_quaternion(body, findings);
+    return findings.n_errors() == before;
+}
+
+Placement read_placement(const Section& body)
+{
+    Placement placement;
+    placement.position = body.vector("position");
+    placement.velocity = body.vector("velocity");
+    placement.directors = read_orientation(body);
+    placement.angular_velocity = body.has("angular_velocity_body")
+                                     ? placement.directors * body.vector("angular_velocity_body")
+                                     : body.vector("angular_velocity");
+    return placement;
+}
 
 void read_bodies(Builder& builder)
 {

@@ -19,9 +19,21 @@ std::string with_bounds(const Complaint& complaint)
     return text + ")";
 }
 
-/// `body[upper].mass` as people say it: 'mass' of body 'upper'.
+/// Paths of the core that begin with a table of the file; others are relative to what is being read.
+bool is_of_table(const std::string& path)
+{
+    for (const std::string_view table : {"method.", "time.", "start.", "end."})
+        if (path.starts_with(table)) return true;
+    return false;
+}
+
+/// `body[upper].mass` as people say it: 'mass' of body 'upper'; `method.knots`: 'knots' of [method].
 std::string spoken(const std::string& path)
 {
+    if (is_of_table(path)) {
+        const std::size_t dot = path.find('.');
+        return "'" + path.substr(dot + 1) + "' of [" + path.substr(0, dot) + "]";
+    }
     const std::size_t open = path.find('['), close = path.rfind(']');
     if (open == std::string::npos || close == std::string::npos || close < open) return path;
     const std::string name = path.substr(0, open) + " '" + path.substr(open + 1, close - open - 1) + "'";
@@ -36,7 +48,7 @@ Builder::Builder(const Section& top, Findings& findings)
       model_(top.vector("gravity"))
 {
     remember("", top);
-    for (const std::string_view name : {"time", "method", "start"})
+    for (const std::string_view name : {"time", "method", "start", "end"})
         for (const Section& section : top.sections(name)) remember(std::string(name), section);
 }
 
@@ -67,7 +79,8 @@ Place Builder::find_place(std::string path, const std::string& context) const
 
 void Builder::report(const Complaint& complaint, const std::string& path)
 {
-    const std::string subject = spoken(complaint.path.find('[') == std::string::npos ? path : complaint.path);
+    const bool is_whole = complaint.path.find('[') != std::string::npos || is_of_table(complaint.path);
+    const std::string subject = spoken(is_whole ? complaint.path : path);
     const bool is_named = complaint.message.find('\'') != std::string::npos;
     findings_.error(find_place(complaint.path, path), complaint.code,
                     (is_named || subject.empty() ? "" : subject + ": ") + with_bounds(complaint),
@@ -135,6 +148,12 @@ bool check_name(const Section& section, Findings& findings)
                                      : "name-invalid",
                    problem);
     return false;
+}
+
+const Section* only_section(const Section& section, std::string_view key)
+{
+    const std::span<const Section> sections = section.sections(key);
+    return sections.empty() ? nullptr : &sections.front();
 }
 
 bool at_most_one(const Section& section, std::initializer_list<std::string_view> keys, std::string_view code,

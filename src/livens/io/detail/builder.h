@@ -39,6 +39,8 @@ public:
 
     /// Makes `path` known as the place of the section, and its keys as `path.key`.
     void remember(const std::string& path, const Section& section);
+    /// Makes `path` known as this place, unless it is known.
+    void remember(const std::string& path, const Place& place) { places_.try_emplace(path, place); }
     /// Calls `build` and turns an InputError into a finding at the place it names, else at that of `path`.
     /// False if there was one.
     template <class Build>
@@ -87,11 +89,36 @@ bool at_most_one(const Section& section, std::initializer_list<std::string_view>
 bool refuse_keys(const Section& section, std::initializer_list<std::string_view> keys, std::string_view code,
                  const std::string& reason, Findings& findings);
 
+/// The table `key` of a section; null if it is not there.
+const Section* only_section(const Section& section, std::string_view key);
+
+// Position, orientation and velocities of a body, at the start ([[body]]) or at the end ([body.end]).
+bool check_pose(const Section& body, Findings& findings);
+/// Throws InputError. Of `director_rates` it knows nothing.
+Placement read_placement(const Section& body);
+
 // The parts of the reader. Each reports all it finds; `names` are those of joints and loads after defaults.
 void read_bodies(Builder& builder);
 void read_joints(Builder& builder);
 void read_loads(Builder& builder);
-/// Time, method, start: everything of the scenario but the model.
+/// What is given at both ends, and the state at the end. The state at the start is the model's.
+void read_boundary(Builder& builder, Boundary& boundary);
+/// Closes the mechanism where something is given, as solve() will.
+void check_ends(Builder& builder, const Boundary& boundary, StartPolicy policy);
+Method read_method(const Section* section, Findings& findings);
+/// Time, method, conditions: everything of the scenario but the model.
 void read_run(Builder& builder, Scenario& scenario);
+
+/// Knots make the mesh.
+bool has_knots(const Method& method);
+/// Throws InputError for knots and weights that make no basis.
+TimeMesh mesh_of_knots(const Mixed& mixed);
+
+/// What motion and equations will take at least; a scenario of a few lines must not fill the memory of a
+/// machine. The motion has at most 8 GiB, the factors of one block's matrix (mixed) too: 150 entries of
+/// 16 bytes for each of 30 unknowns a rigid body and node (6 a point mass, 1 a row). That leaves 100,000
+/// linear elements of a single body. False after an error at `place`.
+bool check_size(const Model& model, const Method& method, double n_elements, const Place& place,
+                Findings& findings);
 
 }   // namespace livens

@@ -17,8 +17,13 @@ namespace livens {
 /// read beyond its arrays: every file is a stranger, whatever its digest says.
 void check_run(const Run& run);
 
-/// 64 bits over everything that visit_run() names, as 16 hexadecimal digits.
+/// 64 bits over everything that version 1.`minor` of the format brought, as 16 hexadecimal digits. Each minor
+/// version has a digest of its own, so that readers who do not know it can check what they know.
+std::string digest_of_minor(const Run& run, int minor);
+/// Over everything.
 std::string digest(const Run& run);
+/// Name of the attribute that holds digest_of_minor().
+std::string digest_name(int minor);
 
 /// The image with 24 bytes behind it that hold a checksum of all before: "\nlivens " and 16 hexadecimal
 /// digits. Programs that read HDF5 do not look there.
@@ -50,7 +55,7 @@ struct DerivedNumbers {
 };
 
 /// What is in the file for readers other than livens, made from model and run: samples at the output times,
-/// times of nodes, masses.
+/// times of nodes, masses, integrals over elements.
 void write_derived(NetcdfWriter& file, const Model& model, const Run& run, DerivedNumbers& owner);
 
 /// Part of it: the largest violation of joints and of rigidity at every node of X.
@@ -222,9 +227,64 @@ void visit_balance(Archive& archive, AnyBalance& b)
     archive.number("reference_moment", b.reference_moment);
 }
 
-template <class Archive, class AnyRun>
-void visit_run(Archive& archive, AnyRun& run)
+/// What version 1.1 added to the motion: what other families than lobatto and the classical ones need.
+template <class Archive, class AnyMotion>
+void visit_motion_1(Archive& archive, AnyMotion& motion)
 {
+    const auto denominators = [&](const char* name, const char* node, const char* of, auto& field) {
+        archive.list({name, {node}, "1", "none", std::string("denominators of ") + of + " at its nodes"},
+                     field.denominators);
+    };
+    denominators("X_weight", "X_node", "X", motion.X);
+    denominators("P_weight", "P_node", "P", motion.P);
+    denominators("multiplier_weight", "multiplier_node", "the multipliers", motion.multipliers);
+    archive.dimension("rigidity_row", 6);
+    archive.field({"rigidity_multiplier",
+                   {"rigidity_node", "body", "rigidity_row"},
+                   "N m",
+                   "none",
+                   "multipliers of the bodies' rigidity (11, 22, 33, 12, 13, 23), values at the elements' "
+                   "nodes"},
+                  motion.rigidity);
+    denominators("rigidity_weight", "rigidity_node", "the multipliers of rigidity", motion.rigidity);
+    archive.number("gauss_points", motion.gauss_points);
+    archive.dimension("block_end", motion.block_ends.size());
+    archive.list({"block_end",
+                  {"block_end"},
+                  "1",
+                  "none",
+                  "element ends, from 0, where a block of elements that are solved together begins or ends"},
+                 motion.block_ends);
+}
+
+/// What version 1.1 added to the figures.
+template <class Archive, class AnyRun>
+void visit_figures_1(Archive& archive, AnyRun& run)
+{
+    archive.number("report_condition_1", run.report.condition_1);
+    archive.number("report_condition_2", run.report.condition_2);
+    archive.number("report_scaled_condition", run.report.scaled_condition);
+    archive.number("report_factor_entries", run.report.factor_entries);
+    archive.number("report_guess_distance", run.report.guess_distance);
+    archive.number("report_guess_distance_time", run.report.guess_distance_time);
+    archive.number("max_weak_violation", run.summary.max_weak_violation);
+    archive.number("zigzag_positions", run.summary.zigzag_positions);
+    archive.number("zigzag_momenta", run.summary.zigzag_momenta);
+    archive.number("zigzag_time", run.summary.zigzag_time);
+    archive.number("condition_1", run.summary.condition_1);
+    archive.number("condition_2", run.summary.condition_2);
+    archive.number("scaled_condition", run.summary.scaled_condition);
+}
+
+/// What version 1.`minor` of the format brought.
+template <class Archive, class AnyRun>
+void visit_run(Archive& archive, AnyRun& run, int minor)
+{
+    if (minor == 1) {
+        visit_motion_1(archive, run.motion);
+        visit_figures_1(archive, run);
+        return;
+    }
     archive.text("title", run.title);
     archive.text("livens_version", run.version);
     visit_sizes(archive, run);

@@ -2,6 +2,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
+#include <optional>
 
 #include "livens/io/detail/builder.h"
 #include "livens/io/json.h"
@@ -10,7 +11,6 @@ namespace livens {
 
 namespace {
 
-constexpr double max_motion_bytes = 8.0 * (1u << 30);
 constexpr double resolution = 1e-9;   // of the interval: closer instants are one, as in make_time_mesh
 
 /// mantissa * 10^exponent, as the number is written.
@@ -150,28 +150,6 @@ void snap_to_ends(std::vector<double>& times, const TimeMesh& mesh)
     }
 }
 
-/// What the motion will take at least; a scenario of a few lines must not fill the memory of a machine.
-bool check_size(Builder& builder, const Section& time, const Method& method, double n_elements)
-{
-    const Lobatto* lobatto = std::get_if<Lobatto>(&method);
-    const double degree = lobatto != nullptr ? lobatto->degree : 1;
-    const double bodies = builder.model().n_bodies(), rows = builder.model().n_rows();
-    const double inside = degree * (12 * bodies + rows);
-    const double at_ends = 48 * bodies + 2 * rows;   // P, V, and X'' on both sides
-    const double bytes = sizeof(double) * n_elements * (inside + at_ends);
-    if (bytes <= max_motion_bytes) return true;
-    const auto gibibytes = [](double b) {
-        return std::to_string(static_cast<long long>(b / (1u << 30))) + " GiB";
-    };
-    builder.findings().error(
-        time.place("elements"), "resource-limit",
-        "the motion would take " + gibibytes(bytes) + ", more than " + gibibytes(max_motion_bytes),
-        {std::to_string(static_cast<long long>(n_elements)) + " time elements for " +
-             std::to_string(builder.model().n_bodies()) + " bodies",
-         "use fewer elements; a higher degree makes up for it"});
-    return false;
-}
-
 /// Looks at start and end even if something else in [time] is wrong.
 bool check_end(const Section& time, Findings& findings)
 {
@@ -184,64 +162,185 @@ bool check_end(const Section& time, Findings& findings)
     return false;
 }
 
-bool make_mesh(Builder& builder, const Section& time, Scenario& scenario)
+/// Equal elements, and ends at all instants that need one.
+bool make_even_mesh(Builder& builder, const Section& time, Scenario& scenario)
 {
     Findings& findings = builder.findings();
-    if (!check_end(time, findings) || !time.is_valid()) return false;
-    const double start = time.number("start"), end = time.number("end");
-    if (!check_size(builder, time, scenario.method, time.number("elements"))) return false;
-    if (!read_output(time, scenario.output, findings)) return false;
+    if (!time.has("elements")) {
+        findings.error(time.place(), "missing-key", "[time] lacks 'elements'",
+                       {"only knots of splines, in [method], make elements themselves", ""});
+        return false;
+    }
+    const auto fits = [&](double n_elements) {
+        return check_size(builder.model(), scenario.method, n_elements, time.place("elements"), findings);
+    };
+    if (!fits(time.number("elements")) || !read_output(time, scenario.output, findings)) return false;
     std::vector<double> required;
     if (time.text("breaks") == "from_loads") required = builder.model().load_breaks();
     required.insert(required.end(), scenario.output.begin(), scenario.output.end());
-    if (!builder.guard(
-            "time", [&] { scenario.mesh = make_time_mesh(start, end, time.integer("elements"), required); }))
+    const double start = time.number("start"), end = time.number("end");
+    return builder.guard(
+               "time",
+               [&] { scenario.mesh = make_time_mesh(start, end, time.integer("elements"), required); }) &&
+           fits(scenario.mesh.n_elements());
+}
+
+/// The first instant that no element end is near, if there is one.
+std::optional<double> missed(const std::vector<double>& instants, const TimeMesh& mesh)
+{
+    const double slack = resolution * (mesh.end() - mesh.start());
+    for (const double t : instants) {
+        if (t < mesh.start() || t > mesh.end()) continue;
+        const auto next = std::lower_bound(mesh.ends.begin(), mesh.ends.end(), t - slack);
+        if (next == mesh.ends.end() || *next > t + slack) return t;
+    }
+    return std::nullopt;
+}
+
+/// Whether elements made of knots fit what [time] says.
+bool check_knot_mesh(Builder& builder, const Section& time, const Section& method, const TimeMesh& mesh,
+                     Findings& findings)
+{
+    const auto refuse = [&](const Place& place, const std::string& message, const Advice& advice) {
+        findings.error(place, "knots-mesh", message, advice);
         return false;
-    if (!check_size(builder, time, scenario.method, scenario.mesh.n_elements())) return false;
+    };
+    const double start = time.number("start"), end = time.number("end");
+    if (mesh.start() != start || mesh.end() != end)
+        return refuse(method.place("knots"),
+                      "'knots' of [method] go from " + shortest(mesh.start()) + " s to " +
+                          shortest(mesh.end()) + " s, the motion from " + shortest(start) + " s to " +
+                          shortest(end) + " s",
+                      {"the first and the last knots are start and end of [time]", ""});
+    if (time.has("elements") && time.integer("elements") != mesh.n_elements())
+        return refuse(time.place("elements"),
+                      "'elements' of [time] is " + shortest(time.number("elements")) +
+                          ", but the knots of [method] make " + std::to_string(mesh.n_elements()),
+                      {"", "leave it out"});
+    if (time.text("breaks") != "from_loads") return true;
+    const std::optional<double> t = missed(builder.model().load_breaks(), mesh);
+    if (!t) return true;
+    return refuse(method.place("knots"), "a load breaks at " + shortest(*t) + " s, where there is no knot",
+                  {"elements end where loads jump or bend, or lose their order",
+                   "add a knot there, degree times for a jump, or set breaks = \"ignore\" in [time]"});
+}
+
+/// Elements made of the knots of splines.
+bool make_knot_mesh(Builder& builder, const Section& time, const Section& method, Scenario& scenario)
+{
+    Findings& findings = builder.findings();
+    if (!method.is_valid()) return false;   // told already
+    const auto make = [&] { scenario.mesh = mesh_of_knots(std::get<Mixed>(scenario.method)); };
+    if (!builder.guard("method", make)) return false;
+    if (!check_knot_mesh(builder, time, method, scenario.mesh, findings)) return false;
+    if (!check_size(builder.model(), scenario.method, scenario.mesh.n_elements(), method.place("knots"),
+                    findings))
+        return false;
+    if (!read_output(time, scenario.output, findings)) return false;
+    const std::optional<double> t = missed(scenario.output, scenario.mesh);
+    if (!t) return true;
+    findings.error(time.place("output"), "knots-mesh",
+                   "the output time " + shortest(*t) + " s is no knot of [method]",
+                   {"output times are element ends, and knots make the elements",
+                    "add a knot there, or leave 'output' out: then all knots are output times"});
+    return false;
+}
+
+bool make_mesh(Builder& builder, const Section& time, const Section* method, Scenario& scenario)
+{
+    if (!check_end(time, builder.findings()) || !time.is_valid()) return false;
+    const bool is_made = has_knots(scenario.method) ? make_knot_mesh(builder, time, *method, scenario)
+                                                    : make_even_mesh(builder, time, scenario);
+    if (!is_made) return false;
     snap_to_ends(scenario.output, scenario.mesh);
     if (scenario.output.empty()) scenario.output = scenario.mesh.ends;
     return true;
 }
 
-Method read_method(const Section* method)
+const char* word(Given given)
 {
-    if (method == nullptr) return Lobatto{};
-    const std::string family = method->text("family");
-    if (family == "midpoint") return Midpoint{};
-    if (family == "endpoint") return Endpoint{};
-    return Lobatto{method->integer("degree")};
+    switch (given) {
+    case Given::nothing: return "nothing";
+    case Given::positions: return "positions";
+    case Given::momenta: return "momenta";
+    case Given::state: break;
+    }
+    return "state";
 }
 
-const Section* only_section(const Section& top, std::string_view key)
+void write_mixed(JsonWriter& json, const Mixed& mixed)
 {
-    const std::span<const Section> sections = top.sections(key);
-    return sections.empty() ? nullptr : &sections.front();
+    const Mixed::Basis basis = mixed.basis;
+    json.member("family", "mixed");
+    json.member("basis", basis == Mixed::Basis::lagrange  ? "lagrange"
+                         : basis == Mixed::Basis::bspline ? "bspline"
+                                                          : "nurbs");
+    json.member("degree", mixed.degree);
+    json.member("momentum", mixed.start == Mixed::Start::natural ? "natural" : "strong");
+    json.member("multipliers", mixed.multipliers == Mixed::Multipliers::equal ? "equal" : "lower");
+    json.member("end_multiplier",
+                mixed.end_multiplier == Mixed::EndMultiplier::smooth ? "smooth" : "zero");
+    json.key("gauss_points");
+    if (mixed.gauss_points > 0) json.value(mixed.gauss_points);
+    else json.value("exact");
+    json.key("block");
+    if (mixed.block > 0) json.value(mixed.block);
+    else json.value("all");
+    json.member("interfaces", mixed.interfaces == Mixed::Interfaces::carry ? "carry" : "project");
+    json.member("first_guess", mixed.first_guess == Mixed::FirstGuess::march ? "march" : "steady");
+    if (!mixed.knots.empty()) json.member("knots", std::span<const double>(mixed.knots));
+    if (!mixed.weights.empty()) json.member("weights", std::span<const double>(mixed.weights));
+    json.member("linear_solver", mixed.linear_solver == SparseBackend::eigen ? "eigen" : "umfpack");
+}
+
+void write_method(JsonWriter& json, const Method& method)
+{
+    if (const Mixed* mixed = std::get_if<Mixed>(&method)) write_mixed(json, *mixed);
+    else if (const Lobatto* lobatto = std::get_if<Lobatto>(&method))
+        json.member("family", "lobatto").member("degree", lobatto->degree);
+    else json.member("family", std::holds_alternative<Midpoint>(method) ? "midpoint" : "endpoint");
 }
 
 std::string resolve(const Builder& builder, const Section& time, const Scenario& scenario)
 {
     const Vector3 gravity = builder.top().vector("gravity");
-    const Lobatto* lobatto = std::get_if<Lobatto>(&scenario.method);
-    const bool is_midpoint = std::holds_alternative<Midpoint>(scenario.method);
+    const SolveOptions& options = scenario.options;
     JsonWriter json;
     json.begin_object().member("format", 1).member("title", scenario.title);
     json.member("gravity", std::span<const double>(gravity.a));
     json.key("time").begin_object();
     json.member("start", scenario.mesh.start()).member("end", scenario.mesh.end());
-    json.member("elements", time.integer("elements")).key("output");
+    json.member("elements", time.has("elements") ? time.integer("elements") : scenario.mesh.n_elements());
+    json.key("output");
     const Value* output = time.find("output");
     if (output == nullptr) json.value("element ends");
     else if (output->n_rows == 1) json.value(std::span<const double>(output->numbers));
     else json.value(output->numbers.front());
     json.member("breaks", time.text("breaks")).end_object();
     json.key("method").begin_object();
-    json.member("family", lobatto != nullptr ? "lobatto" : is_midpoint ? "midpoint" : "endpoint");
-    if (lobatto != nullptr) json.member("degree", lobatto->degree);
-    json.member("tolerance", scenario.options.tolerance)
-        .member("max_iterations", scenario.options.max_iterations);
-    json.end_object().key("start").begin_object();
-    json.member("initial", scenario.options.initial == StartPolicy::check ? "check" : "project");
-    return json.end_object().end_object().text();
+    write_method(json, scenario.method);
+    json.member("tolerance", options.tolerance).member("max_iterations", options.max_iterations);
+    json.member("condition", options.condition).end_object();
+    json.key("start").begin_object().member("given", word(scenario.boundary.at_start));
+    json.member("initial", options.initial == StartPolicy::check ? "check" : "project").end_object();
+    json.key("end").begin_object().member("given", word(scenario.boundary.at_end)).end_object();
+    return json.end_object().text();
+}
+
+/// Complaints about what the file leaves to its defaults point at what comes nearest.
+void remember_defaults(Builder& builder)
+{
+    const Section* time = only_section(builder.top(), "time");
+    const Section* start = only_section(builder.top(), "start");
+    const Section* end = only_section(builder.top(), "end");
+    if (end != nullptr) {
+        if (start == nullptr) builder.remember("start", end->place("given"));
+        builder.remember("method", end->place("given"));
+    } else if (start != nullptr) {
+        builder.remember("end", start->place("given"));
+        builder.remember("method", start->place("given"));
+    }
+    if (time != nullptr) builder.remember("method", time->place());
 }
 
 }   // namespace
@@ -252,15 +351,18 @@ void read_run(Builder& builder, Scenario& scenario)
     const Section* method = only_section(builder.top(), "method");
     const Section* start = only_section(builder.top(), "start");
     scenario.title = builder.top().text("title");
-    scenario.method = read_method(method);
+    scenario.method = read_method(method, builder.findings());
     if (method != nullptr && method->has("tolerance"))
         scenario.options.tolerance = method->number("tolerance");
     if (method != nullptr && method->has("max_iterations"))
         scenario.options.max_iterations = method->integer("max_iterations");
+    if (method != nullptr) scenario.options.condition = method->truth("condition");
     if (start != nullptr && start->text("initial") == "project")
         scenario.options.initial = StartPolicy::project;
+    read_boundary(builder, scenario.boundary);
+    remember_defaults(builder);
     if (time == nullptr) return;
-    if (!make_mesh(builder, *time, scenario)) return;
+    if (!make_mesh(builder, *time, method, scenario)) return;
     scenario.resolved = resolve(builder, *time, scenario);
 }
 

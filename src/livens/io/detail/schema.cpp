@@ -41,7 +41,18 @@ constexpr std::array tables{
     Table{T::time, "[time]", "",
           "What is solved: from `start` to `end` in at least `elements` time elements."},
     Table{T::method, "[method]", "family", "How it is solved."},
-    Table{T::start, "[start]", "", "What to do with a start that does not fit the joints."},
+    Table{T::start, "[start]", "",
+          "What is known at the start, and what to do with a start that does not fit the joints. What is "
+          "not given there is a first guess: positions and velocities of `[[body]]` are needed all the "
+          "same, and joints placed by `at` refer to them."},
+    Table{T::end, "[end]", "",
+          "What is known at the end of time, by `[body.end]` of every body. In all, positions and momenta "
+          "must be given once each, at one end or at both: a state at the end alone asks where the motion "
+          "came from, positions at both ends how to get from one to the other. Conditions at the end need "
+          "the family mixed."},
+    Table{T::body_end, "[body.end]", "",
+          "The body at the end of time, below its `[[body]]`; needed for all bodies if `given` of `[end]` "
+          "is not `nothing`. Momenta are those of the positions and velocities stated here."},
 };
 
 constexpr std::array keys{
@@ -54,8 +65,8 @@ constexpr std::array keys{
     Key{T::root, "load", K::tables, "Forces, torques and springs."}.holding(T::load),
     Key{T::root, "time", K::table, "Interval, elements and output."}.needed().holding(T::time),
     Key{T::root, "method", K::table, "Discretisation and its tolerances."}.holding(T::method),
-    Key{T::root, "start", K::table, "Treatment of the start."}.holding(T::start),
-    Key{T::root, "end", K::later, "Conditions at the end of time."},
+    Key{T::root, "start", K::table, "Conditions at the start."}.holding(T::start),
+    Key{T::root, "end", K::table, "Conditions at the end of time."}.holding(T::end),
 
     Key{T::body, "name", K::text, "How joints, loads and results call the body; not `world`."}.needed(),
     Key{T::body, "shape", K::table, "Solid of constant density, for mass and inertia."}.holding(T::shape),
@@ -79,7 +90,7 @@ constexpr std::array keys{
     Key{T::body, "director_rates", K::triple,
         "Time derivatives of the directors at the start, [d1', d2', d3'], as they are. Rates that deform "
         "the triad need `initial = \"project\"`."}.in("1/s"),
-    Key{T::body, "end", K::later, "What is known of the body at the end of time."},
+    Key{T::body, "end", K::table, "The body at the end of time."}.holding(T::body_end),
 
     Key{T::shape, "box", K::vector3, "Edges along d1, d2, d3."}.in("m").within(positive),
     Key{T::shape, "sphere", K::number_or_table,
@@ -169,7 +180,8 @@ constexpr std::array keys{
     Key{T::time, "end", K::number, "Of the motion, after `start`."}.in("s").needed(),
     Key{T::time, "elements", K::integer,
         "Of equal length (end - start) / elements; output times and jumps of loads add some where they do "
-        "not fall on that grid."}.needed().within({1, max_elements}),
+        "not fall on that grid. Needed, unless `knots` of `[method]` make the elements."}
+        .within({1, max_elements}),
     Key{T::time, "output", K::number_or_list,
         "Interval between output times (start and end are output times, too), or their ascending list. "
         "They become element ends, where results are most accurate. Default: all element ends."}.in("s"),
@@ -179,21 +191,84 @@ constexpr std::array keys{
     Key{T::time, "accuracy", K::later, "The wished-for error, from which elements follow."},
 
     Key{T::method, "family", K::choice,
-        "lobatto: space-time elements on Gauss-Lobatto points, order 2 degree at their ends; midpoint and "
-        "endpoint: classical stepping, order 2 and 1."}
-        .otherwise("lobatto").one_of("lobatto|midpoint|endpoint", "mixed"),
+        "lobatto: space-time elements on Gauss-Lobatto points, order 2 degree at their ends; mixed: the "
+        "elements of Hesch, Glas and Schuss, with positions, momenta and multipliers as separate fields "
+        "and weak rigidity, all solved at once or by blocks; midpoint and endpoint: classical stepping, "
+        "order 2 and 1."}
+        .otherwise("lobatto").one_of("lobatto|mixed|midpoint|endpoint"),
     Key{T::method, "degree", K::integer,
         "Of the polynomial in each element."}.otherwise("4").only_for("lobatto").within({1, 16}),
+    Key{T::method, "degree", K::integer,
+        "Of polynomials or splines."}.otherwise("2").only_for("mixed").within({1, 8}),
+    Key{T::method, "basis", K::choice,
+        "Of all fields. lagrange: continuous polynomials with equidistant nodes; bspline: as smooth as the "
+        "knots allow; nurbs: likewise, with `weights`."}
+        .otherwise("lagrange").only_for("mixed").one_of("lagrange|bspline|nurbs"),
+    Key{T::method, "momentum", K::choice,
+        "How the momentum at the ends enters. natural: as the boundary term of Hamilton's law, which keeps "
+        "the balances of momentum to rounding; strong: as a value of the momentum field."}
+        .otherwise("natural").only_for("mixed").one_of("natural|strong"),
+    Key{T::method, "multipliers", K::choice,
+        "Functions of the multipliers. equal: those of the positions; lower: one degree less."}
+        .otherwise("equal").only_for("mixed").one_of("equal|lower"),
+    Key{T::method, "end_multiplier", K::choice,
+        "The multiplier where the natural momentum of an end is defined, with equal multipliers: smooth, of "
+        "one degree less in that element, or zero, which holds the order of every degree down to 4."}
+        .otherwise("smooth").only_for("mixed").one_of("smooth|zero"),
+    Key{T::method, "gauss_points", K::integer,
+        "Of the quadrature in each element. Default: as many as integrate all polynomials exactly."}
+        .only_for("mixed").within({1, 64}),
+    Key{T::method, "block", K::integer_or_choice,
+        "Number of elements that are solved at once; positions and momenta at the end of a block begin the "
+        "next. Conditions at the end need all."}
+        .otherwise("all").only_for("mixed").one_of("all").within({1, max_elements}),
+    Key{T::method, "interfaces", K::choice,
+        "Between blocks. carry: positions and momenta as they are, with what they violate; project: moved "
+        "to the nearest that fulfil rigidity and joints, so that the motion jumps a little."}
+        .otherwise("carry").only_for("mixed").one_of("carry|project"),
+    Key{T::method, "first_guess", K::choice,
+        "Where Newton begins if the state is given at one end. march: from lobatto(2) over the same "
+        "elements, which the motion is compared with in the end; steady: straight on, for short blocks."}
+        .otherwise("march").only_for("mixed").one_of("march|steady"),
+    Key{T::method, "knots", K::list,
+        "Of splines: from `start` to `end`, ascending, the first and the last degree + 1 times, others up "
+        "to degree times. They make the elements: output times and breaks of loads must be among them. "
+        "Default: as smooth as possible on equal elements, with kinks where loads break."}
+        .in("s").only_for("mixed"),
+    Key{T::method, "weights", K::list,
+        "Of NURBS, positive, one for each function: as many as knots, less degree + 1."}.only_for("mixed"),
+    Key{T::method, "linear_solver", K::choice,
+        "Library for the sparse systems; umfpack is an option when livens is built."}
+        .otherwise("eigen").only_for("mixed").one_of("eigen|umfpack"),
     Key{T::method, "tolerance", K::number,
         "Newton stops when its estimated error is below this fraction of the motion in the element."}
         .otherwise("1e-12").within({0, 0.1, true}),
     Key{T::method, "max_iterations", K::integer,
-        "Of Newton in one element."}.otherwise("30").within({1, 1000}),
-    Key{T::method, "block", K::later, "Number of elements that are solved together."},
+        "Of Newton in one element; mixed: in one block."}.otherwise("30").within({1, 1000}),
+    Key{T::method, "condition", K::truth,
+        "Whether condition numbers are computed: of the whole matrix of the last block (mixed), of that of "
+        "all elements, reduced to the free motions (lobatto). They take tens to hundreds of solutions more."}
+        .otherwise("false"),
 
+    Key{T::start, "given", K::choice,
+        "state: positions and velocities; positions or momenta: those alone, the others are first guesses; "
+        "nothing: all are."}.otherwise("state").one_of("state|positions|momenta|nothing"),
     Key{T::start, "initial", K::choice,
         "check: refuse it, naming the joint; project: move positions and velocities to the nearest that "
         "fit, in the metric of the masses."}.otherwise("check").one_of("check|project"),
+
+    Key{T::end, "given", K::choice,
+        "Likewise, of `[body.end]`."}.otherwise("nothing").one_of("state|positions|momenta|nothing"),
+
+    Key{T::body_end, "position", K::vector3,
+        "Of the reference point, in the world."}.in("m").otherwise("[0, 0, 0]"),
+    Key{T::body_end, "directors", K::triple, "Body axes: [d1, d2, d3], each in world axes."},
+    Key{T::body_end, "quaternion", K::vector4, "Orientation (w, x, y, z), body to world, of norm 1."},
+    Key{T::body_end, "rotation_vector", K::vector3, "Orientation: axis times angle."}.in("rad"),
+    Key{T::body_end, "velocity", K::vector3,
+        "Of the reference point, world axes."}.in("m/s").otherwise("[0, 0, 0]"),
+    Key{T::body_end, "angular_velocity", K::vector3, "World axes."}.in("rad/s"),
+    Key{T::body_end, "angular_velocity_body", K::vector3, "Body axes."}.in("rad/s"),
 };
 
 std::string_view count_text(KeyType type)
@@ -267,6 +342,9 @@ std::string describe_type(const Key& key)
 {
     switch (key.type) {
     case K::flag: return "true";
+    case K::truth: return "true or false";
+    case K::integer_or_choice:
+        return "a whole number, " + key.range.text() + ", or " + quoted_alternatives(key.choices);
     case K::text: return "a text";
     case K::choice: return quoted_alternatives(key.choices);
     case K::names: return "two texts";

@@ -26,12 +26,16 @@ enum class TableId : std::uint8_t {
     torque_table,
     time,
     method,
-    start
+    start,
+    end,
+    body_end
 };
 
 enum class KeyType : std::uint8_t {
-    flag,   ///< true
+    flag,    ///< true
+    truth,   ///< true or false
     integer,
+    integer_or_choice,   ///< a whole number or one of `choices`
     number,
     text,
     choice,   ///< one of `choices`

@@ -17,7 +17,8 @@ void write_number(JsonWriter& json, const Key& key)
     constexpr double infinity = std::numeric_limits<double>::infinity();
     const bool takes_unit = !key.unit.empty();
     if (takes_unit) json.begin_object().key("anyOf").begin_array();
-    json.begin_object().member("type", key.type == KeyType::integer ? "integer" : "number");
+    const bool is_whole = key.type == KeyType::integer || key.type == KeyType::integer_or_choice;
+    json.begin_object().member("type", is_whole ? "integer" : "number");
     if (key.range.low > -infinity)
         json.member(key.range.above ? "exclusiveMinimum" : "minimum", key.range.low);
     if (key.range.high < infinity) json.member("maximum", key.range.high);
@@ -67,6 +68,8 @@ void write_type(JsonWriter& json, const Key& key)
     const auto list = [&] { write_array(json, key, 0, false); };
     switch (key.type) {
     case KeyType::flag: json.begin_object().member("const", true).end_object(); break;
+    case KeyType::truth: json.begin_object().member("type", "boolean").end_object(); break;
+    case KeyType::integer_or_choice: write_either(json, number, [&] { write_choice(json, key); }); break;
     case KeyType::integer:
     case KeyType::number: number(); break;
     case KeyType::text: json.begin_object().member("type", "string").end_object(); break;
@@ -101,7 +104,7 @@ std::string documentation(const Key& key)
     return text;
 }
 
-/// Entries of one name for different types differ in units only, which JSON Schema does not see.
+/// Entries of one name for different types: the first stands for all of them.
 bool is_repeated(const Key& key)
 {
     for (const Key& other : schema_keys()) {
@@ -123,30 +126,52 @@ bool belongs(const Key& key, std::string_view type)
 void write_property(JsonWriter& json, const Key& key)
 {
     json.key(key.name).begin_object().member("description", documentation(key));
-    json.key("allOf").begin_array();
-    write_type(json, key);
+    json.key("anyOf").begin_array();   // what each type takes; write_conditions() says which
+    for (const Key& other : schema_keys())
+        if (other.table == key.table && other.name == key.name) write_type(json, other);
     json.end_array().end_object();
 }
 
-/// What a type needs beyond what all need: { if: { type is "rod" }, then: { required: [...] } }.
+/// Whether another entry of this name, for other types, allows other numbers. Units JSON Schema does not see.
+bool has_own_range(const Key& key)
+{
+    for (const Key& other : schema_keys())
+        if (other.table == key.table && other.name == key.name &&
+            (other.range.low != key.range.low || other.range.high != key.range.high))
+            return true;
+    return false;
+}
+
+/// One type: what it needs beyond what all need, what it narrows, what it has not.
+void write_condition(JsonWriter& json, TableId table, const Key& chooser, std::string_view type)
+{
+    json.begin_object().key("if").begin_object().key("properties").begin_object();
+    json.key(chooser.name).begin_object().member("const", type).end_object().end_object();
+    if (chooser.fallback != type)   // where the key is left out, the condition of the default holds
+        json.key("required").begin_array().value(chooser.name).end_array();
+    json.end_object().key("then").begin_object().key("required").begin_array();
+    for (const Key& key : schema_keys())
+        if (key.table == table && key.required && is_listed(key.only, type)) json.value(key.name);
+    json.end_array().key("properties").begin_object();
+    for (const Key& key : schema_keys()) {
+        if (key.table != table) continue;
+        if (is_listed(key.only, type) && has_own_range(key)) {
+            json.key(key.name);
+            write_type(json, key);
+        }
+        if (!is_repeated(key) && !belongs(key, type)) json.key(key.name).raw("false");
+    }
+    json.end_object().end_object().end_object();
+}
+
+/// { if: { type is "rod" }, then: { required: [...] } } for every type.
 void write_conditions(JsonWriter& json, TableId table, std::string_view discriminator)
 {
     json.key("allOf").begin_array();
     for (const Key& chooser : schema_keys()) {
         if (chooser.table != table || chooser.name != discriminator) continue;
-        for (const std::string_view type : split_alternatives(chooser.choices)) {
-            json.begin_object().key("if").begin_object().key("properties").begin_object();
-            json.key(discriminator).begin_object().member("const", type).end_object().end_object();
-            json.key("required").begin_array().value(discriminator).end_array().end_object();
-            json.key("then").begin_object().key("required").begin_array();
-            for (const Key& key : schema_keys())
-                if (key.table == table && key.required && is_listed(key.only, type)) json.value(key.name);
-            json.end_array().key("properties").begin_object();
-            for (const Key& key : schema_keys())
-                if (key.table == table && !is_repeated(key) && !belongs(key, type))
-                    json.key(key.name).raw("false");
-            json.end_object().end_object().end_object();
-        }
+        for (const std::string_view type : split_alternatives(chooser.choices))
+            write_condition(json, table, chooser, type);
     }
     json.end_array();
 }
@@ -162,7 +187,7 @@ void write_members(JsonWriter& json, TableId table)
         if (key.table == table && key.required && key.only.empty()) json.value(key.name);
     json.end_array();
     const std::string_view discriminator = schema_table(table).discriminator;
-    if (discriminator == "type") write_conditions(json, table, discriminator);
+    if (!discriminator.empty()) write_conditions(json, table, discriminator);
 }
 
 void write_table(JsonWriter& json, TableId table)
@@ -179,7 +204,8 @@ std::string markdown_row(const Key& key)
     std::string fallback = key.required           ? "**needed**"
                            : key.fallback.empty() ? ""
                                                   : "`" + std::string(key.fallback) + "`";
-    if (key.type == KeyType::choice && !key.fallback.empty())
+    const bool is_word = key.type == KeyType::choice || key.type == KeyType::integer_or_choice;
+    if (is_word && !key.fallback.empty())
         fallback = "`\"" + std::string(key.fallback) + "\"`";
     return "| `" + std::string(key.name) + "` | " + kind + " | " + fallback + " | " + std::string(key.doc) +
            " |\n";
@@ -231,7 +257,8 @@ What is wrong with a file is said with line and column, all of it in one run (a 
 codes are explained in [diagnostics.md](diagnostics.md). Nothing is ignored: unknown keys are errors.
 
 Limits: 16 MiB, 2 000 000 values, nesting of 64, 1000 bodies, joints and loads each, 10 000 000 time elements,
-and a motion of 8 GiB.
+a motion of 8 GiB, and with the family mixed 8 GiB for the system of one block, at 72 kB a rigid body and time
+node: 100 000 linear elements of one body fit, and any number of them in blocks.
 )";
 
 }   // namespace

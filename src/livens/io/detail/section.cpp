@@ -30,7 +30,9 @@ public:
         const Node& node = *value_.node;
         switch (key.type) {
         case KeyType::flag: value_.is_valid = read_flag(node); break;
+        case KeyType::truth: value_.is_valid = read_truth(node); break;
         case KeyType::integer: value_.is_valid = read_integer(node); break;
+        case KeyType::integer_or_choice: value_.is_valid = read_integer_or_choice(node); break;
         case KeyType::number: value_.is_valid = read_number(node); break;
         case KeyType::text: value_.is_valid = read_text(node, value_.text); break;
         case KeyType::choice: value_.is_valid = read_choice(node); break;
@@ -83,6 +85,21 @@ private:
         findings_.error(node.place, "out-of-range", subject() + " can only be true",
                         {"", "leave the key out"});
         return false;
+    }
+
+    bool read_truth(const Node& node)
+    {
+        if (node.kind != Kind::truth) return wrong_type(node);
+        value_.numbers.push_back(node.number);
+        return true;
+    }
+
+    bool read_integer_or_choice(const Node& node)
+    {
+        if (node.kind == Kind::integer) return accept(node, node.number);
+        if (node.kind != Kind::text || !is_listed(value_.key->choices, node.text())) return wrong_type(node);
+        value_.text = node.text();
+        return true;
     }
 
     bool read_integer(const Node& node)

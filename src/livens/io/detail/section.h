@@ -21,7 +21,7 @@ struct Value {
     const Node* node = nullptr;
     Place key_place;
     bool is_valid = false;
-    std::vector<double> numbers;      ///< SI; rows one after the other
+    std::vector<double> numbers;      ///< SI; rows one after the other; truth: 0 or 1
     int n_rows = 0;                   ///< 0: a plain number
     std::string text;                 ///< text, choice
     std::vector<std::string> texts;   ///< names
@@ -49,6 +49,7 @@ public:
     // Values, or the schema's fallback (zero without one) where the key is missing or not valid.
     double number(std::string_view key) const;
     int integer(std::string_view key) const { return static_cast<int>(number(key)); }
+    bool truth(std::string_view key) const { return number(key) != 0; }
     std::string text(std::string_view key) const;
     Vector3 vector(std::string_view key) const { return row(key, 0); }
     Vector3 row(std::string_view key, int i) const;

@@ -8,6 +8,7 @@
 
 #include "livens/base/error.h"
 #include "livens/spacetime/lobatto/element.h"
+#include "livens/spacetime/lobatto/whole_matrix.h"
 
 namespace livens {
 
@@ -93,8 +94,8 @@ private:
         const int nb = model_.n_bodies(), p = rule_.degree;
         m.n_bodies = nb;
         m.n_rows = model_.n_rows();
-        m.X = {12 * nb, p, true, {}};
-        m.multipliers = {m.n_rows, p, false, {}};
+        m.X = {12 * nb, p, true, {}, {}};
+        m.multipliers = {m.n_rows, p, false, {}, {}};
         m.order_at_ends = 2 * p;
         m.dense_order_X = p + 1;
         m.dense_order_V = p;
@@ -332,7 +333,10 @@ private:
 Solution march_lobatto(const Model& model, const Assembly& assembly, const TimeMesh& mesh, int degree,
                        const SolveOptions& options)
 {
-    return March(model, assembly, mesh, degree, options).run(assembly);
+    Solution solution = March(model, assembly, mesh, degree, options).run(assembly);
+    if (options.condition && solution.report.converged())
+        measure_condition(model, solution.motion, solution.report);
+    return solution;
 }
 
 }   // namespace livens

@@ -1,0 +1,119 @@
+// [start], [end] and [body.end]: what is known at the ends of time.
+#include "livens/io/detail/builder.h"
+
+namespace livens {
+
+namespace {
+
+Given read_given(const Section* section, Given otherwise)
+{
+    if (section == nullptr) return otherwise;
+    const std::string given = section->text("given");
+    if (given == "nothing") return Given::nothing;
+    if (given == "positions") return Given::positions;
+    return given == "momenta" ? Given::momenta : Given::state;
+}
+
+bool check_end_of(const Section& end, bool is_point, Findings& findings)
+{
+    bool is_clean = end.is_valid() && check_pose(end, findings);
+    if (is_point)
+        is_clean = refuse_keys(end,
+                               {"directors", "quaternion", "rotation_vector", "angular_velocity",
+                                "angular_velocity_body"},
+                               "point-mass", "a point mass has no orientation", findings) &&
+                   is_clean;
+    return is_clean;
+}
+
+/// The core knows one state of a body: what it says of `body[a].directors` is meant for the end.
+InputError at_the_end(const InputError& error)
+{
+    Complaint complaint = error.complaint();
+    const std::size_t close = complaint.path.find(']');
+    if (complaint.path.starts_with("body[") && close != std::string::npos)
+        complaint.path.insert(close + 1, ".end");
+    complaint.message += ", at the end of time";
+    return InputError(std::move(complaint));
+}
+
+/// X and V of a body at the end of time.
+void read_end_of(Builder& builder, const std::string& name, const Section& end, State& state)
+{
+    const int index = builder.bodies()[name].index;
+    const bool is_point = builder.is_point(index);
+    if (!check_end_of(end, is_point, builder.findings())) return;
+    const std::string path = "body[" + name + "].end";
+    builder.remember(path, end);
+    builder.guard(path, [&] {
+        try {
+            const Placement placement = read_placement(end);
+            // Masses do not matter here, so any that are possible will do.
+            const Body body = is_point ? point_mass(name, 1, placement.position, placement.velocity)
+                                       : rigid_body(name, {1, {}, identity<3>()}, placement);
+            state.X[static_cast<std::size_t>(index)] = body.X;
+            state.V[static_cast<std::size_t>(index)] = body.V;
+        } catch (const InputError& error) {
+            throw at_the_end(error);
+        }
+    });
+}
+
+void refuse_end_of(const Section& body, Findings& findings)
+{
+    refuse_keys(body, {"end"}, "boundary-conditions", "[end] does not say that anything is given there",
+                findings);
+}
+
+}   // namespace
+
+void read_boundary(Builder& builder, Boundary& boundary)
+{
+    const Section* const start = only_section(builder.top(), "start");
+    const Section* const end = only_section(builder.top(), "end");
+    boundary.at_start = read_given(start, Given::state);
+    boundary.at_end = read_given(end, Given::nothing);
+    if (end != nullptr && !end->is_valid()) return;   // then bodies cannot be judged
+    const bool is_given = boundary.at_end != Given::nothing;
+    if (is_given) {
+        boundary.end.X.resize(builder.model().bodies().size());
+        boundary.end.V.resize(builder.model().bodies().size());
+    }
+    for (const Section& body : builder.top().sections("body")) {
+        if (!is_given) {
+            refuse_end_of(body, builder.findings());
+            continue;
+        }
+        if (!body.has("end")) {
+            builder.findings().error(body.place(), "missing-key", body.label() + " lacks 'end'",
+                                     {"[end] says that something is given at the end of time, which then "
+                                      "concerns every body",
+                                      "add a table [body.end] below it"});
+            continue;
+        }
+        const Value* name = body.find("name");
+        if (name == nullptr || !builder.bodies()[name->text].is_built) continue;   // told already
+        for (const Section& at_end : body.sections("end"))
+            read_end_of(builder, name->text, at_end, boundary.end);
+    }
+}
+
+void check_ends(Builder& builder, const Boundary& boundary, StartPolicy policy)
+{
+    const auto close = [&](State state, Given given) {
+        if (given == Given::nothing) return;
+        if (given == Given::positions)
+            for (Matrix34& V : state.V) V = {};   // a guess, which need not fit
+        assemble(builder.model(), state, policy);
+    };
+    builder.guard("start", [&] { close(boundary.start, boundary.at_start); });
+    builder.guard("end", [&] {
+        try {
+            close(boundary.end, boundary.at_end);
+        } catch (const InputError& error) {
+            throw at_the_end(error);
+        }
+    });
+}
+
+}   // namespace livens

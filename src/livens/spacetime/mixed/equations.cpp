@@ -1,0 +1,304 @@
+#include "livens/spacetime/mixed/equations.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <utility>
+
+#include "livens/time/quadrature.h"
+
+namespace livens::mixed {
+
+namespace {
+
+/// out += sum_a weights[a] * (row first + a of a table with n columns).
+void combine(const std::vector<double>& table, int first, int n, std::span<const double> weights, double* out)
+{
+    for (std::size_t a = 0; a < weights.size(); ++a) {
+        const double* row =
+            table.data() + (static_cast<std::size_t>(first) + a) * static_cast<std::size_t>(n);
+        for (int i = 0; i < n; ++i) out[i] += weights[a] * row[i];
+    }
+}
+
+const std::string none;
+
+}   // namespace
+
+Equations::Equations(Setup setup, const Numbering& numbering)
+    : setup_(std::move(setup)), numbering_(numbering)
+{
+    tabulate();
+    if (setup_.start == Mixed::Start::natural) tie_ends();
+    const Mechanism& m = *setup_.mechanism;
+    for (int l = 0; l < static_cast<int>(m.model.loads().size()); ++l) {
+        const Load& load = m.model.loads()[l];
+        if (!load.depends_on_X && !load.depends_on_V) continue;
+        for (int by = 0; by < 2; ++by)
+            for (int of = 0; of < 2; ++of) {
+                if (load.bodies[by] == world || load.bodies[of] == world) continue;
+                load_blocks_.push_back({l, by, of, {}, {}});
+            }
+    }
+}
+
+void Equations::tabulate()
+{
+    const Quadrature rule = gauss(setup_.gauss_points);
+    gauss_places_ = rule.points;
+    gauss_weights_ = rule.weights;
+    const TimeSpace& space = setup_.space;
+    const std::size_t n_points = static_cast<std::size_t>(space.n_elements()) * rule.points.size();
+    M_.resize(n_points * n_local());
+    D_.resize(M_.size());
+    L_.resize(n_points * n_local_multipliers());
+    std::vector<double> unused(static_cast<std::size_t>(n_local_multipliers()));
+    std::vector<int> n_elements(static_cast<std::size_t>(space.size()), 0);
+    lengths_.assign(n_elements.size(), 0.0);
+    centres_.assign(n_elements.size(), 0.0);
+    for (int e = 0; e < space.n_elements(); ++e) {
+        for (int g = 0; g < n_gauss(); ++g) {
+            const std::size_t at = static_cast<std::size_t>(e) * rule.points.size() + g;
+            const auto part = [&](std::vector<double>& table, int n) {
+                return std::span<double>(table).subspan(at * n, n);
+            };
+            space.evaluate(e, rule.points[g], part(M_, n_local()), part(D_, n_local()));
+            setup_.multipliers.evaluate(e, rule.points[g], part(L_, n_local_multipliers()), unused);
+        }
+        for (int a = 0; a < n_local(); ++a) {
+            ++n_elements[space.first(e) + a];
+            lengths_[space.first(e) + a] += space.length(e);
+            centres_[space.first(e) + a] += space.ends()[e] + 0.5 * space.length(e);
+        }
+    }
+    for (std::size_t A = 0; A < n_elements.size(); ++A) {
+        lengths_[A] /= n_elements[A];
+        centres_[A] /= n_elements[A];
+    }
+}
+
+/// Where a row defines the momentum, the multiplier of its function is no unknown. It is tied to the others
+/// of its element so that the multipliers are of degree p - 1 there: their p-th derivative vanishes.
+void Equations::tie_ends()
+{
+    const int p = setup_.multipliers.degree(), n = numbering_.n_multiplier_functions();
+    for (const bool at_end : {false, true}) {
+        const int frozen = at_end ? n - 1 : 0, first = at_end ? n - 1 - p : 0;
+        if (numbering_.lambda(frozen) >= 0) continue;
+        if (setup_.end_multiplier == Mixed::EndMultiplier::zero) {
+            ties_.push_back({frozen, {}});
+            continue;
+        }
+        const std::vector<double> derivative =
+            setup_.multipliers.highest_derivative(at_end ? setup_.multipliers.n_elements() - 1 : 0);
+        Tie tie{frozen, {}};
+        for (int a = 0; a <= p; ++a)
+            if (first + a != frozen)
+                tie.terms.emplace_back(first + a, -derivative[a] / derivative[frozen - first]);
+        ties_.push_back(tie);
+    }
+}
+
+void Equations::tie(Fields& fields) const
+{
+    const std::size_t n = static_cast<std::size_t>(setup_.mechanism->n_rows());
+    for (const Tie& tie : ties_)
+        for (std::size_t k = 0; k < n; ++k) {
+            double sum = 0;
+            for (const auto& [B, factor] : tie.terms) sum += factor * fields.lambda[B * n + k];
+            fields.lambda[tie.function * n + k] = sum;
+        }
+}
+
+Fields Equations::zero_fields() const
+{
+    const Mechanism& m = *setup_.mechanism;
+    const std::size_t n = static_cast<std::size_t>(m.n_coordinates);
+    Fields fields;
+    fields.X0.assign(n, 0.0);
+    fields.x.assign(n * setup_.space.size(), 0.0);
+    fields.P.assign(n * setup_.space.size(), 0.0);
+    fields.lambda.assign(static_cast<std::size_t>(m.n_rows()) * setup_.multipliers.size(), 0.0);
+    return fields;
+}
+
+void Equations::sample(const Fields& fields, int e, int g)
+{
+    const Mechanism& m = *setup_.mechanism;
+    const int first = setup_.space.first(e), n = m.n_coordinates;
+    const std::span<const double> values(M(e, g), n_local()), rates(D(e, g), n_local());
+    sample_.x = fields.X0;
+    sample_.v.assign(n, 0.0);
+    sample_.p.assign(n, 0.0);
+    sample_.lambda.assign(m.n_rows(), 0.0);
+    combine(fields.x, first, n, values, sample_.x.data());
+    combine(fields.x, first, n, rates, sample_.v.data());
+    combine(fields.P, first, n, values, sample_.p.data());
+    if (setup_.start == Mixed::Start::strong) {
+        sample_.p_rate.assign(n, 0.0);
+        combine(fields.P, first, n, rates, sample_.p_rate.data());
+    }
+    combine(fields.lambda, setup_.multipliers.first(e), m.n_rows(),
+            {L(e, g), static_cast<std::size_t>(n_local_multipliers())}, sample_.lambda.data());
+    m.unstack(sample_.x.data(), sample_.X);
+    m.unstack(sample_.v.data(), sample_.V);
+}
+
+const std::string& Equations::residual(const Fields& fields, std::vector<double>& r)
+{
+    const Mechanism& m = *setup_.mechanism;
+    const std::size_t n = static_cast<std::size_t>(m.n_coordinates);
+    const std::string* bad = &none;
+    raw_dP_.assign(n * setup_.space.size(), 0.0);
+    raw_dX_.assign(n * setup_.space.size(), 0.0);
+    raw_dlambda_.assign(static_cast<std::size_t>(m.n_rows()) * setup_.multipliers.size(), 0.0);
+    for (int e = 0; e < setup_.space.n_elements(); ++e)
+        for (int g = 0; g < n_gauss(); ++g) {
+            sample(fields, e, g);
+            const std::string& load = m.forces(time(e, g), sample_.X, sample_.V, sample_.lambda, sample_.F);
+            if (!load.empty()) bad = &load;
+            add_rows(e, g);
+        }
+    r.assign(static_cast<std::size_t>(size()), 0.0);
+    const auto take = [&r](int to, const std::vector<double>& raw, int A, int count) {
+        if (to >= 0) std::copy_n(raw.data() + static_cast<std::size_t>(A) * count, count, r.data() + to);
+    };
+    for (int A = 0; A < setup_.space.size(); ++A) {
+        take(numbering_.row_dP(A), raw_dP_, A, m.n_coordinates);
+        take(numbering_.row_dX(A), raw_dX_, A, m.n_coordinates);
+    }
+    for (int A = 0; A < setup_.multipliers.size(); ++A)
+        take(numbering_.row_dlambda(A), raw_dlambda_, A, m.n_rows());
+    add_boundary(fields, r);
+    return *bad;
+}
+
+/// What one Gauss point adds to all rows.
+void Equations::add_rows(int e, int g)
+{
+    const Mechanism& m = *setup_.mechanism;
+    const int first = setup_.space.first(e);
+    const double w = weight(e, g);
+    const bool is_natural = setup_.start == Mixed::Start::natural;
+    for (int b = 0; b < m.n_bodies(); ++b) {
+        Matrix34 P{};
+        std::copy_n(sample_.p.data() + m.first[b], m.n_numbers(b), P.a);
+        const Matrix34 slip = sample_.V[b] - P * m.inverse_masses[b];
+        for (int a = 0; a < n_local(); ++a) {
+            const double value = w * M(e, g)[a], rate = w * D(e, g)[a];
+            const std::size_t at = static_cast<std::size_t>(first + a) * m.n_coordinates + m.first[b];
+            for (int c = 0; c < m.n_numbers(b); ++c) {
+                raw_dP_[at + c] += value * slip.a[c];
+                const double inertia = is_natural ? -rate * P.a[c] : value * sample_.p_rate[m.first[b] + c];
+                raw_dX_[at + c] += inertia - value * sample_.F[b].a[c];
+            }
+        }
+    }
+    for (int k = 0; k < m.n_rows(); ++k) {
+        const double phi = w * m.value(k, sample_.X);
+        for (int a = 0; a < n_local_multipliers(); ++a) {
+            const int A = setup_.multipliers.first(e) + a;
+            raw_dlambda_[static_cast<std::size_t>(A) * m.n_rows() + k] += L(e, g)[a] * phi;
+        }
+    }
+}
+
+/// P at an end where it is given; X there is X0 + x_A.
+std::vector<Matrix34> Equations::given_momentum(const Fields& fields, bool at_end) const
+{
+    const EndMomentum& given = at_end ? setup_.at_end : setup_.at_start;
+    if (given.turning.empty()) return given.fixed;
+    const std::vector<Matrix34> X = end_position(fields, at_end);
+    std::vector<Matrix34> P;
+    for (std::size_t b = 0; b < X.size(); ++b) P.push_back(given.turning[b].at(X[b]));
+    return P;
+}
+
+std::vector<Matrix34> Equations::end_position(const Fields& fields, bool at_end) const
+{
+    const Mechanism& m = *setup_.mechanism;
+    const std::size_t A = at_end ? static_cast<std::size_t>(setup_.space.size()) - 1 : 0;
+    std::vector<double> x = fields.X0;
+    for (int i = 0; i < m.n_coordinates; ++i) x[i] += fields.x[A * m.n_coordinates + i];
+    std::vector<Matrix34> X;
+    m.unstack(x.data(), X);
+    return X;
+}
+
+/// Natural start: -P(0) in row 0 and P(T) in row n.
+void Equations::add_boundary(const Fields& fields, std::vector<double>& r) const
+{
+    if (setup_.start != Mixed::Start::natural) return;
+    const Mechanism& m = *setup_.mechanism;
+    std::vector<double> p(static_cast<std::size_t>(m.n_coordinates));
+    for (const bool at_end : {false, true}) {
+        const int row = numbering_.row_dX(at_end ? setup_.space.size() - 1 : 0);
+        if (row < 0) continue;
+        m.stack(given_momentum(fields, at_end), p.data());
+        for (int i = 0; i < m.n_coordinates; ++i) r[row + i] += at_end ? p[i] : -p[i];
+    }
+}
+
+std::vector<Matrix34> Equations::end_momentum(const Fields& fields, bool at_end) const
+{
+    const Mechanism& m = *setup_.mechanism;
+    const int A = at_end ? setup_.space.size() - 1 : 0;
+    const std::size_t at = static_cast<std::size_t>(A) * m.n_coordinates;
+    std::vector<Matrix34> P;
+    if (setup_.start == Mixed::Start::strong) {
+        m.unstack(fields.P.data() + at, P);
+        return P;
+    }
+    if (numbering_.row_dX(A) >= 0) return given_momentum(fields, at_end);
+    std::vector<double> p(raw_dX_.begin() + at, raw_dX_.begin() + at + m.n_coordinates);
+    if (at_end)
+        for (double& value : p) value = -value;
+    m.unstack(p.data(), P);
+    return P;
+}
+
+void Equations::add(Fields& fields, const std::vector<double>& increment, double factor) const
+{
+    const Mechanism& m = *setup_.mechanism;
+    const auto move = [&](std::vector<double>& values, int A, int from, int count) {
+        if (from < 0) return;
+        double* to = values.data() + static_cast<std::size_t>(A) * count;
+        for (int i = 0; i < count; ++i) to[i] += factor * increment[from + i];
+    };
+    for (int A = 0; A < setup_.space.size(); ++A) {
+        move(fields.x, A, numbering_.X(A), m.n_coordinates);
+        move(fields.P, A, numbering_.P(A), m.n_coordinates);
+    }
+    for (int A = 0; A < setup_.multipliers.size(); ++A)
+        move(fields.lambda, A, numbering_.lambda(A), m.n_rows());
+    tie(fields);
+}
+
+void Equations::evaluate(const TimeSpace& space, const std::vector<double>& coefficients, int n, int element,
+                         double s, double* out) const
+{
+    std::array<double, 9> values{}, rates{};
+    const std::size_t count = static_cast<std::size_t>(space.degree()) + 1;
+    space.evaluate(element, s, {values.data(), count}, {rates.data(), count});
+    combine(coefficients, space.first(element), n, {values.data(), count}, out);
+}
+
+void Equations::evaluate_X(const Fields& fields, int element, double s, double* X) const
+{
+    std::copy(fields.X0.begin(), fields.X0.end(), X);
+    evaluate(setup_.space, fields.x, setup_.mechanism->n_coordinates, element, s, X);
+}
+
+void Equations::evaluate_P(const Fields& fields, int element, double s, double* P) const
+{
+    std::fill_n(P, setup_.mechanism->n_coordinates, 0.0);
+    evaluate(setup_.space, fields.P, setup_.mechanism->n_coordinates, element, s, P);
+}
+
+void Equations::evaluate_multipliers(const Fields& fields, int element, double s, double* lambda) const
+{
+    std::fill_n(lambda, setup_.mechanism->n_rows(), 0.0);
+    evaluate(setup_.multipliers, fields.lambda, setup_.mechanism->n_rows(), element, s, lambda);
+}
+
+}   // namespace livens::mixed

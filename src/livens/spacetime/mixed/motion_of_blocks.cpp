@@ -1,0 +1,184 @@
+#include "livens/spacetime/mixed/motion_of_blocks.h"
+
+#include <algorithm>
+
+#include "livens/multibody/projection.h"
+#include "livens/time/quadrature.h"
+
+namespace livens::mixed {
+
+namespace {
+
+/// Gauss-Lobatto points of a field's degree; the middle for degree 0.
+std::vector<double> nodes_of(int degree)
+{
+    return degree == 0 ? std::vector<double>{0.5} : gauss_lobatto(degree + 1).points;
+}
+
+/// Order of X and momenta at the ends of blocks, as measured (docs/theory.md, "The elements of the paper").
+int order_of(const Mixed& method)
+{
+    const int p = method.degree;
+    const bool is_spline = method.basis != Mixed::Basis::lagrange;
+    const bool is_natural = method.start == Mixed::Start::natural;
+    const bool is_equal = method.multipliers == Mixed::Multipliers::equal;
+    if (p == 1 || method.gauss_points == p) return 2;
+    if (is_natural && is_equal) {
+        if (method.end_multiplier == Mixed::EndMultiplier::smooth) return p + 1;
+        return is_spline || p == 2 ? 3 : 4;
+    }
+    if (is_spline) return p == 2 ? 3 : p;
+    return p % 2 == 0 ? p : p + 1;
+}
+
+}   // namespace
+
+MotionOfBlocks::MotionOfBlocks(const Model& model, const Mechanism& mechanism, const TimeMesh& mesh,
+                               const Mixed& method)
+    : model_(model), mechanism_(mechanism), mesh_(mesh), method_(method)
+{}
+
+std::vector<double> MotionOfBlocks::to_columns(const double* coordinates) const
+{
+    std::vector<double> columns(12 * static_cast<std::size_t>(mechanism_.n_bodies()), 0.0);
+    for (int b = 0; b < mechanism_.n_bodies(); ++b)
+        std::copy_n(coordinates + mechanism_.first[b], mechanism_.n_numbers(b), columns.begin() + 12 * b);
+    return columns;
+}
+
+void MotionOfBlocks::add(int first, const Equations& equations, const Fields& fields)
+{
+    Block& block = blocks_[first];
+    const TimeSpace& space = equations.setup().space;
+    block.n_elements = space.n_elements();
+    gauss_points_ = equations.setup().gauss_points;
+    block.P_start = equations.end_momentum(fields, false);
+    block.P_end = equations.end_momentum(fields, true);
+    std::vector<double> numbers(static_cast<std::size_t>(mechanism_.n_coordinates));
+    std::vector<double> lambda(static_cast<std::size_t>(mechanism_.n_rows()));
+    const auto append = [](std::vector<double>& to, const std::vector<double>& from) {
+        to.insert(to.end(), from.begin(), from.end());
+    };
+    for (int e = 0; e < block.n_elements; ++e) {
+        for (const double s : nodes_of(space.degree())) {
+            equations.evaluate_X(fields, e, s, numbers.data());
+            append(block.X, to_columns(numbers.data()));
+            equations.evaluate_P(fields, e, s, numbers.data());
+            append(block.P, to_columns(numbers.data()));
+            if (space.is_rational()) block.denominators.push_back(space.denominator(e, s));
+        }
+        for (const double s : nodes_of(equations.setup().multipliers.degree())) {
+            equations.evaluate_multipliers(fields, e, s, lambda.data());
+            std::vector<double> joints(static_cast<std::size_t>(model_.n_rows()), 0.0);
+            std::vector<double> rigidity(6 * static_cast<std::size_t>(model_.n_bodies()), 0.0);
+            int of_rigidity = 0, body = -1;
+            for (int k = 0; k < mechanism_.n_rows(); ++k) {
+                const Row& row = mechanism_.rows[k];
+                if (row.model_row >= 0) {
+                    joints[row.model_row] = lambda[k];
+                    continue;
+                }
+                of_rigidity = row.form.body_j == body ? of_rigidity + 1 : 0;
+                body = row.form.body_j;
+                rigidity[6 * static_cast<std::size_t>(body) + of_rigidity] = lambda[k];
+            }
+            append(block.multipliers, joints);
+            append(block.rigidity, rigidity);
+        }
+    }
+}
+
+Motion MotionOfBlocks::take(bool torn, const State& start)
+{
+    Motion motion;
+    motion.n_bodies = model_.n_bodies();
+    motion.n_rows = model_.n_rows();
+    const int p = method_.degree;
+    const int q = method_.multipliers == Mixed::Multipliers::equal ? p : p - 1;
+    motion.X = {12 * motion.n_bodies, p, !torn, {}, {}};
+    motion.P = {12 * motion.n_bodies, p, false, {}, {}};
+    motion.multipliers = {motion.n_rows, q, false, {}, {}};
+    motion.rigidity = {6 * motion.n_bodies, q, false, {}, {}};
+    motion.order_at_ends = order_of(method_);
+    motion.dense_order_X = std::min(motion.order_at_ends, p + 1);
+    motion.dense_order_V = std::min(motion.order_at_ends, p);
+    motion.constraints_hold = "weakly";
+    motion.gauss_points = gauss_points_;
+    if (blocks_.empty()) {
+        motion.mesh.ends = {start.t};
+        std::vector<Matrix34> P = start.V;
+        std::vector<double> X;
+        for (int b = 0; b < model_.n_bodies(); ++b) {
+            P[b] = start.V[b] * model_.bodies()[b].mass;
+            X.insert(X.end(), start.X[b].a, start.X[b].a + 12);
+        }
+        motion.X.values = X;
+        append_end(X.data(), P, false, motion);
+        return motion;
+    }
+    motion.mesh.ends = {mesh_.ends[blocks_.begin()->first]};
+    motion.block_ends = {0};
+    for (const auto& [first, block] : blocks_) {
+        append_block(block, motion.n_elements() == 0, motion);
+        for (int e = 0; e < block.n_elements; ++e) motion.mesh.ends.push_back(mesh_.ends[first + e + 1]);
+        motion.block_ends.push_back(motion.n_elements());
+    }
+    return motion;
+}
+
+/// The block's nodes, and its element ends but the first, which replaces that of the block before.
+void MotionOfBlocks::append_block(const Block& block, bool is_first, Motion& motion) const
+{
+    const auto append = [](const std::vector<double>& from, std::vector<double>& to) {
+        to.insert(to.end(), from.begin(), from.end());
+    };
+    const std::size_t n = static_cast<std::size_t>(motion.X.n_values), n_local = method_.degree + 1;
+    for (int e = 0; e < block.n_elements; ++e)
+        for (std::size_t a = motion.X.continuous && !(is_first && e == 0) ? 1 : 0; a < n_local; ++a) {
+            const std::size_t node = static_cast<std::size_t>(e) * n_local + a;
+            const auto from = block.X.begin() + static_cast<std::ptrdiff_t>(node * n);
+            motion.X.values.insert(motion.X.values.end(), from, from + static_cast<std::ptrdiff_t>(n));
+            if (!block.denominators.empty()) motion.X.denominators.push_back(block.denominators[node]);
+        }
+    append(block.P, motion.P.values);
+    append(block.denominators, motion.P.denominators);
+    append(block.multipliers, motion.multipliers.values);
+    append(block.rigidity, motion.rigidity.values);
+    if (method_.multipliers == Mixed::Multipliers::equal) {
+        append(block.denominators, motion.multipliers.denominators);
+        append(block.denominators, motion.rigidity.denominators);
+    }
+    const std::size_t bodies = static_cast<std::size_t>(motion.n_bodies);
+    if (!is_first) {
+        motion.momenta.resize(motion.momenta.size() - bodies);
+        motion.velocities.resize(motion.velocities.size() - bodies);
+    }
+    append_end(block.X.data(), block.P_start, true, motion);
+    for (int e = 1; e < block.n_elements; ++e) {
+        std::vector<Matrix34> P(bodies);
+        const std::size_t at = static_cast<std::size_t>(e) * n_local * n;
+        for (std::size_t b = 0; b < bodies; ++b) std::copy_n(block.P.data() + at + 12 * b, 12, P[b].a);
+        append_end(block.X.data() + at, P, false, motion);
+    }
+    append_end(block.X.data() + block.X.size() - n, block.P_end, true, motion);
+}
+
+void MotionOfBlocks::append_end(const double* X, const std::vector<Matrix34>& P, bool of_block,
+                                Motion& motion) const
+{
+    std::vector<Matrix34> places(P.size()), V(P.size());
+    for (std::size_t b = 0; b < P.size(); ++b) {
+        std::copy_n(X + 12 * b, 12, places[b].a);
+        V[b] = P[b] * mechanism_.inverse_masses[b];
+    }
+    if (of_block) {
+        std::vector<int> rows;
+        for (const Row& row : mechanism_.rows)
+            if (row.model_row >= 0) rows.push_back(row.model_row);
+        V = nearest_rates(model_, places, V, rows);
+    }
+    motion.momenta.insert(motion.momenta.end(), P.begin(), P.end());
+    motion.velocities.insert(motion.velocities.end(), V.begin(), V.end());
+}
+
+}   // namespace livens::mixed

@@ -1,0 +1,35 @@
+#include "livens/spacetime/mixed/numbering.h"
+
+#include <cassert>
+
+namespace livens::mixed {
+
+Numbering::Numbering(const Conditions& given, Mixed::Start start, Mixed::Multipliers multipliers, int n,
+                     int n_coordinates, int n_rows)
+{
+    const bool is_natural = start == Mixed::Start::natural;
+    const bool is_equal = multipliers == Mixed::Multipliers::equal;
+    const auto at_ends = [&](int A, bool first, bool last) {
+        return !((A == 0 && !first) || (A == n - 1 && !last));
+    };
+    int rows = 0;
+    const auto number = [](std::vector<int>& places, bool is_there, int& count, int how_many) {
+        places.push_back(is_there ? count : -1);
+        if (is_there) count += how_many;
+    };
+    for (int A = 0; A < n; ++A) {
+        const bool X = at_ends(A, !given.X_at_start, !given.X_at_end);
+        const bool P = is_natural || at_ends(A, !given.P_at_start, !given.P_at_end);
+        const bool dX = is_natural ? at_ends(A, given.P_at_start, given.P_at_end) : X;
+        number(X_, X, n_unknowns_, n_coordinates);
+        number(P_, P, n_unknowns_, n_coordinates);
+        number(row_dP_, P, rows, n_coordinates);
+        number(row_dX_, dX, rows, n_coordinates);
+        if (!is_equal && A == n - 1) break;
+        number(lambda_, is_equal ? dX : true, n_unknowns_, n_rows);
+        number(row_dlambda_, is_equal ? X : true, rows, n_rows);
+    }
+    assert(rows == n_unknowns_);
+}
+
+}   // namespace livens::mixed
