@@ -92,6 +92,31 @@ TEST(MixedQuadrature, WithAsManyPointsAsTheDegreeIsCollocationOfOrderTwo)
     }
 }
 
+TEST(MixedFreePoints, AreSuperconvergentWithTheNaturalStart)
+{
+    Model model({0, 0, -3});
+    const int bob = model.add_body(point_mass("bob", 0.7, {1.2, 0.1, 0}, {0, 0.5, 0}));
+    model.add_load(spring_damper("spring", world, {}, bob, {}, {20, 0, 0.8}));
+    const State reference = last(solve_evenly(model, 1, 60, 10));
+    struct {
+        Pairing pairing;
+        double order;
+    } const cases[] = {{{lagrange, 1, natural, equal}, 4},
+                       {{bspline, 2, natural, equal}, 6},
+                       {{lagrange, 1, strong, equal}, 2},
+                       {{bspline, 2, strong, equal}, 3}};
+    for (const auto& c : cases) {
+        Mixed method = mixed(c.pairing);
+        method.gauss_points = c.pairing.degree + 4;   // the spring is no polynomial
+        const std::vector<int> n = c.order < 4 ? std::vector<int>{100, 128, 160, 200, 256}
+                                               : std::vector<int>{20, 24, 32, 40, 48, 64};
+        std::vector<double> error;   // odd numbers of elements have errors of their own
+        for (const int elements : n)
+            error.push_back(distance(last(solve_mixed_evenly(model, 1, elements, method)), reference).X);
+        EXPECT_NEAR(fitted_order(n, error), c.order, 0.25) << name_of(method);
+    }
+}
+
 TEST(MixedNurbs, WithEqualWeightsAreTheirSplines)
 {
     Mixed spline = mixed({bspline, 3, natural, equal});

@@ -92,3 +92,40 @@ livens_mutant(NAME reflections_without_choice
               NEW [[leads_[j] = j;]]
               TESTS_OF conservation
               MUST_FAIL Lobatto.KeepsPlanarMotionsPlanarForTenSeconds)
+
+# --- the paper's elements
+
+# Multipliers without their geometric stiffness: Newton would still converge, slowly.
+livens_mutant(NAME mixed_without_geometric_stiffness
+              FILE spacetime/mixed/tangent.cpp
+              OLD [[sink(row + entry.coordinate_i, X + entry.coordinate_j, K[entry.row] * entry.value);]]
+              NEW [[sink(row + entry.coordinate_i, X + entry.coordinate_j, 0 * K[entry.row]);]]
+              TESTS_OF unit_spacetime
+              MUST_FAIL AllPairings/MixedEquations.HaveTheMatrixOfTheirResidual/NaturalEqualX0P0
+                        AllPairings/MixedEquations.HaveTheMatrixOfTheirResidual/StrongLowerXTPT)
+
+# Half of the momentum at an end: Hamilton's law of varying action with a wrong boundary term.
+livens_mutant(NAME mixed_wrong_boundary_term
+              FILE spacetime/mixed/equations.cpp
+              OLD [[r[row + i] += at_end ? p[i] : -p[i];]]
+              NEW [[r[row + i] += 0.5 * (at_end ? p[i] : -p[i]);]]
+              TESTS_OF conservation
+              MUST_FAIL MixedMomentum.BalancesOverBlocksByTheDiagnosticsOfAnyMotion
+                        MixedConditions.AtTheEndLeadBackToTheStart)
+
+# The end multiplier tied with a wrong sign: every degree falls back.
+livens_mutant(NAME mixed_wrong_tie
+              FILE spacetime/mixed/equations.cpp
+              OLD [[tie.terms.emplace_back(first + a, -derivative[a] / derivative[frozen - first]);]]
+              NEW [[tie.terms.emplace_back(first + a, derivative[a] / derivative[frozen - first]);]]
+              TESTS_OF convergence
+              MUST_FAIL FreeBox/MixedOrders.AreThoseMeasured/Quartic FreeBox/MixedOrders.AreThoseMeasured/Sextic)
+
+# A block that begins with the momentum the last one began with.
+livens_mutant(NAME mixed_momentum_not_handed_on
+              FILE spacetime/mixed/solve_mixed.cpp
+              OLD [[P = equations.end_momentum(fields, !backwards);]]
+              NEW [[P = equations.end_momentum(fields, backwards);]]
+              TESTS_OF conservation
+              MUST_FAIL MixedMomentum.BalancesOverBlocksByTheDiagnosticsOfAnyMotion
+                        MixedConditions.AtTheEndLeadBackToTheStart)

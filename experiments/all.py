@@ -1,0 +1,62 @@
+"""Runs the experiments and prints one table of verdicts.
+
+    all.py [--short] [--livens PROGRAM] [--output FOLDER] [figNN ...]
+
+An experiment is named by its folder or by the beginning of it: fig02, text.
+"""
+import argparse
+import json
+import pathlib
+import subprocess
+import sys
+import time
+
+import paper
+
+HERE = pathlib.Path(__file__).resolve().parent
+STATES = {0: "as expected", 1: "NOT AS EXPECTED"}
+
+
+def chosen(names):
+    """Folders of the experiments whose name begins with one of `names`; all without names."""
+    folders = sorted(path.parent for path in HERE.glob("*/run") if (path.parent / "expected.json").exists())
+    for name in names:
+        if not any(folder.name.startswith(name) for folder in folders):
+            known = ", ".join(folder.name for folder in folders)
+            sys.exit(f"no experiment is called {name}; there are: {known}")
+    return [folder for folder in folders if not names or any(folder.name.startswith(name) for name in names)]
+
+
+def main():
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--short", action="store_true", help="fewer refinements, a few seconds each")
+    parser.add_argument("--livens", default=paper.PROGRAM)
+    parser.add_argument("--output", type=pathlib.Path, default=paper.ROOT / "build" / "paper")
+    parser.add_argument("names", nargs="*", metavar="figNN", help="which; default: all")
+    arguments = parser.parse_args()
+
+    lines, failed = [], False
+    for folder in chosen(arguments.names):
+        output = arguments.output / folder.name
+        verdict = output / "verdict.json"
+        verdict.unlink(missing_ok=True)   # an old one must not speak for a run that breaks
+        began = time.monotonic()
+        command = [sys.executable, "-B", folder / "run", "--livens", arguments.livens, "--output", output]
+        status = subprocess.run(command + ["--short"] * arguments.short, check=False).returncode
+        failed |= status != 0
+        held = "-"
+        if verdict.exists():
+            judged = json.loads(verdict.read_text(encoding="utf-8"))["expectations"]
+            held = f"{sum(entry['holds'] for entry in judged)}/{len(judged)}"
+        lines.append((folder.name, held, f"{time.monotonic() - began:.0f} s", STATES.get(status, "BROKEN")))
+
+    widths = [max(len(line[i]) for line in lines) for i in range(3)]
+    print()
+    for name, held, seconds, state in lines:
+        print(f"{name:<{widths[0]}}  {held:>{widths[1]}}  {seconds:>{widths[2]}}  {state}")
+    sys.exit(1 if failed else 0)
+
+
+if __name__ == "__main__":
+    main()
