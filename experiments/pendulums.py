@@ -233,7 +233,7 @@ def draw_energy(plt, runs, rows, long, counts):
                       label=f"{n} elements a block")
         axes.set(xlabel="time (s)", ylabel="mean of H less the energy (mJ)",
                  title=f"Linear elements, interfaces = \"{interfaces}\"")
-        axes.legend(loc="lower right", frameon=True, framealpha=0.9)
+        axes.legend(loc="lower right" if interfaces == "carry" else "lower left")
     low, high = (f(axes.get_ylim()[k] for axes in (carry, project)) for k, f in ((0, min), (1, max)))
     for axes in (carry, project):
         axes.set_ylim(low, high)
@@ -248,6 +248,8 @@ def draw_energy(plt, runs, rows, long, counts):
     for exponent, name in ((2, "linear, carry"), (3, "quadratic, carry")):
         row = next(row for row in rows if row["method"] == name)
         paper.slope(orders, exponent, row["h"] / 1.6, row["starts"] / 12)
+    orders.set_ylim(bottom=1e-12)
+    orders.legend(loc="lower right", ncols=2)
     orders.set_title("The disturbance vanishes with the length of the elements")
     return figure
 

@@ -149,6 +149,84 @@ TEST(MixedConditions, SplitBetweenTheEndsFindTheSameMotion)
             }
 }
 
+/// The box after it has turned by more than two radians.
+TEST(MixedConditions, SplitOnesFindLargeTurns)
+{
+    Placement turning;
+    turning.velocity = {1, 2, 3};
+    turning.angular_velocity = {0, 2.5, 0.2};
+    Model model;
+    model.add_body(rigid_body("box", box(1.5, {2, 1, 1}), turning));
+    const Solution fine = solve_evenly(model, 1, 20, 8);
+    const State start = model.start(), end = last(fine);
+    for (const auto basis : {lagrange, bspline})
+        for (const bool forwards : {true, false}) {
+            const Boundary boundary = forwards ? Boundary{start, Given::positions, end, Given::momenta}
+                                               : Boundary{start, Given::momenta, end, Given::positions};
+            const Solution solution =
+                solve(model, boundary, make_time_mesh(0, 1, 40), mixed({basis, 3, natural, equal}));
+            ASSERT_TRUE(solution.report.converged()) << solution.report.message;
+            EXPECT_LT(distance(solution.motion.at_end(0), start).X, 1e-4);
+            EXPECT_LT(distance(last(solution), end).X, 1e-4);
+        }
+}
+
+TEST(MixedConditions, AtBothEndsOfASingleElementLeaveNoMultiplierUntied)
+{
+    const Model model = free_box();
+    const State start = model.start();
+    State end = start;
+    for (const int p : {2, 3, 8}) {
+        const Solution solution = solve(model, {start, Given::positions, end, Given::positions},
+                                        make_time_mesh(0, 0.3, 1), mixed({lagrange, p, natural, equal}));
+        ASSERT_TRUE(solution.report.converged()) << solution.report.message;
+        EXPECT_EQ(solution.motion.n_elements(), 1);
+    }
+}
+
+TEST(MixedFailures, InTheMiddleOfAMarchAreReportedAndKeepWhatIsSolved)
+{
+    Placement fast;
+    fast.velocity = {1, 0, 5};
+    fast.angular_velocity = {0, 2.5, 0.2};
+    Model model({0, 0, -9.81});
+    model.add_body(rigid_body("brick", with_mass(box(1, {1, 0.2, 0.1}), 1), fast));
+    int n_failed = 0;
+    for (const double h : {1.0, 2.0, 3.31})   // elements of up to more than a turn, one a block
+        for (const auto start : {natural, strong})
+            for (const auto interfaces : {Mixed::Interfaces::carry, Mixed::Interfaces::project}) {
+                Mixed method = mixed({lagrange, 1, start, equal});
+                method.block = 1;
+                method.interfaces = interfaces;
+                Solution solution;
+                ASSERT_NO_THROW(solution =
+                                    solve(model, {model.start()}, make_time_mesh(0, 12 * h, 12), method));
+                const Motion& motion = solution.motion;
+                EXPECT_EQ(motion.mesh.ends.size(), static_cast<std::size_t>(solution.report.n_elements) + 1);
+                EXPECT_EQ(motion.velocities.size(), motion.mesh.ends.size());
+                n_failed += solution.report.converged() ? 0 : 1;
+                EXPECT_EQ(solution.report.converged(), solution.report.message.empty());
+            }
+    EXPECT_GT(n_failed, 0) << "none was too long: nothing was tested";
+}
+
+TEST(MixedFailures, NameTheLoadThatIsNoNumberWhereNewtonWantedToGo)
+{
+    Model model;
+    const int body = model.add_body(point_mass("bob", 1, {0, 0, 0}, {1, 0, 0}));
+    Load wall;
+    wall.name = "wall";
+    wall.bodies = {body, world};
+    wall.forces = [](const LoadArguments& a, LoadForces& F) {
+        F[0](0, 0) = a.at.t > 0.5 ? std::nan("") : 100;   // the guess goes on straight
+    };
+    model.add_load(wall);
+    const Solution solution =
+        solve(model, {model.start()}, make_time_mesh(0, 1, 10), mixed({lagrange, 2, natural, equal}));
+    EXPECT_EQ(solution.report.status, SolveStatus::not_finite);
+    EXPECT_NE(solution.report.message.find("'wall'"), std::string::npos) << solution.report.message;
+}
+
 TEST(MixedConditions, ThatMakeNoSolvableSystemAreRefused)
 {
     const Model model = free_box();

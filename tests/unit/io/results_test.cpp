@@ -97,6 +97,19 @@ TEST_F(Results, EachMinorVersionHasADigestOfWhatItBrought)
     EXPECT_NE(digest_of_minor(other, 1), digest_of_minor(run, 1));
 }
 
+TEST_F(Results, NurbsWithoutJointsAreWritten)
+{
+    Model model;
+    model.add_body(rigid_body("box", box(1, {1, 2, 3})));
+    Mixed method;
+    method.basis = Mixed::Basis::nurbs;
+    method.weights = {1, 1.1, 1.2, 1, 1, 1};
+    const RunFile run =
+        make_run(model, solve(model, {model.start()}, make_time_mesh(0, 1, 4), method), method);
+    write_run(in_folder("run.nc"), model, run);
+    EXPECT_EQ(digest(read_run(in_folder("run.nc"))), digest(run));
+}
+
 TEST_F(Results, DenominatorsComeBackAndBendTheSamples)
 {
     const Model model = sample_model();

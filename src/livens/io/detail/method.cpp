@@ -1,4 +1,6 @@
 // [method]: the family and its choices, and what they take of memory.
+#include <algorithm>
+
 #include "livens/io/detail/builder.h"
 #include "livens/time/time_space.h"
 
@@ -9,10 +11,12 @@ namespace {
 constexpr double gibibyte = 1u << 30;
 constexpr double max_motion_bytes = 8 * gibibyte;
 constexpr double max_matrix_bytes = 8 * gibibyte;
-// 2.4 kB an unknown: the whole solution of 20,000 linear elements of one rigid body (56 entries of the
-// factors an unknown, and the matrix, its pattern and copies) took 2.3 kB. Higher degrees and more bodies
-// take more, up to 530 entries (two bodies, splines of degree 4): the bound refuses nothing that would fit.
-constexpr double factor_entries_per_unknown = 150;
+// The whole solution of 20,000 linear elements of one rigid body (56 entries of the factors an unknown, and
+// the matrix, its pattern and copies) took 2.3 kB an unknown, as much as 150 entries of 16 bytes. Bodies that
+// hang together fill the factors: chains on ball joints had 76 entries an unknown for each body (1 to 16
+// bodies, linear). Higher degrees take more: the bound refuses nothing that would fit.
+constexpr double least_entries_per_unknown = 150;
+constexpr double entries_per_unknown_and_body = 76;
 constexpr double bytes_per_factor_entry = 16;
 
 Mixed::Basis basis_of(const Section& section)
@@ -71,7 +75,10 @@ double matrix_bytes(const Model& model, const Mixed& mixed, double n_elements)
     const double at_once = mixed.block > 0 ? std::min<double>(mixed.block, n_elements) : n_elements;
     double unknowns = model.n_rows();   // a node
     for (const Body& body : model.bodies()) unknowns += body.is_point ? 6 : 30;
-    return unknowns * mixed.degree * at_once * factor_entries_per_unknown * bytes_per_factor_entry;
+    const double entries = model.joints().empty() ? least_entries_per_unknown
+                                                  : std::max(least_entries_per_unknown,
+                                                             entries_per_unknown_and_body * model.n_bodies());
+    return unknowns * mixed.degree * at_once * entries * bytes_per_factor_entry;
 }
 
 std::string gibibytes(double bytes)

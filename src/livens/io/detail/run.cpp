@@ -148,6 +148,7 @@ void snap_to_ends(std::vector<double>& times, const TimeMesh& mesh)
                 break;
             }
     }
+    times.erase(std::unique(times.begin(), times.end()), times.end());   // instants so close are one
 }
 
 /// Looks at start and end even if something else in [time] is wrong.

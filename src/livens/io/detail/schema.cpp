@@ -241,7 +241,8 @@ constexpr std::array keys{
         "Library for the sparse systems; umfpack is an option when livens is built."}
         .otherwise("eigen").only_for("mixed").one_of("eigen|umfpack"),
     Key{T::method, "tolerance", K::number,
-        "Newton stops when its estimated error is below this fraction of the motion in the element."}
+        "Newton stops when its estimated error is below this fraction of the motion in the element; mixed: "
+        "of the model's length."}
         .otherwise("1e-12").within({0, 0.1, true}),
     Key{T::method, "max_iterations", K::integer,
         "Of Newton in one element; mixed: in one block."}.otherwise("30").within({1, 1000}),

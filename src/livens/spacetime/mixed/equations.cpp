@@ -92,8 +92,9 @@ void Equations::tie_ends()
         const std::vector<double> derivative =
             setup_.multipliers.highest_derivative(at_end ? setup_.multipliers.n_elements() - 1 : 0);
         Tie tie{frozen, {}};
+        // With positions at both ends of a single element the other end's multiplier is none either: zero.
         for (int a = 0; a <= p; ++a)
-            if (first + a != frozen)
+            if (numbering_.lambda(first + a) >= 0)
                 tie.terms.emplace_back(first + a, -derivative[a] / derivative[frozen - first]);
         ties_.push_back(tie);
     }

@@ -151,6 +151,16 @@ Guess guess_steady(const State& state)
     };
 }
 
+State with_rates(State places, const State& rates)
+{
+    for (std::size_t b = 0; b < places.X.size(); ++b) {
+        const Matrix34 &X = rates.X[b], &V = rates.V[b];
+        const bool is_point = norm(directors(X)) == 0;
+        places.V[b] = is_point ? V : rate(places.X[b], V.column(0), angular_velocity(X, V));
+    }
+    return places;
+}
+
 Guess guess_between(const State& first, const State& last)
 {
     State steady = first;

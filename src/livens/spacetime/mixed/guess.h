@@ -21,6 +21,9 @@ Guess guess_between(const State& first, const State& last);
 /// Points and directors going on steadily from a state.
 Guess guess_steady(const State& state);
 
+/// The places of one state with the velocities and spins of another.
+State with_rates(State places, const State& rates);
+
 /// Sets all coefficients of `fields` to the guess: X0, X and P by interpolation, multipliers by the
 /// acceleration-level equation at their functions' instants.
 void take_guess(const Equations& equations, const Guess& guess, Fields& fields);

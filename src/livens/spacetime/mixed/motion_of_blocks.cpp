@@ -15,8 +15,9 @@ std::vector<double> nodes_of(int degree)
     return degree == 0 ? std::vector<double>{0.5} : gauss_lobatto(degree + 1).points;
 }
 
-/// Order of X and momenta at the ends of blocks, as measured (docs/theory.md, "The elements of the paper").
-int order_of(const Mixed& method)
+/// Order of X and momenta at the ends of one block, as measured (docs/theory.md, "The elements of the
+/// paper").
+int order_of_block(const Mixed& method)
 {
     const int p = method.degree;
     const bool is_spline = method.basis != Mixed::Basis::lagrange;
@@ -29,6 +30,15 @@ int order_of(const Mixed& method)
     }
     if (is_spline) return p == 2 ? 3 : p;
     return p % 2 == 0 ? p : p + 1;
+}
+
+/// Of many blocks of a fixed number of elements: what projection moves at every interface, or the momentum
+/// that a strong start hands on, costs one order.
+int order_of(const Mixed& method, std::size_t n_blocks)
+{
+    const bool is_handed_on_well =
+        method.start == Mixed::Start::natural && method.interfaces == Mixed::Interfaces::carry;
+    return order_of_block(method) - (n_blocks > 1 && !is_handed_on_well ? 1 : 0);
 }
 
 }   // namespace
@@ -99,7 +109,7 @@ Motion MotionOfBlocks::take(bool torn, const State& start)
     motion.P = {12 * motion.n_bodies, p, false, {}, {}};
     motion.multipliers = {motion.n_rows, q, false, {}, {}};
     motion.rigidity = {6 * motion.n_bodies, q, false, {}, {}};
-    motion.order_at_ends = order_of(method_);
+    motion.order_at_ends = order_of(method_, blocks_.size());
     motion.dense_order_X = std::min(motion.order_at_ends, p + 1);
     motion.dense_order_V = std::min(motion.order_at_ends, p);
     motion.constraints_hold = "weakly";
@@ -145,7 +155,7 @@ void MotionOfBlocks::append_block(const Block& block, bool is_first, Motion& mot
     append(block.multipliers, motion.multipliers.values);
     append(block.rigidity, motion.rigidity.values);
     if (method_.multipliers == Mixed::Multipliers::equal) {
-        append(block.denominators, motion.multipliers.denominators);
+        if (motion.n_rows > 0) append(block.denominators, motion.multipliers.denominators);
         append(block.denominators, motion.rigidity.denominators);
     }
     const std::size_t bodies = static_cast<std::size_t>(motion.n_bodies);

@@ -30,15 +30,21 @@ public:
         if (!evaluate(fields_)) return finish(SolveStatus::not_finite);
         Verdict verdict = equations_.size() == 0 ? Verdict::done : Verdict::new_tangent;
         while (verdict == Verdict::new_tangent) {
-            if (report_.iterations >= options_.max_iterations) return finish(SolveStatus::not_converged);
+            if (report_.iterations >= options_.max_iterations) {
+                report_.reached_limit = true;
+                return finish(SolveStatus::not_converged);
+            }
             if (!factorise()) return finish(SolveStatus::singular);
             solve(increment_);
             const double size = equations_.size_of(increment_);
             if (!std::isfinite(size)) return finish(SolveStatus::singular);
             verdict = descend(size);
         }
-        if (verdict == Verdict::failed)
-            return finish(report_.load.empty() ? SolveStatus::not_converged : SolveStatus::not_finite);
+        if (verdict == Verdict::failed) {
+            finish(failed_load_.empty() ? SolveStatus::not_converged : SolveStatus::not_finite);
+            report_.load = failed_load_;
+            return report_;
+        }
         if (options_.condition) measure_condition();
         return finish(SolveStatus::converged);
     }
@@ -89,7 +95,9 @@ private:
                 solve(simplified_);
                 next = equations_.size_of(simplified_);
             }
-            const bool at_rounding = size < rounding_begins && next > 0.5 * size;
+            failed_load_ = report_.load;
+            const bool at_rounding =
+                size < rounding_begins && damping == 1 && std::isfinite(next) && next > 0.5 * size;
             const bool shrinks = next <= (1 - damping / 4) * size;
             if (!shrinks && !at_rounding && !(std::isfinite(next) && size <= options_.tolerance)) {
                 if (is_fresh) damping /= 2;
@@ -158,6 +166,7 @@ private:
     std::vector<double> row_scale_, column_scale_;
     std::vector<double> residual_, scaled_residual_, increment_, simplified_;
     double damping_ = 1;
+    std::string failed_load_;   ///< that was not finite at the last trial
     NewtonReport report_;
 };
 

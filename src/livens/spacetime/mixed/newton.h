@@ -19,9 +19,10 @@ struct NewtonReport {
     SolveStatus status = SolveStatus::converged;
     int iterations = 0;
     int factorisations = 0;
-    double residual = 0;   ///< largest scaled row over the largest scaled unknown
-    Worst worst;           ///< where the residual is largest, after a failure
-    std::string load;      ///< that is not finite
+    bool reached_limit = false;   ///< of iterations; else no step, however short, made the increment smaller
+    double residual = 0;          ///< largest scaled row over the largest scaled unknown
+    Worst worst;                  ///< where the residual is largest, after a failure
+    std::string load;             ///< that is not finite
     long long factor_entries = 0;
     ConditionNumbers condition;    ///< of the matrix as published, at the solution; if asked for
     double scaled_condition = 0;   ///< 1-norm, of the matrix that is factorised

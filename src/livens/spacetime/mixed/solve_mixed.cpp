@@ -84,7 +84,16 @@ public:
         MotionOfBlocks motion(model_, *mechanism_, mesh_, method_);
         for (int i = 0; i < n && report_.converged(); ++i) {
             const int block = backwards ? n - 1 - i : i;
-            solve_one(division[block], division[block + 1], backwards, motion);
+            try {
+                solve_one(division[block], division[block + 1], backwards, motion);
+            } catch (
+                const InputError& error) {   // about a state that a block handed on, not one that was given
+                if (i == 0) throw;
+                report_.status = SolveStatus::not_converged;
+                report_.failed_at = mesh_.ends[backwards ? division[block + 1] : division[block]];
+                report_.message = "what the block before t = " + number(report_.failed_at) +
+                                  " s hands on is no state to go on from: " + error.what();
+            }
         }
         Solution solution;
         solution.motion =
@@ -146,12 +155,17 @@ private:
     Guess guess(const std::vector<double>& ends) const
     {
         const State& given = from_start() ? start_ : end_;
-        if (is_marched()) return guess_from_state(model_, given, ends);
+        if (is_marched()) {
+            try {
+                return guess_from_state(model_, given, ends);
+            } catch (
+                const InputError&) {   // what a block handed on is too far from a rigid state to march on
+                return guess_steady(given);
+            }
+        }
         if (from_start() || (given_.X_at_end && given_.P_at_end)) return guess_steady(given);
         if (given_.X_at_start && given_.X_at_end) return guess_between(start_, end_);
-        State state = given_.X_at_start ? start_ : end_;
-        state.V = given_.X_at_start ? end_.V : start_.V;
-        return guess_steady(state);
+        return guess_steady(with_rates(given_.X_at_start ? start_ : end_, given_.X_at_start ? end_ : start_));
     }
 
     /// Known coefficients of the fields, which the guess left as they came.
@@ -254,8 +268,8 @@ private:
         report_.factorisations += outcome.factorisations;
         report_.factor_entries = std::max(report_.factor_entries, outcome.factor_entries);
         report_.iterations.push_back(outcome.iterations);
+        report_.residual_norm = std::max(report_.residual_norm, outcome.residual);
         if (outcome.status == SolveStatus::converged) {
-            report_.residual_norm = std::max(report_.residual_norm, outcome.residual);
             report_.n_elements += last - first;
             report_.condition_1 = outcome.condition.one;
             report_.condition_2 = outcome.condition.two;
@@ -270,7 +284,7 @@ private:
                                       ? ""
                                       : "; the largest residual is in " + outcome.worst.name +
                                             " near t = " + number(outcome.worst.t) + " s";
-        const std::string help = "; solve fewer elements at once (block), or take shorter ones";
+        const std::string help = advice(last - first);
         if (!outcome.load.empty())
             report_.message = "the load '" + outcome.load + "' is not finite" + where;
         else if (outcome.status == SolveStatus::not_finite)
@@ -280,8 +294,21 @@ private:
                 "the whole matrix is singular" + where + worst +
                 "; the joints may have lost rank, or the conditions at the ends fit many motions";
         else
-            report_.message = "Newton's iteration did not converge in " + std::to_string(outcome.iterations) +
-                              " iterations" + where + worst + help;
+            report_.message =
+                (outcome.reached_limit ? "Newton's iteration had not converged after " +
+                                             std::to_string(outcome.iterations) + " iterations, the limit,"
+                                       : "Newton's iteration found no way on after " +
+                                             std::to_string(outcome.iterations) + " steps") +
+                where + worst + help;
+    }
+
+    /// What may help a block of n elements.
+    std::string advice(int n_elements) const
+    {
+        if (!from_start() && !(given_.X_at_end && given_.P_at_end))
+            return "; conditions at both ends need a shorter time, more elements, or ends that are nearer";
+        if (n_elements == 1) return "; take shorter elements";
+        return "; solve fewer elements at once (block), or take shorter ones";
     }
 
     void progress(int first, int last, bool backwards, const NewtonReport& outcome)
