@@ -78,9 +78,7 @@ TEST(MixedScenario, ChoicesArrive)
 {
     const Mixed m = method_of(mixed("basis = \"bspline\"\ndegree = 3\nmomentum = \"strong\"\n"
                                     "multipliers = \"lower\"\ngauss_points = 7\nblock = 5\n"
-                                    "interfaces = \"project\"\nfirst_guess = \"steady\"\n"
-                                    "end_multiplier = \"zero\""));
-    EXPECT_EQ(m.end_multiplier, Mixed::EndMultiplier::zero);
+                                    "interfaces = \"project\"\nfirst_guess = \"steady\""));
     EXPECT_EQ(m.first_guess, Mixed::FirstGuess::steady);
     EXPECT_EQ(m.basis, Mixed::Basis::bspline);
     EXPECT_EQ(m.degree, 3);
@@ -91,6 +89,14 @@ TEST(MixedScenario, ChoicesArrive)
     EXPECT_EQ(m.interfaces, Mixed::Interfaces::project);
     EXPECT_EQ(method_of(mixed("block = \"all\"")).block, 0);
     EXPECT_EQ(method_of(nurbs("[1, 2, 1, 1]")).weights, (std::vector<double>{1, 2, 1, 1}));
+}
+
+TEST(MixedScenario, EndMultipliersBelongToTheNaturalEqualPairing)
+{
+    EXPECT_EQ(method_of(mixed("end_multiplier = \"zero\"")).end_multiplier, Mixed::EndMultiplier::zero);
+    for (const char* other : {"momentum = \"strong\"", "multipliers = \"lower\""})
+        expect_error(mixed("end_multiplier = \"zero\"\n" + std::string(other)), "misplaced-key",
+                     "\"zero\"");
 }
 
 TEST(MixedScenario, ConditionIsAskedForInEveryFamily)

@@ -84,7 +84,6 @@ struct Block {
                 4,
                 c.start,
                 Mixed::EndMultiplier::smooth,
-                c.given,
                 c.given.X_at_start ? known : turning,
                 c.given.X_at_end ? known : turning};
     }

@@ -57,6 +57,14 @@ void check_basis(const Section& section, const Mixed& mixed, Findings& findings)
                        {"nurbs are B-splines with weights", "without weights they are basis = \"bspline\""});
 }
 
+/// The multiplier of an end is undetermined with the natural start and equal multipliers only.
+void check_end_multiplier(const Section& section, const Mixed& mixed, Findings& findings)
+{
+    if (mixed.start == Mixed::Start::natural && mixed.multipliers == Mixed::Multipliers::equal) return;
+    refuse_keys(section, {"end_multiplier"}, "misplaced-key",
+                "no multiplier is left open with momentum = \"strong\" or multipliers = \"lower\"", findings);
+}
+
 /// Numbers of Field and end values a node and an element end, see Motion.
 double motion_bytes(const Model& model, const Method& method, double n_elements)
 {
@@ -97,6 +105,7 @@ Method read_method(const Section* section, Findings& findings)
     if (family == "lobatto") return Lobatto{section->integer("degree")};
     const Mixed mixed = read_mixed(*section);
     check_basis(*section, mixed, findings);
+    check_end_multiplier(*section, mixed, findings);
     return mixed;
 }
 

@@ -53,7 +53,6 @@ public:
         int gauss_points;
         Mixed::Start start;
         Mixed::EndMultiplier end_multiplier;
-        Conditions conditions;
         EndMomentum at_start, at_end;
     };
     Equations(Setup setup, const Numbering& numbering);

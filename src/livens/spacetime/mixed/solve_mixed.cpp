@@ -86,9 +86,9 @@ public:
             const int block = backwards ? n - 1 - i : i;
             try {
                 solve_one(division[block], division[block + 1], backwards, motion);
-            } catch (
-                const InputError& error) {   // about a state that a block handed on, not one that was given
+            } catch (const InputError& error) {
                 if (i == 0) throw;
+                // About a state that a block handed on, not one that was given.
                 report_.status = SolveStatus::not_converged;
                 report_.failed_at = mesh_.ends[backwards ? division[block + 1] : division[block]];
                 report_.message = "what the block before t = " + number(report_.failed_at) +
@@ -201,7 +201,7 @@ private:
                                   mechanism_->n_coordinates, mechanism_->n_rows());
         Equations equations({mechanism_.get(), functions, is_equal ? functions : functions.lower(),
                              method_.gauss_points > 0 ? method_.gauss_points : exact_points(method_),
-                             method_.start, method_.end_multiplier, given_,
+                             method_.start, method_.end_multiplier,
                              end_momentum(given_.X_at_start, start_, P_start_),
                              end_momentum(given_.X_at_end, end_, P_end_)},
                             numbering);
