@@ -20,15 +20,11 @@ std::vector<double> nodes_of(int degree)
 int order_of_block(const Mixed& method)
 {
     const int p = method.degree;
-    const bool is_spline = method.basis != Mixed::Basis::lagrange;
-    const bool is_natural = method.start == Mixed::Start::natural;
-    const bool is_equal = method.multipliers == Mixed::Multipliers::equal;
     if (p == 1 || method.gauss_points == p) return 2;
-    if (is_natural && is_equal) {
-        if (method.end_multiplier == Mixed::EndMultiplier::smooth) return p + 1;
-        return is_spline || p == 2 ? 3 : 4;
-    }
-    if (is_spline) return p == 2 ? 3 : p;
+    const bool is_natural_equal =
+        method.start == Mixed::Start::natural && method.multipliers == Mixed::Multipliers::equal;
+    if (is_natural_equal && method.end_multiplier == Mixed::EndMultiplier::zero) return std::min(p + 1, 4);
+    if (is_natural_equal || method.basis != Mixed::Basis::lagrange) return p + 1;
     return p % 2 == 0 ? p : p + 1;
 }
 
