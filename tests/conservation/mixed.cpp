@@ -210,6 +210,25 @@ TEST(MixedFailures, InTheMiddleOfAMarchAreReportedAndKeepWhatIsSolved)
     EXPECT_GT(n_failed, 0) << "none was too long: nothing was tested";
 }
 
+TEST(MixedFailures, MayBeCancellationsWithinABlock)
+{
+    std::vector<int> elements;
+    SolveOptions options;
+    options.progress = [&elements](const Progress& progress) {
+        elements.push_back(progress.element);
+        return elements.size() < 3;   // within the first block, after it, within the second
+    };
+    Mixed method = mixed({lagrange, 2, natural, equal});
+    method.block = 10;
+    const Model model = cubes_on_rods(0.1);
+    const Solution solution = solve(model, {model.start()}, make_time_mesh(0, 1, 20), method, options);
+    EXPECT_EQ(elements, (std::vector<int>{0, 9, 10}));
+    EXPECT_EQ(solution.report.status, SolveStatus::cancelled);
+    EXPECT_NE(solution.report.message.find("cancelled in the block from t = 0.5 s"), std::string::npos)
+        << solution.report.message;
+    EXPECT_EQ(solution.motion.n_elements(), 10);
+}
+
 TEST(MixedFailures, NameTheLoadThatIsNoNumberWhereNewtonWantedToGo)
 {
     Model model;

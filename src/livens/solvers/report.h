@@ -44,7 +44,8 @@ struct SolveReport {
     bool converged() const { return status == SolveStatus::converged; }
 };
 
-/// Called after each element; return false to stop.
+/// Called after each element or block, and between Newton's iterations on a block (`element` is then the one
+/// it begins with); return false to stop.
 struct Progress {
     int element = 0;
     int n_elements = 0;

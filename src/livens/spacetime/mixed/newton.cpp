@@ -34,6 +34,8 @@ public:
                 report_.reached_limit = true;
                 return finish(SolveStatus::not_converged);
             }
+            if (options_.goes_on && !options_.goes_on(report_.iterations))
+                return finish(SolveStatus::cancelled);
             if (!factorise()) return finish(SolveStatus::singular);
             solve(increment_);
             const double size = equations_.size_of(increment_);

@@ -1,6 +1,7 @@
 // Newton's iteration on a whole block.
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include "livens/solvers/report.h"
@@ -13,6 +14,7 @@ struct NewtonOptions {
     int max_iterations = 30;
     SparseBackend backend = SparseBackend::eigen;
     bool condition = false;
+    std::function<bool(int iterations)> goes_on;   ///< asked before each factorisation; false: cancelled
 };
 
 struct NewtonReport {

@@ -210,10 +210,18 @@ private:
         take_guess(equations, first_guess, fields);
         fix_known(equations, fields);
         const bool is_last_block = backwards ? first == 0 : last == mesh_.n_elements();
-        const NewtonReport outcome =
-            solve_block(equations, fields,
-                        {options_.tolerance, options_.max_iterations, method_.linear_solver,
-                         options_.condition && is_last_block});
+        NewtonOptions newton{options_.tolerance,
+                             options_.max_iterations,
+                             method_.linear_solver,
+                             options_.condition && is_last_block,
+                             {}};
+        if (options_.progress)   // a block may be the whole motion: it can be cancelled within
+            newton.goes_on = [&](int iterations) {
+                const int done = backwards ? mesh_.n_elements() - last : first;
+                return options_.progress(
+                    {done, mesh_.n_elements(), mesh_.ends[backwards ? last : first], iterations, 0});
+            };
+        const NewtonReport outcome = solve_block(equations, fields, newton);
         account(outcome, equations, first, last);
         if (!report_.converged()) return;
         motion.add(first, equations, fields);
@@ -285,7 +293,9 @@ private:
                                       : "; the largest residual is in " + outcome.worst.name +
                                             " near t = " + number(outcome.worst.t) + " s";
         const std::string help = advice(last - first);
-        if (!outcome.load.empty())
+        if (outcome.status == SolveStatus::cancelled)
+            report_.message = "cancelled" + where;
+        else if (!outcome.load.empty())
             report_.message = "the load '" + outcome.load + "' is not finite" + where;
         else if (outcome.status == SolveStatus::not_finite)
             report_.message = "the motion is not finite" + where + worst + help;
