@@ -66,7 +66,7 @@ void solve_refined(const SparseLU& lu, const SparseMatrix& A, std::span<const do
 using LinearMap = std::function<void(std::span<const double> x, std::span<double> y)>;
 
 /// Norms of a linear map of this size, by its products alone: the 1-norm by the block algorithm of
-/// [Higham2000] (a lower bound, almost always exact), the 2-norm by Lanczos' process on A^T A (within 1e-3 of
+/// [Higham2000] (a lower bound, almost always exact), the 2-norm by Lanczos' process on A^T A (within 1e-4 of
 /// the value, as a rule far closer; it ends when twice the last change is below 1e-6 of the value, or after
 /// 1200 products with each). Repeatable: started from fixed vectors. Infinity where a product is not finite.
 double one_norm(int size, const LinearMap& apply, const LinearMap& apply_transposed);

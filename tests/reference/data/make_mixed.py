@@ -375,10 +375,12 @@ def solutions(box, centred, offset):
 
 
 def condition_numbers(box):
-    """Of the whole matrix, unscaled, at the solution; linear Lagrange functions, equal multipliers."""
+    """Of the whole matrix, unscaled, at the solution; linear Lagrange functions, equal multipliers; with the strong
+    start the first of them, which is no unknown, is that of the acceleration level."""
     for start, elements in product(("strong", "natural"), (4, 8, 16, 32, 64)):
         problem = Problem(box, elements, "lagrange", 1, start, "equal")
-        matrix = problem.system(*problem.newton(problem.guesses()[0]))[1].toarray()
+        guess = problem.guesses("acceleration" if start == "strong" else "zero")[0]
+        matrix = problem.system(*problem.newton(guess))[1].toarray()
         yield {"start": start, "elements": elements, "size": len(matrix),
                "norm_1": float(np.linalg.cond(matrix, 1)), "norm_2": float(np.linalg.cond(matrix, 2))}
 

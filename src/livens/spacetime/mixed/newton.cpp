@@ -135,7 +135,7 @@ private:
     NewtonReport finish(SolveStatus status)
     {
         report_.status = status;
-        evaluate(fields_);
+        evaluate(fields_);   // the rows that stay define the momenta at the ends
         report_.worst = equations_.worst(residual_, row_scale_);
         report_.residual = report_.worst.value / std::max(reference(), 1e-300);
         return report_;

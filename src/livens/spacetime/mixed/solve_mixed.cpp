@@ -146,26 +146,25 @@ private:
     }
 
     bool from_start() const { return given_.X_at_start && given_.P_at_start; }
-    bool is_marched() const
-    {
-        return (from_start() || (given_.X_at_end && given_.P_at_end)) &&
-               method_.first_guess == Mixed::FirstGuess::march;
-    }
+    bool has_state() const { return from_start() || (given_.X_at_end && given_.P_at_end); }
 
-    Guess guess(const std::vector<double>& ends) const
+    /// Says whether the guess is a march that the motion can be compared with.
+    Guess guess(const std::vector<double>& ends, bool& is_march) const
     {
-        const State& given = from_start() ? start_ : end_;
-        if (is_marched()) {
-            try {
-                return guess_from_state(model_, given, ends);
-            } catch (
-                const InputError&) {   // what a block handed on is too far from a rigid state to march on
-                return guess_steady(given);
-            }
+        is_march = false;
+        if (!has_state()) {
+            if (given_.X_at_start && given_.X_at_end) return guess_between(start_, end_);
+            return guess_steady(given_.X_at_start ? with_rates(start_, end_) : with_rates(end_, start_));
         }
-        if (from_start() || (given_.X_at_end && given_.P_at_end)) return guess_steady(given);
-        if (given_.X_at_start && given_.X_at_end) return guess_between(start_, end_);
-        return guess_steady(with_rates(given_.X_at_start ? start_ : end_, given_.X_at_start ? end_ : start_));
+        const State& given = from_start() ? start_ : end_;
+        if (method_.first_guess == Mixed::FirstGuess::steady) return guess_steady(given);
+        try {
+            Guess march = guess_from_state(model_, given, ends);
+            is_march = true;
+            return march;
+        } catch (const InputError&) {
+            return guess_steady(given);   // what a block handed on is too far from a rigid state to march on
+        }
     }
 
     /// Known coefficients of the fields, which the guess left as they came.
@@ -206,7 +205,8 @@ private:
                              end_momentum(given_.X_at_end, end_, P_end_)},
                             numbering);
         Fields fields = equations.zero_fields();
-        const Guess first_guess = guess(ends);
+        bool is_march = false;
+        const Guess first_guess = guess(ends, is_march);
         take_guess(equations, first_guess, fields);
         fix_known(equations, fields);
         const bool is_last_block = backwards ? first == 0 : last == mesh_.n_elements();
@@ -225,7 +225,7 @@ private:
         account(outcome, equations, first, last);
         if (!report_.converged()) return;
         motion.add(first, equations, fields);
-        if (is_marched()) compare(first_guess, equations, fields);
+        if (is_march) compare(first_guess, equations, fields);
         hand_on(equations, fields, backwards, is_last_block);
         progress(first, last, backwards, outcome);
     }
@@ -315,7 +315,7 @@ private:
     /// What may help a block of n elements.
     std::string advice(int n_elements) const
     {
-        if (!from_start() && !(given_.X_at_end && given_.P_at_end))
+        if (!has_state())
             return "; conditions at both ends need a shorter time, more elements, or ends that are nearer";
         if (n_elements == 1) return "; take shorter elements";
         return "; solve fewer elements at once (block), or take shorter ones";
