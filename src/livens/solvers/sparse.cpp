@@ -57,6 +57,21 @@ std::unique_ptr<SparseLU::Implementation> make_backend(SparseBackend backend)
 
 }   // namespace
 
+SparseMatrix sparse_from_columns(const std::vector<std::vector<std::pair<int, double>>>& columns)
+{
+    SparseMatrix A;
+    A.size = static_cast<int>(columns.size());
+    A.column_starts.push_back(0);
+    for (const auto& column : columns) {
+        for (const auto& [row, value] : column) {
+            A.rows.push_back(row);
+            A.values.push_back(value);
+        }
+        A.column_starts.push_back(static_cast<int>(A.rows.size()));
+    }
+    return A;
+}
+
 void SparseMatrix::multiply(std::span<const double> x, std::span<double> y) const
 {
     assert(static_cast<int>(x.size()) == size && static_cast<int>(y.size()) == size && !overlap(x, y));

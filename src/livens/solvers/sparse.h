@@ -5,6 +5,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace livens {
@@ -21,6 +22,9 @@ struct SparseMatrix {
     void multiply(std::span<const double> x, std::span<double> y) const;
     void multiply_transposed(std::span<const double> x, std::span<double> y) const;
 };
+
+/// From lists of (row, value) for every column, rows ascending.
+SparseMatrix sparse_from_columns(const std::vector<std::vector<std::pair<int, double>>>& columns);
 
 enum class SparseBackend {
     eigen,    ///< Eigen's SparseLU in the natural order: columns are eliminated as they come

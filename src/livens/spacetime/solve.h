@@ -21,7 +21,8 @@ struct Lobatto {
 };
 
 /// The elements of the paper: X, P and multipliers are separate fields over one time basis, directors are
-/// free and rigidity holds weakly (P10, P11, P23). Order 2 to 5 at the ends, see docs/theory.md.
+/// free and rigidity holds weakly (P10, P11, P23). Order 2 to degree + 1 at the ends of blocks, see
+/// docs/theory.md.
 struct Mixed {
     enum class Basis {
         lagrange,   ///< continuous, equidistant nodes

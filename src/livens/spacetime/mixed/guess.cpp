@@ -81,16 +81,7 @@ void interpolate(const TimeSpace& space, int n_values, std::vector<double>& colu
         for (int a = 0; a < local; ++a)
             if (values[a] != 0) by_column[space.first(place.element) + a].push_back({i, values[a]});
     }
-    SparseMatrix A;
-    A.size = n;
-    A.column_starts = {0};
-    for (const auto& column : by_column) {
-        for (const auto& [row, value] : column) {
-            A.rows.push_back(row);
-            A.values.push_back(value);
-        }
-        A.column_starts.push_back(static_cast<int>(A.rows.size()));
-    }
+    const SparseMatrix A = sparse_from_columns(by_column);
     SparseLU lu(SparseBackend::eigen);
     lu.analyse(A);
     if (!lu.factorise(A)) return;   // values near the coefficients will do for a guess

@@ -36,7 +36,7 @@ void refuse_singular(const Body& body)
          "use the method lobatto, or give the body a little thickness"});
 }
 
-/// Adds up entries of a small sparse matrix by columns; its pattern is that of the first call of `build`.
+/// Adds up entries of a small sparse matrix by columns. Entries of value zero belong to the pattern.
 class MatrixBuilder {
 public:
     explicit MatrixBuilder(int size) : columns_(static_cast<std::size_t>(size)) {}
@@ -51,20 +51,7 @@ public:
         else
             entries.insert(at, {row, value});
     }
-    SparseMatrix build() const
-    {
-        SparseMatrix A;
-        A.size = static_cast<int>(columns_.size());
-        A.column_starts = {0};
-        for (const auto& entries : columns_) {
-            for (const auto& [row, value] : entries) {
-                A.rows.push_back(row);
-                A.values.push_back(value);
-            }
-            A.column_starts.push_back(static_cast<int>(A.rows.size()));
-        }
-        return A;
-    }
+    SparseMatrix build() const { return sparse_from_columns(columns_); }
 
 private:
     std::vector<std::vector<std::pair<int, double>>> columns_;
@@ -209,7 +196,6 @@ std::vector<std::vector<double>> Mechanism::multipliers(const std::vector<State>
     const std::vector<double> zero(static_cast<std::size_t>(n_rows()), 0.0);
     std::vector<Matrix34> F;
     for (const State& state : states) {
-        // Rows of momentum by the root of the mass, so that pivots are of one size.
         MatrixBuilder builder(size);
         for (int b = 0; b < n_bodies(); ++b)
             for (int i = 0; i < n_numbers(b); ++i)
