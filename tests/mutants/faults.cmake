@@ -69,11 +69,13 @@ livens_mutant(NAME missing_geometric_term_by_differences
               TESTS_OF unit_spacetime
               MUST_FAIL Lobatto/TangentOf.MatchesDifferencesWithEveryKindOfTerm/*)
 
-# Loads taken where the element starts, their moments where the node is: a spring that turns what it holds.
+# Loads taken where the element starts, their moments where it has come to: a spring that turns what it holds.
 livens_mutant(NAME loads_at_the_start
               FILE spacetime/lobatto/element.cpp
-              OLD [[mechanism_.add_forces(at, X(A), V, h_ * rule_.weights[A], forces);]]
-              NEW [[mechanism_.add_forces(at, X0_.data(), V, h_ * rule_.weights[A], forces);]]
+              OLD [[Side::middle}, X_c_.data(), V_c_.data(),
+                             h_]]
+              NEW [[Side::middle}, X0_.data(), V_c_.data(),
+                             h_]]
               TESTS_OF conservation
               MUST_FAIL Lobatto.BalancesAngularMomentumOverTenSeconds Lobatto.KeepsMomentaOfAFloatingChain)
 

@@ -41,11 +41,10 @@ struct Supply {
     }
 };
 
-/// Where supplies are taken: at the quadrature points of the method, where alone its momentum balances are
-/// exact. A method says how many Gauss points it had, or its nodes were its points, as those of lobatto. One
-/// multiplier an element then marks a stepping rule with one stage: endpoint (order 1) takes forces at the
-/// end of the step, midpoint in its middle.
-Quadrature supply_rule(const Motion& motion)
+/// Where loads are taken, as by the method: at its Gauss points, where alone its momentum balances are exact.
+/// Without such points one multiplier an element marks a stepping rule with one stage: endpoint (order 1)
+/// takes forces at the end of the step, midpoint in its middle.
+Quadrature load_rule(const Motion& motion)
 {
     if (motion.gauss_points > 0) return gauss(motion.gauss_points);
     const bool one_stage = motion.X.degree == 1 && motion.multipliers.degree == 0;
@@ -53,10 +52,17 @@ Quadrature supply_rule(const Motion& motion)
     return {{motion.order_at_ends == 1 ? 1.0 : 0.5}, {1.0}};
 }
 
+/// Where joints are taken: where the method holds them, at its nodes or at the points of its loads.
+Quadrature joint_rule(const Motion& motion)
+{
+    if (motion.constraints_hold == "element nodes") return gauss_lobatto(motion.X.degree + 1);
+    return load_rule(motion);
+}
+
 class SupplyIntegral {
 public:
     SupplyIntegral(const Model& model, const Motion& motion)
-        : SupplyIntegral(model, motion, supply_rule(motion))
+        : SupplyIntegral(model, motion, load_rule(motion), joint_rule(motion))
     {}
 
     /// Integral over one element.
@@ -64,31 +70,34 @@ public:
     {
         Supply sum;
         const double h = motion_.mesh.length(element);
-        for (int k = 0; k < sampler_.size(); ++k) sum.add(h * weights_[k], rates(element, k));
+        for (int k = 0; k < loads_.size(); ++k) {
+            Supply now;
+            loads_.positions(element, k, X_);
+            loads_.velocities(element, k, V_);
+            for (std::size_t b = 0; b < X_.size(); ++b) now.add_force(X_[b], weights_of_bodies_[b]);
+            add_loads(loads_.instant(element, k), now);
+            sum.add(h * load_weights_[k], now);
+        }
+        for (int k = 0; multipliers_ && k < joints_.size(); ++k) {
+            Supply now;
+            joints_.positions(element, k, X_);
+            add_joints(element, k, now);
+            sum.add(h * joint_weights_[k], now);
+        }
         return sum;
     }
 
 private:
-    SupplyIntegral(const Model& model, const Motion& motion, Quadrature rule)
-        : model_(model), motion_(motion), weights_(rule.weights), sampler_(motion, rule.points),
+    SupplyIntegral(const Model& model, const Motion& motion, Quadrature loads, Quadrature joints)
+        : model_(model), load_weights_(loads.weights), joint_weights_(joints.weights),
+          loads_(motion, loads.points), joints_(motion, joints.points), motion_(motion),
           X_(static_cast<std::size_t>(motion.n_bodies)), V_(X_.size())
     {
         if (!motion.multipliers.empty()) {
-            multipliers_.emplace(motion.multipliers, sampler_.points());
+            multipliers_.emplace(motion.multipliers, joints_.points());
             lambda_.resize(static_cast<std::size_t>(motion.n_rows));
         }
         for (const Body& body : model.bodies()) weights_of_bodies_.push_back(weight(body, model.gravity()));
-    }
-
-    Supply rates(int element, int k)
-    {
-        Supply now;
-        sampler_.positions(element, k, X_);
-        sampler_.velocities(element, k, V_);
-        for (std::size_t b = 0; b < X_.size(); ++b) now.add_force(X_[b], weights_of_bodies_[b]);
-        add_loads(sampler_.instant(element, k), now);
-        add_joints(element, k, now);
-        return now;
     }
 
     void add_loads(Instant at, Supply& now) const
@@ -107,7 +116,6 @@ private:
     /// -G^T lambda on all bodies: between two bodies it adds up to nothing, so what stays is the world's.
     void add_joints(int element, int k, Supply& now)
     {
-        if (!multipliers_) return;
         multipliers_->values(element, k, lambda_);
         for (int r = 0; r < model_.n_rows(); ++r) {
             if (lambda_[r] == 0) continue;
@@ -119,10 +127,10 @@ private:
     }
 
     const Model& model_;
+    std::vector<double> load_weights_, joint_weights_;
+    ElementSampler loads_, joints_;
     const Motion& motion_;
-    std::vector<double> weights_;
-    ElementSampler sampler_;
-    std::optional<FieldTable> multipliers_;   // a field of its own degree, at the sampler's points
+    std::optional<FieldTable> multipliers_;   // a field of its own degree, at the joints' points
     std::vector<Matrix34> X_, V_;
     std::vector<double> lambda_;
     std::vector<Matrix34> weights_of_bodies_;

@@ -128,20 +128,27 @@ private:
     {
         const int p = rule_.degree, node = e * p + A;
         const double h = motion_.mesh.length(e), weight = h * rule_.weights[A];
-        const Side side = A == 0 ? Side::right : (A == p ? Side::left : Side::middle);
-        const double t =
-            A == p ? motion_.mesh.ends[e + 1] : motion_.mesh.ends[e] + rule_.nodes[A] * h;
-        std::vector<Matrix34> V(r.size(), Matrix34{});
         for (int B = 0; B <= p; ++B) {
             for (std::size_t b = 0; b < r.size(); ++b) {
                 const Matrix34 increment = X[e * p + B][b] - X[e * p][b];
-                V[b] += (rule_.D[A * (p + 1) + B] / h) * increment;
                 r[b] += (rule_.k[A * (p + 1) + B] / h) * increment * model_.bodies()[b].mass;
             }
         }
         for (std::size_t b = 0; b < r.size(); ++b)
             r[b] += weight * livens::weight(model_.bodies()[b], model_.gravity());
-        for (const Load& load : model_.loads()) add_load(load, {t, side}, X[node], V, weight, r);
+        for (int point = 0; point < p; ++point) {   // loads at the Gauss points
+            std::vector<Matrix34> X_c(r.size(), Matrix34{}), V_c(r.size(), Matrix34{});
+            for (int B = 0; B <= p; ++B) {
+                for (std::size_t b = 0; b < r.size(); ++b) {
+                    X_c[b] += rule_.M[point * (p + 1) + B] * X[e * p + B][b];
+                    V_c[b] += (rule_.dM[point * (p + 1) + B] / h) * X[e * p + B][b];
+                }
+            }
+            const double t = motion_.mesh.ends[e] + rule_.loads.points[point] * h;
+            const double share = h * rule_.loads.weights[point] * rule_.M[point * (p + 1) + A];
+            for (const Load& load : model_.loads())
+                add_load(load, {t, Side::middle}, X_c, V_c, share, r);
+        }
         for (int c = 0; c < model_.n_rows(); ++c) {
             const ConstraintRow& row = model_.row(c);
             const double impulse = weight * motion_.multipliers.coefficient(e, A)[c];

@@ -27,7 +27,7 @@ Element::Element(const Mechanism& mechanism, const LobattoRule& rule)
     increments_.resize(nodes * mechanism.bodies.size());
     X0_.assign(size, 0.0);
     for (auto* v : {&dX_, &X_, &raw_, &forces_, &frames_}) v->assign(nodes * size, 0.0);
-    V_.assign(size, 0.0);
+    for (auto* v : {&X_c_, &V_c_}) v->assign(size, 0.0);
     blocks_.assign(3 * size, 0.0);
     q_.assign(nodes * twists, 0.0);
     bases_.resize(nodes);
@@ -62,7 +62,7 @@ void Element::attach(const EndState& start, double t_end)
     std::copy(start.frames.begin(), start.frames.end(), frames_.begin());
     orthogonal_[0] = &start.basis.q;
     keep_choices_ = false;
-    start_terms_ = 0;
+    start_terms_ = load_rounding_ = 0;
     for (double p : start.momentum) start_terms_ = std::max(start_terms_, std::abs(p));
     smallest_pivot_ = start.smallest_pivot;
     for (int c = 0; c < mechanism_.rank; ++c)
@@ -158,33 +158,50 @@ void Element::evaluate_row(int A)
     }
     double* raw = raw_.data() + node(A);
     mechanism_.times_mass(y, 1 / h_, raw);
-    double* forces = forces_.data() + node(A);
-    evaluate_forces(A, forces);
-    accumulate(raw, forces, size);
+    accumulate(raw, forces_.data() + node(A), size);
     double* q = q_.data() + twist_node(A);
     mechanism_.rows_of(X(A), frames(A), raw, q);
     eliminate_multipliers(A);
 }
 
-/// forces <- h w_A F at node A, each load on the element's own side of a jump.
-void Element::evaluate_forces(int A, double* forces)
+/// X and X' at Gauss point c.
+void Element::interpolate(int c, double* X, double* V) const
 {
     const std::size_t size = X0_.size();
     const int n_nodes = rule_.size();
-    const double* V = nullptr;
-    if (mechanism_.has_velocity_loads) {
-        std::fill(V_.begin(), V_.end(), 0.0);
-        for (int B = 1; B < n_nodes; ++B) {
-            const double d = rule_.D[A * n_nodes + B] / h_;
-            for (std::size_t i = 0; i < size; ++i) V_[i] += d * dX_[node(B) + i];
+    std::copy(X0_.begin(), X0_.end(), X);
+    std::fill(V, V + size, 0.0);
+    for (int B = 1; B < n_nodes; ++B) {
+        const double m = rule_.M[c * n_nodes + B], d = rule_.dM[c * n_nodes + B] / h_;
+        const double* __restrict dX = dX_.data() + node(B);
+        for (std::size_t i = 0; i < size; ++i) {
+            X[i] += m * dX[i];
+            V[i] += d * dX[i];
         }
-        V = V_.data();
     }
-    const bool last = A == rule_.degree;
-    const Instant at{A == 0 ? t0_ : (last ? t1_ : t0_ + rule_.nodes[A] * h_),
-                     A == 0 ? Side::right : (last ? Side::left : Side::middle)};
-    std::fill(forces, forces + size, 0.0);
-    mechanism_.add_forces(at, X(A), V, h_ * rule_.weights[A], forces);
+}
+
+/// forces <- F_A at all nodes. All Gauss points lie inside the element, on its side of every jump. The weight
+/// is constant, and its integral against M_A is h w_A to the last digit.
+void Element::evaluate_forces()
+{
+    const std::size_t size = X0_.size();
+    const int n_nodes = rule_.size();
+    std::fill(forces_.begin(), forces_.end(), 0.0);
+    for (int A = 0; A < n_nodes; ++A) mechanism_.add_weight(h_ * rule_.weights[A], forces_.data() + node(A));
+    if (mechanism_.model->loads().empty()) return;
+    std::vector<double>& F = scratch_;
+    for (int c = 0; c < rule_.degree; ++c) {
+        interpolate(c, X_c_.data(), V_c_.data());
+        std::fill(F.begin(), F.end(), 0.0);
+        mechanism_.add_loads({t0_ + rule_.loads.points[c] * h_, Side::middle}, X_c_.data(), V_c_.data(),
+                             h_ * rule_.loads.weights[c], F.data());
+        for (int A = 0; A < n_nodes; ++A) {
+            const double m = rule_.M[c * n_nodes + A];
+            double* __restrict f = forces_.data() + node(A);
+            for (std::size_t i = 0; i < size; ++i) f[i] += m * F[i];
+        }
+    }
 }
 
 /// lambda_A from the rows in the constraint directions; what is left are the reduced rows.
@@ -216,6 +233,7 @@ bool Element::finish_evaluation(bool correct)
 {
     if (correct) correct_constraints();
     terms_ = start_terms_;
+    evaluate_forces();
     for (int A = 0; A < rule_.degree; ++A) evaluate_row(A);
     double sum = terms_, largest = 0;
     for (const double r : rho_) {
@@ -396,7 +414,6 @@ ElementReport Element::solve(const EndState& start, double t_end, const NewtonOp
 ElementReport Element::finish(const ElementReport& report)
 {
     const int p = rule_.degree;
-    evaluate_forces(p, forces_.data() + node(p));
     double* end = q_.data() + twist_node(p);
     std::copy(start_->p.begin(), start_->p.end(), end);
     for (int A = 0; A <= p; ++A) {
@@ -435,7 +452,7 @@ ElementReport Element::iterate(ElementReport report, const NewtonOptions& option
         // a body may fly many lengths while its turns need their digits all the same
         const double scale = std::clamp(step.motion, 1e-6, 1.0);
         // the sums over k_AB cancel: their rounding is that of their largest term
-        const double rounding = 1e-16 * (largest_k_ * step.impulse + terms_);
+        const double rounding = 1e-16 * (largest_k_ * step.impulse + terms_ + load_rounding_);
         const double impulse = std::max(step.impulse, terms_);
         const bool small = next <= options.tolerance * scale && rows_left <= options.tolerance * impulse;
         if (small || (rate > 0.25 && rows_left < 4 * rounding)) {

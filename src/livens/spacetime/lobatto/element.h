@@ -33,8 +33,8 @@ struct ElementReport {
 
 /// The equations of one element in twists and joint multipliers, for given state at its start:
 ///
-///     rows A = 0..p-1    N^T [ h^-1 sum_B k_AB (X_B - X_0) m + h w_A F(X_A) + (A = 0) P_0 - h w_A G^T
-///     lambda_A ] = 0 nodes B = 1..p     Phi(X_B) = 0
+///     rows A = 0..p-1    N^T [ h^-1 sum_B k_AB (X_B - X_0) m + F_A + (A = 0) P_0 - h w_A G^T lambda_A ] = 0
+///     nodes B = 1..p     Phi(X_B) = 0,      F_A = h sum_c w_c M_A(s_c) F(X(s_c), X'(s_c))
 ///
 /// (docs/theory.md, "The element".) Multipliers are eliminated node by node with an orthogonal basis of the
 /// constraint directions, so only the null-space unknowns of nodes 1..p are solved for.
@@ -99,7 +99,8 @@ private:
     void evaluate_row(int A);
     ElementReport finish(const ElementReport& report);
     void eliminate_multipliers(int A);
-    void evaluate_forces(int A, double* forces);
+    void evaluate_forces();
+    void interpolate(int c, double* X, double* V) const;
     void subtract_reactions(int A, double* raw) const;
     double size_of(const double* xi) const;
     void scale_block(int A, int i, int B, int j, const double* block, double* out) const;
@@ -109,7 +110,8 @@ private:
     void node_terms(int A, Sink&& sink);
     template <class Sink>
     void load_terms(int A, int B, Sink&& sink);
-    void evaluate_load_tangents(int A);
+    void evaluate_load_tangents();
+    double rounding_of(const Load& load, const LoadArguments& at, const LoadTangent& tangent) const;
     bool factorise();
     Step solve_step();
     void measure(int B, Step& step) const;
@@ -132,8 +134,8 @@ private:
     std::vector<double> X0_;                     // 12 a body
     std::vector<double> dX_, X_;                 // (p + 1) x 12 a body
     std::vector<double> raw_;                    // (p + 1) x 12 a body: the bracket without multipliers
-    std::vector<double> forces_;                 // (p + 1) x 12 a body: h w_A F
-    std::vector<double> V_;                      // 12 a body, derivative at one node
+    std::vector<double> forces_;                 // (p + 1) x 12 a body: F_A
+    std::vector<double> X_c_, V_c_;              // 12 a body, X and X' at one Gauss point
     std::vector<double> frames_;                 // (p + 1) x 12 a body: maps of the scaled twists
     std::vector<double> q_;                      // (p + 1) x n: N^T raw
     std::vector<ConstraintBasis> bases_;         // nodes 1..p; node 0 uses the start's
@@ -145,11 +147,12 @@ private:
     std::vector<double> rho_;      // p x f reduced rows, negative: the right-hand side
     std::vector<double> work_, twist_, scratch_;
     std::vector<double> blocks_;               // 36 a body
-    std::vector<LoadTangent> load_tangents_;   // at one node
+    std::vector<LoadTangent> load_tangents_;   // of all loads with tangents, Gauss point after Gauss point
     double largest_k_ = 0;
     double terms_ = 0;         // size of the terms in the rows, for the rounding level
     double rows_size_ = 0;     // largest reduced row
     double start_terms_ = 0;   // of the momentum at the start
+    double load_rounding_ = 0;   // of the loads in the rows: what they make of the rounding of X and X'
     double smallest_pivot_ = 1;
     bool near_ = true;            // violations are small enough for one linear step
     bool pending_ = false;        // and are left to the next one

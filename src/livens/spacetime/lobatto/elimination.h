@@ -11,7 +11,7 @@ namespace livens {
 
 /// Dense elimination on null spaces: rows Z_A^T at nodes 0..p-1, columns Z_B at nodes 1..p.
 ///
-/// Where the tangent couples no bodies (degree 1 without loads that depend on the velocity) its bodies are
+/// Where the tangent couples no bodies (degree 1 without loads that have one) its bodies are
 /// inverted one by one instead and the constraints added by their Schur complement, which is small.
 class Elimination {
 public:
@@ -34,7 +34,7 @@ public:
     /// increment across the null space at node 1 (in the basis), null for none; see takes_constraints().
     void solve(double* x, const double* range);
     /// Whether solve() can take violations of the constraints in; else they are taken off before.
-    bool takes_constraints() const { return degree_ == 1 && !mechanism_.has_velocity_loads; }
+    bool takes_constraints() const { return degree_ == 1 && mechanism_.loads_with_tangent.empty(); }
 
     int unknowns() const { return degree_ * f_; }
 

@@ -219,7 +219,8 @@ void EndSolver::accelerate(EndState& state, Side side)
         twist::columns(V_.data() + 12 * b, spin, centripetal_.data() + 12 * b);
     }
     mechanism_.times_mass(centripetal_.data(), -1.0, raw_.data());
-    mechanism_.add_forces({state.t, side}, X, V_.data(), 1.0, raw_.data());
+    mechanism_.add_weight(1.0, raw_.data());
+    mechanism_.add_loads({state.t, side}, X, V_.data(), 1.0, raw_.data());
     double* y = a_.data();
     double* forces = b_.data();
     mechanism_.rows_of(X, state.frames.data(), raw_.data(), y);

@@ -100,6 +100,7 @@ private:
         m.dense_order_X = p + 1;
         m.dense_order_V = p;
         m.constraints_hold = "element nodes";
+        m.gauss_points = p;
         m.redundant_rows = assembly.redundant;
         for (const std::string& note : assembly.notes) solution_.report.notes.push_back(note);
         const auto n = static_cast<std::size_t>(mesh_.n_elements());

@@ -134,7 +134,6 @@ Mechanism::Mechanism(const Model& the_model, int the_rank) : model(&the_model), 
     for (int l = 0; l < static_cast<int>(the_model.loads().size()); ++l) {
         const Load& load = the_model.loads()[l];
         if (load.depends_on_X || load.depends_on_V) loads_with_tangent.push_back(l);
-        has_velocity_loads = has_velocity_loads || load.depends_on_V;
     }
 }
 
@@ -311,14 +310,17 @@ double Mechanism::curvature(int r, const double* V) const
     return sum;
 }
 
-void Mechanism::add_forces(Instant instant, const double* X, const double* V, double factor,
-                           double* raw) const
+void Mechanism::add_weight(double factor, double* raw) const
 {
     for (int b = 0; b < n_bodies(); ++b) {
         // without an offset the weight has no part on the directors
         const int n = bodies[b].offset ? 12 : 3;
         for (int i = 0; i < n; ++i) raw[12 * b + i] += factor * bodies[b].weight[i];
     }
+}
+
+void Mechanism::add_loads(Instant instant, const double* X, const double* V, double factor, double* raw) const
+{
     for (const Load& load : model->loads()) {
         LoadArguments arguments;
         arguments.at = instant;
@@ -326,7 +328,7 @@ void Mechanism::add_forces(Instant instant, const double* X, const double* V, do
             const int body = load.bodies[side];
             if (body == world) continue;
             arguments.X[side] = at(X, body);
-            if (V != nullptr) arguments.V[side] = at(V, body);
+            arguments.V[side] = at(V, body);
         }
         LoadForces forces{};
         load.forces(arguments, forces);

@@ -80,9 +80,9 @@ struct Mechanism {
     /// The part of d2 Phi/dt2 that is quadratic in X' = V.
     double curvature(int r, const double* V) const;
 
-    /// raw += factor * (weight and loads) at the instant; X, V: 12 a body. V may be null if no load asks for
-    /// it.
-    void add_forces(Instant at, const double* X, const double* V, double factor, double* raw) const;
+    /// raw += factor * weight, and factor * loads at the instant; X, V: 12 a body.
+    void add_weight(double factor, double* raw) const;
+    void add_loads(Instant at, const double* X, const double* V, double factor, double* raw) const;
     /// q <- the rows of raw: force, and moment about the centre of mass (not the reference point).
     void rows_of(const double* X, const double* frames, const double* raw, double* q) const;
 
@@ -99,8 +99,6 @@ struct Mechanism {
     void columns_of(const double* X, const double* xi, double* dX) const;
     /// out <- Y m, body by body.
     void times_mass(const double* Y, double factor, double* out) const;
-
-    bool has_velocity_loads = false;
 };
 
 /// An orthogonal basis of the constraint directions at one configuration, with the scaling of its rows.

@@ -1,6 +1,7 @@
 #include "livens/spacetime/lobatto/rule.h"
 
 #include <cmath>
+#include <span>
 #include <string>
 
 #include "livens/base/error.h"
@@ -39,7 +40,8 @@ LobattoRule lobatto_rule(int degree)
                           std::to_string(degree), "1..16", "", "4 to 8 suit most mechanisms"});
     const LagrangeBasis basis = lobatto_basis(degree);
     const int n = degree + 1;
-    LobattoRule rule{degree, basis.nodes(), gauss_lobatto(n).weights, basis.differentiation(), {}};
+    LobattoRule rule{degree, basis.nodes(),  gauss_lobatto(n).weights, basis.differentiation(), {},
+                     gauss(degree), {}, {}};
     rule.k.assign(static_cast<std::size_t>(n * n), 0.0);
     for (int a = 0; a < n; ++a) {
         for (int b = 0; b <= a; ++b) {
@@ -50,6 +52,13 @@ LobattoRule lobatto_rule(int degree)
         }
     }
     balance_columns(rule);
+    const auto size = static_cast<std::size_t>(n);
+    rule.M.resize(size * rule.loads.points.size());
+    rule.dM.resize(rule.M.size());
+    for (std::size_t c = 0; c < rule.loads.points.size(); ++c) {
+        basis.values(rule.loads.points[c], std::span(rule.M).subspan(c * size, size));
+        basis.derivatives(rule.loads.points[c], std::span(rule.dM).subspan(c * size, size));
+    }
     return rule;
 }
 

@@ -3,15 +3,20 @@
 
 #include <vector>
 
+#include "livens/time/quadrature.h"
+
 namespace livens {
 
-/// Nodes and quadrature of degree p, n = p + 1 points.
+/// Degree p: n = p + 1 nodes, where constraints hold, and p Gauss points, where loads are taken.
 struct LobattoRule {
     int degree = 0;
     std::vector<double> nodes;     ///< s_A in [0, 1]
     std::vector<double> weights;   ///< w_A, sum 1
     std::vector<double> D;         ///< D_CA = M_A'(s_C), row by row
     std::vector<double> k;         ///< k_AB = sum_C w_C D_CA D_CB, row by row
+    Quadrature loads;              ///< the p Gauss points s_c
+    std::vector<double> M;         ///< M_A(s_c) at [c * n + A]
+    std::vector<double> dM;        ///< M_A'(s_c) likewise
 
     int size() const { return degree + 1; }
 };

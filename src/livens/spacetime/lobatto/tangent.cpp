@@ -1,5 +1,6 @@
 // The exact tangent of an element, block by block.  (docs/theory.md, "The tangent")
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 
 #include "livens/spacetime/lobatto/element.h"
@@ -13,8 +14,8 @@ void Element::form_tangent(Sink&& sink)
 {
     const int n_nodes = rule_.size();
     double H[9] = {};
+    evaluate_load_tangents();
     for (int A = 0; A + 1 < n_nodes; ++A) {
-        evaluate_load_tangents(A);
         for (int B = 1; B < n_nodes; ++B) {
             sink.open(A, B);
             const double factor = rule_.k[A * n_nodes + B] / h_;
@@ -125,47 +126,76 @@ void reduce_load(const Matrix<12, 12>& K, const double* X_row, const double* X_c
 
 }   // namespace
 
-/// dF/dX and dF/dX' of all loads at node A.
-void Element::evaluate_load_tangents(int A)
+/// Size of what a load makes of X and X', in scaled rows: times eps it is what rounding of X does to the
+/// rows, also where large terms of the load have cancelled (a stiff spring at rest).
+double Element::rounding_of(const Load& load, const LoadArguments& at, const LoadTangent& tangent) const
 {
-    const int n_nodes = rule_.size();
-    load_tangents_.resize(mechanism_.loads_with_tangent.size());
-    for (std::size_t l = 0; l < load_tangents_.size(); ++l) {
-        const Load& load =
-            mechanism_.model->loads()[static_cast<std::size_t>(mechanism_.loads_with_tangent[l])];
-        LoadArguments arguments;
-        arguments.at = {A == 0 ? t0_ : t0_ + rule_.nodes[A] * h_, A == 0 ? Side::right : Side::middle};
-        for (int side = 0; side < 2; ++side) {
-            const int body = load.bodies[side];
-            if (body == world) continue;
-            std::copy_n(X(A) + 12 * body, 12, arguments.X[side].a);
-            for (int B = 1; B < n_nodes; ++B) {
-                const double* d = dX_.data() + node(B) + 12 * body;
-                for (int i = 0; i < 12; ++i) arguments.V[side].a[i] += rule_.D[A * n_nodes + B] / h_ * d[i];
-            }
+    double size = 0;
+    for (int r = 0; r < 2; ++r) {
+        if (load.bodies[r] == world) continue;
+        const auto& body = mechanism_.bodies[load.bodies[r]];
+        double root = 0;
+        for (const double l : body.spin) root = std::max(root, std::abs(l));
+        for (int i = 0; i < 12; ++i) {
+            double term = 0;
+            for (int c = 0; c < 2; ++c)
+                for (int k = 0; k < 12; ++k)
+                    term += std::abs(tangent.X[r][c](i, k) * at.X[c].a[k]) +
+                            std::abs(tangent.V[r][c](i, k) * at.V[c].a[k]);
+            size = std::max(size, term * (i < 3 ? body.inverse_root_mass + body.reach * root : root));
         }
-        load_tangents_[l] = {};
-        load.tangent(arguments, load_tangents_[l]);
+    }
+    return h_ * size;
+}
+
+/// dF/dX and dF/dX' of all loads at the Gauss points.
+void Element::evaluate_load_tangents()
+{
+    const std::size_t n = mechanism_.loads_with_tangent.size();
+    load_tangents_.assign(n * static_cast<std::size_t>(rule_.degree), {});
+    load_rounding_ = 0;
+    for (int c = 0; n > 0 && c < rule_.degree; ++c) {
+        interpolate(c, X_c_.data(), V_c_.data());
+        for (std::size_t l = 0; l < n; ++l) {
+            const Load& load =
+                mechanism_.model->loads()[static_cast<std::size_t>(mechanism_.loads_with_tangent[l])];
+            LoadArguments arguments;
+            arguments.at = {t0_ + rule_.loads.points[c] * h_, Side::middle};
+            for (int side = 0; side < 2; ++side) {
+                if (load.bodies[side] == world) continue;
+                std::copy_n(X_c_.data() + 12 * load.bodies[side], 12, arguments.X[side].a);
+                std::copy_n(V_c_.data() + 12 * load.bodies[side], 12, arguments.V[side].a);
+            }
+            LoadTangent& tangent = load_tangents_[static_cast<std::size_t>(c) * n + l];
+            load.tangent(arguments, tangent);
+            load_rounding_ = std::max(load_rounding_, rounding_of(load, arguments, tangent));
+        }
     }
 }
 
+/// sum_c h w_c M_A(s_c) N_A^T [ M_B(s_c) dF/dX + h^-1 M_B'(s_c) dF/dX' ] N_B.
 template <class Sink>
 void Element::load_terms(int A, int B, Sink&& sink)
 {
+    const std::size_t n = mechanism_.loads_with_tangent.size();
+    const int n_nodes = rule_.size();
     double block[36], scaled[36];
-    for (std::size_t l = 0; l < load_tangents_.size(); ++l) {
+    for (std::size_t l = 0; l < n; ++l) {
         const Load& load =
             mechanism_.model->loads()[static_cast<std::size_t>(mechanism_.loads_with_tangent[l])];
-        const bool position = A == B && load.depends_on_X;
-        if (!position && !load.depends_on_V) continue;
         for (int r = 0; r < 2; ++r) {
-            for (int c = 0; c < 2; ++c) {
-                const int i = load.bodies[r], j = load.bodies[c];
+            for (int s = 0; s < 2; ++s) {
+                const int i = load.bodies[r], j = load.bodies[s];
                 if (i == world || j == world) continue;
-                // K = h w_A dF/dX (at A = B) + w_A D_AB dF/dX'
-                Matrix<12, 12> K =
-                    rule_.weights[A] * rule_.D[A * rule_.size() + B] * load_tangents_[l].V[r][c];
-                if (position) K += h_ * rule_.weights[A] * load_tangents_[l].X[r][c];
+                Matrix<12, 12> K{};
+                for (int c = 0; c < rule_.degree; ++c) {
+                    const LoadTangent& tangent = load_tangents_[static_cast<std::size_t>(c) * n + l];
+                    const double w = rule_.loads.weights[c] * rule_.M[c * n_nodes + A];
+                    const double by_X = load.depends_on_X ? h_ * w * rule_.M[c * n_nodes + B] : 0.0;
+                    const double by_V = load.depends_on_V ? w * rule_.dM[c * n_nodes + B] : 0.0;
+                    for (int k = 0; k < 144; ++k)
+                        K.a[k] += by_X * tangent.X[r][s].a[k] + by_V * tangent.V[r][s].a[k];
+                }
                 reduce_load(K, X(A) + 12 * i, X(B) + 12 * j, mechanism_.bodies[j].dofs, block);
                 scale_block(A, i, B, j, block, scaled);
                 sink.block(i, j, scaled);

@@ -37,7 +37,7 @@ public:
         whole_.freedoms = mechanism_.freedoms();
         totals_.assign(static_cast<std::size_t>(whole_.n_nodes) * size_, 0.0);
         impulses_.assign(static_cast<std::size_t>(whole_.n_nodes * motion.n_rows), 0.0);
-        for (auto* v : {&V_, &Y_, &dX_}) v->assign(size_, 0.0);
+        for (auto* v : {&X_, &V_, &Y_, &dX_}) v->assign(size_, 0.0);
         q_.assign(static_cast<std::size_t>(mechanism_.n_twists), 0.0);
         const auto columns = static_cast<std::size_t>(rule_.size() * whole_.freedoms);
         for (auto* v : {&moves_, &masses_}) v->assign(columns * size_, 0.0);
@@ -73,7 +73,7 @@ private:
     void add_element(int e);
     void move_nodes(int e);
     void add_rows(int e, int A);
-    void evaluate_load_tangents(int e, int A);
+    void add_loads(int e);
     void add_block(int e, int A, int B);
     void add_load(std::size_t load, int e, int A, int B, const double* dX);
     void add_node(int A);
@@ -81,7 +81,6 @@ private:
     void add_turning(int A, const double* dX);
     void add(int A, int B, int j);
     void rows_of(int A);
-    Instant instant(int e, int A) const;
 
     const Motion& motion_;
     LobattoRule rule_;
@@ -90,10 +89,10 @@ private:
     std::vector<double> totals_;               // size_ a node: total rows r_A
     std::vector<double> impulses_;             // rows a node: W_A lambda_A
     std::vector<double> moves_, masses_;       // dX and dX m of all columns of one element
-    std::vector<double> V_, dX_;               // size_: X' at one node, one column
+    std::vector<double> X_, V_, dX_;           // size_: X and X' at one Gauss point, one column
     std::vector<double> Y_;                    // size_: what rows make of a column, 3 x 4 a body
     std::vector<double> q_;                    // the same in plain twists
-    std::vector<LoadTangent> load_tangents_;   // at one node
+    std::vector<LoadTangent> load_tangents_;   // Gauss point after Gauss point
     WholeMatrix whole_;
 };
 
@@ -142,13 +141,13 @@ void Former::add_element(int e)
 {
     const int p = rule_.degree, n_rows = motion_.n_rows;
     move_nodes(e);
+    add_loads(e);
     for (int A = 0; A <= p; ++A) {
         add_rows(e, A);
         for (int r = 0; r < n_rows; ++r)
             impulse(e * p + A)[r] += motion_.mesh.length(e) * rule_.weights[A] *
                                      motion_.multipliers.coefficient(e, A)[static_cast<std::size_t>(r)];
         if (e * p + A == whole_.n_nodes - 1) break;
-        evaluate_load_tangents(e, A);
         for (int B = e == 0 ? 1 : 0; B <= p; ++B) add_block(e, A, B);
     }
 }
@@ -166,52 +165,58 @@ void Former::move_nodes(int e)
     }
 }
 
-/// Loads are taken from inside the element.
-Instant Former::instant(int e, int A) const
-{
-    const std::vector<double>& ends = motion_.mesh.ends;
-    if (A == 0) return {ends[e], Side::right};
-    if (A == rule_.degree) return {ends[e + 1], Side::left};
-    return {ends[e] + rule_.nodes[A] * motion_.mesh.length(e), Side::middle};
-}
-
-/// r_A += h^-1 sum_B k_AB (X_B - X_0) m + h w_A F; leaves X' at the node in V_.
+/// r_A += h^-1 sum_B k_AB (X_B - X_0) m + h w_A times the weight.
 void Former::add_rows(int e, int A)
 {
     const double h = motion_.mesh.length(e);
     const double* X0 = X(e * rule_.degree);
-    std::fill(V_.begin(), V_.end(), 0.0);
     std::fill(dX_.begin(), dX_.end(), 0.0);
     for (int B = 1; B <= rule_.degree; ++B) {
         const double* XB = X(e * rule_.degree + B);
-        const double k = rule_.k[A * rule_.size() + B], d = rule_.D[A * rule_.size() + B] / h;
-        for (std::size_t i = 0; i < size_; ++i) {
-            dX_[i] += k * (XB[i] - X0[i]);
-            V_[i] += d * (XB[i] - X0[i]);
-        }
+        const double k = rule_.k[A * rule_.size() + B];
+        for (std::size_t i = 0; i < size_; ++i) dX_[i] += k * (XB[i] - X0[i]);
     }
     const int node = e * rule_.degree + A;
     mechanism_.times_mass(dX_.data(), 1 / h, Y_.data());
-    mechanism_.add_forces(instant(e, A), X(node), V_.data(), h * rule_.weights[A], Y_.data());
+    mechanism_.add_weight(h * rule_.weights[A], Y_.data());
     for (std::size_t i = 0; i < size_; ++i) total(node)[i] += Y_[i];
 }
 
-/// dF/dX and dF/dX' of all loads at local node A, whose X' is in V_.
-void Former::evaluate_load_tangents(int e, int A)
+/// Loads at the Gauss points in the rows of all nodes, and their tangents.
+void Former::add_loads(int e)
 {
-    load_tangents_.assign(mechanism_.loads_with_tangent.size(), {});
-    for (std::size_t l = 0; l < load_tangents_.size(); ++l) {
-        const Load& load =
-            mechanism_.model->loads()[static_cast<std::size_t>(mechanism_.loads_with_tangent[l])];
-        LoadArguments arguments;
-        arguments.at = instant(e, A);
-        for (int side = 0; side < 2; ++side) {
-            const int body = load.bodies[side];
-            if (body == world) continue;
-            std::copy_n(X(e * rule_.degree + A) + 12 * body, 12, arguments.X[side].a);
-            std::copy_n(V_.data() + 12 * body, 12, arguments.V[side].a);
+    const double h = motion_.mesh.length(e);
+    const std::size_t n = mechanism_.loads_with_tangent.size();
+    load_tangents_.assign(n * static_cast<std::size_t>(rule_.degree), {});
+    for (int c = 0; c < rule_.degree; ++c) {
+        const Instant at{motion_.mesh.ends[e] + rule_.loads.points[c] * h, Side::middle};
+        std::fill(X_.begin(), X_.end(), 0.0);
+        std::fill(V_.begin(), V_.end(), 0.0);
+        for (int B = 0; B <= rule_.degree; ++B) {
+            const double* XB = X(e * rule_.degree + B);
+            const double m = rule_.M[c * rule_.size() + B], d = rule_.dM[c * rule_.size() + B] / h;
+            for (std::size_t i = 0; i < size_; ++i) {
+                X_[i] += m * XB[i];
+                V_[i] += d * XB[i];
+            }
         }
-        load.tangent(arguments, load_tangents_[l]);
+        std::fill(Y_.begin(), Y_.end(), 0.0);
+        mechanism_.add_loads(at, X_.data(), V_.data(), h * rule_.loads.weights[c], Y_.data());
+        for (int A = 0; A <= rule_.degree; ++A)
+            for (std::size_t i = 0; i < size_; ++i)
+                total(e * rule_.degree + A)[i] += rule_.M[c * rule_.size() + A] * Y_[i];
+        for (std::size_t l = 0; l < n; ++l) {
+            const Load& load =
+                mechanism_.model->loads()[static_cast<std::size_t>(mechanism_.loads_with_tangent[l])];
+            LoadArguments arguments;
+            arguments.at = at;
+            for (int side = 0; side < 2; ++side) {
+                if (load.bodies[side] == world) continue;
+                std::copy_n(X_.data() + 12 * load.bodies[side], 12, arguments.X[side].a);
+                std::copy_n(V_.data() + 12 * load.bodies[side], 12, arguments.V[side].a);
+            }
+            load.tangent(arguments, load_tangents_[static_cast<std::size_t>(c) * n + l]);
+        }
     }
 }
 
@@ -223,28 +228,33 @@ void Former::add_block(int e, int A, int B)
     for (int j = 0; j < whole_.freedoms; ++j) {
         const double* mass = masses_.data() + place(B, j);
         for (std::size_t i = 0; i < size_; ++i) Y_[i] = factor * mass[i];
-        for (std::size_t l = 0; l < load_tangents_.size(); ++l)
+        for (std::size_t l = 0; l < mechanism_.loads_with_tangent.size(); ++l)
             add_load(l, e, A, B, moves_.data() + place(B, j));
         rows_of(first + A);
         add(first + A, first + B, j);
     }
 }
 
-/// Y_ += (w_A D_AB dF/dX' + [A = B] h w_A dF/dX) dX, since X' at A moves by D_AB dX / h.
+/// Y_ += sum_c h w_c M_A(s_c) (M_B(s_c) dF/dX + h^-1 M_B'(s_c) dF/dX') dX.
 void Former::add_load(std::size_t l, int e, int A, int B, const double* dX)
 {
+    const std::size_t n = mechanism_.loads_with_tangent.size();
     const Load& load =
         mechanism_.model->loads()[static_cast<std::size_t>(mechanism_.loads_with_tangent[l])];
-    const double by_X = A == B ? motion_.mesh.length(e) * rule_.weights[A] : 0.0;
-    const double by_V = rule_.weights[A] * rule_.D[A * rule_.size() + B];
-    for (int r = 0; r < 2; ++r) {
-        for (int c = 0; c < 2; ++c) {
-            if (load.bodies[r] == world || load.bodies[c] == world) continue;
-            double* out = Y_.data() + 12 * load.bodies[r];
-            const double* in = dX + 12 * load.bodies[c];
-            const auto &K_X = load_tangents_[l].X[r][c], &K_V = load_tangents_[l].V[r][c];
-            for (int k = 0; k < 12; ++k)
-                for (int i = 0; i < 12; ++i) out[i] += (by_X * K_X(i, k) + by_V * K_V(i, k)) * in[k];
+    for (int point = 0; point < rule_.degree; ++point) {
+        const int at = point * rule_.size();
+        const double w = rule_.loads.weights[point] * rule_.M[at + A];
+        const double by_X = motion_.mesh.length(e) * w * rule_.M[at + B], by_V = w * rule_.dM[at + B];
+        const LoadTangent& tangent = load_tangents_[static_cast<std::size_t>(point) * n + l];
+        for (int r = 0; r < 2; ++r) {
+            for (int c = 0; c < 2; ++c) {
+                if (load.bodies[r] == world || load.bodies[c] == world) continue;
+                double* out = Y_.data() + 12 * load.bodies[r];
+                const double* in = dX + 12 * load.bodies[c];
+                const auto &K_X = tangent.X[r][c], &K_V = tangent.V[r][c];
+                for (int k = 0; k < 12; ++k)
+                    for (int i = 0; i < 12; ++i) out[i] += (by_X * K_X(i, k) + by_V * K_V(i, k)) * in[k];
+            }
         }
     }
 }
