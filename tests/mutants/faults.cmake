@@ -46,8 +46,8 @@ livens_mutant(NAME one_weight
 
 # One wrong sign in d_i x r_i.
 livens_mutant(NAME sign_of_a_moment
-              FILE spacetime/lobatto/twist.h
-              RECOMPILE spacetime/lobatto/mechanism.cpp spacetime/lobatto/tangent.cpp
+              FILE multibody/twist.h
+              RECOMPILE multibody/tables.cpp spacetime/lobatto/tangent.cpp
               OLD [[m[1] += X[a + 2] * r[a] - X[a] * r[a + 2];]]
               NEW [[m[1] += X[a + 2] * r[a] + X[a] * r[a + 2];]]
               TESTS_OF convergence

@@ -18,16 +18,16 @@ using testing_models::two_bricks;
 
 class TangentOf : public ::testing::TestWithParam<int> {};
 
-EndState moving_start(const Model& model, const Assembly& assembly, const Mechanism& mechanism,
-                      EndSolver& ends)
+InstantState moving_start(const Model& model, const Assembly& assembly, const Tables& tables,
+                      InstantSystem& ends)
 {
-    EndState state;
-    state.resize(mechanism);
+    InstantState state;
+    state.resize(tables);
     std::mt19937_64 engine(3);
     for (int b = 0; b < model.n_bodies(); ++b)
         std::copy_n(assembly.start.X[b].a, 12, state.X.begin() + 12 * b);
     EXPECT_TRUE(ends.prepare(state));
-    std::vector<double> p(static_cast<std::size_t>(mechanism.n_twists)), lambda(mechanism.rows.size());
+    std::vector<double> p(static_cast<std::size_t>(tables.n_twists)), lambda(tables.rows.size());
     for (double& v : p) v = 3 * (static_cast<double>(engine() >> 11) * 0x1p-53) - 1.5;
     ends.from_momentum(state, p.data(), 1.0, lambda.data());
     ends.accelerate(state, Side::right);
@@ -39,12 +39,12 @@ double tangent_error(const Model& model, int degree)
 {
     const Assembly assembly = assemble(model, model.start(), StartPolicy::check);
     const LobattoRule rule = lobatto_rule(degree);
-    const Mechanism mechanism(model, static_cast<int>(assembly.independent.size()));
-    EndSolver ends(mechanism);
-    const EndState start = moving_start(model, assembly, mechanism, ends);
-    Element element(mechanism, rule);
+    const Tables tables(model, static_cast<int>(assembly.independent.size()));
+    InstantSystem ends(tables);
+    const InstantState start = moving_start(model, assembly, tables, ends);
+    Element element(tables, rule);
     element.begin(start, 0.1);
-    const int n = mechanism.n_twists, N = degree * n;
+    const int n = tables.n_twists, N = degree * n;
     std::mt19937_64 engine(degree);
     std::vector<double> xi(static_cast<std::size_t>(n));
     auto move = [&](int B, double size) {
@@ -54,12 +54,12 @@ double tangent_error(const Model& model, int degree)
     for (int B = 1; B <= degree; ++B) move(B, 0.1);
     EXPECT_TRUE(element.evaluate());
     std::vector<std::vector<double>> lambda(static_cast<std::size_t>(degree),
-                                            std::vector<double>(mechanism.rows.size()));
+                                            std::vector<double>(tables.rows.size()));
     for (int A = 0; A < degree; ++A) element.multipliers(A, lambda[static_cast<std::size_t>(A)].data());
     const std::vector<double> J = element.tangent();
-    std::vector<std::vector<double>> frames;
+    std::vector<std::vector<double>> maps;
     for (int A = 0; A <= degree; ++A)
-        frames.emplace_back(element.frames(A), element.frames(A) + 12 * model.n_bodies());
+        maps.emplace_back(element.maps(A), element.maps(A) + 12 * model.n_bodies());
     std::vector<double> unit(static_cast<std::size_t>(n));
     double worst = 0, largest = 0;
     for (int B = 1; B <= degree; ++B) {
@@ -69,7 +69,7 @@ double tangent_error(const Model& model, int degree)
             auto move_along = [&](double size) {
                 std::fill(unit.begin(), unit.end(), 0.0);
                 unit[static_cast<std::size_t>(j)] = size;
-                mechanism.unscale(frames[static_cast<std::size_t>(B)].data(), unit.data(), xi.data());
+                tables.to_twist(maps[static_cast<std::size_t>(B)].data(), unit.data(), xi.data());
                 element.move(B, xi.data());
             };
             std::vector<double> rows[4];
@@ -78,7 +78,7 @@ double tangent_error(const Model& model, int degree)
                 EXPECT_TRUE(element.evaluate());
                 for (int A = 0; A < degree; ++A) {
                     const auto at = static_cast<std::size_t>(A);
-                    const auto r = element.rows_with(A, lambda[at], frames[at].data());
+                    const auto r = element.rows_with(A, lambda[at], maps[at].data());
                     rows[side].insert(rows[side].end(), r.begin(), r.end());
                 }
             }

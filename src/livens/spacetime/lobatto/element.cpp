@@ -17,24 +17,24 @@ inline void accumulate(double* __restrict sum, const double* __restrict x, std::
 
 }   // namespace
 
-Element::Element(const Mechanism& mechanism, const LobattoRule& rule)
-    : mechanism_(mechanism), rule_(rule), elimination_(mechanism, rule.degree), n_(mechanism.n_twists)
+Element::Element(const Tables& tables, const LobattoRule& rule)
+    : tables_(tables), rule_(rule), elimination_(tables, rule.degree), n_(tables.n_twists)
 {
     const auto nodes = static_cast<std::size_t>(rule.size());
-    const std::size_t size = 12 * mechanism.bodies.size();
+    const std::size_t size = 12 * tables.bodies.size();
     const auto twists = static_cast<std::size_t>(n_);
-    const auto rank = static_cast<std::size_t>(mechanism.rank);
-    increments_.resize(nodes * mechanism.bodies.size());
+    const auto rank = static_cast<std::size_t>(tables.rank);
+    increments_.resize(nodes * tables.bodies.size());
     X0_.assign(size, 0.0);
-    for (auto* v : {&dX_, &X_, &raw_, &forces_, &frames_}) v->assign(nodes * size, 0.0);
+    for (auto* v : {&dX_, &X_, &raw_, &forces_, &maps_}) v->assign(nodes * size, 0.0);
     for (auto* v : {&X_c_, &V_c_}) v->assign(size, 0.0);
     blocks_.assign(3 * size, 0.0);
     q_.assign(nodes * twists, 0.0);
     bases_.resize(nodes);
-    for (std::size_t A = 1; A < nodes; ++A) bases_[A].resize(mechanism, false);
+    for (std::size_t A = 1; A < nodes; ++A) bases_[A].resize(tables, false);
     orthogonal_.assign(nodes, nullptr);
     if (rule.degree >= 4) {
-        coarse_ = std::make_unique<Element>(mechanism, lobatto_rule(rule.degree / 2));
+        coarse_ = std::make_unique<Element>(tables, lobatto_rule(rule.degree / 2));
         const LagrangeBasis basis(coarse_->rule_.nodes);
         to_fine_.assign(static_cast<std::size_t>(rule.size() * basis.size()), 0.0);
         for (int A = 0; A < rule.size(); ++A)
@@ -44,14 +44,14 @@ Element::Element(const Mechanism& mechanism, const LobattoRule& rule)
     for (double k : rule.k) largest_k_ = std::max(largest_k_, std::abs(k));
     for (auto* v : {&phi_, &lambda_}) v->assign(nodes * rank, 0.0);
     phi0_.assign(rank, 0.0);
-    rho_.assign(static_cast<std::size_t>(rule.degree * mechanism.freedoms()), 0.0);
+    rho_.assign(static_cast<std::size_t>(rule.degree * tables.freedoms()), 0.0);
     work_.assign(twists, 0.0);
     twist_.assign(twists, 0.0);
     scratch_.assign(std::max(twists, size), 0.0);
 }
 
 /// Makes the start and the interval current.
-void Element::attach(const EndState& start, double t_end)
+void Element::attach(const InstantState& start, double t_end)
 {
     start_ = &start;
     t0_ = start.t;
@@ -59,17 +59,17 @@ void Element::attach(const EndState& start, double t_end)
     h_ = t_end - start.t;
     X0_ = start.X;
     std::copy(X0_.begin(), X0_.end(), X_.begin());
-    std::copy(start.frames.begin(), start.frames.end(), frames_.begin());
+    std::copy(start.maps.begin(), start.maps.end(), maps_.begin());
     orthogonal_[0] = &start.basis.q;
     keep_choices_ = false;
     start_terms_ = load_rounding_ = 0;
     for (double p : start.momentum) start_terms_ = std::max(start_terms_, std::abs(p));
     smallest_pivot_ = start.smallest_pivot;
-    for (int c = 0; c < mechanism_.rank; ++c)
-        phi0_[c] = mechanism_.value(start.basis.rows[c], X0_.data(), start.basis.gradients.data() + 24 * c);
+    for (int c = 0; c < tables_.rank; ++c)
+        phi0_[c] = tables_.value(start.basis.rows[c], X0_.data(), start.basis.gradients.data() + 24 * c);
 }
 
-void Element::begin(const EndState& start, double t_end)
+void Element::begin(const InstantState& start, double t_end)
 {
     attach(start, t_end);
     predict();
@@ -79,8 +79,8 @@ void Element::configure(int B)
 {
     double* dX = dX_.data() + node(B);
     double* X = X_.data() + node(B);
-    for (int b = 0; b < mechanism_.n_bodies(); ++b) {
-        const auto& increment = increments_[static_cast<std::size_t>(B * mechanism_.n_bodies() + b)];
+    for (int b = 0; b < tables_.n_bodies(); ++b) {
+        const auto& increment = increments_[static_cast<std::size_t>(B * tables_.n_bodies() + b)];
         twist::displacement(increment, X0_.data() + 12 * b, dX + 12 * b);
     }
     const double* __restrict from = X0_.data();
@@ -92,11 +92,11 @@ void Element::configure(int B)
 
 void Element::move(int B, const double* xi)
 {
-    for (int b = 0; b < mechanism_.n_bodies(); ++b) {
-        const auto& body = mechanism_.bodies[b];
+    for (int b = 0; b < tables_.n_bodies(); ++b) {
+        const auto& body = tables_.bodies[b];
         double twist[6] = {0, 0, 0, 0, 0, 0};
         std::copy(xi + body.first, xi + body.first + body.dofs, twist);
-        twist::update(increments_[static_cast<std::size_t>(B * mechanism_.n_bodies() + b)], twist);
+        twist::update(increments_[static_cast<std::size_t>(B * tables_.n_bodies() + b)], twist);
     }
     configure(B);
 }
@@ -112,16 +112,16 @@ bool Element::evaluate_constraints()
     near_ = true;
 
     const ConstraintBasis& first = start_->basis;
-    const int k = mechanism_.rank;
+    const int k = tables_.rank;
     double sum = 0;
     for (int B = 1; B <= rule_.degree; ++B) {
         ConstraintBasis& basis = bases_[B];
-        mechanism_.frames_of(X(B), frames_.data() + node(B));
+        tables_.map_twists(X(B), maps_.data() + node(B));
         smallest_pivot_ =
-            std::min(smallest_pivot_, basis.build(mechanism_, X(B), frames(B), first.rows, keep_choices_));
+            std::min(smallest_pivot_, basis.build(tables_, X(B), maps(B), first.rows, keep_choices_));
         orthogonal_[B] = &basis.q;
         for (int c = 0; c < k; ++c) {
-            const auto& table = mechanism_.rows[basis.rows[c]];
+            const auto& table = tables_.rows[basis.rows[c]];
             const double* g0 = first.gradients.data() + 24 * c;
             const double* g = basis.gradients.data() + 24 * c;
             double phi = 0;
@@ -157,10 +157,10 @@ void Element::evaluate_row(int A)
         for (std::size_t i = 0; i < size; ++i) y[i] += k * d[i];
     }
     double* raw = raw_.data() + node(A);
-    mechanism_.times_mass(y, 1 / h_, raw);
+    tables_.times_mass(y, 1 / h_, raw);
     accumulate(raw, forces_.data() + node(A), size);
     double* q = q_.data() + twist_node(A);
-    mechanism_.rows_of(X(A), frames(A), raw, q);
+    tables_.twist_rows(X(A), maps(A), raw, q);
     eliminate_multipliers(A);
 }
 
@@ -188,13 +188,13 @@ void Element::evaluate_forces()
     const std::size_t size = X0_.size();
     const int n_nodes = rule_.size();
     std::fill(forces_.begin(), forces_.end(), 0.0);
-    for (int A = 0; A < n_nodes; ++A) mechanism_.add_weight(h_ * rule_.weights[A], forces_.data() + node(A));
-    if (mechanism_.model->loads().empty()) return;
+    for (int A = 0; A < n_nodes; ++A) tables_.add_weight(h_ * rule_.weights[A], forces_.data() + node(A));
+    if (tables_.model->loads().empty()) return;
     std::vector<double>& F = scratch_;
     for (int c = 0; c < rule_.degree; ++c) {
         interpolate(c, X_c_.data(), V_c_.data());
         std::fill(F.begin(), F.end(), 0.0);
-        mechanism_.add_loads({t0_ + rule_.loads.points[c] * h_, Side::middle}, X_c_.data(), V_c_.data(),
+        tables_.add_loads({t0_ + rule_.loads.points[c] * h_, Side::middle}, X_c_.data(), V_c_.data(),
                              h_ * rule_.loads.weights[c], F.data());
         for (int A = 0; A < n_nodes; ++A) {
             const double m = rule_.M[c * n_nodes + A];
@@ -208,10 +208,10 @@ void Element::evaluate_forces()
 void Element::eliminate_multipliers(int A)
 {
     const ConstraintBasis& basis = A == 0 ? start_->basis : bases_[A];
-    const int k = mechanism_.rank, f = mechanism_.freedoms();
+    const int k = tables_.rank, f = tables_.freedoms();
     const double* q = q_.data() + twist_node(A);
     double* y = work_.data();
-    mechanism_.scale_rows(frames(A), q, y);
+    tables_.to_scaled_rows(maps(A), q, y);
     if (A == 0) accumulate(y, start_->momentum.data(), static_cast<std::size_t>(n_));
     double terms = terms_;
     for (int i = 0; i < n_; ++i) terms = std::max(terms, std::abs(y[i]));
@@ -248,9 +248,9 @@ bool Element::finish_evaluation(bool correct)
 void Element::subtract_reactions(int A, double* raw) const
 {
     const ConstraintBasis& basis = A == 0 ? start_->basis : bases_[A];
-    for (int c = 0; c < mechanism_.rank; ++c) {
-        const auto& table = mechanism_.rows[basis.rows[c]];
-        const double s = h_ * rule_.weights[A] * lambda_[static_cast<std::size_t>(A * mechanism_.rank + c)];
+    for (int c = 0; c < tables_.rank; ++c) {
+        const auto& table = tables_.rows[basis.rows[c]];
+        const double s = h_ * rule_.weights[A] * lambda_[static_cast<std::size_t>(A * tables_.rank + c)];
         for (int side = table.first_side(); side < 2; ++side) {
             double* r = raw + 12 * table.body(side);
             const double* g = basis.gradients.data() + 24 * c + 12 * side;
@@ -262,21 +262,21 @@ void Element::subtract_reactions(int A, double* raw) const
 
 void Element::multipliers(int A, double* lambda) const
 {
-    std::fill(lambda, lambda + mechanism_.n_rows(), 0.0);
-    for (int c = 0; c < mechanism_.rank; ++c)
-        lambda[start_->basis.rows[c]] = lambda_[static_cast<std::size_t>(A * mechanism_.rank + c)];
+    std::fill(lambda, lambda + tables_.n_rows(), 0.0);
+    for (int c = 0; c < tables_.rank; ++c)
+        lambda[start_->basis.rows[c]] = lambda_[static_cast<std::size_t>(A * tables_.rank + c)];
 }
 
 /// Motion and impulse of node B into the largest so far.
 void Element::measure(int B, Step& step) const
 {
-    for (int b = 0; b < mechanism_.n_bodies(); ++b) {
+    for (int b = 0; b < tables_.n_bodies(); ++b) {
         const double* d = dX_.data() + node(B) + 12 * b;
-        const auto& body = mechanism_.bodies[b];
+        const auto& body = tables_.bodies[b];
         double u = 0, turn = 0;
         for (int i = 0; i < 3; ++i) u = std::max(u, std::abs(d[i]));
         for (int i = 3; i < 12; ++i) turn = std::max(turn, std::abs(d[i]));
-        step.motion = std::max(step.motion, std::max(u / mechanism_.length, turn));
+        step.motion = std::max(step.motion, std::max(u / tables_.length, turn));
         step.impulse = std::max(
             step.impulse, ((u + body.reach * turn) / body.inverse_root_mass + body.root_inertia * turn) / h_);
     }
@@ -285,7 +285,7 @@ void Element::measure(int B, Step& step) const
 /// Newton's direction from the reduced rows, applied to all nodes along the constraints.
 Element::Step Element::solve_step()
 {
-    const int k = mechanism_.rank, f = mechanism_.freedoms();
+    const int k = tables_.rank, f = tables_.freedoms();
     if (pending_) {
         // one node: its violations go into the linear system with the rows
         for (int c = 0; c < k; ++c)
@@ -305,7 +305,7 @@ Element::Step Element::solve_step()
             std::fill(y, y + k, 0.0);
         std::copy(rho_.begin() + (B - 1) * f, rho_.begin() + B * f, y + k);
         q.apply(y);
-        mechanism_.unscale(frames(B), y, twist_.data());
+        tables_.to_twist(maps(B), y, twist_.data());
         step.size = std::max(step.size, size_of(twist_.data()));
         move(B, twist_.data());
         measure(B, step);
@@ -317,7 +317,7 @@ Element::Step Element::solve_step()
 /// Moves each node by itself back to the constraints, with the bases at hand.
 void Element::correct_constraints()
 {
-    const int k = mechanism_.rank;
+    const int k = tables_.rank;
     correction_ = 0;
     for (int B = 1; B <= rule_.degree; ++B) {
         double* y = work_.data();
@@ -330,7 +330,7 @@ void Element::correct_constraints()
         if (size == 0) continue;
         bases_[B].q.solve_R_transposed(y);
         bases_[B].q.apply(y);
-        mechanism_.unscale(frames(B), y, twist_.data());
+        tables_.to_twist(maps(B), y, twist_.data());
         correction_ = std::max(correction_, size_of(twist_.data()));
         move(B, twist_.data());
     }
@@ -354,8 +354,8 @@ ElementReport Element::fail(SolveStatus status, ElementReport report) const
     report.status = status;
     double worst = 0;
     for (int B = 1; B <= rule_.degree; ++B) {
-        for (int c = 0; c < mechanism_.rank; ++c) {
-            const double v = std::abs(phi_[static_cast<std::size_t>(B * mechanism_.rank + c)]);
+        for (int c = 0; c < tables_.rank; ++c) {
+            const double v = std::abs(phi_[static_cast<std::size_t>(B * tables_.rank + c)]);
             if (v > worst || !std::isfinite(v)) {
                 worst = v;
                 report.worst_row = start_->basis.rows[c];
@@ -364,10 +364,10 @@ ElementReport Element::fail(SolveStatus status, ElementReport report) const
     }
     worst = 0;
     for (int A = 0; A < rule_.degree; ++A) {
-        for (int b = 0; b < mechanism_.n_bodies(); ++b) {
-            for (int i = 0; i < mechanism_.bodies[b].dofs; ++i) {
+        for (int b = 0; b < tables_.n_bodies(); ++b) {
+            for (int i = 0; i < tables_.bodies[b].dofs; ++i) {
                 const double v =
-                    std::abs(q_[twist_node(A) + static_cast<std::size_t>(mechanism_.bodies[b].first + i)]);
+                    std::abs(q_[twist_node(A) + static_cast<std::size_t>(tables_.bodies[b].first + i)]);
                 if (v > worst || !std::isfinite(v)) {
                     worst = v;
                     report.worst_body = b;
@@ -382,14 +382,14 @@ ElementReport Element::fail(SolveStatus status, ElementReport report) const
 double Element::size_of(const double* xi) const
 {
     double size = 0;
-    for (const auto& body : mechanism_.bodies) {
-        for (int i = 0; i < 3; ++i) size = std::max(size, std::abs(xi[body.first + i]) / mechanism_.length);
+    for (const auto& body : tables_.bodies) {
+        for (int i = 0; i < 3; ++i) size = std::max(size, std::abs(xi[body.first + i]) / tables_.length);
         for (int i = 3; i < body.dofs; ++i) size = std::max(size, std::abs(xi[body.first + i]));
     }
     return size;
 }
 
-ElementReport Element::solve(const EndState& start, double t_end, const NewtonOptions& options)
+ElementReport Element::solve(const InstantState& start, double t_end, const NewtonOptions& options)
 {
     ElementReport report;
     attach(start, t_end);
@@ -419,7 +419,7 @@ ElementReport Element::finish(const ElementReport& report)
     for (int A = 0; A <= p; ++A) {
         double* wrench = forces_.data() + node(A);
         if (A < p) subtract_reactions(A, wrench);
-        mechanism_.rows_of(X(A), frames(A), wrench, twist_.data());
+        tables_.twist_rows(X(A), maps(A), wrench, twist_.data());
         accumulate(end, twist_.data(), static_cast<std::size_t>(n_));
     }
     double sum = 0;

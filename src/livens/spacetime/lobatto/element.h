@@ -6,10 +6,10 @@
 
 #include "livens/solvers/report.h"
 #include "livens/spacetime/lobatto/elimination.h"
-#include "livens/spacetime/lobatto/end_state.h"
-#include "livens/spacetime/lobatto/mechanism.h"
+#include "livens/multibody/instant.h"
+#include "livens/multibody/tables.h"
 #include "livens/spacetime/lobatto/rule.h"
-#include "livens/spacetime/lobatto/twist.h"
+#include "livens/multibody/twist.h"
 
 namespace livens {
 
@@ -40,11 +40,11 @@ struct ElementReport {
 /// constraint directions, so only the null-space unknowns of nodes 1..p are solved for.
 class Element {
 public:
-    Element(const Mechanism& mechanism, const LobattoRule& rule);
+    Element(const Tables& tables, const LobattoRule& rule);
 
     /// Solves from `start` over [start.t, start.t + h]. On success nodes, multipliers and the final momentum
     /// are readable below; on failure they are undefined and `start` is untouched.
-    ElementReport solve(const EndState& start, double t_end, const NewtonOptions& options);
+    ElementReport solve(const InstantState& start, double t_end, const NewtonOptions& options);
 
     /// X at local node A: 12 numbers a body.
     const double* X(int A) const { return X_.data() + node(A); }
@@ -64,18 +64,18 @@ public:
     // The equations themselves, for tests of the tangent.
 
     /// Makes `start` and the element's interval current and predicts the nodes.
-    void begin(const EndState& start, double t_end);
+    void begin(const InstantState& start, double t_end);
     /// Moves node B (1..p) by a twist (n_twists numbers).
     void move(int B, const double* xi);
     /// Configurations, constraints and rows of all nodes. False if something is not finite.
     bool evaluate();
-    /// Rows at node A for fixed multipliers `lambda` (all rows of the model) and fixed frames: for
+    /// Rows at node A for fixed multipliers `lambda` (all rows of the model) and fixed maps: for
     /// differences.
-    std::vector<double> rows_with(int A, const std::vector<double>& lambda, const double* frames) const;
+    std::vector<double> rows_with(int A, const std::vector<double>& lambda, const double* maps) const;
     /// d(rows at nodes 0..p-1)/d(twists of nodes 1..p) at fixed multipliers, row by row, with rows and twists
-    /// scaled by the frames of their nodes (which are not differentiated).
+    /// scaled by the maps of their nodes (which are not differentiated).
     std::vector<double> tangent();
-    const double* frames(int A) const { return frames_.data() + node(A); }
+    const double* maps(int A) const { return maps_.data() + node(A); }
 
 private:
     struct Step {
@@ -92,7 +92,7 @@ private:
     void guess(ElementReport& report);
     bool guess_from_coarse(ElementReport& report);
     bool guess_from_march(int pieces);
-    void place(int A, const EndState& state);
+    void place(int A, const InstantState& state);
     ElementReport iterate(ElementReport report, const NewtonOptions& options);
     void configure(int B);
     bool evaluate_constraints();
@@ -115,20 +115,20 @@ private:
     bool factorise();
     Step solve_step();
     void measure(int B, Step& step) const;
-    void attach(const EndState& start, double t_end);
+    void attach(const InstantState& start, double t_end);
     void correct_constraints();
     bool finish_evaluation(bool correct);
     bool settle();
     ElementReport fail(SolveStatus status, ElementReport report) const;
 
-    const Mechanism& mechanism_;
+    const Tables& tables_;
     LobattoRule rule_;
     std::unique_ptr<Element> coarse_;   // half the degree, for guesses
     std::vector<double> to_fine_;       // values of its basis at the nodes here, node after node
     Elimination elimination_;
     int n_;   // twists a node
     double t0_ = 0, t1_ = 0, h_ = 0;
-    const EndState* start_ = nullptr;
+    const InstantState* start_ = nullptr;
 
     std::vector<twist::Increment> increments_;   // (p + 1) x bodies
     std::vector<double> X0_;                     // 12 a body
@@ -136,7 +136,7 @@ private:
     std::vector<double> raw_;                    // (p + 1) x 12 a body: the bracket without multipliers
     std::vector<double> forces_;                 // (p + 1) x 12 a body: F_A
     std::vector<double> X_c_, V_c_;              // 12 a body, X and X' at one Gauss point
-    std::vector<double> frames_;                 // (p + 1) x 12 a body: maps of the scaled twists
+    std::vector<double> maps_;                 // (p + 1) x 12 a body: maps of the scaled twists
     std::vector<double> q_;                      // (p + 1) x n: N^T raw
     std::vector<ConstraintBasis> bases_;         // nodes 1..p; node 0 uses the start's
     std::vector<const OrthogonalBasis*> orthogonal_;

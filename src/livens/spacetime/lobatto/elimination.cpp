@@ -6,16 +6,16 @@
 
 namespace livens {
 
-Elimination::Elimination(const Mechanism& mechanism, int degree)
-    : mechanism_(mechanism), degree_(degree), f_(mechanism.freedoms())
+Elimination::Elimination(const Tables& tables, int degree)
+    : tables_(tables), degree_(degree), f_(tables.freedoms())
 {
-    const auto n = static_cast<std::size_t>(mechanism.n_twists);
+    const auto n = static_cast<std::size_t>(tables.n_twists);
     product_.assign(n * static_cast<std::size_t>(f_), 0.0);
     work_.assign(n, 0.0);
     if (degree == 1) {
-        inverse_.assign(9 * mechanism.bodies.size(), 0.0);
-        range_.assign(n * static_cast<std::size_t>(mechanism.rank), 0.0);
-        schur_.resize(mechanism.rank);
+        inverse_.assign(9 * tables.bodies.size(), 0.0);
+        range_.assign(n * static_cast<std::size_t>(tables.rank), 0.0);
+        schur_.resize(tables.rank);
     }
     lu_.resize(degree * f_);
     z_.assign(static_cast<std::size_t>(degree + 1) * n * static_cast<std::size_t>(f_), 0.0);
@@ -30,15 +30,15 @@ void Elimination::begin(const std::vector<const OrthogonalBasis*>& bases)
 
 void Elimination::form_null_spaces()
 {
-    const auto size = static_cast<std::size_t>(mechanism_.n_twists * f_);
+    const auto size = static_cast<std::size_t>(tables_.n_twists * f_);
     for (int A = 0; A <= degree_; ++A) bases_[A]->null_space(z_.data() + static_cast<std::size_t>(A) * size);
 }
 
 /// Rows of the null space at node A that belong to a body.
 const double* Elimination::null_space(int A, int body) const
 {
-    return z_.data() + (static_cast<std::size_t>(A) * static_cast<std::size_t>(mechanism_.n_twists) +
-                        static_cast<std::size_t>(mechanism_.bodies[body].first)) *
+    return z_.data() + (static_cast<std::size_t>(A) * static_cast<std::size_t>(tables_.n_twists) +
+                        static_cast<std::size_t>(tables_.bodies[body].first)) *
                            static_cast<std::size_t>(f_);
 }
 
@@ -54,7 +54,7 @@ void Elimination::add_mass(int body, double factor, const double* H)
 {
     if (by_bodies_) {
         factor_ = factor;
-        if (mechanism_.bodies[body].dofs == 3) return;
+        if (tables_.bodies[body].dofs == 3) return;
         Matrix3 h{};
         std::copy(H, H + 9, h.a);
         const Matrix3 inverted = inverse(h);
@@ -62,10 +62,10 @@ void Elimination::add_mass(int body, double factor, const double* H)
         return;
     }
     const double* __restrict z = null_space(B_, body);
-    const int first = mechanism_.bodies[body].first, f = f_;
+    const int first = tables_.bodies[body].first, f = f_;
     double* __restrict v = product_.data() + first * f;
     for (int j = 0; j < 3 * f; ++j) v[j] += factor * z[j];
-    if (mechanism_.bodies[body].dofs == 3) return;
+    if (tables_.bodies[body].dofs == 3) return;
     const double* __restrict z0 = z + 3 * f;
     const double* __restrict z1 = z + 4 * f;
     const double* __restrict z2 = z + 5 * f;
@@ -80,9 +80,9 @@ void Elimination::add(int body_i, int body_j, const double* block)
 {
     assert(!by_bodies_ && "nothing but mass comes to elements that are inverted body by body");
     const double* z = null_space(B_, body_j);
-    for (int i = 0; i < mechanism_.bodies[body_i].dofs; ++i) {
-        double* __restrict v = product_.data() + (mechanism_.bodies[body_i].first + i) * f_;
-        for (int k = 0; k < mechanism_.bodies[body_j].dofs; ++k) {
+    for (int i = 0; i < tables_.bodies[body_i].dofs; ++i) {
+        double* __restrict v = product_.data() + (tables_.bodies[body_i].first + i) * f_;
+        for (int k = 0; k < tables_.bodies[body_j].dofs; ++k) {
             const double s = block[6 * i + k];
             if (s == 0) continue;
             const double* __restrict row = z + k * f_;
@@ -94,7 +94,7 @@ void Elimination::add(int body_i, int body_j, const double* block)
 /// Rows r and r + 1 of Z_A^T product, three terms at a time.
 void Elimination::multiply_pair(int A, int B, int r)
 {
-    const int f = f_, n = mechanism_.n_twists;
+    const int f = f_, n = tables_.n_twists;
     const double* z = z_.data() + static_cast<std::size_t>(A) * static_cast<std::size_t>(n * f) + r;
     double* __restrict u = lu_.row(A * f + r) + (B - 1) * f;
     double* __restrict w = lu_.row(A * f + r + 1) + (B - 1) * f;
@@ -123,7 +123,7 @@ void Elimination::close()
 void Elimination::reduce(int A, int B)
 {
     // n is a multiple of three: six unknowns a body, three a point mass
-    const int f = f_, n = mechanism_.n_twists;
+    const int f = f_, n = tables_.n_twists;
     int r = 0;
     for (; r + 1 < f; r += 2) multiply_pair(A, B, r);
     if (r == f) return;
@@ -150,11 +150,11 @@ void Elimination::solve(double* x, const double* range)
 void Elimination::invert_bodies(double* y) const
 {
     const double s = 1 / factor_;
-    for (const auto& body : mechanism_.bodies) {
+    for (const auto& body : tables_.bodies) {
         double* v = y + body.first;
         for (int i = 0; i < 3; ++i) v[i] *= s;
         if (body.dofs == 3) continue;
-        const double* h = inverse_.data() + 9 * (&body - mechanism_.bodies.data());
+        const double* h = inverse_.data() + 9 * (&body - tables_.bodies.data());
         const double a = s * v[3], b = s * v[4], c = s * v[5];
         for (int i = 0; i < 3; ++i) v[3 + i] = h[i] * a + h[3 + i] * b + h[6 + i] * c;
     }
@@ -163,7 +163,7 @@ void Elimination::invert_bodies(double* y) const
 /// J y + Y_0 nu = x, Y_1^T y = 0: the Schur complement Y_1^T J^-1 Y_0.
 bool Elimination::factorise_bodies()
 {
-    const int k = mechanism_.rank, n = mechanism_.n_twists;
+    const int k = tables_.rank, n = tables_.n_twists;
     for (int c = 0; c < k; ++c) {
         double* column = range_.data() + c * n;
         std::fill(column, column + n, 0.0);
@@ -178,7 +178,7 @@ bool Elimination::factorise_bodies()
 
 void Elimination::solve_bodies(double* x, const double* range)
 {
-    const int k = mechanism_.rank, n = mechanism_.n_twists;
+    const int k = tables_.rank, n = tables_.n_twists;
     double* y = work_.data();
     std::fill(y, y + k, 0.0);
     std::copy(x, x + f_, y + k);

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "livens/solvers/dense.h"
-#include "livens/spacetime/lobatto/mechanism.h"
+#include "livens/multibody/tables.h"
 
 namespace livens {
 
@@ -15,7 +15,7 @@ namespace livens {
 /// inverted one by one instead and the constraints added by their Schur complement, which is small.
 class Elimination {
 public:
-    Elimination(const Mechanism& mechanism, int degree);
+    Elimination(const Tables& tables, int degree);
 
     /// Takes the null spaces of all nodes (0..p).
     void begin(const std::vector<const OrthogonalBasis*>& bases);
@@ -34,7 +34,7 @@ public:
     /// increment across the null space at node 1 (in the basis), null for none; see takes_constraints().
     void solve(double* x, const double* range);
     /// Whether solve() can take violations of the constraints in; else they are taken off before.
-    bool takes_constraints() const { return degree_ == 1 && mechanism_.loads_with_tangent.empty(); }
+    bool takes_constraints() const { return degree_ == 1 && tables_.loads_with_tangent.empty(); }
 
     int unknowns() const { return degree_ * f_; }
 
@@ -47,7 +47,7 @@ private:
     void solve_bodies(double* x, const double* range);
     void invert_bodies(double* y) const;
 
-    const Mechanism& mechanism_;
+    const Tables& tables_;
     int degree_;
     int f_;
     int A_ = 0, B_ = 1;             // the open pair

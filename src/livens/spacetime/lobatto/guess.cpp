@@ -19,7 +19,7 @@ constexpr double trusted_guess = 1e-3;
 double Element::bend() const
 {
     double turn = 0;
-    for (const auto& body : mechanism_.bodies)
+    for (const auto& body : tables_.bodies)
         for (int i = 3; i < body.dofs; ++i)
             turn = std::max(turn, std::abs(start_->acceleration[1][body.first + i]));
     return turn * h_ * h_;
@@ -29,13 +29,13 @@ double Element::bend() const
 double Element::guess_error() const
 {
     double size = 0;
-    for (const auto& body : mechanism_.bodies) {
+    for (const auto& body : tables_.bodies) {
         for (int i = 0; i < body.dofs; ++i) {
             const auto k = static_cast<std::size_t>(body.first + i);
             const double a = start_->acceleration[1][k], j = start_->jerk[k], s = start_->snap[k];
             const double term = start_->has_past ? h_ * h_ * h_ / 6 * (std::abs(j) + h_ / 4 * std::abs(s))
                                                  : h_ * h_ / 6 * std::abs(a);
-            size = std::max(size, i < 3 ? term / mechanism_.length : term);
+            size = std::max(size, i < 3 ? term / tables_.length : term);
         }
     }
     return size;
@@ -48,8 +48,8 @@ void Element::predict()
     const double on = bend() < 1 ? 1 : 0;
     for (int B = 1; B <= rule_.degree; ++B) {
         const double tau = rule_.nodes[B] * h_;
-        for (int b = 0; b < mechanism_.n_bodies(); ++b) {
-            const auto& body = mechanism_.bodies[b];
+        for (int b = 0; b < tables_.n_bodies(); ++b) {
+            const auto& body = tables_.bodies[b];
             const double* v = start_->velocity.data() + body.first;
             const double* a = start_->acceleration[1].data() + body.first;
             const double* j = start_->jerk.data() + body.first;
@@ -64,7 +64,7 @@ void Element::predict()
                 move[4] += c * (a[5] * v[3] - a[3] * v[5]);
                 move[5] += c * (a[3] * v[4] - a[4] * v[3]);
             }
-            increments_[static_cast<std::size_t>(B * mechanism_.n_bodies() + b)] =
+            increments_[static_cast<std::size_t>(B * tables_.n_bodies() + b)] =
                 twist::from_vectors(move, move + 3);
         }
         configure(B);
@@ -77,7 +77,7 @@ bool Element::guess_from_coarse(ElementReport& report)
     const ElementReport r = coarse_->solve(*start_, t1_, {1e-5, 12, false});
     report.guess_factorisations += r.factorisations + r.guess_factorisations;
     if (r.status != SolveStatus::converged) return false;
-    const int bodies = mechanism_.n_bodies(), m = coarse_->rule_.size();
+    const int bodies = tables_.n_bodies(), m = coarse_->rule_.size();
     for (int A = 1; A <= rule_.degree; ++A) {
         for (int b = 0; b < bodies; ++b) {
             double z[7] = {0, 0, 0, 0, 0, 0, 0};
@@ -108,10 +108,10 @@ void Element::guess(ElementReport& report)
 /// The last resort: nodes from a march of small quadratic elements, `pieces` between two nodes.
 bool Element::guess_from_march(int pieces)
 {
-    Element small(mechanism_, lobatto_rule(2));
-    EndSolver ends(mechanism_);
-    EndState here = *start_, next = here;
-    std::vector<double> lambda(mechanism_.rows.size());
+    Element small(tables_, lobatto_rule(2));
+    InstantSystem ends(tables_);
+    InstantState here = *start_, next = here;
+    std::vector<double> lambda(tables_.rows.size());
     for (int A = 1; A <= rule_.degree; ++A) {
         const double from = here.t, to = A == rule_.degree ? t1_ : t0_ + rule_.nodes[A] * h_;
         for (int i = 1; i <= pieces; ++i) {
@@ -131,12 +131,12 @@ bool Element::guess_from_march(int pieces)
 }
 
 /// Node A at the configuration of an end state.
-void Element::place(int A, const EndState& state)
+void Element::place(int A, const InstantState& state)
 {
-    for (int b = 0; b < mechanism_.n_bodies(); ++b) {
-        auto& increment = increments_[static_cast<std::size_t>(A * mechanism_.n_bodies() + b)];
+    for (int b = 0; b < tables_.n_bodies(); ++b) {
+        auto& increment = increments_[static_cast<std::size_t>(A * tables_.n_bodies() + b)];
         for (int i = 0; i < 3; ++i) increment.u[i] = state.X[12 * b + i] - X0_[12 * b + i];
-        if (mechanism_.bodies[b].dofs == 3) continue;
+        if (tables_.bodies[b].dofs == 3) continue;
         Matrix34 from{}, to{};
         std::copy_n(X0_.begin() + 12 * b, 12, from.a);
         std::copy_n(state.X.begin() + 12 * b, 12, to.a);

@@ -31,7 +31,7 @@ Matrix34 body_matrix(const double* stacked, int body)
 
 /// end + low <- start + low + increment without the rounding of the sum [Kahan1965]: over many elements a
 /// motion adds up many small increments, whose own rounding is much smaller.
-void add_increments(const EndState& start, const double* increments, EndState& end)
+void add_increments(const InstantState& start, const double* increments, InstantState& end)
 {
     const std::size_t n = end.X.size();
     const double* __restrict from = start.X.data();
@@ -63,11 +63,11 @@ public:
     March(const Model& model, const Assembly& assembly, const TimeMesh& mesh, int degree,
           const SolveOptions& options)
         : model_(model), mesh_(mesh), options_(options), rule_(lobatto_rule(degree)),
-          mechanism_(model, static_cast<int>(assembly.independent.size())), element_(mechanism_, rule_),
-          ends_(mechanism_)
+          tables_(model, static_cast<int>(assembly.independent.size())), element_(tables_, rule_),
+          ends_(tables_)
     {
-        for (EndState& state : states_) state.resize(mechanism_);
-        lambda_.assign(mechanism_.rows.size(), 0.0);
+        for (InstantState& state : states_) state.resize(tables_);
+        lambda_.assign(tables_.rows.size(), 0.0);
         end_lambda_ = lambda_;
         jumps_ = model.load_breaks();
         prepare_motion(assembly);
@@ -85,8 +85,8 @@ public:
     }
 
 private:
-    EndState& here() { return states_[now_]; }
-    EndState& next() { return states_[1 - now_]; }
+    InstantState& here() { return states_[now_]; }
+    InstantState& next() { return states_[1 - now_]; }
 
     void prepare_motion(const Assembly& assembly)
     {
@@ -121,7 +121,7 @@ private:
         here().t = mesh_.start();
         for (int b = 0; b < model_.n_bodies(); ++b) {
             std::copy_n(assembly.start.X[b].a, 12, here().X.begin() + 12 * b);
-            const auto& body = mechanism_.bodies[b];
+            const auto& body = tables_.bodies[b];
             const Vector3 v = assembly.start.V[b].column(0);
             const Vector3 w =
                 body.dofs == 6 ? angular_velocity(assembly.start.X[b], assembly.start.V[b]) : Vector3{};
@@ -152,7 +152,7 @@ private:
 
     bool is_jump(double t) const { return std::binary_search(jumps_.begin(), jumps_.end(), t); }
 
-    void accelerate(EndState& state)
+    void accelerate(InstantState& state)
     {
         ends_.accelerate(state, Side::right);
         if (is_jump(state.t)) {
@@ -164,12 +164,12 @@ private:
     }
 
     /// Appends the end values of `state`, for which `ends_` has just made the accelerations, to the motion.
-    void record(const EndState& state)
+    void record(const InstantState& state)
     {
         Motion& m = solution_.motion;
         const double *V = ends_.rates(), *turn = ends_.centripetal();
         V_.resize(state.X.size());
-        mechanism_.times_mass(V, 1.0, V_.data());
+        tables_.times_mass(V, 1.0, V_.data());
         m.mesh.ends.push_back(state.t);
         for (int b = 0; b < m.n_bodies; ++b) {
             m.velocities.push_back(body_matrix(V, b));
@@ -178,7 +178,7 @@ private:
         for (int side = 0; side < 2; ++side) {
             if (side == 0 || is_jump(state.t)) {
                 // X'' = [a, alpha x d + w x (w x d)]
-                mechanism_.columns_of(state.X.data(), state.acceleration[side].data(), V_.data());
+                tables_.rates_of(state.X.data(), state.acceleration[side].data(), V_.data());
                 double* __restrict A = V_.data();
                 const std::size_t size = state.X.size();
                 for (std::size_t i = 0; i < size; ++i) A[i] += turn[i];
@@ -227,7 +227,7 @@ private:
         next().t = t_end;
         add_increments(here(), element_.dX(p), next());
         for (int b = 0; b < model_.n_bodies(); ++b)
-            if (mechanism_.bodies[b].dofs == 6 && e % 16 == 15) polish(next().X.data() + 12 * b);
+            if (tables_.bodies[b].dofs == 6 && e % 16 == 15) polish(next().X.data() + 12 * b);
         if (!ends_.prepare(next(), element_.final_basis()) || !rows_compatible(next(), e)) {
             if (solution_.report.message.empty()) {
                 solution_.report.message = "at t = " + number(t_end) + " s the free motions carry no inertia";
@@ -258,12 +258,12 @@ private:
     }
 
     /// Rows that were left out as redundant must still hold.
-    bool rows_compatible(const EndState& state, int e)
+    bool rows_compatible(const InstantState& state, int e)
     {
-        if (mechanism_.rank == mechanism_.n_rows()) return true;
-        for (int r = 0; r < mechanism_.n_rows(); ++r) {
-            const ConstraintRow& row = *mechanism_.rows[r].row;
-            if (std::abs(mechanism_.value(r, state.X.data())) / row.scale < 1e-8) continue;
+        if (tables_.rank == tables_.n_rows()) return true;
+        for (int r = 0; r < tables_.n_rows(); ++r) {
+            const ConstraintRow& row = *tables_.rows[r].row;
+            if (std::abs(tables_.value(r, state.X.data())) / row.scale < 1e-8) continue;
             SolveReport& report = solution_.report;
             report.status = SolveStatus::singular;
             report.failed_at = mesh_.ends[e];
@@ -294,7 +294,7 @@ private:
         if (r.status == SolveStatus::singular) {
             what = "the tangent is singular";
             advice =
-                "the mechanism may pass a singular position; shift the element ends or use more elements";
+                "the tables may pass a singular position; shift the element ends or use more elements";
         } else if (r.status == SolveStatus::not_finite) {
             what = "a number became infinite or undefined";
             advice = "look at the loads on this body near that time; use more elements";
@@ -320,10 +320,10 @@ private:
     const TimeMesh& mesh_;
     const SolveOptions& options_;
     LobattoRule rule_;
-    Mechanism mechanism_;
+    Tables tables_;
     Element element_;
-    EndSolver ends_;
-    EndState states_[2];
+    InstantSystem ends_;
+    InstantState states_[2];
     int now_ = 0;
     std::vector<double> V_, lambda_, end_lambda_, jumps_;
     Solution solution_;

@@ -19,8 +19,8 @@ void Element::form_tangent(Sink&& sink)
         for (int B = 1; B < n_nodes; ++B) {
             sink.open(A, B);
             const double factor = rule_.k[A * n_nodes + B] / h_;
-            for (int b = 0; b < mechanism_.n_bodies(); ++b) {
-                if (mechanism_.bodies[b].dofs == 6) mechanism_.spin_mass(b, X(A), X(B), H);
+            for (int b = 0; b < tables_.n_bodies(); ++b) {
+                if (tables_.bodies[b].dofs == 6) tables_.spin_mass(b, X(A), X(B), H);
                 sink.mass(b, factor, H);
             }
             if (A == B) node_terms(A, sink);
@@ -34,17 +34,17 @@ void Element::form_tangent(Sink&& sink)
 void Element::scale_block(int A, int i, int B, int j, const double* block, double* out) const
 {
     double columns[36];
-    double maps[2][36];   // D, column by column
+    double map[2][36];   // D, column by column
     const int body[2] = {i, j}, at[2] = {A, B};
     for (int side = 0; side < 2; ++side) {
-        const auto& b = mechanism_.bodies[body[side]];
-        const double* f = frames(at[side]) + 12 * body[side];
-        std::fill(maps[side], maps[side] + 36, 0.0);
-        for (int c = 0; c < 3; ++c) maps[side][7 * c] = b.inverse_root_mass;
+        const auto& b = tables_.bodies[body[side]];
+        const double* f = maps(at[side]) + 12 * body[side];
+        std::fill(map[side], map[side] + 36, 0.0);
+        for (int c = 0; c < 3; ++c) map[side][7 * c] = b.inverse_root_mass;
         if (b.dofs == 3) continue;
         for (int c = 0; c < 3; ++c) {
             const double* w = f + 3 * c;
-            double* m = maps[side] + 18 + 6 * c;
+            double* m = map[side] + 18 + 6 * c;
             m[0] = f[10] * w[2] - f[11] * w[1];
             m[1] = f[11] * w[0] - f[9] * w[2];
             m[2] = f[9] * w[1] - f[10] * w[0];
@@ -54,14 +54,14 @@ void Element::scale_block(int A, int i, int B, int j, const double* block, doubl
     for (int r = 0; r < 6; ++r) {
         for (int c = 0; c < 6; ++c) {
             double sum = 0;
-            for (int k = 0; k < 6; ++k) sum += block[6 * r + k] * maps[1][6 * c + k];
+            for (int k = 0; k < 6; ++k) sum += block[6 * r + k] * map[1][6 * c + k];
             columns[6 * r + c] = sum;
         }
     }
     for (int r = 0; r < 6; ++r) {
         for (int c = 0; c < 6; ++c) {
             double sum = 0;
-            for (int k = 0; k < 6; ++k) sum += maps[0][6 * r + k] * columns[6 * k + c];
+            for (int k = 0; k < 6; ++k) sum += map[0][6 * r + k] * columns[6 * k + c];
             out[6 * r + c] = sum;
         }
     }
@@ -75,14 +75,14 @@ void Element::node_terms(int A, Sink&& sink)
     std::copy_n(raw_.data() + node(A), X0_.size(), total);
     subtract_reactions(A, total);
     std::fill(blocks_.begin(), blocks_.end(), 0.0);
-    for (int b = 0; b < mechanism_.n_bodies(); ++b)
-        if (mechanism_.bodies[b].dofs == 6)
+    for (int b = 0; b < tables_.n_bodies(); ++b)
+        if (tables_.bodies[b].dofs == 6)
             twist::add_geometric(X(A) + 12 * b, total + 12 * b, blocks_.data() + 36 * b, 6);
     double cross[36], scaled[36];
-    for (int c = 0; c < mechanism_.rank; ++c) {
-        const auto& table = mechanism_.rows[bases_[A].rows[c]];
+    for (int c = 0; c < tables_.rank; ++c) {
+        const auto& table = tables_.rows[bases_[A].rows[c]];
         if (table.form.empty()) continue;
-        const double s = -h_ * rule_.weights[A] * lambda_[static_cast<std::size_t>(A * mechanism_.rank + c)];
+        const double s = -h_ * rule_.weights[A] * lambda_[static_cast<std::size_t>(A * tables_.rank + c)];
         const int i = table.row->body_i, j = table.row->body_j;
         const double *X_i = X(A) + 12 * (table.has_i ? i : j), *X_j = X(A) + 12 * j;
         twist::add_block(table.row->c_jj.data(), X_j, X_j, s, blocks_.data() + 36 * j, 6);
@@ -98,7 +98,7 @@ void Element::node_terms(int A, Sink&& sink)
             sink.block(turn == 0 ? i : j, turn == 0 ? j : i, scaled);
         }
     }
-    for (int b = 0; b < mechanism_.n_bodies(); ++b) {
+    for (int b = 0; b < tables_.n_bodies(); ++b) {
         scale_block(A, b, A, b, blocks_.data() + 36 * b, scaled);
         sink.block(b, b, scaled);
     }
@@ -133,7 +133,7 @@ double Element::rounding_of(const Load& load, const LoadArguments& at, const Loa
     double size = 0;
     for (int r = 0; r < 2; ++r) {
         if (load.bodies[r] == world) continue;
-        const auto& body = mechanism_.bodies[load.bodies[r]];
+        const auto& body = tables_.bodies[load.bodies[r]];
         double root = 0;
         for (const double l : body.spin) root = std::max(root, std::abs(l));
         for (int i = 0; i < 12; ++i) {
@@ -151,14 +151,14 @@ double Element::rounding_of(const Load& load, const LoadArguments& at, const Loa
 /// dF/dX and dF/dX' of all loads at the Gauss points.
 void Element::evaluate_load_tangents()
 {
-    const std::size_t n = mechanism_.loads_with_tangent.size();
+    const std::size_t n = tables_.loads_with_tangent.size();
     load_tangents_.assign(n * static_cast<std::size_t>(rule_.degree), {});
     load_rounding_ = 0;
     for (int c = 0; n > 0 && c < rule_.degree; ++c) {
         interpolate(c, X_c_.data(), V_c_.data());
         for (std::size_t l = 0; l < n; ++l) {
             const Load& load =
-                mechanism_.model->loads()[static_cast<std::size_t>(mechanism_.loads_with_tangent[l])];
+                tables_.model->loads()[static_cast<std::size_t>(tables_.loads_with_tangent[l])];
             LoadArguments arguments;
             arguments.at = {t0_ + rule_.loads.points[c] * h_, Side::middle};
             for (int side = 0; side < 2; ++side) {
@@ -177,12 +177,12 @@ void Element::evaluate_load_tangents()
 template <class Sink>
 void Element::load_terms(int A, int B, Sink&& sink)
 {
-    const std::size_t n = mechanism_.loads_with_tangent.size();
+    const std::size_t n = tables_.loads_with_tangent.size();
     const int n_nodes = rule_.size();
     double block[36], scaled[36];
     for (std::size_t l = 0; l < n; ++l) {
         const Load& load =
-            mechanism_.model->loads()[static_cast<std::size_t>(mechanism_.loads_with_tangent[l])];
+            tables_.model->loads()[static_cast<std::size_t>(tables_.loads_with_tangent[l])];
         for (int r = 0; r < 2; ++r) {
             for (int s = 0; s < 2; ++s) {
                 const int i = load.bodies[r], j = load.bodies[s];
@@ -196,7 +196,7 @@ void Element::load_terms(int A, int B, Sink&& sink)
                     for (int k = 0; k < 144; ++k)
                         K.a[k] += by_X * tangent.X[r][s].a[k] + by_V * tangent.V[r][s].a[k];
                 }
-                reduce_load(K, X(A) + 12 * i, X(B) + 12 * j, mechanism_.bodies[j].dofs, block);
+                reduce_load(K, X(A) + 12 * i, X(B) + 12 * j, tables_.bodies[j].dofs, block);
                 scale_block(A, i, B, j, block, scaled);
                 sink.block(i, j, scaled);
             }
@@ -222,7 +222,7 @@ namespace {
 
 /// The tangent without elimination, for tests.
 struct DenseSink {
-    const Mechanism& mechanism;
+    const Tables& tables;
     int n;   // rows and columns
     std::vector<double>& dense;
 
@@ -230,8 +230,8 @@ struct DenseSink {
 
     double& at(int i, int r, int j, int c)
     {
-        const int row = A * mechanism.n_twists + mechanism.bodies[i].first + r;
-        const int column = (B - 1) * mechanism.n_twists + mechanism.bodies[j].first + c;
+        const int row = A * tables.n_twists + tables.bodies[i].first + r;
+        const int column = (B - 1) * tables.n_twists + tables.bodies[j].first + c;
         return dense[static_cast<std::size_t>(row * n + column)];
     }
     void open(int row_node, int column_node)
@@ -243,13 +243,13 @@ struct DenseSink {
     void mass(int body, double factor, const double* H)
     {
         for (int r = 0; r < 3; ++r) at(body, r, body, r) += factor;
-        for (int r = 3; r < mechanism.bodies[body].dofs; ++r)
+        for (int r = 3; r < tables.bodies[body].dofs; ++r)
             for (int c = 3; c < 6; ++c) at(body, r, body, c) += factor * H[(r - 3) + 3 * (c - 3)];
     }
     void block(int i, int j, const double* values)
     {
-        for (int r = 0; r < mechanism.bodies[i].dofs; ++r)
-            for (int c = 0; c < mechanism.bodies[j].dofs; ++c) at(i, r, j, c) += values[6 * r + c];
+        for (int r = 0; r < tables.bodies[i].dofs; ++r)
+            for (int c = 0; c < tables.bodies[j].dofs; ++c) at(i, r, j, c) += values[6 * r + c];
     }
 };
 
@@ -259,17 +259,17 @@ std::vector<double> Element::tangent()
 {
     const int n = rule_.degree * n_;
     std::vector<double> dense(static_cast<std::size_t>(n) * static_cast<std::size_t>(n), 0.0);
-    form_tangent(DenseSink{mechanism_, n, dense});
+    form_tangent(DenseSink{tables_, n, dense});
     return dense;
 }
 
-std::vector<double> Element::rows_with(int A, const std::vector<double>& lambda, const double* frames) const
+std::vector<double> Element::rows_with(int A, const std::vector<double>& lambda, const double* maps) const
 {
     std::vector<double> raw(raw_.begin() + static_cast<std::ptrdiff_t>(node(A)),
                             raw_.begin() + static_cast<std::ptrdiff_t>(node(A) + X0_.size()));
     const ConstraintBasis& basis = A == 0 ? start_->basis : bases_[A];
-    for (int c = 0; c < mechanism_.rank; ++c) {
-        const auto& table = mechanism_.rows[basis.rows[c]];
+    for (int c = 0; c < tables_.rank; ++c) {
+        const auto& table = tables_.rows[basis.rows[c]];
         const double s = h_ * rule_.weights[A] * lambda[static_cast<std::size_t>(basis.rows[c])];
         for (int side = table.first_side(); side < 2; ++side) {
             double* r = raw.data() + 12 * table.body(side);
@@ -279,9 +279,9 @@ std::vector<double> Element::rows_with(int A, const std::vector<double>& lambda,
         }
     }
     std::vector<double> q(static_cast<std::size_t>(n_), 0.0);
-    mechanism_.rows_of(X(A), frames, raw.data(), q.data());
+    tables_.twist_rows(X(A), maps, raw.data(), q.data());
     std::vector<double> scaled(q.size());
-    mechanism_.scale_rows(frames, q.data(), scaled.data());
+    tables_.to_scaled_rows(maps, q.data(), scaled.data());
     if (A == 0)
         for (int i = 0; i < n_; ++i)
             scaled[static_cast<std::size_t>(i)] += start_->momentum[static_cast<std::size_t>(i)];

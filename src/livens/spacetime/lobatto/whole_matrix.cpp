@@ -6,9 +6,9 @@
 #include <limits>
 #include <utility>
 
-#include "livens/spacetime/lobatto/mechanism.h"
+#include "livens/multibody/constraint_basis.h"
 #include "livens/spacetime/lobatto/rule.h"
-#include "livens/spacetime/lobatto/twist.h"
+#include "livens/multibody/twist.h"
 
 namespace livens {
 
@@ -26,19 +26,19 @@ class Former {
 public:
     Former(const Model& model, const Motion& motion)
         : motion_(motion), rule_(lobatto_rule(motion.X.degree)),
-          mechanism_(model, motion.n_rows - static_cast<int>(motion.redundant_rows.size())),
-          size_(12 * mechanism_.bodies.size())
+          tables_(model, motion.n_rows - static_cast<int>(motion.redundant_rows.size())),
+          size_(12 * tables_.bodies.size())
     {
         assert(motion.X.continuous && motion.X.denominators.empty() && motion.n_bodies == model.n_bodies());
         assert(motion.n_rows == 0 ||
                (motion.multipliers.degree == rule_.degree && !motion.multipliers.continuous));
         whole_.n_nodes = motion.n_elements() * rule_.degree + 1;
-        whole_.n_twists = mechanism_.n_twists;
-        whole_.freedoms = mechanism_.freedoms();
+        whole_.n_twists = tables_.n_twists;
+        whole_.freedoms = tables_.freedoms();
         totals_.assign(static_cast<std::size_t>(whole_.n_nodes) * size_, 0.0);
         impulses_.assign(static_cast<std::size_t>(whole_.n_nodes * motion.n_rows), 0.0);
         for (auto* v : {&X_, &V_, &Y_, &dX_}) v->assign(size_, 0.0);
-        q_.assign(static_cast<std::size_t>(mechanism_.n_twists), 0.0);
+        q_.assign(static_cast<std::size_t>(tables_.n_twists), 0.0);
         const auto columns = static_cast<std::size_t>(rule_.size() * whole_.freedoms);
         for (auto* v : {&moves_, &masses_}) v->assign(columns * size_, 0.0);
     }
@@ -80,11 +80,11 @@ private:
     void add_curvature(int A, const double* dX);
     void add_turning(int A, const double* dX);
     void add(int A, int B, int j);
-    void rows_of(int A);
+    void twist_rows(int A);
 
     const Motion& motion_;
     LobattoRule rule_;
-    Mechanism mechanism_;
+    Tables tables_;
     std::size_t size_;                         // 12 a body
     std::vector<double> totals_;               // size_ a node: total rows r_A
     std::vector<double> impulses_;             // rows a node: W_A lambda_A
@@ -102,18 +102,18 @@ void Former::choose_directions()
 {
     const int n = whole_.n_twists, f = whole_.freedoms;
     ConstraintBasis basis;
-    basis.resize(mechanism_, true);
-    std::vector<double> frames(size_, 0.0), y(static_cast<std::size_t>(n));
+    basis.resize(tables_, true);
+    std::vector<double> maps(size_, 0.0), y(static_cast<std::size_t>(n));
     std::vector<double> z(static_cast<std::size_t>(n * f));
     whole_.directions.resize(static_cast<std::size_t>(whole_.n_nodes) * z.size());
     double* out = whole_.directions.data();
     for (int A = 0; A < whole_.n_nodes; ++A) {
-        mechanism_.frames_of(X(A), frames.data());
-        basis.choose(mechanism_, X(A), frames.data());
+        tables_.map_twists(X(A), maps.data());
+        basis.choose(tables_, X(A), maps.data());
         basis.q.null_space(z.data());
         for (int j = 0; j < f; ++j, out += n) {
             for (int i = 0; i < n; ++i) y[i] = z[i * f + j];
-            mechanism_.unscale(frames.data(), y.data(), out);
+            tables_.to_twist(maps.data(), y.data(), out);
         }
     }
 }
@@ -159,8 +159,8 @@ void Former::move_nodes(int e)
         const int node = e * rule_.degree + B;
         for (int j = 0; j < whole_.freedoms; ++j) {
             double* dX = moves_.data() + place(B, j);
-            mechanism_.columns_of(X(node), whole_.direction(node, j).data(), dX);
-            mechanism_.times_mass(dX, 1.0, masses_.data() + place(B, j));
+            tables_.rates_of(X(node), whole_.direction(node, j).data(), dX);
+            tables_.times_mass(dX, 1.0, masses_.data() + place(B, j));
         }
     }
 }
@@ -177,8 +177,8 @@ void Former::add_rows(int e, int A)
         for (std::size_t i = 0; i < size_; ++i) dX_[i] += k * (XB[i] - X0[i]);
     }
     const int node = e * rule_.degree + A;
-    mechanism_.times_mass(dX_.data(), 1 / h, Y_.data());
-    mechanism_.add_weight(h * rule_.weights[A], Y_.data());
+    tables_.times_mass(dX_.data(), 1 / h, Y_.data());
+    tables_.add_weight(h * rule_.weights[A], Y_.data());
     for (std::size_t i = 0; i < size_; ++i) total(node)[i] += Y_[i];
 }
 
@@ -186,7 +186,7 @@ void Former::add_rows(int e, int A)
 void Former::add_loads(int e)
 {
     const double h = motion_.mesh.length(e);
-    const std::size_t n = mechanism_.loads_with_tangent.size();
+    const std::size_t n = tables_.loads_with_tangent.size();
     load_tangents_.assign(n * static_cast<std::size_t>(rule_.degree), {});
     for (int c = 0; c < rule_.degree; ++c) {
         const Instant at{motion_.mesh.ends[e] + rule_.loads.points[c] * h, Side::middle};
@@ -201,13 +201,13 @@ void Former::add_loads(int e)
             }
         }
         std::fill(Y_.begin(), Y_.end(), 0.0);
-        mechanism_.add_loads(at, X_.data(), V_.data(), h * rule_.loads.weights[c], Y_.data());
+        tables_.add_loads(at, X_.data(), V_.data(), h * rule_.loads.weights[c], Y_.data());
         for (int A = 0; A <= rule_.degree; ++A)
             for (std::size_t i = 0; i < size_; ++i)
                 total(e * rule_.degree + A)[i] += rule_.M[c * rule_.size() + A] * Y_[i];
         for (std::size_t l = 0; l < n; ++l) {
             const Load& load =
-                mechanism_.model->loads()[static_cast<std::size_t>(mechanism_.loads_with_tangent[l])];
+                tables_.model->loads()[static_cast<std::size_t>(tables_.loads_with_tangent[l])];
             LoadArguments arguments;
             arguments.at = at;
             for (int side = 0; side < 2; ++side) {
@@ -228,9 +228,9 @@ void Former::add_block(int e, int A, int B)
     for (int j = 0; j < whole_.freedoms; ++j) {
         const double* mass = masses_.data() + place(B, j);
         for (std::size_t i = 0; i < size_; ++i) Y_[i] = factor * mass[i];
-        for (std::size_t l = 0; l < mechanism_.loads_with_tangent.size(); ++l)
+        for (std::size_t l = 0; l < tables_.loads_with_tangent.size(); ++l)
             add_load(l, e, A, B, moves_.data() + place(B, j));
-        rows_of(first + A);
+        twist_rows(first + A);
         add(first + A, first + B, j);
     }
 }
@@ -238,9 +238,9 @@ void Former::add_block(int e, int A, int B)
 /// Y_ += sum_c h w_c M_A(s_c) (M_B(s_c) dF/dX + h^-1 M_B'(s_c) dF/dX') dX.
 void Former::add_load(std::size_t l, int e, int A, int B, const double* dX)
 {
-    const std::size_t n = mechanism_.loads_with_tangent.size();
+    const std::size_t n = tables_.loads_with_tangent.size();
     const Load& load =
-        mechanism_.model->loads()[static_cast<std::size_t>(mechanism_.loads_with_tangent[l])];
+        tables_.model->loads()[static_cast<std::size_t>(tables_.loads_with_tangent[l])];
     for (int point = 0; point < rule_.degree; ++point) {
         const int at = point * rule_.size();
         const double w = rule_.loads.weights[point] * rule_.M[at + A];
@@ -264,8 +264,8 @@ void Former::add_node(int A)
 {
     double g[24];
     for (int r = 0; r < motion_.n_rows; ++r) {
-        const auto& table = mechanism_.rows[r];
-        mechanism_.gradient(r, X(A), g);
+        const auto& table = tables_.rows[r];
+        tables_.gradient(r, X(A), g);
         for (int side = table.first_side(); side < 2; ++side) {
             double* out = total(A) + 12 * table.body(side);
             for (const int a : table.columns[side])
@@ -273,10 +273,10 @@ void Former::add_node(int A)
         }
     }
     for (int j = 0; j < whole_.freedoms; ++j) {
-        mechanism_.columns_of(X(A), whole_.direction(A, j).data(), dX_.data());
+        tables_.rates_of(X(A), whole_.direction(A, j).data(), dX_.data());
         std::fill(Y_.begin(), Y_.end(), 0.0);
         add_curvature(A, dX_.data());
-        rows_of(A);
+        twist_rows(A);
         add_turning(A, dX_.data());
         add(A, A, j);
     }
@@ -286,7 +286,7 @@ void Former::add_node(int A)
 void Former::add_curvature(int A, const double* dX)
 {
     for (int r = 0; r < motion_.n_rows; ++r) {
-        const auto& table = mechanism_.rows[r];
+        const auto& table = tables_.rows[r];
         for (const auto& entry : table.form) {
             const double* from = dX + 12 * table.body(entry.from_side) + entry.from;
             double* to = Y_.data() + 12 * table.body(entry.to_side) + entry.to;
@@ -298,20 +298,20 @@ void Former::add_curvature(int A, const double* dX)
 /// q_ += [0 ; sum_a dd_a x r_a]: the rows are taken against directors that move.
 void Former::add_turning(int A, const double* dX)
 {
-    for (int b = 0; b < mechanism_.n_bodies(); ++b) {
-        if (mechanism_.bodies[b].dofs == 3) continue;
+    for (int b = 0; b < tables_.n_bodies(); ++b) {
+        if (tables_.bodies[b].dofs == 3) continue;
         double turned[6];
         twist::rows(dX + 12 * b, total(A) + 12 * b, turned);
-        for (int i = 3; i < 6; ++i) q_[mechanism_.bodies[b].first + i] += turned[i];
+        for (int i = 3; i < 6; ++i) q_[tables_.bodies[b].first + i] += turned[i];
     }
 }
 
 /// q_ <- N_A^T Y_.
-void Former::rows_of(int A)
+void Former::twist_rows(int A)
 {
-    for (int b = 0; b < mechanism_.n_bodies(); ++b) {
-        double* q = q_.data() + mechanism_.bodies[b].first;
-        if (mechanism_.bodies[b].dofs == 3)
+    for (int b = 0; b < tables_.n_bodies(); ++b) {
+        double* q = q_.data() + tables_.bodies[b].first;
+        if (tables_.bodies[b].dofs == 3)
             std::copy_n(Y_.data() + 12 * b, 3, q);
         else
             twist::rows(X(A) + 12 * b, Y_.data() + 12 * b, q);
@@ -345,7 +345,7 @@ WholeMatrix whole_matrix(const Model& model, const Motion& motion) { return Form
 void measure_condition(const Model& model, const Motion& motion, SolveReport& report)
 {
     const int rank = motion.n_rows - static_cast<int>(motion.redundant_rows.size());
-    const int freedoms = Mechanism(model, rank).freedoms();
+    const int freedoms = Tables(model, rank).freedoms();
     if (freedoms == 0 || motion.n_elements() == 0) return;   // nothing moves: there is no matrix
     if (most_entries(motion, freedoms) > std::numeric_limits<int>::max()) {
         report.notes.push_back("the whole matrix is too large for its condition number; use fewer elements");

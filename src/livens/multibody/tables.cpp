@@ -1,9 +1,9 @@
-#include "livens/spacetime/lobatto/mechanism.h"
+#include "livens/multibody/tables.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "livens/spacetime/lobatto/twist.h"
+#include "livens/multibody/twist.h"
 
 namespace livens {
 
@@ -11,7 +11,7 @@ namespace {
 
 /// The entries of K between two sides of a row.
 void collect(const Matrix4& C, int from, int to, bool transposed,
-             std::vector<Mechanism::RowTable::Entry>& form)
+             std::vector<Tables::RowTable::Entry>& form)
 {
     for (int b = 0; b < 4; ++b) {
         for (int a = 0; a < 4; ++a) {
@@ -22,9 +22,9 @@ void collect(const Matrix4& C, int from, int to, bool transposed,
     }
 }
 
-Mechanism::RowTable row_table(const ConstraintRow& row)
+Tables::RowTable row_table(const ConstraintRow& row)
 {
-    Mechanism::RowTable table;
+    Tables::RowTable table;
     table.row = &row;
     table.has_i = row.body_i != world;
     collect(row.c_jj, 1, 1, false, table.form);
@@ -57,7 +57,7 @@ Matrix34 at(const double* X, int body)
 
 /// The constants of the scaled twists. A singular inertia is enlarged for the coordinates alone: the
 /// equations keep m.
-bool scale_body(const Body& body, double length, Mechanism::BodyTable& table)
+bool scale_body(const Body& body, double length, Tables::BodyTable& table)
 {
     const MassProperties p = mass_properties(body.mass);
     table.inverse_root_mass = 1 / std::sqrt(p.mass);
@@ -112,7 +112,7 @@ void multiply_transposed(const double* l, const double* r, double* out)
 
 }   // namespace
 
-Mechanism::Mechanism(const Model& the_model, int the_rank) : model(&the_model), rank(the_rank)
+Tables::Tables(const Model& the_model, int the_rank) : model(&the_model), rank(the_rank)
 {
     length = the_model.length();
     for (const Body& body : the_model.bodies()) {
@@ -137,7 +137,7 @@ Mechanism::Mechanism(const Model& the_model, int the_rank) : model(&the_model), 
     }
 }
 
-void Mechanism::gradient(int r, const double* X, double* g) const
+void Tables::gradient(int r, const double* X, double* g) const
 {
     const RowTable& t = rows[r];
     const double* sides[2] = {t.has_i ? X + 12 * t.row->body_i : X, X + 12 * t.row->body_j};
@@ -153,28 +153,28 @@ void Mechanism::gradient(int r, const double* X, double* g) const
     }
 }
 
-void Mechanism::frames_of(const double* X, double* frames) const
+void Tables::map_twists(const double* X, double* maps) const
 {
     for (int b = 0; b < n_bodies(); ++b) {
         if (bodies[b].dofs == 3) continue;
         const double* R = X + 12 * b + 3;
         const double *c = bodies[b].center, *l = bodies[b].spin;
-        double* f = frames + 12 * b;
+        double* f = maps + 12 * b;
         if (bodies[b].principal)
             for (int a = 0; a < 3; ++a)
                 for (int i = 0; i < 3; ++i) f[3 * a + i] = l[4 * a] * R[3 * a + i];
         else
             multiply(R, l, f);
-        if (!bodies[b].offset) continue;   // the frames start as zero
+        if (!bodies[b].offset) continue;   // the maps start as zero
         for (int i = 0; i < 3; ++i) f[9 + i] = R[i] * c[0] + R[3 + i] * c[1] + R[6 + i] * c[2];
     }
 }
 
-void Mechanism::unscale(const double* frames, const double* y, double* xi) const
+void Tables::to_twist(const double* maps, const double* y, double* xi) const
 {
     for (int b = 0; b < n_bodies(); ++b) {
         const BodyTable& body = bodies[b];
-        const double* f = frames + 12 * b;
+        const double* f = maps + 12 * b;
         const double* in = y + body.first;
         double* out = xi + body.first;
         const double r = body.inverse_root_mass;
@@ -204,7 +204,7 @@ void centre(const double* f, double* q)
     q[5] -= c[0] * q[1] - c[1] * q[0];
 }
 
-void scale_row(const Mechanism::BodyTable& body, const double* f, const double* q, double* y)
+void scale_row(const Tables::BodyTable& body, const double* f, const double* q, double* y)
 {
     const double r = body.inverse_root_mass;
     for (int i = 0; i < 3; ++i) y[i] = r * q[i];
@@ -214,14 +214,14 @@ void scale_row(const Mechanism::BodyTable& body, const double* f, const double* 
 
 }   // namespace
 
-void Mechanism::scale_rows(const double* frames, const double* q, double* y) const
+void Tables::to_scaled_rows(const double* maps, const double* q, double* y) const
 {
     for (int b = 0; b < n_bodies(); ++b)
-        scale_row(bodies[b], frames + 12 * b, q + bodies[b].first, y + bodies[b].first);
+        scale_row(bodies[b], maps + 12 * b, q + bodies[b].first, y + bodies[b].first);
 }
 
 /// The rows of twist::rows, of the columns that are touched.
-void Mechanism::wrench(int r, int side, const double* X, const double* frames, const double* g,
+void Tables::wrench(int r, int side, const double* X, const double* maps, const double* g,
                        double* q) const
 {
     const RowTable& t = rows[r];
@@ -237,23 +237,23 @@ void Mechanism::wrench(int r, int side, const double* X, const double* frames, c
         q[4] += x[a + 2] * load[a] - x[a] * load[a + 2];
         q[5] += x[a] * load[a + 1] - x[a + 1] * load[a];
     }
-    if (bodies[body].offset) centre(frames + 12 * body, q);
+    if (bodies[body].offset) centre(maps + 12 * body, q);
 }
 
-void Mechanism::scaled_gradient(int r, const double* X, const double* frames, const double* g,
+void Tables::scaled_gradient(int r, const double* X, const double* maps, const double* g,
                                 double* out) const
 {
     std::fill(out, out + n_twists, 0.0);
     for (int side = rows[r].first_side(); side < 2; ++side) {
         const int body = rows[r].body(side);
         double q[6];
-        wrench(r, side, X, frames, g, q);
-        scale_row(bodies[body], frames + 12 * body, q, out + bodies[body].first);
+        wrench(r, side, X, maps, g, q);
+        scale_row(bodies[body], maps + 12 * body, q, out + bodies[body].first);
     }
 }
 
 /// With Q = R_A^T R_B it is L^-1 Q (tr(E Q) 1 - E Q) L^-T.
-void Mechanism::spin_mass(int body, const double* X_A, const double* X_B, double* H) const
+void Tables::spin_mass(int body, const double* X_A, const double* X_B, double* H) const
 {
     const BodyTable& b = bodies[body];
     double Q[9], EQ[9], T[9];
@@ -278,7 +278,7 @@ void Mechanism::spin_mass(int body, const double* X_A, const double* X_B, double
     multiply_transposed(b.spin, EQ, H);
 }
 
-double Mechanism::value(int r, const double* X, const double* g) const
+double Tables::value(int r, const double* X, const double* g) const
 {
     const RowTable& t = rows[r];
     double sum = 0;
@@ -291,14 +291,14 @@ double Mechanism::value(int r, const double* X, const double* g) const
     return 0.5 * sum + t.row->c;
 }
 
-double Mechanism::value(int r, const double* X) const
+double Tables::value(int r, const double* X) const
 {
     double g[24];
     gradient(r, X, g);
     return value(r, X, g);
 }
 
-double Mechanism::curvature(int r, const double* V) const
+double Tables::curvature(int r, const double* V) const
 {
     const RowTable& t = rows[r];
     double sum = 0;
@@ -310,7 +310,7 @@ double Mechanism::curvature(int r, const double* V) const
     return sum;
 }
 
-void Mechanism::add_weight(double factor, double* raw) const
+void Tables::add_weight(double factor, double* raw) const
 {
     for (int b = 0; b < n_bodies(); ++b) {
         // without an offset the weight has no part on the directors
@@ -319,7 +319,7 @@ void Mechanism::add_weight(double factor, double* raw) const
     }
 }
 
-void Mechanism::add_loads(Instant instant, const double* X, const double* V, double factor, double* raw) const
+void Tables::add_loads(Instant instant, const double* X, const double* V, double factor, double* raw) const
 {
     for (const Load& load : model->loads()) {
         LoadArguments arguments;
@@ -340,20 +340,20 @@ void Mechanism::add_loads(Instant instant, const double* X, const double* V, dou
     }
 }
 
-void Mechanism::rows_of(const double* X, const double* frames, const double* raw, double* q) const
+void Tables::twist_rows(const double* X, const double* maps, const double* raw, double* q) const
 {
     for (int b = 0; b < n_bodies(); ++b) {
         double* o = q + bodies[b].first;
         if (bodies[b].dofs == 6) {
             twist::rows(X + 12 * b, raw + 12 * b, o);
-            if (bodies[b].offset) centre(frames + 12 * b, o);
+            if (bodies[b].offset) centre(maps + 12 * b, o);
         } else {
             std::copy(raw + 12 * b, raw + 12 * b + 3, o);
         }
     }
 }
 
-void Mechanism::columns_of(const double* X, const double* xi, double* dX) const
+void Tables::rates_of(const double* X, const double* xi, double* dX) const
 {
     for (int b = 0; b < n_bodies(); ++b) {
         const double* w = xi + bodies[b].first;
@@ -366,7 +366,7 @@ void Mechanism::columns_of(const double* X, const double* xi, double* dX) const
     }
 }
 
-void Mechanism::times_mass(const double* __restrict Y, double factor, double* __restrict out) const
+void Tables::times_mass(const double* __restrict Y, double factor, double* __restrict out) const
 {
     for (const BodyTable& body : bodies) {
         for (int a = 0; a < 4; ++a) {
@@ -382,64 +382,6 @@ void Mechanism::times_mass(const double* __restrict Y, double factor, double* __
         Y += 12;
         out += 12;
     }
-}
-
-void ConstraintBasis::resize(const Mechanism& mechanism, bool all_rows)
-{
-    const int most = all_rows ? mechanism.n_rows() : mechanism.rank;
-    q.resize(mechanism.n_twists, most);
-    rows.assign(static_cast<std::size_t>(mechanism.rank), 0);
-    row_scale.assign(static_cast<std::size_t>(most), 1.0);
-    gradients.assign(static_cast<std::size_t>(24 * most), 0.0);
-    order_.assign(static_cast<std::size_t>(most), 0);
-}
-
-void ConstraintBasis::exchange(ConstraintBasis& other)
-{
-    q.exchange(other.q);
-    rows.swap(other.rows);
-    row_scale.swap(other.row_scale);
-    gradients.swap(other.gradients);
-    order_.swap(other.order_);
-    unsorted_.swap(other.unsorted_);
-}
-
-double ConstraintBasis::fill(const Mechanism& mechanism, int column, int row, const double* X,
-                             const double* frames)
-{
-    double* g = gradients.data() + 24 * column;
-    double* out = q.column(column);
-    mechanism.gradient(row, X, g);
-    mechanism.scaled_gradient(row, X, frames, g, out);
-    double sum = 0;
-    for (int i = 0; i < mechanism.n_twists; ++i) sum += out[i] * out[i];
-    const double scale = sum > 0 ? 1 / std::sqrt(sum) : 1.0;
-    for (int i = 0; i < mechanism.n_twists; ++i) out[i] *= scale;
-    return scale;
-}
-
-double ConstraintBasis::build(const Mechanism& mechanism, const double* X, const double* frames,
-                              const std::vector<int>& which, bool keep_choices)
-{
-    rows = which;
-    for (int c = 0; c < mechanism.rank; ++c) row_scale[c] = fill(mechanism, c, which[c], X, frames);
-    return q.factorise(mechanism.rank, keep_choices);
-}
-
-double ConstraintBasis::choose(const Mechanism& mechanism, const double* X, const double* frames)
-{
-    const int all = mechanism.n_rows();
-    for (int r = 0; r < all; ++r) row_scale[r] = fill(mechanism, r, r, X, frames);
-    const double smallest = q.factorise_pivoted(mechanism.rank, order_);
-    unsorted_ = gradients;
-    unsorted_.insert(unsorted_.end(), row_scale.begin(), row_scale.end());
-    const double* scales = unsorted_.data() + gradients.size();
-    for (int c = 0; c < mechanism.rank; ++c) {
-        rows[c] = order_[c];
-        row_scale[c] = scales[order_[c]];
-        std::copy_n(unsorted_.begin() + 24 * order_[c], 24, gradients.begin() + 24 * c);
-    }
-    return smallest;
 }
 
 }   // namespace livens

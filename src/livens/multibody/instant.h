@@ -4,16 +4,16 @@
 
 #include <vector>
 
-#include "livens/spacetime/lobatto/mechanism.h"
+#include "livens/multibody/constraint_basis.h"
 
 namespace livens {
 
 /// Everything the next element, and the motion, need of one instant.
-struct EndState {
+struct InstantState {
     double t = 0;
     std::vector<double> X;          ///< 12 a body
     std::vector<double> X_low;      ///< what rounding took off X, see add_increments()
-    std::vector<double> frames;     ///< of the scaled twists, 12 a body
+    std::vector<double> maps;     ///< of the scaled twists, 12 a body
     std::vector<double> velocity;   ///< twists [v, w]
     std::vector<double> p;          ///< momentum and spin of each body, tangent to the constraints; handed on
     std::vector<double> momentum;   ///< p in scaled rows
@@ -25,42 +25,42 @@ struct EndState {
     ConstraintBasis basis;   ///< rows chosen here serve the next element
     double smallest_pivot = 1;
 
-    void resize(const Mechanism& mechanism);
+    void resize(const Tables& tables);
     /// jerk and snap of the cubic through velocity and acceleration here and at an earlier end; for guesses.
-    void look_back(const EndState& earlier);
+    void look_back(const InstantState& earlier);
     void forget_past();
 };
 
 /// Solves at one instant (docs/theory.md, "Element ends").
-class EndSolver {
+class InstantSystem {
 public:
-    explicit EndSolver(const Mechanism& mechanism);
+    explicit InstantSystem(const Tables& tables);
 
-    /// Prepares frames and basis for state.X. False if a free motion carries no inertia. `known` is exchanged
+    /// Prepares maps and basis for state.X. False if a free motion carries no inertia. `known` is exchanged
     /// with the state's basis where it serves: built for this X with all rows of the model.
-    bool prepare(EndState& state, ConstraintBasis* known = nullptr);
+    bool prepare(InstantState& state, ConstraintBasis* known = nullptr);
     /// velocity and momentum <- the tangent parts of a given twist momentum N^T P. `lambda` <- the
     /// multipliers of the rest, W Ghat^T lambda = N^T P - Mr velocity; all rows of the model, zero for rows
     /// that are not chosen.
-    void from_momentum(EndState& state, const double* p, double weight, double* lambda);
+    void from_momentum(InstantState& state, const double* p, double weight, double* lambda);
     /// momentum <- that of state.velocity, which is consistent.
-    void from_velocity(EndState& state);
+    void from_velocity(InstantState& state);
     /// Accelerations and multipliers on one side.
-    void accelerate(EndState& state, Side side);
+    void accelerate(InstantState& state, Side side);
 
     /// X' and [0, w x (w x d_a)] of the last state that was accelerated, 12 numbers a body.
     const double* rates() const { return V_.data(); }
     const double* centripetal() const { return centripetal_.data(); }
 
 private:
-    bool prepare_singular(const EndState& state);
-    void add_reaction(const EndState& state, int c, double factor, double* rows) const;
-    void apply_mass(const EndState& state, const double* y, double* out);
-    void solve(const EndState& state, const double* forces, double* y, double* multipliers);
-    void particular(const EndState& state, double* y) const;
-    void scatter(const EndState& state, const double* y, double weight, double* lambda) const;
+    bool prepare_singular(const InstantState& state);
+    void add_reaction(const InstantState& state, int c, double factor, double* rows) const;
+    void apply_mass(const InstantState& state, const double* y, double* out);
+    void solve(const InstantState& state, const double* forces, double* y, double* multipliers);
+    void particular(const InstantState& state, double* y) const;
+    void scatter(const InstantState& state, const double* y, double weight, double* lambda) const;
 
-    const Mechanism& mechanism_;
+    const Tables& tables_;
     Cholesky reduced_;        // Z^T M Z, used only where an inertia is singular
     std::vector<double> z_;   // null space, n x f; likewise
     std::vector<double> a_, b_, c_, V_, centripetal_, raw_;

@@ -9,15 +9,13 @@
 
 #include <vector>
 
-#include "livens/multibody/assembly.h"
 #include "livens/multibody/model.h"
-#include "livens/solvers/dense.h"
 
 namespace livens {
 
 /// Tables made once per solution. Arrays over bodies hold 12 numbers each (columns of X); arrays over twists
 /// hold `n_twists` numbers, six a body and three a point mass.
-struct Mechanism {
+struct Tables {
     struct BodyTable {
         int first = 0;   ///< twist unknowns from here
         int dofs = 6;
@@ -52,7 +50,7 @@ struct Mechanism {
         int first_side() const { return has_i ? 0 : 1; }
     };
 
-    Mechanism(const Model& the_model, int rank);
+    Tables(const Model& the_model, int rank);
 
     const Model* model;
     std::vector<BodyTable> bodies;
@@ -71,9 +69,9 @@ struct Mechanism {
     /// touches (RowTable::columns) are written, and only they may be read.
     void gradient(int r, const double* X, double* g) const;
     /// Force and moment about the centre of mass of one side's gradient, 6 numbers.
-    void wrench(int r, int side, const double* X, const double* frames, const double* g, double* q) const;
+    void wrench(int r, int side, const double* X, const double* maps, const double* g, double* q) const;
     /// The gradient as rows of scaled twists, n_twists numbers.
-    void scaled_gradient(int r, const double* X, const double* frames, const double* g, double* out) const;
+    void scaled_gradient(int r, const double* X, const double* maps, const double* g, double* out) const;
     /// Phi from the absolute configuration and its gradient there: 1/2 <g + B, X> + c.
     double value(int r, const double* X, const double* g) const;
     double value(int r, const double* X) const;
@@ -84,43 +82,21 @@ struct Mechanism {
     void add_weight(double factor, double* raw) const;
     void add_loads(Instant at, const double* X, const double* V, double factor, double* raw) const;
     /// q <- the rows of raw: force, and moment about the centre of mass (not the reference point).
-    void rows_of(const double* X, const double* frames, const double* raw, double* q) const;
+    void twist_rows(const double* X, const double* maps, const double* raw, double* q) const;
 
     /// The map D of scaled to plain twists at X, 12 numbers a body: K = R L^-T, then R times the centre of
     /// mass.
-    void frames_of(const double* X, double* frames) const;
+    void map_twists(const double* X, double* maps) const;
     /// xi = D y: w = K y_2, v = y_1 / sqrt(M) + c x w.
-    void unscale(const double* frames, const double* y, double* xi) const;
+    void to_twist(const double* maps, const double* y, double* xi) const;
     /// Central rows in scaled twists: y_1 = f / sqrt(M), y_2 = K^T tau.
-    void scale_rows(const double* frames, const double* q, double* y) const;
+    void to_scaled_rows(const double* maps, const double* q, double* y) const;
     /// The middle part K_A^T (tr(W) 1 - W) K_B, W = R_B E R_A^T, of a body's mass between two configurations.
     void spin_mass(int body, const double* X_A, const double* X_B, double* H) const;
     /// dX <- N(X) xi.
-    void columns_of(const double* X, const double* xi, double* dX) const;
+    void rates_of(const double* X, const double* xi, double* dX) const;
     /// out <- Y m, body by body.
     void times_mass(const double* Y, double factor, double* out) const;
-};
-
-/// An orthogonal basis of the constraint directions at one configuration, with the scaling of its rows.
-struct ConstraintBasis {
-    OrthogonalBasis q;               ///< of the columns D^T Ghat^T / s
-    std::vector<int> rows;           ///< rank rows of the mechanism, in the order of the columns
-    std::vector<double> row_scale;   ///< 1 / s, in the same order
-    std::vector<double> gradients;   ///< 24 numbers a row, in the same order
-
-    void resize(const Mechanism& mechanism, bool all_rows);
-    void exchange(ConstraintBasis& other);
-    /// The basis for given rows. Returns the smallest scaled pivot.
-    double build(const Mechanism& mechanism, const double* X, const double* frames,
-                 const std::vector<int>& which, bool keep_choices);
-    /// Chooses the rows by column pivoting among all.
-    double choose(const Mechanism& mechanism, const double* X, const double* frames);
-
-private:
-    double fill(const Mechanism& mechanism, int column, int row, const double* X, const double* frames);
-
-    std::vector<int> order_;
-    std::vector<double> unsorted_;
 };
 
 }   // namespace livens

@@ -1,31 +1,31 @@
-#include "livens/spacetime/lobatto/end_state.h"
+#include "livens/multibody/instant.h"
 
 #include <algorithm>
 #include <utility>
 
-#include "livens/spacetime/lobatto/twist.h"
+#include "livens/multibody/twist.h"
 
 namespace livens {
 
-void EndState::resize(const Mechanism& mechanism)
+void InstantState::resize(const Tables& tables)
 {
-    const auto n = static_cast<std::size_t>(mechanism.n_twists);
-    X.assign(12 * mechanism.bodies.size(), 0.0);
+    const auto n = static_cast<std::size_t>(tables.n_twists);
+    X.assign(12 * tables.bodies.size(), 0.0);
     X_low.assign(X.size(), 0.0);
-    frames.assign(X.size(), 0.0);
+    maps.assign(X.size(), 0.0);
     velocity.assign(n, 0.0);
     p.assign(n, 0.0);
     momentum.assign(n, 0.0);
     for (int side = 0; side < 2; ++side) {
         acceleration[side].assign(n, 0.0);
-        multipliers[side].assign(mechanism.rows.size(), 0.0);
+        multipliers[side].assign(tables.rows.size(), 0.0);
     }
     jerk.assign(n, 0.0);
     snap.assign(n, 0.0);
-    basis.resize(mechanism, true);
+    basis.resize(tables, true);
 }
 
-void EndState::look_back(const EndState& earlier)
+void InstantState::look_back(const InstantState& earlier)
 {
     has_past = true;
     const double inverse = 1 / (t - earlier.t);
@@ -41,54 +41,54 @@ void EndState::look_back(const EndState& earlier)
     }
 }
 
-void EndState::forget_past()
+void InstantState::forget_past()
 {
     has_past = false;
     std::fill(jerk.begin(), jerk.end(), 0.0);
     std::fill(snap.begin(), snap.end(), 0.0);
 }
 
-EndSolver::EndSolver(const Mechanism& mechanism) : mechanism_(mechanism)
+InstantSystem::InstantSystem(const Tables& tables) : tables_(tables)
 {
-    const auto n = static_cast<std::size_t>(mechanism.n_twists);
-    if (!mechanism.regular) {
-        reduced_.resize(mechanism.freedoms());
-        z_.assign(n * static_cast<std::size_t>(mechanism.freedoms()), 0.0);
+    const auto n = static_cast<std::size_t>(tables.n_twists);
+    if (!tables.regular) {
+        reduced_.resize(tables.freedoms());
+        z_.assign(n * static_cast<std::size_t>(tables.freedoms()), 0.0);
     }
     for (auto* v : {&a_, &b_, &c_}) v->assign(n, 0.0);
-    for (auto* v : {&V_, &centripetal_, &raw_}) v->assign(12 * mechanism.bodies.size(), 0.0);
+    for (auto* v : {&V_, &centripetal_, &raw_}) v->assign(12 * tables.bodies.size(), 0.0);
 }
 
-bool EndSolver::prepare(EndState& state, ConstraintBasis* known)
+bool InstantSystem::prepare(InstantState& state, ConstraintBasis* known)
 {
-    mechanism_.frames_of(state.X.data(), state.frames.data());
-    if (known != nullptr && mechanism_.rank == mechanism_.n_rows())
+    tables_.map_twists(state.X.data(), state.maps.data());
+    if (known != nullptr && tables_.rank == tables_.n_rows())
         state.basis.exchange(*known);
     else
-        state.smallest_pivot = state.basis.choose(mechanism_, state.X.data(), state.frames.data());
-    return mechanism_.regular || prepare_singular(state);
+        state.smallest_pivot = state.basis.choose(tables_, state.X.data(), state.maps.data());
+    return tables_.regular || prepare_singular(state);
 }
 
 /// out <- D^T Mr D y: y itself where every inertia is definite.
-void EndSolver::apply_mass(const EndState& state, const double* y, double* out)
+void InstantSystem::apply_mass(const InstantState& state, const double* y, double* out)
 {
-    if (mechanism_.regular) {
-        std::copy(y, y + mechanism_.n_twists, out);
+    if (tables_.regular) {
+        std::copy(y, y + tables_.n_twists, out);
         return;
     }
-    std::vector<double> xi(static_cast<std::size_t>(mechanism_.n_twists)), rows(xi.size());
+    std::vector<double> xi(static_cast<std::size_t>(tables_.n_twists)), rows(xi.size());
     std::vector<double> dX(state.X.size()), P(state.X.size());
-    mechanism_.unscale(state.frames.data(), y, xi.data());
-    mechanism_.columns_of(state.X.data(), xi.data(), dX.data());
-    mechanism_.times_mass(dX.data(), 1.0, P.data());
-    mechanism_.rows_of(state.X.data(), state.frames.data(), P.data(), rows.data());
-    mechanism_.scale_rows(state.frames.data(), rows.data(), out);
+    tables_.to_twist(state.maps.data(), y, xi.data());
+    tables_.rates_of(state.X.data(), xi.data(), dX.data());
+    tables_.times_mass(dX.data(), 1.0, P.data());
+    tables_.twist_rows(state.X.data(), state.maps.data(), P.data(), rows.data());
+    tables_.to_scaled_rows(state.maps.data(), rows.data(), out);
 }
 
 /// The mass on the null space where it is not the identity.
-bool EndSolver::prepare_singular(const EndState& state)
+bool InstantSystem::prepare_singular(const InstantState& state)
 {
-    const int f = mechanism_.freedoms(), n = mechanism_.n_twists;
+    const int f = tables_.freedoms(), n = tables_.n_twists;
     state.basis.q.null_space(z_.data());
     std::vector<double> column(static_cast<std::size_t>(n)), image(column.size());
     for (int j = 0; j < f; ++j) {
@@ -106,21 +106,21 @@ bool EndSolver::prepare_singular(const EndState& state)
 }
 
 /// lambda <- S R^-1 y / weight on the chosen rows.
-void EndSolver::scatter(const EndState& state, const double* y, double weight, double* lambda) const
+void InstantSystem::scatter(const InstantState& state, const double* y, double weight, double* lambda) const
 {
     const ConstraintBasis& basis = state.basis;
-    std::fill(lambda, lambda + mechanism_.n_rows(), 0.0);
-    for (int c = 0; c < mechanism_.rank; ++c) lambda[basis.rows[c]] = y[c] * basis.row_scale[c] / weight;
+    std::fill(lambda, lambda + tables_.n_rows(), 0.0);
+    for (int c = 0; c < tables_.rank; ++c) lambda[basis.rows[c]] = y[c] * basis.row_scale[c] / weight;
 }
 
 /// M y + Ghat^T lambda = forces and Ghat y = (what y holds in its first `rank` places, as Q^T y); all scaled.
 /// On return y is the solution and `multipliers` holds R S^-1 lambda, `rank` numbers.
-void EndSolver::solve(const EndState& state, const double* forces, double* y, double* multipliers)
+void InstantSystem::solve(const InstantState& state, const double* forces, double* y, double* multipliers)
 {
     const OrthogonalBasis& q = state.basis.q;
-    const int k = mechanism_.rank, n = mechanism_.n_twists;
+    const int k = tables_.rank, n = tables_.n_twists;
     double* g = c_.data();
-    if (mechanism_.regular) {
+    if (tables_.regular) {
         std::copy(forces, forces + n, g);
         q.apply_transposed(g);
         for (int c = 0; c < k; ++c) multipliers[c] = g[c] - y[c];
@@ -147,55 +147,55 @@ void EndSolver::solve(const EndState& state, const double* forces, double* y, do
     std::copy(g, g + k, multipliers);
 }
 
-void EndSolver::from_momentum(EndState& state, const double* p, double weight, double* lambda)
+void InstantSystem::from_momentum(InstantState& state, const double* p, double weight, double* lambda)
 {
     double* y = a_.data();
     double* rest = b_.data();
-    mechanism_.scale_rows(state.frames.data(), p, rest);
-    std::fill(y, y + mechanism_.rank, 0.0);
+    tables_.to_scaled_rows(state.maps.data(), p, rest);
+    std::fill(y, y + tables_.rank, 0.0);
     solve(state, rest, y, rest);
     state.basis.q.solve_R(rest);
     scatter(state, rest, weight, lambda);
-    mechanism_.unscale(state.frames.data(), y, state.velocity.data());
+    tables_.to_twist(state.maps.data(), y, state.velocity.data());
     // what the multipliers take off is taken off p itself: without joints p stays as it is, to the bit
-    std::copy(p, p + mechanism_.n_twists, state.p.begin());
-    for (int c = 0; c < mechanism_.rank; ++c) {
+    std::copy(p, p + tables_.n_twists, state.p.begin());
+    for (int c = 0; c < tables_.rank; ++c) {
         const int r = state.basis.rows[c];
         add_reaction(state, c, -weight * lambda[r], state.p.data());
     }
-    mechanism_.scale_rows(state.frames.data(), state.p.data(), state.momentum.data());
+    tables_.to_scaled_rows(state.maps.data(), state.p.data(), state.momentum.data());
 }
 
 /// rows += factor Ghat_c for column c of the basis, about the centres of mass.
-void EndSolver::add_reaction(const EndState& state, int c, double factor, double* rows) const
+void InstantSystem::add_reaction(const InstantState& state, int c, double factor, double* rows) const
 {
     const int r = state.basis.rows[c];
-    const auto& table = mechanism_.rows[r];
+    const auto& table = tables_.rows[r];
     for (int side = table.first_side(); side < 2; ++side) {
-        const auto& body = mechanism_.bodies[table.body(side)];
+        const auto& body = tables_.bodies[table.body(side)];
         double q[6];
-        mechanism_.wrench(r, side, state.X.data(), state.frames.data(), state.basis.gradients.data() + 24 * c,
+        tables_.wrench(r, side, state.X.data(), state.maps.data(), state.basis.gradients.data() + 24 * c,
                           q);
         for (int i = 0; i < body.dofs; ++i) rows[body.first + i] += factor * q[i];
     }
 }
 
-void EndSolver::from_velocity(EndState& state)
+void InstantSystem::from_velocity(InstantState& state)
 {
-    mechanism_.columns_of(state.X.data(), state.velocity.data(), V_.data());
-    mechanism_.times_mass(V_.data(), 1.0, raw_.data());
-    mechanism_.rows_of(state.X.data(), state.frames.data(), raw_.data(), state.p.data());
-    mechanism_.scale_rows(state.frames.data(), state.p.data(), state.momentum.data());
+    tables_.rates_of(state.X.data(), state.velocity.data(), V_.data());
+    tables_.times_mass(V_.data(), 1.0, raw_.data());
+    tables_.twist_rows(state.X.data(), state.maps.data(), raw_.data(), state.p.data());
+    tables_.to_scaled_rows(state.maps.data(), state.p.data(), state.momentum.data());
 }
 
 /// First places of Q^T y for an acceleration with d2 Phi/dt2 = 0, from the velocities in V_ and centripetal_.
-void EndSolver::particular(const EndState& state, double* y) const
+void InstantSystem::particular(const InstantState& state, double* y) const
 {
     const ConstraintBasis& basis = state.basis;
-    for (int c = 0; c < mechanism_.rank; ++c) {
-        const auto& table = mechanism_.rows[basis.rows[c]];
+    for (int c = 0; c < tables_.rank; ++c) {
+        const auto& table = tables_.rows[basis.rows[c]];
         const double* g = basis.gradients.data() + 24 * c;
-        double gamma = mechanism_.curvature(basis.rows[c], V_.data());
+        double gamma = tables_.curvature(basis.rows[c], V_.data());
         for (int side = table.first_side(); side < 2; ++side) {
             const double* a = centripetal_.data() + 12 * table.body(side);
             for (const int column : table.columns[side])
@@ -206,31 +206,31 @@ void EndSolver::particular(const EndState& state, double* y) const
     basis.q.solve_R_transposed(y);
 }
 
-void EndSolver::accelerate(EndState& state, Side side)
+void InstantSystem::accelerate(InstantState& state, Side side)
 {
     const double* X = state.X.data();
-    mechanism_.columns_of(X, state.velocity.data(), V_.data());
+    tables_.rates_of(X, state.velocity.data(), V_.data());
     // X'' without twist acceleration: [0, w x (w x d_a)]
-    for (int b = 0; b < mechanism_.n_bodies(); ++b) {
-        const auto& body = mechanism_.bodies[b];
+    for (int b = 0; b < tables_.n_bodies(); ++b) {
+        const auto& body = tables_.bodies[b];
         if (body.dofs == 3) continue;
         double spin[6] = {0, 0, 0, 0, 0, 0};
         std::copy_n(state.velocity.data() + body.first + 3, 3, spin + 3);
         twist::columns(V_.data() + 12 * b, spin, centripetal_.data() + 12 * b);
     }
-    mechanism_.times_mass(centripetal_.data(), -1.0, raw_.data());
-    mechanism_.add_weight(1.0, raw_.data());
-    mechanism_.add_loads({state.t, side}, X, V_.data(), 1.0, raw_.data());
+    tables_.times_mass(centripetal_.data(), -1.0, raw_.data());
+    tables_.add_weight(1.0, raw_.data());
+    tables_.add_loads({state.t, side}, X, V_.data(), 1.0, raw_.data());
     double* y = a_.data();
     double* forces = b_.data();
-    mechanism_.rows_of(X, state.frames.data(), raw_.data(), y);
-    mechanism_.scale_rows(state.frames.data(), y, forces);
+    tables_.twist_rows(X, state.maps.data(), raw_.data(), y);
+    tables_.to_scaled_rows(state.maps.data(), y, forces);
     particular(state, y);
     solve(state, forces, y, forces);
     const int s = side == Side::right ? 1 : 0;
     state.basis.q.solve_R(forces);
     scatter(state, forces, 1.0, state.multipliers[s].data());
-    mechanism_.unscale(state.frames.data(), y, state.acceleration[s].data());
+    tables_.to_twist(state.maps.data(), y, state.acceleration[s].data());
 }
 
 }   // namespace livens

@@ -1,4 +1,4 @@
-#include "livens/spacetime/lobatto/twist.h"
+#include "livens/multibody/twist.h"
 
 #include <cmath>
 

@@ -7,7 +7,7 @@
 
 #include "livens/base/linear.h"
 #include "livens/multibody/body.h"
-#include "livens/spacetime/lobatto/twist.h"
+#include "livens/multibody/twist.h"
 
 namespace livens {
 namespace {

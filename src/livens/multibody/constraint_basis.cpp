@@ -1,0 +1,66 @@
+#include "livens/multibody/constraint_basis.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace livens {
+
+void ConstraintBasis::resize(const Tables& tables, bool all_rows)
+{
+    const int most = all_rows ? tables.n_rows() : tables.rank;
+    q.resize(tables.n_twists, most);
+    rows.assign(static_cast<std::size_t>(tables.rank), 0);
+    row_scale.assign(static_cast<std::size_t>(most), 1.0);
+    gradients.assign(static_cast<std::size_t>(24 * most), 0.0);
+    order_.assign(static_cast<std::size_t>(most), 0);
+}
+
+void ConstraintBasis::exchange(ConstraintBasis& other)
+{
+    q.exchange(other.q);
+    rows.swap(other.rows);
+    row_scale.swap(other.row_scale);
+    gradients.swap(other.gradients);
+    order_.swap(other.order_);
+    unsorted_.swap(other.unsorted_);
+}
+
+double ConstraintBasis::fill(const Tables& tables, int column, int row, const double* X,
+                             const double* maps)
+{
+    double* g = gradients.data() + 24 * column;
+    double* out = q.column(column);
+    tables.gradient(row, X, g);
+    tables.scaled_gradient(row, X, maps, g, out);
+    double sum = 0;
+    for (int i = 0; i < tables.n_twists; ++i) sum += out[i] * out[i];
+    const double scale = sum > 0 ? 1 / std::sqrt(sum) : 1.0;
+    for (int i = 0; i < tables.n_twists; ++i) out[i] *= scale;
+    return scale;
+}
+
+double ConstraintBasis::build(const Tables& tables, const double* X, const double* maps,
+                              const std::vector<int>& which, bool keep_choices)
+{
+    rows = which;
+    for (int c = 0; c < tables.rank; ++c) row_scale[c] = fill(tables, c, which[c], X, maps);
+    return q.factorise(tables.rank, keep_choices);
+}
+
+double ConstraintBasis::choose(const Tables& tables, const double* X, const double* maps)
+{
+    const int all = tables.n_rows();
+    for (int r = 0; r < all; ++r) row_scale[r] = fill(tables, r, r, X, maps);
+    const double smallest = q.factorise_pivoted(tables.rank, order_);
+    unsorted_ = gradients;
+    unsorted_.insert(unsorted_.end(), row_scale.begin(), row_scale.end());
+    const double* scales = unsorted_.data() + gradients.size();
+    for (int c = 0; c < tables.rank; ++c) {
+        rows[c] = order_[c];
+        row_scale[c] = scales[order_[c]];
+        std::copy_n(unsorted_.begin() + 24 * order_[c], 24, gradients.begin() + 24 * c);
+    }
+    return smallest;
+}
+
+}   // namespace livens
