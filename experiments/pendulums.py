@@ -73,7 +73,7 @@ def growth(times, distances, low=1e-12, high=1e-2):
 
 def by_blocks(degree, kind, n, length, end, output=0.1, momentum="natural", **more):
     """Scenario text: elements of the paper, blocks of `length` s with n elements each."""
-    method = paper.mixed("lagrange", degree, momentum, block=n, tolerance=1e-13, **more)
+    method = paper.mixed("lagrange", degree, momentum, window=n, tolerance=1e-13, **more)
     return paper.double_pendulum(method, n * round(end / length), end, kind, output=output)
 
 

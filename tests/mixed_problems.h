@@ -43,6 +43,8 @@ inline Solution solve_mixed_evenly(const Model& model, double end, int n, const 
 {
     SolveOptions options;
     options.tolerance = tolerance;
+    // Collocation at so few points leaves momenta at inner element ends that are none: it would be suspect.
+    options.judge = method.gauss_points != method.degree;
     Solution solution = solve(model, {model.start()}, make_time_mesh(0, end, n), method, options);
     EXPECT_TRUE(solution.report.converged()) << name_of(method) << ": " << solution.report.message;
     return solution;

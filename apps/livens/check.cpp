@@ -4,13 +4,13 @@
 #include "commands.h"
 #include "console.h"
 #include "failure.h"
-#include "livens/multibody/assembly.h"
+#include "livens/multibody/closing.h"
 
 namespace livens::program {
 
 namespace {
 
-std::string json_of(const Scenario& scenario, const Assembly& assembly,
+std::string json_of(const Scenario& scenario, const ClosedStart& assembly,
                     const std::vector<Diagnostic>& warnings)
 {
     JsonWriter json(2);
@@ -39,16 +39,16 @@ std::string json_of(const Scenario& scenario, const Assembly& assembly,
 }
 
 /// Closes the mechanism where its positions are known: rank and redundant rows, for people.
-Assembly assembly_of(const Scenario& scenario)
+ClosedStart assembly_of(const Scenario& scenario)
 {
-    const Boundary& b = scenario.boundary;
-    const bool at_start = b.at_start == Given::state || b.at_start == Given::positions;
-    const bool at_end = !at_start && (b.at_end == Given::state || b.at_end == Given::positions);
+    const Conditions& b = scenario.conditions;
+    const bool at_start = b.at_start == Known::state || b.at_start == Known::positions;
+    const bool at_end = !at_start && (b.at_end == Known::state || b.at_end == Known::positions);
     State state = at_end ? b.end : b.start;
-    if (b.at_start == Given::state || b.at_end == Given::state)
-        return assemble(scenario.model, state, scenario.options.initial);
+    if (b.at_start == Known::state || b.at_end == Known::state)
+        return close_start(scenario.model, state, scenario.options.initial);
     for (Matrix34& V : state.V) V = {};   // velocities are guesses; positions may be
-    return assemble(scenario.model, state,
+    return close_start(scenario.model, state,
                     at_start || at_end ? scenario.options.initial : StartPolicy::project);
 }
 
@@ -58,7 +58,7 @@ int check_command(const std::string& file, const Common& common)
 {
     std::vector<Diagnostic> warnings;
     const Scenario scenario = load_scenario(file, common, &warnings);
-    const Assembly assembly = assembly_of(scenario);
+    const ClosedStart assembly = assembly_of(scenario);
     if (common.json) {
         print(json_of(scenario, assembly, warnings));
         return exit_ok;

@@ -22,20 +22,22 @@ void names(JsonWriter& json, const char* key, const std::vector<std::string>& va
 
 std::string json_of(const Run& run)
 {
-    const RunSummary& s = run.summary;
+    const SolveReport& report = run.report;
     JsonWriter json(2);
     json.begin_object();
-    json.member("converged", s.converged).member("status", s.status).member("message", s.message);
-    json.member("title", run.title).member("version", run.version).member("method", s.method);
+    json.member("converged", report.reached_end()).member("status", to_string(report.status));
+    json.member("message", report.message).member("title", run.title);
+    json.member("version", run.version).member("method", run.method);
     json.member("start", run.motion.start()).member("end", run.motion.end());
-    json.member("elements", s.elements).member("unknowns", s.unknowns);
-    json.member("newton_iterations", s.newton_iterations).member("factorisations", s.factorisations);
-    write_figures(json, s);
+    json.member("elements", run.motion.n_elements()).member("unknowns", report.unknowns);
+    json.member("newton_iterations", report.newton_iterations);
+    json.member("factorisations", report.factorisations);
+    write_figures(json, run);
     json.member("order_at_element_ends", run.motion.order_at_ends);
     json.member("output_times", run.output.size());
     names(json, "bodies", run.body_names);
     names(json, "joints", run.joint_names);
-    names(json, "notes", s.notes);
+    names(json, "notes", run.notes);
     json.key("options").raw(run.resolved.starts_with('{') ? run.resolved : "null");
     json.end_object();
     return json.text() + "\n";
@@ -59,18 +61,17 @@ int info_command(const std::string& file, const Common& common)
         print(json_of(run));
         return exit_ok;
     }
-    const RunSummary& s = run.summary;
     std::string text = plain(run.title.empty() ? file : run.title) + "\n";
     text += fmt::format("  written by        livens {}\n", plain(run.version));
     text += fmt::format("  bodies            {}\n", list(run.body_names));
     if (!run.joint_names.empty()) text += fmt::format("  joints            {}\n", list(run.joint_names));
     text += fmt::format("  time              {:.6g} s to {:.6g} s, {} output times\n", run.motion.start(),
                         run.motion.end(), run.output.size());
-    text += fmt::format("  method            {}, {} elements, {} unknowns each\n", plain(s.method),
-                        s.elements, s.unknowns);
-    text += figures(s);
-    for (const std::string& note : s.notes) text += "  note              " + plain(note) + "\n";
-    print(text + verdict(s) + "\n");
+    text += fmt::format("  method            {}, {} elements, {} unknowns each\n", plain(run.method),
+                        run.motion.n_elements(), run.report.unknowns);
+    text += figures(run);
+    for (const std::string& note : run.notes) text += "  note              " + plain(note) + "\n";
+    print(text + verdict(run) + "\n");
     return exit_ok;
 }
 
@@ -85,7 +86,7 @@ int export_command(const ExportArguments& arguments, const Common& common)
         JsonWriter json(2);
         json.begin_object()
             .member("csv", arguments.csv)
-            .member("converged", run.summary.converged)
+            .member("converged", run.report.reached_end())
             .end_object();
         print(json.text() + "\n");
     } else {

@@ -9,8 +9,8 @@ namespace livens::program {
 
 class ProgressLine {
 public:
-    /// `start` and `end` of the motion, s. Nothing is shown if not `enabled`.
-    ProgressLine(double start, double end, bool enabled);
+    /// Nothing is shown if not `enabled`.
+    explicit ProgressLine(bool enabled);
     ~ProgressLine();
     ProgressLine(const ProgressLine&) = delete;
     ProgressLine& operator=(const ProgressLine&) = delete;
@@ -20,7 +20,6 @@ public:
 private:
     using Clock = std::chrono::steady_clock;
 
-    double start_, end_;
     bool enabled_;
     bool visible_ = false;
     Clock::time_point begin_ = Clock::now();

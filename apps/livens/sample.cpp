@@ -10,7 +10,7 @@
 #include "failure.h"
 #include "livens/base/error.h"
 #include "livens/io/results.h"
-#include "livens/io/sample.h"
+#include "livens/diagnostics/sample.h"
 #include "livens/spacetime/solve.h"
 
 namespace livens::program {
@@ -134,6 +134,7 @@ void joint_members(JsonWriter& json, const Query& q, double t)
     side("left", s.left);
     side("right", s.right);
     json.member("source", s.is_acceleration_level ? "acceleration level" : "interpolated multipliers");
+    json.member("unique", s.is_unique);
 }
 
 /// One instant: its members stand at the top; several: a list `samples`.
@@ -146,7 +147,7 @@ std::string json_of(const Query& q, const std::vector<double>& times)
     JsonWriter json(2);
     json.begin_object();
     json.member(is_body ? "body" : "joint", is_body ? q.arguments.body : q.arguments.joint);
-    json.member("converged", q.run.summary.converged);
+    json.member("converged", q.run.report.reached_end());
     if (times.size() == 1) {
         members(json, times.front());
     } else {
@@ -166,13 +167,13 @@ template <int Rows>
 void add_row(std::string& out, const char* name, const char* unit, const Matrix<Rows, 1>& v)
 {
     out += fmt::format("  {:<22}", name);
-    for (const double x : v.a) out += fmt::format(" {:>24}", shortest(x));
+    for (const double x : v.a) out += fmt::format(" {:>24}", to_text(x));
     out += fmt::format("  {}\n", unit);
 }
 
 std::string text_of(const Query& q, double t)
 {
-    std::string out = fmt::format("t = {} s\n", shortest(t));
+    std::string out = fmt::format("t = {} s\n", to_text(t));
     if (q.arguments.body.empty()) {
         const JointSample s = joint_at(q, t);
         add_row(out, "force", "N", s.right.force);
@@ -181,6 +182,8 @@ std::string text_of(const Query& q, double t)
             add_row(out, "force before", "N", s.left.force);
             add_row(out, "torque before", "N m", s.left.torque);
         }
+        if (!s.is_unique)
+            out += "  (not unique: other joints of the loop could carry part of it; these are the least)\n";
         return out + (s.is_acceleration_level ? "" : "  (interpolated multipliers: between element ends)\n");
     }
     const BodySample s = body_at(q, t);
@@ -202,7 +205,7 @@ std::string text_of(const Query& q, double t)
 template <int Rows>
 void add_cells(std::string& line, const Matrix<Rows, 1>& v)
 {
-    for (const double x : v.a) line += "," + (std::isfinite(x) ? shortest(x) : "");
+    for (const double x : v.a) line += "," + (std::isfinite(x) ? to_text(x) : "");
 }
 
 std::string csv_of(const Query& q, const std::vector<double>& times)
@@ -213,7 +216,7 @@ std::string csv_of(const Query& q, const std::vector<double>& times)
                   "wz [rad/s]\r\n"
                 : "t [s],fx [N],fy [N],fz [N],mx [N m],my [N m],mz [N m]\r\n";
     for (const double t : times) {
-        out += shortest(t);
+        out += to_text(t);
         if (is_body) {
             const BodySample s = body_at(q, t);
             add_cells(out, s.position);
@@ -243,7 +246,8 @@ int sample_command(const SampleArguments& arguments, const Common& common)
     for (const std::string& text : arguments.at) times.push_back(instant_inside(text, run.motion));
     const Scenario scenario = scenario_of_run(run.scenario_text, arguments.run);
     const Query query{arguments, run, scenario, index};
-    if (!run.summary.converged) say_warning("the run is not converged: " + run.summary.status);
+    if (!run.report.converged())
+        say_warning(std::string("the run is not converged: ") + to_string(run.report.status));
     if (common.json) {
         print(json_of(query, times));
     } else if (arguments.csv) {

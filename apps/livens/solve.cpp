@@ -79,20 +79,22 @@ Solved solve_scenario(const Scenario& scenario, const Common& common)
     Solution solution;
     const InterruptWatch watch;
     {
-        ProgressLine line(scenario.mesh.start(), scenario.mesh.end(), error_is_terminal() && !common.quiet);
+        ProgressLine line(error_is_terminal() && !common.quiet);
         SolveOptions options = scenario.options;
+        options.judge = false;   // not part of what is timed
         options.progress = [&line](const Progress& progress) {
             line.show(progress);
             return InterruptWatch::signal() == 0;
         };
         const Clock::time_point begin = Clock::now();
-        solution = solve(scenario.model, scenario.boundary, scenario.mesh, scenario.method, options);
+        solution = solve(scenario.model, {scenario.conditions}, scenario.mesh, scenario.method, options);
         solved.solve_seconds = seconds_since(begin);
     }
     say_detail(fmt::format("solved in {:.3g} s", solved.solve_seconds));
     if (solution.report.status == SolveStatus::cancelled) solved.signal = InterruptWatch::signal();
 
     const Clock::time_point begin = Clock::now();
+    judge(scenario.model, solution);
     solved.run = make_run(scenario.model, std::move(solution), scenario.method);
     solved.run.scenario_text = scenario.text;
     solved.run.title = scenario.title;
@@ -105,27 +107,27 @@ Solved solve_scenario(const Scenario& scenario, const Common& common)
 int exit_code_of(const Solved& solved)
 {
     if (solved.signal != 0) return exit_signal + solved.signal;
-    if (!solved.run.summary.converged) return exit_not_converged;
-    return solved.run.summary.status == "suspect" ? exit_suspect : exit_ok;
+    const SolveReport& report = solved.run.report;
+    return report.converged() ? exit_ok : report.reached_end() ? exit_suspect : exit_not_converged;
 }
 
 /// The object that --json prints and that lies beside the result; `date` is empty for the former.
 std::string json_of(const Solved& solved, const Places& p, const std::vector<Diagnostic>& warnings,
                     const std::string& date)
 {
-    const RunSummary& s = solved.run.summary;
+    const Run& run = solved.run;
+    const SolveReport& report = run.report;
     JsonWriter json(2);
     json.begin_object();
-    json.member("converged", s.converged)
-        .member("status", s.status)
-        .member("exit_code", exit_code_of(solved));
-    json.member("message", s.message).member("title", solved.run.title).member("method", s.method);
-    json.member("elements", s.elements).member("unknowns", s.unknowns);
-    json.member("newton_iterations", s.newton_iterations).member("factorisations", s.factorisations);
-    json.member("blocks", solved.run.report.iterations.size());
+    json.member("converged", report.reached_end()).member("status", to_string(report.status));
+    json.member("exit_code", exit_code_of(solved));
+    json.member("message", report.message).member("title", run.title).member("method", run.method);
+    json.member("elements", run.motion.n_elements()).member("unknowns", report.unknowns);
+    json.member("newton_iterations", report.newton_iterations);
+    json.member("factorisations", report.factorisations).member("blocks", report.iterations.size());
     json.member("solve_seconds", solved.solve_seconds);
-    write_figures(json, s);
-    json.member("start", solved.run.motion.start()).member("end", solved.run.motion.end());
+    write_figures(json, run);
+    json.member("start", run.motion.start()).member("end", run.motion.end());
     json.member("output", p.output.string());
     json.key("csv");
     if (p.csv.empty())
@@ -133,7 +135,7 @@ std::string json_of(const Solved& solved, const Places& p, const std::vector<Dia
     else
         json.value(p.csv.string());
     json.key("notes").begin_array();
-    for (const std::string& note : s.notes) json.value(note);
+    for (const std::string& note : run.notes) json.value(note);
     json.end_array();
     json.key("warnings");
     write_diagnostics(json, warnings);
@@ -189,28 +191,29 @@ void write_record(const Solved& solved, const Places& p, const std::vector<Diagn
 void show(const Solved& solved, const Places& p)
 {
     const Run& run = solved.run;
-    const RunSummary& s = run.summary;
+    const SolveReport& report = run.report;
     std::string text;
     if (!run.title.empty()) text += plain(run.title) + "\n";
-    const std::size_t n_blocks = run.report.iterations.size();
-    const bool is_blocked = n_blocks != static_cast<std::size_t>(s.elements);
-    text += fmt::format("  method            {}, {} elements{}, {} unknowns each\n", s.method, s.elements,
+    const int n_elements = run.motion.n_elements();
+    const std::size_t n_blocks = report.iterations.size();
+    const bool is_blocked = n_blocks != static_cast<std::size_t>(n_elements);
+    text += fmt::format("  method            {}, {} elements{}, {} unknowns each\n", run.method, n_elements,
                         is_blocked ? fmt::format(" in {} block{}", n_blocks, n_blocks == 1 ? "" : "s") : "",
-                        s.unknowns);
+                        report.unknowns);
     text += fmt::format("  solved            {:.6g} s to {:.6g} s of motion in {:.3g} s\n",
                         run.motion.start(), run.motion.end(), solved.solve_seconds);
-    text += fmt::format("  iterations        {} by Newton{}, {} factorisations\n", s.newton_iterations,
+    text += fmt::format("  iterations        {} by Newton{}, {} factorisations\n", report.newton_iterations,
                         n_blocks > 0 ? fmt::format(" ({:.1f} {})",
-                                                   static_cast<double>(s.newton_iterations) /
+                                                   static_cast<double>(report.newton_iterations) /
                                                        static_cast<double>(n_blocks),
                                                    is_blocked ? "a block" : "an element")
                                      : "",
-                        s.factorisations);
-    text += figures(s);
+                        report.factorisations);
+    text += figures(run);
     text += fmt::format("  written           {}{}\n", plain(p.output.string()),
                         p.csv.empty() ? "" : ", " + plain(p.csv.string()));
-    for (const std::string& note : s.notes) text += "  note              " + plain(note) + "\n";
-    text += verdict(s) + "\n";
+    for (const std::string& note : run.notes) text += "  note              " + plain(note) + "\n";
+    text += verdict(run) + "\n";
     print(text);
 }
 
@@ -234,8 +237,9 @@ int solve_command(const SolveArguments& arguments, const Common& common)
     }
     const int code = exit_code_of(solved);
     if (code != exit_ok) {
-        const RunSummary& s = solved.run.summary;
-        say_error(s.message.empty() ? "the run is " + s.status : s.message);
+        const SolveReport& report = solved.run.report;
+        say_error(report.message.empty() ? std::string("the run is ") + to_string(report.status)
+                                         : report.message);
     }
     if (common.json)
         print(json_of(solved, p, warnings, ""));

@@ -23,29 +23,33 @@ const char* grade(double drift)
 
 }   // namespace
 
-std::string figures(const RunSummary& s)
+std::string figures(const Run& run)
 {
+    const Verdict& s = run.verdict;
+    const SolveReport& report = run.report;
     const bool is_weak = s.max_weak_violation > 0;
     std::string text = fmt::format(
         "  constraints       violated by {} at most{}, their rates by {} 1/s\n"
-        "  energy            off its balance by {} of the largest kinetic energy\n"
+        "  energy            off its balance by {} of the largest that moves or is stored\n"
         "  angular momentum  off its balance by {} of its largest value\n"
         "  zig-zag           {} in positions, {} in momenta (0: smooth, 1: from node to node)\n"
         "  residual          {}\n",
         number(s.max_constraint_violation),
         is_weak ? " (they hold in the mean, within " + number(s.max_weak_violation) + ")" : "",
         number(s.max_velocity_violation), number(s.energy_drift), number(s.angular_momentum_drift),
-        number(s.zigzag_positions), number(s.zigzag_momenta), number(s.residual_norm));
-    if (s.condition_1 > 0)
+        number(s.zigzag_positions), number(s.zigzag_momenta), number(report.residual_norm));
+    if (report.condition_1 > 0)
         text += fmt::format("  condition         {} in the 1-norm, {} in the 2-norm; {} as it is "
                             "factorised\n",
-                            number(s.condition_1), number(s.condition_2), number(s.scaled_condition));
+                            number(report.condition_1), number(report.condition_2),
+                            number(report.scaled_condition));
     return text;
 }
 
-void write_figures(JsonWriter& json, const RunSummary& s)
+void write_figures(JsonWriter& json, const Run& run)
 {
-    json.member("residual_norm", s.residual_norm);
+    const Verdict& s = run.verdict;
+    json.member("residual_norm", run.report.residual_norm);
     json.member("max_constraint_violation", s.max_constraint_violation);
     json.member("max_weak_violation", s.max_weak_violation);
     json.member("max_velocity_violation", s.max_velocity_violation);
@@ -57,19 +61,22 @@ void write_figures(JsonWriter& json, const RunSummary& s)
         if (number > 0) json.value(number);
         else json.null();
     };
-    condition("condition_1", s.condition_1);
-    condition("condition_2", s.condition_2);
-    condition("scaled_condition", s.scaled_condition);
+    condition("condition_1", run.report.condition_1);
+    condition("condition_2", run.report.condition_2);
+    condition("scaled_condition", run.report.scaled_condition);
 }
 
-std::string verdict(const RunSummary& s)
+std::string verdict(const Run& run)
 {
-    if (s.status == "cancelled") return "Cancelled: the file holds the motion up to the last solved element.";
-    if (!s.converged)
-        return "Not converged (" + plain(s.status) +
-               "): the file holds the motion up to the last solved element. " + plain(s.message);
-    if (s.status == "suspect")
+    const SolveReport& report = run.report;
+    const Verdict& s = run.verdict;
+    if (report.status == SolveStatus::cancelled)
+        return "Cancelled: the file holds the motion up to the last solved element.";
+    if (report.status == SolveStatus::suspect)
         return "Suspect: the solver converged, but the motion fails the checks noted above.";
+    if (!report.converged())
+        return std::string("Not converged (") + to_string(report.status) +
+               "): the file holds the motion up to the last solved element. " + plain(report.message);
     return fmt::format("Converged. Constraints hold{} and the balances are kept {}.",
                        s.max_weak_violation > 0            ? " in the mean"
                        : s.max_constraint_violation <= 1e-10 ? " to rounding"

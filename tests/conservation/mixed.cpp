@@ -49,7 +49,7 @@ TEST(MixedMomentum, IsExactWithCollocationAtGaussPoints)
 TEST(MixedMomentum, BalancesOverBlocksByTheDiagnosticsOfAnyMotion)
 {
     Mixed method = mixed({lagrange, 2, natural, equal});
-    method.block = 10;
+    method.window = 10;
     const Model model = two_bricks();
     const Solution solution = solve_mixed_evenly(model, 0.5, 40, method);
     const Balance b = balance(model, solution.motion);
@@ -97,7 +97,7 @@ TEST(MixedRigidity, HoldsWeaklyElsewise)
 TEST(MixedPlane, StaysOneForTheCentredPendulum)
 {
     Mixed method = mixed({lagrange, 2, natural, equal});
-    method.block = 50;
+    method.window = 50;
     const Solution solution = solve_mixed_evenly(cubes_on_rods(0), 5, 250, method, 1e-12);
     for (int end = 0; end <= 250; ++end)
         for (const Matrix34& X : solution.motion.at_end(end).X) EXPECT_LT(std::abs(X(1, 0)), 1e-12);
@@ -115,9 +115,9 @@ TEST(MixedConditions, AtTheEndLeadBackToTheStart)
     options.initial = StartPolicy::project;   // weakly rigid directors are no start
     for (const int block : {0, 4}) {
         Mixed back = method;
-        back.block = block;
+        back.window = block;
         const Solution solution =
-            solve(model, {model.start(), Given::nothing, end, Given::state}, mesh, back, options);
+            solve(model, {model.start(), Known::nothing, end, Known::state}, mesh, back, options);
         ASSERT_TRUE(solution.report.converged()) << solution.report.message;
         EXPECT_LT(distance(solution.motion.at_end(0), model.start()).X, 2e-5) << "blocks of " << block;
         EXPECT_EQ(solution.motion.n_elements(), 16);
@@ -131,10 +131,10 @@ TEST(MixedConditions, SplitBetweenTheEndsFindTheSameMotion)
     const Solution fine = solve_evenly(model, 0.25, 40, 8);
     const State start = model.start(), end = last(fine), middle = fine.motion.at_end(20);
     struct {
-        Given at_start, at_end;
-    } const cases[] = {{Given::positions, Given::positions},
-                       {Given::positions, Given::momenta},
-                       {Given::momenta, Given::positions}};
+        Known at_start, at_end;
+    } const cases[] = {{Known::positions, Known::positions},
+                       {Known::positions, Known::momenta},
+                       {Known::momenta, Known::positions}};
     for (const auto basis : {lagrange, bspline})
         for (const auto& given : cases)
             for (const int n : {12, 13}) {   // both parities
@@ -161,10 +161,10 @@ TEST(MixedConditions, SplitOnesFindLargeTurns)
     const State start = model.start(), end = last(fine);
     for (const auto basis : {lagrange, bspline})
         for (const bool forwards : {true, false}) {
-            const Boundary boundary = forwards ? Boundary{start, Given::positions, end, Given::momenta}
-                                               : Boundary{start, Given::momenta, end, Given::positions};
+            const Conditions boundary = forwards ? Conditions{start, Known::positions, end, Known::momenta}
+                                               : Conditions{start, Known::momenta, end, Known::positions};
             const Solution solution =
-                solve(model, boundary, make_time_mesh(0, 1, 40), mixed({basis, 3, natural, equal}));
+                solve(model, {boundary}, make_time_mesh(0, 1, 40), mixed({basis, 3, natural, equal}));
             ASSERT_TRUE(solution.report.converged()) << solution.report.message;
             EXPECT_LT(distance(solution.motion.at_end(0), start).X, 1e-4);
             EXPECT_LT(distance(last(solution), end).X, 1e-4);
@@ -177,7 +177,7 @@ TEST(MixedConditions, AtBothEndsOfASingleElementLeaveNoMultiplierUntied)
     const State start = model.start();
     State end = start;
     for (const int p : {2, 3, 8}) {
-        const Solution solution = solve(model, {start, Given::positions, end, Given::positions},
+        const Solution solution = solve(model, {start, Known::positions, end, Known::positions},
                                         make_time_mesh(0, 0.3, 1), mixed({lagrange, p, natural, equal}));
         ASSERT_TRUE(solution.report.converged()) << solution.report.message;
         EXPECT_EQ(solution.motion.n_elements(), 1);
@@ -196,7 +196,7 @@ TEST(MixedFailures, InTheMiddleOfAMarchAreReportedAndKeepWhatIsSolved)
         for (const auto start : {natural, strong})
             for (const auto interfaces : {Mixed::Interfaces::carry, Mixed::Interfaces::project}) {
                 Mixed method = mixed({lagrange, 1, start, equal});
-                method.block = 1;
+                method.window = 1;
                 method.interfaces = interfaces;
                 Solution solution;
                 ASSERT_NO_THROW(solution =
@@ -215,16 +215,16 @@ TEST(MixedFailures, MayBeCancellationsWithinABlock)
     std::vector<int> elements;
     SolveOptions options;
     options.progress = [&elements](const Progress& progress) {
-        elements.push_back(progress.element);
+        elements.push_back(progress.done);
         return elements.size() < 3;   // within the first block, after it, within the second
     };
     Mixed method = mixed({lagrange, 2, natural, equal});
-    method.block = 10;
+    method.window = 10;
     const Model model = cubes_on_rods(0.1);
     const Solution solution = solve(model, {model.start()}, make_time_mesh(0, 1, 20), method, options);
-    EXPECT_EQ(elements, (std::vector<int>{0, 9, 10}));
+    EXPECT_EQ(elements, (std::vector<int>{0, 10, 10}));
     EXPECT_EQ(solution.report.status, SolveStatus::cancelled);
-    EXPECT_NE(solution.report.message.find("cancelled in the block from t = 0.5 s"), std::string::npos)
+    EXPECT_NE(solution.report.message.find("stopped as asked in the window of elements 10 to 19 (t = 0.5 to 1 s)"), std::string::npos)
         << solution.report.message;
     EXPECT_EQ(solution.motion.n_elements(), 10);
 }
@@ -251,34 +251,34 @@ TEST(MixedConditions, ThatMakeNoSolvableSystemAreRefused)
     const Model model = free_box();
     const State state = model.start();
     const TimeMesh mesh = make_time_mesh(0, 1, 8);
-    const auto code = [&](const Boundary& boundary, const Method& method) {
+    const auto code = [&](const Conditions& boundary, const Method& method) {
         try {
-            solve(model, boundary, mesh, method);
+            solve(model, {boundary}, mesh, method);
         } catch (const InputError& error) {
             return error.complaint().code + " " + error.complaint().path;
         }
         return std::string("accepted");
     };
     const Mixed any = mixed({lagrange, 2, natural, equal});
-    const Boundary two_point{state, Given::positions, state, Given::positions};
-    EXPECT_EQ(code({state, Given::momenta, state, Given::momenta}, any), "boundary-conditions end.given");
-    EXPECT_EQ(code({state, Given::state, state, Given::positions}, any), "boundary-conditions end.given");
-    EXPECT_EQ(code({state, Given::positions}, any), "boundary-conditions end.given");
-    EXPECT_EQ(code(two_point, Lobatto{}), "boundary-method start.given");
+    const Conditions two_point{state, Known::positions, state, Known::positions};
+    EXPECT_EQ(code({state, Known::momenta, state, Known::momenta}, any), "boundary-conditions end.given");
+    EXPECT_EQ(code({state, Known::state, state, Known::positions}, any), "boundary-conditions end.given");
+    EXPECT_EQ(code({state, Known::positions}, any), "boundary-conditions end.given");
+    EXPECT_EQ(code(two_point, Midpoint{}), "boundary-method start.given");
     EXPECT_EQ(code(two_point, mixed({lagrange, 2, natural, lower})), "mixed-pairing method.multipliers");
-    EXPECT_EQ(code({state, Given::positions, state, Given::momenta}, mixed({lagrange, 2, strong, equal})),
+    EXPECT_EQ(code({state, Known::positions, state, Known::momenta}, mixed({lagrange, 2, strong, equal})),
               "mixed-pairing end.given");
     Mixed few = any;
     few.gauss_points = 2;
     EXPECT_EQ(code({state}, few), "mixed-pairing method.gauss_points");
     Mixed blocks = any;
-    blocks.block = 4;
-    EXPECT_EQ(code(two_point, blocks), "mixed-block method.block");
+    blocks.window = 4;
+    EXPECT_EQ(code(two_point, blocks), "mixed-block method.window");
     EXPECT_EQ(code({state}, mixed({bspline, 9, natural, equal})), "degree-out-of-range method.degree");
     Mixed spline = mixed({bspline, 5, natural, equal});
-    spline.block = 4;
+    spline.window = 4;
     EXPECT_EQ(code({state}, spline), "spline-degree method.degree");
-    spline.block = 0;
+    spline.window = 0;
     spline.knots = {0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1};
     EXPECT_EQ(code({state}, spline), "spline-degree method.degree");
 }

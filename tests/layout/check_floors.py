@@ -24,8 +24,8 @@ FLOORS = [
     ["io"],
     ["apps"],
 ]
-# solve() hands the classical methods to the witnesses; they know nothing of it.
-ARROWS = {("spacetime", "stepping")}
+# solve() hands the classical methods to the witnesses and its motion to the judge; they know nothing of it.
+ARROWS = {("spacetime", "stepping"), ("spacetime", "diagnostics")}
 
 FLOOR = {room: number for number, rooms in enumerate(FLOORS) for room in rooms}
 
@@ -254,7 +254,8 @@ GOOD = {
     "src/livens/stepping/rule.h": '#pragma once\n#include "livens/multibody/model.h"\n',
     "src/livens/spacetime/solve.h": '#pragma once\n#include "livens/multibody/model.h"\n',
     "src/livens/spacetime/solve.cpp": '#include "livens/spacetime/solve.h"\n'
-                                      '#include "livens/stepping/rule.h"\n',
+                                      '#include "livens/stepping/rule.h"\n'
+                                      '#include "livens/diagnostics/energy.h"\n',
     "src/livens/diagnostics/energy.h": '#pragma once\n// #include "livens/io/file.h" is only a remark\n',
     "src/livens/io/file.h": '#pragma once\n#include "livens/spacetime/solve.h"\n',
     "src/livens/io/file.cpp": '#include "livens/io/file.h"\n#include <toml++/toml.h>\n',
@@ -270,7 +271,8 @@ CONTROLS = [
     ("upward", {"src/livens/time/up.cpp": 'const char* s = "/*";\n#include "livens/io/file.h"\n'}),
     ("upward", {"tests/unit/time/up_test.cpp": '#include "livens/multibody/model.h"\n'}),
     ("sideways", {"src/livens/stepping/side.cpp": '#include "livens/spacetime/solve.h"\n'}),
-    ("sideways", {"src/livens/spacetime/side.cpp": '#include "livens/diagnostics/energy.h"\n'}),
+    ("sideways", {"src/livens/diagnostics/side.cpp": '#include "livens/spacetime/solve.h"\n'}),
+    ("sideways", {"src/livens/stepping/side.cpp": '#include "livens/diagnostics/energy.h"\n'}),
     ("sideways", {"src/livens/time/side.cpp": '#include "livens/solvers/newton.h"\n'}),
     ("circle", {"src/livens/time/a.h": '#pragma once\n#include "livens/time/b.h"\n',
                 "src/livens/time/b.h": '#pragma once\n#include "livens/time/a.h"\n'}),

@@ -29,10 +29,19 @@ livens_mutant(NAME torque_half
 # The mixed term of d2 Phi/dt2 counted once instead of twice: wrong reactions, right motion.
 livens_mutant(NAME curvature_mixed_term
               FILE multibody/constraint.cpp
-              OLD [[2 * dot(V_i * row.c_ij, V_j)]]
-              NEW [[dot(V_i * row.c_ij, V_j)]]
+              OLD [[2 * dot(V_i * f.c_ij, V_j)]]
+              NEW [[dot(V_i * f.c_ij, V_j)]]
               TESTS_OF unit_multibody
               MUST_FAIL ConstraintRow.GradientAndCurvatureAreThoseOfAQuadraticForm)
+
+# Drives forgotten in the velocity at element ends: all order is gone.
+livens_mutant(NAME velocity_without_drives
+              FILE multibody/instant.cpp
+              OLD [[-tables_.rate(basis.rows[c], {state.t}, state.X.data())]]
+              NEW [[-0 * tables_.rate(basis.rows[c], {state.t}, state.X.data())]]
+              TESTS_OF convergence
+              MUST_FAIL Drives.APendulumOnADrivenPivotHasOrder2p
+                        Drives.ARodOfDrivenLengthHasOrder2p)
 
 # The last weight off by one part in a thousand: the order is gone.
 livens_mutant(NAME one_weight
@@ -47,7 +56,7 @@ livens_mutant(NAME one_weight
 # One wrong sign in d_i x r_i.
 livens_mutant(NAME sign_of_a_moment
               FILE multibody/twist.h
-              RECOMPILE multibody/tables.cpp spacetime/lobatto/tangent.cpp
+              RECOMPILE multibody/tables_in_twists.cpp spacetime/lobatto/tangent.cpp
               OLD [[m[1] += X[a + 2] * r[a] - X[a] * r[a + 2];]]
               NEW [[m[1] += X[a + 2] * r[a] + X[a] * r[a + 2];]]
               TESTS_OF convergence
@@ -57,31 +66,56 @@ livens_mutant(NAME sign_of_a_moment
 # The turning of the rows left out of the tangent: the answer stays, convergence is linear.
 livens_mutant(NAME missing_geometric_term
               FILE spacetime/lobatto/tangent.cpp
-              OLD [[twist::add_geometric(X(A) + 12 * b, total + 12 * b, blocks_.data() + 36 * b, 6);]]
+              OLD [[twist::add_geometric(nodes.X(A) + 12 * b, total_.data() + 12 * b, blocks_.data() + 36 * b, 6);]]
               NEW [[(void)b;]]
               TESTS_OF convergence
               MUST_FAIL Newton.NeedsThreeIterationsAnElementOnTheAverage
                         Newton.FactorisesOnceAnElementWhereErrorsAreSmall)
 livens_mutant(NAME missing_geometric_term_by_differences
               FILE spacetime/lobatto/tangent.cpp
-              OLD [[twist::add_geometric(X(A) + 12 * b, total + 12 * b, blocks_.data() + 36 * b, 6);]]
+              OLD [[twist::add_geometric(nodes.X(A) + 12 * b, total_.data() + 12 * b, blocks_.data() + 36 * b, 6);]]
               NEW [[(void)b;]]
               TESTS_OF unit_spacetime
               MUST_FAIL Lobatto/TangentOf.MatchesDifferencesWithEveryKindOfTerm/*)
 
 # Loads taken where the element starts, their moments where it has come to: a spring that turns what it holds.
 livens_mutant(NAME loads_at_the_start
-              FILE spacetime/lobatto/element.cpp
-              OLD [[Side::middle}, X_c_.data(), V_c_.data(),
-                             h_]]
-              NEW [[Side::middle}, X0_.data(), V_c_.data(),
-                             h_]]
+              FILE spacetime/lobatto/rows.cpp
+              OLD [[tables_.add_loads({stretch.times[e] + rule_.loads.points[c] * h, Side::middle}, X_.data(), V_.data(),]]
+              NEW [[tables_.add_loads({stretch.times[e] + rule_.loads.points[c] * h, Side::middle}, nodes.X(e * rule_.degree), V_.data(),]]
               TESTS_OF conservation
               MUST_FAIL Lobatto.BalancesAngularMomentumOverTenSeconds Lobatto.KeepsMomentaOfAFloatingChain)
 
+# Loads at as many Gauss-Lobatto points: springs are no Gauss collocation then, and stable no longer.
+livens_mutant(NAME loads_at_lobatto_points
+              FILE spacetime/lobatto/rule.cpp
+              OLD [[gauss(degree), {}, {}]]
+              NEW [[degree > 1 ? gauss_lobatto(degree) : gauss(1), {}, {}]]
+              TESTS_OF properties
+              MUST_FAIL IntegratorKit.EveryMethodIsStableAsStated
+                        IntegratorKit.EveryMethodIsStableInTurnsAsStated
+                        IntegratorKit.TheLibrarysElementIsThatByHand)
+
+# What a load does at a Gauss point given to one node, instead of shared out: impulses are right, moments not.
+livens_mutant(NAME loads_given_to_one_node
+              FILE spacetime/lobatto/rows.cpp
+              OLD [[const double m = rule_.M[c * n_nodes + A];]]
+              NEW [[const double m = A == c ? 1 : 0;]]
+              TESTS_OF properties
+              MUST_FAIL IntegratorKit.EveryMethodKeepsWhatIsStated IntegratorKit.EveryMethodHasItsOrder)
+
+# The instant of a node for what is taken at a Gauss point: right for constant loads only.
+livens_mutant(NAME loads_at_the_instants_of_nodes
+              FILE spacetime/lobatto/rows.cpp
+              OLD [[rule_.loads.points[c] * h, Side::middle},]]
+              NEW [[rule_.nodes[c] * h, Side::middle},]]
+              TESTS_OF convergence
+              MUST_FAIL LobattoLoads.HaveOrder2PWithTorquesThatVaryInTime
+                        LobattoLoads.HaveOrder2PWithAllOfThemOnTwoBodies)
+
 # Phi from the gradient at the node alone, not from the mean of both ends: right for linear rows only.
 livens_mutant(NAME constraint_without_mean_gradient
-              FILE spacetime/lobatto/element.cpp
+              FILE spacetime/lobatto/nodes.cpp
               OLD [[phi += (g0[12 * side + i] + g[12 * side + i]) * d[i];]]
               NEW [[phi += 2 * g[12 * side + i] * d[i];]]
               TESTS_OF conservation
@@ -125,9 +159,9 @@ livens_mutant(NAME mixed_wrong_tie
 
 # A block that begins with the momentum the last one began with.
 livens_mutant(NAME mixed_momentum_not_handed_on
-              FILE spacetime/mixed/solve_mixed.cpp
-              OLD [[P = equations.end_momentum(fields, !backwards);]]
-              NEW [[P = equations.end_momentum(fields, backwards);]]
+              FILE spacetime/mixed/window.cpp
+              OLD [[end.P = block_->equations().end_momentum(block_->fields(), !backwards);]]
+              NEW [[end.P = block_->equations().end_momentum(block_->fields(), backwards);]]
               TESTS_OF conservation
               MUST_FAIL MixedMomentum.BalancesOverBlocksByTheDiagnosticsOfAnyMotion
                         MixedConditions.AtTheEndLeadBackToTheStart)

@@ -30,7 +30,7 @@ Mechanism closed_mechanism(const JointCase& joint, Random& random, bool on_world
 
 double value(const ConstraintRow& row, const Mechanism& m)
 {
-    return constraint_value(row, m.place(row.body_i), m.place(row.body_j));
+    return constraint_value(row, kit_instant, m.place(row.body_i), m.place(row.body_j));
 }
 
 double norm_of_rows(const Joint& joint, const Mechanism& m)
@@ -45,7 +45,7 @@ std::vector<double> twist_row(const ConstraintRow& row, const Mechanism& m)
 {
     std::vector<double> result(6 * m.X.size());
     Matrix34 g[2]{};
-    constraint_gradient(row, m.place(row.body_i), m.place(row.body_j), g[0], g[1]);
+    constraint_gradient(row, kit_instant, m.place(row.body_i), m.place(row.body_j), g[0], g[1]);
     const int bodies[2] = {row.body_i, row.body_j};
     for (int side = 0; side < 2; ++side) {
         if (bodies[side] == world) continue;
@@ -161,18 +161,50 @@ Failures check_joint_gradient(const JointCase& joint)
         for (const ConstraintRow& row : m.joint.rows) {
             const Matrix34 X = random.matrix<3, 4>(), Y = random.matrix<3, 4>();
             const Matrix34 U = random.matrix<3, 4>(), V = random.matrix<3, 4>();
-            const double ahead = constraint_value(row, X + U, Y + V),
-                         behind = constraint_value(row, X - U, Y - V);
-            const double here = constraint_value(row, X, Y);
+            const double ahead = constraint_value(row, kit_instant, X + U, Y + V),
+                         behind = constraint_value(row, kit_instant, X - U, Y - V);
+            const double here = constraint_value(row, kit_instant, X, Y);
             Matrix34 g_i{}, g_j{};
-            constraint_gradient(row, X, Y, g_i, g_j);
+            constraint_gradient(row, kit_instant, X, Y, g_i, g_j);
             // Quadratic forms: differences are exact for any step, and the second one does not depend on X.
             const double first = dot(g_i, U) + dot(g_j, V) - 0.5 * (ahead - behind);
-            const double second = constraint_curvature(row, U, V) - (ahead - 2 * here + behind);
+            const double second =
+                constraint_curvature(frozen(row, kit_instant), U, V) - (ahead - 2 * here + behind);
             if (!(std::abs(first) < 1e-12))
                 failures.push_back("gradient of '" + row.label + "' off by " + number(first));
             if (!(std::abs(second) < 1e-12))
                 failures.push_back("Hessian of '" + row.label + "' off by " + number(second));
+        }
+    }
+    return failures;
+}
+
+Failures check_joint_rates(const JointCase& joint)
+{
+    constexpr double h = 0.01;
+    Random random(8);
+    Failures failures;
+    for (int n = 0; n < repetitions; ++n) {
+        const Mechanism m = closed_mechanism(joint, random, n % 2);
+        for (const ConstraintRow& row : m.joint.rows) {
+            const std::array<Matrix34, 2> X{random.matrix<3, 4>(), random.matrix<3, 4>()};
+            const std::array<Matrix34, 2> V{random.matrix<3, 4>(), random.matrix<3, 4>()};
+            const auto at = [&](double s) {
+                return constraint_value(row, {kit_instant.t + s}, X[0] + s * V[0], X[1] + s * V[1]);
+            };
+            const auto odd = [&](int k) { return at(k * h) - at(-k * h); };
+            const auto even = [&](int k) { return at(k * h) + at(-k * h); };
+            Matrix34 g_i{}, g_j{};
+            constraint_gradient(row, kit_instant, X[0], X[1], g_i, g_j);
+            const double rate =
+                constraint_rate(row, kit_instant, X[0], X[1]) + dot(g_i, V[0]) + dot(g_j, V[1]);
+            const double first = (45 * odd(1) - 9 * odd(2) + odd(3)) / (60 * h) - rate;
+            const double second = (270 * even(1) - 27 * even(2) + 2 * even(3) - 490 * at(0)) / (180 * h * h) -
+                                  constraint_curvature(row, kit_instant, X, V);
+            if (!(std::abs(first) < 1e-9))
+                failures.push_back("rate of '" + row.label + "' off by " + number(first));
+            if (!(std::abs(second) < 1e-8))
+                failures.push_back("second rate of '" + row.label + "' off by " + number(second));
         }
     }
     return failures;
@@ -222,9 +254,10 @@ Failures check_joint_world(const JointCase& joint)
         for (std::size_t r = 0; r < floating.rows.size(); ++r) {
             const ConstraintRow &a = fixed.joint.rows[r], &b = floating.rows[r];
             Matrix34 ga{}, gb{}, other{};
-            constraint_gradient(a, junk, X, other, ga);
-            constraint_gradient(b, world_configuration, X, other, gb);
-            const double gap = constraint_value(a, junk, X) - constraint_value(b, world_configuration, X);
+            constraint_gradient(a, kit_instant, junk, X, other, ga);
+            constraint_gradient(b, kit_instant, world_configuration, X, other, gb);
+            const double gap = constraint_value(a, kit_instant, junk, X) -
+                               constraint_value(b, kit_instant, world_configuration, X);
             if (a.body_i != world || a.body_j != 0)
                 failures.push_back("row '" + a.label + "' is not on the body");
             if (!(std::abs(gap) < 1e-13) || !(largest(ga - gb) < 1e-13))
@@ -262,8 +295,8 @@ Failures check_joint_order(const JointCase& joint)
 Failures check_joint(const JointCase& joint)
 {
     Failures all;
-    for (const auto check : {check_joint_labels, check_joint_closure, check_joint_gradient, check_joint_rank,
-                             check_joint_objectivity, check_joint_world, check_joint_order})
+    for (const auto check : {check_joint_labels, check_joint_closure, check_joint_gradient, check_joint_rates,
+                             check_joint_rank, check_joint_objectivity, check_joint_world, check_joint_order})
         for (const std::string& failure : check(joint)) all.push_back(joint.type + ": " + failure);
     return all;
 }

@@ -10,6 +10,9 @@
 
 namespace livens {
 
+/// When joints that depend on time are looked at, and are closed.
+inline constexpr Instant kit_instant{0.3};
+
 /// A kind of joint: where it may sit in a configuration of its bodies, and how it is made there.
 struct JointCase {
     std::string type;   ///< Joint::type, and the name of its file in src/livens/multibody/joints
@@ -31,6 +34,7 @@ Failures check_joint_labels(const JointCase& joint);    ///< n_rows, labels uniq
 Failures check_joint_closure(const JointCase& joint);   ///< zero at assembly, body or world first
 Failures check_joint_gradient(
     const JointCase& joint);                         ///< gradient and curvature equal differences at any X
+Failures check_joint_rates(const JointCase& joint);   ///< explicit rates equal differences in time
 Failures check_joint_rank(const JointCase& joint);   ///< twist Jacobian has full row rank when closed
 Failures check_joint_objectivity(
     const JointCase& joint);                          ///< |Phi| does not see a motion of both bodies together

@@ -71,15 +71,15 @@ State state_of(const Model& model, const json& X, const json& P)
     return state;
 }
 
-Boundary boundary_of(const Model& model, const json& record)
+Conditions boundary_of(const Model& model, const json& record)
 {
     const json& exact = witness()["exact"][record["case"].get<std::string>()];
-    Boundary boundary{state_of(model, exact["X0"], exact["P0"]), Given::nothing,
-                      state_of(model, exact["XT"], exact["PT"]), Given::nothing};
+    Conditions boundary{state_of(model, exact["X0"], exact["P0"]), Known::nothing,
+                      state_of(model, exact["XT"], exact["PT"]), Known::nothing};
     for (const std::string what : record["given"]) {
-        Given& given = what.back() == '0' ? boundary.at_start : boundary.at_end;
-        const Given half = what.front() == 'X' ? Given::positions : Given::momenta;
-        given = given == Given::nothing ? half : Given::state;
+        Known& given = what.back() == '0' ? boundary.at_start : boundary.at_end;
+        const Known half = what.front() == 'X' ? Known::positions : Known::momenta;
+        given = given == Known::nothing ? half : Known::state;
     }
     return boundary;
 }
@@ -104,7 +104,8 @@ TEST(MixedWitness, FindsTheSameEndStates)
         const Mixed method = method_of(record);
         SolveOptions options;
         options.tolerance = 1e-13;
-        const Solution solution = solve(model, boundary_of(model, record), mesh, method, options);
+        options.judge = false;   // two elements are enough to compare numbers, and too few for a motion
+        const Solution solution = solve(model, {boundary_of(model, record)}, mesh, method, options);
         const std::string name =
             record["case"].get<std::string>() + " " + name_of(method) + " " + record["given"].dump();
         ASSERT_TRUE(solution.report.converged()) << name << ": " << solution.report.message;

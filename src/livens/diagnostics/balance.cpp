@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "livens/diagnostics/detail/forces.h"
@@ -12,24 +13,29 @@
 namespace livens {
 namespace {
 
-/// Below this fraction of the reference a motion counts as rest, whose energy and momentum are rounding.
-constexpr double rest = 1e-9;
+/// Of the references: sums of few terms are off by a few units in the last place.
+constexpr double rounding = 16 * std::numeric_limits<double>::epsilon();
 
 /// What flows into a mechanism: rates at an instant, or their integrals.
 struct Supply {
-    double work = 0;   // of loads without potential
+    double work = 0;   // of loads without potential, and of drives
     Vector3 linear{};
     Vector3 angular{};         // about the world's origin
-    double gross_moment = 0;   // sum of |x_c| |F_c|, what rounding in `angular` is relative to
+    double gross = 0;          // sum of |F|, what rounding in `linear` is relative to
+    double gross_moment = 0;   // sum of |F| (|x| + length), likewise in `angular` and in energies
 
-    void add_force(const Matrix34& X, const Matrix34& F)
+    void add_force(const Matrix34& X, const Matrix34& F, double length)
     {
         linear += F.column(0);
-        for (int c = 0; c < 4; ++c) {
-            const Vector3 x = X.column(c), f = F.column(c);
-            angular += cross(x, f);
-            gross_moment += norm(x) * norm(f);
-        }
+        for (int c = 0; c < 4; ++c) angular += cross(X.column(c), F.column(c));
+        add_size(X, F, length);
+    }
+
+    void add_size(const Matrix34& X, const Matrix34& F, double length)
+    {
+        gross += norm(F.column(0));
+        gross_moment += norm(F.column(0)) * length;
+        for (int c = 0; c < 4; ++c) gross_moment += norm(X.column(c)) * norm(F.column(c));
     }
 
     void add(double weight, const Supply& other)
@@ -37,6 +43,7 @@ struct Supply {
         work += weight * other.work;
         linear += weight * other.linear;
         angular += weight * other.angular;
+        gross += weight * other.gross;
         gross_moment += weight * other.gross_moment;
     }
 };
@@ -74,30 +81,62 @@ public:
             Supply now;
             loads_.positions(element, k, X_);
             loads_.velocities(element, k, V_);
-            for (std::size_t b = 0; b < X_.size(); ++b) now.add_force(X_[b], weights_of_bodies_[b]);
+            for (std::size_t b = 0; b < X_.size(); ++b) now.add_force(X_[b], weights_of_bodies_[b], length_);
             add_loads(loads_.instant(element, k), now);
             sum.add(h * load_weights_[k], now);
+            raise_to(largest_gross_moment_, now.gross_moment);
         }
         for (int k = 0; multipliers_ && k < joints_.size(); ++k) {
             Supply now;
             joints_.positions(element, k, X_);
             add_joints(element, k, now);
             sum.add(h * joint_weights_[k], now);
+            raise_to(largest_gross_moment_, now.gross_moment);
         }
+        sum.add(h, stiffness(element, h));
         return sum;
     }
+    /// Of all instants so far.
+    double largest_gross_moment() const { return largest_gross_moment_; }
 
 private:
     SupplyIntegral(const Model& model, const Motion& motion, Quadrature loads, Quadrature joints)
         : model_(model), load_weights_(loads.weights), joint_weights_(joints.weights),
           loads_(motion, loads.points), joints_(motion, joints.points), motion_(motion),
-          X_(static_cast<std::size_t>(motion.n_bodies)), V_(X_.size())
+          length_(model.length()), X_(static_cast<std::size_t>(motion.n_bodies)), V_(X_.size())
     {
         if (!motion.multipliers.empty()) {
             multipliers_.emplace(motion.multipliers, joints_.points());
             lambda_.resize(static_cast<std::size_t>(motion.n_rows));
         }
         for (const Body& body : model.bodies()) weights_of_bodies_.push_back(weight(body, model.gravity()));
+    }
+
+    /// What loads make of positions off by their size, and of velocities off by that in h: as rounding is
+    /// relative to the size, stiff loads amplify it. At one point of the element.
+    Supply stiffness(int element, double h)
+    {
+        Supply all;
+        loads_.positions(element, 0, X_);
+        loads_.velocities(element, 0, V_);
+        for (const Load& load : model_.loads()) {
+            if (!load.depends_on_X && !load.depends_on_V) continue;
+            const LoadArguments arguments = load_arguments(load, loads_.instant(element, 0), X_, V_);
+            LoadTangent tangent{};
+            load.tangent(arguments, tangent);
+            for (int b = 0; b < 2; ++b) {
+                Matrix34 dF{};
+                for (int c = 0; c < 2; ++c)
+                    for (int j = 0; j < 12; ++j) {
+                        const double size = norm(arguments.X[c].column(j / 3)) + (j < 3 ? length_ : 0);
+                        for (int i = 0; i < 12; ++i)
+                            dF.a[i] += size * (std::abs(tangent.X[b][c](i, j)) +
+                                               std::abs(tangent.V[b][c](i, j)) / h);
+                    }
+                if (load.bodies[b] != world) all.add_size(arguments.X[b], dF, length_);
+            }
+        }
+        return all;
     }
 
     void add_loads(Instant at, Supply& now) const
@@ -107,22 +146,25 @@ private:
             LoadForces F{};
             load.forces(arguments, F);
             for (int b = 0; b < 2; ++b) {
-                if (load.bodies[b] != world) now.add_force(arguments.X[b], F[b]);
+                if (load.bodies[b] != world) now.add_force(arguments.X[b], F[b], length_);
             }
             now.work += power_without_potential(load, arguments);
         }
     }
 
-    /// -G^T lambda on all bodies: between two bodies it adds up to nothing, so what stays is the world's.
+    /// -G^T lambda on all bodies: between two bodies it adds up to nothing, so what stays is the world's. Its
+    /// power is that of drives, -lambda G X' = lambda dPhi/dt at fixed X.
     void add_joints(int element, int k, Supply& now)
     {
         multipliers_->values(element, k, lambda_);
+        const Instant at = joints_.instant(element, k);
         for (int r = 0; r < model_.n_rows(); ++r) {
             if (lambda_[r] == 0) continue;
             const ConstraintRow& row = model_.row(r);
-            const RowGradient g = row_gradient(row, X_);
-            now.add_force(X_[row.body_j], -lambda_[r] * g.j);
-            if (row.body_i != world) now.add_force(X_[row.body_i], -lambda_[r] * g.i);
+            const RowGradient g = row_gradient(row, at, X_);
+            now.add_force(X_[row.body_j], -lambda_[r] * g.j, length_);
+            if (row.body_i != world) now.add_force(X_[row.body_i], -lambda_[r] * g.i, length_);
+            now.work += lambda_[r] * row_rate(row, at, X_);
         }
     }
 
@@ -130,6 +172,8 @@ private:
     std::vector<double> load_weights_, joint_weights_;
     ElementSampler loads_, joints_;
     const Motion& motion_;
+    double length_;
+    double largest_gross_moment_ = 0;
     std::optional<FieldTable> multipliers_;   // a field of its own degree, at the joints' points
     std::vector<Matrix34> X_, V_;
     std::vector<double> lambda_;
@@ -162,6 +206,9 @@ void append_state(const Model& model, const Motion& motion, int end, std::span<M
     balance.angular_momentum.push_back(angular_momentum(X, P));
     raise_to(balance.largest_kinetic, balance.kinetic.back());
     raise_to(balance.largest_moment, moment_of_momentum(X, P));
+    double momentum = 0;
+    for (const Matrix34& p : P) momentum += norm(p.column(0));
+    raise_to(balance.largest_momentum, momentum);
 }
 
 void append_supply(const Supply& total, Balance& balance)
@@ -177,34 +224,33 @@ void append_supply(const Supply& total, Balance& balance)
         norm(balance.angular_momentum[end] - balance.angular_momentum[0] - total.angular));
 }
 
-double reference_energy(const Model& model, const Balance& balance)
-{
-    double reference = 0;
-    for (const double v : balance.potential) raise_to(reference, std::abs(v));
-    for (const Body& body : model.bodies()) {
-        reference += norm(weight(body, model.gravity()).column(0)) * model.length();
-    }
-    return reference;
-}
-
-double relative(const std::vector<double>& drift, double largest, double reference)
+/// See Balance; `moving` is what is in motion, `level` what rounding is relative to.
+double relative(const std::vector<double>& drift, double moving, double level)
 {
     double worst = 0;
     for (const double d : drift) raise_to(worst, d);
-    const double scale = largest > rest * reference ? largest : reference;
-    return scale > 0 ? worst / scale : worst;
+    return worst <= rounding * level ? 0 : worst / std::max(moving, rounding * level);
 }
 
 }   // namespace
 
 double Balance::relative_energy_drift() const
 {
-    return relative(energy_drift, largest_kinetic, reference_energy);
+    double moving = largest_kinetic;
+    for (const double v : potential) raise_to(moving, std::abs(v - potential.front()));
+    return relative(energy_drift, moving, reference_energy);
+}
+
+double Balance::relative_linear_momentum_drift() const
+{
+    double moving = largest_momentum;
+    for (const Vector3& impulse : linear_impulse) raise_to(moving, norm(impulse));
+    return relative(linear_momentum_drift, moving, reference_impulse + moving);
 }
 
 double Balance::relative_angular_momentum_drift() const
 {
-    return relative(angular_momentum_drift, largest_moment, reference_moment);
+    return relative(angular_momentum_drift, largest_moment, reference_moment + largest_moment);
 }
 
 Balance balance(const Model& model, const Motion& motion)
@@ -223,7 +269,9 @@ Balance balance(const Model& model, const Motion& motion)
         total.add(1, supply.over(e));
         append_supply(total, result);
     }
-    result.reference_energy = reference_energy(model, result);
+    for (const double v : result.potential) raise_to(result.reference_energy, std::abs(v));
+    result.reference_energy += supply.largest_gross_moment();
+    result.reference_impulse = total.gross;
     result.reference_moment = total.gross_moment;
     return result;
 }

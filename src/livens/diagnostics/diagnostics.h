@@ -12,19 +12,19 @@ namespace livens {
 /// Energies (J), momenta (N s, N m s about the world's origin) and their balances at the element ends.
 ///
 /// Balances are what is left when the supply since the start is taken off: energy less the work of loads
-/// without potential; momentum less the impulse of gravity, loads and of joints to the world. Supplies are
-/// integrated with the quadrature of the method: its Gauss points, or the Gauss-Lobatto rule of the motion's
-/// own nodes, which makes momentum balances exact: lobatto's at all element ends, those of the elements
-/// `mixed` with a natural start at the ends of blocks. A motion without Gauss points, with X of degree 1 and
-/// one multiplier an element was stepped: midpoint's supplies are taken in the middle (momentum balances
-/// exact), those of a method of order 1 at the end of the element (linear momentum exact). Rows without
-/// multipliers leave the joints' impulse in the drift.
+/// without potential and of drives; momentum less the impulse of gravity, loads and of joints to the world.
+/// Supplies are integrated with the quadrature of the method: its Gauss points, or the Gauss-Lobatto rule of
+/// the motion's own nodes, which makes momentum balances exact: lobatto's at all element ends, those of the
+/// elements `mixed` with a natural start at the ends of blocks. A motion without Gauss points, with X of
+/// degree 1 and one multiplier an element was stepped: midpoint's supplies are taken in the middle (momentum
+/// balances exact), those of a method of order 1 at the end of the element (linear momentum exact). Rows
+/// without multipliers leave the joints' impulse in the drift.
 struct Balance {
     std::vector<double> t;
     std::vector<double> kinetic;
     std::vector<double> potential;
     std::vector<double> energy;
-    std::vector<double> work;   ///< of loads without potential, since the start
+    std::vector<double> work;   ///< of loads without potential and of drives, since the start
     std::vector<Vector3> linear_momentum;
     std::vector<Vector3> angular_momentum;
     std::vector<Vector3> linear_impulse;   ///< supplied since the start
@@ -32,16 +32,25 @@ struct Balance {
     std::vector<double> energy_drift;   ///< |energy - start - work|
     std::vector<double> linear_momentum_drift;
     std::vector<double> angular_momentum_drift;
-    double largest_kinetic = 0;    ///< over the ends
-    double largest_moment = 0;     ///< largest sum over bodies and columns of |x| |P|
-    double reference_energy = 0;   ///< J: all weights times the model's length, plus the largest |potential|
-    double reference_moment = 0;   ///< N m s: integral of the sum over all forces and columns of |x| |F|
+    double largest_kinetic = 0;      ///< over the ends
+    double largest_momentum = 0;     ///< over the ends, of the sum of the bodies' |p|
+    double largest_moment = 0;       ///< largest sum over bodies and columns of |x| |P|
+    double reference_energy = 0;     ///< J: largest sum of |F| (|x| + L), plus the largest |potential|
+    double reference_impulse = 0;    ///< N s: integral of the sum of |F| + |dF/dX| (|x| + L)
+    double reference_moment = 0;     ///< N m s: integral of the sum of these times |x| + L
 
-    /// Largest drift relative to the largest kinetic energy; to the reference energy if nothing moves, that
-    /// is largest_kinetic <= 1e-9 reference_energy (what is left is rounding of the reference).
+    // Each is the largest drift over the larger of what is in motion and of the rounding level, and 0 below
+    // that level, 16 times the spacing of numbers at the references above: over all forces (weights, loads,
+    // joints) and columns, with L the model's length, as constraints place bodies to the rounding of it and
+    // stiff loads turn that into forces (their dF/dX' counts by 1 / h). So
+    // a mechanism at rest has none, whose motion and drift are rounding both, and a slow one is not measured
+    // by what it could be (a rod of 3e9 m is a slide as well).
+
+    /// Relative to the largest kinetic energy or change of potential energy since the start.
     double relative_energy_drift() const;
-    /// Largest drift relative to largest_moment; to reference_moment if largest_moment <= 1e-9
-    /// reference_moment.
+    /// Relative to largest_momentum or the largest impulse.
+    double relative_linear_momentum_drift() const;
+    /// Relative to largest_moment.
     double relative_angular_momentum_drift() const;
 };
 Balance balance(const Model& model, const Motion& motion);
@@ -76,9 +85,10 @@ ActionSeries action(const Model& model, const Motion& motion);
 /// the velocity about its share: an alternating error of X of order h^2 shows with order h and means little,
 /// a motion of which as much alternates as does not has 0.7. Centres of mass and spins about them are judged
 /// apart, so that a fast flight does not hide a trembling body (spins relative to at least 1e-3 of all
-/// speed). Velocities that an error of X by 1e-11 of its size would make count as none, and motions of less
-/// than six steps as smooth. Steps lie inside elements and are divided by their lengths, so neither jumps of
-/// X between blocks nor uneven elements alternate; kinks of the velocity are steps of g, which have little.
+/// speed). Velocities that an error of X by 1e-11 of its size, or by 1e-13 of the model's length, would make
+/// count as none, and motions of less than six steps as smooth. Steps lie inside elements and are divided by
+/// their lengths, so neither jumps of X between blocks nor uneven elements alternate; kinks of the velocity
+/// are steps of g, which have little.
 ///
 /// The same for the momentum, g being its field at P.degree equal steps an element. Without such a field it
 /// is the velocities at element ends for X of degree 1, and else the value of X again.
@@ -89,6 +99,18 @@ struct Zigzag {
 };
 /// A motion that is not a number has values that are not. Throws InputError for a window below 6.
 Zigzag zigzag(const Model& model, const Motion& motion, int window = 16);
+
+/// How far the polynomial of an element is from the velocity that its momentum has at its end: the largest
+///
+///     h |V_end - X_h'(end)|      of the centre of mass by the model's length, of directors by sqrt(2)
+///
+/// over bodies and elements. It is of order h^(degree + 1) for elements that resolve the motion, and of the
+/// size of the motion inside an element for those that do not, however well their balances close.
+struct VelocityJump {
+    double largest = 0;
+    double time = 0;   ///< end of the worst element, s
+};
+VelocityJump velocity_jump(const Model& model, const Motion& motion);
 
 /// Largest violations of joint rows, each divided by its scale, and of rigidity |1/2 (d_a . d_b - delta_ab)|,
 /// which point masses do not have. A motion that is not a number has violations that are not. Where X jumps
@@ -105,9 +127,11 @@ struct ViolationReport {
     double velocity_level = 0;   ///< |dPhi/dt| / scale at element ends, 1/s
     int worst_row = -1;          ///< of the model, at nodes; -1: no row is violated at all
     double worst_time = 0;       ///< of that row
+    std::vector<double> joints;     ///< the largest at each node, in the order of X's coefficients
+    std::vector<double> rigidity;   ///< likewise
 };
-/// Throws InputError for a negative number of samples.
-ViolationReport violations(const Model& model, const Motion& motion, int samples = 3);
+/// Without `means` nothing is integrated. Throws InputError for a negative number of samples.
+ViolationReport violations(const Model& model, const Motion& motion, int samples = 3, bool means = true);
 
 /// The six rigidity multipliers of a body (11, 22, 33, 12, 13, 23) from X'', forces and joint multipliers at
 /// an instant: lambda_ab = (F - G^T lambda - X'' m)_a . d_b, N m; tension is positive. Zero for a point mass.

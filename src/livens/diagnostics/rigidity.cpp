@@ -26,7 +26,7 @@ std::vector<double> rigidity_multipliers(const Model& model, int body, Instant a
     for (int r = 0; r < model.n_rows(); ++r) {
         const ConstraintRow& row = model.row(r);
         if (row.body_i != body && row.body_j != body) continue;
-        const RowGradient g = row_gradient(row, X);
+        const RowGradient g = row_gradient(row, at, X);
         rest -= multipliers[r] * (row.body_j == body ? g.j : g.i);
     }
     const Matrix3 along = transpose(directors(rest)) * directors(X[body]);   // (a, b): column a along d_b

@@ -9,16 +9,17 @@
 #include "livens/diagnostics/detail/largest.h"
 #include "livens/diagnostics/detail/sampler.h"
 #include "livens/diagnostics/diagnostics.h"
+#include "livens/diagnostics/sample.h"
 #include "livens/time/quadrature.h"
 
 namespace livens {
 namespace {
 
 /// Phi / scale.
-double joint_violation(const ConstraintRow& row, std::span<const Matrix34> X)
+double joint_violation(const ConstraintRow& row, double t, std::span<const Matrix34> X)
 {
     const Matrix34& X_i = row.body_i == world ? world_configuration : X[row.body_i];
-    return constraint_value(row, X_i, X[row.body_j]) / row.scale;
+    return constraint_value(row, {t}, X_i, X[row.body_j]) / row.scale;
 }
 
 /// The six 1/2 (d_a . d_b - delta_ab) of a body (P4).
@@ -46,29 +47,43 @@ double rigidity_violation(const Model& model, std::span<const Matrix34> X)
 }
 
 /// |dPhi/dt| / scale.
-double velocity_violation(const ConstraintRow& row, std::span<const Matrix34> X, std::span<const Matrix34> V)
+double velocity_violation(const ConstraintRow& row, double t, std::span<const Matrix34> X,
+                          std::span<const Matrix34> V)
 {
-    const RowGradient g = row_gradient(row, X);
-    double rate = dot(g.j, V[row.body_j]);
+    const RowGradient g = row_gradient(row, {t}, X);
+    double rate = dot(g.j, V[row.body_j]) + row_rate(row, {t}, X);
     if (row.body_i != world) rate += dot(g.i, V[row.body_i]);
     return std::abs(rate) / row.scale;
 }
 
-void at_node(const Model& model, double t, std::span<const Matrix34> X, ViolationReport& report)
+/// Largest |Phi| / scale of all rows.
+double worst_joint(const Model& model, double t, std::span<const Matrix34> X, int& row)
 {
-    for (int r = 0; r < model.n_rows(); ++r) {
-        if (!raise_to(report.joints_at_nodes, std::abs(joint_violation(model.row(r), X)))) continue;
-        report.worst_row = r;
-        report.worst_time = t;
-    }
-    raise_to(report.rigidity_at_nodes, rigidity_violation(model, X));
+    double largest = 0;
+    for (int r = 0; r < model.n_rows(); ++r)
+        if (raise_to(largest, std::abs(joint_violation(model.row(r), t, X)))) row = r;
+    return largest;
 }
 
-void between_nodes(const Model& model, std::span<const Matrix34> X, ViolationReport& report)
+void at_nodes(const Model& model, const Motion& motion, std::span<Matrix34> X, ViolationReport& report)
 {
-    for (int r = 0; r < model.n_rows(); ++r)
-        raise_to(report.joints_between, std::abs(joint_violation(model.row(r), X)));
-    raise_to(report.rigidity_between, rigidity_violation(model, X));
+    std::size_t worst_node = 0;
+    const std::vector<double> times = node_times(motion.X, motion.mesh);
+    for (auto x = motion.X.values.begin(); x != motion.X.values.end();) {
+        for (Matrix34& body : X) {
+            std::copy_n(x, 12, body.data());
+            x += 12;
+        }
+        int row = -1;
+        const std::size_t node = report.joints.size();
+        report.joints.push_back(worst_joint(model, times[node], X, row));
+        report.rigidity.push_back(rigidity_violation(model, X));
+        raise_to(report.rigidity_at_nodes, report.rigidity.back());
+        if (!raise_to(report.joints_at_nodes, report.joints.back())) continue;
+        report.worst_row = row;
+        worst_node = node;
+    }
+    if (report.worst_row >= 0) report.worst_time = times[worst_node];
 }
 
 std::vector<double> points_between(const std::vector<double>& nodes, int samples)
@@ -82,36 +97,27 @@ std::vector<double> points_between(const std::vector<double>& nodes, int samples
     return points;
 }
 
-void at_element_ends(const Model& model, const Motion& motion, std::span<Matrix34> X, ViolationReport& report)
+void at_velocity_level(const Model& model, const Motion& motion, std::span<Matrix34> X,
+                       ViolationReport& report)
 {
     for (int end = 0; end <= motion.n_elements(); ++end) {
-        if (end > 0 && !motion.X.continuous) {   // blocks may have been put together with a jump
-            positions_before_end(motion, end, X);
-            at_node(model, motion.mesh.ends[end], X, report);
-        }
         positions_at_end(motion, end, X);
-        at_node(model, motion.mesh.ends[end], X, report);
         const std::span<const Matrix34> V = velocities_at_end(motion, end);
-        for (int r = 0; r < model.n_rows(); ++r) {
-            raise_to(report.velocity_level, velocity_violation(model.row(r), X, V));
-        }
+        for (int r = 0; r < model.n_rows(); ++r)
+            raise_to(report.velocity_level, velocity_violation(model.row(r), motion.mesh.ends[end], X, V));
     }
 }
 
-void inside_elements(const Model& model, const Motion& motion, int samples, std::span<Matrix34> X,
-                     ViolationReport& report)
+void between_nodes(const Model& model, const Motion& motion, int samples, std::span<Matrix34> X,
+                   ViolationReport& report)
 {
-    const std::vector<double> nodes = gauss_lobatto(motion.X.degree + 1).points;
-    const ElementSampler inner(motion, {nodes.begin() + 1, nodes.end() - 1});
-    const ElementSampler between(motion, points_between(nodes, samples));
+    const ElementSampler between(motion, points_between(gauss_lobatto(motion.X.degree + 1).points, samples));
     for (int e = 0; e < motion.n_elements(); ++e) {
-        for (int k = 0; k < inner.size(); ++k) {
-            inner.positions(e, k, X);
-            at_node(model, inner.instant(e, k).t, X, report);
-        }
         for (int k = 0; k < between.size(); ++k) {
             between.positions(e, k, X);
-            between_nodes(model, X, report);
+            int row = -1;
+            raise_to(report.joints_between, worst_joint(model, between.instant(e, k).t, X, row));
+            raise_to(report.rigidity_between, rigidity_violation(model, X));
         }
     }
 }
@@ -129,8 +135,9 @@ void as_integrals(const Model& model, const Motion& motion, std::span<Matrix34> 
         std::ranges::fill(rigidity, 0.0);
         for (int k = 0; k < sampler.size(); ++k) {
             sampler.positions(e, k, X);
+            const double t = sampler.instant(e, k).t;
             for (std::size_t r = 0; r < n_rows; ++r) {
-                joints[r] += rule.weights[k] * joint_violation(model.row(static_cast<int>(r)), X);
+                joints[r] += rule.weights[k] * joint_violation(model.row(static_cast<int>(r)), t, X);
             }
             for (std::size_t b = 0; b < X.size(); ++b) {
                 if (model.bodies()[b].is_point) continue;
@@ -145,7 +152,7 @@ void as_integrals(const Model& model, const Motion& motion, std::span<Matrix34> 
 
 }   // namespace
 
-ViolationReport violations(const Model& model, const Motion& motion, int samples)
+ViolationReport violations(const Model& model, const Motion& motion, int samples, bool means)
 {
     assert(model.n_bodies() == motion.n_bodies && model.n_rows() == motion.n_rows);
     if (samples < 0) {
@@ -155,9 +162,10 @@ ViolationReport violations(const Model& model, const Motion& motion, int samples
     ViolationReport report;
     if (motion.mesh.ends.empty()) return report;
     std::vector<Matrix34> X(static_cast<std::size_t>(motion.n_bodies));
-    at_element_ends(model, motion, X, report);
-    inside_elements(model, motion, samples, X, report);
-    as_integrals(model, motion, X, report);
+    at_nodes(model, motion, X, report);
+    at_velocity_level(model, motion, X, report);
+    if (samples > 0) between_nodes(model, motion, samples, X, report);
+    if (means) as_integrals(model, motion, X, report);
     return report;
 }
 

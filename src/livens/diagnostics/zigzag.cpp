@@ -15,6 +15,8 @@ namespace {
 
 /// Of positions, relative to their size: above what Newton's iteration and rounding leave.
 constexpr double noise_level = 1e-11;
+/// Relative to the model's length, which places bodies that are near the origin.
+constexpr double noise_of_lengths = 1e-13;
 /// A body's spin is judged by itself down to this fraction of the speed of all that moves.
 constexpr double smallest_part = 1e-3;
 /// With fewer samples a smooth oscillation may look like any other.
@@ -176,18 +178,23 @@ std::vector<double> equal_steps(int n)
     return points;
 }
 
-/// Largest |X| in the metric of the masses, at element ends; kg^(1/2) m.
-double largest_position(const Model& model, const Motion& motion)
+/// Noise of positions in the metric of the masses, from the largest at element ends; kg^(1/2) m.
+double position_noise(const Model& model, const Motion& motion)
 {
     std::vector<Matrix4> masses;
-    for (const Body& body : model.bodies()) masses.push_back(body.mass);
+    double mass = 0, largest = 0;
+    for (const Body& body : model.bodies()) {
+        masses.push_back(body.mass);
+        mass += body.mass(0, 0);
+    }
     Bodies X(masses.size());
-    double largest = 0;
     for (int end = 0; end <= motion.n_elements(); ++end) {
         positions_at_end(motion, end, X);
         raise_to(largest, std::sqrt(square(masses, X)));
     }
-    return largest;
+    double noise = noise_level * largest;
+    raise_to(noise, noise_of_lengths * model.length() * std::sqrt(mass));
+    return noise;
 }
 
 /// Mean velocities of steps inside elements, so that jumps of X between blocks do not enter.
@@ -259,7 +266,7 @@ Zigzag zigzag(const Model& model, const Motion& motion, int window)
                           std::to_string(window), ">= " + std::to_string(fewest_samples), "", ""});
     }
     if (motion.n_elements() < 1) return {};
-    const double noise = noise_level * largest_position(model, motion);
+    const double noise = position_noise(model, motion);
     const Worst positions = step_velocities(model, motion, noise).worst(window);
     const Worst momenta = worst_of_momenta(model, motion, noise, window, positions);
     const bool in_positions = !(positions.value < momenta.value) && !std::isnan(momenta.value);

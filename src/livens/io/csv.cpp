@@ -1,6 +1,6 @@
 #include "livens/io/json.h"
 #include "livens/io/results.h"
-#include "livens/io/sample.h"
+#include "livens/diagnostics/sample.h"
 
 namespace livens {
 
@@ -42,7 +42,7 @@ void add_cells(std::string& line, const Matrix<Rows, Cols>& values)
 {
     for (const double x : values.a) {
         line += ',';
-        if (x == x) line += shortest(x);   // nan: an empty cell, which every reader takes for "none"
+        if (x == x) line += to_text(x);   // nan: an empty cell, which every reader takes for "none"
     }
 }
 
@@ -51,9 +51,9 @@ void add_energies(std::string& line, const Model& model, const Run& run, double 
 {
     const int end = element_end_at(run.motion.mesh, t);
     double kinetic = 0, potential = 0;
-    if (end >= 0 && !run.balance.kinetic.empty() && !run.balance.potential.empty()) {
-        kinetic = run.balance.kinetic[end];
-        potential = run.balance.potential[end];
+    if (end >= 0 && !run.verdict.balance.kinetic.empty() && !run.verdict.balance.potential.empty()) {
+        kinetic = run.verdict.balance.kinetic[end];
+        potential = run.verdict.balance.potential[end];
     } else {
         const State state = sample_state(run.motion, t);
         kinetic = kinetic_energy(model, state.X, state.V);
@@ -72,14 +72,13 @@ void write_csv(const std::filesystem::path& file, const Model& model, const Run&
     for (const double asked : run.output) {
         if (asked < run.motion.start() || asked > run.motion.end()) continue;
         const double t = snap_to_element_end(run.motion.mesh, asked);
-        text += shortest(asked);
+        text += to_text(asked);
         const std::vector<BodySample> bodies = sample_bodies(model, run.motion, t);
         for (std::size_t b = 0; b < bodies.size(); ++b) {
             const BodySample& s = bodies[b];
-            const Vector4 q = dot(previous[b], s.quaternion) < 0 ? -1.0 * s.quaternion : s.quaternion;
-            previous[b] = q;
+            previous[b] = continued(previous[b], s.quaternion);
             add_cells(text, s.position);
-            add_cells(text, q);
+            add_cells(text, previous[b]);
             add_cells(text, s.velocity);
             add_cells(text, s.angular_velocity);
         }

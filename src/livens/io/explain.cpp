@@ -29,15 +29,15 @@ Nodes of a time basis must ascend. Scenario files cannot lead to it; calls of th
 A joint or load refers to a body by a name that no `[[body]]` has. Names are compared to the letter. The
 fixed world is called "world".)"},
     Page{"boundary-conditions", R"(
-Conditions at start and end must leave one motion: in all, positions and momenta are given once each. Either
-the state at the start, or the state at the end ("where did it come from"), or positions at both ends, or
-positions at one and momenta at the other. Momenta at both ends leave the place of everything that can
-move freely open. `given` in `[start]` and `[end]` says what is known; the default is the state at the start
-and nothing at the end, so that a condition at the end needs one less at the start. `[body.end]` without
-`[end]` would mean nothing and is refused as well.)"},
+Conditions at start and end must leave one motion: in all, two of positions and momenta at the start and at
+the end. The state at the start, or the state at the end ("where did it come from"), or one half at each end.
+Momenta at both ends leave the place of everything that can move freely open; then positions are needed at
+one end, and the elements mixed need them in any case. `given` in `[start]` and `[end]` says what is known;
+the default is the state at the start and nothing at the end, so that a condition at the end needs one less
+at the start. `[body.end]` without `[end]` would mean nothing and is refused as well.)"},
     Page{"boundary-method", R"(
-Only elements that are solved all at once can take conditions at the end of time: family `mixed` with
-`block = "all"`. The family `lobatto` and the classical rules march from the state at the start.)"},
+The classical rules march from the state at the start. Conditions at the end of time are for the families
+`lobatto` and `mixed`; with conditions at both ends all elements are one window.)"},
     Page{"degree", R"(There is no time basis of this degree.)"},
     Page{"degree-out-of-range", R"(
 Elements of the family lobatto have degree 1 to 16, those of the family mixed 1 to 8. A degree p of lobatto
@@ -48,6 +48,11 @@ reaches. Swap two of them or change the sign of one.)"},
     Page{"directors-not-orthonormal", R"(
 The three directors of a body must be perpendicular unit vectors within 1e-10. Give all sixteen digits, or
 a `quaternion` or `rotation_vector` instead.)"},
+    Page{"drive-jumps", R"(
+A joint cannot follow a drive that jumps, or whose rate does: bodies would need an infinite force. Let it
+begin and end smoothly. Calls of the library only.)"},
+    Page{"drives-method", R"(
+Only elements of the family lobatto follow drives, joints that depend on time. Calls of the library only.)"},
     Page{"duplicate-key", R"(
 A key may be given once in its table; TOML has no rule by which one of two values would win.)"},
     Page{"empty-file", R"(
@@ -147,7 +152,7 @@ The table lacks a key that has no default. The line shown is the table's header.
     Page{"mixed-block", R"(
 The number of elements that are solved at once is out of range. It is at least 1 (splines: at least the
 degree) and at most the number of elements; a knot vector or weights belong to the whole time and need
-`block = "all"`, as conditions at the end do.)"},
+`window = "all"`, as conditions at the end do.)"},
     Page{"mixed-pairing", R"(
 This choice of momentum, multipliers, basis and quadrature makes a system that has no solution, or more than
 one. Regular are: natural with equal or lower multipliers, strong with equal multipliers on Lagrange
@@ -255,6 +260,8 @@ Weights of NURBS must be positive and finite: otherwise the denominator could va
 A window of the zig-zag indicator holds a few samples at least. Calls of the library only.)"},
     Page{"window-order", R"(
 A load that acts `from` one instant `until` another needs the second to be later.)"},
+    Page{"window-out-of-range", R"(
+The number of elements that are solved together is at least one, or "all".)"},
     Page{"wrong-type", R"(
 The value is of another kind than its key takes: a text for a number, two numbers for three.)"},
 };

@@ -1,7 +1,6 @@
 #include "livens/io/json.h"
 
 #include <cassert>
-#include <charconv>
 #include <cmath>
 
 namespace livens {
@@ -52,14 +51,6 @@ int utf8_length(std::string_view text)
     if (first == 0xf0 && byte(1) < 0x90) return 0;    // overlong
     if (first == 0xf4 && byte(1) >= 0x90) return 0;   // beyond U+10FFFF
     return length;
-}
-
-std::string shortest(double number)
-{
-    char buffer[32];
-    const std::to_chars_result end = std::to_chars(buffer, buffer + sizeof buffer, number);
-    assert(end.ec == std::errc());
-    return {buffer, end.ptr};
 }
 
 void JsonWriter::new_line()
@@ -134,7 +125,7 @@ JsonWriter& JsonWriter::value(std::string_view text)
 
 JsonWriter& JsonWriter::value(double number)
 {
-    return std::isfinite(number) ? raw(shortest(number)) : null();
+    return std::isfinite(number) ? raw(to_text(number)) : null();
 }
 
 JsonWriter& JsonWriter::value(std::span<const double> numbers)
@@ -143,7 +134,7 @@ JsonWriter& JsonWriter::value(std::span<const double> numbers)
     text_ += '[';
     for (std::size_t i = 0; i < numbers.size(); ++i) {
         if (i > 0) text_ += ", ";
-        text_ += std::isfinite(numbers[i]) ? shortest(numbers[i]) : "null";
+        text_ += std::isfinite(numbers[i]) ? to_text(numbers[i]) : "null";
     }
     text_ += ']';
     return *this;

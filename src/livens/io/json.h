@@ -7,6 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "livens/base/text.h"
+
 namespace livens {
 
 /// Appends one JSON value (RFC 8259) to a text. Calls must nest properly and every value of an object needs
@@ -67,9 +69,6 @@ private:
     int indent_ = 0;
     bool has_key_ = false;
 };
-
-/// The shortest decimal text that reads back to the same double: "0.1", "1e-12", "nan".
-std::string shortest(double number);
 
 /// Length in bytes of the UTF-8 sequence at the start of `text`, 0 if there is none (overlong forms,
 /// surrogates and code points above U+10FFFF are none). `text` is not empty.

@@ -6,8 +6,10 @@
 #include <limits>
 #include <type_traits>
 
+#include "livens/base/version.h"
 #include "livens/io/detail/atomic_file.h"
 #include "livens/io/detail/netcdf_file.h"
+#include "livens/io/detail/results_digest.h"
 #include "livens/io/detail/results_layout.h"
 
 namespace livens {
@@ -43,8 +45,9 @@ public:
     void number(const std::string& name, double value) { file_.attribute(name, value); }
     void number(const std::string& name, SolveStatus value)
     {
-        file_.attribute(name, static_cast<int>(value));
+        file_.attribute(name, static_cast<int>(of_solver(value)));
     }
+    void status(const std::string& name, SolveStatus value) { text(name, to_string(value)); }
 
     /// One row of characters each, filled up with zeros.
     void names(VariableInfo info, const std::vector<std::string>& values)
@@ -130,6 +133,12 @@ public:
             throw IoError("attribute " + name + " is out of range");
         value = static_cast<SolveStatus>(n);
     }
+    void status(const std::string& name, SolveStatus& value)
+    {
+        std::string word;
+        text(name, word);
+        if (word == to_string(SolveStatus::suspect)) value = SolveStatus::suspect;
+    }
 
     void names(VariableInfo info, std::vector<std::string>& values)
     {
@@ -192,16 +201,17 @@ private:
 /// there under the new number.
 [[maybe_unused]] void all_members_are_visited(const Run& run)
 {
-    [[maybe_unused]] const auto& [r1, r2, r3, r4, r5, r6, r7, r8, r9, r10, r11, r12, r13, r14] = run;
+    [[maybe_unused]] const auto& [r1, r2, r3, r4, r5, r6, r7, r8, r9, r10, r11, r12, r13, r14, r15] = run;
     [[maybe_unused]] const auto& [m1, m2, m3, m4, m5, m6, m7, m8, m9, m10, m11, m12, m13, m14, m15, m16, m17,
                                   m18] = run.motion;
     [[maybe_unused]] const auto& [f1, f2, f3, f4, f5] = run.motion.X;
     [[maybe_unused]] const auto& [p1, p2, p3, p4, p5, p6, p7, p8, p9, p10, p11, p12, p13, p14, p15, p16, p17,
                                   p18, p19, p20] = run.report;
-    [[maybe_unused]] const auto& [s1, s2, s3, s4, s5, s6, s7, s8, s9, s10, s11, s12, s13, s14, s15, s16, s17,
-                                  s18, s19, s20, s21] = run.summary;
-    [[maybe_unused]] const auto& [b1, b2, b3, b4, b5, b6, b7, b8, b9, b10, b11, b12, b13, b14, b15, b16] =
-        run.balance;
+    // the last two, the velocity jump, follow from the motion and are not written
+    [[maybe_unused]] const auto& [v1, v2, v3, v4, v5, v6, v7, v8, v9, v10, v11, v12, v13, v14, v15] =
+        run.verdict;
+    [[maybe_unused]] const auto& [b1, b2, b3, b4, b5, b6, b7, b8, b9, b10, b11, b12, b13, b14, b15, b16,
+                                  b17, b18] = run.verdict.balance;
 }
 
 std::size_t expected_bytes(const Run& run)
@@ -224,6 +234,29 @@ void check_model(const Model& model, const Run& run)
 }
 
 }   // namespace
+
+Run make_run(const Model& model, Solution solution, const Method& method)
+{
+    Run run;
+    for (const Body& body : model.bodies()) {
+        run.body_names.push_back(body.name);
+        run.body_is_point.push_back(body.is_point);
+        run.centers_of_mass.push_back(body.is_point ? Vector3{} : mass_properties(body.mass).center_of_mass);
+    }
+    for (const Joint& joint : model.joints()) run.joint_names.push_back(joint.name);
+    for (int r = 0; r < model.n_rows(); ++r)
+        run.row_labels.push_back(model.joints()[model.row_joint(r)].name + ": " + model.row(r).label);
+    run.method = name_of(method);
+    run.notes = solution.report.notes;
+    for (const auto* of_verdict : {&solution.verdict.remarks, &solution.verdict.reasons})
+        run.notes.insert(run.notes.end(), of_verdict->begin(), of_verdict->end());
+    run.output = solution.motion.mesh.ends;
+    run.motion = std::move(solution.motion);
+    run.report = std::move(solution.report);
+    run.verdict = std::move(solution.verdict);
+    run.version = version;
+    return run;
+}
 
 std::string run_image(const Model& model, const Run& run)
 {

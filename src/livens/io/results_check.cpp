@@ -92,7 +92,7 @@ void check_run(const Run& run)
             "the number of bodies");
     require(run.row_labels.size() == static_cast<std::size_t>(run.motion.n_rows),
             "the number of constraint rows");
-    check_balance(run.balance, run.motion.mesh.ends.size());
+    check_balance(run.verdict.balance, run.motion.mesh.ends.size());
     for (std::size_t i = 0; i < run.output.size(); ++i) {
         require(std::isfinite(run.output[i]), "an output time is not finite");
         require(i == 0 || run.output[i] > run.output[i - 1], "output times do not ascend");

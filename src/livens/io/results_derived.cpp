@@ -2,10 +2,9 @@
 #include <limits>
 #include <span>
 
+#include "livens/diagnostics/sample.h"
 #include "livens/io/detail/results_layout.h"
 #include "livens/io/json.h"
-#include "livens/io/sample.h"
-#include "livens/time/quadrature.h"
 
 namespace livens {
 
@@ -43,7 +42,7 @@ public:
         if (joints.empty()) {   // this instant has no multipliers, others have
             const double nan = std::numeric_limits<double>::quiet_NaN();
             const Reaction none{{nan, nan, nan}, {nan, nan, nan}};
-            joints.assign(model_.joints().size(), {none, none, false});
+            joints.assign(model_.joints().size(), {none, none, false, false});
         }
         for (const JointSample& joint : joints) {
             append(force, joint.left.force);
@@ -63,11 +62,8 @@ private:
         append(center_of_mass, s.center_of_mass);
         append(directors, s.directors);
         append(directors_raw, s.directors_raw);
-        // q and -q are one orientation; the sign that continues the motion is the one that can be
-        // interpolated.
-        const Vector4 q = dot(previous, s.quaternion) < 0 ? -1.0 * s.quaternion : s.quaternion;
-        append(quaternion, q);
-        previous = q;
+        previous = continued(previous, s.quaternion);
+        append(quaternion, previous);
         append(velocity, s.velocity);
         append(angular_velocity, s.angular_velocity);
         append(angular_velocity_body, s.angular_velocity_body);
@@ -82,64 +78,12 @@ private:
 
 using Owner = DerivedNumbers;
 
-void put(NetcdfWriter& file, Owner& owner, const VariableInfo& info, std::vector<double> values)
+template <class Number>
+void put(NetcdfWriter& file, Owner& owner, const VariableInfo& info, std::vector<Number> values)
 {
     if (values.empty()) return;
-    owner.doubles.push_back(std::move(values));
-    file.variable(info, std::span<const double>(owner.doubles.back()));
-}
-
-void put(NetcdfWriter& file, Owner& owner, const VariableInfo& info, std::vector<int> values)
-{
-    if (values.empty()) return;
-    owner.ints.push_back(std::move(values));
-    file.variable(info, std::span<const int>(owner.ints.back()));
-}
-
-void write_orientations(NetcdfWriter& file, Samples& s, Owner& owner)
-{
-    file.dimension("director", 3);
-    file.dimension("quaternion_part", 4);
-    put(file, owner,
-        {"directors",
-         {"time", "body", "director", "xyz"},
-         "1",
-         "inertial",
-         "directors [d1, d2, d3], projected to the nearest orthonormal triad"},
-        std::move(s.directors));
-    put(file, owner,
-        {"directors_raw",
-         {"time", "body", "director", "xyz"},
-         "1",
-         "inertial",
-         "directors [d1, d2, d3] of the motion, with their violation of rigidity"},
-        std::move(s.directors_raw));
-    put(file, owner,
-        {"quaternion",
-         {"time", "body", "quaternion_part"},
-         "1",
-         "inertial",
-         "orientation, body to world; sign continuous in time",
-         {{"order", "w, x, y, z"}}},
-        std::move(s.quaternion));
-}
-
-void write_reactions(NetcdfWriter& file, Samples& s, Owner& owner)
-{
-    put(file, owner,
-        {"reaction_force",
-         {"time", "joint", "side", "xyz"},
-         "N",
-         "inertial",
-         "force of the joint on its second body, from the left and from the right"},
-        std::move(s.force));
-    put(file, owner,
-        {"reaction_torque",
-         {"time", "joint", "side", "xyz"},
-         "N m",
-         "inertial",
-         "torque of the joint on its second body about its joint point, from the left and from the right"},
-        std::move(s.torque));
+    auto& kept = std::get<std::deque<std::vector<Number>>>(owner);
+    file.variable(info, std::span<const Number>(kept.emplace_back(std::move(values))));
 }
 
 void write_samples(NetcdfWriter& file, const Model& model, const Run& run, Owner& owner)
@@ -149,41 +93,40 @@ void write_samples(NetcdfWriter& file, const Model& model, const Run& run, Owner
     Samples s(model, run);
     for (const double t : times) s.add(t);
 
-    const auto vectors = [&](const char* name, const char* units, const char* frame, const char* long_name,
-                             std::vector<double>& values) {
-        put(file, owner, {name, {"time", "body", "xyz"}, units, frame, long_name}, std::move(values));
-    };
     file.dimension("time", times.size());
+    file.dimension("director", 3);
+    file.dimension("quaternion_part", 4);
     put(file, owner,
         {"time", {"time"}, "s", "none", "output times that the motion has reached", {{"axis", "T"}}}, times);
-    vectors("position", "m", "inertial", "position of the reference point", s.position);
-    vectors("center_of_mass", "m", "inertial", "position of the centre of mass", s.center_of_mass);
-    write_orientations(file, s, owner);
-    vectors("velocity", "m s-1", "inertial", "velocity of the reference point", s.velocity);
-    vectors("angular_velocity", "rad s-1", "inertial", "angular velocity in inertial axes",
-            s.angular_velocity);
-    vectors("angular_velocity_body", "rad s-1", "body-fixed", "angular velocity in body axes",
-            s.angular_velocity_body);
-    vectors("linear_momentum", "kg m s-1", "inertial", "linear momentum", s.linear_momentum);
-    vectors("angular_momentum", "kg m2 s-1", "inertial", "angular momentum about the world's origin",
-            s.angular_momentum);
-    write_reactions(file, s, owner);
-}
-
-/// Times of a field's coefficients; with degree 0 the middles of the elements.
-std::vector<double> node_times(const Field& field, const TimeMesh& mesh)
-{
-    const std::vector<double> s =
-        field.degree == 0 ? std::vector<double>{0.5} : gauss_lobatto(field.degree + 1).points;
-    std::vector<double> times;
-    for (int e = 0; e < mesh.n_elements(); ++e) {
-        const std::size_t n = field.continuous ? s.size() - 1 : s.size();
-        for (std::size_t a = 0; a < n; ++a)
-            times.push_back(a + 1 == s.size() && a > 0 ? mesh.ends[e + 1]
-                                                       : mesh.ends[e] + s[a] * mesh.length(e));
-    }
-    if (field.continuous) times.push_back(mesh.end());
-    return times;
+    const std::vector<std::string> vector{"time", "body", "xyz"}, triad{"time", "body", "director", "xyz"},
+        parts{"time", "body", "quaternion_part"}, sides{"time", "joint", "side", "xyz"};
+    const std::string in = "inertial";
+    const std::pair<VariableInfo, std::vector<double>*> variables[] = {
+        {{"position", vector, "m", in, "position of the reference point"}, &s.position},
+        {{"center_of_mass", vector, "m", in, "position of the centre of mass"}, &s.center_of_mass},
+        {{"directors", triad, "1", in, "directors [d1, d2, d3], projected to the nearest orthonormal triad"},
+         &s.directors},
+        {{"directors_raw", triad, "1", in,
+          "directors [d1, d2, d3] of the motion, with their violation of rigidity"},
+         &s.directors_raw},
+        {{"quaternion", parts, "1", in, "orientation, body to world; sign continuous in time",
+          {{"order", "w, x, y, z"}}},
+         &s.quaternion},
+        {{"velocity", vector, "m s-1", in, "velocity of the reference point"}, &s.velocity},
+        {{"angular_velocity", vector, "rad s-1", in, "angular velocity in inertial axes"},
+         &s.angular_velocity},
+        {{"angular_velocity_body", vector, "rad s-1", "body-fixed", "angular velocity in body axes"},
+         &s.angular_velocity_body},
+        {{"linear_momentum", vector, "kg m s-1", in, "linear momentum"}, &s.linear_momentum},
+        {{"angular_momentum", vector, "kg m2 s-1", in, "angular momentum about the world's origin"},
+         &s.angular_momentum},
+        {{"reaction_force", sides, "N", in,
+          "force of the joint on its second body, from the left and from the right"},
+         &s.force},
+        {{"reaction_torque", sides, "N m", in,
+          "torque of the joint on its second body about its joint point, from the left and from the right"},
+         &s.torque}};
+    for (const auto& [info, values] : variables) put(file, owner, info, std::move(*values));
 }
 
 void write_nodes(NetcdfWriter& file, const char* name, const Field& field, const TimeMesh& mesh, Owner& owner)
@@ -213,6 +156,24 @@ void write_integrals(NetcdfWriter& file, const Model& model, const Motion& motio
          "inertial",
          "integral of the angular momentum of all bodies about the origin over each element"},
         std::vector<double>(moments.begin(), moments.end()));
+}
+
+/// A run that was read from a file has not kept them.
+void write_violations(NetcdfWriter& file, const Model& model, const Run& run, Owner& owner)
+{
+    const bool is_kept = !run.verdict.violations.joints.empty();
+    const ViolationReport at =
+        is_kept ? run.verdict.violations : violations(model, run.motion, 0, false);
+    if (model.n_rows() > 0)
+        put(file, owner,
+            {"joint_violation", {"X_node"}, "1", "none", "largest |Phi| / scale of the joints' rows"},
+            at.joints);
+    const bool has_rigid =
+        std::ranges::any_of(model.bodies(), [](const Body& body) { return !body.is_point; });
+    if (has_rigid)
+        put(file, owner,
+            {"rigidity_violation", {"X_node"}, "1", "none", "largest |Phi| of the bodies' rigidity"},
+            at.rigidity);
 }
 
 void write_model(NetcdfWriter& file, const Model& model, Owner& owner)
@@ -251,10 +212,10 @@ std::string manifest(const Run& run)
     json.begin_object();
     json.member("livens_version", run.version);
     json.key("format").begin_array().value(format_major).value(format_minor).end_array();
-    json.member("method", run.summary.method);
+    json.member("method", run.method);
     json.key("options").raw(has_options ? run.resolved : "null");
     json.key("convergence").begin_object();
-    json.member("status", run.summary.status).member("blocks", report.iterations.size());
+    json.member("status", to_string(report.status)).member("blocks", report.iterations.size());
     json.member("newton_iterations", report.newton_iterations)
         .member("most_iterations", report.most_iterations);
     json.member("factorisations", report.factorisations).member("residual_norm", report.residual_norm);
@@ -276,7 +237,7 @@ void write_derived(NetcdfWriter& file, const Model& model, const Run& run, Owner
     write_nodes(file, "multiplier_node", m.multipliers, m.mesh, owner);
     write_nodes(file, "rigidity_node", m.rigidity, m.mesh, owner);
     write_integrals(file, model, m, owner);
-    write_violations(file, model, m, owner);
+    write_violations(file, model, run, owner);
     write_model(file, model, owner);
     write_samples(file, model, run, owner);
     const std::string text = manifest(run);

@@ -2,6 +2,7 @@
 #include <bit>
 #include <cstdint>
 
+#include "livens/io/detail/results_digest.h"
 #include "livens/io/detail/results_layout.h"
 
 namespace livens {
@@ -17,7 +18,8 @@ public:
     void dimension(const std::string&, std::size_t) {}
     void text(const std::string&, std::string_view value) { add_bytes(value); }
     void number(const std::string&, double value) { add(std::bit_cast<std::uint64_t>(value)); }
-    void number(const std::string&, SolveStatus value) { add(static_cast<std::uint64_t>(value)); }
+    void number(const std::string&, SolveStatus value) { add(static_cast<std::uint64_t>(of_solver(value))); }
+    void status(const std::string& name, SolveStatus value) { text(name, to_string(value)); }
     template <class Integer>
     requires std::is_integral_v<Integer>
     void number(const std::string&, Integer value) { add(static_cast<std::uint64_t>(value)); }

@@ -56,13 +56,14 @@ void build(const Node& root, Scenario& scenario, Findings& findings)
     read_loads(builder);
     read_run(builder, scenario);
     if (findings.n_errors() > 0) return;
-    scenario.boundary.start = builder.model().start();
-    scenario.boundary.start.t = scenario.mesh.start();
-    scenario.boundary.end.t = scenario.mesh.end();
+    scenario.conditions.start = builder.model().start();
+    scenario.conditions.start.t = scenario.mesh.start();
+    scenario.conditions.end.t = scenario.mesh.end();
     const bool fits = builder.guard("method", [&] {
-        check_method(builder.model(), scenario.boundary, scenario.mesh, scenario.method, scenario.options);
+        check_method(builder.model(), {scenario.conditions}, scenario.mesh, scenario.method,
+                     scenario.options);
     });
-    if (fits) check_ends(builder, scenario.boundary, scenario.options.initial);
+    if (fits) check_ends(builder, scenario.conditions, scenario.options.initial);
     scenario.model = std::move(builder.model());
 }
 

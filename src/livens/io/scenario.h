@@ -22,7 +22,7 @@ struct Scenario {
     TimeMesh mesh;   ///< element ends hold jumps of loads (unless breaks = "ignore") and output times
     std::vector<double> output;   ///< output times; all element ends if the scenario lists none
     Method method;
-    Boundary boundary;      ///< what is given at start and end, and the states there, with their times
+    Conditions conditions;      ///< what is given at start and end, and the states there, with their times
     SolveOptions options;   ///< tolerance, max_iterations, initial, condition
     std::string resolved;   ///< all options after defaults, as one JSON object
 };
@@ -37,8 +37,8 @@ struct ScenarioResult {
 inline constexpr std::size_t max_scenario_bytes = 16u << 20;
 inline constexpr int max_scenario_depth = 64;
 
-/// Reads and checks (including check_method() and assemble()). Throws nothing: every problem is a diagnostic;
-/// codes `io-...` mean the file could not be read at all.
+/// Reads and checks (including check_method() and close_start()). Throws nothing: every problem is a
+/// diagnostic; codes `io-...` mean the file could not be read at all.
 ScenarioResult read_scenario(const std::filesystem::path& file);
 ScenarioResult parse_scenario(std::string text, const std::string& file_name);
 

@@ -25,12 +25,12 @@ void ConstraintBasis::exchange(ConstraintBasis& other)
     unsorted_.swap(other.unsorted_);
 }
 
-double ConstraintBasis::fill(const Tables& tables, int column, int row, const double* X,
+double ConstraintBasis::fill(const Tables& tables, int column, int row, Instant at, const double* X,
                              const double* maps)
 {
     double* g = gradients.data() + 24 * column;
     double* out = q.column(column);
-    tables.gradient(row, X, g);
+    tables.gradient(row, at, X, g);
     tables.scaled_gradient(row, X, maps, g, out);
     double sum = 0;
     for (int i = 0; i < tables.n_twists; ++i) sum += out[i] * out[i];
@@ -39,18 +39,18 @@ double ConstraintBasis::fill(const Tables& tables, int column, int row, const do
     return scale;
 }
 
-double ConstraintBasis::build(const Tables& tables, const double* X, const double* maps,
+double ConstraintBasis::build(const Tables& tables, Instant at, const double* X, const double* maps,
                               const std::vector<int>& which, bool keep_choices)
 {
     rows = which;
-    for (int c = 0; c < tables.rank; ++c) row_scale[c] = fill(tables, c, which[c], X, maps);
+    for (int c = 0; c < tables.rank; ++c) row_scale[c] = fill(tables, c, which[c], at, X, maps);
     return q.factorise(tables.rank, keep_choices);
 }
 
-double ConstraintBasis::choose(const Tables& tables, const double* X, const double* maps)
+double ConstraintBasis::choose(const Tables& tables, Instant at, const double* X, const double* maps)
 {
     const int all = tables.n_rows();
-    for (int r = 0; r < all; ++r) row_scale[r] = fill(tables, r, r, X, maps);
+    for (int r = 0; r < all; ++r) row_scale[r] = fill(tables, r, r, at, X, maps);
     const double smallest = q.factorise_pivoted(tables.rank, order_);
     unsorted_ = gradients;
     unsorted_.insert(unsorted_.end(), row_scale.begin(), row_scale.end());

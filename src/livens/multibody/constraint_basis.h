@@ -18,13 +18,13 @@ struct ConstraintBasis {
     void resize(const Tables& tables, bool all_rows);
     void exchange(ConstraintBasis& other);
     /// The basis for given rows. Returns the smallest scaled pivot.
-    double build(const Tables& tables, const double* X, const double* maps,
+    double build(const Tables& tables, Instant at, const double* X, const double* maps,
                  const std::vector<int>& which, bool keep_choices);
     /// Chooses the rows by column pivoting among all.
-    double choose(const Tables& tables, const double* X, const double* maps);
+    double choose(const Tables& tables, Instant at, const double* X, const double* maps);
 
 private:
-    double fill(const Tables& tables, int column, int row, const double* X, const double* maps);
+    double fill(const Tables& tables, int column, int row, Instant at, const double* X, const double* maps);
 
     std::vector<int> order_;
     std::vector<double> unsorted_;

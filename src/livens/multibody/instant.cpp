@@ -1,6 +1,7 @@
 #include "livens/multibody/instant.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "livens/multibody/twist.h"
@@ -25,13 +26,14 @@ void InstantState::resize(const Tables& tables)
     basis.resize(tables, true);
 }
 
-void InstantState::look_back(const InstantState& earlier)
+void InstantState::look_back(const InstantState& earlier, bool forwards)
 {
     has_past = true;
     const double inverse = 1 / (t - earlier.t);
     const std::size_t n = velocity.size();
     const double *v0 = earlier.velocity.data(), *v1 = velocity.data();
-    const double *a0 = earlier.acceleration[1].data(), *a1 = acceleration[0].data();
+    const double *a0 = earlier.acceleration[forwards ? 1 : 0].data(),
+                 *a1 = acceleration[forwards ? 0 : 1].data();
     double* __restrict j = jerk.data();
     double* __restrict s = snap.data();
     for (std::size_t i = 0; i < n; ++i) {
@@ -59,14 +61,30 @@ InstantSystem::InstantSystem(const Tables& tables) : tables_(tables)
     for (auto* v : {&V_, &centripetal_, &raw_}) v->assign(12 * tables.bodies.size(), 0.0);
 }
 
-bool InstantSystem::prepare(InstantState& state, ConstraintBasis* known)
+bool InstantSystem::prepare(InstantState& state, const std::vector<int>& rows, ConstraintBasis* known)
 {
-    tables_.map_twists(state.X.data(), state.maps.data());
-    if (known != nullptr && tables_.rank == tables_.n_rows())
+    const double* X = state.X.data();
+    tables_.map_twists(X, state.maps.data());
+    state.rows_chosen = false;
+    if (known != nullptr && tables_.rank == tables_.n_rows()) {
         state.basis.exchange(*known);
-    else
-        state.smallest_pivot = state.basis.choose(tables_, state.X.data(), state.maps.data());
+    } else {
+        state.smallest_pivot = state.basis.build(tables_, {state.t}, X, state.maps.data(), rows, false);
+        if (tables_.rank < tables_.n_rows() && !rows_are_fit(state)) {
+            state.smallest_pivot = state.basis.choose(tables_, {state.t}, X, state.maps.data());
+            state.rows_chosen = true;
+        }
+    }
     return tables_.regular || prepare_singular(state);
+}
+
+bool InstantSystem::rows_are_fit(const InstantState& state) const
+{
+    if (!(state.smallest_pivot > 1e-6)) return false;
+    for (int r = 0; r < tables_.n_rows(); ++r)
+        if (!(std::abs(tables_.value(r, {state.t}, state.X.data())) <= 1e-9 * tables_.rows[r].row->scale))
+            return false;
+    return true;
 }
 
 /// out <- D^T Mr D y: y itself where every inertia is definite.
@@ -152,7 +170,7 @@ void InstantSystem::from_momentum(InstantState& state, const double* p, double w
     double* y = a_.data();
     double* rest = b_.data();
     tables_.to_scaled_rows(state.maps.data(), p, rest);
-    std::fill(y, y + tables_.rank, 0.0);
+    follow_drives(state, y);
     solve(state, rest, y, rest);
     state.basis.q.solve_R(rest);
     scatter(state, rest, weight, lambda);
@@ -171,8 +189,8 @@ void InstantSystem::add_reaction(const InstantState& state, int c, double factor
 {
     const int r = state.basis.rows[c];
     const auto& table = tables_.rows[r];
-    for (int side = table.first_side(); side < 2; ++side) {
-        const auto& body = tables_.bodies[table.body(side)];
+    for (int side = 0; side < table.n_sides; ++side) {
+        const auto& body = tables_.bodies[table.bodies[side]];
         double q[6];
         tables_.wrench(r, side, state.X.data(), state.maps.data(), state.basis.gradients.data() + 24 * c,
                           q);
@@ -188,16 +206,27 @@ void InstantSystem::from_velocity(InstantState& state)
     tables_.to_scaled_rows(state.maps.data(), state.p.data(), state.momentum.data());
 }
 
+/// First places of Q^T y for a velocity with dPhi/dt = 0.
+void InstantSystem::follow_drives(const InstantState& state, double* y) const
+{
+    const ConstraintBasis& basis = state.basis;
+    std::fill(y, y + tables_.rank, 0.0);
+    if (!tables_.model->has_drives()) return;
+    for (int c = 0; c < tables_.rank; ++c)
+        y[c] = -tables_.rate(basis.rows[c], {state.t}, state.X.data()) * basis.row_scale[c];
+    basis.q.solve_R_transposed(y);
+}
+
 /// First places of Q^T y for an acceleration with d2 Phi/dt2 = 0, from the velocities in V_ and centripetal_.
-void InstantSystem::particular(const InstantState& state, double* y) const
+void InstantSystem::particular(const InstantState& state, Side from, double* y) const
 {
     const ConstraintBasis& basis = state.basis;
     for (int c = 0; c < tables_.rank; ++c) {
         const auto& table = tables_.rows[basis.rows[c]];
         const double* g = basis.gradients.data() + 24 * c;
-        double gamma = tables_.curvature(basis.rows[c], V_.data());
-        for (int side = table.first_side(); side < 2; ++side) {
-            const double* a = centripetal_.data() + 12 * table.body(side);
+        double gamma = tables_.curvature(basis.rows[c], {state.t, from}, state.X.data(), V_.data());
+        for (int side = 0; side < table.n_sides; ++side) {
+            const double* a = centripetal_.data() + 12 * table.bodies[side];
             for (const int column : table.columns[side])
                 for (int i = column; i < column + 3; ++i) gamma += g[12 * side + i] * a[i];
         }
@@ -225,7 +254,7 @@ void InstantSystem::accelerate(InstantState& state, Side side)
     double* forces = b_.data();
     tables_.twist_rows(X, state.maps.data(), raw_.data(), y);
     tables_.to_scaled_rows(state.maps.data(), y, forces);
-    particular(state, y);
+    particular(state, side, y);
     solve(state, forces, y, forces);
     const int s = side == Side::right ? 1 : 0;
     state.basis.q.solve_R(forces);

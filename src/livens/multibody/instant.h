@@ -24,10 +24,12 @@ struct InstantState {
     bool has_past = false;
     ConstraintBasis basis;   ///< rows chosen here serve the next element
     double smallest_pivot = 1;
+    bool rows_chosen = false;   ///< others than before, see InstantSystem::prepare()
 
     void resize(const Tables& tables);
     /// jerk and snap of the cubic through velocity and acceleration here and at an earlier end; for guesses.
-    void look_back(const InstantState& earlier);
+    /// `forwards`: the earlier end has the smaller t.
+    void look_back(const InstantState& earlier, bool forwards);
     void forget_past();
 };
 
@@ -36,12 +38,14 @@ class InstantSystem {
 public:
     explicit InstantSystem(const Tables& tables);
 
-    /// Prepares maps and basis for state.X. False if a free motion carries no inertia. `known` is exchanged
-    /// with the state's basis where it serves: built for this X with all rows of the model.
-    bool prepare(InstantState& state, ConstraintBasis* known = nullptr);
-    /// velocity and momentum <- the tangent parts of a given twist momentum N^T P. `lambda` <- the
-    /// multipliers of the rest, W Ghat^T lambda = N^T P - Mr velocity; all rows of the model, zero for rows
-    /// that are not chosen.
+    /// Prepares maps and basis for state.t and state.X, with the given independent rows as long as they are
+    /// fit: the others hold to 1e-9 of their scale, and the smallest scaled pivot is above 1e-6; else rows
+    /// are chosen again among all (`rows_chosen`). False if a free motion carries no inertia. `known` is
+    /// exchanged with the state's basis where it serves: built for this X with all rows of the model.
+    bool prepare(InstantState& state, const std::vector<int>& rows, ConstraintBasis* known = nullptr);
+    /// velocity and momentum <- the parts of a given twist momentum N^T P that the constraints and their
+    /// drives allow, Ghat velocity = -dPhi/dt (explicit). `lambda` <- the multipliers of the rest, W Ghat^T
+    /// lambda = N^T P - Mr velocity; all rows of the model, zero for rows that are not chosen.
     void from_momentum(InstantState& state, const double* p, double weight, double* lambda);
     /// momentum <- that of state.velocity, which is consistent.
     void from_velocity(InstantState& state);
@@ -53,11 +57,13 @@ public:
     const double* centripetal() const { return centripetal_.data(); }
 
 private:
+    bool rows_are_fit(const InstantState& state) const;
     bool prepare_singular(const InstantState& state);
     void add_reaction(const InstantState& state, int c, double factor, double* rows) const;
     void apply_mass(const InstantState& state, const double* y, double* out);
     void solve(const InstantState& state, const double* forces, double* y, double* multipliers);
-    void particular(const InstantState& state, double* y) const;
+    void follow_drives(const InstantState& state, double* y) const;
+    void particular(const InstantState& state, Side from, double* y) const;
     void scatter(const InstantState& state, const double* y, double weight, double* lambda) const;
 
     const Tables& tables_;

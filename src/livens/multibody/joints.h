@@ -26,6 +26,8 @@ struct Joint {
     /// would admit the opposite; zero where there are none.
     Vector3 axis_first{};
     Vector3 axis_second{};
+    /// Functions that must be positive at assembly, where rows alone would admit another branch.
+    std::vector<ConstraintRow> branches{};
 };
 
 /// Where a joint sits, in coordinates of each body. For the world they are world coordinates.

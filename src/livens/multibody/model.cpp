@@ -110,15 +110,50 @@ void check_body_index(int body, int n_bodies, const std::string& path)
                       "add bodies before what refers to them"});
 }
 
+void check_form(const QuadraticForm& form, const ConstraintRow& row, const std::vector<Body>& bodies,
+                const std::string& path)
+{
+    require_finite(form.c_ii, path, "the coefficients of a row");
+    require_finite(form.c_ij, path, "the coefficients of a row");
+    require_finite(form.c_jj, path, "the coefficients of a row");
+    require_finite(form.b_i, path, "the coefficients of a row");
+    require_finite(form.b_j, path, "the coefficients of a row");
+    require_finite(Matrix<1, 1>{form.c}, path, "the constant of a row");
+    if (form.c_ii != transpose(form.c_ii) || form.c_jj != transpose(form.c_jj))
+        refuse("joint-row", path, "C_ii and C_jj of a row must be symmetric");
+    if (row.body_i == world && (form.c_ii != Matrix4{} || form.c_ij != Matrix4{} || form.b_i != Matrix34{}))
+        refuse("joint-row", path, "a row has terms in the world that are not folded into B_j and c");
+
+    const auto is_point = [&](int body) { return body != world && bodies[body].is_point; };
+    const bool i_turns = uses_directors(form.c_ii) || uses_directors(form.c_ij) || uses_directors(form.b_i);
+    const bool j_turns =
+        uses_directors(form.c_jj) || uses_directors(transpose(form.c_ij)) || uses_directors(form.b_j);
+    for (const auto& [body, turns] : {std::pair(row.body_i, i_turns), std::pair(row.body_j, j_turns)})
+        if (turns && is_point(body))
+            refuse("joint-needs-directors", path,
+                   "the joint needs the orientation of '" + bodies[body].name + "', a point mass",
+                   "a point mass takes spherical joints and rods at its own point");
+}
+
+/// A jump of the factor, or of its rate, would be a jump of positions or velocities, which no force makes.
+void check_drive(const Drive& drive, const std::string& path)
+{
+    for (const double t : drive.factor.breaks()) {
+        const TimeValue before = drive.factor({t, Side::left}), after = drive.factor({t, Side::right});
+        const double level = 1e-9 * std::max(std::abs(before.value), std::abs(after.value));
+        const double level_of_rates = 1e-9 * std::max(std::abs(before.first), std::abs(after.first));
+        if (std::abs(after.value - before.value) <= level &&
+            std::abs(after.first - before.first) <= level_of_rates)
+            continue;
+        throw InputError({"drive-jumps", path, "a drive jumps, or its rate does",
+                          "at t = " + to_text(t) + " s", "", "bodies would need an infinite force to follow",
+                          "let the drive begin and end smoothly"});
+    }
+}
+
 void check_row(const ConstraintRow& row, const Joint& joint, const std::vector<Body>& bodies,
                const std::string& path)
 {
-    require_finite(row.c_ii, path, "the coefficients of a row");
-    require_finite(row.c_ij, path, "the coefficients of a row");
-    require_finite(row.c_jj, path, "the coefficients of a row");
-    require_finite(row.b_i, path, "the coefficients of a row");
-    require_finite(row.b_j, path, "the coefficients of a row");
-    require_finite(Matrix<2, 1>{row.c, row.scale}, path, "the constant and the scale of a row");
     const auto known = [&](int body) { return body == joint.first || body == joint.second; };
     if (!known(row.body_i) && row.body_i != world)
         refuse("joint-row", path, "a row acts on a body that is not the joint's");
@@ -126,21 +161,13 @@ void check_row(const ConstraintRow& row, const Joint& joint, const std::vector<B
         refuse("joint-row", path, "the second body of a row must be a body of the joint",
                "the makers of rows see to it");
     if (row.body_i == row.body_j) refuse("joint-self", path, "a row needs two different bodies");
+    require_finite(Matrix<1, 1>{row.scale}, path, "the scale of a row");
     if (!(row.scale > 0)) refuse("joint-scale", path, "the scale of a row must be positive");
-    if (row.c_ii != transpose(row.c_ii) || row.c_jj != transpose(row.c_jj))
-        refuse("joint-row", path, "C_ii and C_jj of a row must be symmetric");
-    if (row.body_i == world && (row.c_ii != Matrix4{} || row.c_ij != Matrix4{} || row.b_i != Matrix34{}))
-        refuse("joint-row", path, "a row has terms in the world that are not folded into B_j and c");
-
-    const auto is_point = [&](int body) { return body != world && bodies[body].is_point; };
-    const bool i_turns = uses_directors(row.c_ii) || uses_directors(row.c_ij) || uses_directors(row.b_i);
-    const bool j_turns =
-        uses_directors(row.c_jj) || uses_directors(transpose(row.c_ij)) || uses_directors(row.b_j);
-    for (const auto& [body, turns] : {std::pair(row.body_i, i_turns), std::pair(row.body_j, j_turns)})
-        if (turns && is_point(body))
-            refuse("joint-needs-directors", path,
-                   "the joint needs the orientation of '" + bodies[body].name + "', a point mass",
-                   "a point mass takes spherical joints and rods at its own point");
+    check_form(row, row, bodies, path);
+    for (const Drive& drive : row.drives) {
+        check_form(drive.form, row, bodies, path);
+        check_drive(drive, path);
+    }
 }
 
 }   // namespace
@@ -167,11 +194,13 @@ int Model::add_joint(Joint joint)
     if (joint.rows.empty()) refuse("joint-empty", path, "a joint needs at least one row");
     require_finite(joint.point_first, path, "the point on the first body");
     require_finite(joint.point_second, path, "the point on the second body");
-    for (const ConstraintRow& row : joint.rows) check_row(row, joint, bodies_, path);
+    for (const auto* rows : {&joint.rows, &joint.branches})
+        for (const ConstraintRow& row : *rows) check_row(row, joint, bodies_, path);
 
     const int index = static_cast<int>(joints_.size());
     first_rows_.push_back(n_rows());
     for (int k = 0; k < static_cast<int>(joint.rows.size()); ++k) rows_.push_back({index, k});
+    for (const ConstraintRow& row : joint.rows) has_drives_ = has_drives_ || !row.drives.empty();
     joints_.push_back(std::move(joint));
     return index;
 }
@@ -219,7 +248,13 @@ State Model::start() const
 std::vector<double> Model::load_breaks() const
 {
     std::vector<double> all;
-    for (const Load& load : loads_) all.insert(all.end(), load.breaks.begin(), load.breaks.end());
+    const auto add = [&all](const std::vector<double>& more) {
+        all.insert(all.end(), more.begin(), more.end());
+    };
+    for (const Load& load : loads_) add(load.breaks);
+    for (const Joint& joint : joints_)
+        for (const ConstraintRow& row : joint.rows)
+            for (const Drive& drive : row.drives) add(drive.factor.breaks());
     std::ranges::sort(all);
     const auto repeated = std::unique(all.begin(), all.end());
     all.erase(repeated, all.end());
@@ -246,6 +281,16 @@ double Model::length() const
             length = std::max(length, norm(other - center_of_mass(bodies_[joint.first])));
     }
     return length > 0 ? length : 1;
+}
+
+Model frozen(const Model& model, Instant at)
+{
+    Model now = model;
+    now.has_drives_ = false;
+    for (Joint& joint : now.joints_)
+        for (auto* rows : {&joint.rows, &joint.branches})
+            for (ConstraintRow& row : *rows) row = frozen(row, at);
+    return now;
 }
 
 Matrix34 weight(const Body& body, const Vector3& gravity) { return outer(gravity, body.mass.column(0)); }

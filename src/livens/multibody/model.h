@@ -25,8 +25,8 @@ public:
 
     /// Each returns the index of what was added. They throw InputError: a name given twice, empty or "world";
     /// an index of a body that does not exist; a body that no MassProperties describe; a joint without rows
-    /// or with rows that break the rules of ConstraintRow; a load without forces; what needs directors on a
-    /// point mass; numbers that are not finite.
+    /// or with rows that break the rules of ConstraintRow, or with drives that jump or kink; a load without
+    /// forces; what needs directors on a point mass; numbers that are not finite.
     int add_body(Body body);
     int add_joint(Joint joint);
     int add_load(Load load);
@@ -43,6 +43,11 @@ public:
     int row_joint(int r) const { return rows_[r].joint; }
     int row_in_joint(int r) const { return rows_[r].row; }
     int first_row(int joint) const { return first_rows_[joint]; }
+    /// "joint 'elbow' (row 'x')"
+    std::string row_name(int r) const
+    {
+        return "joint '" + joints_[row_joint(r)].name + "' (row '" + row(r).label + "')";
+    }
 
     /// Index by name; -2 if there is none. `find_body("world")` is the world.
     int find_body(const std::string& name) const;
@@ -51,7 +56,9 @@ public:
 
     /// X and V of all bodies as they were given.
     State start() const;
-    /// All instants where a load jumps or bends, ascending, without repetition.
+    /// Whether rows depend on time.
+    bool has_drives() const { return has_drives_; }
+    /// All instants where a load jumps or bends, or a drive bends, ascending, without repetition.
     std::vector<double> load_breaks() const;
     /// A length typical of the model (m), at the start: the largest of the bodies' radii of gyration, twice
     /// the distances of their centres of mass from the mean of these, the arms from centres of mass to joint
@@ -71,7 +78,13 @@ private:
     std::vector<Load> loads_;
     std::vector<RowPlace> rows_;
     std::vector<int> first_rows_;
+    bool has_drives_ = false;
+
+    friend Model frozen(const Model& model, Instant at);
 };
+
+/// The model with all rows as they are at an instant, without drives: for what is asked of positions alone.
+Model frozen(const Model& model, Instant at);
 
 /// Weight of a body: F = g (m e_0)^T.
 Matrix34 weight(const Body& body, const Vector3& gravity);

@@ -88,7 +88,7 @@ struct Reaction {
 };
 
 /// Force and torque of -G^T lambda on the joint's second body, in state X and with all multipliers of the
-/// model.
+/// model; a model with drives wants to be frozen() first.
 Reaction joint_reaction(const Model& model, int joint, std::span<const Matrix34> X,
                         std::span<const double> multipliers);
 

@@ -1,5 +1,4 @@
-// The model as the element reads it: flat tables, unknowns numbered, and the coordinates that it is solved
-// in.
+// The model as the engine reads it: flat tables, unknowns numbered, and the coordinates that it is solved in.
 //
 // Unknowns are twists in mass-orthonormal coordinates: y = (sqrt(M) v_c, L^T w_body) with the velocity v_c of
 // the centre of mass, the spin in body axes and the Cholesky factor L of the inertia about the centre. A
@@ -7,6 +6,7 @@
 // no unit or size weighs more than another.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "livens/multibody/model.h"
@@ -35,54 +35,74 @@ struct Tables {
         bool principal = false;   ///< spin and euler are diagonal
         double euler[9] = {};     ///< E about the centre of mass, column by column
     };
+    /// A row and the bodies that it touches, its sides: two, or the one that the world holds.
     struct RowTable {
         const ConstraintRow* row = nullptr;
-        bool has_i = false;   ///< body_i is a body
+        int n_sides = 0;
+        int bodies[2] = {};   ///< of each side
         struct Entry {
-            int from_side, from;   ///< 0 or 1, and place of the column in the 12 numbers of X
+            int from_side, from;   ///< side, and place of the column in the 12 numbers of X
             int to_side, to;
             double value;
         };
-        std::vector<int> columns[2];   ///< columns of X_i and X_j that the gradient may touch: 0, 3, 6, 9
+        std::vector<int> columns[2];   ///< columns of X that the gradient may touch: 0, 3, 6, 9
         std::vector<Entry> form;       ///< entries of K that are not zero, by rows and columns
-        bool has_b = false;            ///< B is not zero
-        int body(int side) const { return side == 0 ? row->body_i : row->body_j; }
-        int first_side() const { return has_i ? 0 : 1; }
+        Matrix4 K[2][2] = {};          ///< the same as blocks
+        Matrix34 B[2] = {};
+        bool is_driven = false;   ///< form, K and B are what does not depend on time; drives come on top
     };
 
-    Tables(const Model& the_model, int rank);
+    /// `independent`: rows of the joints, of full rank, that hold for all others.
+    /// `with_rigidity`: rigidity_rows() of the bodies follow the rows of the joints.
+    Tables(const Model& the_model, std::vector<int> independent, bool with_rigidity = false);
+    Tables(const Tables&) = delete;
+    Tables& operator=(const Tables&) = delete;
 
     const Model* model;
     std::vector<BodyTable> bodies;
-    std::vector<RowTable> rows;   ///< all joint rows of the model
+    std::vector<RowTable> rows;            ///< all joint rows of the model, then those of rigidity
+    std::vector<ConstraintRow> rigidity;   ///< if asked for
     std::vector<int> loads_with_tangent;
     double length = 1;
     int n_twists = 0;
-    int rank = 0;          ///< of the joint rows; the element picks that many of them
+    std::vector<int> independent;   ///< rows that are solved for, until choose_rows() finds them unfit
+    int rank = 0;                   ///< how many they are
     bool regular = true;   ///< every inertia is definite; else L is that of a slightly larger one
 
     int n_bodies() const { return static_cast<int>(bodies.size()); }
-    int n_rows() const { return static_cast<int>(rows.size()); }
+    int n_rows() const { return model->n_rows(); }
     int freedoms() const { return n_twists - rank; }
 
     /// Gradients of row r by X_i and X_j, 12 numbers each, one after the other. Only the columns that the row
     /// touches (RowTable::columns) are written, and only they may be read.
-    void gradient(int r, const double* X, double* g) const;
+    void gradient(int r, Instant at, const double* X, double* g) const;
     /// Force and moment about the centre of mass of one side's gradient, 6 numbers.
     void wrench(int r, int side, const double* X, const double* maps, const double* g, double* q) const;
     /// The gradient as rows of scaled twists, n_twists numbers.
     void scaled_gradient(int r, const double* X, const double* maps, const double* g, double* out) const;
     /// Phi from the absolute configuration and its gradient there: 1/2 <g + B, X> + c.
-    double value(int r, const double* X, const double* g) const;
-    double value(int r, const double* X) const;
-    /// The part of d2 Phi/dt2 that is quadratic in X' = V.
-    double curvature(int r, const double* V) const;
+    double value(int r, Instant at, const double* X, const double* g) const;
+    double value(int r, Instant at, const double* X) const;
+    /// Phi at another instant less Phi, at the same X.
+    double change(int r, Instant from, Instant to, const double* X) const;
+    /// The part of dPhi/dt that stays where X does not move; 0 without drives.
+    double rate(int r, Instant at, const double* X) const;
+    /// d2 Phi/dt2 less G X'': quadratic in X' = V without drives.
+    double curvature(int r, Instant at, const double* X, const double* V) const;
+    /// The block K of the two sides, which is constant without drives.
+    Matrix4 hessian(int r, Instant at, int row_side, int column_side) const;
 
     /// raw += factor * weight, and factor * loads at the instant; X, V: 12 a body.
     void add_weight(double factor, double* raw) const;
     void add_loads(Instant at, const double* X, const double* V, double factor, double* raw) const;
+    /// What a load is asked with.
+    static LoadArguments arguments(const Load& load, Instant at, const double* X, const double* V);
+    /// The first load that is not finite there; -1: none.
+    int bad_load(Instant at, const double* X, const double* V) const;
     /// q <- the rows of raw: force, and moment about the centre of mass (not the reference point).
     void twist_rows(const double* X, const double* maps, const double* raw, double* q) const;
+    /// The same, added to what q holds.
+    void add_twist_rows(const double* X, const double* maps, const double* raw, double* q) const;
 
     /// The map D of scaled to plain twists at X, 12 numbers a body: K = R L^-T, then R times the centre of
     /// mass.
@@ -91,12 +111,18 @@ struct Tables {
     void to_twist(const double* maps, const double* y, double* xi) const;
     /// Central rows in scaled twists: y_1 = f / sqrt(M), y_2 = K^T tau.
     void to_scaled_rows(const double* maps, const double* q, double* y) const;
+    /// Rows of one body about its reference point to rows about its centre of mass.
+    static void to_centre(const double* body_maps, double* q);
     /// The middle part K_A^T (tr(W) 1 - W) K_B, W = R_B E R_A^T, of a body's mass between two configurations.
     void spin_mass(int body, const double* X_A, const double* X_B, double* H) const;
     /// dX <- N(X) xi.
     void rates_of(const double* X, const double* xi, double* dX) const;
     /// out <- Y m, body by body.
     void times_mass(const double* Y, double factor, double* out) const;
+
+private:
+    std::array<Matrix34, 2> places(int r, const double* X) const;
+    void add_drives(int r, Instant at, const double* X, double* g) const;
 };
 
 }   // namespace livens

@@ -1,65 +1,67 @@
 #include "livens/multibody/twist.h"
 
+#include <algorithm>
 #include <cmath>
+
+#include "livens/multibody/body.h"
 
 namespace livens::twist {
 
-void displacement(const Increment& q, const double* X0, double* dX)
+void displacement(const double* dphi, const double* q, const double* X, double* dX)
 {
-    const double x = q.v[0], y = q.v[1], z = q.v[2], s = q.s;
+    const double s = q[0], x = q[1], y = q[2], z = q[3];
     // R - 1 = 2 (v v^T - |v|^2 1 + s [v]), its diagonal without cancellation
     const double t[9] = {-2 * (y * y + z * z), 2 * (x * y + s * z),  2 * (x * z - s * y),
                          2 * (x * y - s * z),  -2 * (x * x + z * z), 2 * (y * z + s * x),
                          2 * (x * z + s * y),  2 * (y * z - s * x),  -2 * (x * x + y * y)};
-    for (int i = 0; i < 3; ++i) dX[i] = q.u[i];
+    for (int i = 0; i < 3; ++i) dX[i] = dphi[i];
     for (int a = 3; a < 12; a += 3)
-        for (int i = 0; i < 3; ++i) dX[a + i] = t[i] * X0[a] + t[3 + i] * X0[a + 1] + t[6 + i] * X0[a + 2];
+        for (int i = 0; i < 3; ++i) dX[a + i] = t[i] * X[a] + t[3 + i] * X[a + 1] + t[6 + i] * X[a + 2];
 }
 
-namespace {
-
-/// Quaternion of exp(w).
-void exponential(const double* w, double& s, double* v)
+void displacement(const double* twist, const double* X, double* dX)
 {
+    const double* w = twist + 3;
     const double angle2 = w[0] * w[0] + w[1] * w[1] + w[2] * w[2];
-    double factor;
+    double factor, q[4];
     if (angle2 < 1e-4) {
         // sin(a/2)/a and cos(a/2) to below 1e-18
         factor = 0.5 - angle2 * (1.0 / 48 - angle2 * (1.0 / 3840 - angle2 / 645120));
-        s = 1 - angle2 * (1.0 / 8 - angle2 * (1.0 / 384 - angle2 / 46080));
+        q[0] = 1 - angle2 * (1.0 / 8 - angle2 * (1.0 / 384 - angle2 / 46080));
     } else {
         const double angle = std::sqrt(angle2);
         factor = std::sin(0.5 * angle) / angle;
-        s = std::cos(0.5 * angle);
+        q[0] = std::cos(0.5 * angle);
     }
-    for (int i = 0; i < 3; ++i) v[i] = factor * w[i];
+    for (int i = 0; i < 3; ++i) q[i + 1] = factor * w[i];
+    displacement(twist, q, X, dX);
 }
 
-}   // namespace
-
-void update(Increment& q, const double* twist)
+void quaternion_of(const double* X, const double* dX, double* q)
 {
-    for (int i = 0; i < 3; ++i) q.u[i] += twist[i];
-    double ws, wv[3];
-    exponential(twist + 3, ws, wv);
-    const double s = ws * q.s - (wv[0] * q.v[0] + wv[1] * q.v[1] + wv[2] * q.v[2]);
-    const double x = ws * q.v[0] + q.s * wv[0] + (wv[1] * q.v[2] - wv[2] * q.v[1]);
-    const double y = ws * q.v[1] + q.s * wv[1] + (wv[2] * q.v[0] - wv[0] * q.v[2]);
-    const double z = ws * q.v[2] + q.s * wv[2] + (wv[0] * q.v[1] - wv[1] * q.v[0]);
-    // |q| = 1 to rounding; one Newton step of the inverse root keeps it there
-    const double scale = 1.5 - 0.5 * (s * s + x * x + y * y + z * z);
-    q.s = scale * s;
-    q.v[0] = scale * x;
-    q.v[1] = scale * y;
-    q.v[2] = scale * z;
+    double m[9] = {};   // R - 1 = sum_a dd_a d_a^T, column by column
+    for (int a = 3; a < 12; a += 3)
+        for (int j = 0; j < 3; ++j)
+            for (int i = 0; i < 3; ++i) m[3 * j + i] += dX[a + i] * X[a + j];
+    q[0] = std::sqrt(std::max(0.0, 1 + 0.25 * (m[0] + m[4] + m[8])));
+    const double scale = 0.25 / q[0];
+    q[1] = scale * (m[5] - m[7]);
+    q[2] = scale * (m[6] - m[2]);
+    q[3] = scale * (m[1] - m[3]);
 }
 
-Increment from_vectors(const double* linear, const double* angular)
+Vector3 turn_between(const Matrix34& from, const Matrix34& to)
 {
-    Increment q;
-    for (int i = 0; i < 3; ++i) q.u[i] = linear[i];
-    exponential(angular, q.s, q.v);
-    return q;
+    const Matrix3 R = directors(to) * transpose(directors(from));
+    const Vector4 q = quaternion_from_directors(project_directors(R));
+    const Vector3 v{q[1], q[2], q[3]};
+    const double s = norm(v);
+    return s > 0 ? (2 * std::atan2(s, q[0]) / s) * v : Vector3{};
+}
+
+Matrix34 moved(const Matrix34& X, const Vector3& step, const Vector3& turn)
+{
+    return configuration(X.column(0) + step, directors_from_rotation_vector(turn) * directors(X));
 }
 
 void add_block(const double* c, const double* X_row, const double* X_column, double factor, double* out,

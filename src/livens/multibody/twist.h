@@ -1,29 +1,30 @@
-// The reduction of a body's twelve numbers to a twist: rows, columns, update, and the terms of the tangent.
+// Rigid kinematics: the reduction of a body's twelve numbers to a twist. Rows, columns, finite displacements,
+// and the terms of the tangent.
 //
 // A body's columns are [phi d1 d2 d3]; a twist is [dphi, w] with d_a moving by w x d_a. The rows
 // [r_phi ; sum_a d_a x r_a] lose the six rigidity multipliers identically, because sum_a d_a x lambda_ab d_b
-// = 0 for a symmetric lambda. Increments are measured from the element's start (docs/theory.md,
-// "Increments").
+// = 0 for a symmetric lambda (docs/theory.md, "On the rotation group").
 #pragma once
+
+#include "livens/base/linear.h"
 
 namespace livens::twist {
 
-/// Increment of one body from the element's start: displacement and quaternion (s, v) of the turn, world
-/// axes.
-struct Increment {
-    double u[3] = {0, 0, 0};
-    double s = 1;
-    double v[3] = {0, 0, 0};
-};
+/// dX = [dphi, (exp(w) - 1) d_a] of the finite twist [dphi, w], exact to rounding of the displacement itself.
+void displacement(const double* twist, const double* X, double* dX);
 
-/// dX = [u, (R - 1) d_a] with (R - 1) d = 2 v x (v x d + s d), exact to rounding of the increment itself.
-void displacement(const Increment& increment, const double* X0, double* dX);
+/// The same for a turn by the unit quaternion (s, v) = q.
+void displacement(const double* dphi, const double* q, const double* X, double* dX);
 
-/// increment <- the twist [dphi, w] after increment: u += dphi, R <- exp(w) R.
-void update(Increment& increment, const double* twist);
+/// The unit quaternion (s, v) of the turn from X to X + dX, whose directors are orthonormal; less than half a
+/// turn.
+void quaternion_of(const double* X, const double* dX, double* q);
 
-/// The increment of the screw u = linear, R = exp(angular).
-Increment from_vectors(const double* linear, const double* angular);
+/// The rotation vector of the turn between two triads, at most pi long.
+Vector3 turn_between(const Matrix34& from, const Matrix34& to);
+
+/// X moved by a step and turned by a rotation vector, both in world axes.
+Matrix34 moved(const Matrix34& X, const Vector3& step, const Vector3& turn);
 
 /// Rows: out = [r_0 ; sum_a d_a x r_a]. X and r are 3 x 4, column by column.
 inline void rows(const double* X, const double* r, double* out)

@@ -1,6 +1,7 @@
 #include "livens/solvers/dense.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <utility>
@@ -64,6 +65,7 @@ bool DenseLU::choose_pivot(int k)
     if (best != k) {
         std::swap_ranges(row(k), row(k) + n_, row(best));
     }
+    failed_ = k;   // stays so if this is the last
     return largest > 0 && std::isfinite(largest);
 }
 
@@ -113,6 +115,41 @@ void DenseLU::solve(double* x) const
         const double* r = row(i);
         x[i] = (x[i] - inner(r + i + 1, x + i + 1, n_ - i - 1)) / r[i];
     }
+}
+
+/// A^T = U^T L^T P, without a column of U or L: their rows are taken off what is left.
+void DenseLU::solve_transposed(double* x) const
+{
+    for (int i = 0; i < n_; ++i) {
+        const double* r = row(i);
+        x[i] /= r[i];
+        subtract_scaled(x + i + 1, x[i], r + i + 1, n_ - i - 1);
+    }
+    for (int i = n_ - 1; i > 0; --i) subtract_scaled(x, x[i], row(i), i);
+    for (int k = n_ - 1; k >= 0; --k) {
+        if (pivot_[k] != k) std::swap(x[k], x[pivot_[k]]);
+    }
+}
+
+void DenseLU::exchange(std::vector<double>& entries)
+{
+    assert(entries.size() == a_.size());
+    a_.swap(entries);
+}
+
+double DenseLU::smallest_pivot() const
+{
+    double smallest = n_ > 0 ? std::abs(row(0)[0]) : 1;
+    for (int k = 1; k < n_; ++k) smallest = std::min(smallest, std::abs(row(k)[k]));
+    return smallest;
+}
+
+double DenseLU::largest_in_U() const
+{
+    double largest = 0;
+    for (int i = 0; i < n_; ++i)
+        for (int j = i; j < n_; ++j) largest = std::max(largest, std::abs(row(i)[j]));
+    return largest;
 }
 
 void OrthogonalBasis::resize(int n, int most)

@@ -21,6 +21,17 @@ public:
     bool factorise();
     /// x <- A^-1 x.
     void solve(double* x) const;
+    /// x <- A^-T x.
+    void solve_transposed(double* x) const;
+
+    /// Exchanges the entries for as many others, row by row: a matrix is factorised where it was made.
+    void exchange(std::vector<double>& entries);
+    /// Column whose pivot made the last factorise() return false: it depends on those before, or is not
+    /// finite.
+    int failed_column() const { return failed_; }
+    /// Smallest |u_kk| (1 if n = 0) and largest |u_ij|, after a factorise() that returned true.
+    double smallest_pivot() const;
+    double largest_in_U() const;
 
 private:
     const double* row(int i) const
@@ -31,6 +42,7 @@ private:
     bool choose_pivot(int k);
 
     int n_ = 0;
+    int failed_ = -1;
     std::vector<double> a_;
     std::vector<int> pivot_;
     mutable std::vector<double> permuted_;

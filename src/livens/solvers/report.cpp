@@ -15,6 +15,8 @@ const char* to_string(SolveStatus status)
         return "not finite";
     case SolveStatus::cancelled:
         return "cancelled";
+    case SolveStatus::suspect:
+        return "suspect";
     }
     return "unknown";
 }

@@ -12,7 +12,8 @@ enum class SolveStatus {
     not_converged,   ///< Newton's iteration failed; the motion ends at the last good element end
     singular,        ///< a tangent lost rank or the constraints did; likewise
     not_finite,      ///< a load or a state became nan or inf; likewise
-    cancelled        ///< stopped by the caller; likewise
+    cancelled,       ///< stopped by the caller; likewise
+    suspect          ///< the iteration converged, but the motion fails the checks made of it
 };
 
 const char* to_string(SolveStatus status);
@@ -21,36 +22,36 @@ struct SolveReport {
     SolveStatus status = SolveStatus::converged;
     std::string message;          ///< one line for a person: which joint or body, when, what to try
     int n_elements = 0;           ///< solved
-    int unknowns = 0;             ///< of one block, after elimination
-    long newton_iterations = 0;   ///< over all blocks
-    int most_iterations = 0;      ///< in one block
-    long factorisations = 0;      ///< of the tangent of a block
-    long guess_factorisations =
-        0;                         ///< of the smaller tangents behind first guesses (half the degree or less)
-    int rescued = 0;               ///< elements that converged only from a guess made by many small elements
-    double residual_norm = 0;      ///< largest scaled residual at acceptance
-    double smallest_pivot = 1;     ///< of the scaled constraint Jacobian; below 1e-6 deserves a look
-    double failed_at = 0;          ///< start of the failed element or block, s; only if not converged
-    std::vector<int> iterations;   ///< per block; lobatto and stepping: per element
+    int unknowns = 0;             ///< of one window, after elimination
+    long newton_iterations = 0;   ///< over all windows, all guesses counted
+    int most_iterations = 0;      ///< in one window
+    long factorisations = 0;      ///< of the tangent of a window
+    long guess_factorisations = 0;   ///< of the smaller tangents behind first guesses
+    int rescued = 0;                 ///< windows that converged only from another guess than the first
+    double residual_norm = 0;        ///< largest scaled residual at acceptance
+    double smallest_pivot = 1;       ///< of the scaled constraint Jacobian; below 1e-6 deserves a look
+    double failed_at = 0;            ///< near end of the failed window, s; only if not converged
+    std::vector<int> iterations;     ///< per window; stepping: per element
     std::vector<std::string> notes;   ///< redundant rows, projections, ...
     double condition_1 = 0;           ///< of the whole matrix in the 1-norm, if asked for
     double condition_2 = 0;           ///< and in the 2-norm
     double scaled_condition = 0;      ///< in the 1-norm, as it is factorised: rows and columns scaled
-    long long factor_entries = 0;     ///< stored numbers of a block's sparse factors; 0: dense
+    long long factor_entries = 0;     ///< stored numbers of a window's sparse factors; 0: dense
     double guess_distance = 0;        ///< largest distance of the motion from the march it was guessed by: of
                                       ///< points by the model's length, of directors; 0: not guessed so
     double guess_distance_time = 0;   ///< when it first exceeds 0.05, else when it is largest, s
 
     bool converged() const { return status == SolveStatus::converged; }
+    bool reached_end() const { return converged() || status == SolveStatus::suspect; }
 };
 
-/// Called after each element or block, and between Newton's iterations on a block (`element` is then the one
-/// it begins with); return false to stop.
+/// Called after each window, and between Newton's iterations on one (`done` and `t` are then as before it);
+/// return false to stop. After the last window there is nothing left to stop.
 struct Progress {
-    int element = 0;
+    int done = 0;          ///< elements solved so far, 0..n_elements, in either direction of time
     int n_elements = 0;
-    double t = 0;
-    int iterations = 0;
+    double t = 0;          ///< s, up to where the motion is solved
+    int iterations = 0;    ///< of the window at hand
     double residual = 0;
 };
 using ProgressCallback = std::function<bool(const Progress&)>;

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <string>
 
@@ -9,6 +8,7 @@
 #include <Eigen/SparseLU>
 
 #include "livens/base/error.h"
+#include "livens/base/text.h"
 #include "livens/multibody/mass_properties.h"
 #include "livens/stepping/step_equations.h"
 #include "livens/stepping/stepping.h"
@@ -18,13 +18,6 @@ namespace livens {
 namespace {
 
 using System = StepEquations::System;
-
-std::string number(double x)
-{
-    char text[32];
-    std::snprintf(text, sizeof text, "%.6g", x);
-    return text;
-}
 
 /// Every entry of the mass matrix takes part in the equations of a director, so a vanishing second moment is
 /// a missing equation.
@@ -106,7 +99,7 @@ struct StepOutcome {
 /// The march: its state, and the motion and report it fills.
 class Marcher {
 public:
-    Marcher(const Model& model, const Assembly& assembly, const TimeMesh& mesh, SteppingRule rule,
+    Marcher(const Model& model, const ClosedStart& assembly, const TimeMesh& mesh, SteppingRule rule,
             const SteppingOptions& options)
         : model_(model), mesh_(mesh), options_(options), equations_(model, assembly, rule),
           solver_(equations_.size()), unknowns_(equations_.size(), 0.0)
@@ -127,7 +120,7 @@ public:
     }
 
 private:
-    void begin_motion(const Assembly& assembly, SteppingRule rule)
+    void begin_motion(const ClosedStart& assembly, SteppingRule rule)
     {
         Motion& motion = result_.motion;
         motion.n_bodies = model_.n_bodies();
@@ -262,12 +255,12 @@ private:
         report.residual_norm = std::max(report.residual_norm, outcome.worst.value);
         report.n_elements = element + 1;
         if (!options_.progress) return;
-        const Progress progress{element, mesh_.n_elements(), mesh_.ends[element + 1], outcome.iterations,
+        const Progress progress{element + 1, mesh_.n_elements(), mesh_.ends[element + 1], outcome.iterations,
                                 outcome.worst.value};
         if (options_.progress(progress) || element + 1 == mesh_.n_elements()) return;
         report.status = SolveStatus::cancelled;
         report.failed_at = mesh_.ends[element + 1];
-        report.message = "cancelled at t = " + number(report.failed_at) + " s";
+        report.message = "cancelled at t = " + to_text(report.failed_at, 6) + " s";
     }
 
     void fail(const StepOutcome& outcome)
@@ -276,11 +269,12 @@ private:
         report.status = outcome.status;
         report.failed_at = now_.t;
         const std::string where =
-            " in the step from t = " + number(now_.t) + " s to " + number(now_.t + now_.h) + " s";
+            " in the step from t = " + to_text(now_.t, 6) + " s to " + to_text(now_.t + now_.h, 6) + " s";
         const std::string worst =
             outcome.worst.name.empty()
                 ? ""
-                : "; the largest residual is " + number(outcome.worst.value) + " in " + outcome.worst.name;
+                : "; the largest residual is " + to_text(outcome.worst.value, 6) + " in " +
+                      outcome.worst.name;
         if (!outcome.load.empty()) {
             report.message = "the load '" + outcome.load + "' is not finite" + where;
         } else if (outcome.status == SolveStatus::not_finite) {
@@ -308,7 +302,7 @@ private:
 
 }   // namespace
 
-SteppingResult march_stepping(const Model& model, const Assembly& assembly, const TimeMesh& mesh,
+SteppingResult march_stepping(const Model& model, const ClosedStart& assembly, const TimeMesh& mesh,
                               SteppingRule rule, const SteppingOptions& options)
 {
     assert(!mesh.ends.empty() && static_cast<int>(assembly.start.X.size()) == model.n_bodies());

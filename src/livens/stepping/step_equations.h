@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "livens/multibody/assembly.h"
+#include "livens/multibody/closing.h"
 #include "livens/multibody/model.h"
 #include "livens/stepping/stepping.h"
 
@@ -40,7 +40,7 @@ struct StepStart {
 class StepEquations {
 public:
     /// Rows of `assembly.independent`, then the six rigidity rows of every body.
-    StepEquations(const Model& model, const Assembly& assembly, SteppingRule rule);
+    StepEquations(const Model& model, const ClosedStart& assembly, SteppingRule rule);
 
     /// Unknowns: u, twelve numbers a body (columns of X) or three a point mass, then Lambda.
     int size() const { return n_displacements_ + static_cast<int>(rows_.size()); }

@@ -2,7 +2,7 @@
 // spacetime.
 #pragma once
 
-#include "livens/multibody/assembly.h"
+#include "livens/multibody/closing.h"
 #include "livens/multibody/model.h"
 #include "livens/multibody/motion.h"
 #include "livens/solvers/report.h"
@@ -32,7 +32,7 @@ struct SteppingResult {
 
 /// One step per element of the mesh, from an assembled start. Bodies are the 12 numbers of X with weak
 /// rigidity multipliers, so m must be positive definite: a singular one is an InputError that names the body.
-SteppingResult march_stepping(const Model& model, const Assembly& assembly, const TimeMesh& mesh,
+SteppingResult march_stepping(const Model& model, const ClosedStart& assembly, const TimeMesh& mesh,
                               SteppingRule rule, const SteppingOptions& options);
 
 }   // namespace livens

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "livens/base/error.h"
+#include "livens/base/text.h"
 #include "livens/time/quadrature.h"
 
 namespace livens {
@@ -26,7 +27,7 @@ void check_nodes(const std::vector<double>& nodes)
     }
     for (std::size_t i = 0; i < nodes.size(); ++i) {
         if (std::isfinite(nodes[i]) && (i == 0 || nodes[i - 1] < nodes[i])) continue;
-        complaint.value = std::to_string(nodes[i]) + " at place " + std::to_string(i);
+        complaint.value = to_text(nodes[i]) + " at place " + std::to_string(i);
         throw InputError(complaint);
     }
 }

@@ -2,23 +2,16 @@
 
 #include <algorithm>
 #include <cassert>
-#include <charconv>
 #include <cmath>
 #include <memory>
 #include <string>
 #include <utility>
 
 #include "livens/base/error.h"
+#include "livens/base/text.h"
 
 namespace livens {
 namespace {
-
-std::string text(double x)
-{
-    char buffer[32];
-    const std::to_chars_result r = std::to_chars(buffer, buffer + sizeof buffer, x);
-    return {buffer, r.ptr};
-}
 
 [[noreturn]] void refuse_table(const char* code, const std::string& message, const std::string& value,
                                const std::string& bound)
@@ -39,24 +32,24 @@ void check_table(const std::vector<double>& times, const std::vector<double>& va
     for (std::size_t i = 0; i < times.size(); ++i) {
         const std::string row = "row " + std::to_string(i + 1) + " of a table";
         if (!std::isfinite(times[i]))
-            refuse_table("not-finite", row + " has no finite time", text(times[i]), "finite");
+            refuse_table("not-finite", row + " has no finite time", to_text(times[i]), "finite");
         if (!std::isfinite(values[i])) {
-            refuse_table("not-finite", row + " has no finite value", text(values[i]), "finite");
+            refuse_table("not-finite", row + " has no finite value", to_text(values[i]), "finite");
         }
         if (i > 0 && times[i] < times[i - 1]) {
-            refuse_table("table-order", row + " goes back in time", text(times[i]),
-                         ">= " + text(times[i - 1]));
+            refuse_table("table-order", row + " goes back in time", to_text(times[i]),
+                         ">= " + to_text(times[i - 1]));
         }
         if (i >= repeats && times[i] == times[i - repeats]) {
             refuse_table("table-order",
                          row + (repeats == 1 ? " repeats the time before it" : " is the third of one time"),
-                         text(times[i]),
+                         to_text(times[i]),
                          repeats == 1 ? "times ascend strictly" : "two rows of one time are a jump");
         }
         // Slopes must be numbers too.
         if (i > 0 && times[i] != times[i - 1] &&
             !std::isfinite((values[i] - values[i - 1]) / (times[i] - times[i - 1]))) {
-            refuse_table("table-slope", row + " is too steep to compute with", text(values[i]),
+            refuse_table("table-slope", row + " is too steep to compute with", to_text(values[i]),
                          "a finite slope");
         }
     }
@@ -153,7 +146,7 @@ TimeFunction::TimeFunction(double constant) : constant_(constant)
 {
     if (!std::isfinite(constant)) {
         throw InputError({"not-finite", "load.value", "a function of time must have finite values",
-                          text(constant), "finite", "", ""});
+                          to_text(constant), "finite", "", ""});
     }
 }
 
@@ -174,8 +167,8 @@ TimeValue TimeFunction::operator()(Instant at) const
 TimeFunction window(TimeFunction inner, double from, double until)
 {
     if (!(from < until)) {
-        throw InputError({"window-order", "load.until", "a window must close after it opens", text(until),
-                          "> " + text(from), "", ""});
+        throw InputError({"window-order", "load.until", "a window must close after it opens", to_text(until),
+                          "> " + to_text(from), "", ""});
     }
     std::vector<double> breaks;
     if (std::isfinite(from)) breaks.push_back(from);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cassert>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <functional>
@@ -10,6 +9,7 @@
 #include <string>
 
 #include "livens/base/error.h"
+#include "livens/base/text.h"
 
 namespace livens {
 namespace {
@@ -17,34 +17,27 @@ namespace {
 constexpr double merge_fraction = 1e-9;        // of end - start; closer instants are one
 constexpr double max_elements = 100'000'000;   // 0.8 GB of element ends; above it is a slip of the pen
 
-std::string text(double x)
-{
-    char buffer[32];
-    const std::to_chars_result r = std::to_chars(buffer, buffer + sizeof buffer, x);
-    return {buffer, r.ptr};
-}
-
 void check_interval(double start, double end, int n_elements)
 {
     if (!std::isfinite(start)) {
-        throw InputError({"time-start", "time.start", "the motion must start at a finite time", text(start),
-                          "finite", "", ""});
+        throw InputError({"time-start", "time.start", "the motion must start at a finite time",
+                          to_text(start), "finite", "", ""});
     }
     if (!std::isfinite(end)) {
         throw InputError(
-            {"time-end", "time.end", "the motion must end at a finite time", text(end), "finite", "", ""});
+            {"time-end", "time.end", "the motion must end at a finite time", to_text(end), "finite", "", ""});
     }
     if (!(end > start)) {
-        throw InputError({"time-end", "time.end", "the end must lie after the start", text(end),
-                          "> " + text(start), "", ""});
+        throw InputError({"time-end", "time.end", "the end must lie after the start", to_text(end),
+                          "> " + to_text(start), "", ""});
     }
     if (!std::isfinite(end - start)) {
         throw InputError({"time-end", "time.end", "the time from start to end is beyond all numbers",
-                          text(end), "", "", ""});
+                          to_text(end), "", "", ""});
     }
     if (n_elements < 1 || n_elements > max_elements) {
         throw InputError({"time-elements", "time.elements", "the number of time elements is out of range",
-                          std::to_string(n_elements), "1 .. " + text(max_elements), "", ""});
+                          std::to_string(n_elements), "1 .. " + to_text(max_elements), "", ""});
     }
 }
 
@@ -56,8 +49,8 @@ std::vector<double> fixed_ends(double start, double end, std::span<const double>
     for (const double t : required) {
         if (!std::isfinite(t)) {
             throw InputError({"time-output", "time.output",
-                              "an instant that must be an element end is not finite", text(t), "finite", "",
-                              ""});
+                              "an instant that must be an element end is not finite", to_text(t), "finite",
+                              "", ""});
         }
         if (t < start || t > end) continue;
         const auto after = fixed.lower_bound(t);   // exists, since t <= end
@@ -100,7 +93,7 @@ TimeMesh make_time_mesh(double start, double end, int n_elements, std::span<cons
     if (stuck != mesh.ends.end()) {
         throw InputError(
             {"time-resolution", "time.elements",
-             "time elements at t = " + text(*stuck) + " are shorter than the spacing of numbers there",
+             "time elements at t = " + to_text(*stuck) + " are shorter than the spacing of numbers there",
              std::to_string(n_elements), "", "", "use fewer elements or start nearer to zero"});
     }
     return mesh;

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
-#include <charconv>
 #include <cmath>
 #include <string>
 #include <utility>
 
 #include "livens/base/error.h"
+#include "livens/base/text.h"
 
 namespace livens {
 namespace {
@@ -21,19 +21,12 @@ constexpr double merge_fraction = 1e-9;                 // as in a time mesh; of
 constexpr double latest = 1e150, shortest = 1e-150;
 constexpr double lightest = 1e-50, heaviest = 1e50;
 
-std::string text(double x)
-{
-    char buffer[32];
-    const std::to_chars_result r = std::to_chars(buffer, buffer + sizeof buffer, x);
-    return {buffer, r.ptr};
-}
-
 std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 /// Is it a time that can be computed with? False for nan.
 bool is_usable(double t) { return std::abs(t) <= latest; }
 
-std::string usable_times() { return "-" + text(latest) + " .. " + text(latest); }
+std::string usable_times() { return "-" + to_text(latest) + " .. " + to_text(latest); }
 
 void check_degree(int degree)
 {
@@ -46,7 +39,7 @@ void check_count(double n_elements)
 {
     if (n_elements >= 1 && n_elements <= max_elements) return;
     throw InputError({"time-elements", "time.elements", "the number of time elements is out of range",
-                      text(n_elements), "1 .. " + text(max_elements), "", ""});
+                      to_text(n_elements), "1 .. " + to_text(max_elements), "", ""});
 }
 
 void check_ends(std::span<const double> ends)
@@ -56,11 +49,11 @@ void check_ends(std::span<const double> ends)
         const std::string which = "element end " + std::to_string(i + 1);
         if (!is_usable(ends[i])) {
             throw InputError({"not-finite", "time.elements", which + " is no instant to compute with",
-                              text(ends[i]), usable_times(), "", ""});
+                              to_text(ends[i]), usable_times(), "", ""});
         }
         if (i == 0 || ends[i] - ends[i - 1] >= shortest) continue;
         throw InputError({"time-resolution", "time.elements", which + " does not lie after the one before it",
-                          text(ends[i]), "> " + text(ends[i - 1]), "", ""});
+                          to_text(ends[i]), "> " + to_text(ends[i - 1]), "", ""});
     }
 }
 
@@ -75,18 +68,18 @@ void check_numbers(const std::vector<double>& knots)
     for (std::size_t i = 0; i < knots.size(); ++i) {
         const std::string which = "knot " + std::to_string(i + 1);
         if (!is_usable(knots[i])) {
-            refuse_knots("knots-not-finite", which + " is no instant to compute with", text(knots[i]),
+            refuse_knots("knots-not-finite", which + " is no instant to compute with", to_text(knots[i]),
                          usable_times());
         }
         if (i == 0 || knots[i] == knots[i - 1]) continue;
         if (knots[i] < knots[i - 1]) {
-            refuse_knots("knots-decreasing", which + " is smaller than the one before it", text(knots[i]),
-                         ">= " + text(knots[i - 1]), "put the knots in order of time");
+            refuse_knots("knots-decreasing", which + " is smaller than the one before it", to_text(knots[i]),
+                         ">= " + to_text(knots[i - 1]), "put the knots in order of time");
         }
         if (knots[i] - knots[i - 1] < shortest) {
             refuse_knots("knots-not-finite",
                          which + " is so close to the one before it that slopes are no numbers",
-                         text(knots[i] - knots[i - 1]), ">= " + text(shortest),
+                         to_text(knots[i] - knots[i - 1]), ">= " + to_text(shortest),
                          "make the knots equal, or move them apart");
         }
     }
@@ -99,7 +92,7 @@ void check_multiplicities(int degree, const std::vector<double>& knots)
     for (std::size_t i = 0, next = 0; i < n; i = next) {
         while (next < n && knots[next] == knots[i]) ++next;
         const std::size_t times = next - i;
-        const std::string which = "knot " + std::to_string(i + 1) + ", " + text(knots[i]) + ",";
+        const std::string which = "knot " + std::to_string(i + 1) + ", " + to_text(knots[i]) + ",";
         const bool outer = i == 0 || next == n;
         if (outer && times != index(degree) + 1) {
             refuse_knots("knots-not-clamped",
@@ -150,7 +143,7 @@ void check_weights(const std::vector<double>& weights, int n_functions)
             {"weights-not-positive", "method.weights",
              "weight " + std::to_string(i + 1) +
                  (positive ? " is beyond what can be computed with" : " must be positive and finite"),
-             text(weights[i]), positive ? text(lightest) + " .. " + text(heaviest) : "> 0", "",
+             to_text(weights[i]), positive ? to_text(lightest) + " .. " + to_text(heaviest) : "> 0", "",
              "only ratios of weights matter"});
     }
 }

@@ -413,6 +413,59 @@ TEST(Balance, OfABodyAtRestIsRelativeToWhatHoldsIt)
     EXPECT_GT(balance(model, slack).relative_angular_momentum_drift(), 0.1);
 }
 
+TEST(Balance, OfRestIsThatOfTheLengthsThatHoldIt)
+{
+    // At a height of zero the potential energy is nothing but rounding, of the chain's length.
+    Model model({0, 0, -9.81});
+    model.add_body(point_mass("lamp", 3, {0, 0, 0}));
+    model.add_joint(rod("chain", world, 0, {{0, 0, 2}, {}, {0, 0, 1}, {0, 0, 1}}, 2));
+    const auto rest = [&](double speed) {
+        const auto still = [=](double t) {
+            return t < 0.5 ? state_of_point(t, {}, {}) : state_of_point(t, {0, 0, 4e-16}, {speed, 0, 0});
+        };
+        const double lambda = 3 * 9.81 / 2;
+        return balance(model, motion(model, mesh(0, 1, 10), 3, still,
+                                     [&](double) { return std::vector<double>{lambda}; }));
+    };
+    EXPECT_EQ(rest(1e-14).relative_energy_drift(), 0);
+    EXPECT_EQ(rest(1e-14).relative_linear_momentum_drift(), 0);
+    EXPECT_EQ(rest(1e-14).relative_angular_momentum_drift(), 0);
+    EXPECT_NEAR(rest(1e-3).relative_energy_drift(), 1, 1e-6) << "it began to move by itself";
+    EXPECT_NEAR(rest(1e-3).relative_linear_momentum_drift(), 1, 1e-6);
+}
+
+TEST(Balance, IsRelativeToWhatMovesHoweverLongARodIs)
+{
+    // A slide, modelled by a rod of 3e9 m across it: the speed grows from 1 to 2 m/s by itself.
+    Model model({0, 0, -9.81});
+    model.add_body(point_mass("sledge", 3, {0, 0, 0}, {1, 0, 0}));
+    model.add_joint(rod("slide", world, 0, {{0, 0, 3e9}, {}, {0, 0, 1}, {0, 0, 1}}, 3e9));
+    const double lambda = 3 * 9.81 / 3e9;
+    const auto faster = [&](double speed) {
+        return balance(model, motion(
+                                  model, mesh(0, 1, 10), 3,
+                                  [=](double t) {
+                                      const double v = t < 0.5 ? 1 : speed;
+                                      return state_of_point(t, {0.5 + v * (t - 0.5), 0, 0}, {v, 0, 0});
+                                  },
+                                  [&](double) { return std::vector<double>{lambda}; }));
+    };
+    EXPECT_NEAR(faster(2).relative_energy_drift(), 0.75, 1e-12);
+    EXPECT_NEAR(faster(2).relative_linear_momentum_drift(), 0.5, 1e-6);
+    EXPECT_EQ(faster(1).relative_energy_drift(), 0);
+}
+
+TEST(Balance, OfEnergyIsRelativeToTheChangeOfPotential)
+{
+    // A stone is lifted by 3 m in no time and without work.
+    Model model({0, 0, -10});
+    model.add_body(point_mass("stone", 1, {0, 0, 1e3}));
+    const Balance b = balance(model, motion(model, mesh(0, 1, 10), 3, [](double t) {
+                                  return state_of_point(t, {0, 0, t < 0.5 ? 1e3 : 1e3 + 3}, {1e-3, 0, 0});
+                              }));
+    EXPECT_NEAR(b.relative_energy_drift(), 1, 1e-12);
+}
+
 TEST(Balance, OfNothingIsZero)
 {
     Model model;

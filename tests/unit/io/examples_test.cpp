@@ -110,7 +110,7 @@ double gap(const Matrix34& X, const Matrix3& triad) { return norm(project_direct
 
 Motion solved(const Scenario& s)
 {
-    Solution solution = solve(s.model, s.boundary, s.mesh, s.method, s.options);
+    Solution solution = solve(s.model, {s.conditions}, s.mesh, s.method, s.options);
     EXPECT_TRUE(solution.report.converged()) << s.title << ": " << solution.report.message;
     return std::move(solution.motion);
 }
@@ -135,18 +135,18 @@ TEST(Examples, TwoPointArrivesWhenItIsThrown)
     Vector3 spin{};   // moment of momentum; the mass centre is the reference point
     for (int c = 1; c < 4; ++c) spin += cross(motion.at_end(0).X[0].column(c), P.column(c));
     const MassProperties m = mass_properties(s.model.bodies()[0].mass);
-    State thrown = s.boundary.start;
+    State thrown = s.conditions.start;
     thrown.V[0] = rate(thrown.X[0], (1 / m.mass) * P.column(0), inverse(m.inertia) * spin);
     const Solution forward = solve(s.model, {thrown}, make_time_mesh(0, 1, 10), Lobatto{8});
     const Matrix34 arrived = forward.motion.at_end(10).X[0];
     EXPECT_LT(norm(thrown.V[0].column(0) - Vector3{3, 0, 4.905}), 1e-12);
-    EXPECT_LT(norm(arrived - s.boundary.end.X[0]), 1e-10);
+    EXPECT_LT(norm(arrived - s.conditions.end.X[0]), 1e-10);
 }
 
 TEST(Examples, TheFourBarIsRedundantAndHasOneFreedom)
 {
     const Scenario scenario = example("four_bar");
-    const Assembly assembly = assemble(scenario.model, scenario.model.start(), StartPolicy::check);
+    const ClosedStart assembly = close_start(scenario.model, scenario.model.start(), StartPolicy::check);
     EXPECT_EQ(scenario.model.n_rows(), 20);
     EXPECT_EQ(assembly.independent.size(), 17u);
     EXPECT_EQ(assembly.redundant.size(), 3u);

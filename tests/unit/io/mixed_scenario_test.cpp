@@ -1,6 +1,7 @@
 // The family mixed and conditions at both ends: what arrives, and what is told where.
 #include <filesystem>
 
+#include "livens/io/detail/builder.h"
 #include "livens/io/results.h"
 #include "livens/solvers/sparse.h"
 #include "unit/io/scenario_text.h"
@@ -66,7 +67,7 @@ TEST(MixedScenario, DefaultsAreThoseOfTheLibrary)
     EXPECT_EQ(read.start, library.start);
     EXPECT_EQ(read.multipliers, library.multipliers);
     EXPECT_EQ(read.gauss_points, library.gauss_points);
-    EXPECT_EQ(read.block, library.block);
+    EXPECT_EQ(read.window, library.window);
     EXPECT_EQ(read.interfaces, library.interfaces);
     EXPECT_EQ(read.first_guess, library.first_guess);
     EXPECT_EQ(read.end_multiplier, library.end_multiplier);
@@ -77,7 +78,7 @@ TEST(MixedScenario, DefaultsAreThoseOfTheLibrary)
 TEST(MixedScenario, ChoicesArrive)
 {
     const Mixed m = method_of(mixed("basis = \"bspline\"\ndegree = 3\nmomentum = \"strong\"\n"
-                                    "multipliers = \"lower\"\ngauss_points = 7\nblock = 5\n"
+                                    "multipliers = \"lower\"\ngauss_points = 7\nwindow = 5\n"
                                     "interfaces = \"project\"\nfirst_guess = \"steady\""));
     EXPECT_EQ(m.first_guess, Mixed::FirstGuess::steady);
     EXPECT_EQ(m.basis, Mixed::Basis::bspline);
@@ -85,9 +86,9 @@ TEST(MixedScenario, ChoicesArrive)
     EXPECT_EQ(m.start, Mixed::Start::strong);
     EXPECT_EQ(m.multipliers, Mixed::Multipliers::lower);
     EXPECT_EQ(m.gauss_points, 7);
-    EXPECT_EQ(m.block, 5);
+    EXPECT_EQ(m.window, 5);
     EXPECT_EQ(m.interfaces, Mixed::Interfaces::project);
-    EXPECT_EQ(method_of(mixed("block = \"all\"")).block, 0);
+    EXPECT_EQ(method_of(mixed("window = \"all\"")).window, 0);
     EXPECT_EQ(method_of(nurbs("[1, 2, 1, 1]")).weights, (std::vector<double>{1, 2, 1, 1}));
 }
 
@@ -109,11 +110,11 @@ TEST(MixedScenario, ConditionIsAskedForInEveryFamily)
     }
 }
 
-TEST(MixedScenario, BlocksBelongToTheFamilyMixedAlone)
+TEST(MixedScenario, WindowsBelongToElementsAlone)
 {
-    for (const char* family : {"lobatto", "midpoint", "endpoint"})
-        expect_error(solved_by("family = \"" + std::string(family) + "\"\nblock = 2"), "misplaced-key",
-                     "block");
+    for (const char* family : {"midpoint", "endpoint"})
+        expect_error(solved_by("family = \"" + std::string(family) + "\"\nwindow = 2"), "misplaced-key",
+                     "window");
 }
 
 TEST(MixedScenario, LinearSolversOfOtherBuildsAreRefusedByName)
@@ -131,7 +132,7 @@ TEST(MixedScenario, ResolvedStatesEveryChoice)
     EXPECT_NE(resolved.find(R"("method": {"family": "mixed", "basis": "lagrange", "degree": 2, )"
                             R"("momentum": "natural", "multipliers": "equal", "end_multiplier": "smooth", )"
                             R"("gauss_points": "exact", )"
-                            R"("block": "all", "interfaces": "carry", "first_guess": "march", )"
+                            R"("window": "all", "interfaces": "carry", "first_guess": "march", )"
                             R"("linear_solver": "eigen", )"
                             R"("tolerance": 1e-12, "max_iterations": 30, "condition": false})"),
               std::string::npos)
@@ -194,8 +195,8 @@ TEST(MixedScenario, AHundredThousandElementsOfOneBodyFit)
     };
     good(text("degree = 1", "100000"));
     expect_error(text("degree = 2", "100000"), "resource-limit", "100000");
-    good(text("degree = 2\nblock = 1000", "100000"));
-    expect_error(text("degree = 4\nblock = 1000", "10000000"), "resource-limit", "10000000");   // the motion
+    good(text("degree = 2\nwindow = 1000", "100000"));
+    expect_error(text("degree = 4\nwindow = 1000", "10000000"), "resource-limit", "10000000");   // the motion
 }
 
 // --- conditions at both ends
@@ -203,12 +204,12 @@ TEST(MixedScenario, AHundredThousandElementsOfOneBodyFit)
 TEST(BoundaryScenario, TheStartIsGivenUnlessSaid)
 {
     const Scenario s = good(test::valid_scenario);
-    EXPECT_EQ(s.boundary.at_start, Given::state);
-    EXPECT_EQ(s.boundary.at_end, Given::nothing);
-    EXPECT_EQ(s.boundary.start.X, s.model.start().X);
-    EXPECT_EQ(s.boundary.start.V, s.model.start().V);
-    EXPECT_EQ(s.boundary.start.t, 0);
-    EXPECT_EQ(s.boundary.end.t, 1);
+    EXPECT_EQ(s.conditions.at_start, Known::state);
+    EXPECT_EQ(s.conditions.at_end, Known::nothing);
+    EXPECT_EQ(s.conditions.start.X, s.model.start().X);
+    EXPECT_EQ(s.conditions.start.V, s.model.start().V);
+    EXPECT_EQ(s.conditions.start.t, 0);
+    EXPECT_EQ(s.conditions.end.t, 1);
 }
 
 TEST(BoundaryScenario, StatesAtTheEndAreReadAsThoseAtTheStart)
@@ -218,13 +219,13 @@ TEST(BoundaryScenario, StatesAtTheEndAreReadAsThoseAtTheStart)
     for (const char* spin : {"angular_velocity = [0, 2, 0]", "angular_velocity_body = [2, 0, 0]"}) {
         const Scenario at_end = good(one_body(at_the_end + lines + spin, state_at_end));
         const Scenario at_start = good(one_body("", "", lines + spin));
-        EXPECT_EQ(at_end.boundary.at_start, Given::nothing);
-        EXPECT_EQ(at_end.boundary.at_end, Given::state);
-        ASSERT_EQ(at_end.boundary.end.X.size(), 1u);
-        EXPECT_EQ(at_end.boundary.end.X, at_start.boundary.start.X);
-        EXPECT_EQ(at_end.boundary.end.V, at_start.boundary.start.V);
-        EXPECT_EQ(at_end.boundary.end.t, 3);
-        EXPECT_EQ(at_end.boundary.start.X[0].column(0), (Vector3{0, 0, 0})) << "of [[body]], a guess";
+        EXPECT_EQ(at_end.conditions.at_start, Known::nothing);
+        EXPECT_EQ(at_end.conditions.at_end, Known::state);
+        ASSERT_EQ(at_end.conditions.end.X.size(), 1u);
+        EXPECT_EQ(at_end.conditions.end.X, at_start.conditions.start.X);
+        EXPECT_EQ(at_end.conditions.end.V, at_start.conditions.start.V);
+        EXPECT_EQ(at_end.conditions.end.t, 3);
+        EXPECT_EQ(at_end.conditions.start.X[0].column(0), (Vector3{0, 0, 0})) << "of [[body]], a guess";
         EXPECT_NE(at_end.resolved.find(R"("start": {"given": "nothing", "initial": "check"}, )"
                                        R"("end": {"given": "state"})"),
                   std::string::npos);
@@ -240,7 +241,7 @@ TEST(BoundaryScenario, EveryFullPairOfConditionsIsTaken)
         const Scenario s =
             good(one_body(has_end ? at_the_end : "", "[start]\ngiven = \"" + std::string(start) +
                                                          "\"\n[end]\ngiven = \"" + end + "\"\n"));
-        EXPECT_EQ(s.boundary.end.X.size(), has_end ? 1u : 0u) << start << ", " << end;
+        EXPECT_EQ(s.conditions.end.X.size(), has_end ? 1u : 0u) << start << ", " << end;
     }
 }
 
@@ -250,7 +251,7 @@ TEST(BoundaryScenario, PointMassesHaveAnEndWithoutOrientation)
                              "[body.end]\nposition = [1, 2, 3]\n[time]\nend = 1\nelements = 4\n[method]\n"
                              "family = \"mixed\"\n" +
                              state_at_end;
-    EXPECT_EQ(good(text).boundary.end.X[0], (Matrix34{1, 2, 3}));
+    EXPECT_EQ(good(text).conditions.end.X[0], (Matrix34{1, 2, 3}));
     expect_error(replaced(text, "position = [1, 2, 3]", "quaternion = [1, 0, 0, 0]"), "point-mass",
                  "[1, 0, 0, 0]");
 }
@@ -305,8 +306,25 @@ TEST(BoundaryScenario, ConditionsThatMakeNoMotionPointAtTheTables)
     refused("[end]\ngiven = \"positions\"\n", "\"positions\"");
     refused("[start]\ngiven = \"positions\"\n", "\"positions\"");
     refused("[start]\ngiven = 'momenta'\n[end]\ngiven = \"momenta\"\n", "\"momenta\"");
-    expect_error(replaced(one_body(at_the_end, state_at_end), "family = \"mixed\"", "family = \"lobatto\""),
+    good(replaced(one_body(at_the_end, state_at_end), "family = \"mixed\"", "family = \"lobatto\""));
+    expect_error(replaced(one_body(at_the_end, state_at_end), "family = \"mixed\"", "family = \"midpoint\""),
                  "boundary-method", "\"nothing\"");
+}
+
+TEST(Advice, OfTheCoreIsSpelledInTheKeysOfTheFile)
+{
+    const ScenarioResult refused =
+        read(replaced(one_body(at_the_end, state_at_end), "family = \"mixed\"", "family = \"midpoint\""));
+    ASSERT_EQ(refused.diagnostics.size(), 1u) << shown(refused);
+    EXPECT_NE(refused.diagnostics[0].help.find("(family = \"lobatto\" in [method])"), std::string::npos)
+        << shown(refused);
+
+    Complaint open{"start-position", "", "", "", "", "", "correct it, or let the start be projected"};
+    EXPECT_EQ(help_in_toml(open), open.help + " (initial = \"project\" in [start])");
+    open.help = "change the sign of one director";
+    EXPECT_EQ(help_in_toml(open), open.help) << "nothing was said of projection";
+    open = {"name-empty", "", "", "", "", "", "projected"};
+    EXPECT_EQ(help_in_toml(open), "projected") << "another code";
 }
 
 }   // namespace
@@ -327,7 +345,7 @@ std::vector<test::Case> test::cases_of_mixed()
         {"knots-not-clamped", splines("[0, 0, 0.25, 0.5, 0.75, 1, 1, 1]"), "[0, 0, 0.25"},
         {"mass-singular", lamina, "[1, 2, 3]"},
         {"mixed-block",
-         mixed("basis = \"bspline\"\nknots = [0, 0, 0, 0.5, 1, 1, 1]\nblock = 1 # one", "end = 1"),
+         mixed("basis = \"bspline\"\nknots = [0, 0, 0, 0.5, 1, 1, 1]\nwindow = 1 # one", "end = 1"),
          "1 # one"},
         {"mixed-pairing", mixed("gauss_points = 1 # one"), "1 # one"},
         {"spline-degree", mixed("basis = \"bspline\"\ndegree = 8 # high", "end = 1\nelements = 4"),

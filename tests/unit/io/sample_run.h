@@ -116,7 +116,6 @@ inline void fill_motion(Motion& m, const Model& model, int n_elements)
     m.dense_order_X = 3;
     m.dense_order_V = 2;
     m.constraints_hold = "element nodes";
-    m.redundant_rows = {0};
     m.rigidity = {12, 1, false, {}, {}};
     for (int i = 0; i < 24 * n_elements; ++i) m.rigidity.values.push_back(0.5 * i);
     m.gauss_points = 3;
@@ -167,28 +166,18 @@ inline RunFile sample_run(const Model& model, int n_elements = 8)
     run.report.condition_2 = 5e8;
     run.report.scaled_condition = 2e6;
     run.report.factor_entries = 123456789013;
-    run.summary = {false,
-                   "not converged",
-                   "lobatto(2)",
-                   n_elements,
-                   14,
-                   123456789012,
-                   8,
-                   1e-13,
-                   2e-16,
-                   3e-15,
-                   1e-9,
-                   std::numeric_limits<double>::quiet_NaN(),
-                   {"first", "second\nline"},
-                   "stopped",
-                   1e-5,
-                   0.125,
-                   0.25,
-                   1.5,
-                   1e9,
-                   5e8,
-                   2e6};
-    fill_balance(run.balance, n_elements + 1);
+    run.method = "lobatto(2)";
+    run.notes = {"first", "second\nline"};
+    Verdict& v = run.verdict;
+    v.max_constraint_violation = 2e-16;
+    v.max_velocity_violation = 3e-15;
+    v.energy_drift = 1e-9;
+    v.angular_momentum_drift = std::numeric_limits<double>::quiet_NaN();
+    v.max_weak_violation = 1e-5;
+    v.zigzag_positions = 0.125;
+    v.zigzag_momenta = 0.25;
+    v.zigzag_time = 1.5;
+    fill_balance(v.balance, n_elements + 1);
     run.version = "0.1.0";
     return run;
 }

@@ -276,7 +276,8 @@ TEST(Scenario, ResolvedStatesAllOptions)
         good(valid_scenario).resolved,
         R"({"format": 1, "title": "", "gravity": [0, 0, -9.81], )"
         R"("time": {"start": 0, "end": 1, "elements": 10, )"
-        R"("output": "element ends", "breaks": "from_loads"}, "method": {"family": "lobatto", "degree": 4, )"
+        R"("output": "element ends", "breaks": "from_loads"}, )"
+        R"("method": {"family": "lobatto", "degree": 4, "window": 1, )"
         R"("tolerance": 1e-12, "max_iterations": 30, "condition": false}, )"
         R"("start": {"given": "state", "initial": "check"}, "end": {"given": "nothing"}})");
     const Scenario midpoint = good(replaced(valid_scenario, "degree = 4", "family = \"midpoint\""));
@@ -453,6 +454,8 @@ TEST(ScenarioCodes, AllAreProvokedByTheseTests)
     std::set<std::string_view> others{"backend-missing",   // depends on the build; mixed_scenario_test.cpp
                                       "basis-nodes",
                                       "degree",
+                                      "drive-jumps",
+                                      "drives-method",
                                       "degree-out-of-range",
                                       "gauss-points-out-of-range",
                                       "internal",
@@ -479,7 +482,8 @@ TEST(ScenarioCodes, AllAreProvokedByTheseTests)
                                       "time-outside",
                                       "time-start",
                                       "tolerance-out-of-range",
-                                      "window"};
+                                      "window",
+                                      "window-out-of-range"};
     others.insert({"format-first", "load-never-acts"});                 // warnings, above
     others.insert({"io-directory", "io-not-found", "io-unreadable"});   // hostile_test.cpp
     for (const Case& c : cases()) {

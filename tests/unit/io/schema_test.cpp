@@ -100,6 +100,7 @@ breaks = "from_loads"
 [method]
 family = "lobatto"
 degree = 4
+window = 2
 tolerance = 1e-12
 max_iterations = 20
 
@@ -230,7 +231,7 @@ degree = 2
 momentum = "natural"
 multipliers = "equal"
 gauss_points = 6
-block = "all"
+window = "all"
 interfaces = "carry"
 first_guess = "march"
 end_multiplier = "smooth"

@@ -2,12 +2,12 @@
 #include <gtest/gtest.h>
 
 #include "livens/base/error.h"
-#include "livens/multibody/assembly.h"
+#include "livens/multibody/closing.h"
 
 namespace livens {
 namespace {
 
-TEST(Assembly, RefusesARevoluteWithItsAxesTurnedEndForEnd)
+TEST(ClosedStart, RefusesARevoluteWithItsAxesTurnedEndForEnd)
 {
     for (const double sign : {1.0, -1.0}) {
         Model model;
@@ -16,11 +16,11 @@ TEST(Assembly, RefusesARevoluteWithItsAxesTurnedEndForEnd)
         f.axis_second = {0, 0, sign};
         model.add_joint(revolute("hinge", world, 0, f));
         if (sign > 0) {
-            EXPECT_EQ(assemble(model, model.start(), StartPolicy::check).degrees_of_freedom, 1);
+            EXPECT_EQ(close_start(model, model.start(), StartPolicy::check).degrees_of_freedom, 1);
             continue;
         }
         try {
-            assemble(model, model.start(), StartPolicy::project);
+            close_start(model, model.start(), StartPolicy::project);
             FAIL() << "the opposite axis was accepted";
         } catch (const InputError& error) {
             EXPECT_EQ(error.complaint().code, "joint-branch");

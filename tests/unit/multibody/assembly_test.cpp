@@ -1,4 +1,4 @@
-#include "livens/multibody/assembly.h"
+#include "livens/multibody/closing.h"
 
 #include <algorithm>
 #include <cmath>
@@ -108,7 +108,7 @@ Complaint complaint_of(const std::function<void()>& act)
 
 Complaint refusal(const Model& model, const State& state, StartPolicy policy = StartPolicy::check)
 {
-    return complaint_of([&] { assemble(model, state, policy); });
+    return complaint_of([&] { close_start(model, state, policy); });
 }
 
 #define EXPECT_CONTAINS(text, part) EXPECT_NE(std::string(text).find(part), std::string::npos) << (text)
@@ -123,33 +123,33 @@ Body posed(Body body, const Vector3& position, const Vector3& rotation, const Ve
 
 // --- rank
 
-TEST(Assembly, CountsTheDegreesOfAFreeBodyAndAPointMass)
+TEST(ClosedStart, CountsTheDegreesOfAFreeBodyAndAPointMass)
 {
     Model model;
     model.add_body(brick("box"));
     model.add_body(point_mass("dot", 1, {1, 2, 3}));
-    const Assembly assembly = assemble(model, model.start(), StartPolicy::check);
+    const ClosedStart assembly = close_start(model, model.start(), StartPolicy::check);
     EXPECT_EQ(assembly.degrees_of_freedom, 9);
     EXPECT_TRUE(assembly.independent.empty());
 }
 
-TEST(Assembly, FindsThreeRedundantRowsInAFourBar)
+TEST(ClosedStart, FindsThreeRedundantRowsInAFourBar)
 {
     const Model model = four_bar();   // 20 rows
-    const Assembly assembly = assemble(model, model.start(), StartPolicy::check);
+    const ClosedStart assembly = close_start(model, model.start(), StartPolicy::check);
     EXPECT_EQ(assembly.independent.size(), 17u);
     EXPECT_EQ(assembly.degrees_of_freedom, 1);
     ASSERT_EQ(assembly.redundant.size(), 3u);
     EXPECT_TRUE(std::ranges::is_sorted(assembly.independent));
     for (const int r : assembly.redundant)
         EXPECT_FALSE(std::binary_search(assembly.independent.begin(), assembly.independent.end(), r));
-    ASSERT_EQ(assembly.notes.size(), 1u);
+    ASSERT_FALSE(assembly.notes.empty());
     const int joint = model.row_joint(assembly.redundant[0]);
     EXPECT_CONTAINS(assembly.notes[0], "joint '" + model.joints()[joint].name);
-    EXPECT_CONTAINS(assembly.notes[0], "are implied by the other rows; reactions of the joints in this loop");
+    EXPECT_CONTAINS(assembly.notes[0], "implied by the other rows; reactions of the joints in this loop");
 }
 
-TEST(Assembly, FourBarTiltedOutOfThePlaneHasFullRank)
+TEST(ClosedStart, FourBarTiltedOutOfThePlaneHasFullRank)
 {
     // Negative control: the same bars with one axis tilted cannot move, and nothing is redundant but two
     // rows.
@@ -162,12 +162,12 @@ TEST(Assembly, FourBarTiltedOutOfThePlaneHasFullRank)
     model.add_joint(revolute("b", 0, 1, frame(model, 0, 1, B)));
     model.add_joint(revolute("c", 1, 2, frame(model, 1, 2, C)));
     model.add_joint(revolute("d", world, 2, frame(model, world, 2, D, {0.1, 1, 0})));
-    const Assembly assembly = assemble(model, model.start(), StartPolicy::check);
+    const ClosedStart assembly = close_start(model, model.start(), StartPolicy::check);
     EXPECT_EQ(assembly.independent.size(), 18u);
     EXPECT_EQ(assembly.degrees_of_freedom, 0);
 }
 
-TEST(Assembly, RevoluteSphericalSphericalRevoluteHasTwoDegreesAndNoRedundancy)
+TEST(ClosedStart, RevoluteSphericalSphericalRevoluteHasTwoDegreesAndNoRedundancy)
 {
     Model model;
     const Vector3 A{0, 0, 0}, B{0.3, 0, 1}, C{2.2, 0.4, 1.7}, D{2, 0.4, 0};
@@ -178,26 +178,26 @@ TEST(Assembly, RevoluteSphericalSphericalRevoluteHasTwoDegreesAndNoRedundancy)
     model.add_joint(spherical("b", 0, 1, frame(model, 0, 1, B)));
     model.add_joint(spherical("c", 1, 2, frame(model, 1, 2, C)));
     model.add_joint(revolute("d", world, 2, frame(model, world, 2, D)));
-    const Assembly assembly = assemble(model, model.start(), StartPolicy::check);
+    const ClosedStart assembly = close_start(model, model.start(), StartPolicy::check);
     EXPECT_EQ(model.n_rows(), 16);
     EXPECT_EQ(assembly.independent.size(), 16u);
     EXPECT_EQ(assembly.degrees_of_freedom, 2);
 }
 
-TEST(Assembly, DropsTheLaterOfTwoEqualBallJoints)
+TEST(ClosedStart, DropsTheLaterOfTwoEqualBallJoints)
 {
     Model model;
     model.add_body(brick("box"));
     model.add_joint(spherical("first", world, 0, frame(model, world, 0, {0.3, 0.1, -0.2})));
     model.add_joint(spherical("second", world, 0, frame(model, world, 0, {0.3, 0.1, -0.2})));
-    const Assembly assembly = assemble(model, model.start(), StartPolicy::check);
+    const ClosedStart assembly = close_start(model, model.start(), StartPolicy::check);
     EXPECT_EQ(assembly.independent, (std::vector<int>{0, 1, 2}));
     ASSERT_EQ(assembly.redundant.size(), 3u);
     ASSERT_EQ(assembly.notes.size(), 1u);
     EXPECT_CONTAINS(assembly.notes[0], "joint 'second': rows x, y, z are implied by the other rows");
 }
 
-TEST(Assembly, RankDoesNotDependOnUnitsNorOnMasses)
+TEST(ClosedStart, RankDoesNotDependOnUnitsNorOnMasses)
 {
     for (const double unit : {1e-6, 1.0, 1e6}) {
         for (const double light : {1e-6, 1.0, 1e6}) {
@@ -212,7 +212,7 @@ TEST(Assembly, RankDoesNotDependOnUnitsNorOnMasses)
             model.add_joint(spherical("s", world, 0, frame(model, world, 0, {0, 0, 0}), unit));
             model.add_joint(revolute("r", 0, 1, frame(model, 0, 1, hinge), unit));
             model.add_joint(spherical("again", 0, 1, frame(model, 0, 1, hinge), unit));
-            const Assembly assembly = assemble(model, model.start(), StartPolicy::check);
+            const ClosedStart assembly = close_start(model, model.start(), StartPolicy::check);
             EXPECT_EQ(assembly.independent.size(), 8u) << unit << ' ' << light;
             EXPECT_EQ(assembly.redundant.size(), 3u) << unit << ' ' << light;
         }
@@ -223,7 +223,7 @@ TEST(Assembly, RankDoesNotDependOnUnitsNorOnMasses)
 
 MassProperties needle() { return properties(1, {0.5, 0, 0}, {0, 1.0 / 12, 1.0 / 12}); }
 
-TEST(Assembly, RefusesTheFreeSpinOfANeedle)
+TEST(ClosedStart, RefusesTheFreeSpinOfANeedle)
 {
     Model model;
     model.add_body(brick("box"));
@@ -237,12 +237,12 @@ TEST(Assembly, RefusesTheFreeSpinOfANeedle)
     EXPECT_FALSE(c.help.empty());
 }
 
-TEST(Assembly, AcceptsTheNeedleWhoseSpinAJointHolds)
+TEST(ClosedStart, AcceptsTheNeedleWhoseSpinAJointHolds)
 {
     Model model;
     model.add_body(rigid_body("needle", needle()));
     model.add_joint(revolute("hinge", world, 0, frame(model, world, 0, {0, 0, 0}, {0, 1, 0})));
-    EXPECT_EQ(assemble(model, model.start(), StartPolicy::check).degrees_of_freedom, 1);
+    EXPECT_EQ(close_start(model, model.start(), StartPolicy::check).degrees_of_freedom, 1);
     // About the needle's own axis the hinge leaves exactly the spin that carries nothing.
     Model along;
     along.add_body(rigid_body("needle", needle()));
@@ -250,17 +250,17 @@ TEST(Assembly, AcceptsTheNeedleWhoseSpinAJointHolds)
     EXPECT_EQ(refusal(along, along.start()).code, "spin-without-inertia");
 }
 
-TEST(Assembly, AcceptsSingularMassesOfBodiesWithInertiaAboutEveryAxis)
+TEST(ClosedStart, AcceptsSingularMassesOfBodiesWithInertiaAboutEveryAxis)
 {
     // J1 + J2 = J3: a lamina, E = diag(2, 1, 0).
     Model model;
     model.add_body(rigid_body("lamina", properties(1, {0, 0, 0}, {1, 2, 3})));
-    EXPECT_EQ(assemble(model, model.start(), StartPolicy::check).degrees_of_freedom, 6);
+    EXPECT_EQ(close_start(model, model.start(), StartPolicy::check).degrees_of_freedom, 6);
 }
 
 // --- positions
 
-TEST(Assembly, CheckNamesJointAndSizeOfAnOpenStart)
+TEST(ClosedStart, CheckNamesJointAndSizeOfAnOpenStart)
 {
     Model model = four_bar();
     State start = model.start();
@@ -270,10 +270,10 @@ TEST(Assembly, CheckNamesJointAndSizeOfAnOpenStart)
     EXPECT_TRUE(c.path == "joint[c]" || c.path == "joint[d]") << c.path;
     EXPECT_CONTAINS(c.message, "row 'x'");
     EXPECT_CONTAINS(c.value, "0.001");
-    EXPECT_CONTAINS(c.help, "project");
+    EXPECT_CONTAINS(c.help, "projected onto the joints");
 }
 
-TEST(Assembly, LeavesAConsistentStartUntouchedToTheBit)
+TEST(ClosedStart, LeavesAConsistentStartUntouchedToTheBit)
 {
     Model model;
     model.add_body(posed(brick("box"), {1, -2, 0.3}, {0.3, 0.2, -0.7}, {0, 0, 0}, {0, 0, 0}));
@@ -281,14 +281,14 @@ TEST(Assembly, LeavesAConsistentStartUntouchedToTheBit)
     State start = model.start();
     start.V[0] = rate(start.X[0], {0, 0, 0}, {0.1, 2, -3});
     for (const StartPolicy policy : {StartPolicy::check, StartPolicy::project}) {
-        const Assembly assembly = assemble(model, start, policy);
+        const ClosedStart assembly = close_start(model, start, policy);
         EXPECT_EQ(assembly.start.X, start.X);
         EXPECT_EQ(assembly.start.V, start.V);
         EXPECT_TRUE(assembly.notes.empty());
     }
 }
 
-TEST(Assembly, LeavesConsistentVelocitiesOfAChainUntouchedToTheBit)
+TEST(ClosedStart, LeavesConsistentVelocitiesOfAChainUntouchedToTheBit)
 {
     // Rates that keep the joint by construction, at numbers that no second computation would meet to the bit.
     Model model;
@@ -298,26 +298,26 @@ TEST(Assembly, LeavesConsistentVelocitiesOfAChainUntouchedToTheBit)
     State start = model.start();
     start.V[0] = rate(start.X[0], {0.7, -0.1, 1.3}, {0.1, 2, -3});
     start.V[1] = rate(start.X[1], {0.7, -0.1, 1.3}, {0.9, -1.7, 0.3});
-    const Assembly assembly = assemble(model, start, StartPolicy::project);
+    const ClosedStart assembly = close_start(model, start, StartPolicy::project);
     EXPECT_EQ(assembly.start.X, start.X);
     EXPECT_EQ(assembly.start.V, start.V);
     start.V[1].a[0] += 1e-10;   // negative control: here there is something to do
-    EXPECT_NE(assemble(model, start, StartPolicy::project).start.V, start.V);
+    EXPECT_NE(close_start(model, start, StartPolicy::project).start.V, start.V);
 }
 
-TEST(Assembly, PolishesSmallViolationsToRoundingUnderCheck)
+TEST(ClosedStart, PolishesSmallViolationsToRoundingUnderCheck)
 {
     const Model model = four_bar();
     State start = model.start();
     start.X[1].a[0] += 3e-10;
     start.X[1].a[2] -= 2e-10;
     ASSERT_GT(violation(model, start), 1e-10);
-    const Assembly assembly = assemble(model, start, StartPolicy::check);
+    const ClosedStart assembly = close_start(model, start, StartPolicy::check);
     EXPECT_LT(violation(model, assembly.start), 2e-15);
-    EXPECT_EQ(assembly.notes.size(), 1u) << "only the redundant rows deserve a word";
+    for (const std::string& note : assembly.notes) EXPECT_CONTAINS(note, "implied by the other rows");
 }
 
-TEST(Assembly, KeepsPlanarDataExactlyPlanar)
+TEST(ClosedStart, KeepsPlanarDataExactlyPlanar)
 {
     const Model model = four_bar();
     for (const double size : {1e-10, 0.05}) {
@@ -325,7 +325,7 @@ TEST(Assembly, KeepsPlanarDataExactlyPlanar)
         start.X[1].a[0] += size;
         start.X[2].a[2] -= size;
         start.V[0] = rate(start.X[0], {0, 0, 0}, {0, 1, 0});
-        const Assembly assembly = assemble(model, start, StartPolicy::project);
+        const ClosedStart assembly = close_start(model, start, StartPolicy::project);
         EXPECT_LT(violation(model, assembly.start), 3e-15);
         for (int b = 0; b < 3; ++b) {
             for (const Matrix34* m : {&assembly.start.X[b], &assembly.start.V[b]}) {
@@ -340,13 +340,13 @@ TEST(Assembly, KeepsPlanarDataExactlyPlanar)
     }
 }
 
-TEST(Assembly, ProjectionReachesRoundingFromFarInThreeDimensions)
+TEST(ClosedStart, ProjectionReachesRoundingFromFarInThreeDimensions)
 {
     const Model model = four_bar();
     State start = model.start();
     start.X[0] = configuration({0.1, 0.05, -0.1}, directors_from_rotation_vector({0.1, -0.9, 0.2}));
     start.X[2] = configuration({2.1, -0.1, 0.1}, directors_from_rotation_vector({-0.1, -1.2, 0.15}));
-    const Assembly assembly = assemble(model, start, StartPolicy::project);
+    const ClosedStart assembly = close_start(model, start, StartPolicy::project);
     EXPECT_LT(violation(model, assembly.start), 1e-14);
     EXPECT_EQ(assembly.degrees_of_freedom, 1);
     EXPECT_FALSE(assembly.notes.empty());
@@ -356,7 +356,7 @@ TEST(Assembly, ProjectionReachesRoundingFromFarInThreeDimensions)
     }
 }
 
-TEST(Assembly, ProjectionComesBackFromLargeTurns)
+TEST(ClosedStart, ProjectionComesBackFromLargeTurns)
 {
     Model model;
     model.add_body(brick("box"));
@@ -365,13 +365,13 @@ TEST(Assembly, ProjectionComesBackFromLargeTurns)
     for (const Vector3& turn : {Vector3{0, 0, 1.4}, Vector3{0.9, -0.9, 0.3}}) {
         State start = model.start();
         start.X[0] = configuration({0.3, -1, 2}, directors_from_rotation_vector(turn));
-        const State closed = assemble(model, start, StartPolicy::project).start;
+        const State closed = close_start(model, start, StartPolicy::project).start;
         EXPECT_LT(violation(model, closed), 1e-14);
         EXPECT_LT(norm(closed.X[0] - model.bodies()[0].X), 1e-13);
     }
 }
 
-TEST(Assembly, ProjectionFindsTheNearestStateInTheMassMetric)
+TEST(ClosedStart, ProjectionFindsTheNearestStateInTheMassMetric)
 {
     // Two bodies of unequal mass on one rod that is too long: they share the gap in the inverse ratio of
     // their masses.
@@ -381,14 +381,14 @@ TEST(Assembly, ProjectionFindsTheNearestStateInTheMassMetric)
     model.add_joint(rod("rod", 0, 1, frame(model, 0, 1, {0, 0, 0}), 1));
     State start = model.start();
     start.V[0].a[0] = 1;
-    const Assembly assembly = assemble(model, start, StartPolicy::project);
+    const ClosedStart assembly = close_start(model, start, StartPolicy::project);
     EXPECT_NEAR(assembly.start.X[0](0, 0), 0.3, 1e-12);
     EXPECT_NEAR(assembly.start.X[1](0, 0), 1.3, 1e-12);
     EXPECT_NEAR(assembly.start.V[0](0, 0), 0.25, 1e-14);
     EXPECT_NEAR(assembly.start.V[1](0, 0), 0.25, 1e-14);
 }
 
-TEST(Assembly, ProjectionIsNearestForFiniteTurnsToo)
+TEST(ClosedStart, ProjectionIsNearestForFiniteTurnsToo)
 {
     // A bar from its hinge, shifted: among all closed states none nearby is nearer to what was given.
     Model model;
@@ -397,7 +397,7 @@ TEST(Assembly, ProjectionIsNearestForFiniteTurnsToo)
     State start = model.start();
     start.X[0].a[0] += 0.1;
     start.X[0].a[2] -= 0.2;
-    const State closed = assemble(model, start, StartPolicy::project).start;
+    const State closed = close_start(model, start, StartPolicy::project).start;
     const auto distance = [&](const Matrix34& X) {
         return dot((X - start.X[0]) * model.bodies()[0].mass, X - start.X[0]);
     };
@@ -413,7 +413,7 @@ TEST(Assembly, ProjectionIsNearestForFiniteTurnsToo)
     }
 }
 
-TEST(Assembly, RefusesMirroredAndSkewDirectors)
+TEST(ClosedStart, RefusesMirroredAndSkewDirectors)
 {
     Model model;
     model.add_body(brick("box"));
@@ -425,14 +425,14 @@ TEST(Assembly, RefusesMirroredAndSkewDirectors)
     const Complaint c = refusal(model, start);
     EXPECT_EQ(c.code, "start-position");
     EXPECT_CONTAINS(c.message, "d1.d2");
-    const Assembly assembly = assemble(model, start, StartPolicy::project);
+    const ClosedStart assembly = close_start(model, start, StartPolicy::project);
     const Matrix3 D = directors(assembly.start.X[0]);
     EXPECT_LT(norm(transpose(D) * D - identity<3>()), 1e-15);
 }
 
 // --- contradiction
 
-TEST(Assembly, NamesTheRodThatContradictsAnother)
+TEST(ClosedStart, NamesTheRodThatContradictsAnother)
 {
     Model model;
     model.add_body(point_mass("dot", 1, {0, 0, -1.2}));
@@ -446,7 +446,7 @@ TEST(Assembly, NamesTheRodThatContradictsAnother)
     }
 }
 
-TEST(Assembly, NamesBallJointsThatDoNotFitEachOther)
+TEST(ClosedStart, NamesBallJointsThatDoNotFitEachOther)
 {
     Model model;
     model.add_body(brick("box"));
@@ -463,7 +463,7 @@ TEST(Assembly, NamesBallJointsThatDoNotFitEachOther)
     EXPECT_CONTAINS(c.value, "0.5");
 }
 
-TEST(Assembly, SaysWhenAMechanismDoesNotReach)
+TEST(ClosedStart, SaysWhenAMechanismDoesNotReach)
 {
     // Two bars of length 1 between points 3 apart: no row is redundant where they point at each other,
     // nothing closes.
@@ -483,7 +483,7 @@ TEST(Assembly, SaysWhenAMechanismDoesNotReach)
 
 // --- velocities
 
-TEST(Assembly, NamesTheJointThatVelocitiesBreak)
+TEST(ClosedStart, NamesTheJointThatVelocitiesBreak)
 {
     Model model;
     model.add_body(brick("box"));
@@ -494,13 +494,13 @@ TEST(Assembly, NamesTheJointThatVelocitiesBreak)
     EXPECT_EQ(c.code, "start-velocity");
     EXPECT_EQ(c.path, "joint[ball]");
     EXPECT_CONTAINS(c.message, "row 'y'");
-    const Assembly assembly = assemble(model, start, StartPolicy::project);
+    const ClosedStart assembly = close_start(model, start, StartPolicy::project);
     EXPECT_LT(velocity_violation(model, assembly.start), 1e-15);
     EXPECT_NEAR(angular_velocity(assembly.start.X[0], assembly.start.V[0])[2], 3, 1e-14);
     EXPECT_FALSE(assembly.notes.empty());
 }
 
-TEST(Assembly, ProjectsThePapersInconsistentDirectorRates)
+TEST(ClosedStart, ProjectsThePapersInconsistentDirectorRates)
 {
     // d3' = (0, 1, 0) with d2' = 0 breaks d2 . d3 and projects to half the spin.
     Model model;
@@ -513,7 +513,7 @@ TEST(Assembly, ProjectsThePapersInconsistentDirectorRates)
     EXPECT_CONTAINS(c.message, "'cube'");
     EXPECT_CONTAINS(c.message, "d2.d3");
     EXPECT_EQ(c.value, "d(d2.d3)/dt = 1 1/s");
-    const Assembly assembly = assemble(model, start, StartPolicy::project);
+    const ClosedStart assembly = close_start(model, start, StartPolicy::project);
     const Vector3 w = angular_velocity(assembly.start.X[0], assembly.start.V[0]);
     EXPECT_NEAR(w[0], -0.5, 1e-13);
     EXPECT_EQ(w[1], 0);
@@ -521,7 +521,7 @@ TEST(Assembly, ProjectsThePapersInconsistentDirectorRates)
     EXPECT_LT(norm(assembly.start.V[0] - rate(assembly.start.X[0], {0, 0, 0}, w)), 1e-15);
 }
 
-TEST(Assembly, UnequalMomentsShareInconsistentRatesByMass)
+TEST(ClosedStart, UnequalMomentsShareInconsistentRatesByMass)
 {
     // d3' = a, d2' = 0 with E = diag(e1, e2, e3): w1 (e2 + e3) = -e3 a.
     Model model;
@@ -529,17 +529,17 @@ TEST(Assembly, UnequalMomentsShareInconsistentRatesByMass)
     State start = model.start();
     start.V[0].set_column(3, {0, 2, 0});
     const Matrix4& m = model.bodies()[0].mass;
-    const Assembly assembly = assemble(model, start, StartPolicy::project);
+    const ClosedStart assembly = close_start(model, start, StartPolicy::project);
     EXPECT_NEAR(angular_velocity(assembly.start.X[0], assembly.start.V[0])[0],
                 -2 * m(3, 3) / (m(2, 2) + m(3, 3)), 1e-13);
 }
 
-TEST(Assembly, VelocityProjectionIsNearestUnderRedundantJoints)
+TEST(ClosedStart, VelocityProjectionIsNearestUnderRedundantJoints)
 {
     const Model model = four_bar();
     State start = model.start();
     start.V[0] = rate(start.X[0], {0, 0, 0}, {0, 1, 0});   // the crank alone
-    const Assembly assembly = assemble(model, start, StartPolicy::project);
+    const ClosedStart assembly = close_start(model, start, StartPolicy::project);
     EXPECT_LT(velocity_violation(model, assembly.start), 1e-14);
     // The rest of the given rates is perpendicular, by mass, to the one motion that is left.
     double along = 0, moved = 0;
@@ -551,7 +551,7 @@ TEST(Assembly, VelocityProjectionIsNearestUnderRedundantJoints)
     EXPECT_NEAR(along, 0, 1e-13 * moved);
 }
 
-TEST(Assembly, KeepsTheAngularVelocityOfABodyThatIsTurnedByTheProjection)
+TEST(ClosedStart, KeepsTheAngularVelocityOfABodyThatIsTurnedByTheProjection)
 {
     Model model;
     model.add_body(posed(brick("box"), {0, 0, 0}, {0, 0, 0}, {}, {}));
@@ -559,12 +559,12 @@ TEST(Assembly, KeepsTheAngularVelocityOfABodyThatIsTurnedByTheProjection)
     State start = model.start();
     start.X[0] = configuration({0, 0, 0}, directors_from_rotation_vector({0.1, 0, 0}));
     start.V[0] = rate(start.X[0], {0, 0, 0}, {0, 0, 2});
-    const Assembly assembly = assemble(model, start, StartPolicy::project);
+    const ClosedStart assembly = close_start(model, start, StartPolicy::project);
     EXPECT_LT(violation(model, assembly.start), 1e-15);
     EXPECT_NEAR(angular_velocity(assembly.start.X[0], assembly.start.V[0])[2], 2, 1e-13);
 }
 
-TEST(Assembly, RefusesNumbersThatAreNone)
+TEST(ClosedStart, RefusesNumbersThatAreNone)
 {
     Model model;
     model.add_body(brick("box"));
@@ -577,7 +577,7 @@ TEST(Assembly, RefusesNumbersThatAreNone)
     EXPECT_EQ(refusal(model, State{}).path, "start");
 }
 
-TEST(Assembly, ClosesAChainOfPointMassesOnRods)
+TEST(ClosedStart, ClosesAChainOfPointMassesOnRods)
 {
     Model model;
     for (int k = 0; k < 5; ++k) {
@@ -587,7 +587,7 @@ TEST(Assembly, ClosesAChainOfPointMassesOnRods)
     }
     State start = model.start();
     start.V[4].a[2] = 1;
-    const Assembly assembly = assemble(model, start, StartPolicy::project);
+    const ClosedStart assembly = close_start(model, start, StartPolicy::project);
     EXPECT_EQ(assembly.degrees_of_freedom, 10);
     EXPECT_LT(violation(model, assembly.start), 5e-15);   // the squares that cancel are of size 25
     EXPECT_LT(velocity_violation(model, assembly.start), 1e-15);

@@ -35,7 +35,8 @@ TEST(Twist, DisplacementIsTheRotatedConfigurationLessTheStart)
         const Matrix34 X0 = dice.rigid();
         const Vector3 u = dice.vector(), turn = 2.0 * dice.vector();
         Matrix34 dX{};
-        twist::displacement(twist::from_vectors(u.data(), turn.data()), X0.data(), dX.data());
+        const double move[6] = {u[0], u[1], u[2], turn[0], turn[1], turn[2]};
+        twist::displacement(move, X0.data(), dX.data());
         const Matrix34 X =
             configuration(X0.column(0) + u, directors_from_rotation_vector(turn) * directors(X0));
         EXPECT_LT(norm(X0 + dX - X), 1e-14);
@@ -47,42 +48,50 @@ TEST(Twist, SmallIncrementsKeepTheirDigits)
     // a turn of 1e-9: the director moves by 1e-9 to 16 digits of that, which a difference of directors cannot
     // show
     const Matrix34 X0 = configuration({5, 5, 5}, identity<3>());
-    const double u[3] = {1e-9, 0, 0}, turn[3] = {0, 0, 1e-9};
+    const double move[6] = {1e-9, 0, 0, 0, 0, 1e-9};
     Matrix34 dX{};
-    twist::displacement(twist::from_vectors(u, turn), X0.data(), dX.data());
+    twist::displacement(move, X0.data(), dX.data());
     EXPECT_NEAR(dX(1, 1) / 1e-9, 1, 1e-15);
     EXPECT_NEAR(dX(0, 1) / -5e-19, 1, 1e-9);
     EXPECT_EQ(dX(2, 1), 0.0);
 }
 
-TEST(Twist, UpdateComposesRotations)
+TEST(Twist, QuaternionsAreReadOffDisplacements)
 {
     Dice dice(2);
-    const Matrix34 X0 = dice.rigid();
-    twist::Increment q;
-    Matrix3 R = identity<3>();
-    for (int step = 0; step < 1000; ++step) {
-        const Vector3 w = 0.7 * dice.vector();
-        const double move[6] = {0, 0, 0, w[0], w[1], w[2]};
-        twist::update(q, move);
-        R = directors_from_rotation_vector(w) * R;
+    for (const double size : {1.5, 1e-3, 1e-9}) {
+        const Matrix34 X0 = dice.rigid();
+        const Vector3 w = size * dice.vector();
+        const double move[6] = {0.1, 0.2, 0.3, w[0], w[1], w[2]};
+        Matrix34 dX{}, again{};
+        twist::displacement(move, X0.data(), dX.data());
+        double q[4];
+        twist::quaternion_of(X0.data(), dX.data(), q);
+        EXPECT_NEAR(q[0], std::cos(0.5 * norm(w)), 1e-14);
+        twist::displacement(move, q, X0.data(), again.data());
+        EXPECT_LT(norm(again - dX), 1e-14 * (size + 1e-3));
     }
-    Matrix34 dX{};
-    twist::displacement(q, X0.data(), dX.data());
-    EXPECT_LT(norm(directors(X0) + directors(dX) - R * directors(X0)), 1e-13);
-    EXPECT_NEAR(q.s * q.s + q.v[0] * q.v[0] + q.v[1] * q.v[1] + q.v[2] * q.v[2], 1, 1e-15);
+}
+
+TEST(Twist, TurnsBetweenTriadsLeadFromOneToTheOther)
+{
+    Dice dice(7);
+    for (int trial = 0; trial < 20; ++trial) {
+        const Matrix34 from = dice.rigid(), to = dice.rigid();
+        const Vector3 turn = twist::turn_between(from, to);
+        EXPECT_LE(norm(turn), 3.1415926535897936);
+        EXPECT_LT(norm(directors(twist::moved(from, {1, 2, 3}, turn)) - directors(to)), 1e-14);
+    }
 }
 
 TEST(Twist, PlanarIncrementsStayPlanarToTheBit)
 {
-    const Matrix34 X0 = configuration({1, 0, 2}, directors_from_rotation_vector({0, 0.3, 0}));
-    twist::Increment q;
+    Matrix34 X0 = configuration({1, 0, 2}, directors_from_rotation_vector({0, 0.3, 0})), dX{};
     for (int step = 0; step < 50; ++step) {
         const double move[6] = {0.1, 0, -0.2, 0, 0.37, 0};
-        twist::update(q, move);
+        twist::displacement(move, X0.data(), dX.data());
+        X0 += dX;
     }
-    Matrix34 dX{};
-    twist::displacement(q, X0.data(), dX.data());
     for (int column : {0, 1, 3}) EXPECT_EQ(dX(1, column), 0.0);
     EXPECT_EQ(dX(0, 2), 0.0);
     EXPECT_EQ(dX(1, 2), 0.0);
@@ -158,10 +167,8 @@ TEST(Twist, GeometricTermIsTheDerivativeOfTheRows)
         for (int side = 0; side < 2; ++side) {
             double move[6] = {};
             move[j] = side == 0 ? -eps : eps;
-            twist::Increment q;
-            twist::update(q, move);
             Matrix34 dX{};
-            twist::displacement(q, X.data(), dX.data());
+            twist::displacement(move, X.data(), dX.data());
             const Matrix34 moved = X + dX;
             twist::rows(moved.data(), r.data(), rows[side]);
         }

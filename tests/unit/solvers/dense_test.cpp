@@ -81,6 +81,55 @@ TEST(DenseLU, RefusesSingularAndUndefinedMatrices)
     }
 }
 
+TEST(DenseLU, SolvesTransposedSystems)
+{
+    for (int n = 0; n <= 33; ++n) {
+        const auto size = static_cast<std::size_t>(n);
+        const Values A = random_values(size * size, 3u + static_cast<unsigned>(n));
+        const Values b = random_values(size, 5);
+        DenseLU lu;
+        fill(lu, A, n);
+        ASSERT_TRUE(lu.factorise());
+        Values x = b, transposed(A);
+        lu.solve_transposed(x.data());
+        for (std::size_t i = 0; i < size; ++i)
+            for (std::size_t j = 0; j < size; ++j) transposed[i * size + j] = A[j * size + i];
+        double largest = 0;
+        for (double v : x) largest = std::max(largest, std::abs(v));
+        EXPECT_LE(residual(transposed, x, b), 1e-14 * n * (1 + largest)) << "n = " << n;
+    }
+}
+
+TEST(DenseLU, FactorisesEntriesThatAreHandedOver)
+{
+    DenseLU lu;
+    lu.resize(2);
+    Values entries = {1, 2, 4, 2};
+    const double* place = entries.data();
+    lu.exchange(entries);
+    EXPECT_EQ(lu.row(0), place);
+    EXPECT_EQ(entries, Values(4, 0.0));
+    ASSERT_TRUE(lu.factorise());   // U = [4 2; 0 1.5]
+    EXPECT_EQ(lu.smallest_pivot(), 1.5);
+    EXPECT_EQ(lu.largest_in_U(), 4);
+    Values x = {3, 6};
+    lu.solve(x.data());
+    EXPECT_DOUBLE_EQ(x[0], 1);
+    EXPECT_DOUBLE_EQ(x[1], 1);
+}
+
+TEST(DenseLU, NamesTheColumnThatDependsOnThoseBefore)
+{
+    for (int column = 0; column < 7; ++column) {
+        Values A = random_values(49, 21);
+        for (std::size_t i = 0; i < 7; ++i) A[7 * i + static_cast<std::size_t>(column)] = 0;
+        DenseLU lu;
+        fill(lu, A, 7);
+        EXPECT_FALSE(lu.factorise());
+        EXPECT_EQ(lu.failed_column(), column);
+    }
+}
+
 TEST(DenseLU, KeepsDecoupledUnknownsExactlyZero)
 {
     // unknowns 0, 2 and 1, 3 do not see each other

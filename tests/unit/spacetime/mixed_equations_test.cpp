@@ -8,14 +8,14 @@
 #include <vector>
 
 #include "livens/base/error.h"
-#include "livens/multibody/assembly.h"
+#include "livens/multibody/closing.h"
 #include "livens/spacetime/mixed/equations.h"
 #include "unit/spacetime/mechanisms.h"
 
 namespace livens {
 namespace {
 
-using mixed::Conditions;
+using mixed::Given;
 using mixed::Equations;
 using mixed::Fields;
 using mixed::Numbering;
@@ -24,10 +24,10 @@ struct Case {
     std::string name;
     Mixed::Start start;
     Mixed::Multipliers multipliers;
-    Conditions given;
+    Given given;
 };
 
-const Conditions all_conditions[] = {
+const Given all_conditions[] = {
     {true, true, false, false}, {false, false, true, true}, {true, false, true, false},
     {true, false, false, true}, {false, true, true, false},
 };
@@ -37,7 +37,7 @@ std::vector<Case> cases()
     std::vector<Case> result;
     for (const auto start : {Mixed::Start::natural, Mixed::Start::strong})
         for (const auto multipliers : {Mixed::Multipliers::equal, Mixed::Multipliers::lower})
-            for (const Conditions& given : all_conditions) {
+            for (const Given& given : all_conditions) {
                 std::string name = start == Mixed::Start::natural ? "Natural" : "Strong";
                 name += multipliers == Mixed::Multipliers::equal ? "Equal" : "Lower";
                 for (const auto& [is_given, word] : {std::pair{given.X_at_start, "X0"},
@@ -55,12 +55,13 @@ class MixedEquations : public ::testing::TestWithParam<Case> {};
 /// Everything that a block needs, with fields that are no motion at all.
 struct Block {
     Block(const Model& model, const Case& c, const TimeSpace& space)
-        : mechanism(model, assemble(model, model.start(), StartPolicy::check).independent),
+        : tables(model, close_start(model, model.start(), StartPolicy::check).independent, true),
+          coordinates(tables),
           equations(setup(model, c, space), Numbering(c.given, c.start, c.multipliers, space.size(),
-                                                      mechanism.n_coordinates, mechanism.n_rows())),
+                                                      coordinates.size, coordinates.n_rows())),
           fields(equations.zero_fields())
     {
-        mechanism.stack(model.start().X, fields.X0.data());
+        fields.X0 = coordinates.gather(model.start().X);
         std::mt19937_64 engine(7);
         const auto stir = [&engine](std::vector<double>& values, double size) {
             for (double& v : values) v += size * (2 * (static_cast<double>(engine() >> 11) * 0x1p-53) - 1);
@@ -78,7 +79,7 @@ struct Block {
             const Matrix34 V = body.is_point ? Matrix34{1, 2, 3} : rate(body.X, {1, 2, 3}, {0.5, -1, 2});
             turning.turning.emplace_back(body, body.X, V);
         }
-        return {&mechanism,
+        return {&coordinates,
                 space,
                 c.multipliers == Mixed::Multipliers::equal ? space : space.lower(),
                 4,
@@ -88,7 +89,8 @@ struct Block {
                 c.given.X_at_end ? known : turning};
     }
 
-    mixed::Mechanism mechanism;
+    Tables tables;
+    mixed::Coordinates coordinates;
     Equations equations;
     Fields fields;
 };
@@ -196,12 +198,13 @@ TEST(MixedEquationsResidual, NamesTheLoadThatIsNotFinite)
     EXPECT_EQ(block.equations.residual(block.fields, r), "broken");
 }
 
-TEST(MixedEquationsMechanism, RefusesASingularMassByTheBodysName)
+TEST(MixedCoordinates, RefusesASingularMassByTheBodysName)
 {
     Model model;
     model.add_body(rigid_body("lamina", {1, {}, Matrix3{1, 0, 0, 0, 2, 0, 0, 0, 3}}));
     try {
-        const mixed::Mechanism mechanism(model, {});
+        const Tables tables(model, {}, true);
+        const mixed::Coordinates coordinates(tables);
         FAIL() << "a lamina has no inertia across its plane";
     } catch (const InputError& error) {
         EXPECT_EQ(error.complaint().code, "mass-singular");

@@ -155,7 +155,7 @@ TEST(Stepping, MidpointKeepsAngularMomentumOfFloatingBodies)
     State start = model.start();
     start.V[0] = rate(start.X[0], {0.3, 0, 1}, {1, 2, 3});
     start.V[1] = rate(start.X[1], {0, 0.4, 0}, {-2, 1, 0.5});
-    const Assembly assembly = assemble(model, start, StartPolicy::project);
+    const ClosedStart assembly = close_start(model, start, StartPolicy::project);
     const TimeMesh mesh = make_time_mesh(0, 3, 60);
     const auto drift = [&](SteppingRule rule) {
         const Motion motion = march_stepping(model, assembly, mesh, rule, {}).motion;
@@ -422,7 +422,7 @@ TEST(Stepping, StopsWhenTheCallerSaysSo)
     int calls = 0;
     SteppingOptions options;
     options.progress = [&](const Progress& progress) {
-        EXPECT_EQ(progress.element, calls);
+        EXPECT_EQ(progress.done, calls + 1);
         EXPECT_EQ(progress.n_elements, 20);
         EXPECT_GT(progress.iterations, 0);
         return ++calls < 7;
@@ -440,7 +440,7 @@ TEST(Stepping, UnequalStepsKeepTheOrder)
 {
     const Matrix3 exact = free_top_directors(1);
     const Model model = free_top();
-    const Assembly assembly = assemble(model, model.start(), StartPolicy::check);
+    const ClosedStart assembly = close_start(model, model.start(), StartPolicy::check);
     expect_order(
         [&](int n) {
             TimeMesh mesh;

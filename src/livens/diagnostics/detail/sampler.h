@@ -42,7 +42,6 @@ public:
     ElementSampler(const Motion& motion, std::vector<double> points);
 
     int size() const { return static_cast<int>(points_.size()); }
-    double point(int k) const { return points_[k]; }
     const std::vector<double>& points() const { return points_; }
     /// t of point k; at the element's ends to the bit, and from the element's side.
     Instant instant(int element, int k) const;

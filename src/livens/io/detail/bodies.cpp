@@ -87,11 +87,11 @@ bool check_quaternion(const Section& body, Findings& findings)
     if (size > 0 && std::isfinite(size)) {
         help = "to keep its direction write [";
         for (int i = 0; i < 4; ++i)
-            help += (i > 0 ? ", " : "") + shortest(q->numbers[static_cast<std::size_t>(i)] / size);
+            help += (i > 0 ? ", " : "") + to_text(q->numbers[static_cast<std::size_t>(i)] / size);
         help += "]";
     }
     findings.error(body.place("quaternion"), "quaternion-norm",
-                   "the quaternion of " + body.label() + " has norm " + shortest(size) + ", not 1",
+                   "the quaternion of " + body.label() + " has norm " + to_text(size) + ", not 1",
                    {"rotations are quaternions (w, x, y, z) of norm 1", help});
     return false;
 }

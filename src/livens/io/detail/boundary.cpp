@@ -5,13 +5,13 @@ namespace livens {
 
 namespace {
 
-Given read_given(const Section* section, Given otherwise)
+Known read_given(const Section* section, Known otherwise)
 {
     if (section == nullptr) return otherwise;
     const std::string given = section->text("given");
-    if (given == "nothing") return Given::nothing;
-    if (given == "positions") return Given::positions;
-    return given == "momenta" ? Given::momenta : Given::state;
+    if (given == "nothing") return Known::nothing;
+    if (given == "positions") return Known::positions;
+    return given == "momenta" ? Known::momenta : Known::state;
 }
 
 bool check_end_of(const Section& end, bool is_point, Findings& findings)
@@ -67,14 +67,14 @@ void refuse_end_of(const Section& body, Findings& findings)
 
 }   // namespace
 
-void read_boundary(Builder& builder, Boundary& boundary)
+void read_boundary(Builder& builder, Conditions& boundary)
 {
     const Section* const start = only_section(builder.top(), "start");
     const Section* const end = only_section(builder.top(), "end");
-    boundary.at_start = read_given(start, Given::state);
-    boundary.at_end = read_given(end, Given::nothing);
+    boundary.at_start = read_given(start, Known::state);
+    boundary.at_end = read_given(end, Known::nothing);
     if (end != nullptr && !end->is_valid()) return;   // then bodies cannot be judged
-    const bool is_given = boundary.at_end != Given::nothing;
+    const bool is_given = boundary.at_end != Known::nothing;
     if (is_given) {
         boundary.end.X.resize(builder.model().bodies().size());
         boundary.end.V.resize(builder.model().bodies().size());
@@ -98,13 +98,13 @@ void read_boundary(Builder& builder, Boundary& boundary)
     }
 }
 
-void check_ends(Builder& builder, const Boundary& boundary, StartPolicy policy)
+void check_ends(Builder& builder, const Conditions& boundary, StartPolicy policy)
 {
-    const auto close = [&](State state, Given given) {
-        if (given == Given::nothing) return;
-        if (given == Given::positions)
+    const auto close = [&](State state, Known given) {
+        if (given == Known::nothing) return;
+        if (given == Known::positions)
             for (Matrix34& V : state.V) V = {};   // a guess, which need not fit
-        assemble(builder.model(), state, policy);
+        close_start(builder.model(), state, policy);
     };
     builder.guard("start", [&] { close(boundary.start, boundary.at_start); });
     builder.guard("end", [&] {

@@ -8,6 +8,22 @@ namespace {
 
 constexpr std::size_t longest_name = 200;
 
+/// How files spell what the advice of a complaint speaks of.
+struct Spelling {
+    std::string_view code, concept_word, toml;
+};
+constexpr Spelling spellings[] = {
+    {"boundary-conditions", "the state at one end", R"(given = "state")"},
+    {"boundary-method", "lobatto or mixed", R"(family = "lobatto" in [method])"},
+    {"mixed-block", "all elements together", R"(leave `window` out)"},
+    {"mixed-pairing", "equal multipliers", R"(multipliers = "equal")"},
+    {"mixed-pairing", "natural start", R"(momentum = "natural")"},
+    {"mixed-pairing", "projected", R"(interfaces = "project")"},
+    {"mixed-pairing", "strong start", R"(momentum = "strong")"},
+    {"start-position", "projected", R"(initial = "project" in [start])"},
+    {"start-velocity", "projected", R"(initial = "project" in [start])"},
+};
+
 std::string with_bounds(const Complaint& complaint)
 {
     std::string text = complaint.message;
@@ -84,7 +100,17 @@ void Builder::report(const Complaint& complaint, const std::string& path)
     const bool is_named = complaint.message.find('\'') != std::string::npos;
     findings_.error(find_place(complaint.path, path), complaint.code,
                     (is_named || subject.empty() ? "" : subject + ": ") + with_bounds(complaint),
-                    {complaint.note, complaint.help});
+                    {complaint.note, help_in_toml(complaint)});
+}
+
+std::string help_in_toml(const Complaint& complaint)
+{
+    std::string keys;
+    for (const Spelling& s : spellings)
+        if (s.code == complaint.code && complaint.help.find(s.concept_word) != std::string::npos)
+            keys += (keys.empty() ? " (" : ", ") + std::string(s.toml);
+    const bool has_keys = complaint.help.find(" = \"") != std::string::npos;
+    return complaint.help + (keys.empty() || has_keys ? "" : keys + ")");
 }
 
 BodyReference Builder::find_body(const std::string& name, const Place& place, const Section& section)

@@ -79,6 +79,9 @@ private:
     double length_ = 1;
 };
 
+/// The core's advice, which names concepts, with the keys that scenario files have for them.
+std::string help_in_toml(const Complaint& complaint);
+
 /// A name fit for results and messages; else an error at the name's place.
 bool check_name(const Section& section, Findings& findings);
 
@@ -102,9 +105,9 @@ void read_bodies(Builder& builder);
 void read_joints(Builder& builder);
 void read_loads(Builder& builder);
 /// What is given at both ends, and the state at the end. The state at the start is the model's.
-void read_boundary(Builder& builder, Boundary& boundary);
+void read_boundary(Builder& builder, Conditions& boundary);
 /// Closes the mechanism where something is given, as solve() will.
-void check_ends(Builder& builder, const Boundary& boundary, StartPolicy policy);
+void check_ends(Builder& builder, const Conditions& boundary, StartPolicy policy);
 Method read_method(const Section* section, Findings& findings);
 /// Time, method, conditions: everything of the scenario but the model.
 void read_run(Builder& builder, Scenario& scenario);

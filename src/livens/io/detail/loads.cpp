@@ -144,7 +144,7 @@ void read_loads(Builder& builder)
 {
     Findings& findings = builder.findings();
     const std::span<const Section> sections = builder.top().sections("load");
-    // Given names come first, so that a default does not take one of them.
+    // Known names come first, so that a default does not take one of them.
     std::unordered_set<std::string> taken;
     std::vector<std::string> names(sections.size());
     std::vector<bool> is_good(sections.size());

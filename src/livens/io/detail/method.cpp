@@ -35,7 +35,7 @@ Mixed read_mixed(const Section& section)
     if (section.text("multipliers") == "lower") mixed.multipliers = Mixed::Multipliers::lower;
     if (section.text("end_multiplier") == "zero") mixed.end_multiplier = Mixed::EndMultiplier::zero;
     if (section.has("gauss_points")) mixed.gauss_points = section.integer("gauss_points");
-    if (section.has("block")) mixed.block = section.integer("block");   // 0 for the word all
+    if (section.has("window")) mixed.window = section.integer("window");   // 0 for the word all
     if (section.text("interfaces") == "project") mixed.interfaces = Mixed::Interfaces::project;
     if (section.text("first_guess") == "steady") mixed.first_guess = Mixed::FirstGuess::steady;
     if (const Value* knots = section.find("knots")) mixed.knots = knots->numbers;
@@ -80,7 +80,7 @@ double motion_bytes(const Model& model, const Method& method, double n_elements)
 /// Of the factors of one block's matrix, which outweigh all else.
 double matrix_bytes(const Model& model, const Mixed& mixed, double n_elements)
 {
-    const double at_once = mixed.block > 0 ? std::min<double>(mixed.block, n_elements) : n_elements;
+    const double at_once = mixed.window > 0 ? std::min<double>(mixed.window, n_elements) : n_elements;
     double unknowns = model.n_rows();   // a node
     for (const Body& body : model.bodies()) unknowns += body.is_point ? 6 : 30;
     const double entries = model.joints().empty() ? least_entries_per_unknown
@@ -102,7 +102,11 @@ Method read_method(const Section* section, Findings& findings)
     const std::string family = section->text("family");
     if (family == "midpoint") return Midpoint{};
     if (family == "endpoint") return Endpoint{};
-    if (family == "lobatto") return Lobatto{section->integer("degree")};
+    if (family == "lobatto") {
+        Lobatto lobatto{section->integer("degree")};
+        if (section->has("window")) lobatto.window = section->integer("window");   // 0 for the word all
+        return lobatto;
+    }
     const Mixed mixed = read_mixed(*section);
     check_basis(*section, mixed, findings);
     check_end_multiplier(*section, mixed, findings);
@@ -141,7 +145,7 @@ bool check_size(const Model& model, const Method& method, double n_elements, con
     findings.error(place, "resource-limit",
                    "the system of one block would take " + gibibytes(matrix) + ", more than " +
                        gibibytes(max_matrix_bytes),
-                   {what, "solve fewer of them at once, for instance with block = 1000 in [method]"});
+                   {what, "solve fewer of them at once, for instance with window = 1000 in [method]"});
     return false;
 }
 

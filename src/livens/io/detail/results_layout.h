@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <type_traits>
 #include <vector>
 
@@ -16,21 +17,6 @@ namespace livens {
 /// Throws IoError if sizes or indices of the run contradict each other, so that nothing that works on it can
 /// read beyond its arrays: every file is a stranger, whatever its digest says.
 void check_run(const Run& run);
-
-/// 64 bits over everything that version 1.`minor` of the format brought, as 16 hexadecimal digits. Each minor
-/// version has a digest of its own, so that readers who do not know it can check what they know.
-std::string digest_of_minor(const Run& run, int minor);
-/// Over everything.
-std::string digest(const Run& run);
-/// Name of the attribute that holds digest_of_minor().
-std::string digest_name(int minor);
-
-/// The image with 24 bytes behind it that hold a checksum of all before: "\nlivens " and 16 hexadecimal
-/// digits. Programs that read HDF5 do not look there.
-std::string sealed(std::string image);
-/// Throws IoError if there is a seal and it does not fit. Damage must not reach the HDF5 library, whose old
-/// versions crash on some of it. Files that other tools have rewritten have no seal.
-void check_seal(std::string_view bytes);
 
 /// Vectors of small matrices are arrays of doubles (base/linear.h says so).
 template <class T>
@@ -49,17 +35,17 @@ std::string run_image(const Model& model, const Run& run);
 Run run_from_image(std::string image, const std::string& name);
 
 /// Numbers that must live until the image is formed.
-struct DerivedNumbers {
-    std::deque<std::vector<double>> doubles;
-    std::deque<std::vector<int>> ints;
-};
+using DerivedNumbers = std::tuple<std::deque<std::vector<double>>, std::deque<std::vector<int>>>;
 
 /// What is in the file for readers other than livens, made from model and run: samples at the output times,
 /// times of nodes, masses, integrals over elements.
 void write_derived(NetcdfWriter& file, const Model& model, const Run& run, DerivedNumbers& owner);
 
-/// Part of it: the largest violation of joints and of rigidity at every node of X.
-void write_violations(NetcdfWriter& file, const Model& model, const Motion& motion, DerivedNumbers& owner);
+/// As files count them: whether a motion is suspect stands in the text of the status.
+inline SolveStatus of_solver(SolveStatus status)
+{
+    return status == SolveStatus::suspect ? SolveStatus::converged : status;
+}
 
 inline VariableInfo coefficients(const std::string& name, const std::string& node,
                                  const std::string& long_name, const std::string& column_units)
@@ -73,9 +59,9 @@ inline const std::string columns_of_V = "m s-1, s-1, s-1, s-1";
 inline const std::string columns_of_A = "m s-2, s-2, s-2, s-2";
 inline const std::string columns_of_P = "kg m s-1, kg m2 s-1, kg m2 s-1, kg m2 s-1";
 
-/// An archive has: dimension(name, length), text(name, string), number(name, number), names(info, strings),
-/// flags(info, bools), list(info, vector) and field(info, Field). It either reads what it is given (the parts
-/// are const then) or fills it in.
+/// An archive has: dimension(name, length), text(name, string), number(name, number), status(name, status as
+/// text; as a number suspect is converged), names(info, strings), flags(info, bools), list(info, vector) and
+/// field(info, Field). It either reads what it is given (the parts are const then) or fills it in.
 template <class Archive, class AnyRun>
 void visit_sizes(Archive& archive, AnyRun& run)
 {
@@ -176,23 +162,27 @@ void visit_report(Archive& archive, AnySolveReport& report)
                   report.notes);
 }
 
-template <class Archive, class AnyRunSummary>
-void visit_summary(Archive& archive, AnyRunSummary& summary)
+/// What of a run users ask for first. Some of it stands in the report as well.
+template <class Archive, class AnyRun>
+void visit_summary(Archive& archive, AnyRun& run)
 {
-    archive.number("converged", summary.converged);
-    archive.text("status", summary.status);
-    archive.text("method", summary.method);
-    archive.text("message", summary.message);
-    archive.number("elements", summary.elements);
-    archive.number("unknowns", summary.unknowns);
-    archive.number("newton_iterations", summary.newton_iterations);
-    archive.number("factorisations", summary.factorisations);
-    archive.number("residual_norm", summary.residual_norm);
-    archive.number("max_constraint_violation", summary.max_constraint_violation);
-    archive.number("max_velocity_violation", summary.max_velocity_violation);
-    archive.number("energy_drift", summary.energy_drift);
-    archive.number("angular_momentum_drift", summary.angular_momentum_drift);
-    archive.names({"note", {"note"}, "1", "none", "remarks on the run"}, summary.notes);
+    auto& report = run.report;
+    auto& verdict = run.verdict;
+    bool reached_end = report.reached_end();
+    archive.number("converged", reached_end);
+    archive.status("status", report.status);
+    archive.text("method", run.method);
+    archive.text("message", report.message);
+    archive.number("elements", report.n_elements);
+    archive.number("unknowns", report.unknowns);
+    archive.number("newton_iterations", report.newton_iterations);
+    archive.number("factorisations", report.factorisations);
+    archive.number("residual_norm", report.residual_norm);
+    archive.number("max_constraint_violation", verdict.max_constraint_violation);
+    archive.number("max_velocity_violation", verdict.max_velocity_violation);
+    archive.number("energy_drift", verdict.energy_drift);
+    archive.number("angular_momentum_drift", verdict.angular_momentum_drift);
+    archive.names({"note", {"note"}, "1", "none", "remarks on the run"}, run.notes);
 }
 
 template <class Archive, class AnyBalance>
@@ -267,13 +257,13 @@ void visit_figures_1(Archive& archive, AnyRun& run)
     archive.number("report_factor_entries", run.report.factor_entries);
     archive.number("report_guess_distance", run.report.guess_distance);
     archive.number("report_guess_distance_time", run.report.guess_distance_time);
-    archive.number("max_weak_violation", run.summary.max_weak_violation);
-    archive.number("zigzag_positions", run.summary.zigzag_positions);
-    archive.number("zigzag_momenta", run.summary.zigzag_momenta);
-    archive.number("zigzag_time", run.summary.zigzag_time);
-    archive.number("condition_1", run.summary.condition_1);
-    archive.number("condition_2", run.summary.condition_2);
-    archive.number("scaled_condition", run.summary.scaled_condition);
+    archive.number("max_weak_violation", run.verdict.max_weak_violation);
+    archive.number("zigzag_positions", run.verdict.zigzag_positions);
+    archive.number("zigzag_momenta", run.verdict.zigzag_momenta);
+    archive.number("zigzag_time", run.verdict.zigzag_time);
+    archive.number("condition_1", run.report.condition_1);
+    archive.number("condition_2", run.report.condition_2);
+    archive.number("scaled_condition", run.report.scaled_condition);
 }
 
 /// What version 1.`minor` of the format brought.
@@ -291,8 +281,8 @@ void visit_run(Archive& archive, AnyRun& run, int minor)
     visit_model(archive, run);
     visit_motion(archive, run.motion);
     visit_report(archive, run.report);
-    visit_summary(archive, run.summary);
-    visit_balance(archive, run.balance);
+    visit_summary(archive, run);
+    visit_balance(archive, run.verdict.balance);
     archive.text("options", run.resolved);
     archive.text("scenario", run.scenario_text);
 }

@@ -22,7 +22,7 @@ struct Decimal {
 
 Decimal to_decimal(double x)
 {
-    const std::string text = shortest(x);
+    const std::string text = to_text(x);
     const std::size_t e = std::min(text.find('e'), text.size());
     Decimal d;
     if (e < text.size()) d.exponent = std::atoi(text.c_str() + e + 1);
@@ -95,14 +95,14 @@ bool check_output_list(const Section& time, const Value& output, Findings& findi
         const Place place = output.node->items()[i].place;
         if (times[i] < start || times[i] > end) {
             findings.error(place, "time-output",
-                           "the output time " + shortest(times[i]) + " s lies outside the motion",
-                           {"it lasts from " + shortest(start) + " s to " + shortest(end) + " s", ""});
+                           "the output time " + to_text(times[i]) + " s lies outside the motion",
+                           {"it lasts from " + to_text(start) + " s to " + to_text(end) + " s", ""});
             return false;
         }
         if (i > 0 && times[i] <= times[i - 1]) {
             findings.error(place, "time-output",
-                           "output times must ascend: " + shortest(times[i]) + " s follows " +
-                               shortest(times[i - 1]) + " s");
+                           "output times must ascend: " + to_text(times[i]) + " s follows " +
+                               to_text(times[i - 1]) + " s");
             return false;
         }
     }
@@ -158,8 +158,8 @@ bool check_end(const Section& time, Findings& findings)
     if (time.find("end") == nullptr || (time.has("start") && time.find("start") == nullptr) || end > start)
         return true;
     findings.error(time.place("end"), "time-end",
-                   "'end' of [time] must lie after 'start': " + shortest(end) + " s is not after " +
-                       shortest(start) + " s");
+                   "'end' of [time] must lie after 'start': " + to_text(end) + " s is not after " +
+                       to_text(start) + " s");
     return false;
 }
 
@@ -209,19 +209,19 @@ bool check_knot_mesh(Builder& builder, const Section& time, const Section& metho
     const double start = time.number("start"), end = time.number("end");
     if (mesh.start() != start || mesh.end() != end)
         return refuse(method.place("knots"),
-                      "'knots' of [method] go from " + shortest(mesh.start()) + " s to " +
-                          shortest(mesh.end()) + " s, the motion from " + shortest(start) + " s to " +
-                          shortest(end) + " s",
+                      "'knots' of [method] go from " + to_text(mesh.start()) + " s to " +
+                          to_text(mesh.end()) + " s, the motion from " + to_text(start) + " s to " +
+                          to_text(end) + " s",
                       {"the first and the last knots are start and end of [time]", ""});
     if (time.has("elements") && time.integer("elements") != mesh.n_elements())
         return refuse(time.place("elements"),
-                      "'elements' of [time] is " + shortest(time.number("elements")) +
+                      "'elements' of [time] is " + to_text(time.number("elements")) +
                           ", but the knots of [method] make " + std::to_string(mesh.n_elements()),
                       {"", "leave it out"});
     if (time.text("breaks") != "from_loads") return true;
     const std::optional<double> t = missed(builder.model().load_breaks(), mesh);
     if (!t) return true;
-    return refuse(method.place("knots"), "a load breaks at " + shortest(*t) + " s, where there is no knot",
+    return refuse(method.place("knots"), "a load breaks at " + to_text(*t) + " s, where there is no knot",
                   {"elements end where loads jump or bend, or lose their order",
                    "add a knot there, degree times for a jump, or set breaks = \"ignore\" in [time]"});
 }
@@ -241,7 +241,7 @@ bool make_knot_mesh(Builder& builder, const Section& time, const Section& method
     const std::optional<double> t = missed(scenario.output, scenario.mesh);
     if (!t) return true;
     findings.error(time.place("output"), "knots-mesh",
-                   "the output time " + shortest(*t) + " s is no knot of [method]",
+                   "the output time " + to_text(*t) + " s is no knot of [method]",
                    {"output times are element ends, and knots make the elements",
                     "add a knot there, or leave 'output' out: then all knots are output times"});
     return false;
@@ -258,15 +258,22 @@ bool make_mesh(Builder& builder, const Section& time, const Section* method, Sce
     return true;
 }
 
-const char* word(Given given)
+const char* word(Known given)
 {
     switch (given) {
-    case Given::nothing: return "nothing";
-    case Given::positions: return "positions";
-    case Given::momenta: return "momenta";
-    case Given::state: break;
+    case Known::nothing: return "nothing";
+    case Known::positions: return "positions";
+    case Known::momenta: return "momenta";
+    case Known::state: break;
     }
     return "state";
+}
+
+void write_window(JsonWriter& json, int window)
+{
+    json.key("window");
+    if (window > 0) json.value(window);
+    else json.value("all");
 }
 
 void write_mixed(JsonWriter& json, const Mixed& mixed)
@@ -284,9 +291,7 @@ void write_mixed(JsonWriter& json, const Mixed& mixed)
     json.key("gauss_points");
     if (mixed.gauss_points > 0) json.value(mixed.gauss_points);
     else json.value("exact");
-    json.key("block");
-    if (mixed.block > 0) json.value(mixed.block);
-    else json.value("all");
+    write_window(json, mixed.window);
     json.member("interfaces", mixed.interfaces == Mixed::Interfaces::carry ? "carry" : "project");
     json.member("first_guess", mixed.first_guess == Mixed::FirstGuess::march ? "march" : "steady");
     if (!mixed.knots.empty()) json.member("knots", std::span<const double>(mixed.knots));
@@ -297,9 +302,10 @@ void write_mixed(JsonWriter& json, const Mixed& mixed)
 void write_method(JsonWriter& json, const Method& method)
 {
     if (const Mixed* mixed = std::get_if<Mixed>(&method)) write_mixed(json, *mixed);
-    else if (const Lobatto* lobatto = std::get_if<Lobatto>(&method))
+    else if (const Lobatto* lobatto = std::get_if<Lobatto>(&method)) {
         json.member("family", "lobatto").member("degree", lobatto->degree);
-    else json.member("family", std::holds_alternative<Midpoint>(method) ? "midpoint" : "endpoint");
+        write_window(json, lobatto->window);
+    } else json.member("family", std::holds_alternative<Midpoint>(method) ? "midpoint" : "endpoint");
 }
 
 std::string resolve(const Builder& builder, const Section& time, const Scenario& scenario)
@@ -322,9 +328,9 @@ std::string resolve(const Builder& builder, const Section& time, const Scenario&
     write_method(json, scenario.method);
     json.member("tolerance", options.tolerance).member("max_iterations", options.max_iterations);
     json.member("condition", options.condition).end_object();
-    json.key("start").begin_object().member("given", word(scenario.boundary.at_start));
+    json.key("start").begin_object().member("given", word(scenario.conditions.at_start));
     json.member("initial", options.initial == StartPolicy::check ? "check" : "project").end_object();
-    json.key("end").begin_object().member("given", word(scenario.boundary.at_end)).end_object();
+    json.key("end").begin_object().member("given", word(scenario.conditions.at_end)).end_object();
     return json.end_object().text();
 }
 
@@ -360,7 +366,7 @@ void read_run(Builder& builder, Scenario& scenario)
     if (method != nullptr) scenario.options.condition = method->truth("condition");
     if (start != nullptr && start->text("initial") == "project")
         scenario.options.initial = StartPolicy::project;
-    read_boundary(builder, scenario.boundary);
+    read_boundary(builder, scenario.conditions);
     remember_defaults(builder);
     if (time == nullptr) return;
     if (!make_mesh(builder, *time, method, scenario)) return;

@@ -218,9 +218,13 @@ constexpr std::array keys{
     Key{T::method, "gauss_points", K::integer,
         "Of the quadrature in each element. Default: as many as integrate all polynomials exactly."}
         .only_for("mixed").within({1, 64}),
-    Key{T::method, "block", K::integer_or_choice,
-        "Number of elements that are solved at once; positions and momenta at the end of a block begin the "
-        "next. Conditions at the end need all."}
+    Key{T::method, "window", K::integer_or_choice,
+        "Number of elements that are solved together. Their equations are the same; conditions at both ends "
+        "of time take all, whatever stands here."}
+        .otherwise("1").only_for("lobatto").one_of("all").within({1, max_elements}),
+    Key{T::method, "window", K::integer_or_choice,
+        "Number of elements that are solved together, a block; positions and momenta at the end of a block "
+        "begin the next. Conditions at both ends need all."}
         .otherwise("all").only_for("mixed").one_of("all").within({1, max_elements}),
     Key{T::method, "interfaces", K::choice,
         "Between blocks. carry: positions and momenta as they are, with what they violate; project: moved "
@@ -295,7 +299,7 @@ std::string Range::text() const
     constexpr double infinity = std::numeric_limits<double>::infinity();
     const auto number = [](double x) {   // whole numbers without exponent
         const bool is_whole = x == std::floor(x) && std::abs(x) < 1e15;
-        return is_whole ? std::to_string(static_cast<long long>(x)) : shortest(x);
+        return is_whole ? std::to_string(static_cast<long long>(x)) : to_text(x);
     };
     const std::string below = (above ? "> " : ">= ") + number(low);
     if (low == high) return number(low);

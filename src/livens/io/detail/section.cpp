@@ -113,7 +113,7 @@ private:
         if (node.kind == Kind::integer || node.kind == Kind::number) {
             if (std::isfinite(node.number)) return accept(node, node.number);
             findings_.error(node.place, "not-finite",
-                            subject() + " must be finite, not " + shortest(node.number));
+                            subject() + " must be finite, not " + to_text(node.number));
             return false;
         }
         if (node.kind != Kind::text || value_.key->unit.empty()) return wrong_type(node);
@@ -137,7 +137,7 @@ private:
             advice.help = "this version of livens reads format = 1";
         }
         findings_.error(node.place, code,
-                        subject() + " must be " + value_.key->range.text() + unit + ", not " + shortest(x),
+                        subject() + " must be " + value_.key->range.text() + unit + ", not " + to_text(x),
                         advice);
         return false;
     }

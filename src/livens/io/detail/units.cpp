@@ -196,7 +196,7 @@ Quantity parse_quantity(std::string_view text, std::string_view si_unit)
     if (rest.empty())
         return {
             0, "the unit is missing",
-            "leave out the quotes for " + wanted + ", or write \"" + shortest(number) + " " + wanted + "\""};
+            "leave out the quotes for " + wanted + ", or write \"" + to_text(number) + " " + wanted + "\""};
     std::string reason;
     const std::optional<Unit> unit = parse_unit(rest, reason);
     if (!unit) return {0, reason, std::string(known_units)};

@@ -1,22 +1,14 @@
 // Numbers and places as the room's error messages spell them.
 #pragma once
 
-#include <charconv>
 #include <cmath>
 #include <string>
 
 #include "livens/base/error.h"
 #include "livens/base/linear.h"
+#include "livens/base/text.h"
 
 namespace livens {
-
-/// The shortest text that reads back as the same double.
-inline std::string to_text(double value)
-{
-    char buffer[32];
-    const auto end = std::to_chars(buffer, buffer + sizeof buffer, value).ptr;
-    return std::string(buffer, end);
-}
 
 inline std::string to_text(const Vector3& v)
 {

@@ -3,7 +3,7 @@
 namespace livens {
 
 /// The axis of the second body is held perpendicular to two axes across the axis of the first. The rows also
-/// admit the axis turned end for end; assemble() refuses that.
+/// admit the axis turned end for end; close_start() refuses that.
 Joint revolute(const std::string& name, int first, int second, const JointFrame& frame, double scale)
 {
     JointFrame f = frame;

@@ -1,66 +1,89 @@
 #include "livens/spacetime/lobatto/elimination.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cstddef>
+#include <utility>
 
 namespace livens {
 
-Elimination::Elimination(const Tables& tables, int degree)
-    : tables_(tables), degree_(degree), f_(tables.freedoms())
+namespace {
+
+BlockStructure structure_of(const Stretch& stretch, int freedoms)
 {
-    const auto n = static_cast<std::size_t>(tables.n_twists);
-    product_.assign(n * static_cast<std::size_t>(f_), 0.0);
-    work_.assign(n, 0.0);
-    if (degree == 1) {
-        inverse_.assign(9 * tables.bodies.size(), 0.0);
-        range_.assign(n * static_cast<std::size_t>(tables.rank), 0.0);
-        schur_.resize(tables.rank);
+    BlockStructure structure;
+    for (int A = 0; A < stretch.n_nodes(); ++A) {
+        structure.n_unknowns.push_back(stretch.is_unknown(A) ? freedoms : 0);
+        structure.n_rows.push_back(stretch.is_active(A) ? freedoms : 0);
     }
-    lu_.resize(degree * f_);
-    z_.assign(static_cast<std::size_t>(degree + 1) * n * static_cast<std::size_t>(f_), 0.0);
+    for (int e = 0; e < stretch.n_elements(); ++e)
+        structure.elements.push_back({e * stretch.degree, (e + 1) * stretch.degree});
+    return structure;
 }
 
-void Elimination::begin(const std::vector<const OrthogonalBasis*>& bases)
-{
-    bases_ = bases;
-    by_bodies_ = takes_constraints();
-    if (!by_bodies_) form_null_spaces();
-}
-
-void Elimination::form_null_spaces()
-{
-    const auto size = static_cast<std::size_t>(tables_.n_twists * f_);
-    for (int A = 0; A <= degree_; ++A) bases_[A]->null_space(z_.data() + static_cast<std::size_t>(A) * size);
-}
-
-/// Rows of the null space at node A that belong to a body.
-const double* Elimination::null_space(int A, int body) const
-{
-    return z_.data() + (static_cast<std::size_t>(A) * static_cast<std::size_t>(tables_.n_twists) +
-                        static_cast<std::size_t>(tables_.bodies[body].first)) *
-                           static_cast<std::size_t>(f_);
-}
-
-void Elimination::open(int A, int B)
-{
-    A_ = A;
-    B_ = B;
-    if (by_bodies_) return;
-    std::fill(product_.begin(), product_.end(), 0.0);
-}
-
-void Elimination::add_mass(int body, double factor, const double* H)
-{
-    if (by_bodies_) {
-        factor_ = factor;
-        if (tables_.bodies[body].dofs == 3) return;
-        Matrix3 h{};
-        std::copy(H, H + 9, h.a);
-        const Matrix3 inverted = inverse(h);
-        std::copy(inverted.a, inverted.a + 9, inverse_.begin() + 9 * body);
-        return;
+class NullSpaces final : public Elimination {
+public:
+    NullSpaces(const Tables& tables, const Stretch& stretch, std::unique_ptr<LinearSolver> solver)
+        : tables_(tables), f_(tables.freedoms()), structure_(structure_of(stretch, tables.freedoms())),
+          solver_(std::move(solver))
+    {
+        const auto n = static_cast<std::size_t>(tables.n_twists * f_);
+        if (f_ == 0) return;   // nothing moves but what is driven
+        matrix_.resize(structure_);
+        solver_->analyse(structure_);
+        product_.assign(n, 0.0);
+        z_.assign(n * static_cast<std::size_t>(stretch.n_nodes()), 0.0);
     }
+
+    void begin(const Stretch& stretch, const Nodes& nodes) override
+    {
+        for (int A = 0; A < stretch.n_nodes(); ++A)
+            if (stretch.is_active(A) || stretch.is_unknown(A))
+                nodes.basis(A).q.null_space(z_.data() + place(A));
+    }
+    void open(int e, int A, int B) override
+    {
+        e_ = e;
+        A_ = A;
+        B_ = B;
+        std::fill(product_.begin(), product_.end(), 0.0);
+    }
+    void mass(int body, double factor, const double* H) override;
+    void block(int body_i, int body_j, const double* values) override;
+    void close() override;
+    bool factorise() override { return f_ == 0 || solver_->factorise(matrix_) == Outcome::regular; }
+    void solve(std::span<double> x, const double*) override
+    {
+        if (f_ > 0) solver_->solve(x);
+    }
+    void describe(SolveReport& report) const override
+    {
+        if (f_ > 0 && structure_.n_elements() > 1) report.factor_entries = solver_->report().factor_entries;
+    }
+    void measure_condition(SolveReport& report) override;
+
+private:
+    std::size_t place(int A) const
+    {
+        return static_cast<std::size_t>(A) * static_cast<std::size_t>(tables_.n_twists * f_);
+    }
+    const double* null_space(int A, int body) const
+    {
+        return z_.data() + place(A) + tables_.bodies[body].first * f_;
+    }
+    void multiply_pair(int r, double* u, double* w) const;
+
+    const Tables& tables_;
+    int f_;
+    BlockStructure structure_;
+    std::unique_ptr<LinearSolver> solver_;
+    BlockMatrix matrix_;
+    int e_ = 0, A_ = 0, B_ = 1;     // the open pair
+    std::vector<double> z_;         // null space of every node, n x f
+    std::vector<double> product_;   // block of the tangent times the null space at B, n x f
+};
+
+void NullSpaces::mass(int body, double factor, const double* H)
+{
     const double* __restrict z = null_space(B_, body);
     const int first = tables_.bodies[body].first, f = f_;
     double* __restrict v = product_.data() + first * f;
@@ -76,14 +99,13 @@ void Elimination::add_mass(int body, double factor, const double* H)
     }
 }
 
-void Elimination::add(int body_i, int body_j, const double* block)
+void NullSpaces::block(int body_i, int body_j, const double* values)
 {
-    assert(!by_bodies_ && "nothing but mass comes to elements that are inverted body by body");
     const double* z = null_space(B_, body_j);
     for (int i = 0; i < tables_.bodies[body_i].dofs; ++i) {
         double* __restrict v = product_.data() + (tables_.bodies[body_i].first + i) * f_;
         for (int k = 0; k < tables_.bodies[body_j].dofs; ++k) {
-            const double s = block[6 * i + k];
+            const double s = values[6 * i + k];
             if (s == 0) continue;
             const double* __restrict row = z + k * f_;
             for (int j = 0; j < f_; ++j) v[j] += s * row[j];
@@ -91,17 +113,14 @@ void Elimination::add(int body_i, int body_j, const double* block)
     }
 }
 
-/// Rows r and r + 1 of Z_A^T product, three terms at a time.
-void Elimination::multiply_pair(int A, int B, int r)
+/// Rows r and r + 1 of Z_A^T product, three terms at a time: n is a multiple of three.
+void NullSpaces::multiply_pair(int r, double* __restrict u, double* __restrict w) const
 {
     const int f = f_, n = tables_.n_twists;
-    const double* z = z_.data() + static_cast<std::size_t>(A) * static_cast<std::size_t>(n * f) + r;
-    double* __restrict u = lu_.row(A * f + r) + (B - 1) * f;
-    double* __restrict w = lu_.row(A * f + r + 1) + (B - 1) * f;
+    const double* z = z_.data() + place(A_) + r;
     std::fill(u, u + f, 0.0);
     std::fill(w, w + f, 0.0);
-    int i = 0;
-    for (; i + 2 < n; i += 3) {
+    for (int i = 0; i + 2 < n; i += 3) {
         const double* __restrict v0 = product_.data() + i * f;
         const double* __restrict v1 = v0 + f;
         const double* __restrict v2 = v1 + f;
@@ -114,40 +133,91 @@ void Elimination::multiply_pair(int A, int B, int r)
     }
 }
 
-void Elimination::close()
+/// The block at (A, B) <- Z_A^T product.
+void NullSpaces::close()
 {
-    if (!by_bodies_) reduce(A_, B_);
-}
-
-/// The block of the matrix at (A, B) <- Z_A^T product.
-void Elimination::reduce(int A, int B)
-{
-    // n is a multiple of three: six unknowns a body, three a point mass
-    const int f = f_, n = tables_.n_twists;
+    if (f_ == 0) return;
+    const int f = f_, n = tables_.n_twists, stride = matrix_.stride(e_);
+    double* block = matrix_.block(e_, A_, B_);
     int r = 0;
-    for (; r + 1 < f; r += 2) multiply_pair(A, B, r);
+    for (; r + 1 < f; r += 2) multiply_pair(r, block + r * stride, block + (r + 1) * stride);
     if (r == f) return;
-    double* __restrict u = lu_.row(A * f + r) + (B - 1) * f;
+    double* __restrict u = block + r * stride;
     std::fill(u, u + f, 0.0);
     for (int i = 0; i < n; ++i) {
-        const double s = null_space(A, 0)[i * f + r];
+        const double s = null_space(A_, 0)[i * f + r];
         const double* __restrict v = product_.data() + i * f;
         for (int j = 0; j < f; ++j) u[j] += s * v[j];
     }
 }
 
-bool Elimination::factorise() { return by_bodies_ ? factorise_bodies() : lu_.factorise(); }
-
-void Elimination::solve(double* x, const double* range)
+/// Nothing is scaled: rows and unknowns are in mass-orthonormal coordinates. The 2-norm knows no choice of
+/// units, axes and bases; the 1-norm feels the bases of the free motions (a factor of f^2 at the very most).
+void NullSpaces::measure_condition(SolveReport& report)
 {
-    if (by_bodies_)
-        solve_bodies(x, range);
-    else
-        lu_.solve(x);
+    const SparseMatrix whole = to_sparse(structure_, matrix_);
+    SparseLU lu(SparseBackend::eigen);
+    lu.analyse(whole);
+    if (!lu.factorise(whole)) {
+        report.notes.push_back(
+            "the whole matrix is singular to its factorisation: it has no condition number");
+        return;
+    }
+    const ConditionNumbers condition = condition_numbers(whole, lu);
+    report.condition_1 = report.scaled_condition = condition.one;
+    report.condition_2 = condition.two;
+    report.factor_entries = lu.factor_entries();
 }
 
+/// J y + Y_0 nu = x, Y_1^T y = 0, with the Schur complement Y_1^T J^-1 Y_0.
+class Bodies final : public Elimination {
+public:
+    explicit Bodies(const Tables& tables) : tables_(tables)
+    {
+        const auto n = static_cast<std::size_t>(tables.n_twists);
+        work_.assign(n, 0.0);
+        inverse_.assign(9 * tables.bodies.size(), 0.0);
+        range_.assign(n * static_cast<std::size_t>(tables.rank), 0.0);
+        schur_.resize(tables.rank);
+    }
+
+    void begin(const Stretch&, const Nodes& nodes) override
+    {
+        first_ = &nodes.basis(0).q;
+        last_ = &nodes.basis(1).q;
+    }
+    void open(int, int, int) override {}
+    void mass(int body, double factor, const double* H) override
+    {
+        factor_ = factor;
+        if (tables_.bodies[body].dofs == 3) return;
+        Matrix3 h{};
+        std::copy(H, H + 9, h.a);
+        const Matrix3 inverted = inverse(h);
+        std::copy(inverted.a, inverted.a + 9, inverse_.begin() + 9 * body);
+    }
+    void block(int, int, const double*) override {}   // nothing but mass comes to this element
+    void close() override {}
+    bool factorise() override;
+    void solve(std::span<double> x, const double* range) override;
+    bool takes_constraints() const override { return true; }
+    void describe(SolveReport&) const override {}
+    void measure_condition(SolveReport&) override {}
+
+private:
+    void invert_bodies(double* y) const;
+
+    const Tables& tables_;
+    const OrthogonalBasis *first_ = nullptr, *last_ = nullptr;
+    double factor_ = 1;             // of the mass
+    std::vector<double> inverse_;   // of H, 9 a body
+    DenseLU schur_;
+    std::vector<double> range_;   // Q_1^T J^-1 Y_0, rank columns of length n
+    std::vector<double> work_;
+};
+
 /// y <- J^-1 y, body by body.
-void Elimination::invert_bodies(double* y) const
+void Bodies::invert_bodies(double* y) const
 {
     const double s = 1 / factor_;
     for (const auto& body : tables_.bodies) {
@@ -160,36 +230,48 @@ void Elimination::invert_bodies(double* y) const
     }
 }
 
-/// J y + Y_0 nu = x, Y_1^T y = 0: the Schur complement Y_1^T J^-1 Y_0.
-bool Elimination::factorise_bodies()
+bool Bodies::factorise()
 {
     const int k = tables_.rank, n = tables_.n_twists;
     for (int c = 0; c < k; ++c) {
         double* column = range_.data() + c * n;
         std::fill(column, column + n, 0.0);
         column[c] = 1;
-        bases_[0]->apply(column);
+        first_->apply(column);
         invert_bodies(column);
-        bases_[1]->apply_transposed(column);
+        last_->apply_transposed(column);
         for (int r = 0; r < k; ++r) schur_.row(r)[c] = column[r];
     }
     return factor_ != 0 && schur_.factorise();
 }
 
-void Elimination::solve_bodies(double* x, const double* range)
+void Bodies::solve(std::span<double> x, const double* range)
 {
-    const int k = tables_.rank, n = tables_.n_twists;
+    const int k = tables_.rank, n = tables_.n_twists, f = n - k;
     double* y = work_.data();
     std::fill(y, y + k, 0.0);
-    std::copy(x, x + f_, y + k);
-    bases_[0]->apply(y);
+    std::copy(x.begin(), x.begin() + f, y + k);
+    first_->apply(y);
     invert_bodies(y);
-    bases_[1]->apply_transposed(y);
-    std::copy(y + k, y + n, x);
+    last_->apply_transposed(y);
+    std::copy(y + k, y + n, x.begin());
     for (int c = 0; range != nullptr && c < k; ++c) y[c] -= range[c];
     schur_.solve(y);
     for (int c = 0; c < k; ++c)
-        for (int i = k; i < n; ++i) x[i - k] -= y[c] * range_[static_cast<std::size_t>(c * n + i)];
+        for (int i = k; i < n; ++i) x[i - k] -= y[c] * range_[c * n + i];
+}
+
+}   // namespace
+
+std::unique_ptr<Elimination> null_space_elimination(const Tables& tables, const Stretch& stretch,
+                                                    std::unique_ptr<LinearSolver> solver)
+{
+    return std::make_unique<NullSpaces>(tables, stretch, std::move(solver));
+}
+
+std::unique_ptr<Elimination> body_elimination(const Tables& tables)
+{
+    return std::make_unique<Bodies>(tables);
 }
 
 }   // namespace livens

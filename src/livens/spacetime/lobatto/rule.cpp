@@ -40,8 +40,8 @@ LobattoRule lobatto_rule(int degree)
                           std::to_string(degree), "1..16", "", "4 to 8 suit most mechanisms"});
     const LagrangeBasis basis = lobatto_basis(degree);
     const int n = degree + 1;
-    LobattoRule rule{degree, basis.nodes(),  gauss_lobatto(n).weights, basis.differentiation(), {},
-                     gauss(degree), {}, {}};
+    LobattoRule rule{
+        degree, basis.nodes(), gauss_lobatto(n).weights, basis.differentiation(), {}, gauss(degree), {}, {}};
     rule.k.assign(static_cast<std::size_t>(n * n), 0.0);
     for (int a = 0; a < n; ++a) {
         for (int b = 0; b <= a; ++b) {

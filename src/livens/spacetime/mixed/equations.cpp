@@ -30,9 +30,9 @@ Equations::Equations(Setup setup, const Numbering& numbering)
 {
     tabulate();
     if (setup_.start == Mixed::Start::natural) tie_ends();
-    const Mechanism& m = *setup_.mechanism;
-    for (int l = 0; l < static_cast<int>(m.model.loads().size()); ++l) {
-        const Load& load = m.model.loads()[l];
+    const Coordinates& m = *setup_.coordinates;
+    for (int l = 0; l < static_cast<int>(m.tables.model->loads().size()); ++l) {
+        const Load& load = m.tables.model->loads()[l];
         if (!load.depends_on_X && !load.depends_on_V) continue;
         for (int by = 0; by < 2; ++by)
             for (int of = 0; of < 2; ++of) {
@@ -45,35 +45,35 @@ Equations::Equations(Setup setup, const Numbering& numbering)
 void Equations::tabulate()
 {
     const Quadrature rule = gauss(setup_.gauss_points);
-    gauss_places_ = rule.points;
-    gauss_weights_ = rule.weights;
+    tables_.gauss_places = rule.points;
+    tables_.gauss_weights = rule.weights;
     const TimeSpace& space = setup_.space;
     const std::size_t n_points = static_cast<std::size_t>(space.n_elements()) * rule.points.size();
-    M_.resize(n_points * n_local());
-    D_.resize(M_.size());
-    L_.resize(n_points * n_local_multipliers());
+    tables_.M.resize(n_points * n_local());
+    tables_.D.resize(tables_.M.size());
+    tables_.L.resize(n_points * n_local_multipliers());
     std::vector<double> unused(static_cast<std::size_t>(n_local_multipliers()));
     std::vector<int> n_elements(static_cast<std::size_t>(space.size()), 0);
-    lengths_.assign(n_elements.size(), 0.0);
-    centres_.assign(n_elements.size(), 0.0);
+    tables_.lengths.assign(n_elements.size(), 0.0);
+    tables_.centres.assign(n_elements.size(), 0.0);
     for (int e = 0; e < space.n_elements(); ++e) {
         for (int g = 0; g < n_gauss(); ++g) {
             const std::size_t at = static_cast<std::size_t>(e) * rule.points.size() + g;
             const auto part = [&](std::vector<double>& table, int n) {
                 return std::span<double>(table).subspan(at * n, n);
             };
-            space.evaluate(e, rule.points[g], part(M_, n_local()), part(D_, n_local()));
-            setup_.multipliers.evaluate(e, rule.points[g], part(L_, n_local_multipliers()), unused);
+            space.evaluate(e, rule.points[g], part(tables_.M, n_local()), part(tables_.D, n_local()));
+            setup_.multipliers.evaluate(e, rule.points[g], part(tables_.L, n_local_multipliers()), unused);
         }
         for (int a = 0; a < n_local(); ++a) {
             ++n_elements[space.first(e) + a];
-            lengths_[space.first(e) + a] += space.length(e);
-            centres_[space.first(e) + a] += space.ends()[e] + 0.5 * space.length(e);
+            tables_.lengths[space.first(e) + a] += space.length(e);
+            tables_.centres[space.first(e) + a] += space.ends()[e] + 0.5 * space.length(e);
         }
     }
     for (std::size_t A = 0; A < n_elements.size(); ++A) {
-        lengths_[A] /= n_elements[A];
-        centres_[A] /= n_elements[A];
+        tables_.lengths[A] /= n_elements[A];
+        tables_.centres[A] /= n_elements[A];
     }
 }
 
@@ -102,7 +102,7 @@ void Equations::tie_ends()
 
 void Equations::tie(Fields& fields) const
 {
-    const std::size_t n = static_cast<std::size_t>(setup_.mechanism->n_rows());
+    const std::size_t n = static_cast<std::size_t>(setup_.coordinates->n_rows());
     for (const Tie& tie : ties_)
         for (std::size_t k = 0; k < n; ++k) {
             double sum = 0;
@@ -113,8 +113,8 @@ void Equations::tie(Fields& fields) const
 
 Fields Equations::zero_fields() const
 {
-    const Mechanism& m = *setup_.mechanism;
-    const std::size_t n = static_cast<std::size_t>(m.n_coordinates);
+    const Coordinates& m = *setup_.coordinates;
+    const std::size_t n = static_cast<std::size_t>(m.size);
     Fields fields;
     fields.X0.assign(n, 0.0);
     fields.x.assign(n * setup_.space.size(), 0.0);
@@ -125,8 +125,8 @@ Fields Equations::zero_fields() const
 
 void Equations::sample(const Fields& fields, int e, int g)
 {
-    const Mechanism& m = *setup_.mechanism;
-    const int first = setup_.space.first(e), n = m.n_coordinates;
+    const Coordinates& m = *setup_.coordinates;
+    const int first = setup_.space.first(e), n = m.size;
     const std::span<const double> values(M(e, g), n_local()), rates(D(e, g), n_local());
     sample_.x = fields.X0;
     sample_.v.assign(n, 0.0);
@@ -141,23 +141,31 @@ void Equations::sample(const Fields& fields, int e, int g)
     }
     combine(fields.lambda, setup_.multipliers.first(e), m.n_rows(),
             {L(e, g), static_cast<std::size_t>(n_local_multipliers())}, sample_.lambda.data());
-    m.unstack(sample_.x.data(), sample_.X);
-    m.unstack(sample_.v.data(), sample_.V);
+    for (auto* v : {&sample_.X, &sample_.V, &sample_.F}) v->resize(m.n_X());
+    m.spread(sample_.x.data(), sample_.X.data());
+    m.spread(sample_.v.data(), sample_.V.data());
 }
 
 const std::string& Equations::residual(const Fields& fields, std::vector<double>& r)
 {
-    const Mechanism& m = *setup_.mechanism;
-    const std::size_t n = static_cast<std::size_t>(m.n_coordinates);
+    const Coordinates& m = *setup_.coordinates;
+    const std::size_t n = static_cast<std::size_t>(m.size);
     const std::string* bad = &none;
-    raw_dP_.assign(n * setup_.space.size(), 0.0);
-    raw_dX_.assign(n * setup_.space.size(), 0.0);
-    raw_dlambda_.assign(static_cast<std::size_t>(m.n_rows()) * setup_.multipliers.size(), 0.0);
+    const std::vector<Load>& loads = m.tables.model->loads();
+    raw_.dP.assign(n * setup_.space.size(), 0.0);
+    raw_.dX.assign(n * setup_.space.size(), 0.0);
+    raw_.dlambda.assign(static_cast<std::size_t>(m.n_rows()) * setup_.multipliers.size(), 0.0);
     for (int e = 0; e < setup_.space.n_elements(); ++e)
         for (int g = 0; g < n_gauss(); ++g) {
             sample(fields, e, g);
-            const std::string& load = m.forces(time(e, g), sample_.X, sample_.V, sample_.lambda, sample_.F);
-            if (!load.empty()) bad = &load;
+            m.forces(time(e, g), sample_.X.data(), sample_.V.data(), sample_.lambda.data(), sample_.F.data());
+            double sum = 0;
+            for (const double f : sample_.F) sum += std::abs(f);
+            if (!std::isfinite(sum)) {
+                const int load =
+                    m.tables.bad_load({time(e, g), Side::middle}, sample_.X.data(), sample_.V.data());
+                if (load >= 0) bad = &loads[load].name;
+            }
             add_rows(e, g);
         }
     r.assign(static_cast<std::size_t>(size()), 0.0);
@@ -165,11 +173,11 @@ const std::string& Equations::residual(const Fields& fields, std::vector<double>
         if (to >= 0) std::copy_n(raw.data() + static_cast<std::size_t>(A) * count, count, r.data() + to);
     };
     for (int A = 0; A < setup_.space.size(); ++A) {
-        take(numbering_.row_dP(A), raw_dP_, A, m.n_coordinates);
-        take(numbering_.row_dX(A), raw_dX_, A, m.n_coordinates);
+        take(numbering_.row_dP(A), raw_.dP, A, m.size);
+        take(numbering_.row_dX(A), raw_.dX, A, m.size);
     }
     for (int A = 0; A < setup_.multipliers.size(); ++A)
-        take(numbering_.row_dlambda(A), raw_dlambda_, A, m.n_rows());
+        take(numbering_.row_dlambda(A), raw_.dlambda, A, m.n_rows());
     add_boundary(fields, r);
     return *bad;
 }
@@ -177,29 +185,30 @@ const std::string& Equations::residual(const Fields& fields, std::vector<double>
 /// What one Gauss point adds to all rows.
 void Equations::add_rows(int e, int g)
 {
-    const Mechanism& m = *setup_.mechanism;
+    const Coordinates& m = *setup_.coordinates;
     const int first = setup_.space.first(e);
     const double w = weight(e, g);
     const bool is_natural = setup_.start == Mixed::Start::natural;
     for (int b = 0; b < m.n_bodies(); ++b) {
         Matrix34 P{};
         std::copy_n(sample_.p.data() + m.first[b], m.n_numbers(b), P.a);
-        const Matrix34 slip = sample_.V[b] - P * m.inverse_masses[b];
+        Matrix34 slip = -P * m.inverse_masses[b];
+        for (int c = 0; c < 12; ++c) slip.a[c] += sample_.V[12 * b + c];
         for (int a = 0; a < n_local(); ++a) {
             const double value = w * M(e, g)[a], rate = w * D(e, g)[a];
-            const std::size_t at = static_cast<std::size_t>(first + a) * m.n_coordinates + m.first[b];
+            const std::size_t at = static_cast<std::size_t>(first + a) * m.size + m.first[b];
             for (int c = 0; c < m.n_numbers(b); ++c) {
-                raw_dP_[at + c] += value * slip.a[c];
+                raw_.dP[at + c] += value * slip.a[c];
                 const double inertia = is_natural ? -rate * P.a[c] : value * sample_.p_rate[m.first[b] + c];
-                raw_dX_[at + c] += inertia - value * sample_.F[b].a[c];
+                raw_.dX[at + c] += inertia - value * sample_.F[12 * b + c];
             }
         }
     }
     for (int k = 0; k < m.n_rows(); ++k) {
-        const double phi = w * m.value(k, sample_.X);
+        const double phi = w * m.tables.value(m.rows[k], {}, sample_.X.data());
         for (int a = 0; a < n_local_multipliers(); ++a) {
             const int A = setup_.multipliers.first(e) + a;
-            raw_dlambda_[static_cast<std::size_t>(A) * m.n_rows() + k] += L(e, g)[a] * phi;
+            raw_.dlambda[static_cast<std::size_t>(A) * m.n_rows() + k] += L(e, g)[a] * phi;
         }
     }
 }
@@ -217,58 +226,50 @@ std::vector<Matrix34> Equations::given_momentum(const Fields& fields, bool at_en
 
 std::vector<Matrix34> Equations::end_position(const Fields& fields, bool at_end) const
 {
-    const Mechanism& m = *setup_.mechanism;
+    const Coordinates& m = *setup_.coordinates;
     const std::size_t A = at_end ? static_cast<std::size_t>(setup_.space.size()) - 1 : 0;
     std::vector<double> x = fields.X0;
-    for (int i = 0; i < m.n_coordinates; ++i) x[i] += fields.x[A * m.n_coordinates + i];
-    std::vector<Matrix34> X;
-    m.unstack(x.data(), X);
-    return X;
+    for (int i = 0; i < m.size; ++i) x[i] += fields.x[A * m.size + i];
+    return m.bodies(x.data());
 }
 
 /// Natural start: -P(0) in row 0 and P(T) in row n.
 void Equations::add_boundary(const Fields& fields, std::vector<double>& r) const
 {
     if (setup_.start != Mixed::Start::natural) return;
-    const Mechanism& m = *setup_.mechanism;
-    std::vector<double> p(static_cast<std::size_t>(m.n_coordinates));
+    const Coordinates& m = *setup_.coordinates;
     for (const bool at_end : {false, true}) {
         const int row = numbering_.row_dX(at_end ? setup_.space.size() - 1 : 0);
         if (row < 0) continue;
-        m.stack(given_momentum(fields, at_end), p.data());
-        for (int i = 0; i < m.n_coordinates; ++i) r[row + i] += at_end ? p[i] : -p[i];
+        const std::vector<double> p = m.gather(given_momentum(fields, at_end));
+        for (int i = 0; i < m.size; ++i) r[row + i] += at_end ? p[i] : -p[i];
     }
 }
 
 std::vector<Matrix34> Equations::end_momentum(const Fields& fields, bool at_end) const
 {
-    const Mechanism& m = *setup_.mechanism;
+    const Coordinates& m = *setup_.coordinates;
     const int A = at_end ? setup_.space.size() - 1 : 0;
-    const std::size_t at = static_cast<std::size_t>(A) * m.n_coordinates;
-    std::vector<Matrix34> P;
-    if (setup_.start == Mixed::Start::strong) {
-        m.unstack(fields.P.data() + at, P);
-        return P;
-    }
+    const std::size_t at = static_cast<std::size_t>(A) * m.size;
+    if (setup_.start == Mixed::Start::strong) return m.bodies(fields.P.data() + at);
     if (numbering_.row_dX(A) >= 0) return given_momentum(fields, at_end);
-    std::vector<double> p(raw_dX_.begin() + at, raw_dX_.begin() + at + m.n_coordinates);
+    std::vector<double> p(raw_.dX.begin() + at, raw_.dX.begin() + at + m.size);
     if (at_end)
         for (double& value : p) value = -value;
-    m.unstack(p.data(), P);
-    return P;
+    return m.bodies(p.data());
 }
 
-void Equations::add(Fields& fields, const std::vector<double>& increment, double factor) const
+void Equations::add(Fields& fields, std::span<const double> increment, double factor) const
 {
-    const Mechanism& m = *setup_.mechanism;
+    const Coordinates& m = *setup_.coordinates;
     const auto move = [&](std::vector<double>& values, int A, int from, int count) {
         if (from < 0) return;
         double* to = values.data() + static_cast<std::size_t>(A) * count;
         for (int i = 0; i < count; ++i) to[i] += factor * increment[from + i];
     };
     for (int A = 0; A < setup_.space.size(); ++A) {
-        move(fields.x, A, numbering_.X(A), m.n_coordinates);
-        move(fields.P, A, numbering_.P(A), m.n_coordinates);
+        move(fields.x, A, numbering_.X(A), m.size);
+        move(fields.P, A, numbering_.P(A), m.size);
     }
     for (int A = 0; A < setup_.multipliers.size(); ++A)
         move(fields.lambda, A, numbering_.lambda(A), m.n_rows());
@@ -287,19 +288,19 @@ void Equations::evaluate(const TimeSpace& space, const std::vector<double>& coef
 void Equations::evaluate_X(const Fields& fields, int element, double s, double* X) const
 {
     std::copy(fields.X0.begin(), fields.X0.end(), X);
-    evaluate(setup_.space, fields.x, setup_.mechanism->n_coordinates, element, s, X);
+    evaluate(setup_.space, fields.x, setup_.coordinates->size, element, s, X);
 }
 
 void Equations::evaluate_P(const Fields& fields, int element, double s, double* P) const
 {
-    std::fill_n(P, setup_.mechanism->n_coordinates, 0.0);
-    evaluate(setup_.space, fields.P, setup_.mechanism->n_coordinates, element, s, P);
+    std::fill_n(P, setup_.coordinates->size, 0.0);
+    evaluate(setup_.space, fields.P, setup_.coordinates->size, element, s, P);
 }
 
 void Equations::evaluate_multipliers(const Fields& fields, int element, double s, double* lambda) const
 {
-    std::fill_n(lambda, setup_.mechanism->n_rows(), 0.0);
-    evaluate(setup_.multipliers, fields.lambda, setup_.mechanism->n_rows(), element, s, lambda);
+    std::fill_n(lambda, setup_.coordinates->n_rows(), 0.0);
+    evaluate(setup_.multipliers, fields.lambda, setup_.coordinates->n_rows(), element, s, lambda);
 }
 
 }   // namespace livens::mixed

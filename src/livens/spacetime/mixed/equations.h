@@ -1,15 +1,15 @@
 // The equations of one block: rows and whole matrix, formed element by element.
 #pragma once
 
-#include <array>
 #include <bitset>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "livens/solvers/sparse.h"
 #include "livens/spacetime/mixed/end_momentum.h"
-#include "livens/spacetime/mixed/mechanism.h"
+#include "livens/spacetime/mixed/coordinates.h"
 #include "livens/spacetime/mixed/numbering.h"
 #include "livens/time/time_space.h"
 
@@ -47,7 +47,7 @@ struct Worst {
 class Equations {
 public:
     struct Setup {
-        const Mechanism* mechanism;
+        const Coordinates* coordinates;
         TimeSpace space;
         TimeSpace multipliers;
         int gauss_points;
@@ -70,7 +70,7 @@ public:
     /// Matrix d(residual)/d(unknowns) at `fields`. Returns whether its pattern differs from the last one.
     bool tangent(const Fields& fields, SparseMatrix& J);
     /// fields + factor * increment of the unknowns.
-    void add(Fields& fields, const std::vector<double>& increment, double factor) const;
+    void add(Fields& fields, std::span<const double> increment, double factor) const;
     /// The momentum that the law gives at an end, from the rows of the last residual(); for the strong start
     /// the value of P.
     std::vector<Matrix34> end_momentum(const Fields& fields, bool at_end) const;
@@ -80,7 +80,7 @@ public:
     void scales(const Fields& fields, std::vector<double>& of_rows, std::vector<double>& of_columns) const;
     /// Largest increment: |dx| / length of points, |dd| of directors, and what the momenta's would move in
     /// one element.
-    double size_of(const std::vector<double>& increment) const;
+    double size_of(std::span<const double> increment) const;
     /// The largest scaled residual and its place.
     Worst worst(const std::vector<double>& r, const std::vector<double>& scale_of_rows) const;
 
@@ -91,14 +91,25 @@ public:
     void evaluate_P(const Fields& fields, int element, double s, double* P) const;
     void evaluate_multipliers(const Fields& fields, int element, double s, double* lambda) const;
     /// Middle of the elements where function A lives.
-    double centre(int A) const { return centres_[A]; }
+    double centre(int A) const { return tables_.centres[A]; }
 
 private:
     /// One Gauss point of an element.
     struct Sample {
         std::vector<double> x, v, p, p_rate;
-        std::vector<Matrix34> X, V, F;
+        std::vector<double> X, V, F;   ///< 12 numbers a body
         std::vector<double> lambda;
+    };
+    /// What depends on time alone. Tables: element, Gauss point, local function.
+    struct TimeTables {
+        std::vector<double> gauss_places, gauss_weights;
+        std::vector<double> M, D, L;
+        std::vector<double> lengths;   ///< mean element length of each function
+        std::vector<double> centres;   ///< middle of the elements where it lives
+    };
+    /// Rows of all functions, the solved and the others.
+    struct RawRows {
+        std::vector<double> dP, dX, dlambda;
     };
     using Mask = std::bitset<144>;
     struct LoadBlock {
@@ -113,13 +124,16 @@ private:
         std::vector<double> loads;   ///< 144 a block
     };
 
-    const double* M(int e, int g) const { return M_.data() + (e * n_gauss() + g) * n_local(); }
-    const double* D(int e, int g) const { return D_.data() + (e * n_gauss() + g) * n_local(); }
-    const double* L(int e, int g) const { return L_.data() + (e * n_gauss() + g) * n_local_multipliers(); }
-    double weight(int e, int g) const { return gauss_weights_[g] * setup_.space.length(e); }
+    const double* M(int e, int g) const { return tables_.M.data() + (e * n_gauss() + g) * n_local(); }
+    const double* D(int e, int g) const { return tables_.D.data() + (e * n_gauss() + g) * n_local(); }
+    const double* L(int e, int g) const
+    {
+        return tables_.L.data() + (e * n_gauss() + g) * n_local_multipliers();
+    }
+    double weight(int e, int g) const { return tables_.gauss_weights[g] * setup_.space.length(e); }
     double time(int e, int g) const
     {
-        return setup_.space.ends()[e] + gauss_places_[g] * setup_.space.length(e);
+        return setup_.space.ends()[e] + tables_.gauss_places[g] * setup_.space.length(e);
     }
     int n_gauss() const { return setup_.gauss_points; }
     int n_local() const { return setup_.space.degree() + 1; }
@@ -152,17 +166,13 @@ private:
     Setup setup_;
     Numbering numbering_;
     std::vector<Tie> ties_;
-    std::vector<double> gauss_places_, gauss_weights_;
-    std::vector<double> M_, D_, L_;   ///< tables: element, Gauss point, local function
-    std::vector<double> lengths_;     ///< mean element length of each function
-    std::vector<double> centres_;     ///< middle of the elements where it lives
-    std::vector<double> raw_dP_, raw_dX_, raw_dlambda_;
+    TimeTables tables_;
+    RawRows raw_;
     std::vector<LoadBlock> load_blocks_;
     std::vector<int> slots_;   ///< place in the matrix of every entry that visit_all() makes
     Sample sample_;
     Local local_;
     std::vector<double> gradients_;
-    std::array<Matrix34, 2> pair_;
 };
 
 }   // namespace livens::mixed

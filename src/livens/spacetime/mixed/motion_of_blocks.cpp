@@ -39,16 +39,15 @@ int order_of(const Mixed& method, std::size_t n_blocks)
 
 }   // namespace
 
-MotionOfBlocks::MotionOfBlocks(const Model& model, const Mechanism& mechanism, const TimeMesh& mesh,
-                               const Mixed& method)
-    : model_(model), mechanism_(mechanism), mesh_(mesh), method_(method)
+MotionOfBlocks::MotionOfBlocks(const Coordinates& coordinates, const TimeMesh& mesh, const Mixed& method)
+    : coordinates_(coordinates), mesh_(mesh), method_(method)
 {}
 
 std::vector<double> MotionOfBlocks::to_columns(const double* coordinates) const
 {
-    std::vector<double> columns(12 * static_cast<std::size_t>(mechanism_.n_bodies()), 0.0);
-    for (int b = 0; b < mechanism_.n_bodies(); ++b)
-        std::copy_n(coordinates + mechanism_.first[b], mechanism_.n_numbers(b), columns.begin() + 12 * b);
+    std::vector<double> columns(12 * static_cast<std::size_t>(coordinates_.n_bodies()), 0.0);
+    for (int b = 0; b < coordinates_.n_bodies(); ++b)
+        std::copy_n(coordinates + coordinates_.first[b], coordinates_.n_numbers(b), columns.begin() + 12 * b);
     return columns;
 }
 
@@ -60,8 +59,8 @@ void MotionOfBlocks::add(int first, const Equations& equations, const Fields& fi
     gauss_points_ = equations.setup().gauss_points;
     block.P_start = equations.end_momentum(fields, false);
     block.P_end = equations.end_momentum(fields, true);
-    std::vector<double> numbers(static_cast<std::size_t>(mechanism_.n_coordinates));
-    std::vector<double> lambda(static_cast<std::size_t>(mechanism_.n_rows()));
+    std::vector<double> numbers(static_cast<std::size_t>(coordinates_.size));
+    std::vector<double> lambda(static_cast<std::size_t>(coordinates_.n_rows()));
     const auto append = [](std::vector<double>& to, const std::vector<double>& from) {
         to.insert(to.end(), from.begin(), from.end());
     };
@@ -75,17 +74,19 @@ void MotionOfBlocks::add(int first, const Equations& equations, const Fields& fi
         }
         for (const double s : nodes_of(equations.setup().multipliers.degree())) {
             equations.evaluate_multipliers(fields, e, s, lambda.data());
-            std::vector<double> joints(static_cast<std::size_t>(model_.n_rows()), 0.0);
-            std::vector<double> rigidity(6 * static_cast<std::size_t>(model_.n_bodies()), 0.0);
+            std::vector<double> joints(static_cast<std::size_t>(coordinates_.tables.model->n_rows()), 0.0);
+            std::vector<double> rigidity(6 * static_cast<std::size_t>(coordinates_.tables.model->n_bodies()),
+                                         0.0);
             int of_rigidity = 0, body = -1;
-            for (int k = 0; k < mechanism_.n_rows(); ++k) {
-                const Row& row = mechanism_.rows[k];
-                if (row.model_row >= 0) {
-                    joints[row.model_row] = lambda[k];
+            for (int k = 0; k < coordinates_.n_rows(); ++k) {
+                const int row = coordinates_.rows[k];
+                if (row < coordinates_.tables.n_rows()) {
+                    joints[row] = lambda[k];
                     continue;
                 }
-                of_rigidity = row.form.body_j == body ? of_rigidity + 1 : 0;
-                body = row.form.body_j;
+                const int of_body = coordinates_.tables.rows[row].bodies[0];
+                of_rigidity = of_body == body ? of_rigidity + 1 : 0;
+                body = of_body;
                 rigidity[6 * static_cast<std::size_t>(body) + of_rigidity] = lambda[k];
             }
             append(block.multipliers, joints);
@@ -97,8 +98,8 @@ void MotionOfBlocks::add(int first, const Equations& equations, const Fields& fi
 Motion MotionOfBlocks::take(bool torn, const State& start)
 {
     Motion motion;
-    motion.n_bodies = model_.n_bodies();
-    motion.n_rows = model_.n_rows();
+    motion.n_bodies = coordinates_.tables.model->n_bodies();
+    motion.n_rows = coordinates_.tables.model->n_rows();
     const int p = method_.degree;
     const int q = method_.multipliers == Mixed::Multipliers::equal ? p : p - 1;
     motion.X = {12 * motion.n_bodies, p, !torn, {}, {}};
@@ -114,8 +115,8 @@ Motion MotionOfBlocks::take(bool torn, const State& start)
         motion.mesh.ends = {start.t};
         std::vector<Matrix34> P = start.V;
         std::vector<double> X;
-        for (int b = 0; b < model_.n_bodies(); ++b) {
-            P[b] = start.V[b] * model_.bodies()[b].mass;
+        for (int b = 0; b < coordinates_.tables.model->n_bodies(); ++b) {
+            P[b] = start.V[b] * coordinates_.tables.model->bodies()[b].mass;
             X.insert(X.end(), start.X[b].a, start.X[b].a + 12);
         }
         motion.X.values = X;
@@ -175,13 +176,10 @@ void MotionOfBlocks::append_end(const double* X, const std::vector<Matrix34>& P,
     std::vector<Matrix34> places(P.size()), V(P.size());
     for (std::size_t b = 0; b < P.size(); ++b) {
         std::copy_n(X + 12 * b, 12, places[b].a);
-        V[b] = P[b] * mechanism_.inverse_masses[b];
+        V[b] = P[b] * coordinates_.inverse_masses[b];
     }
     if (of_block) {
-        std::vector<int> rows;
-        for (const Row& row : mechanism_.rows)
-            if (row.model_row >= 0) rows.push_back(row.model_row);
-        V = nearest_rates(model_, places, V, rows);
+        V = nearest_rates(*coordinates_.tables.model, places, V, coordinates_.tables.independent);
     }
     motion.momenta.insert(motion.momenta.end(), P.begin(), P.end());
     motion.velocities.insert(motion.velocities.end(), V.begin(), V.end());

@@ -16,10 +16,11 @@ namespace livens::mixed {
 /// element ends both are those of the field P.
 class MotionOfBlocks {
 public:
-    MotionOfBlocks(const Model& model, const Mechanism& mechanism, const TimeMesh& mesh, const Mixed& method);
+    MotionOfBlocks(const Coordinates& coordinates, const TimeMesh& mesh, const Mixed& method);
 
     /// A block that begins with element `first`.
     void add(int first, const Equations& equations, const Fields& fields);
+    std::size_t n_blocks() const { return blocks_.size(); }
     /// `torn`: positions may jump between blocks. Without blocks the motion is the given start alone.
     Motion take(bool torn, const State& start);
 
@@ -34,8 +35,7 @@ private:
     void append_end(const double* X, const std::vector<Matrix34>& P, bool of_block, Motion& motion) const;
     std::vector<double> to_columns(const double* coordinates) const;
 
-    const Model& model_;
-    const Mechanism& mechanism_;
+    const Coordinates& coordinates_;
     const TimeMesh& mesh_;
     const Mixed& method_;
     int gauss_points_ = 0;

@@ -4,7 +4,7 @@
 
 namespace livens::mixed {
 
-Numbering::Numbering(const Conditions& given, Mixed::Start start, Mixed::Multipliers multipliers, int n,
+Numbering::Numbering(const Given& given, Mixed::Start start, Mixed::Multipliers multipliers, int n,
                      int n_coordinates, int n_rows)
 {
     const bool is_natural = start == Mixed::Start::natural;

@@ -3,12 +3,12 @@
 
 #include <vector>
 
-#include "livens/spacetime/solve.h"
+#include "livens/spacetime/method.h"
 
 namespace livens::mixed {
 
 /// What is given at the two ends of a block.
-struct Conditions {
+struct Given {
     bool X_at_start = true;
     bool P_at_start = true;
     bool X_at_end = false;
@@ -26,7 +26,7 @@ struct Conditions {
 /// degree are unknown and tested throughout.
 class Numbering {
 public:
-    Numbering(const Conditions& conditions, Mixed::Start start, Mixed::Multipliers multipliers,
+    Numbering(const Given& given, Mixed::Start start, Mixed::Multipliers multipliers,
               int n_functions, int n_coordinates, int n_rows);
 
     int size() const { return n_unknowns_; }

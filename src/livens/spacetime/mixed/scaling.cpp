@@ -9,15 +9,16 @@ namespace livens::mixed {
 void Equations::scales(const Fields& fields, std::vector<double>& of_rows,
                        std::vector<double>& of_columns) const
 {
-    const Mechanism& m = *setup_.mechanism;
-    std::vector<Matrix34> X;
-    m.unstack(fields.X0.data(), X);
+    const Coordinates& m = *setup_.coordinates;
+    std::vector<double> X(static_cast<std::size_t>(m.n_X()));
+    m.spread(fields.X0.data(), X.data());
     std::vector<double> factors(static_cast<std::size_t>(m.n_rows()), 0.0);   // becomes 1 / |G_k m^(-1/2)|
-    for (const GradientEntry& entry : m.gradient_entries) {
-        Matrix34 g_i{}, g_j{};
-        m.gradient(entry.row, X, g_i, g_j);
-        const double g = (m.rows[entry.row].form.body_i == entry.body ? g_i : g_j).a[entry.component] /
-                         m.root_masses[m.first[entry.body] + entry.component];
+    double gradient[24];
+    for (std::size_t i = 0; i < m.gradient_entries.size(); ++i) {
+        const GradientEntry& entry = m.gradient_entries[i];
+        if (i == 0 || m.gradient_entries[i - 1].row != entry.row)
+            m.tables.gradient(m.rows[entry.row], {}, X.data(), gradient);
+        const double g = gradient[12 * entry.side + entry.component] / m.root_masses[entry.coordinate];
         factors[entry.row] += g * g;
     }
     for (double& factor : factors) factor = factor > 0 ? 1 / std::sqrt(factor) : 1;
@@ -29,24 +30,24 @@ void Equations::scales(const Fields& fields, std::vector<double>& of_rows,
             for (int i = 0; i < count; ++i) scale[first + i] = value(i);
     };
     for (int A = 0; A < setup_.space.size(); ++A) {
-        const double h = lengths_[A];
+        const double h = tables_.lengths[A];
         const auto root = [&](int i) { return m.root_masses[i]; };
-        fill(of_columns, numbering_.X(A), m.n_coordinates, [&](int i) { return h / root(i); });
-        fill(of_columns, numbering_.P(A), m.n_coordinates, root);
-        fill(of_rows, numbering_.row_dP(A), m.n_coordinates, [&](int i) { return root(i) / h; });
-        fill(of_rows, numbering_.row_dX(A), m.n_coordinates, [&](int i) { return 1 / root(i); });
+        fill(of_columns, numbering_.X(A), m.size, [&](int i) { return h / root(i); });
+        fill(of_columns, numbering_.P(A), m.size, root);
+        fill(of_rows, numbering_.row_dP(A), m.size, [&](int i) { return root(i) / h; });
+        fill(of_rows, numbering_.row_dX(A), m.size, [&](int i) { return 1 / root(i); });
     }
     for (int A = 0; A < setup_.multipliers.size(); ++A) {
-        const double h = lengths_[A];
+        const double h = tables_.lengths[A];
         fill(of_columns, numbering_.lambda(A), m.n_rows(), [&](int k) { return factors[k] / h; });
         fill(of_rows, numbering_.row_dlambda(A), m.n_rows(), [&](int k) { return factors[k] / (h * h); });
     }
 }
 
-double Equations::size_of(const std::vector<double>& increment) const
+double Equations::size_of(std::span<const double> increment) const
 {
-    const Mechanism& m = *setup_.mechanism;
-    const double length = m.model.length();
+    const Coordinates& m = *setup_.coordinates;
+    const double length = m.tables.length;
     double size = 0;
     const auto look = [&size](double value) {
         if (!(value <= size) && !std::isnan(size)) size = value;
@@ -58,7 +59,7 @@ double Equations::size_of(const std::vector<double>& increment) const
                 const int i = m.first[b] + c;
                 const double unit = c < 3 ? length : 1, root = m.root_masses[i];
                 if (X >= 0) look(std::abs(increment[X + i]) / unit);
-                if (P >= 0) look(std::abs(increment[P + i]) * lengths_[A] / (root * root * unit));
+                if (P >= 0) look(std::abs(increment[P + i]) * tables_.lengths[A] / (root * root * unit));
             }
     }
     return size;
@@ -66,7 +67,7 @@ double Equations::size_of(const std::vector<double>& increment) const
 
 Worst Equations::worst(const std::vector<double>& r, const std::vector<double>& scale) const
 {
-    const Mechanism& m = *setup_.mechanism;
+    const Coordinates& m = *setup_.coordinates;
     Worst worst;
     int at = -1, function = 0;
     enum { definition, balance, constraint } kind = balance;
@@ -80,13 +81,13 @@ Worst Equations::worst(const std::vector<double>& r, const std::vector<double>& 
         }
     };
     for (int A = 0; A < setup_.space.size(); ++A) {
-        look(A, numbering_.row_dP(A), m.n_coordinates, definition);
-        look(A, numbering_.row_dX(A), m.n_coordinates, balance);
+        look(A, numbering_.row_dP(A), m.size, definition);
+        look(A, numbering_.row_dX(A), m.size, balance);
     }
     for (int A = 0; A < setup_.multipliers.size(); ++A)
         look(A, numbering_.row_dlambda(A), m.n_rows(), constraint);
     if (at < 0) return worst;
-    worst.t = centres_[function];
+    worst.t = tables_.centres[function];
     if (kind == constraint) {
         worst.name = m.row_name(at);
         return worst;
@@ -94,7 +95,7 @@ Worst Equations::worst(const std::vector<double>& r, const std::vector<double>& 
     int body = m.n_bodies() - 1;
     while (m.first[body] > at) --body;
     worst.name = std::string(kind == balance ? "the balance of momentum" : "the velocity") + " of body '" +
-                 m.model.body_name(body) + "'";
+                 m.tables.model->body_name(body) + "'";
     return worst;
 }
 

@@ -76,7 +76,7 @@ void Equations::visit_all(const Fields* fields, Sink&& sink)
 
 void Equations::clear(Local& local) const
 {
-    const Mechanism& m = *setup_.mechanism;
+    const Coordinates& m = *setup_.coordinates;
     const std::size_t pairs = static_cast<std::size_t>(n_local()) * n_local();
     const std::size_t with_multipliers = static_cast<std::size_t>(n_local()) * n_local_multipliers();
     local.MM.assign(pairs, 0.0);
@@ -88,17 +88,18 @@ void Equations::clear(Local& local) const
 
 void Equations::sum_element(const Fields& fields, int e)
 {
-    const Mechanism& m = *setup_.mechanism;
+    const Coordinates& m = *setup_.coordinates;
     clear(local_);
     gradients_.resize(m.gradient_entries.size());
     for (int g = 0; g < n_gauss(); ++g) {
         sample(fields, e, g);
         const double w = weight(e, g);
+        double gradient[24];
         for (std::size_t i = 0; i < gradients_.size(); ++i) {
             const GradientEntry& entry = m.gradient_entries[i];
             if (i == 0 || m.gradient_entries[i - 1].row != entry.row)
-                m.gradient(entry.row, sample_.X, pair_[0], pair_[1]);
-            gradients_[i] = pair_[m.rows[entry.row].form.body_i == entry.body ? 0 : 1].a[entry.component];
+                m.tables.gradient(m.rows[entry.row], {}, sample_.X.data(), gradient);
+            gradients_[i] = gradient[12 * entry.side + entry.component];
         }
         for (int a = 0; a < n_local(); ++a) {
             const double value = w * M(e, g)[a];
@@ -123,15 +124,17 @@ void Equations::sum_element(const Fields& fields, int e)
 
 void Equations::sum_loads(int e, int g)
 {
-    const Mechanism& m = *setup_.mechanism;
+    const Coordinates& m = *setup_.coordinates;
     LoadTangent tangent;
     int of_load = -1;
     for (std::size_t l = 0; l < load_blocks_.size(); ++l) {
         LoadBlock& block = load_blocks_[l];
-        const Load& load = m.model.loads()[block.load];
+        const Load& load = m.tables.model->loads()[block.load];
         if (block.load != of_load) {
             tangent = {};
-            load.tangent(m.arguments(load, time(e, g), sample_.X, sample_.V), tangent);
+            load.tangent(
+                m.tables.arguments(load, {time(e, g), Side::middle}, sample_.X.data(), sample_.V.data()),
+                tangent);
             of_load = block.load;
         }
         const Matrix<12, 12>& by_X = tangent.X[block.by][block.of];
@@ -154,7 +157,7 @@ void Equations::sum_loads(int e, int g)
 template <class Sink>
 void Equations::visit_momenta(int e, Sink&& sink) const
 {
-    const Mechanism& m = *setup_.mechanism;
+    const Coordinates& m = *setup_.coordinates;
     for (int a = 0; a < n_local(); ++a)
         for (int b = 0; b < n_local(); ++b) {
             const int A = setup_.space.first(e) + a, B = setup_.space.first(e) + b;
@@ -162,7 +165,7 @@ void Equations::visit_momenta(int e, Sink&& sink) const
             if (row < 0) continue;
             const std::size_t pair = static_cast<std::size_t>(a) * n_local() + b;
             if (X >= 0)
-                for (int i = 0; i < m.n_coordinates; ++i) sink(row + i, X + i, local_.MD[pair]);
+                for (int i = 0; i < m.size; ++i) sink(row + i, X + i, local_.MD[pair]);
             if (P < 0) continue;
             for (int body = 0; body < m.n_bodies(); ++body) {
                 const Matrix4& inverse = m.inverse_masses[body];
@@ -179,7 +182,7 @@ void Equations::visit_momenta(int e, Sink&& sink) const
 template <class Sink>
 void Equations::visit_forces(int e, Sink&& sink) const
 {
-    const Mechanism& m = *setup_.mechanism;
+    const Coordinates& m = *setup_.coordinates;
     const bool is_natural = setup_.start == Mixed::Start::natural;
     for (int a = 0; a < n_local(); ++a)
         for (int b = 0; b < n_local(); ++b) {
@@ -190,14 +193,14 @@ void Equations::visit_forces(int e, Sink&& sink) const
             const double inertia =
                 is_natural ? -local_.MD[static_cast<std::size_t>(b) * n_local() + a] : local_.MD[pair];
             if (P >= 0)
-                for (int i = 0; i < m.n_coordinates; ++i) sink(row + i, P + i, inertia);
+                for (int i = 0; i < m.size; ++i) sink(row + i, P + i, inertia);
             if (X < 0) continue;
             const double* K = local_.K.data() + pair * m.n_rows();
             for (const HessianEntry& entry : m.hessian_entries)
                 sink(row + entry.coordinate_i, X + entry.coordinate_j, K[entry.row] * entry.value);
             for (std::size_t l = 0; l < load_blocks_.size(); ++l) {
                 const LoadBlock& block = load_blocks_[l];
-                const Load& load = m.model.loads()[block.load];
+                const Load& load = m.tables.model->loads()[block.load];
                 const int by = m.first[load.bodies[block.by]], of = m.first[load.bodies[block.of]];
                 const double* sums = local_.loads.data() + (pair * load_blocks_.size() + l) * 144;
                 for (int i = 0; i < 144; ++i)
@@ -211,7 +214,7 @@ void Equations::visit_forces(int e, Sink&& sink) const
 template <class Sink>
 void Equations::visit_constraints(int e, Sink&& sink) const
 {
-    const Mechanism& m = *setup_.mechanism;
+    const Coordinates& m = *setup_.coordinates;
     const std::size_t n = m.gradient_entries.size();
     for (int a = 0; a < n_local(); ++a)
         for (int b = 0; b < n_local_multipliers(); ++b) {
@@ -224,7 +227,7 @@ void Equations::visit_constraints(int e, Sink&& sink) const
             const double* G = local_.G.data() + (static_cast<std::size_t>(a) * n_local_multipliers() + b) * n;
             for (std::size_t i = 0; i < n; ++i) {
                 const GradientEntry& entry = m.gradient_entries[i];
-                const int coordinate = m.first[entry.body] + entry.component;
+                const int coordinate = entry.coordinate;
                 if (row_dX >= 0 && lambda >= 0) sink(row_dX + coordinate, lambda + entry.row, G[i]);
                 if (row_dX >= 0 && tie != nullptr)
                     for (const auto& [C, factor] : tie->terms)
@@ -239,7 +242,7 @@ template <class Sink>
 void Equations::visit_boundary(const Fields* fields, Sink&& sink) const
 {
     if (setup_.start != Mixed::Start::natural) return;
-    const Mechanism& m = *setup_.mechanism;
+    const Coordinates& m = *setup_.coordinates;
     for (const bool at_end : {false, true}) {
         const int A = at_end ? setup_.space.size() - 1 : 0;
         const int row = numbering_.row_dX(A), X = numbering_.X(A);

@@ -1,0 +1,47 @@
+// Whether a motion that a solver calls converged may be believed: bounds on figures of the motion itself.
+#pragma once
+
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "livens/diagnostics/diagnostics.h"
+#include "livens/solvers/report.h"
+
+namespace livens {
+
+/// What was measured of a motion, and what speaks against it. Figures are nan where there is no motion, and
+/// in a verdict that nobody asked for.
+struct Verdict {
+    static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+
+    double max_constraint_violation = unknown;   ///< at nodes, each row by its scale; rigidity included
+    double max_velocity_violation = unknown;     ///< |dPhi/dt| / scale at element ends, 1/s
+    double max_weak_violation = unknown;     ///< where constraints hold weakly: largest mean, else 0
+    double energy_drift = unknown;           ///< relative, see Balance
+    double linear_momentum_drift = unknown;
+    double angular_momentum_drift = unknown;
+    double zigzag_positions = unknown;   ///< 0 smooth to 1 pure zig-zag, see Zigzag
+    double zigzag_momenta = unknown;
+    double zigzag_time = unknown;        ///< of the worst of both, s
+    double velocity_jump = 0;            ///< see VelocityJump; 0 where constraints do not hold at nodes
+    double velocity_jump_time = unknown; ///< s
+    std::vector<std::string> reasons;    ///< why the motion is suspect, a line each; empty: it is not
+    std::vector<std::string> remarks;    ///< what is worth a look and refuses nothing
+    Balance balance;
+    ViolationReport violations;   ///< at nodes; means only where constraints hold weakly, nothing in between
+};
+
+/// Measures a motion and, if the report says that it converged, judges it. It has a reason to be suspect if
+///   |Phi| / scale at nodes > 1e-6, where constraints hold at points;
+///   its mean over an element > 1e-3, or |Phi| / scale at nodes > 0.05, where they hold weakly (the latter
+///   are errors of the discretisation, not of the solution, and fall with the elements);
+///   Zigzag of positions or momenta > 0.5, for any method: elements too long to see the motion;
+///   a velocity jump > 0.3, where constraints hold at nodes: the polynomial of an element does not see its
+///   own momentum, because the element is too long or a spurious root; it is farther than 0.05 of the model's
+///   length from the march it was guessed by, if it was; the relative drift of energy, linear or angular
+///   momentum > 0.05;
+/// or if one of these figures is not a number.
+Verdict judge(const Model& model, const Motion& motion, const SolveReport& report);
+
+}   // namespace livens

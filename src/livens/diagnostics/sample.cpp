@@ -1,0 +1,166 @@
+#include "livens/diagnostics/sample.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <span>
+
+#include "livens/base/error.h"
+#include "livens/base/text.h"
+#include "livens/diagnostics/diagnostics.h"
+#include "livens/multibody/body.h"
+#include "livens/multibody/reactions.h"
+#include "livens/time/quadrature.h"
+
+namespace livens {
+
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+std::vector<double> field_at(const Field& field, const TimeMesh& mesh, double t)
+{
+    const int element = mesh.element_at(t);
+    std::vector<double> values(static_cast<std::size_t>(field.n_values));
+    field.evaluate(element, (t - mesh.ends[element]) / mesh.length(element), 0, values);
+    return values;
+}
+
+std::vector<Matrix34> momenta_at(const Model& model, const Motion& motion, const State& state)
+{
+    std::vector<Matrix34> P(static_cast<std::size_t>(motion.n_bodies));
+    const int end = element_end_at(motion.mesh, state.t);
+    if (end >= 0) {
+        std::copy_n(motion.momenta.begin() + end * motion.n_bodies, motion.n_bodies, P.begin());
+    } else if (!motion.P.empty()) {
+        const std::vector<double> values = field_at(motion.P, motion.mesh, state.t);
+        for (int b = 0; b < motion.n_bodies; ++b) std::copy_n(values.begin() + 12 * b, 12, P[b].data());
+    } else {
+        for (int b = 0; b < motion.n_bodies; ++b) P[b] = state.V[b] * model.bodies()[b].mass;
+    }
+    return P;
+}
+
+}   // namespace
+
+double snap_to_element_end(const TimeMesh& mesh, double t)
+{
+    const double spread = std::max(std::abs(mesh.start()), std::abs(mesh.end()));
+    const double rounding = 8 * std::numeric_limits<double>::epsilon() * spread;
+    if (!(t >= mesh.start() - rounding && t <= mesh.end() + rounding))
+        throw InputError({"time-outside", "", "the motion is not known at this instant", to_text(t),
+                          to_text(mesh.start()) + " to " + to_text(mesh.end()), "", ""});
+    const auto after = std::ranges::lower_bound(mesh.ends, t);
+    double nearest = after == mesh.ends.end() ? mesh.ends.back() : *after;
+    if (after != mesh.ends.begin() && std::abs(*std::prev(after) - t) < std::abs(nearest - t))
+        nearest = *std::prev(after);
+    return std::abs(nearest - t) <= rounding ? nearest : t;
+}
+
+int element_end_at(const TimeMesh& mesh, double t)
+{
+    const auto end = std::ranges::lower_bound(mesh.ends, t);
+    return end != mesh.ends.end() && *end == t ? static_cast<int>(end - mesh.ends.begin()) : -1;
+}
+
+BodySample sample_body(const Body& body, const Matrix34& X, const Matrix34& V, const Matrix34& P)
+{
+    BodySample s;
+    s.position = X.column(0);
+    s.velocity = V.column(0);
+    s.linear_momentum = P.column(0);
+    if (body.is_point) {
+        s.center_of_mass = s.position;
+        s.angular_momentum = cross(s.position, s.linear_momentum);
+        for (Matrix3* triad : {&s.directors, &s.directors_raw}) std::fill_n(triad->data(), 9, nan);
+        s.quaternion = {nan, nan, nan, nan};
+        s.angular_velocity = s.angular_velocity_body = {nan, nan, nan};
+        return s;
+    }
+    s.directors_raw = directors(X);
+    s.directors = project_directors(s.directors_raw);
+    s.quaternion = quaternion_from_directors(s.directors);
+    const Matrix34 rigid = configuration(s.position, s.directors);
+    s.center_of_mass = rigid * point(mass_properties(body.mass).center_of_mass);
+    s.angular_velocity = angular_velocity(rigid, V);
+    s.angular_velocity_body = transpose(s.directors) * s.angular_velocity;
+    s.angular_momentum = angular_momentum(std::span(&X, 1), std::span(&P, 1));
+    return s;
+}
+
+std::vector<double> node_times(const Field& field, const TimeMesh& mesh)
+{
+    const std::vector<double> s =
+        field.degree == 0 ? std::vector<double>{0.5} : gauss_lobatto(field.degree + 1).points;
+    std::vector<double> times;
+    for (int e = 0; e < mesh.n_elements(); ++e)
+        for (std::size_t a = field.continuous && e > 0 ? 1 : 0; a < s.size(); ++a)
+            times.push_back(s[a] == 1 ? mesh.ends[e + 1] : mesh.ends[e] + s[a] * mesh.length(e));
+    if (times.empty()) times.push_back(mesh.start());   // a motion that has only its start
+    return times;
+}
+
+State sample_state(const Motion& motion, double t)
+{
+    t = snap_to_element_end(motion.mesh, t);
+    if (motion.n_elements() > 0) return motion.at(t);
+    State state;
+    state.t = motion.start();
+    for (int b = 0; b < motion.n_bodies; ++b) {
+        Matrix34 X{};
+        std::copy_n(motion.X.values.begin() + 12 * b, 12, X.data());
+        state.X.push_back(X);
+        state.V.push_back(motion.velocities[b]);
+    }
+    return state;
+}
+
+std::vector<BodySample> sample_bodies(const Model& model, const Motion& motion, double t)
+{
+    const State state = sample_state(motion, t);
+    const std::vector<Matrix34> P = momenta_at(model, motion, state);
+    std::vector<BodySample> samples;
+    samples.reserve(P.size());
+    for (int b = 0; b < motion.n_bodies; ++b)
+        samples.push_back(sample_body(model.bodies()[b], state.X[b], state.V[b], P[b]));
+    return samples;
+}
+
+std::vector<JointSample> sample_joints(const Model& model, const Motion& motion, double t)
+{
+    const State state = sample_state(motion, t);
+    const int end = element_end_at(motion.mesh, state.t);
+    const bool is_acceleration_level = end >= 0 && !motion.end_multipliers.empty();
+    if (!is_acceleration_level && (motion.multipliers.empty() || motion.n_elements() == 0)) return {};
+
+    std::vector<double> interpolated;
+    std::span<const double> left, right;
+    if (is_acceleration_level) {
+        const std::span<const double> all(motion.end_multipliers);
+        const std::size_t n = static_cast<std::size_t>(motion.n_rows);
+        left = all.subspan(2 * static_cast<std::size_t>(end) * n, n);
+        right = all.subspan((2 * static_cast<std::size_t>(end) + 1) * n, n);
+    } else {
+        interpolated = field_at(motion.multipliers, motion.mesh, state.t);
+        left = right = interpolated;
+    }
+    std::optional<Model> frozen_now;
+    if (model.has_drives()) frozen_now = frozen(model, {state.t});
+    const Model& now = frozen_now ? *frozen_now : model;
+    UniqueReactions before{{left.begin(), left.end()}, {}, 0}, after{{right.begin(), right.end()}, {}, 0};
+    if (!motion.redundant_rows.empty()) {
+        std::vector<int> independent(static_cast<std::size_t>(motion.n_rows) - motion.redundant_rows.size());
+        before = least_reactions(now, state.X, left, independent);
+        after = left.data() == right.data() ? before : least_reactions(now, state.X, right, independent);
+    }
+    std::vector<JointSample> samples;
+    for (int j = 0; j < static_cast<int>(model.joints().size()); ++j)
+        samples.push_back({joint_reaction(now, j, state.X, before.multipliers),
+                           joint_reaction(now, j, state.X, after.multipliers), is_acceleration_level,
+                           after.joint_is_unique.empty() || after.joint_is_unique[j]});
+    return samples;
+}
+
+}   // namespace livens

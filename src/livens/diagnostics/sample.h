@@ -1,0 +1,64 @@
+// A motion at single instants: poses, velocities, momenta and reactions as users want them.
+#pragma once
+
+#include <vector>
+
+#include "livens/multibody/model.h"
+#include "livens/multibody/motion.h"
+
+namespace livens {
+
+/// One body at one instant. A point mass has no orientation: its directors, quaternion and angular velocities
+/// are nan.
+///
+/// At element ends everything is of the method's full order, between them of the motion's dense orders; there
+/// position is the polynomial, orientation its polar projection and velocity the derivative.
+struct BodySample {
+    Vector3 position{};                ///< of the reference point, m, inertial axes
+    Vector3 center_of_mass{};          ///< m, inertial axes
+    Matrix3 directors{};               ///< columns d1, d2, d3; the orthonormal triad nearest to directors_raw
+    Matrix3 directors_raw{};           ///< of the motion, with its violation of rigidity
+    Vector4 quaternion{};              ///< (w, x, y, z), body to world, w >= 0
+    Vector3 velocity{};                ///< of the reference point, m/s, inertial axes
+    Vector3 angular_velocity{};        ///< rad/s, inertial axes
+    Vector3 angular_velocity_body{};   ///< rad/s, body axes
+    Vector3 linear_momentum{};         ///< N s, inertial axes
+    Vector3 angular_momentum{};        ///< N m s about the world's origin, inertial axes
+};
+
+/// What a joint exerts on its second body, from both sides of an instant (they differ where a load jumps).
+struct JointSample {
+    Reaction left;
+    Reaction right;
+    bool is_acceleration_level =
+        false;   ///< from the end multipliers; else interpolated between the elements' nodes
+    bool is_unique = true;   ///< false: other joints of a closed loop could carry part of it; then it is the
+                             ///< least, see least_reactions()
+};
+
+/// `t`, or the element end that differs from it by no more than the rounding of decimal text and sums of
+/// steps. Throws InputError (`time-outside`) if t is not finite or outside the motion.
+double snap_to_element_end(const TimeMesh& mesh, double t);
+
+/// The element end at exactly t, or -1.
+int element_end_at(const TimeMesh& mesh, double t);
+
+/// X and V of all bodies at t, after snap_to_element_end(); also for a motion that has only its start.
+State sample_state(const Motion& motion, double t);
+
+/// From state and momentum P = X' m of the body.
+BodySample sample_body(const Body& body, const Matrix34& X, const Matrix34& V, const Matrix34& P);
+
+/// All bodies at t, after snap_to_element_end().
+std::vector<BodySample> sample_bodies(const Model& model, const Motion& motion, double t);
+
+/// q and -q are one orientation: the one nearer to the last, as only these can be interpolated.
+inline Vector4 continued(const Vector4& last, const Vector4& q) { return dot(last, q) < 0 ? -1.0 * q : q; }
+
+/// Times of a field's coefficients; with degree 0 the middles of the elements.
+std::vector<double> node_times(const Field& field, const TimeMesh& mesh);
+
+/// All joints at t, after snap_to_element_end(). Without any multipliers in the motion the list is empty.
+std::vector<JointSample> sample_joints(const Model& model, const Motion& motion, double t);
+
+}   // namespace livens

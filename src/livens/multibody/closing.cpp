@@ -1,0 +1,369 @@
+#include "livens/multibody/closing.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "livens/base/error.h"
+#include "livens/multibody/detail/wording.h"
+#include "livens/multibody/projection.h"
+#include "livens/multibody/rank.h"
+#include "livens/multibody/rows.h"
+
+namespace livens {
+
+namespace {
+
+constexpr double eps = std::numeric_limits<double>::epsilon();
+constexpr double start_tolerance = 1e-9;
+constexpr const char* project_help = "correct it, or let the start be projected onto the joints";
+
+std::string number(double x)
+{
+    char text[32];
+    std::snprintf(text, sizeof text, "%.3g", x);
+    return text;
+}
+
+std::string row_name(const Model& model, int row)
+{
+    return "joint '" + model.joints()[model.row_joint(row)].name + "', row '" + model.row(row).label + "'";
+}
+
+std::string joint_path(const Model& model, int row)
+{
+    return "joint[" + model.joints()[model.row_joint(row)].name + "]";
+}
+
+/// Of a violation above the tolerance.
+[[noreturn]] void complain(const std::string& code, const std::string& path, const std::string& message,
+                           const std::string& value, const std::string& help)
+{
+    throw InputError({code, path, message, value, number(start_tolerance), "", help});
+}
+
+/// Columns of point masses that must be zero are zero from here on; numbers are numbers.
+void clean(const Model& model, State& state)
+{
+    const std::size_t n = model.bodies().size();
+    if (state.X.size() != n || state.V.size() != n) {
+        throw InputError({"start-position", "start", "the start does not have one X and one V for every body",
+                          std::to_string(state.X.size()) + " and " + std::to_string(state.V.size()),
+                          std::to_string(n), "", "begin with Model::start()"});
+    }
+    for (int b = 0; b < model.n_bodies(); ++b) {
+        const std::string path = "body[" + model.body_name(b) + "]";
+        for (const auto& [m, code] :
+             {std::pair{&state.X[b], "start-position"}, {&state.V[b], "start-velocity"}}) {
+            if (!all_finite(*m))
+                throw InputError({code, path, "the start is not finite", "", "finite numbers", "", ""});
+            if (model.bodies()[b].is_point) *m = configuration(m->column(0), Matrix3{});
+        }
+    }
+}
+
+// --- rigidity
+
+struct Worst {
+    double value = 0;   ///< signed
+    std::string name;   ///< "d2.d3"
+};
+
+/// The largest entry of 1/2 (A^T B + B^T A - target), A and B being directors or their rates.
+Worst worst_product(const Matrix3& A, const Matrix3& B, double target)
+{
+    static constexpr const char* names[3][3] = {
+        {"d1.d1", "d1.d2", "d1.d3"}, {"", "d2.d2", "d2.d3"}, {"", "", "d3.d3"}};
+    const Matrix3 products = transpose(A) * B;
+    Worst worst;
+    for (int i = 0; i < 3; ++i) {
+        for (int j = i; j < 3; ++j) {
+            const double value = 0.5 * (products(i, j) + products(j, i)) - (i == j ? target : 0);
+            if (std::abs(value) > std::abs(worst.value)) worst = {value, names[i][j]};
+        }
+    }
+    return worst;
+}
+
+/// Directors orthonormal to rounding. Small violations leave by D <- D (3 I - D^T D) / 2, which keeps exact
+/// zeros.
+void settle_directors(const Model& model, StartPolicy policy, State& state, std::vector<std::string>& notes)
+{
+    for (int b = 0; b < model.n_bodies(); ++b) {
+        if (model.bodies()[b].is_point) continue;
+        Matrix3 D = directors(state.X[b]);
+        const Worst worst = worst_product(D, D, 1);
+        if (std::abs(worst.value) <= 4 * eps && determinant(D) > 0) continue;
+        const std::string path = "body[" + model.body_name(b) + "].directors";
+        if (determinant(D) <= 0) {
+            throw InputError({"start-position", path, "the directors are not a right-handed triad",
+                              "determinant " + number(determinant(D)), "1", "d1 x d2 = d3",
+                              "change the sign of one director"});
+        }
+        if (std::abs(worst.value) > start_tolerance) {
+            if (policy == StartPolicy::check) {
+                complain("start-position", path,
+                         "the directors are not orthonormal: " + worst.name + " is wrong",
+                         number(worst.value), project_help);
+            }
+            D = project_directors(D);
+            notes.push_back("the directors of body '" + model.body_name(b) + "' were made orthonormal (" +
+                            worst.name + " was wrong by " + number(std::abs(worst.value)) + ")");
+        }
+        for (int pass = 0; pass < 3 && std::abs(worst_product(D, D, 1).value) > 4 * eps; ++pass) {
+            D = 0.5 * (D * (3.0 * identity<3>() - transpose(D) * D));
+        }
+        state.X[b] = configuration(state.X[b].column(0), D);
+    }
+}
+
+// --- positions
+
+/// Why closing failed, as an error: rows that exclude each other, or a mechanism that does not reach.
+[[noreturn]] void explain_open(const Model& model, const Closing& open)
+{
+    const RowRank rank = row_rank(model, open.X, all_rows(model));
+    const Closing rest = close_rows(model, open.X, rank.independent, false);
+    if (rest.closed) {
+        const Gap worst = widest_gap(model, rest.X, rank.dependent);
+        if (worst.violation > start_tolerance) {
+            complain("joint-contradiction", joint_path(model, worst.row),
+                     row_name(model, worst.row) + " cannot be fulfilled together with the other joints",
+                     "violation " + number(worst.violation),
+                     "remove this joint, or make its points and axes fit the others");
+        }
+    }
+    const Gap worst = widest_gap(model, open.X, all_rows(model));
+    complain("start-position", joint_path(model, worst.row),
+             row_name(model, worst.row) + " stays open: the joints cannot be closed from this start",
+             "violation " + number(worst.violation),
+             "check lengths and joint points, or start nearer to the closed mechanism");
+}
+
+void note_moves(const Model& model, std::span<const Matrix34> before, std::span<const Matrix34> after,
+                std::vector<std::string>& notes)
+{
+    for (int b = 0; b < model.n_bodies(); ++b) {
+        const double shift = norm(after[b].column(0) - before[b].column(0));
+        double turn = 0;
+        for (int i = 1; i < 4; ++i) turn = std::max(turn, norm(after[b].column(i) - before[b].column(i)));
+        if (shift <= start_tolerance * model.length() && turn <= start_tolerance) continue;
+        notes.push_back("the start of body '" + model.body_name(b) + "' was moved by " + number(shift) +
+                        " m and turned by " + number(2 * std::asin(std::min(1.0, 0.5 * turn))) +
+                        " rad to close the joints");
+    }
+}
+
+void settle_positions(const Model& model, StartPolicy policy, State& state, std::vector<std::string>& notes)
+{
+    const std::vector<int> rows = all_rows(model);
+    const Gap gap = widest_gap(model, state.X, rows);
+    if (gap.level <= 1) return;
+    const Closing closing = close_rows(model, state.X, rows, !gap.near);
+    if (!closing.closed && !gap.near) explain_open(model, closing);
+    if (!gap.near && policy == StartPolicy::check) {
+        complain("start-position", joint_path(model, gap.row),
+                 row_name(model, gap.row) + " is open at the start", "violation " + number(gap.violation),
+                 project_help);
+    }
+    note_moves(model, state.X, closing.X, notes);
+    for (int b = 0; b < model.n_bodies(); ++b) {
+        if (closing.X[b] == state.X[b]) continue;
+        // Rates were given at the old directors; the angular velocity in world axes is what is kept.
+        const Matrix34& X = state.X[b];
+        const Matrix34& V = state.V[b];
+        const bool rigid =
+            std::abs(worst_product(directors(X), directors(V), 0).value) <= start_tolerance * norm(V);
+        if (rigid && !model.bodies()[b].is_point) {
+            state.V[b] = rate(closing.X[b], V.column(0), angular_velocity(X, V));
+        }
+        state.X[b] = closing.X[b];
+    }
+}
+
+// --- velocities
+
+Vector3 center(const Model& model, int b) { return mass_properties(model.bodies()[b].mass).center_of_mass; }
+
+/// Of centres of mass, and of directors times the model's length.
+double largest_speed(const Model& model, const State& state)
+{
+    double speed = 0;
+    for (int b = 0; b < model.n_bodies(); ++b) {
+        const Matrix34& V = state.V[b];
+        speed = std::max(speed, norm(V * point(center(model, b))));
+        for (int i = 1; i < 4; ++i) speed = std::max(speed, norm(V.column(i)) * model.length());
+    }
+    return speed;
+}
+
+/// Largest |dPhi/dt| of a row that these speeds can make.
+double rate_bound(const Model& model, const State& state, const std::array<Wrench, 2>& row, double speed)
+{
+    double bound = 0;
+    for (const Wrench& w : row) {
+        if (w.body == world) continue;
+        const Vector3 moment = moment_about(w, state.X[w.body], center(model, w.body));
+        bound += norm(w.force) * speed + norm(moment) * speed / model.length();
+    }
+    return bound;
+}
+
+/// Largest inconsistency relative to what the largest speed can make; names what it is.
+struct RateFault {
+    double relative = 0;
+    Complaint complaint;
+};
+
+/// `drives`: drive_rates(). The bound is of G V alone: a drive that is slower than bodies move does not
+/// matter, and one that is faster is a fault.
+RateFault worst_rate(const Model& model, const State& state, std::span<const double> drives, double speed)
+{
+    RateFault fault;
+    for (int b = 0; b < model.n_bodies(); ++b) {
+        if (model.bodies()[b].is_point) continue;
+        const Worst worst = worst_product(directors(state.X[b]), directors(state.V[b]), 0);
+        const double relative = speed > 0 ? std::abs(worst.value) * model.length() / speed : 0;
+        if (relative <= fault.relative) continue;
+        fault.relative = relative;
+        const std::string name = model.body_name(b);
+        fault.complaint = {"start-velocity",
+                           "body[" + name + "].director_rates",
+                           "the rates of the directors of body '" + name + "' break its rigidity in " +
+                               worst.name,
+                           "d(" + worst.name + ")/dt = " + number(2 * worst.value) + " 1/s",
+                           "",
+                           "",
+                           project_help};
+    }
+    const std::vector<double> rates = joint_rates(model, state.X, state.V);
+    const RowWrenches wrenches = row_wrenches(model, state.X);
+    for (int r = 0; r < model.n_rows(); ++r) {
+        const double bound = rate_bound(model, state, wrenches[r], speed);
+        const double rate = rates[r] + drives[r];
+        const double relative = bound > 0 ? std::abs(rate) / bound : drives[r] != 0 ? 1 : 0;
+        if (relative <= fault.relative) continue;
+        fault.relative = relative;
+        fault.complaint = {"start-velocity",
+                           joint_path(model, r),
+                           "the velocities at the start break " + row_name(model, r),
+                           "dPhi/dt = " + number(rate),
+                           "",
+                           "",
+                           project_help};
+    }
+    fault.complaint.bound = number(start_tolerance) + " of the largest speed";
+    return fault;
+}
+
+void settle_velocities(const Model& model, StartPolicy policy, std::span<const int> independent,
+                       std::span<const double> drives, State& state, std::vector<std::string>& notes)
+{
+    const double speed = largest_speed(model, state);
+    const bool is_driven = std::ranges::any_of(drives, [](double rate) { return rate != 0; });
+    if (speed == 0 && !is_driven) return;
+    const RateFault fault = worst_rate(model, state, drives, speed);
+    if (fault.relative <= 8 * eps) return;
+    if (fault.relative > start_tolerance && policy == StartPolicy::check) throw InputError(fault.complaint);
+    state.V = nearest_rates(model, state.X, state.V, independent, drives);
+    if (fault.relative > start_tolerance) {
+        notes.push_back("the velocities at the start were projected: " + fault.complaint.message + " (" +
+                        fault.complaint.value + ")");
+    }
+}
+
+// --- inertia
+
+void refuse_weightless_spin(const Model& model, std::span<const Matrix34> X)
+{
+    const std::optional<WeightlessSpin> spin = weightless_spin(model, X);
+    if (!spin) return;
+    Vector3 axis = spin->axis;
+    for (double& a : axis.a) a = std::abs(a) < 1e-9 ? 0.0 : a;
+    const std::string name = model.body_name(spin->body);
+    throw InputError(
+        {"spin-without-inertia", "body[" + name + "].inertia",
+         "body '" + name + "' can spin about an axis without inertia, and no joint holds this spin",
+         "axis (" + number(axis[0]) + ", " + number(axis[1]) + ", " + number(axis[2]) + ") in the world", "",
+         spin->by_digits ? "the reference point is so far from the centre of mass that the mass matrix holds "
+                           "no digit of this inertia"
+                         : "its motion has no equation",
+         spin->by_digits ? "choose a reference point near the body"
+                         : "give the body inertia about this axis, hold the spin by a joint, or use a point "
+                           "mass"});
+}
+
+/// Rows a . b = 0 hold for an axis turned end for end as well; a start in that branch was not meant.
+void refuse_opposite_axes(const Model& model, const State& state)
+{
+    for (const Joint& joint : model.joints()) {
+        for (const ConstraintRow& row : joint.branches) {
+            const Matrix34& X_i = row.body_i == world ? world_configuration : state.X[row.body_i];
+            if (constraint_value(row, X_i, state.X[row.body_j]) > 0) continue;
+            throw InputError(
+                {"joint-branch", "joint[" + joint.name + "]." + row.label,
+                 "the " + row.label + " of joint '" + joint.name + "' is off by half a turn at the start", "",
+                 "", "its rows would hold, but in another branch", "turn one of the bodies"});
+        }
+        if (dot(joint.axis_first, joint.axis_first) == 0) continue;
+        const Matrix34& X = joint.first == world ? world_configuration : state.X[joint.first];
+        if (dot(X * direction(joint.axis_first), state.X[joint.second] * direction(joint.axis_second)) > 0)
+            continue;
+        throw InputError({"joint-branch", "joint[" + joint.name + "].axes",
+                          "the axes of joint '" + joint.name + "' point in opposite directions at the start",
+                          "", "", "its rows would hold, but turned by half a turn",
+                          "reverse one of the two axes, or turn one of the bodies"});
+    }
+}
+
+/// One sentence a joint on its redundant rows, which ascend.
+void note_redundancy(const Model& model, ClosedStart& assembly)
+{
+    for (std::size_t i = 0; i < assembly.redundant.size();) {
+        const int joint = model.row_joint(assembly.redundant[i]);
+        std::string rows;
+        int count = 0;
+        for (; i < assembly.redundant.size() && model.row_joint(assembly.redundant[i]) == joint; ++i, ++count)
+            rows += (count == 0 ? "" : ", ") + model.row(assembly.redundant[i]).label;
+        assembly.notes.push_back(
+            "joint '" + model.joints()[joint].name + "': row" + (count == 1 ? " " : "s ") + rows +
+            (count == 1 ? " is" : " are") +
+            " implied by the other rows; reactions of the joints in this loop are not unique");
+    }
+}
+
+}   // namespace
+
+ClosedStart close_start(const Model& the_model, const State& start, StartPolicy policy)
+{
+    ClosedStart assembly;
+    assembly.start = start;
+    std::optional<Model> now;
+    if (the_model.has_drives()) now = frozen(the_model, {start.t});
+    const Model& model = now ? *now : the_model;
+    clean(model, assembly.start);
+    settle_directors(model, policy, assembly.start, assembly.notes);
+    settle_positions(model, policy, assembly.start, assembly.notes);
+
+    refuse_opposite_axes(model, assembly.start);
+
+    const RowRank rank = row_rank(model, assembly.start.X, all_rows(model));
+    refuse_weightless_spin(model, assembly.start.X);
+    assembly.independent = rank.independent;
+    for (const Body& body : model.bodies()) assembly.degrees_of_freedom += body.is_point ? 3 : 6;
+    assembly.degrees_of_freedom -= static_cast<int>(rank.independent.size());
+    assembly.redundant = rank.dependent;
+    note_redundancy(model, assembly);
+    if (rank.smallest_pivot < 1e-6) {
+        assembly.notes.push_back("the joints are close to a singular configuration at the start (pivot " +
+                                 number(rank.smallest_pivot) + ")");
+    }
+    const std::vector<double> drives = drive_rates(the_model, {start.t}, assembly.start.X);
+    settle_velocities(model, policy, assembly.independent, drives, assembly.start, assembly.notes);
+    return assembly;
+}
+
+}   // namespace livens

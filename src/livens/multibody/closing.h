@@ -1,0 +1,35 @@
+// Closing the mechanism: independent rows, and a start that fulfils them.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "livens/multibody/model.h"
+
+namespace livens {
+
+enum class StartPolicy {
+    check,    ///< an inconsistent start is an InputError that names the row
+    project   ///< positions and velocities are moved to the nearest consistent ones in the mass metric
+};
+
+struct ClosedStart {
+    State start;                           ///< consistent; directors orthonormal, V = [v, w x d_i]
+    std::vector<int> independent;          ///< rows of the model, ascending
+    std::vector<int> redundant;     ///< rows implied by the others: dropped, multipliers not unique
+    int degrees_of_freedom = 0;            ///< twist unknowns less independent rows
+    std::vector<std::string> notes;        ///< what the projection moved, what deserves a word
+};
+
+/// Checks and closes the mechanism at the given state.
+///
+/// Rank and inertia are judged by row_rank() and weightless_spin().
+/// Throws InputError:
+///   `start-position`      |Phi| / scale > 1e-9 under StartPolicy::check, or the projection does not converge
+///   `start-velocity`      |dPhi/dt| too large (1e-9 of the largest speed), or rates that deform the triad
+///   `joint-branch`        axes that must coincide are opposite
+///   `joint-contradiction` a redundant row that cannot be fulfilled with the others
+///   `spin-without-inertia` a motion that no joint holds and that carries no inertia (a needle's free spin)
+ClosedStart close_start(const Model& model, const State& start, StartPolicy policy);
+
+}   // namespace livens

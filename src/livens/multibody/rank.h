@@ -1,0 +1,51 @@
+// Which joint rows are independent in a configuration, and whether what they leave free has inertia.
+//
+// Rank is geometry: no mass enters it. Inertia is judged by the digits that mass matrices hold.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "livens/multibody/model.h"
+
+namespace livens {
+
+/// The twist Jacobian without masses: one line for each of the given rows, six columns a body, [force,
+/// moment / length] about the mean of the body's joint points. Its length is sqrt(a A) with the arm a of the
+/// body, its largest distance of a joint point from that mean or |moment| / |force| of a row, and the largest
+/// arm A: rows of points want a; rows of axes, which compare the spins of two bodies, want one length.
+/// An arm counts if it is above 1e-13 of the distances that it is a difference of; else A stands for it, or
+/// Model::length() without any arm.
+struct TwistRows {
+    std::vector<double> columns;   ///< one after the other
+    double doubt = 0;   ///< 8 eps times the largest of these distances over lengths, or that of the forces
+};
+TwistRows twist_rows(const Model& model, std::span<const Matrix34> X, std::span<const int> rows);
+
+/// The judge is a QR decomposition with column pivoting of the transposed twist rows, scaled to norm 1.
+/// Of equal rows the one that comes first is kept.
+struct RowRank {
+    std::vector<int> independent;   ///< rows of the model, ascending: |R_kk| > threshold |R_00|
+    std::vector<int> dependent;     ///< the others, ascending
+    double smallest_pivot = 1;      ///< |R_kk| / |R_00| of the last independent row
+};
+/// The threshold is at least the doubt of the rows, or 1e-4 if that is more: 8 eps times the largest ratio of
+/// positions and joint points to arms, or to lengths of rods. So 1e-9 bears distances of 5e5 arms.
+RowRank row_rank(const Model& model, std::span<const Matrix34> X, std::span<const int> rows,
+                 double threshold = 1e-9);
+
+/// A spin about an axis through the centre of mass, alone or together with such spins of other bodies, that
+/// no row holds and that carries no inertia.
+struct WeightlessSpin {
+    int body = 0;            ///< that turns most
+    Vector3 axis{};          ///< world axes, norm 1
+    bool by_digits = false;  ///< there may be an inertia, but M |c|^2 takes all its digits
+};
+/// Without inertia are the principal axes of the body with J <= 16 eps tr E, the rounding level of
+/// J = (tr E - M |c|^2) 1 - (E - M c c^T), known to an angle u = 16 eps tr E / J of the next axis. A row with
+/// force f, moment m about its joint point and arm r from the centre of mass holds such an axis if its moment
+/// there is above (1e-9 + u) (|m| + (|r| + gyration) |f|) + 8 eps (position + |at| + |c|) |f|.
+std::optional<WeightlessSpin> weightless_spin(const Model& model, std::span<const Matrix34> X);
+
+}   // namespace livens

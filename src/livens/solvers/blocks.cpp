@@ -1,0 +1,133 @@
+#include "livens/solvers/blocks.h"
+
+#include <algorithm>
+#include <cassert>
+#include <numeric>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace livens {
+
+namespace {
+
+std::size_t entries(int rows, int columns)
+{
+    return static_cast<std::size_t>(rows) * static_cast<std::size_t>(columns);
+}
+
+[[noreturn]] void refuse(const std::string& why) { throw std::invalid_argument("block structure: " + why); }
+
+void check_elements(const BlockStructure& structure)
+{
+    const auto& elements = structure.elements;
+    for (std::size_t e = 0; e < elements.size(); ++e) {
+        const auto [first, last] = elements[e];
+        const std::string name = "element " + std::to_string(e);
+        if (first < 0 || first >= last || last >= structure.n_nodes())
+            refuse(name + " spans nodes " + std::to_string(first) + " to " + std::to_string(last) + " of " +
+                   std::to_string(structure.n_nodes()));
+        if (e == 0) continue;
+        if (first <= elements[e - 1][0] || last <= elements[e - 1][1]) refuse(name + " is out of order");
+        if (first > elements[e - 1][1]) refuse(name + " shares no node with the one before");
+    }
+    const int end = elements.empty() ? 0 : elements.back()[1] + 1;
+    if ((!elements.empty() && elements.front()[0] != 0) || end != structure.n_nodes())
+        refuse("the elements do not cover the nodes");
+}
+
+}   // namespace
+
+void BlockStructure::check() const
+{
+    if (n_rows.size() != n_unknowns.size()) refuse("rows are counted at other nodes than unknowns");
+    const auto is_negative = [](int n) { return n < 0; };
+    if (std::any_of(n_rows.begin(), n_rows.end(), is_negative) ||
+        std::any_of(n_unknowns.begin(), n_unknowns.end(), is_negative))
+        refuse("a count is negative");
+    check_elements(*this);
+    const int rows = std::accumulate(n_rows.begin(), n_rows.end(), 0);
+    const int unknowns = std::accumulate(n_unknowns.begin(), n_unknowns.end(), 0);
+    if (rows != unknowns)
+        refuse(std::to_string(rows) + " rows for " + std::to_string(unknowns) + " unknowns");
+}
+
+void running_sums(std::span<const int> counts, std::vector<int>& starts)
+{
+    starts.resize(counts.size() + 1);
+    starts[0] = 0;
+    std::partial_sum(counts.begin(), counts.end(), starts.begin() + 1);
+}
+
+void BlockMatrix::resize(const BlockStructure& structure)
+{
+    structure.check();
+    elements_ = structure.elements;
+    running_sums(structure.n_rows, first_row_);
+    running_sums(structure.n_unknowns, first_unknown_);
+    storage_.resize(elements_.size());
+    for (int e = 0; e < n_elements(); ++e) storage(e).assign(entries(n_rows(e), n_columns(e)), 0.0);
+}
+
+void BlockMatrix::clear()
+{
+    for (auto& values : storage_) std::fill(values.begin(), values.end(), 0.0);
+}
+
+int BlockMatrix::n_rows(int element) const
+{
+    const auto [first, last] = elements_[static_cast<std::size_t>(element)];
+    return first_row_[static_cast<std::size_t>(last) + 1] - first_row_[static_cast<std::size_t>(first)];
+}
+
+int BlockMatrix::n_columns(int element) const
+{
+    const auto [first, last] = elements_[static_cast<std::size_t>(element)];
+    return first_unknown_[static_cast<std::size_t>(last) + 1] -
+           first_unknown_[static_cast<std::size_t>(first)];
+}
+
+std::size_t BlockMatrix::place(int element, int row_node, int column_node) const
+{
+    const auto [first, last] = elements_[static_cast<std::size_t>(element)];
+    assert(first <= row_node && row_node <= last && first <= column_node && column_node <= last);
+    const auto from = static_cast<std::size_t>(first);
+    const int row = first_row_[static_cast<std::size_t>(row_node)] - first_row_[from];
+    const int column = first_unknown_[static_cast<std::size_t>(column_node)] - first_unknown_[from];
+    // a block without entries may begin behind the end
+    return std::min(entries(row, stride(element)) + static_cast<std::size_t>(column),
+                    storage_[static_cast<std::size_t>(element)].size());
+}
+
+SparseMatrix to_sparse(const BlockStructure& structure, const BlockMatrix& matrix)
+{
+    std::vector<int> first_row, first_unknown;
+    running_sums(structure.n_rows, first_row);
+    running_sums(structure.n_unknowns, first_unknown);
+    // Elements ascend, but what they share comes twice: columns are sorted, and equal rows added.
+    std::vector<std::vector<std::pair<int, double>>> columns(static_cast<std::size_t>(first_unknown.back()));
+    for (int e = 0; e < structure.n_elements(); ++e) {
+        const auto node = static_cast<std::size_t>(structure.elements[static_cast<std::size_t>(e)][0]);
+        const double* value = matrix.storage(e).data();
+        for (int i = 0; i < matrix.n_rows(e); ++i)
+            for (int j = 0; j < matrix.n_columns(e); ++j, ++value)
+                if (*value != 0)
+                    columns[static_cast<std::size_t>(first_unknown[node] + j)].emplace_back(
+                        first_row[node] + i, *value);
+    }
+    for (auto& column : columns) {
+        std::stable_sort(column.begin(), column.end(),
+                         [](const auto& a, const auto& b) { return a.first < b.first; });
+        std::size_t n = 0;
+        for (const auto& [row, value] : column) {
+            if (n > 0 && column[n - 1].first == row)
+                column[n - 1].second += value;
+            else
+                column[n++] = {row, value};
+        }
+        column.resize(n);
+    }
+    return sparse_from_columns(columns);
+}
+
+}   // namespace livens

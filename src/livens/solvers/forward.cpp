@@ -1,0 +1,244 @@
+// Systems that are known at one end: block triangular over elements.
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <numeric>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "livens/solvers/dense.h"
+#include "livens/solvers/linear_solver.h"
+
+namespace livens {
+
+namespace {
+
+using Values = std::vector<double>;
+
+/// Whether the sum of all is finite, eight sums at a time so that they do not wait for each other: this is
+/// done before every factorisation, which for a few unknowns takes hardly longer.
+bool is_finite(const Values& x)
+{
+    std::array<double, 8> sums{};
+    std::size_t i = 0;
+    for (; i + sums.size() <= x.size(); i += sums.size())
+        for (std::size_t lane = 0; lane < sums.size(); ++lane) sums[lane] += x[i + lane];
+    for (; i < x.size(); ++i) sums[0] += x[i];
+    return std::isfinite(std::accumulate(sums.begin(), sums.end(), 0.0));
+}
+
+/// A dense block of an element's matrix.
+struct Block {
+    int n_rows = 0, n_columns = 0;
+    Values values;
+
+    void resize(int rows, int columns)
+    {
+        n_rows = rows;
+        n_columns = columns;
+        values.assign(static_cast<std::size_t>(rows) * static_cast<std::size_t>(columns), 0.0);
+    }
+
+    void copy(const double* from, int stride)
+    {
+        double* to = values.data();
+        for (int i = 0; i < n_rows; ++i, from += stride, to += n_columns) std::copy_n(from, n_columns, to);
+    }
+
+    /// y <- y - B x and y <- y - B^T x.
+    void subtract_product(const double* x, double* y) const
+    {
+        const double* b = values.data();
+        for (int i = 0; i < n_rows; ++i)
+            for (int j = 0; j < n_columns; ++j) y[i] -= *b++ * x[j];
+    }
+    void subtract_transposed_product(const double* x, double* y) const
+    {
+        const double* b = values.data();
+        for (int i = 0; i < n_rows; ++i)
+            for (int j = 0; j < n_columns; ++j) y[j] -= *b++ * x[i];
+    }
+};
+
+[[noreturn]] void refuse(const std::string& why)
+{
+    throw std::invalid_argument("not known at one end: " + why);
+}
+
+/// One element: its own rows and unknowns are `size` numbers from `begin` on, in the order of rows and in
+/// that of unknowns alike, since all before (mirrored: all behind) are as many.
+struct Piece {
+    int begin = 0;
+    int size = 0;
+    int row_node = 0, unknown_node = 0;   // first of its own
+    int known_node = 0;                   // whose unknowns come from the piece before
+    int passed_node = 0;                  // whose rows belong to the piece after
+    int known_begin = 0, passed_begin = 0, all_begin = 0;
+    DenseLU lu;
+    Block known;    // own rows x unknowns of the known node
+    Block passed;   // rows of the passed node x all unknowns
+};
+
+class ForwardSolver final : public LinearSolver {
+public:
+    void analyse(const BlockStructure& structure) override
+    {
+        if (structure_ && *structure_ == structure) return;
+        structure_.reset();   // stays so if the structure is refused
+        is_regular_ = false;
+        singular_node_ = -1;
+        structure.check();
+        is_mirrored_ = choose_end(structure);
+        running_sums(structure.n_rows, first_row_);
+        running_sums(structure.n_unknowns, first_unknown_);
+        pieces_.resize(structure.elements.size());
+        for (int e = 0; e < structure.n_elements(); ++e) shape(structure, e);
+        structure_ = structure;
+    }
+
+    Outcome factorise(BlockMatrix& matrix) override
+    {
+        assert(structure_ && matrix.n_elements() == structure_->n_elements());
+        singular_node_ = -1;
+        is_regular_ = false;
+        for (int e = 0; e < matrix.n_elements(); ++e) {
+            Piece& piece = pieces_[static_cast<std::size_t>(e)];
+            if (!is_finite(matrix.storage(e))) return Outcome::not_finite;
+            take(matrix, e);
+            if (piece.lu.factorise()) continue;
+            singular_node_ = node_of(piece.begin + piece.lu.failed_column());
+            return Outcome::singular;
+        }
+        is_regular_ = true;
+        return Outcome::regular;
+    }
+
+    void solve(std::span<double> x) const override
+    {
+        assert(is_regular_ && static_cast<int>(x.size()) == first_unknown_.back());
+        for (int i = 0; i < n_pieces(); ++i) {
+            const Piece& piece = in_order(i);
+            piece.known.subtract_product(x.data() + piece.known_begin, x.data() + piece.begin);
+            piece.lu.solve(x.data() + piece.begin);
+            piece.passed.subtract_product(x.data() + piece.all_begin, x.data() + piece.passed_begin);
+        }
+    }
+
+    void solve_transposed(std::span<double> x) const override
+    {
+        assert(is_regular_ && static_cast<int>(x.size()) == first_unknown_.back());
+        for (int i = n_pieces() - 1; i >= 0; --i) {
+            const Piece& piece = in_order(i);
+            piece.passed.subtract_transposed_product(x.data() + piece.passed_begin,
+                                                     x.data() + piece.all_begin);
+            piece.lu.solve_transposed(x.data() + piece.begin);
+            piece.known.subtract_transposed_product(x.data() + piece.begin, x.data() + piece.known_begin);
+        }
+    }
+
+    LinearReport report() const override
+    {
+        LinearReport report{.singular_node = singular_node_};
+        report.smallest_pivot = is_regular_ ? std::numeric_limits<double>::infinity() : 0;
+        for (const Piece& piece : pieces_) {
+            report.factor_entries += static_cast<long long>(piece.size) * piece.size +
+                                     static_cast<long long>(piece.known.values.size()) +
+                                     static_cast<long long>(piece.passed.values.size());
+            if (!is_regular_) continue;   // some have no factors
+            report.smallest_pivot = std::min(report.smallest_pivot, piece.lu.smallest_pivot());
+            report.largest_entry = std::max(report.largest_entry, piece.lu.largest_in_U());
+        }
+        return report;
+    }
+
+private:
+    int n_pieces() const { return static_cast<int>(pieces_.size()); }
+    const Piece& in_order(int i) const
+    {
+        return pieces_[static_cast<std::size_t>(is_mirrored_ ? n_pieces() - 1 - i : i)];
+    }
+
+    /// Whether all is known at the end instead of the start.
+    static bool choose_end(const BlockStructure& structure)
+    {
+        for (std::size_t e = 1; e < structure.elements.size(); ++e)
+            if (structure.elements[e][0] != structure.elements[e - 1][1])
+                refuse("elements " + std::to_string(e - 1) + " and " + std::to_string(e) +
+                       " share more than one node");
+        if (structure.elements.empty()) return false;
+        if (structure.n_unknowns.front() == 0 && structure.n_rows.back() == 0) return false;
+        if (structure.n_rows.front() == 0 && structure.n_unknowns.back() == 0) return true;
+        refuse("the first node has " + std::to_string(structure.n_unknowns.front()) + " unknowns and " +
+               std::to_string(structure.n_rows.front()) + " rows, the last " +
+               std::to_string(structure.n_unknowns.back()) + " and " +
+               std::to_string(structure.n_rows.back()));
+    }
+
+    int row(int node) const { return first_row_[static_cast<std::size_t>(node)]; }
+    int unknown(int node) const { return first_unknown_[static_cast<std::size_t>(node)]; }
+
+    void shape(const BlockStructure& structure, int e)
+    {
+        const auto [first, last] = structure.elements[static_cast<std::size_t>(e)];
+        Piece& piece = pieces_[static_cast<std::size_t>(e)];
+        piece.row_node = is_mirrored_ ? first + 1 : first;
+        piece.unknown_node = is_mirrored_ ? first : first + 1;
+        piece.known_node = is_mirrored_ ? last : first;
+        piece.passed_node = is_mirrored_ ? first : last;
+        const int inner = last - first;
+        const int n_rows = row(piece.row_node + inner) - row(piece.row_node);
+        piece.size = unknown(piece.unknown_node + inner) - unknown(piece.unknown_node);
+        if (n_rows != piece.size)
+            refuse("element " + std::to_string(e) + " has " + std::to_string(n_rows) + " rows for " +
+                   std::to_string(piece.size) + " unknowns");
+        piece.begin = unknown(piece.unknown_node);
+        assert(piece.begin == row(piece.row_node));
+        piece.known_begin = unknown(piece.known_node);
+        piece.passed_begin = row(piece.passed_node);
+        piece.all_begin = unknown(first);
+        piece.lu.resize(piece.size);
+        piece.known.resize(piece.size, structure.n_unknowns[static_cast<std::size_t>(piece.known_node)]);
+        piece.passed.resize(structure.n_rows[static_cast<std::size_t>(piece.passed_node)],
+                            unknown(last + 1) - unknown(first));
+    }
+
+    /// Fills in the piece's blocks.
+    void take(BlockMatrix& matrix, int e)
+    {
+        Piece& piece = pieces_[static_cast<std::size_t>(e)];
+        const int stride = matrix.stride(e);
+        if (piece.known.n_columns == 0 && piece.passed.n_rows == 0) {   // nothing but its own block
+            piece.lu.exchange(matrix.storage(e));
+            return;
+        }
+        const double* own = matrix.block(e, piece.row_node, piece.unknown_node);
+        for (int i = 0; i < piece.size; ++i, own += stride) std::copy_n(own, piece.size, piece.lu.row(i));
+        const int first = structure_->elements[static_cast<std::size_t>(e)][0];
+        piece.known.copy(matrix.block(e, piece.row_node, piece.known_node), stride);
+        piece.passed.copy(matrix.block(e, piece.passed_node, first), stride);
+    }
+
+    int node_of(int unknown) const
+    {
+        const auto after = std::upper_bound(first_unknown_.begin(), first_unknown_.end(), unknown);
+        return static_cast<int>(after - first_unknown_.begin()) - 1;
+    }
+
+    std::optional<BlockStructure> structure_;
+    bool is_mirrored_ = false;
+    std::vector<int> first_row_, first_unknown_;
+    std::vector<Piece> pieces_;
+    bool is_regular_ = false;   // the last factorisation
+    int singular_node_ = -1;
+};
+
+}   // namespace
+
+std::unique_ptr<LinearSolver> forward_solver() { return std::make_unique<ForwardSolver>(); }
+
+}   // namespace livens

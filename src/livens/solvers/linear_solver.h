@@ -1,0 +1,57 @@
+// Direct solvers of systems in blocks.
+#pragma once
+
+#include <memory>
+#include <span>
+
+#include "livens/solvers/blocks.h"
+
+namespace livens {
+
+enum class Outcome { regular, singular, not_finite };
+
+struct LinearReport {
+    long long factor_entries = 0;   ///< numbers that the solver keeps of a factorisation
+    double smallest_pivot = 0;      ///< smallest |u_kk| of the factors; 0: not known
+    double largest_entry = 0;       ///< largest |u_ij|; 0: not known. Far above the entries of the matrix it
+                                    ///< tells of lost digits
+    int singular_node = -1;         ///< of the unknown that the matrix does not determine; -1: none, or not
+                                    ///< known
+};
+
+/// Factors of a matrix in blocks, made again and again for one structure. One thread at a time.
+class LinearSolver {
+public:
+    LinearSolver() = default;
+    LinearSolver(const LinearSolver&) = delete;
+    LinearSolver& operator=(const LinearSolver&) = delete;
+    virtual ~LinearSolver() = default;
+
+    /// To be repeated when the structure changes; for an equal one it costs a comparison. Throws
+    /// std::invalid_argument, naming why, where the solver is not made for the structure; it must then be
+    /// called again before anything else.
+    virtual void analyse(const BlockStructure& structure) = 0;
+    /// May use the matrix up: its values are undefined afterwards, its shape stays; clear() before refilling.
+    /// Not finite: an entry, or the sum of an element's entries.
+    virtual Outcome factorise(BlockMatrix& matrix) = 0;
+    /// In: right-hand side by rows; out: unknowns. Only after a regular factorisation.
+    virtual void solve(std::span<double> x) const = 0;
+    /// In: right-hand side by unknowns; out: by rows.
+    virtual void solve_transposed(std::span<double> x) const = 0;
+    /// Of the last factorisation. Looks through the factors: not for every solution.
+    virtual LinearReport report() const = 0;
+};
+
+/// For motions known at one end: rows of nodes 0..n-1 for unknowns of nodes 1..n, or, mirrored, rows of nodes
+/// 1..n for unknowns of nodes 0..n-1. The matrix is block triangular over elements, which share one node
+/// each: element by element, dense LU with row exchanges of the rows first..last-1 and the unknowns
+/// first+1..last (mirrored: the other way round), which must be as many. The factors do not depend on each
+/// other. A single element is factorised in the matrix' own storage. Allocates nothing after analyse().
+std::unique_ptr<LinearSolver> forward_solver();
+
+/// For any conditions: one sparse matrix, and one step of iterative refinement. The pattern are the entries
+/// that were not zero in some factorisation since analyse(); it is analysed anew where it has grown. Pivots,
+/// largest entry and singular node are not known. Throws InputError where the build lacks the backend.
+std::unique_ptr<LinearSolver> whole_solver(SparseBackend backend);
+
+}   // namespace livens

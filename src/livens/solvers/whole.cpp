@@ -1,0 +1,135 @@
+// One sparse matrix of all blocks.
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "livens/solvers/linear_solver.h"
+
+namespace livens {
+
+namespace {
+
+using Values = std::vector<double>;
+
+class WholeSolver final : public LinearSolver {
+public:
+    explicit WholeSolver(SparseBackend backend) : lu_(backend) {}
+
+    void analyse(const BlockStructure& structure) override
+    {
+        if (structure_ && *structure_ == structure) return;
+        structure_.reset();   // stays so if the structure is refused
+        structure.check();
+        pattern_.resize(structure);
+        places_.assign(static_cast<std::size_t>(structure.n_elements()), {});
+        for (int e = 0; e < structure.n_elements(); ++e)
+            places_[static_cast<std::size_t>(e)].assign(pattern_.storage(e).size(), none);
+        running_sums(structure.n_unknowns, first_unknown_);
+        running_sums(structure.n_rows, first_row_);
+        structure_ = structure;
+        find_pattern();
+    }
+
+    Outcome factorise(BlockMatrix& matrix) override
+    {
+        if (has_grown(matrix)) find_pattern();
+        std::fill(matrix_.values.begin(), matrix_.values.end(), 0.0);
+        for (int e = 0; e < matrix.n_elements(); ++e) {
+            const Values& values = matrix.storage(e);
+            const std::vector<int>& places = places_[static_cast<std::size_t>(e)];
+            for (std::size_t i = 0; i < values.size(); ++i)
+                if (places[i] != none) matrix_.values[static_cast<std::size_t>(places[i])] += values[i];
+        }
+        const auto is_finite = [](double v) { return std::isfinite(v); };
+        if (!std::all_of(matrix_.values.begin(), matrix_.values.end(), is_finite)) return Outcome::not_finite;
+        return lu_.factorise(matrix_) ? Outcome::regular : Outcome::singular;
+    }
+
+    void solve(std::span<double> x) const override { solve(x, false); }
+    void solve_transposed(std::span<double> x) const override { solve(x, true); }
+
+    LinearReport report() const override { return {.factor_entries = lu_.factor_entries()}; }
+
+private:
+    static constexpr int none = -1;
+
+    /// Whether an entry outside of the pattern is not zero; marks them all.
+    bool has_grown(const BlockMatrix& matrix)
+    {
+        assert(structure_ && matrix.n_elements() == structure_->n_elements());
+        bool grown = false;
+        for (int e = 0; e < matrix.n_elements(); ++e) {
+            const Values& values = matrix.storage(e);
+            const std::vector<int>& places = places_[static_cast<std::size_t>(e)];
+            assert(values.size() == places.size());
+            for (std::size_t i = 0; i < values.size(); ++i) {
+                if (places[i] != none || values[i] == 0) continue;
+                pattern_.storage(e)[i] = 1;
+                grown = true;
+            }
+        }
+        return grown;
+    }
+
+    void find_pattern()
+    {
+        matrix_ = to_sparse(*structure_, pattern_);
+        for (int e = 0; e < structure_->n_elements(); ++e) find_places(e);
+        const auto size = static_cast<std::size_t>(matrix_.size);
+        for (Values* v : {&right_side_, &residual_, &correction_}) v->assign(size, 0.0);
+        lu_.analyse(matrix_);
+    }
+
+    /// Where the entries of an element stand in the sparse matrix.
+    void find_places(int e)
+    {
+        const auto node = static_cast<std::size_t>(structure_->elements[static_cast<std::size_t>(e)][0]);
+        const int n_columns = pattern_.n_columns(e);
+        const Values& values = pattern_.storage(e);
+        for (std::size_t i = 0; i < values.size(); ++i) {
+            if (values[i] == 0) continue;
+            const int row = first_row_[node] + static_cast<int>(i) / n_columns;
+            const auto column =
+                static_cast<std::size_t>(first_unknown_[node] + static_cast<int>(i) % n_columns);
+            const auto begin = matrix_.rows.begin() + matrix_.column_starts[column];
+            const auto end = matrix_.rows.begin() + matrix_.column_starts[column + 1];
+            const auto found = std::lower_bound(begin, end, row);
+            places_[static_cast<std::size_t>(e)][i] = static_cast<int>(found - matrix_.rows.begin());
+        }
+    }
+
+    /// As solve_refined() does, either way.
+    void solve(std::span<double> x, bool is_transposed) const
+    {
+        assert(x.size() == right_side_.size());
+        const auto apply_inverse = [&](std::span<const double> b, std::span<double> y) {
+            is_transposed ? lu_.solve_transposed(b, y) : lu_.solve(b, y);
+        };
+        std::copy(x.begin(), x.end(), right_side_.begin());
+        apply_inverse(right_side_, x);
+        is_transposed ? matrix_.multiply_transposed(x, residual_) : matrix_.multiply(x, residual_);
+        for (std::size_t i = 0; i < x.size(); ++i) residual_[i] = right_side_[i] - residual_[i];
+        apply_inverse(residual_, correction_);
+        for (std::size_t i = 0; i < x.size(); ++i) x[i] += correction_[i];
+    }
+
+    SparseLU lu_;
+    std::optional<BlockStructure> structure_;
+    BlockMatrix pattern_;                    // 1 where an entry was not zero
+    std::vector<std::vector<int>> places_;   // of the elements' entries in the sparse matrix
+    std::vector<int> first_unknown_, first_row_;
+    SparseMatrix matrix_;
+    mutable Values right_side_, residual_, correction_;
+};
+
+}   // namespace
+
+std::unique_ptr<LinearSolver> whole_solver(SparseBackend backend)
+{
+    return std::make_unique<WholeSolver>(backend);
+}
+
+}   // namespace livens

@@ -1,0 +1,43 @@
+#include "livens/spacetime/ends.h"
+
+#include <utility>
+
+namespace livens {
+
+namespace {
+
+/// One end: rates that are guesses need not fit the joints, places that are guesses are brought onto them.
+void close_end(const Model& model, State& state, Known known, StartPolicy policy, Ends& ends)
+{
+    if (known == Known::nothing) return;
+    const std::vector<Matrix34> guessed = state.V;
+    if (known == Known::positions) state.V.assign(guessed.size(), Matrix34{});
+    // positions alone need not move as drives do
+    const bool is_still = known == Known::positions && model.has_drives();
+    ClosedStart closed =
+        is_still ? close_start(frozen(model, {state.t}), state, policy) : close_start(model, state, policy);
+    state = std::move(closed.start);
+    if (known == Known::positions) state.V = guessed;
+    ends.independent = std::move(closed.independent);
+    ends.redundant = std::move(closed.redundant);
+    ends.notes.insert(ends.notes.end(), closed.notes.begin(), closed.notes.end());
+}
+
+}   // namespace
+
+Ends close_ends(const Model& model, const Conditions& conditions, double start, double end,
+                StartPolicy policy)
+{
+    Ends ends;
+    ends.at_start = conditions.at_start;
+    ends.at_end = conditions.at_end;
+    ends.start = conditions.start;
+    ends.end = conditions.end;
+    ends.start.t = start;
+    ends.end.t = end;
+    close_end(model, ends.end, ends.at_end, policy, ends);
+    close_end(model, ends.start, ends.at_start, policy, ends);
+    return ends;
+}
+
+}   // namespace livens

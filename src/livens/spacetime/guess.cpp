@@ -1,0 +1,140 @@
+#include "livens/spacetime/guess.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <utility>
+
+#include "livens/base/error.h"
+#include "livens/multibody/body.h"
+#include "livens/multibody/twist.h"
+#include "livens/spacetime/lobatto/window.h"
+#include "livens/spacetime/windows.h"
+
+namespace livens {
+
+namespace {
+
+bool is_point(const Matrix34& X) { return norm(directors(X)) == 0; }
+
+bool is_moving(const State& state)
+{
+    return std::any_of(state.V.begin(), state.V.end(), [](const Matrix34& V) { return norm(V) > 0; });
+}
+
+/// The places of one state with the velocities and spins of another.
+State with_rates(State places, const State& rates)
+{
+    for (std::size_t b = 0; b < places.X.size(); ++b) {
+        const Matrix34 &X = rates.X[b], &V = rates.V[b];
+        places.V[b] = is_point(X) ? V : rate(places.X[b], V.column(0), angular_velocity(X, V));
+    }
+    return places;
+}
+
+/// The given motion, moved by a share of what it lacks at one end: none at `from`, all at `to.t`.
+Guess bent(const Guess& motion, double from, const State& to)
+{
+    const State reached = motion(to.t);
+    std::vector<Vector3> steps, turns;
+    for (std::size_t b = 0; b < to.X.size(); ++b) {
+        steps.push_back(to.X[b].column(0) - reached.X[b].column(0));
+        turns.push_back(is_point(to.X[b]) ? Vector3{} : twist::turn_between(reached.X[b], to.X[b]));
+    }
+    const double end = to.t;
+    return [=](double t) {
+        State state = motion(t);
+        const double share = (t - from) / (end - from);
+        for (std::size_t b = 0; b < state.X.size(); ++b)
+            state.X[b] = is_point(state.X[b])
+                             ? configuration(state.X[b].column(0) + share * steps[b], Matrix3{})
+                             : twist::moved(state.X[b], share * steps[b], share * turns[b]);
+        return state;
+    };
+}
+
+}   // namespace
+
+MarchGuess guess_from_state(const Model& model, const State& state, std::span<const double> times)
+{
+    const bool is_forwards = times.back() > times.front();
+    Conditions conditions{state, Known::state, state, Known::nothing};
+    if (!is_forwards) std::swap(conditions.at_start, conditions.at_end);
+    TimeMesh mesh{{times.begin(), times.end()}};
+    if (!is_forwards) std::reverse(mesh.ends.begin(), mesh.ends.end());
+    const Ends ends = close_ends(model, conditions, mesh.start(), mesh.end(), StartPolicy::project);
+    const Tables tables(model, ends.independent);
+    LobattoWindow window(tables, mesh, ends, 2);
+    SolveReport report;
+    const WindowOptions options{.direction = is_forwards ? 1 : -1};
+    solve_windows(window, mesh, options, report);
+    auto march = std::make_shared<Motion>(window.take_motion());
+    const double reached = march->mesh.ends.empty() ? times.front()
+                           : is_forwards            ? march->end()
+                                                    : march->start();
+    const State begin = is_forwards ? ends.start : ends.end;
+    return {[march, begin](double t) {
+                if (march->n_elements() == 0) return guess_steady(begin)(t);
+                if (t > march->end()) return guess_steady(march->at_end(march->n_elements()))(t);
+                if (t < march->start()) return guess_steady(march->at_end(0))(t);
+                return march->at(t);
+            },
+            reached};
+}
+
+Guess guess_steady(const State& state)
+{
+    return [state](double t) {
+        State moving = state;
+        moving.t = t;
+        for (std::size_t b = 0; b < state.X.size(); ++b) {
+            const Vector3 step = (t - state.t) * state.V[b].column(0);
+            if (is_point(state.X[b])) {
+                moving.X[b].set_column(0, state.X[b].column(0) + step);
+                continue;
+            }
+            const Vector3 w = angular_velocity(state.X[b], state.V[b]);
+            moving.X[b] = twist::moved(state.X[b], step, (t - state.t) * w);
+            moving.V[b] = rate(moving.X[b], state.V[b].column(0), w);
+        }
+        return moving;
+    };
+}
+
+Guess guess_between(const State& first, const State& last)
+{
+    State steady = first;
+    const double duration = last.t - first.t;
+    for (std::size_t b = 0; b < first.X.size(); ++b) {
+        const Vector3 v = (1 / duration) * (last.X[b].column(0) - first.X[b].column(0));
+        steady.V[b] = {};
+        if (is_point(first.X[b]))
+            steady.V[b].set_column(0, v);
+        else
+            steady.V[b] = rate(first.X[b], v, (1 / duration) * twist::turn_between(first.X[b], last.X[b]));
+    }
+    return guess_steady(steady);
+}
+
+Guess guess_from_ends(const Model& model, const Ends& ends, std::span<const double> times)
+{
+    const bool from_start = knows_positions(ends.at_start) || !knows_positions(ends.at_end);
+    const State &near = from_start ? ends.start : ends.end, &far = from_start ? ends.end : ends.start;
+    const Known at_far = from_start ? ends.at_end : ends.at_start;
+    State begin = near;
+    if (!is_moving(begin)) {
+        if (knows_positions(at_far)) return guess_between(ends.start, ends.end);
+        begin = with_rates(near, far);
+    }
+    std::vector<double> march(times.begin(), times.end());
+    if (!from_start) std::reverse(march.begin(), march.end());
+    Guess motion;
+    try {
+        motion = guess_from_state(model, begin, march).motion;
+    } catch (const InputError&) {
+        motion = guess_steady(begin);   // the stated rates are far from any that the joints allow
+    }
+    return knows_positions(at_far) ? bent(motion, begin.t, far) : motion;
+}
+
+}   // namespace livens

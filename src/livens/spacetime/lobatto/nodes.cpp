@@ -1,0 +1,244 @@
+#include "livens/spacetime/lobatto/nodes.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "livens/multibody/twist.h"
+
+namespace livens {
+
+Nodes::Nodes(const Tables& tables, const LobattoRule& rule)
+    : tables_(tables), rule_(rule), degree_(rule.degree), size_(12 * tables.bodies.size())
+{
+    work_.assign(3 * size_, 0.0);   // a displacement, numbers of a twist, a twist
+}
+
+void Nodes::open(const Stretch& stretch)
+{
+    const auto n = static_cast<std::size_t>(stretch.n_nodes());
+    current_ = kept_ = 0;
+    smallest_pivot_ = 1;
+    times_.resize(n);
+    for (int A = 0; A < stretch.n_nodes(); ++A) times_[A] = stretch.time(rule_, A);
+    if (known_.size() == n) {
+        known_.front() = known_.back() = nullptr;
+        return;
+    }
+    const auto rank = static_cast<std::size_t>(tables_.rank);
+    for (Set& set : sets_) {
+        set.X.assign(n * size_, 0.0);
+        set.low.assign(n * size_, 0.0);
+    }
+    dX_.assign(static_cast<std::size_t>(stretch.n_elements()) * static_cast<std::size_t>(degree_ + 1) * size_,
+               0.0);
+    maps_.assign(n * size_, 0.0);
+    phi_.assign(n * rank, 0.0);
+    values_.assign(n * rank, 0.0);
+    known_.assign(n, nullptr);
+    bases_.resize(n);
+    for (ConstraintBasis& basis : bases_) basis.resize(tables_, false);
+}
+
+void Nodes::fix(int A, const InstantState& state)
+{
+    for (Set& set : sets_) {
+        std::copy(state.X.begin(), state.X.end(), set.X.begin() + static_cast<std::ptrdiff_t>(place(A)));
+        std::copy(state.X_low.begin(), state.X_low.end(),
+                  set.low.begin() + static_cast<std::ptrdiff_t>(place(A)));
+    }
+    std::copy(state.maps.begin(), state.maps.end(), maps_.begin() + static_cast<std::ptrdiff_t>(place(A)));
+    known_[A] = &state.basis;
+    smallest_pivot_ = std::min(smallest_pivot_, state.smallest_pivot);
+    double* values = values_.data() + static_cast<std::size_t>(A * tables_.rank);
+    for (int c = 0; c < tables_.rank; ++c)
+        values[c] = tables_.value(state.basis.rows[c], at(A), X(A), state.basis.gradients.data() + 24 * c);
+}
+
+void Nodes::place_at(int A, const double* X)
+{
+    std::copy(X, X + size_, sets_[current_].X.begin() + static_cast<std::ptrdiff_t>(place(A)));
+    std::fill_n(sets_[current_].low.begin() + static_cast<std::ptrdiff_t>(place(A)), size_, 0.0);
+}
+
+namespace {
+
+/// to + to_low <- x + x_low + by, without the rounding of the sum [Kahan1965].
+inline void add_two_sums(const double x, const double x_low, const double by, double& to, double& to_low)
+{
+    const double d = by + x_low, sum = x + d, back = sum - x;
+    to = sum;
+    to_low = (x - (sum - back)) + (d - back);
+}
+
+}   // namespace
+
+/// to + low <- from + low + what is in work_.
+void Nodes::add(const Set& from_set, int A_from, Set& to_set, int A)
+{
+    const double* __restrict by = work_.data();
+    double* __restrict to = to_set.X.data() + place(A);
+    double* __restrict low = to_set.low.data() + place(A);
+    if (&from_set == &to_set && A_from == A) {
+        for (std::size_t i = 0; i < size_; ++i) add_two_sums(to[i], low[i], by[i], to[i], low[i]);
+        return;
+    }
+    const double* __restrict from = from_set.X.data() + place(A_from);
+    const double* __restrict from_low = from_set.low.data() + place(A_from);
+    for (std::size_t i = 0; i < size_; ++i) add_two_sums(from[i], from_low[i], by[i], to[i], low[i]);
+}
+
+void Nodes::displace(const Set& from, int A_from, const double* twist, Set& to, int A)
+{
+    const double* X = from.X.data() + place(A_from);
+    for (int b = 0; b < tables_.n_bodies(); ++b) {
+        const auto& body = tables_.bodies[b];
+        if (body.dofs == 6)
+            twist::displacement(twist + body.first, X + 12 * b, work_.data() + 12 * b);
+        else
+            std::copy_n(twist + body.first, 3, work_.data() + 12 * b);   // the rest stays zero
+    }
+    add(from, A_from, to, A);
+}
+
+void Nodes::place_from(int A, int from, const double* twist)
+{
+    displace(sets_[current_], from, twist, sets_[current_], A);
+}
+
+void Nodes::turn_from(int A, int from, const double* turns)
+{
+    for (int b = 0; b < tables_.n_bodies(); ++b)
+        twist::displacement(turns + 7 * b, turns + 7 * b + 3, X(from) + 12 * b, work_.data() + 12 * b);
+    add(sets_[current_], from, sets_[current_], A);
+}
+
+void Nodes::move(int A, const double* twist, double factor)
+{
+    if (factor == 1) return displace(sets_[kept_], A, twist, sets_[1 - kept_], A);
+    double* scaled = work_.data() + size_;
+    for (int i = 0; i < tables_.n_twists; ++i) scaled[i] = factor * twist[i];
+    displace(sets_[kept_], A, scaled, sets_[1 - kept_], A);
+}
+
+void Nodes::measure_element(int e)
+{
+    const Set& set = sets_[current_];
+    const double* __restrict X0 = set.X.data() + place(e * degree_);
+    const double* __restrict low0 = set.low.data() + place(e * degree_);
+    for (int B = 1; B <= degree_; ++B) {
+        const double* __restrict X = set.X.data() + place(e * degree_ + B);
+        const double* __restrict low = set.low.data() + place(e * degree_ + B);
+        double* __restrict d = dX_.data() + place(e * (degree_ + 1) + B);
+        for (std::size_t i = 0; i < size_; ++i) d[i] = (X[i] - X0[i]) + (low[i] - low0[i]);
+    }
+}
+
+bool Nodes::constrain(const Stretch& stretch, bool same_choices)
+{
+    near_ = true;
+    double sum = 0;
+    for (int e = 0; e < stretch.n_elements(); ++e) {
+        measure_element(e);
+        for (int B = e == 0 ? 0 : 1; B <= degree_; ++B)
+            if (stretch.is_unknown(e * degree_ + B)) constrain_node(e, B, same_choices, sum);
+    }
+    return std::isfinite(sum);
+}
+
+/// Phi is a quadratic polynomial, so Phi(X) = Phi(X_0) + 1/2 <grad Phi(X_0) + grad Phi(X), X - X_0> with the
+/// element's first node X_0, which does not lose the digits of a small increment.
+bool Nodes::constrain_node(int e, int B, bool same_choices, double& sum)
+{
+    constexpr double rounding = 1e-16;   // of Phi at the start itself: nothing to correct
+    constexpr double close = 1e-4;       // relative, for one linear step onto the constraints
+    const int A = e * degree_ + B, k = tables_.rank;
+    const ConstraintBasis& first = basis(e * degree_);
+    const std::vector<int>& rows = known_[0] != nullptr ? known_[0]->rows : tables_.independent;
+    ConstraintBasis& own = bases_[A];
+    tables_.map_twists(X(A), maps_.data() + place(A));
+    smallest_pivot_ = std::min(smallest_pivot_, own.build(tables_, at(A), X(A), maps(A), rows, same_choices));
+    const double* reference = values_.data() + static_cast<std::size_t>(e * degree_ * k);
+    for (int c = 0; c < k; ++c) {
+        const auto& table = tables_.rows[static_cast<std::size_t>(own.rows[c])];
+        const double* g0 = first.gradients.data() + 24 * c;
+        const double* g = own.gradients.data() + 24 * c;
+        double phi = 0;
+        if (B == 0) {
+            phi = tables_.value(own.rows[c], at(A), X(A), g);
+        } else if (table.is_driven) {
+            phi = reference[c] + driven_value(e, B, c);
+        } else {
+            for (int side = 0; side < table.n_sides; ++side) {
+                const double* d = dX(e, B) + 12 * table.bodies[side];
+                for (const int a : table.columns[side])
+                    for (int i = a; i < a + 3; ++i) phi += (g0[12 * side + i] + g[12 * side + i]) * d[i];
+            }
+            phi = reference[c] + 0.5 * phi;
+        }
+        if (std::abs(phi) < rounding * table.row->scale) phi = 0;
+        if (!(std::abs(phi) <= close * table.row->scale)) near_ = false;
+        const auto at = static_cast<std::size_t>(A * k + c);
+        values_[at] = phi;
+        phi_[at] = phi * own.row_scale[c];
+        sum += std::abs(phi);
+    }
+    return near_;
+}
+
+/// The same for a row that depends on time: Phi(t, X) - Phi(t_0, X_0), first by time at X_0, then by X at t.
+double Nodes::driven_value(int e, int B, int c) const
+{
+    const int first = e * degree_, A = first + B, row = bases_[A].rows[c];
+    const auto& table = tables_.rows[static_cast<std::size_t>(row)];
+    double g0[24];
+    tables_.gradient(row, at(A), X(first), g0);
+    const double* g = bases_[A].gradients.data() + 24 * c;
+    double sum = 0;
+    for (int side = 0; side < table.n_sides; ++side) {
+        const double* d = dX(e, B) + 12 * table.bodies[side];
+        for (const int a : table.columns[side])
+            for (int i = a; i < a + 3; ++i) sum += (g0[12 * side + i] + g[12 * side + i]) * d[i];
+    }
+    return tables_.change(row, at(first), at(A), X(first)) + 0.5 * sum;
+}
+
+double Nodes::correct(const Stretch& stretch)
+{
+    const int k = tables_.rank, n = tables_.n_twists;
+    double correction = 0;
+    double *y = work_.data() + size_, *twist = y + size_;
+    for (int A = 0; A < stretch.n_nodes(); ++A) {
+        if (!stretch.is_unknown(A)) continue;
+        std::fill(y, y + n, 0.0);
+        double size = 0;
+        for (int c = 0; c < k; ++c) {
+            y[c] = -violations(A)[c];
+            size = std::max(size, std::abs(y[c]));
+        }
+        if (size == 0) continue;
+        const OrthogonalBasis& q = bases_[A].q;
+        q.solve_R_transposed(y);
+        q.apply(y);
+        tables_.to_twist(maps(A), y, twist);
+        correction = std::max(correction, size_of(twist));
+        displace(sets_[current_], A, twist, sets_[current_], A);
+    }
+    if (correction > 0)
+        for (int e = 0; e < stretch.n_elements(); ++e) measure_element(e);
+    return correction;
+}
+
+double Nodes::size_of(const double* twist) const
+{
+    double size = 0;
+    const auto look = [&size](double value) {
+        if (!(value <= size) && !std::isnan(size)) size = value;
+    };
+    for (const auto& body : tables_.bodies) {
+        for (int i = 0; i < 3; ++i) look(std::abs(twist[body.first + i]) / tables_.length);
+        for (int i = 3; i < body.dofs; ++i) look(std::abs(twist[body.first + i]));
+    }
+    return size;
+}
+
+}   // namespace livens

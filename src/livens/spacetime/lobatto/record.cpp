@@ -1,0 +1,110 @@
+#include "livens/spacetime/lobatto/record.h"
+
+#include <algorithm>
+
+namespace livens {
+
+Record::Record(const Tables& tables, const TimeMesh& mesh, const LobattoRule& rule)
+    : tables_(tables), mesh_(mesh), degree_(rule.degree), first_(mesh.n_elements() + 1), last_(-1)
+{
+    Motion& m = motion_;
+    m.n_bodies = tables.n_bodies();
+    m.n_rows = tables.model->n_rows();
+    m.X = {12 * m.n_bodies, degree_, true, {}, {}};
+    m.multipliers = {m.n_rows, degree_, false, {}, {}};
+    m.order_at_ends = 2 * degree_;
+    m.dense_order_X = degree_ + 1;
+    m.dense_order_V = degree_;
+    m.constraints_hold = "element nodes";
+    m.gauss_points = degree_;
+    for_sizes(mesh.n_elements(), [](auto& values, std::size_t size) { values.reserve(size); });
+    work_.assign(12 * static_cast<std::size_t>(m.n_bodies), 0.0);
+}
+
+/// Every array with its size up to an element end.
+template <class Action>
+void Record::for_sizes(int place, Action&& action)
+{
+    Motion& m = motion_;
+    const auto n = static_cast<std::size_t>(place), p = static_cast<std::size_t>(degree_);
+    const auto bodies = static_cast<std::size_t>(m.n_bodies), rows = static_cast<std::size_t>(m.n_rows);
+    action(m.X.values, (n * p + 1) * 12 * bodies);
+    action(m.multipliers.values, n * (p + 1) * rows);
+    action(m.velocities, (n + 1) * bodies);
+    action(m.momenta, (n + 1) * bodies);
+    action(m.accelerations, 2 * (n + 1) * bodies);
+    action(m.end_multipliers, 2 * (n + 1) * rows);
+}
+
+/// A march forwards touches its memory as it goes, so that it can begin, and be stopped, at once.
+void Record::reach(int place)
+{
+    if (place <= reached_) return;
+    reached_ = place;
+    for_sizes(place, [](auto& values, std::size_t size) { values.resize(size); });
+}
+
+void Record::node(int element, int A, const double* X)
+{
+    reach(A == 0 ? element : element + 1);
+    std::copy_n(X, motion_.X.n_values, motion_.X.coefficient(element, A).data());
+}
+
+void Record::multipliers(int element, int A, const double* lambda)
+{
+    reach(element + 1);
+    if (motion_.n_rows > 0)
+        std::copy_n(lambda, motion_.n_rows, motion_.multipliers.coefficient(element, A).data());
+}
+
+void Record::end(int place, const InstantState& state, const InstantSystem& system, bool two_sided)
+{
+    Motion& m = motion_;
+    reach(place);
+    first_ = std::min(first_, place);
+    last_ = std::max(last_, place);
+    node(std::min(place, mesh_.n_elements() - 1), place < mesh_.n_elements() ? 0 : degree_, state.X.data());
+    const double *V = system.rates(), *turn = system.centripetal();
+    tables_.times_mass(V, 1.0, work_.data());
+    std::copy_n(V, work_.size(), m.velocities[place * m.n_bodies].a);
+    std::copy_n(work_.data(), work_.size(), m.momenta[place * m.n_bodies].a);
+    for (int side = 0; side < 2; ++side) {
+        if (side == 0 || two_sided) {
+            // X'' = [a, alpha x d + w x (w x d)]
+            tables_.rates_of(state.X.data(), state.acceleration[side].data(), work_.data());
+            double* __restrict A = work_.data();
+            for (std::size_t i = 0; i < work_.size(); ++i) A[i] += turn[i];
+        }
+        std::copy_n(work_.data(), work_.size(), m.accelerations[(2 * place + side) * m.n_bodies].a);
+        std::copy_n(state.multipliers[side].data(), m.n_rows,
+                    m.end_multipliers.data() + (2 * place + side) * m.n_rows);
+    }
+}
+
+/// Keeps entries first..last - 1 of `stride` values each.
+template <class T>
+void Record::cut(std::vector<T>& values, std::size_t first, std::size_t last, std::size_t stride) const
+{
+    values.resize(last * stride);
+    values.erase(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(first * stride));
+}
+
+Motion Record::take()
+{
+    Motion& m = motion_;
+    m.redundant_rows = redundant_;
+    const auto first = static_cast<std::size_t>(first_), last = static_cast<std::size_t>(last_);
+    const auto p = static_cast<std::size_t>(degree_), bodies = static_cast<std::size_t>(m.n_bodies);
+    const auto rows = static_cast<std::size_t>(m.n_rows);
+    m.mesh.ends.assign(mesh_.ends.begin() + first_, mesh_.ends.begin() + last_ + 1);
+    if (first == 0 && last == static_cast<std::size_t>(mesh_.n_elements())) return std::move(motion_);
+    cut(m.X.values, first * p, last * p + 1, 12 * bodies);
+    cut(m.multipliers.values, first * (p + 1), last * (p + 1), rows);
+    cut(m.velocities, first, last + 1, bodies);
+    cut(m.momenta, first, last + 1, bodies);
+    cut(m.accelerations, first, last + 1, 2 * bodies);
+    cut(m.end_multipliers, first, last + 1, 2 * rows);
+    return std::move(motion_);
+}
+
+}   // namespace livens

@@ -1,0 +1,45 @@
+// The motion of solved elements of lobatto(p), in whatever order they come.
+#pragma once
+
+#include <vector>
+
+#include "livens/multibody/instant.h"
+#include "livens/multibody/motion.h"
+#include "livens/spacetime/lobatto/rule.h"
+
+namespace livens {
+
+/// Fills a motion element by element; elements that were never closed are cut off at the end.
+class Record {
+public:
+    Record(const Tables& tables, const TimeMesh& mesh, const LobattoRule& rule);
+
+    /// X of local node A of a mesh element, 12 numbers a body; its joint multipliers, one-sided at the ends.
+    void node(int element, int A, const double* X);
+    void multipliers(int element, int A, const double* lambda);
+    /// Everything known at an element end; `system` has just made its accelerations. `two_sided`: they
+    /// differ.
+    void end(int place, const InstantState& state, const InstantSystem& system, bool two_sided);
+    void note_redundant(const std::vector<int>& rows) { redundant_ = rows; }
+    const TimeMesh& mesh() const { return mesh_; }
+
+    Motion take();
+
+private:
+    template <class Action>
+    void for_sizes(int place, Action&& action);
+    void reach(int place);
+    template <class T>
+    void cut(std::vector<T>& values, std::size_t first, std::size_t last, std::size_t stride) const;
+
+    const Tables& tables_;
+    const TimeMesh& mesh_;
+    int degree_;
+    int first_, last_;   // element ends from..to that were written
+    int reached_ = -1;   // there is room up to this element end
+    Motion motion_;
+    std::vector<int> redundant_;
+    std::vector<double> work_;
+};
+
+}   // namespace livens

@@ -1,0 +1,199 @@
+#include "livens/spacetime/lobatto/rows.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace livens {
+
+namespace {
+
+/// sum += x, for arrays that do not overlap.
+inline void accumulate(double* __restrict sum, const double* __restrict x, std::size_t n)
+{
+    for (std::size_t i = 0; i < n; ++i) sum[i] += x[i];
+}
+
+}   // namespace
+
+Rows::Rows(const Tables& tables, const LobattoRule& rule)
+    : tables_(tables), rule_(rule), size_of_X_(12 * tables.bodies.size())
+{
+    for (EndMomentum& momentum : momenta_) {
+        momentum.scaled.assign(static_cast<std::size_t>(tables.n_twists), 0.0);
+        momentum.about_reference = momentum.scaled;
+    }
+    q_.assign(static_cast<std::size_t>(tables.n_twists), 0.0);
+    for (auto* v : {&work_, &X_, &V_}) v->assign(size_of_X_, 0.0);
+}
+
+void Rows::open(const Stretch& stretch)
+{
+    const auto n = static_cast<std::size_t>(stretch.n_nodes());
+    int n_active = 0;
+    for (int A = 0; A < stretch.n_nodes(); ++A) n_active += stretch.is_active(A) ? 1 : 0;
+    forces_.resize(static_cast<std::size_t>(stretch.n_elements() * rule_.size()) * size_of_X_);
+    raw_.resize(n * size_of_X_);
+    impulses_.resize(n * static_cast<std::size_t>(tables_.rank));
+    reduced_.resize(static_cast<std::size_t>(n_active * tables_.freedoms()));
+}
+
+void Rows::interpolate(const Stretch& stretch, const Nodes& nodes, int e, int c, double* X, double* V) const
+{
+    const int n_nodes = rule_.size();
+    const double inverse = 1 / stretch.h(e);
+    std::copy_n(nodes.X(e * rule_.degree), size_of_X_, X);
+    std::fill_n(V, size_of_X_, 0.0);
+    for (int B = 1; B < n_nodes; ++B) {
+        const double m = rule_.M[c * n_nodes + B];
+        const double d = rule_.dM[c * n_nodes + B] * inverse;
+        const double* __restrict dX = nodes.dX(e, B);
+        for (std::size_t i = 0; i < size_of_X_; ++i) {
+            X[i] += m * dX[i];
+            V[i] += d * dX[i];
+        }
+    }
+}
+
+/// The weight is constant, and its integral against M_A is h w_A to the last digit.
+void Rows::begin(const Stretch& stretch)
+{
+    std::fill(forces_.begin(), forces_.end(), 0.0);
+    for (int e = 0; e < stretch.n_elements(); ++e)
+        for (int A = 0; A < rule_.size(); ++A)
+            tables_.add_weight(stretch.h(e) * rule_.weights[A], forces_.data() + place(e * rule_.size() + A));
+    start_terms_ = 0;
+    for (const double p : momenta_[0].scaled) start_terms_ = std::max(start_terms_, std::abs(p));
+}
+
+/// F_A at all nodes of an element. The Gauss points lie inside it, on its side of every jump.
+void Rows::add_loads(const Stretch& stretch, const Nodes& nodes, int e)
+{
+    const int n_nodes = rule_.size();
+    const double h = stretch.h(e);
+    double* first = forces_.data() + place(e * n_nodes);
+    std::fill_n(first, static_cast<std::size_t>(n_nodes) * size_of_X_, 0.0);
+    for (int A = 0; A < n_nodes; ++A) tables_.add_weight(h * rule_.weights[A], first + place(A));
+    for (std::size_t c = 0; c < rule_.loads.points.size(); ++c) {
+        interpolate(stretch, nodes, e, static_cast<int>(c), X_.data(), V_.data());
+        std::fill(work_.begin(), work_.end(), 0.0);
+        tables_.add_loads({stretch.times[e] + rule_.loads.points[c] * h, Side::middle}, X_.data(), V_.data(),
+                          h * rule_.loads.weights[c], work_.data());
+        for (int A = 0; A < n_nodes; ++A) {
+            const double m = rule_.M[c * n_nodes + A];
+            double* __restrict f = first + place(A);
+            for (std::size_t i = 0; i < size_of_X_; ++i) f[i] += m * work_[i];
+        }
+    }
+}
+
+/// raw += h^-1 sum_B k_AB (X_B - X_0) m + F_A of element e at its local node A; the first element at a node
+/// sets it.
+void Rows::add_element(const Stretch& stretch, const Nodes& nodes, int e, int A, double* raw)
+{
+    const int n_nodes = rule_.size();
+    const double* k = rule_.k.data() + A * n_nodes;
+    double* __restrict y = work_.data();
+    const double* __restrict first = nodes.dX(e, 1);
+    for (std::size_t i = 0; i < size_of_X_; ++i) y[i] = k[1] * first[i];
+    for (int B = 2; B < n_nodes; ++B) {
+        const double* __restrict d = nodes.dX(e, B);
+        for (std::size_t i = 0; i < size_of_X_; ++i) y[i] += k[B] * d[i];
+    }
+    const bool is_first = e == 0 || A > 0;
+    double* sum = is_first ? raw : X_.data();
+    tables_.times_mass(y, 1 / stretch.h(e), sum);
+    if (!is_first) accumulate(raw, sum, size_of_X_);
+    accumulate(raw, forces(e, A), size_of_X_);
+}
+
+void Rows::twist_row(const Stretch& stretch, const Nodes& nodes, int A, double* out)
+{
+    double* raw = raw_.data() + place(A);
+    for (int e = stretch.first_element(A); e <= stretch.last_element(A); ++e)
+        add_element(stretch, nodes, e, A - e * rule_.degree, raw);
+    tables_.twist_rows(nodes.X(A), nodes.maps(A), raw, out);
+}
+
+/// y += the momentum at the start or - that at the end, where it is known.
+void Rows::add_end_momentum(const Stretch& stretch, const Nodes& nodes, int A, double* y) const
+{
+    const bool is_last = A != 0;
+    const EndMomentum& given = momenta_[is_last ? 1 : 0];
+    if (!stretch.is_unknown(A)) return accumulate(y, given.scaled.data(), given.scaled.size());
+    std::vector<double> about_centre = given.about_reference, scaled(about_centre.size());
+    for (int b = 0; b < tables_.n_bodies(); ++b) {
+        const auto& body = tables_.bodies[b];
+        if (body.dofs == 6) Tables::to_centre(nodes.maps(A) + 12 * b, about_centre.data() + body.first);
+    }
+    tables_.to_scaled_rows(nodes.maps(A), about_centre.data(), scaled.data());
+    for (std::size_t i = 0; i < scaled.size(); ++i) y[i] += is_last ? -scaled[i] : scaled[i];
+}
+
+/// lambda_A from the rows in the constraint directions; what is left are the reduced rows.
+void Rows::eliminate(const Stretch& stretch, const Nodes& nodes, int A, double* reduced)
+{
+    const ConstraintBasis& basis = nodes.basis(A);
+    const int k = tables_.rank, f = tables_.freedoms(), n = tables_.n_twists;
+    double* y = work_.data();
+    tables_.to_scaled_rows(nodes.maps(A), q_.data(), y);
+    if (A == 0 || A == stretch.n_nodes() - 1) add_end_momentum(stretch, nodes, A, y);
+    double terms = terms_;
+    for (int i = 0; i < n; ++i) terms = std::max(terms, std::abs(y[i]));
+    terms_ = terms;
+    basis.q.apply_transposed(y);
+    for (int i = 0; i < f; ++i) reduced[i] = -y[k + i];
+    basis.q.solve_R(y);
+    double* impulses = impulses_.data() + static_cast<std::size_t>(A * k);
+    for (int c = 0; c < k; ++c) impulses[c] = y[c] * basis.row_scale[c];
+}
+
+bool Rows::evaluate(const Stretch& stretch, const Nodes& nodes)
+{
+    terms_ = start_terms_;
+    const bool has_loads = !tables_.model->loads().empty();
+    for (int e = 0; has_loads && e < stretch.n_elements(); ++e) add_loads(stretch, nodes, e);
+    double* reduced = reduced_.data();
+    for (int A = 0; A < stretch.n_nodes(); ++A) {
+        if (!stretch.is_active(A)) continue;
+        twist_row(stretch, nodes, A, q_.data());
+        eliminate(stretch, nodes, A, reduced);
+        reduced += tables_.freedoms();
+    }
+    double sum = terms_, largest = 0;
+    for (const double r : reduced_) {
+        sum += std::abs(r);   // keeps a nan, which a maximum would lose
+        largest = std::max(largest, std::abs(r));
+    }
+    size_ = largest;
+    return std::isfinite(sum);
+}
+
+void Rows::subtract(const ConstraintBasis& basis, const double* impulses, double* out) const
+{
+    for (int c = 0; c < tables_.rank; ++c) {
+        const auto& table = tables_.rows[static_cast<std::size_t>(basis.rows[c])];
+        const double s = impulses[c];
+        for (int side = 0; side < table.n_sides; ++side) {
+            double* r = out + 12 * table.bodies[side];
+            const double* g = basis.gradients.data() + 24 * c + 12 * side;
+            for (const int a : table.columns[side])
+                for (int i = a; i < a + 3; ++i) r[i] -= s * g[i];
+        }
+    }
+}
+
+std::string Rows::bad_load(const Stretch& stretch, const Nodes& nodes) const
+{
+    std::vector<double> X(size_of_X_), V(size_of_X_);
+    for (int e = 0; e < stretch.n_elements(); ++e)
+        for (std::size_t c = 0; c < rule_.loads.points.size(); ++c) {
+            interpolate(stretch, nodes, e, static_cast<int>(c), X.data(), V.data());
+            const double t = stretch.times[e] + rule_.loads.points[c] * stretch.h(e);
+            const int load = tables_.bad_load({t, Side::middle}, X.data(), V.data());
+            if (load >= 0) return tables_.model->loads()[load].name;
+        }
+    return "";
+}
+
+}   // namespace livens

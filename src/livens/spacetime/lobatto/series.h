@@ -1,0 +1,39 @@
+// Where Newton's iteration of one element starts from.  (docs/theory.md, "Newton's iteration")
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "livens/solvers/newton.h"
+#include "livens/spacetime/lobatto/system.h"
+
+namespace livens {
+
+/// Guesses for a single element from the state at its start: a Taylor series of the twist, and where that
+/// ends too early, the solution of half the degree, which is guessed likewise.
+class Series {
+public:
+    Series(const Tables& tables, const LobattoRule& rule);
+
+    /// Places all nodes of the open system.
+    void place(LobattoSystem& system, const InstantState& start);
+    /// Tangents that were factorised for guesses so far.
+    long factorisations() const
+    {
+        return factorisations_ + (coarse_series_ ? coarse_series_->factorisations() : 0);
+    }
+
+private:
+    void predict(LobattoSystem& system, const InstantState& start) const;
+    double error(const InstantState& start, double h) const;
+    bool place_coarse(LobattoSystem& system, const InstantState& start);
+
+    const Tables& tables_;
+    std::unique_ptr<LobattoSystem> coarse_;   // half the degree
+    std::unique_ptr<Series> coarse_series_;
+    std::vector<double> to_fine_;   // values of its basis at the nodes here, node after node
+    Newton newton_;
+    long factorisations_ = 0;
+};
+
+}   // namespace livens

@@ -1,0 +1,384 @@
+#include "livens/spacetime/lobatto/window.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "livens/base/text.h"
+#include "livens/multibody/body.h"
+#include "livens/multibody/twist.h"
+
+namespace livens {
+
+namespace {
+
+/// Re-orthonormalises directors that have drifted beyond rounding: one Newton step of the polar factor.
+void polish(double* X)
+{
+    Matrix3 d{};
+    std::copy_n(X + 3, 9, d.a);
+    const Matrix3 error = transpose(d) * d - identity<3>();
+    if (norm(error) < 2e-15) return;
+    d -= 0.5 * d * error;
+    std::copy_n(d.a, 9, X + 3);
+}
+
+}   // namespace
+
+LobattoWindow::LobattoWindow(const Tables& tables, const TimeMesh& mesh, const Ends& ends, int degree)
+    : tables_(tables), ends_(ends), system_(tables, lobatto_rule(degree)), series_(tables, system_.rule()),
+      instant_(tables), record_(tables, mesh, system_.rule()), front_(tables)
+{
+    record_.note_redundant(ends.redundant);
+    work_.lambda.assign(tables.rows.size(), 0.0);
+    work_.end_lambda = work_.lambda;
+    work_.impulse.assign(static_cast<std::size_t>(tables.rank), 0.0);
+    work_.momentum.assign(static_cast<std::size_t>(tables.n_twists), 0.0);
+    work_.wrench.assign(12 * tables.bodies.size(), 0.0);
+    jumps_ = tables.model->load_breaks();
+}
+
+bool LobattoWindow::is_jump(double t) const { return std::binary_search(jumps_.begin(), jumps_.end(), t); }
+
+/// The mesh's number of the stretch's element end.
+int LobattoWindow::mesh_end(int end) const { return ends_.is_backwards() ? last_ - end : first_ + end; }
+
+bool LobattoWindow::open(int first, int last, SolveReport& report)
+{
+    first_ = first;
+    last_ = last;
+    stretch_.degree = system_.rule().degree;
+    stretch_.times.resize(static_cast<std::size_t>(last - first) + 1);
+    for (int e = 0; e <= last - first; ++e) stretch_.times[e] = record_.mesh().ends[mesh_end(e)];
+    if (!ends_.has_state()) {
+        stretch_.X_first = knows_positions(ends_.at_start);
+        stretch_.P_first = knows_momenta(ends_.at_start);
+        stretch_.X_last = knows_positions(ends_.at_end);
+        stretch_.P_last = knows_momenta(ends_.at_end);
+    }
+    if (!front_.is_ready && !begin_front(report)) return false;
+    if (stretch_.X_last && !set_state(far_, ends_.end, report)) return false;
+    system_.open(stretch_, stretch_.X_first ? &front_.here() : nullptr, stretch_.X_last ? &far_ : nullptr);
+    if (!stretch_.X_first && stretch_.P_first)
+        set_momenta(ends_.start, system_.balances().end_momentum(false).about_reference);
+    if (stretch_.P_last) set_momenta(ends_.end, system_.balances().end_momentum(true).about_reference);
+    return true;
+}
+
+/// Six numbers a body, about its reference point.
+void LobattoWindow::set_momenta(const State& given, std::vector<double>& momenta) const
+{
+    std::vector<double>& P = momenta;
+    for (int b = 0; b < tables_.n_bodies(); ++b) {
+        const Matrix34 of_body = given.V[b] * tables_.model->bodies()[b].mass;
+        double six[6];
+        twist::rows(given.X[b].a, of_body.a, six);
+        std::copy_n(six, tables_.bodies[b].dofs, P.begin() + tables_.bodies[b].first);
+    }
+}
+
+/// X, twists and the constraint basis of a state in which the mechanism is closed.
+bool LobattoWindow::set_state(InstantState& state, const State& given, SolveReport& report)
+{
+    state.t = given.t;
+    if (state.X.empty()) state.resize(tables_);
+    for (int b = 0; b < tables_.n_bodies(); ++b) {
+        std::copy_n(given.X[b].a, 12, state.X.begin() + 12 * b);
+        const auto& body = tables_.bodies[b];
+        const Vector3 v = given.V[b].column(0);
+        const Vector3 w = body.dofs == 6 ? angular_velocity(given.X[b], given.V[b]) : Vector3{};
+        for (int i = 0; i < body.dofs; ++i) state.velocity[body.first + i] = i < 3 ? v[i] : w[i - 3];
+    }
+    if (!instant_.prepare(state, tables_.independent))
+        return fail(report,
+                    "the mass matrix on the free motions is singular at t = " + to_text(state.t, 6) + " s");
+    instant_.from_velocity(state);
+    return true;
+}
+
+/// The state at the near end, as far as it is known.
+bool LobattoWindow::begin_front(SolveReport& report)
+{
+    const State& given = ends_.is_backwards() ? ends_.end : ends_.start;
+    if (!knows_positions(ends_.is_backwards() ? ends_.at_end : ends_.at_start)) return true;
+    if (!set_state(front_.here(), given, report)) return false;
+    if (!ends_.has_state()) return true;
+    front_.is_ready = true;
+    accelerate(front_.here());
+    record_.end(mesh_end(0), front_.here(), instant_, is_jump(given.t));
+    return true;
+}
+
+bool LobattoWindow::fail(SolveReport& report, const std::string& message) const
+{
+    report.status = SolveStatus::singular;
+    report.message = message;
+    return false;
+}
+
+bool LobattoWindow::predict()
+{
+    if (!stretch_.is_march() || stretch_.n_elements() > 1) return false;
+    series_.place(system_, front_.here());
+    return system_.settle();
+}
+
+bool LobattoWindow::start_from(const Guess& guess)
+{
+    const LobattoRule& rule = system_.rule();
+    std::vector<double> X(12 * tables_.bodies.size());
+    for (int A = 0; A < stretch_.n_nodes(); ++A) {
+        if (!stretch_.is_unknown(A)) continue;
+        const State state = guess(stretch_.time(rule, A));
+        for (std::size_t b = 0; b < state.X.size(); ++b) {
+            const Matrix34 rigid =
+                tables_.bodies[b].dofs == 3
+                    ? state.X[b]
+                    : configuration(state.X[b].column(0), project_directors(directors(state.X[b])));
+            std::copy_n(rigid.a, 12, X.begin() + static_cast<std::ptrdiff_t>(12 * b));
+        }
+        system_.nodes().place_at(A, X.data());
+    }
+    return system_.settle();
+}
+
+bool LobattoWindow::near_state(State& state) const
+{
+    if (!front_.is_ready) return false;
+    const InstantState& here = front_.here();
+    std::vector<double> V(here.X.size());
+    tables_.rates_of(here.X.data(), here.velocity.data(), V.data());
+    state.t = here.t;
+    state.X.resize(tables_.bodies.size());
+    state.V.resize(tables_.bodies.size());
+    for (std::size_t b = 0; b < state.X.size(); ++b) {
+        std::copy_n(here.X.data() + 12 * b, 12, state.X[b].a);
+        std::copy_n(V.data() + 12 * b, 12, state.V[b].a);
+    }
+    return true;
+}
+
+/// Both sides of an instant where loads jump, else one for both.
+void LobattoWindow::accelerate(InstantState& state)
+{
+    instant_.accelerate(state, Side::right);
+    if (is_jump(state.t)) {
+        instant_.accelerate(state, Side::left);
+    } else {
+        state.acceleration[0] = state.acceleration[1];
+        state.multipliers[0] = state.multipliers[1];
+    }
+}
+
+/// The state at the first node, where only the solution told it, and the multipliers that are left there when
+/// its momentum is tangent to the constraints.
+bool LobattoWindow::find_first_state(SolveReport& report)
+{
+    InstantState& here = front_.here();
+    const double weight = stretch_.weight(system_.rule(), 0);
+    here.t = stretch_.times[0];
+    if (!stretch_.X_first) {
+        std::copy_n(system_.nodes().X(0), here.X.size(), here.X.begin());
+        std::copy_n(system_.nodes().low(0), here.X.size(), here.X_low.begin());
+        if (!instant_.prepare(here, tables_.independent))
+            return fail(report, "the free motions carry no inertia at t = " + to_text(here.t, 6) + " s");
+    }
+    std::vector<double>& p = work_.momentum;
+    if (stretch_.P_first) {
+        p = system_.balances().end_momentum(false).about_reference;
+        for (int b = 0; b < tables_.n_bodies(); ++b)
+            if (tables_.bodies[b].dofs == 6)
+                Tables::to_centre(here.maps.data() + 12 * b, p.data() + tables_.bodies[b].first);
+    } else {
+        system_.balances().twist_row(stretch_, system_.nodes(), 0, p.data());
+        for (double& value : p) value = -value;
+    }
+    instant_.from_momentum(here, p.data(), weight, work_.lambda.data());
+    for (int c = 0; c < tables_.rank; ++c) {
+        const double taken = weight * work_.lambda[here.basis.rows[c]];
+        work_.impulse[c] = (stretch_.P_first ? system_.balances().impulses(0)[c] : 0.0) - taken;
+    }
+    accelerate(here);
+    record_.end(mesh_end(0), here, instant_, is_jump(here.t));
+    return true;
+}
+
+bool LobattoWindow::close(SolveReport& report)
+{
+    if (stretch_.is_march())
+        std::copy_n(system_.balances().impulses(0), tables_.rank, work_.impulse.begin());
+    else if (!find_first_state(report))
+        return false;
+    for (int e = 0; e < stretch_.n_elements(); ++e)
+        if (!close_element(e, report)) return false;
+    front_.is_ready = true;
+    return true;
+}
+
+/// The momentum at the end of an element from the balance of all its rows, which is its last row once the
+/// others are solved:
+///
+///     p = p_0 + sum_A f_A,      s = s_0 + sum_A tau_A
+///
+/// with wrenches (f_A, tau_A) of loads and multipliers about the centres of mass (docs/theory.md, "The
+/// element"). The last row itself would carry the rounding of k_AB / h, and what Newton's iteration left.
+bool LobattoWindow::sum_momentum(int e)
+{
+    const Nodes& nodes = system_.nodes();
+    const Rows& rows = system_.balances();
+    const int p = system_.rule().degree;
+    std::vector<double>&sum = work_.momentum, &wrench = work_.wrench;
+    sum = front_.here().p;
+    double size = 0;
+    for (int a = 0; a <= p; ++a) {
+        const int A = e * p + a;
+        std::copy_n(rows.forces(e, a), wrench.size(), wrench.begin());
+        if (a < p)
+            rows.subtract(nodes.basis(A), a == 0 ? work_.impulse.data() : rows.impulses(A), wrench.data());
+        tables_.add_twist_rows(nodes.X(A), nodes.maps(A), wrench.data(), sum.data());
+    }
+    for (const double value : sum) size += std::abs(value);
+    return std::isfinite(size);
+}
+
+/// The end state of a solved element; its nodes and multipliers into the motion.
+bool LobattoWindow::close_element(int e, SolveReport& report)
+{
+    const LobattoRule& rule = system_.rule();
+    const Nodes& nodes = system_.nodes();
+    const int p = rule.degree, A = (e + 1) * p;
+    const bool is_last = e + 1 == stretch_.n_elements();
+    InstantState &here = front_.here(), &next = front_.next();
+    next.t = stretch_.times[e + 1];
+    if (!sum_momentum(e))
+        return fail(report, "the momentum is not finite at t = " + to_text(next.t, 6) + " s");
+    std::copy_n(nodes.X(A), next.X.size(), next.X.begin());
+    std::copy_n(nodes.low(A), next.X.size(), next.X_low.begin());
+    for (int b = 0; mesh_end(e) % 16 == 15 && b < tables_.n_bodies(); ++b)
+        if (tables_.bodies[b].dofs == 6) polish(next.X.data() + 12 * b);
+    ConstraintBasis* known =
+        is_last && stretch_.is_unknown(A) && system_.bases_fit() ? &system_.nodes().own_basis(A) : nullptr;
+    if (!instant_.prepare(next, here.basis.rows, known))
+        return fail(report, "the free motions carry no inertia at t = " + to_text(next.t, 6) + " s");
+    if (!rows_compatible(next, report)) return false;
+    const double weight = stretch_.h(e) * rule.weights[p];
+    instant_.from_momentum(next, work_.momentum.data(), weight, work_.end_lambda.data());
+    accelerate(next);
+    record_element(e);
+    if (!is_last)   // the shared node's other side
+        for (int c = 0; c < tables_.rank; ++c)
+            work_.impulse[c] =
+                system_.balances().impulses(A)[c] - weight * work_.end_lambda[nodes.basis(A).rows[c]];
+    if (is_jump(next.t))
+        next.forget_past();
+    else
+        next.look_back(here, stretch_.h(e) > 0);
+    front_.now = 1 - front_.now;
+    record_.end(mesh_end(e + 1), front_.here(), instant_, is_jump(next.t));
+    return true;
+}
+
+void LobattoWindow::record_element(int e)
+{
+    const LobattoRule& rule = system_.rule();
+    const int p = rule.degree;
+    const bool back = ends_.is_backwards();
+    const int element = std::min(mesh_end(e), mesh_end(e + 1));
+    for (int a = 0; a <= p; ++a) {
+        const int A = e * p + a, place = back ? p - a : a;
+        if (a > 0 && a < p) record_.node(element, place, system_.nodes().X(A));
+        if (a == p) {
+            record_.multipliers(element, place, work_.end_lambda.data());
+            continue;
+        }
+        const double* impulses = a == 0 ? work_.impulse.data() : system_.balances().impulses(A);
+        const std::vector<int>& rows = system_.nodes().basis(A).rows;
+        std::fill(work_.lambda.begin(), work_.lambda.end(), 0.0);
+        for (int c = 0; c < tables_.rank; ++c)
+            work_.lambda[rows[c]] = impulses[c] / (stretch_.h(e) * rule.weights[a]);
+        record_.multipliers(element, place, work_.lambda.data());
+    }
+}
+
+/// Rows that were left out as redundant must still hold.
+bool LobattoWindow::rows_compatible(const InstantState& state, SolveReport& report) const
+{
+    if (tables_.rank == tables_.n_rows()) return true;
+    for (int r = 0; r < tables_.n_rows(); ++r) {
+        const ConstraintRow& row = *tables_.rows[r].row;
+        if (std::abs(tables_.value(r, {state.t}, state.X.data())) / row.scale < 1e-8) continue;
+        return fail(report, tables_.model->row_name(r) +
+                                ": was redundant at the start and contradicts the other joints by t = " +
+                                to_text(state.t, 6) + " s");
+    }
+    return true;
+}
+
+std::vector<Matrix34> LobattoWindow::positions(int element_end) const
+{
+    const int e = ends_.is_backwards() ? last_ - element_end : element_end - first_;
+    std::vector<Matrix34> X(tables_.bodies.size());
+    for (std::size_t b = 0; b < X.size(); ++b)
+        std::copy_n(system_.nodes().X(e * system_.rule().degree) + 12 * b, 12, X[b].a);
+    return X;
+}
+
+Place LobattoWindow::worst() const
+{
+    Place place{"", stretch_.times[0], system_.balances().bad_load(stretch_, system_.nodes())};
+    double worst = 0;
+    int row = -1, body = -1;
+    for (int A = 0; A < stretch_.n_nodes(); ++A) {
+        if (!stretch_.is_unknown(A)) continue;
+        for (int c = 0; c < tables_.rank; ++c) {
+            const double v = std::abs(system_.nodes().violations(A)[c]);
+            if (v <= worst) continue;   // nan is worst of all
+            worst = v;
+            row = system_.nodes().basis(A).rows[c];
+            place.t = stretch_.times[stretch_.first_element(A)];
+        }
+    }
+    worst = 0;
+    std::vector<double> q(static_cast<std::size_t>(tables_.n_twists)), wrench(12 * tables_.bodies.size());
+    for (int A = 0; A < stretch_.n_nodes(); ++A) {
+        if (!stretch_.is_active(A)) continue;
+        const Nodes& nodes = system_.nodes();
+        std::copy_n(system_.balances().raw(A), wrench.size(), wrench.begin());
+        tables_.twist_rows(nodes.X(A), nodes.maps(A), wrench.data(), q.data());
+        for (int b = 0; b < tables_.n_bodies(); ++b)
+            for (int i = 0; i < tables_.bodies[b].dofs; ++i) {
+                const double v = std::abs(q[tables_.bodies[b].first + i]);
+                if (v <= worst) continue;
+                worst = v;
+                body = b;
+            }
+    }
+    if (row >= 0) place.name = tables_.model->row_name(row);
+    if (body >= 0) place.name += (row >= 0 ? ", body '" : "body '") + tables_.model->body_name(body) + "'";
+    return place;
+}
+
+void LobattoWindow::describe(SolveReport& report) const
+{
+    report.unknowns = std::max(report.unknowns, static_cast<int>(system_.balances().reduced().size()));
+    report.smallest_pivot = std::min(report.smallest_pivot, system_.nodes().smallest_pivot());
+    report.guess_factorisations = series_.factorisations();
+    system_.elimination().describe(report);
+}
+
+void LobattoWindow::measure_condition(SolveReport& report)
+{
+    const double f = tables_.freedoms(), p = stretch_.degree;
+    if (f == 0) return;   // nothing moves: there is no matrix
+    if (stretch_.n_elements() * p * (2 * p + 1) * f * f > std::numeric_limits<int>::max()) {
+        report.notes.push_back("the whole matrix is too large for its condition number; use fewer elements");
+        return;
+    }
+    const auto elimination = null_space_elimination(tables_, stretch_, whole_solver(SparseBackend::eigen));
+    elimination->begin(stretch_, system_.nodes());
+    system_.form_tangent(*elimination);
+    elimination->measure_condition(report);
+}
+
+}   // namespace livens

@@ -1,0 +1,77 @@
+// lobatto(p) as a family: its windows, what they hand on, and its motion.
+#pragma once
+
+#include "livens/spacetime/ends.h"
+#include "livens/spacetime/lobatto/record.h"
+#include "livens/spacetime/lobatto/series.h"
+#include "livens/spacetime/window.h"
+
+namespace livens {
+
+/// Windows from the end where the state is known, or one window of all elements.
+class LobattoWindow final : public Window {
+public:
+    /// References must outlive the window. Throws InputError for a degree out of range.
+    LobattoWindow(const Tables& tables, const TimeMesh& mesh, const Ends& ends, int degree);
+
+    bool open(int first, int last, SolveReport& report) override;
+    NewtonProblem& equations() override { return system_; }
+    bool predict() override;
+    bool start_from(const Guess& guess) override;
+    bool near_state(State& state) const override;
+    bool close(SolveReport& report) override;
+    std::vector<Matrix34> positions(int element_end) const override;
+    Place worst() const override;
+    void describe(SolveReport& report) const override;
+    void measure_condition(SolveReport& report) override;
+    Motion take_motion() override { return record_.take(); }
+
+private:
+    /// What is passed on from element to element.
+    struct Front {
+        explicit Front(const Tables& tables)
+        {
+            for (InstantState& state : states) state.resize(tables);
+        }
+        InstantState states[2];
+        int now = 0;
+        bool is_ready = false;   // the state at hand is known and in the motion
+        InstantState& here() { return states[now]; }
+        const InstantState& here() const { return states[now]; }
+        InstantState& next() { return states[1 - now]; }
+    };
+    struct Work {
+        std::vector<double> lambda, end_lambda;   // all rows of the model
+        std::vector<double> impulse;              // h w_0 lambda of the element's first node, in its basis
+        std::vector<double> momentum;             // twist rows about the centres of mass
+        std::vector<double> wrench;               // 12 a body
+    };
+
+    int mesh_end(int end) const;
+    bool is_jump(double t) const;
+    void set_momenta(const State& given, std::vector<double>& momenta) const;
+    bool set_state(InstantState& state, const State& given, SolveReport& report);
+    bool begin_front(SolveReport& report);
+    bool find_first_state(SolveReport& report);
+    void accelerate(InstantState& state);
+    bool sum_momentum(int e);
+    bool close_element(int e, SolveReport& report);
+    void record_element(int e);
+    bool rows_compatible(const InstantState& state, SolveReport& report) const;
+    bool fail(SolveReport& report, const std::string& message) const;
+
+    const Tables& tables_;
+    const Ends& ends_;
+    LobattoSystem system_;
+    Series series_;
+    InstantSystem instant_;
+    Record record_;
+    Stretch stretch_;
+    Front front_;
+    InstantState far_;   // where X is known at the far end
+    int first_ = 0, last_ = 0;
+    Work work_;
+    std::vector<double> jumps_;
+};
+
+}   // namespace livens

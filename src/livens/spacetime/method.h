@@ -1,0 +1,79 @@
+// The methods and their options.
+#pragma once
+
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "livens/solvers/sparse.h"
+
+namespace livens {
+
+/// Continuous X of degree p per element, nodes and quadrature at Gauss-Lobatto points; order 2p at element
+/// ends.
+struct Lobatto {
+    int degree = 4;   ///< 1..16
+    /// Elements solved together, 0: all. The equations are the same; conditions at both ends take all.
+    int window = 1;
+};
+
+/// The elements of the paper: X, P and multipliers are separate fields over one time basis, directors are
+/// free and rigidity holds weakly (P10, P11, P23). Order 2 to degree + 1 at the ends of blocks, see
+/// docs/theory.md.
+struct Mixed {
+    enum class Basis {
+        lagrange,   ///< continuous, equidistant nodes
+        bspline,    ///< as smooth as the knots allow
+        nurbs       ///< likewise, with weights
+    };
+    /// How the momentum at the ends enters.
+    enum class Start {
+        natural,   ///< as the boundary term of Hamilton's law (P10); momenta balance to rounding
+        strong     ///< as a value of the field P (P11, P13, P15)
+    };
+    /// Test and trial functions of the multipliers (Remark 3.1).
+    enum class Multipliers {
+        equal,   ///< those of X
+        lower    ///< one degree less
+    };
+    /// The multiplier of the function at an end whose row defines the momentum (natural start, equal
+    /// multipliers): it is no unknown.
+    enum class EndMultiplier {
+        smooth,   ///< such that the multipliers are of one degree less in that element
+        zero      ///< as if the trial functions lacked this one; every degree is then held down to order 4
+    };
+    /// What the next block takes over: end positions and momenta as they are, or brought onto the
+    /// constraints.
+    enum class Interfaces { carry, project };
+    /// Where Newton begins when the state is given at one end.
+    enum class FirstGuess {
+        march,   ///< a march of lobatto(2) over the block's elements
+        steady   ///< straight on with the velocities given: good for short blocks only
+    };
+
+    Basis basis = Basis::lagrange;
+    int degree = 2;   ///< 1..8
+    Start start = Start::natural;
+    Multipliers multipliers = Multipliers::equal;
+    EndMultiplier end_multiplier = EndMultiplier::smooth;
+    int gauss_points = 0;   ///< an element; 0: as many as integrate polynomials exactly
+    int window = 0;         ///< elements solved together, a block; 0: all
+    Interfaces interfaces = Interfaces::carry;
+    FirstGuess first_guess = FirstGuess::march;
+    /// Clamped knot vector (s) of splines over all of time, whose knots are the ends of the mesh; needs a
+    /// single block. Empty: as smooth as possible, but for kinks where a load jumps or bends.
+    std::vector<double> knots;
+    std::vector<double> weights;   ///< of NURBS, one for each function; needs a single block
+    SparseBackend linear_solver = SparseBackend::eigen;
+};
+
+/// Classical rules, one step per element: independent witnesses.
+struct Midpoint {};   ///< energy-momentum midpoint rule, order 2
+struct Endpoint {};   ///< implicit Euler, order 1
+
+using Method = std::variant<Lobatto, Mixed, Midpoint, Endpoint>;
+
+/// "lobatto(6)", "mixed(bspline, 2, natural, equal)", "midpoint", "endpoint".
+std::string name_of(const Method& method);
+
+}   // namespace livens

@@ -1,0 +1,52 @@
+// A block of the family mixed as Newton's iteration sees it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "livens/solvers/newton.h"
+#include "livens/spacetime/mixed/equations.h"
+
+namespace livens::mixed {
+
+/// The whole matrix of a block by a sparse solver, rows and columns scaled (docs/theory.md, "Scaling"), each
+/// solution refined once. Increments are not scaled.
+class Block final : public NewtonProblem {
+public:
+    Block(Equations equations, SparseBackend backend);
+
+    const Equations& equations() const { return equations_; }
+    /// The current point; to be set before an iteration begins.
+    Fields& fields() { return fields_[current_]; }
+    const Fields& fields() const { return fields_[current_]; }
+    /// Scales of rows and columns at the fields as they are; once, before an iteration begins.
+    void begin() { equations_.scales(fields(), row_scale_, column_scale_); }
+    const std::string& bad_load() const { return bad_load_; }
+    Worst worst() const { return equations_.worst(residual_, row_scale_); }
+    long long factor_entries() const { return lu_.factor_entries(); }
+    /// Of the matrix as published, and of the scaled one that is factorised, at the current point.
+    void measure_condition(SolveReport& report);
+
+    int n_unknowns() const override { return equations_.size(); }
+    bool residual() override;
+    bool factorise() override;
+    void solve(std::span<double> dx) override;
+    bool move(std::span<const double> dx, double damping) override;
+    void keep() override { kept_ = current_; }
+    double size_of(std::span<const double> dx) const override { return equations_.size_of(dx); }
+    Rows rows() const override;
+
+private:
+    double reference() const;
+
+    Equations equations_;
+    SparseLU lu_;
+    Fields fields_[2];
+    int current_ = 0, kept_ = 0;
+    SparseMatrix scaled_;
+    std::vector<double> row_scale_, column_scale_;
+    std::vector<double> residual_, work_, increment_;
+    std::string bad_load_;   ///< of the last residual
+};
+
+}   // namespace livens::mixed

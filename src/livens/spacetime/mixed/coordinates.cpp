@@ -1,0 +1,147 @@
+#include "livens/spacetime/mixed/coordinates.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "livens/base/error.h"
+#include "livens/multibody/mass_properties.h"
+#include "livens/solvers/sparse.h"
+
+namespace livens::mixed {
+
+namespace {
+
+void refuse_singular(const Body& body)
+{
+    if (!is_singular(body.mass, body.is_point)) return;
+    throw InputError(
+        {"mass-singular", "body[" + body.name + "].inertia",
+         "the mass matrix of body '" + body.name + "' is singular, and the elements 'mixed' divide by it", "",
+         "J1 + J2 > J3 for every principal moment",
+         "a lamina or a needle has no extent along some axis, so one of its directors has no inertia",
+         "use the method lobatto, or give the body a little thickness"});
+}
+
+}   // namespace
+
+Coordinates::Coordinates(const Tables& the_tables) : tables(the_tables), rows(the_tables.independent)
+{
+    for (int b = 0; b < static_cast<int>(tables.bodies.size()); ++b) {
+        const Body& body = tables.model->bodies()[b];
+        refuse_singular(body);
+        first.push_back(size);
+        size += n_numbers(b);
+        inverse_masses.push_back(inverse_mass(body.mass, body.is_point));
+        for (int c = 0; c < n_numbers(b); ++c) root_masses.push_back(std::sqrt(body.mass(c / 3, c / 3)));
+    }
+    for (int r = tables.n_rows(); r < static_cast<int>(tables.rows.size()); ++r) rows.push_back(r);
+    for (int k = 0; k < n_rows(); ++k) {
+        const Tables::RowTable& row = tables.rows[rows[k]];
+        for (int side = 0; side < row.n_sides; ++side)
+            for (const int column : row.columns[side])
+                for (int c = column; c < column + 3; ++c) {
+                    bool is_used = row.B[side].a[c] != 0;
+                    for (const auto& entry : row.form)
+                        is_used = is_used || (entry.to_side == side && entry.to == column);
+                    if (is_used && c < n_numbers(row.bodies[side]))
+                        gradient_entries.push_back({k, side, c, first[row.bodies[side]] + c});
+                }
+        for (const auto& entry : row.form) {
+            const int i = row.bodies[entry.to_side], j = row.bodies[entry.from_side];
+            if (entry.to >= n_numbers(i) || entry.from >= n_numbers(j)) continue;
+            for (int d = 0; d < 3; ++d)
+                hessian_entries.push_back(
+                    {k, first[i] + entry.to + d, first[j] + entry.from + d, entry.value});
+        }
+    }
+}
+
+std::string Coordinates::row_name(int row) const
+{
+    const int r = rows[row];
+    if (r < tables.n_rows()) return tables.model->row_name(r);
+    return "the rigidity of body '" + tables.model->body_name(tables.rows[r].bodies[0]) + "'";
+}
+
+void Coordinates::spread(const double* coordinates, double* X) const
+{
+    std::fill_n(X, n_X(), 0.0);
+    for (int b = 0; b < n_bodies(); ++b) std::copy_n(coordinates + first[b], n_numbers(b), X + 12 * b);
+}
+
+void Coordinates::gather(const double* X, double* coordinates) const
+{
+    for (int b = 0; b < n_bodies(); ++b) std::copy_n(X + 12 * b, n_numbers(b), coordinates + first[b]);
+}
+
+std::vector<double> Coordinates::gather(std::span<const Matrix34> X) const
+{
+    std::vector<double> coordinates(static_cast<std::size_t>(size));
+    for (int b = 0; b < n_bodies(); ++b) std::copy_n(X[b].a, n_numbers(b), coordinates.begin() + first[b]);
+    return coordinates;
+}
+
+std::vector<Matrix34> Coordinates::bodies(const double* coordinates) const
+{
+    std::vector<Matrix34> X(first.size());
+    for (int b = 0; b < n_bodies(); ++b) std::copy_n(coordinates + first[b], n_numbers(b), X[b].a);
+    return X;
+}
+
+void Coordinates::forces(double t, const double* X, const double* V, const double* lambda, double* F) const
+{
+    std::fill_n(F, n_X(), 0.0);
+    tables.add_weight(1.0, F);
+    tables.add_loads({t, Side::middle}, X, V, 1.0, F);
+    double g[24];
+    for (int k = 0; k < n_rows(); ++k) {
+        if (lambda[k] == 0) continue;
+        const Tables::RowTable& row = tables.rows[rows[k]];
+        tables.gradient(rows[k], {}, X, g);
+        for (int side = 0; side < row.n_sides; ++side)
+            for (const int column : row.columns[side])
+                for (int c = column; c < column + 3; ++c)
+                    F[12 * row.bodies[side] + c] -= lambda[k] * g[12 * side + c];
+    }
+}
+
+std::vector<double> Coordinates::multipliers(const State& state) const
+{
+    const int n = size + n_rows();
+    std::vector<std::vector<std::pair<int, double>>> columns(static_cast<std::size_t>(n));
+    std::vector<double> X, V, F(static_cast<std::size_t>(n_X())), x(static_cast<std::size_t>(n));
+    for (int b = 0; b < n_bodies(); ++b) {
+        X.insert(X.end(), state.X[b].a, state.X[b].a + 12);
+        V.insert(V.end(), state.V[b].a, state.V[b].a + 12);
+        for (int c = 0; c < n_numbers(b); ++c)
+            for (int i = c % 3; i < n_numbers(b); i += 3)
+                columns[first[b] + c].emplace_back(first[b] + i,
+                                                   tables.model->bodies()[b].mass(i / 3, c / 3));
+    }
+    double g[24];
+    for (std::size_t i = 0; i < gradient_entries.size(); ++i) {
+        const GradientEntry& entry = gradient_entries[i];
+        if (i == 0 || gradient_entries[i - 1].row != entry.row)
+            tables.gradient(rows[entry.row], {}, X.data(), g);
+        const double value = g[12 * entry.side + entry.component];
+        columns[entry.coordinate].emplace_back(size + entry.row, value);
+        columns[size + entry.row].emplace_back(entry.coordinate, value);
+    }
+    const std::vector<double> none(static_cast<std::size_t>(n_rows()), 0.0);
+    forces(state.t, X.data(), V.data(), none.data(), F.data());
+    gather(F.data(), x.data());
+    for (int k = 0; k < n_rows(); ++k) x[size + k] = -tables.curvature(rows[k], {}, X.data(), V.data());
+    for (auto& column : columns) std::sort(column.begin(), column.end());
+    const SparseMatrix A = sparse_from_columns(columns);
+    SparseLU lu(SparseBackend::eigen);
+    lu.analyse(A);
+    if (lu.factorise(A))
+        lu.solve(x, x);
+    else
+        std::fill(x.begin(), x.end(), std::numeric_limits<double>::quiet_NaN());
+    return {x.begin() + size, x.end()};
+}
+
+}   // namespace livens::mixed

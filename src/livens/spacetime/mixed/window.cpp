@@ -1,0 +1,239 @@
+#include "livens/spacetime/mixed/window.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "livens/base/error.h"
+#include "livens/base/text.h"
+
+namespace livens {
+
+using namespace mixed;
+
+namespace {
+
+/// Gauss points that integrate every product of fields in (P23) exactly, if they are polynomials: degree 3 p.
+/// Quotients are integrated with p more.
+int exact_points(const Mixed& method)
+{
+    const int p = method.degree;
+    return (3 * p + 2) / 2 + (method.basis == Mixed::Basis::nurbs ? p : 0);
+}
+
+/// Coefficients whose function takes the columns' values at the interpolation points, in place.
+void interpolate(const TimeSpace& space, int n_values, std::vector<double>& columns)
+{
+    const std::vector<double> points = space.interpolation_points();
+    const int n = space.size(), local = space.degree() + 1;
+    std::vector<std::vector<std::pair<int, double>>> by_column(static_cast<std::size_t>(n));
+    std::vector<double> values(static_cast<std::size_t>(local)), rates(values);
+    for (int i = 0; i < n; ++i) {
+        const TimeSpace::Place place = space.place(points[i]);
+        space.evaluate(place.element, place.s, values, rates);
+        for (int a = 0; a < local; ++a)
+            if (values[a] != 0) by_column[space.first(place.element) + a].push_back({i, values[a]});
+    }
+    const SparseMatrix A = sparse_from_columns(by_column);
+    SparseLU lu(SparseBackend::eigen);
+    lu.analyse(A);
+    if (!lu.factorise(A)) return;   // values near the coefficients will do for a guess
+    std::vector<double> x(static_cast<std::size_t>(n));
+    for (int k = 0; k < n_values; ++k) {
+        for (int i = 0; i < n; ++i) x[i] = columns[static_cast<std::size_t>(i) * n_values + k];
+        lu.solve(x, x);
+        for (int i = 0; i < n; ++i) columns[static_cast<std::size_t>(i) * n_values + k] = x[i];
+    }
+}
+
+}   // namespace
+
+int shortest_block(const Mixed& method) { return method.basis == Mixed::Basis::lagrange ? 1 : method.degree; }
+
+TimeSpace space_of(const Model& model, const Mixed& method, const TimeMesh& mesh, int first, int last)
+{
+    const std::vector<double> ends(mesh.ends.begin() + first, mesh.ends.begin() + last + 1);
+    if (method.basis == Mixed::Basis::lagrange) return TimeSpace::lagrange(ends, method.degree);
+    const std::vector<double> knots =
+        method.knots.empty() ? clamped_knots(method.degree, ends, model.load_breaks()) : method.knots;
+    if (method.basis == Mixed::Basis::bspline) return TimeSpace::bspline(method.degree, knots);
+    return TimeSpace::nurbs(method.degree, knots, method.weights);
+}
+
+MixedWindow::MixedWindow(const Tables& tables, const TimeMesh& mesh, const Ends& ends, const Mixed& method)
+    : tables_(tables), mesh_(mesh), ends_(ends), method_(method),
+      coordinates_(tables), given_{knows_positions(ends.at_start), knows_momenta(ends.at_start),
+                                   knows_positions(ends.at_end), knows_momenta(ends.at_end)},
+      motion_(coordinates_, mesh, method)
+{
+    for (auto [end, state] : {std::pair{&start_, &ends.start}, {&end_, &ends.end}}) {
+        end->state = *state;
+        for (std::size_t b = 0; b < state->V.size(); ++b)
+            end->P.push_back(state->V[b] * tables.model->bodies()[b].mass);
+    }
+}
+
+/// P where X is known, else the momenta of the state, which turn with the bodies.
+EndMomentum MixedWindow::momentum_of(bool X_known, const End& end) const
+{
+    EndMomentum result{end.P, {}};
+    for (std::size_t b = 0; !X_known && b < end.P.size(); ++b)
+        result.turning.emplace_back(tables_.model->bodies()[b], end.state.X[b], end.state.V[b]);
+    return result;
+}
+
+bool MixedWindow::open(int first, int last, SolveReport&)
+{
+    first_ = first;
+    last_ = last;
+    start_.state.t = mesh_.ends[first];
+    end_.state.t = mesh_.ends[last];
+    const TimeSpace functions = space_of(*tables_.model, method_, mesh_, first, last);
+    const bool is_equal = method_.multipliers == Mixed::Multipliers::equal;
+    const Numbering numbering(given_, method_.start, method_.multipliers, functions.size(), coordinates_.size,
+                              coordinates_.n_rows());
+    const int gauss_points = method_.gauss_points > 0 ? method_.gauss_points : exact_points(method_);
+    block_.emplace(Equations({&coordinates_, functions, is_equal ? functions : functions.lower(),
+                              gauss_points, method_.start, method_.end_multiplier,
+                              momentum_of(given_.X_at_start, start_), momentum_of(given_.X_at_end, end_)},
+                             numbering),
+                   method_.linear_solver);
+    return true;
+}
+
+bool MixedWindow::near_state(State& state) const
+{
+    if (!ends_.has_state()) return false;
+    state = ends_.is_backwards() ? end_.state : start_.state;
+    return true;
+}
+
+bool MixedWindow::start_from(const Guess& guess)
+{
+    take_guess(guess);
+    fix_known();
+    block_->begin();
+    return true;
+}
+
+/// X0, X and P by interpolation, multipliers by the acceleration-level equation at their functions' instants.
+void MixedWindow::take_guess(const Guess& guess)
+{
+    const Equations& equations = block_->equations();
+    Fields& fields = block_->fields();
+    const TimeSpace &space = equations.setup().space, &multipliers = equations.setup().multipliers;
+    const int n = coordinates_.size, n_rows = coordinates_.n_rows();
+    const std::vector<double> points = space.interpolation_points();
+    for (std::size_t A = 0; A < points.size(); ++A) {
+        State state = guess(points[A]);
+        state.t = points[A];
+        if (A == 0) fields.X0 = coordinates_.gather(state.X);
+        std::vector<Matrix34> P = state.V;
+        for (std::size_t b = 0; b < P.size(); ++b) P[b] = state.V[b] * tables_.model->bodies()[b].mass;
+        const std::vector<double> x = coordinates_.gather(state.X), p = coordinates_.gather(P);
+        for (int i = 0; i < n; ++i) {
+            fields.x[A * n + i] = x[i] - fields.X0[i];
+            fields.P[A * n + i] = p[i];
+        }
+        if (multipliers.size() == space.size()) put_multipliers(static_cast<int>(A), state);
+    }
+    interpolate(space, n, fields.x);
+    interpolate(space, n, fields.P);
+    if (multipliers.size() == space.size()) return interpolate(space, n_rows, fields.lambda);
+    for (int A = 0; A < multipliers.size(); ++A) {
+        State state = guess(equations.centre(A));
+        state.t = equations.centre(A);
+        put_multipliers(A, state);
+    }
+}
+
+void MixedWindow::put_multipliers(int A, const State& state)
+{
+    const std::vector<double> lambda = coordinates_.multipliers(state);
+    for (std::size_t k = 0; k < lambda.size(); ++k)
+        block_->fields().lambda[A * lambda.size() + k] = std::isfinite(lambda[k]) ? lambda[k] : 0;
+}
+
+/// Known coefficients of the fields, which the guess left as they came.
+void MixedWindow::fix_known()
+{
+    const Numbering& n = block_->equations().numbering();
+    Fields& fields = block_->fields();
+    const int last = n.n_functions() - 1, size = coordinates_.size;
+    if (given_.X_at_start) fields.X0 = coordinates_.gather(start_.state.X);   // x_0 is zero then
+    for (const bool at_end : {false, true}) {
+        const End& end = at_end ? end_ : start_;
+        const int A = at_end ? last : 0;
+        if (at_end ? given_.X_at_end : given_.X_at_start) {
+            const std::vector<double> x = coordinates_.gather(end.state.X);
+            for (int i = 0; i < size; ++i) fields.x[A * size + i] = x[i] - fields.X0[i];
+        }
+        if (n.P(A) >= 0) continue;
+        const std::vector<double> p = coordinates_.gather(end.P);
+        std::copy(p.begin(), p.end(), fields.P.begin() + static_cast<std::ptrdiff_t>(A) * size);
+    }
+    block_->equations().tie(fields);
+}
+
+bool MixedWindow::close(SolveReport& report)
+{
+    motion_.add(first_, block_->equations(), block_->fields());
+    report.unknowns = std::max(report.unknowns, block_->n_unknowns());
+    report.factor_entries = std::max(report.factor_entries, block_->factor_entries());
+    const bool is_last = ends_.is_backwards() ? first_ == 0 : last_ == mesh_.n_elements();
+    return is_last || hand_on(report);
+}
+
+/// The far end of a block becomes the known end of the next one.
+bool MixedWindow::hand_on(SolveReport& report)
+{
+    const bool backwards = ends_.is_backwards();
+    End& end = backwards ? end_ : start_;
+    end.state.t = mesh_.ends[backwards ? first_ : last_];
+    end.state.X = block_->equations().end_position(block_->fields(), !backwards);
+    end.P = block_->equations().end_momentum(block_->fields(), !backwards);
+    for (std::size_t b = 0; b < end.P.size(); ++b) end.state.V[b] = end.P[b] * coordinates_.inverse_masses[b];
+    if (method_.interfaces == Mixed::Interfaces::carry) return true;
+    try {
+        end.state = close_start(*tables_.model, end.state, StartPolicy::project).start;
+    } catch (const InputError& error) {   // about a state that a block made, not one that was given
+        report.status = SolveStatus::not_converged;
+        report.message = "what the block before t = " + to_text(end.state.t, 6) +
+                         " s hands on is no state to go on from: " + error.what();
+        return false;
+    }
+    for (std::size_t b = 0; b < end.P.size(); ++b)
+        end.P[b] = end.state.V[b] * tables_.model->bodies()[b].mass;
+    return true;
+}
+
+std::vector<Matrix34> MixedWindow::positions(int element_end) const
+{
+    const int e = element_end - first_;
+    std::vector<double> x(static_cast<std::size_t>(coordinates_.size));
+    block_->equations().evaluate_X(block_->fields(), e == 0 ? 0 : e - 1, e == 0 ? 0 : 1, x.data());
+    return coordinates_.bodies(x.data());
+}
+
+Place MixedWindow::worst() const
+{
+    const Worst worst = block_->worst();
+    return {worst.name, worst.t, block_->bad_load()};
+}
+
+void MixedWindow::describe(SolveReport& report) const
+{
+    if (!block_) return;
+    report.unknowns = std::max(report.unknowns, block_->n_unknowns());
+    report.factor_entries = std::max(report.factor_entries, block_->factor_entries());
+}
+
+Motion MixedWindow::take_motion()
+{
+    const bool is_torn = motion_.n_blocks() > 1 && method_.interfaces == Mixed::Interfaces::project;
+    Motion motion = motion_.take(is_torn, ends_.is_backwards() ? ends_.end : ends_.start);
+    motion.redundant_rows = ends_.redundant;
+    return motion;
+}
+
+}   // namespace livens

@@ -1,0 +1,64 @@
+// The elements of the paper as a family: blocks of elements, what they hand on, and their motion.
+#pragma once
+
+#include <optional>
+
+#include "livens/spacetime/ends.h"
+#include "livens/spacetime/mixed/block.h"
+#include "livens/spacetime/mixed/motion_of_blocks.h"
+#include "livens/spacetime/window.h"
+
+namespace livens {
+
+/// Throws InputError for a method that makes no solvable system on this mesh: degree, gauss_points, block,
+/// knots, weights, pairings (`mixed-pairing`), conditions at the ends.
+void check_mixed(const Model& model, const Conditions& conditions, const TimeMesh& mesh, const Mixed& method);
+
+/// The smallest number of elements that can be a block.
+int shortest_block(const Mixed& method);
+
+/// Functions of time on the elements first..last - 1 of a mesh.
+TimeSpace space_of(const Model& model, const Mixed& method, const TimeMesh& mesh, int first, int last);
+
+class MixedWindow final : public Window {
+public:
+    /// References must outlive the window; `tables` are with rigidity.
+    MixedWindow(const Tables& tables, const TimeMesh& mesh, const Ends& ends, const Mixed& method);
+
+    bool open(int first, int last, SolveReport& report) override;
+    NewtonProblem& equations() override { return *block_; }
+    bool predict() override { return false; }
+    bool start_from(const Guess& guess) override;
+    bool near_state(State& state) const override;
+    bool close(SolveReport& report) override;
+    std::vector<Matrix34> positions(int element_end) const override;
+    Place worst() const override;
+    void describe(SolveReport& report) const override;
+    void measure_condition(SolveReport& report) override { block_->measure_condition(report); }
+    Motion take_motion() override;
+
+private:
+    /// What is known at an end of the open block.
+    struct End {
+        State state;
+        std::vector<Matrix34> P;
+    };
+    mixed::EndMomentum momentum_of(bool X_known, const End& end) const;
+    void take_guess(const Guess& guess);
+    void put_multipliers(int A, const State& state);
+    void fix_known();
+    bool hand_on(SolveReport& report);
+
+    const Tables& tables_;
+    const TimeMesh& mesh_;
+    const Ends& ends_;
+    const Mixed& method_;
+    mixed::Coordinates coordinates_;
+    mixed::Given given_;
+    End start_, end_;
+    int first_ = 0, last_ = 0;
+    std::optional<mixed::Block> block_;
+    mixed::MotionOfBlocks motion_;
+};
+
+}   // namespace livens

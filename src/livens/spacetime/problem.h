@@ -1,0 +1,38 @@
+// What is asked: conditions at the ends of time.
+#pragma once
+
+#include <functional>
+
+#include "livens/multibody/model.h"
+
+namespace livens {
+
+/// What is known at one end of time.
+enum class Known {
+    nothing,
+    positions,   ///< X
+    momenta,   ///< of each body the linear momentum and the moment of momentum about its reference point, in
+               ///< world axes: those of the X and V that are stated
+    state      ///< X and momenta
+};
+
+inline bool knows_positions(Known known) { return known == Known::positions || known == Known::state; }
+inline bool knows_momenta(Known known) { return known == Known::momenta || known == Known::state; }
+
+/// Conditions at the ends of time, for all bodies alike. Two halves must be known: the state at one end, or
+/// positions or momenta at each. Stated values that are not known serve as a guess: V where positions are
+/// known, X where momenta are (zeros mean none).
+struct Conditions {
+    State start;
+    Known at_start = Known::state;
+    State end{};
+    Known at_end = Known::nothing;
+};
+
+struct Problem {
+    Conditions conditions;
+    /// A motion that is about right, for conditions at both ends; empty: one is made from the conditions.
+    std::function<State(double t)> guess{};
+};
+
+}   // namespace livens

@@ -1,0 +1,63 @@
+// The seam between families of elements and those who solve them: a stretch of elements solved together.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "livens/multibody/model.h"
+#include "livens/multibody/motion.h"
+#include "livens/solvers/newton.h"
+#include "livens/solvers/report.h"
+
+namespace livens {
+
+/// A motion that is about right, at any instant.
+using Guess = std::function<State(double t)>;
+
+/// Where something is worst, for a person.
+struct Place {
+    std::string name;       ///< "joint 'elbow' (row 'x'), body 'upper'"; empty: nowhere in particular
+    double t = 0;           ///< s
+    std::string bad_load;   ///< a load that is not finite, by name
+};
+
+/// A family of elements on a mesh: it states the equations of any stretch of elements, a window, and keeps
+/// what was solved of them. Which windows are solved, in which order and from which guess, is not its
+/// business.
+///
+/// Windows are opened one after the other from the end of time where the state is known; with conditions at
+/// both ends there is one window of all elements.
+class Window {
+public:
+    Window() = default;
+    Window(const Window&) = delete;
+    Window& operator=(const Window&) = delete;
+    virtual ~Window() = default;
+
+    /// Makes elements first..last - 1 current, with what the window closed last hands on (or with the
+    /// conditions) at its near end. False: there is no state to go on from; the report says why.
+    virtual bool open(int first, int last, SolveReport& report) = 0;
+    /// The equations of the open window.
+    virtual NewtonProblem& equations() = 0;
+    /// The family's own guess, cheap and good for short windows. False: it has none here.
+    virtual bool predict() = 0;
+    /// False: the guess is not finite.
+    virtual bool start_from(const Guess& guess) = 0;
+    /// The state known at the near end of the open window; false if it is not all known.
+    virtual bool near_state(State& state) const = 0;
+    /// Takes the solution at hand into the motion, and its far end as the near end of the next window. False:
+    /// it is no state to go on from; the report says why.
+    virtual bool close(SolveReport& report) = 0;
+    /// X of all bodies at an end of an element of the open window.
+    virtual std::vector<Matrix34> positions(int element_end) const = 0;
+    /// Where the residual is worst, or the load that is not finite.
+    virtual Place worst() const = 0;
+    /// Figures that only the family knows: unknowns, pivots, entries of factors.
+    virtual void describe(SolveReport& report) const = 0;
+    /// Condition numbers of the open window's matrix at the current point.
+    virtual void measure_condition(SolveReport& report) = 0;
+    /// Everything closed so far.
+    virtual Motion take_motion() = 0;
+};
+
+}   // namespace livens

@@ -1,0 +1,216 @@
+#include "livens/spacetime/windows.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "livens/base/text.h"
+
+namespace livens {
+
+namespace {
+
+/// Of the model's length: beyond, a motion and its guess are two motions.
+constexpr double doubtful_distance = 0.05;
+
+class March {
+public:
+    March(Window& window, const TimeMesh& mesh, const WindowOptions& options, SolveReport& report)
+        : window_(window), mesh_(mesh), options_(options), report_(report)
+    {
+        newton_options_.tolerance = options.tolerance;
+        newton_options_.max_iterations = options.max_iterations;
+        if (options.progress)
+            newton_options_.goes_on = [this](int iterations) {
+                return options_.progress({done_, mesh_.n_elements(), time_, iterations, 0});
+            };
+    }
+
+    void run()
+    {
+        const std::vector<int> division = divide(mesh_.n_elements(), options_.length, options_.shortest);
+        const int n = static_cast<int>(division.size()) - 1;
+        time_ = options_.direction > 0 ? mesh_.start() : mesh_.end();
+        for (int i = 0; i < n; ++i) {
+            const int at = options_.direction > 0 ? i : n - 1 - i;
+            if (!solve(division[at], division[at + 1])) break;
+        }
+        window_.describe(report_);
+        if (splits_ > 0)
+            report_.notes.push_back(count(splits_, "window") +
+                                    " failed as a whole and were solved in halves");
+        if (report_.rescued > 0)
+            report_.notes.push_back(
+                count(report_.rescued, "window") + " of " + std::to_string(report_.iterations.size()) +
+                " needed a guess from many small elements; more elements would be cheaper");
+    }
+
+private:
+    /// Elements first..last - 1, split where they fail together.
+    bool solve(int first, int last)
+    {
+        if (!window_.open(first, last, report_)) return set_failed(first, last);
+        NewtonReport outcome = attempt(first, last);
+        if (outcome.status == SolveStatus::converged) return accept(first, last, outcome);
+        const int middle = (first + last) / 2;
+        const bool can_split = options_.may_split && outcome.status != SolveStatus::cancelled &&
+                               middle - first >= options_.shortest && last - middle >= options_.shortest;
+        if (!can_split) return explain(first, last, outcome);
+        ++splits_;
+        return options_.direction > 0 ? solve(first, middle) && solve(middle, last)
+                                      : solve(middle, last) && solve(first, middle);
+    }
+
+    /// Newton's iteration from one guess after the other; all their iterations count. Where none leads to a
+    /// solution, the first and best one tells why.
+    NewtonReport attempt(int first, int last)
+    {
+        NewtonReport outcome, best;
+        outcome.status = best.status = SolveStatus::not_converged;
+        int iterations = 0, n_runs = 0;
+        is_march_ = false;
+        const auto run = [&] {
+            outcome = newton_.run(window_.equations(), newton_options_);
+            if (n_runs++ == 0) best = outcome;
+            iterations += outcome.iterations;
+            report_.factorisations += outcome.factorisations;
+        };
+        if (window_.predict()) run();
+        const auto goes_on = [&] {
+            return outcome.status != SolveStatus::converged && outcome.status != SolveStatus::cancelled;
+        };
+        for (int i = 0; goes_on() && options_.propose; ++i) {
+            const WindowOptions::Proposal proposal = options_.propose(first, last, i);
+            if (!proposal.guess) break;
+            if (!window_.start_from(proposal.guess)) continue;
+            guess_ = proposal.guess;
+            is_march_ = proposal.is_march;
+            run();
+            if (n_runs > 1 && outcome.status == SolveStatus::converged) ++report_.rescued;
+        }
+        if (goes_on()) outcome = best;
+        outcome.iterations = iterations;
+        report_.newton_iterations += iterations;
+        report_.most_iterations = std::max(report_.most_iterations, iterations);
+        return outcome;
+    }
+
+    bool accept(int first, int last, const NewtonReport& outcome)
+    {
+        report_.iterations.push_back(outcome.iterations);
+        report_.residual_norm = std::max(report_.residual_norm, outcome.residual);
+        if (is_march_) compare(first, last);
+        if (!window_.close(report_)) return set_failed(first, last);
+        report_.n_elements += last - first;
+        done_ += last - first;
+        time_ = mesh_.ends[options_.direction > 0 ? last : first];
+        const bool goes_on = !options_.progress || options_.progress({done_, mesh_.n_elements(), time_,
+                                                                      outcome.iterations, outcome.residual});
+        if (goes_on || done_ == mesh_.n_elements()) return true;
+        report_.status = SolveStatus::cancelled;
+        report_.failed_at = time_;
+        report_.message =
+            "stopped at t = " + to_text(time_, 6) + " s as asked; the motion up to there is complete";
+        return false;
+    }
+
+    /// How far the motion has left the march from the same state, at element ends: another method's opinion
+    /// of the same window, which a wrong root does not share.
+    void compare(int first, int last)
+    {
+        for (int end = first; end <= last; ++end) {
+            const std::vector<Matrix34> X = window_.positions(end);
+            const State state = guess_(mesh_.ends[end]);
+            double distance = 0;
+            for (std::size_t b = 0; b < X.size(); ++b)
+                for (int c = 0; c < 4; ++c)
+                    distance = std::max(distance, norm(X[b].column(c) - state.X[b].column(c)) /
+                                                      (c == 0 ? options_.length_of_model : 1));
+            if (!(distance > report_.guess_distance)) continue;
+            if (report_.guess_distance <= doubtful_distance) report_.guess_distance_time = mesh_.ends[end];
+            report_.guess_distance = distance;
+        }
+    }
+
+    bool set_failed(int first, int last)
+    {
+        report_.failed_at = mesh_.ends[options_.direction > 0 ? first : last];
+        return false;
+    }
+
+    bool explain(int first, int last, const NewtonReport& outcome)
+    {
+        set_failed(first, last);
+        report_.status = outcome.status;
+        const std::string where = " in " + name(first, last) + " (t = " + to_text(mesh_.ends[first], 6) +
+                                  " to " + to_text(mesh_.ends[last], 6) + " s)";
+        if (outcome.status == SolveStatus::cancelled) {
+            report_.message = "stopped as asked" + where + "; the motion up to there is complete";
+            return false;
+        }
+        const Place worst = window_.worst();
+        std::string what =
+            "Newton's iteration found no way on after " + count(outcome.iterations, "iteration");
+        if (outcome.reached_limit)
+            what = "Newton's iteration did not converge in " + count(outcome.iterations, "iteration") +
+                   ", the limit,";
+        std::string advice =
+            options_.advice.empty() ? "more and shorter elements, or a lower degree" : options_.advice;
+        if (outcome.status == SolveStatus::singular) {
+            what = "the tangent is singular";
+            if (options_.advice.empty())
+                advice =
+                    "the mechanism may pass a singular position; shift the element ends or use more elements";
+        } else if (outcome.status == SolveStatus::not_finite) {
+            what = worst.bad_load.empty() ? "a number became infinite or undefined"
+                                          : "the load '" + worst.bad_load + "' is not finite";
+            if (options_.advice.empty()) advice = "look at the loads near that time; use more elements";
+        }
+        report_.message = what + where;
+        if (!worst.name.empty())
+            report_.message += "; worst: " + worst.name + " near t = " + to_text(worst.t, 6) + " s";
+        report_.message += "; try: " + advice;
+        return false;
+    }
+
+    static std::string count(int n, const char* what)
+    {
+        return std::to_string(n) + " " + what + (n == 1 ? "" : "s");
+    }
+    static std::string name(int first, int last)
+    {
+        if (last - first == 1) return "element " + std::to_string(first);
+        return "the window of elements " + std::to_string(first) + " to " + std::to_string(last - 1);
+    }
+
+    Window& window_;
+    const TimeMesh& mesh_;
+    const WindowOptions& options_;
+    SolveReport& report_;
+    Newton newton_;
+    NewtonOptions newton_options_;
+    Guess guess_;   // that the open window started from
+    bool is_march_ = false;
+    int splits_ = 0;
+    int done_ = 0;      // elements
+    double time_ = 0;   // up to which they are solved
+};
+
+}   // namespace
+
+std::vector<int> divide(int n_elements, int length, int shortest)
+{
+    if (length <= 0) length = n_elements;
+    std::vector<int> ends;
+    for (int e = 0; e < n_elements; e += length) ends.push_back(e);
+    if (ends.size() > 1 && n_elements - ends.back() < shortest) ends.pop_back();
+    ends.push_back(n_elements);
+    return ends;
+}
+
+void solve_windows(Window& window, const TimeMesh& mesh, const WindowOptions& options, SolveReport& report)
+{
+    March(window, mesh, options, report).run();
+}
+
+}   // namespace livens

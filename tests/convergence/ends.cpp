@@ -1,0 +1,384 @@
+// lobatto with what is given at either end of time, and in windows of any number of elements.
+#include <numbers>
+#include <regex>
+
+#include "convergence/studies.h"
+#include "livens/base/error.h"
+#include "newton_euler.h"
+
+namespace livens::tests {
+namespace {
+
+template <typename L>
+constexpr bool has_windows = requires(L method) { method.window; };
+
+/// lobatto(degree) in windows of so many elements; 0: all.
+template <typename L = Lobatto>
+Method lobatto(int degree, int window = 0)
+{
+    L method{};
+    method.degree = degree;
+    if constexpr (has_windows<L>) method.window = window;
+    return method;
+}
+
+Model hinged_brick()
+{
+    Model model({0, -9.81, 0});
+    const int bar = model.add_body(rigid_body("bar", brick({})));
+    model.add_joint(revolute("hinge", world, bar, {}));
+    return model;
+}
+
+/// A motion solved forwards from a state that moves, as exactly as lobatto can.
+struct Forward {
+    std::string name;
+    Model model;
+    double end;
+    int n;
+    State start{}, finish{};
+    Motion motion{};
+};
+
+constexpr int degree = 6;
+
+/// From where the model is after `before` seconds.
+Forward forward(const std::string& name, const Model& model, double before, double end, int n)
+{
+    Forward run{name, model, end, n};
+    run.start = last(solve_evenly(model, before, 20, 8));
+    run.start.t = 0;
+    SolveOptions options;
+    options.tolerance = 1e-14;
+    const Solution s = solve(model, {run.start}, make_time_mesh(0, end, n), lobatto(degree, 1), options);
+    EXPECT_TRUE(s.report.converged()) << name << ": " << s.report.message;
+    run.motion = s.motion;
+    run.start = s.motion.at_end(0);
+    run.finish = last(s);
+    return run;
+}
+
+/// One second, or less where conditions at both ends tell little of the motion. Smallest singular values of
+/// what is sought by what is given (d X(T) / d V(0) T, d P(T) / d V(0) T, d X(T) / d X(0), d P(T) / d X(0);
+/// m, 1, kg m/s, kg m^2/s), by differences of forward runs from the same starts:
+///
+///     box               1 s     0.78   0.35    0.42    0
+///     two bricks        0.2 s   0.64   0.015   0.018   0.008   (1 s: 0.04 0.015 0.003 0.006)
+///     offset pendulum   1 s     0.44   0.03    0.36    0       (a rod's cube may spin)
+///     four-bar          1 s     0.33   2.2     0.51    9.2
+///     hinged links      0.5 s   0.70   1.1     0.45    1.2     (1 s: 0.07 0.87 0.02 1.1)
+///     hinged brick      0.4 s   0.71   1.2     0.33    1.6     (0.5 s: 0.56 0.77 0.02 1.5)
+std::vector<Forward> runs_between_ends()
+{
+    return {forward("box", free_box(), 0.5, 1, 20),
+            forward("two bricks", two_bricks(), 0.2, 0.2, 10),
+            forward("offset pendulum", cubes_on_rods(0.1), 0.3, 1, 40),
+            forward("four-bar", four_bar(), 0.2, 1, 40),
+            forward("hinged links", hinged_links(), 0.2, 0.5, 20),
+            forward("hinged brick", hinged_brick(), 0.2, 0.4, 10)};
+}
+
+State faster(State state, double factor)
+{
+    for (Matrix34& V : state.V) V *= factor;
+    return state;
+}
+
+/// Where only positions are given, the velocity is 10 % off; where nothing is, all of it is.
+State stated(const Forward& run, bool is_end, Known given)
+{
+    if (given == Known::nothing) return is_end ? run.start : run.finish;
+    const State& state = is_end ? run.finish : run.start;
+    return given == Known::positions ? faster(state, 1.1) : state;
+}
+
+Solution recover(const Forward& run, Known at_start, Known at_end, const Method& method, int n)
+{
+    SolveOptions options;
+    options.tolerance = 1e-14;
+    return solve(run.model, {stated(run, false, at_start), at_start, stated(run, true, at_end), at_end},
+                 make_time_mesh(0, run.end, n), method, options);
+}
+
+/// Largest difference of X over all nodes of two motions on one mesh.
+double largest_difference(const Motion& l, const Motion& r)
+{
+    EXPECT_EQ(l.X.values.size(), r.X.values.size());
+    if (l.X.values.size() != r.X.values.size()) return 1e300;
+    double largest = 0;
+    for (std::size_t i = 0; i < l.X.values.size(); ++i)
+        largest = std::max(largest, std::abs(l.X.values[i] - r.X.values[i]));
+    return largest;
+}
+
+void expect_recovered(const Forward& run, Known at_start, Known at_end, double V_tolerance = 1e-9)
+{
+    const Solution s = recover(run, at_start, at_end, lobatto(degree), run.n);
+    ASSERT_TRUE(s.report.converged()) << run.name << ": " << s.report.message;
+    EXPECT_LE(largest_difference(s.motion, run.motion), 1e-11) << run.name;
+    for (int e = 0; e <= run.n; ++e)
+        EXPECT_LE(distance(s.motion.at_end(e), run.motion.at_end(e)).V, V_tolerance) << run.name << " " << e;
+}
+
+TEST(LobattoEnds, TheStateAtTheEndLeadsBack)
+{
+    for (const Forward& run : {forward("box", free_box(), 0.5, 1, 20),
+                           forward("two bricks", two_bricks(), 0.2, 1, 50),
+                           forward("offset pendulum", cubes_on_rods(0.1), 0.3, 1, 40),
+                           forward("four-bar", four_bar(), 0.2, 1, 40),
+                           forward("hinged links", hinged_links(), 0.2, 1, 40)})
+        for (const int window : {0, 1}) {
+            const Solution s = recover(run, Known::nothing, Known::state, lobatto(degree, window), run.n);
+            ASSERT_TRUE(s.report.converged()) << run.name << ": " << s.report.message;
+            EXPECT_LE(largest_difference(s.motion, run.motion), 1e-11) << run.name << " " << window;
+            EXPECT_LE(distance(s.motion.at_end(0), run.start).V, 1e-9) << run.name << " " << window;
+        }
+}
+
+TEST(LobattoEnds, PositionsAtBothEndsFindTheMotion)
+{
+    for (const Forward& run : runs_between_ends()) expect_recovered(run, Known::positions, Known::positions);
+}
+
+TEST(LobattoEnds, PositionsAtTheStartAndMomentaAtTheEndFindTheMotion)
+{
+    for (const Forward& run : runs_between_ends()) expect_recovered(run, Known::positions, Known::momenta);
+}
+
+TEST(LobattoEnds, MomentaAtTheStartAndPositionsAtTheEndFindTheMotion)
+{
+    for (const Forward& run : runs_between_ends()) expect_recovered(run, Known::momenta, Known::positions);
+}
+
+TEST(LobattoEnds, MomentaAtBothEndsFindTheMotionOfWhatIsHeld)
+{
+    for (const Forward& run : runs_between_ends())
+        if (run.name == "four-bar" || run.name == "hinged links" || run.name == "hinged brick")
+            expect_recovered(run, Known::momenta, Known::momenta);
+}
+
+/// Linear momentum and moment of momentum about the reference point: N^T V m.
+Numbers momentum_of(const Matrix4& mass, const Matrix34& X, const Matrix34& V)
+{
+    const Matrix34 P = V * mass;
+    Vector3 moment{};
+    for (int i = 1; i < 4; ++i) moment += cross(X.column(i), P.column(i));
+    return {P(0, 0), P(1, 0), P(2, 0), moment[0], moment[1], moment[2]};
+}
+
+/// The rates that have these momenta at X.
+Matrix34 rates_of(const Matrix4& mass, const Matrix34& X, const Numbers& momentum)
+{
+    Numbers by_twist(36);
+    for (std::size_t c = 0; c < 6; ++c) {
+        Vector3 v{}, w{};
+        (c < 3 ? v : w)[static_cast<int>(c % 3)] = 1;
+        const Numbers column = momentum_of(mass, X, rate(X, v, w));
+        for (std::size_t r = 0; r < 6; ++r) by_twist[6 * r + c] = column[r];
+    }
+    const Numbers twist = solution_of(by_twist, momentum);
+    return rate(X, {twist[0], twist[1], twist[2]}, {twist[3], twist[4], twist[5]});
+}
+
+/// The box elsewhere and turned, with the same momenta.
+State displaced(const Model& model, State state)
+{
+    const Matrix4& mass = model.bodies()[0].mass;
+    const Numbers momentum = momentum_of(mass, state.X[0], state.V[0]);
+    state.X[0] = configuration(state.X[0].column(0) + Vector3{0.1, -0.2, 0.1},
+                               directors_from_rotation_vector({0.1, 0.2, -0.1}) * directors(state.X[0]));
+    state.V[0] = rates_of(mass, state.X[0], momentum);
+    return state;
+}
+
+// Momenta are those of the X and V that are stated: another X with another V says the same.
+TEST(LobattoEnds, MomentaMayBeStatedWithAnyPositions)
+{
+    const Forward run = forward("box", free_box(), 0.5, 1, 20);
+    SolveOptions options;
+    options.tolerance = 1e-14;
+    const TimeMesh mesh = make_time_mesh(0, 1, 20);
+    const Solution forth = solve(run.model,
+                                 {faster(run.start, 1.1), Known::positions, displaced(run.model, run.finish),
+                                  Known::momenta},
+                                 mesh, lobatto(degree), options);
+    ASSERT_TRUE(forth.report.converged()) << forth.report.message;
+    EXPECT_LE(largest_difference(forth.motion, run.motion), 1e-11);
+    const Solution back = solve(run.model,
+                                {displaced(run.model, run.start), Known::momenta, faster(run.finish, 0.9),
+                                 Known::positions},
+                                mesh, lobatto(degree), options);
+    ASSERT_TRUE(back.report.converged()) << back.report.message;
+    EXPECT_LE(largest_difference(back.motion, run.motion), 1e-11);
+}
+
+// Windows.
+
+TEST(LobattoWindows, OfAnyLengthGiveTheMarch)
+{
+    EXPECT_TRUE(has_windows<Lobatto>);
+    for (const auto& [name, model] :
+         {std::pair{"box", free_box()}, {"two bricks", two_bricks()}, {"offset pendulum", cubes_on_rods(0.1)},
+          {"four-bar", four_bar()}, {"hinged links", hinged_links()}}) {
+        const Forward run = forward(name, model, 0.2, 1, 50);
+        for (const int window : {0, 4, 8, 50, 64}) {
+            const Solution s = recover(run, Known::state, Known::nothing, lobatto(degree, window), 50);
+            ASSERT_TRUE(s.report.converged()) << name << ": " << s.report.message;
+            EXPECT_EQ(s.report.n_elements, 50);
+            EXPECT_LE(largest_difference(s.motion, run.motion), 1e-11) << name << ", window " << window;
+            EXPECT_LE(distance(last(s), run.finish).V, 1e-9) << name << ", window " << window;
+        }
+    }
+}
+
+// Orders.
+
+struct Ends {
+    std::string name;
+    Known at_start, at_end;
+};
+
+/// Rates of X and V in the middle and at both ends, over the last two of five meshes.
+void expect_order(const Forward& run, const Ends& given, int p, const std::vector<int>& n)
+{
+    const State middle = run.motion.at(0.5 * run.end);
+    const Study s = study(n, [&](int elements) {
+        const Solution solution = recover(run, given.at_start, given.at_end, lobatto(p), elements);
+        EXPECT_TRUE(solution.report.converged())
+            << run.name << ", " << given.name << ": " << solution.report.message;
+        if (!solution.report.converged()) return Distance{1, 1};
+        Distance worst;
+        for (const auto& [end, there] :
+             {std::pair{0, run.start}, {elements / 2, middle}, {elements, run.finish}}) {
+            const Distance d = distance(solution.motion.at_end(end), there);
+            worst = {std::max(worst.X, d.X), std::max(worst.V, d.V)};
+        }
+        return worst;
+    });
+    for (const auto part : {&Distance::X, &Distance::V}) {
+        EXPECT_GE(n_above(s, part, 1e-11), 5u) << run.name << ", " << given.name << ", lobatto(" << p << ")";
+        EXPECT_NEAR(last_rate(s, part, 1e-11), 2 * p, 0.15)
+            << run.name << ", " << given.name << ", lobatto(" << p << "), last " << s.error.back().*part;
+    }
+}
+
+TEST(LobattoEnds, HaveOrder2P)
+{
+    const Forward box = forward("box", free_box(), 0.5, 1, 20);
+    const Forward bar = forward("hinged brick", hinged_brick(), 0.2, 0.4, 20);
+    const Ends all[] = {{"backward", Known::nothing, Known::state},
+                        {"positions at both ends", Known::positions, Known::positions},
+                        {"positions, momenta", Known::positions, Known::momenta},
+                        {"momenta, positions", Known::momenta, Known::positions},
+                        {"momenta at both ends", Known::momenta, Known::momenta}};
+    for (const Ends& given : all) {
+        const bool is_null = given.at_start == Known::momenta && given.at_end == Known::momenta;
+        if (!is_null) {
+            expect_order(box, given, 1, {48, 60, 74, 92, 114});
+            expect_order(box, given, 2, {20, 24, 30, 36, 44});
+            expect_order(box, given, 3, {8, 10, 12, 14, 16});
+        }
+        expect_order(bar, given, 1, {48, 60, 74, 92, 114});
+        expect_order(bar, given, 2, {14, 16, 20, 24, 30});
+        expect_order(bar, given, 3, {8, 10, 12, 14, 16});
+    }
+}
+
+// What does not determine a motion.
+
+/// Why a problem is not solved: what is thrown, or the report's message; empty if it is solved.
+std::string refusal(const Model& model, const Problem& boundary, double end, int n = 20)
+{
+    try {
+        const Solution s = solve(model, boundary, make_time_mesh(0, end, n), lobatto(degree));
+        if (s.report.converged()) return "";
+        EXPECT_EQ(s.report.status, SolveStatus::singular) << s.report.message;
+        return s.report.message;
+    } catch (const InputError& error) {
+        return error.what();
+    }
+}
+
+bool says(const std::string& text, const std::string& pattern)
+{
+    return std::regex_search(text, std::regex(pattern, std::regex::icase));
+}
+
+TEST(LobattoEnds, MomentaAtBothEndsOfWhatIsFreeAreRefused)
+{
+    const Forward box = forward("box", free_box(), 0.5, 1, 20);
+    const std::string free =
+        refusal(box.model, {box.start, Known::momenta, box.finish, Known::momenta}, box.end);
+    EXPECT_PRED2(says, free, "translat|displac") << "the null motion";
+    EXPECT_PRED2(says, free, "box");
+}
+
+/// A brick that hangs at rest, and its half period: omega^2 = m g c / J about the hinge.
+struct Hanging {
+    Model model{{0, -9.81, 0}};
+    State rest{};
+    double half_period = 0;
+};
+Hanging hanging_brick()
+{
+    Hanging h;
+    const int bar = h.model.add_body(rigid_body("bar", brick({}), {{}, {0, -1, 0, 1, 0, 0, 0, 0, 1}}));
+    h.model.add_joint(revolute("hinge", world, bar, {}));
+    h.rest = h.model.start();
+    h.half_period = std::numbers::pi * std::sqrt((brick({}).inertia(2, 2) + 0.25) / (9.81 * 0.5));
+    return h;
+}
+
+/// The same rest stated at both ends.
+std::string refusal_at_rest(const Hanging& h, Known at_start, Known at_end, double end)
+{
+    State finish = h.rest;
+    finish.t = end;
+    return refusal(h.model, {h.rest, at_start, finish, at_end}, end);
+}
+
+TEST(LobattoEnds, ConjugateTimesOfAPendulumAreSingular)
+{
+    const Hanging h = hanging_brick();
+    for (const Known given : {Known::positions, Known::momenta}) {
+        EXPECT_PRED2(says, refusal_at_rest(h, given, given, h.half_period), "conjugate|focal");
+        EXPECT_EQ(refusal_at_rest(h, given, given, 0.9 * h.half_period), "");
+        EXPECT_EQ(refusal_at_rest(h, given, given, 1.1 * h.half_period), "");
+    }
+}
+
+TEST(LobattoEnds, FocalTimesOfAPendulumAreSingular)
+{
+    const Hanging h = hanging_brick();
+    for (const auto& [at_start, at_end] :
+         {std::pair{Known::positions, Known::momenta}, {Known::momenta, Known::positions}}) {
+        EXPECT_PRED2(says, refusal_at_rest(h, at_start, at_end, 0.5 * h.half_period), "conjugate|focal");
+        EXPECT_EQ(refusal_at_rest(h, at_start, at_end, 0.4 * h.half_period), "");
+        EXPECT_EQ(refusal_at_rest(h, at_start, at_end, 0.6 * h.half_period), "");
+    }
+}
+
+/// A ball that spins once about its third axis in a second; what is between positions `end` seconds apart.
+std::string refusal_of_spin(double end)
+{
+    Placement spinning;
+    spinning.angular_velocity = {0, 0, 2 * std::numbers::pi};
+    Model model;
+    model.add_body(rigid_body("ball", sphere(1, 0.5), spinning));
+    State finish{end,
+                 {configuration({}, directors_from_rotation_vector({0, 0, 2 * std::numbers::pi * end}))},
+                 {}};
+    finish.V = {rate(finish.X[0], {}, spinning.angular_velocity)};
+    return refusal(model, {model.start(), Known::positions, finish, Known::positions}, end);
+}
+
+// Turned by 2 pi, its axis may be any.
+TEST(LobattoEnds, AFreeSphereThatHasTurnedOnceIsSingular)
+{
+    EXPECT_PRED2(says, refusal_of_spin(1), "conjugate|focal");
+    EXPECT_EQ(refusal_of_spin(0.8), "");
+    EXPECT_EQ(refusal_of_spin(1.2), "");
+}
+
+}   // namespace
+}   // namespace livens::tests

@@ -1,0 +1,272 @@
+// The driver of windows, tried with a family that is no mechanics; and guesses.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "livens/spacetime/guess.h"
+#include "livens/spacetime/windows.h"
+#include "unit/spacetime/mechanisms.h"
+
+namespace livens {
+namespace {
+
+/// One unknown a window: x = its number of elements, from x = 0; windows longer than `longest` have no root,
+/// and so has the element `broken`.
+class Counting final : public Window {
+public:
+    bool open(int first, int last, SolveReport& report) override
+    {
+        if (refuses == first) {
+            report.status = SolveStatus::singular;
+            report.message = "refused";
+            return false;
+        }
+        opened.push_back({first, last});
+        problem_.goal = last - first;
+        problem_.has_root = last - first <= longest && !(first <= broken && broken < last);
+        problem_.x = problem_.kept = 0;
+        return true;
+    }
+    NewtonProblem& equations() override { return problem_; }
+    bool predict() override { return has_own_guess; }
+    bool start_from(const Guess& guess) override
+    {
+        problem_.has_root = problem_.has_root || guess(0).t == 1;
+        return true;
+    }
+    bool near_state(State&) const override { return true; }
+    bool close(SolveReport&) override
+    {
+        closed.push_back(opened.back());
+        return true;
+    }
+    std::vector<Matrix34> positions(int) const override { return {Matrix34{1, 0, 0}}; }
+    Place worst() const override { return {"joint 'elbow' (row 'x')", 0.5, ""}; }
+    void describe(SolveReport& report) const override { report.unknowns = 1; }
+    void measure_condition(SolveReport&) override {}
+    Motion take_motion() override { return {}; }
+
+    int longest = 100, broken = -1, refuses = -1;
+    bool has_own_guess = true;
+    std::vector<std::pair<int, int>> opened, closed;
+
+private:
+    struct Problem final : NewtonProblem {
+        double x = 0, kept = 0, goal = 1;
+        bool has_root = true;
+        double f() const { return has_root ? x - goal : 1 + x * x; }
+        int n_unknowns() const override { return 1; }
+        bool residual() override { return true; }
+        bool factorise() override { return has_root || x != 0; }
+        void solve(std::span<double> dx) override { dx[0] = has_root ? -f() : -f() / (2 * x); }
+        bool move(std::span<const double> dx, double damping) override
+        {
+            x = kept + damping * dx[0];
+            return true;
+        }
+        void keep() override { kept = x; }
+        double size_of(std::span<const double> dx) const override { return std::abs(dx[0]); }
+        Rows rows() const override { return {std::abs(f()), 1, 0, false, 0}; }
+    } problem_;
+};
+
+using Pairs = std::vector<std::pair<int, int>>;
+
+SolveReport run(Counting& window, WindowOptions options, int n = 6)
+{
+    SolveReport report;
+    const TimeMesh mesh = make_time_mesh(0, n, n);
+    solve_windows(window, mesh, options, report);
+    return report;
+}
+
+TEST(Windows, FollowEachOtherFromEitherEnd)
+{
+    Counting forwards, backwards;
+    WindowOptions options;
+    options.length = 4;
+    EXPECT_TRUE(run(forwards, options).converged());
+    EXPECT_EQ(forwards.closed, (Pairs{{0, 4}, {4, 6}}));
+    options.direction = -1;
+    const SolveReport report = run(backwards, options);
+    EXPECT_EQ(backwards.closed, (Pairs{{4, 6}, {0, 4}}));
+    EXPECT_EQ(report.n_elements, 6);
+    EXPECT_EQ(report.iterations.size(), 2u);
+}
+
+TEST(Windows, DivideTheMeshButNotShorterThanTheyCanBe)
+{
+    EXPECT_EQ(divide(10, 4, 1), (std::vector<int>{0, 4, 8, 10}));
+    EXPECT_EQ(divide(10, 4, 3), (std::vector<int>{0, 4, 10}));
+    EXPECT_EQ(divide(10, 0, 1), (std::vector<int>{0, 10}));
+    EXPECT_EQ(divide(3, 7, 1), (std::vector<int>{0, 3}));
+}
+
+TEST(Windows, AreSplitWhereTheyFailAsAWhole)
+{
+    Counting window;
+    window.longest = 2;
+    WindowOptions options;
+    options.length = 0;
+    const SolveReport report = run(window, options);
+    EXPECT_TRUE(report.converged()) << report.message;
+    EXPECT_EQ(window.closed, (Pairs{{0, 1}, {1, 3}, {3, 4}, {4, 6}}));
+    ASSERT_EQ(report.notes.size(), 1u);
+    EXPECT_NE(report.notes[0].find("3 windows failed"), std::string::npos) << report.notes[0];
+    EXPECT_EQ(report.n_elements, 6);
+    Counting whole;
+    whole.longest = 2;
+    options.may_split = false;
+    EXPECT_EQ(run(whole, options).status, SolveStatus::singular);
+    EXPECT_TRUE(whole.closed.empty());
+}
+
+TEST(Windows, NameWhereTheyFailedAndWhatToTry)
+{
+    Counting window;
+    window.broken = 3;
+    const SolveReport report = run(window, {});
+    EXPECT_EQ(report.status, SolveStatus::singular);
+    EXPECT_EQ(report.failed_at, 3);
+    EXPECT_EQ(report.n_elements, 3);
+    EXPECT_NE(report.message.find("element 3 (t = 3 to 4 s)"), std::string::npos) << report.message;
+    EXPECT_NE(report.message.find("joint 'elbow' (row 'x') near t = 0.5 s"), std::string::npos)
+        << report.message;
+    EXPECT_NE(report.message.find("try: "), std::string::npos) << report.message;
+    Counting refusing;
+    refusing.refuses = 2;
+    const SolveReport refused = run(refusing, {});
+    EXPECT_EQ(refused.message, "refused");
+    EXPECT_EQ(refused.failed_at, 2);
+}
+
+TEST(Windows, TryOneGuessAfterTheOtherAndCountAllIterations)
+{
+    Counting window;
+    window.broken = 1;
+    std::vector<int> attempts;
+    WindowOptions options;
+    options.propose = [&](int, int, int attempt) -> WindowOptions::Proposal {
+        attempts.push_back(attempt);
+        if (attempt > 2) return {};
+        return {[attempt](double) {
+                    return State{attempt == 2 ? 1.0 : 0.0, {Matrix34{1, 0, 0}}, {Matrix34{}}};
+                },
+                false};
+    };
+    const SolveReport report = run(window, options);
+    EXPECT_TRUE(report.converged()) << report.message;
+    EXPECT_EQ(attempts, (std::vector<int>{0, 1, 2}));
+    EXPECT_EQ(report.rescued, 1);
+}
+
+TEST(Windows, TellProgressInOneWay)
+{
+    for (const int direction : {1, -1}) {
+        Counting window;
+        std::vector<int> done;
+        std::vector<double> times;
+        WindowOptions options;
+        options.direction = direction;
+        options.length = 2;
+        options.progress = [&](const Progress& progress) {
+            EXPECT_EQ(progress.n_elements, 6);
+            done.push_back(progress.done);
+            times.push_back(progress.t);
+            return progress.done < 6;   // nothing is left to stop after the last window
+        };
+        const SolveReport report = run(window, options);
+        EXPECT_EQ(report.status, SolveStatus::converged);
+        EXPECT_EQ(done, (std::vector<int>{0, 2, 2, 4, 4, 6}));
+        for (std::size_t i = 0; i < done.size(); ++i)
+            EXPECT_EQ(times[i], direction > 0 ? done[i] : 6 - done[i]);
+    }
+}
+
+TEST(Windows, StopBetweenAndWithinThemselves)
+{
+    for (const int calls : {2, 3}) {   // after the first window, within the second
+        Counting window;
+        int n = 0;
+        WindowOptions options;
+        options.length = 3;
+        options.progress = [&](const Progress&) { return ++n < calls; };
+        const SolveReport report = run(window, options);
+        EXPECT_EQ(report.status, SolveStatus::cancelled);
+        EXPECT_EQ(report.n_elements, 3);
+        EXPECT_EQ(report.failed_at, 3);
+        EXPECT_NE(report.message.find("as asked"), std::string::npos) << report.message;
+    }
+}
+
+TEST(Windows, CompareWithTheMarchTheyStartedFrom)
+{
+    Counting window;
+    window.has_own_guess = false;
+    WindowOptions options;
+    options.length_of_model = 4;
+    options.propose = [](int, int, int) -> WindowOptions::Proposal {
+        return {[](double t) { return State{t, {Matrix34{1 + t, 0, 0}}, {Matrix34{}}}; }, true};
+    };
+    const SolveReport report = run(window, options);
+    EXPECT_DOUBLE_EQ(report.guess_distance, 6.0 / 4);
+    EXPECT_EQ(report.guess_distance_time, 1);
+}
+
+TEST(Guess, MarchesFromAStateInEitherDirection)
+{
+    const Model model = testing_models::two_bricks();
+    const std::vector<double> times{0, 0.1, 0.2, 0.3, 0.4}, back{0.4, 0.3, 0.2, 0.1, 0};
+    const MarchGuess there = guess_from_state(model, model.start(), times);
+    EXPECT_EQ(there.reached, 0.4);
+    const State end = there.motion(0.4);
+    const MarchGuess here = guess_from_state(model, end, back);
+    EXPECT_EQ(here.reached, 0);
+    for (int b = 0; b < model.n_bodies(); ++b) {
+        EXPECT_LT(norm(here.motion(0).X[b] - model.start().X[b]), 1e-9);
+        EXPECT_GT(norm(end.X[b] - model.start().X[b]), 0.1);
+    }
+}
+
+TEST(Guess, BetweenPlacesIsSteady)
+{
+    const Model model = testing_models::two_bricks();
+    State first = model.start(), last = first;
+    last.t = 2;
+    for (Matrix34& X : last.X)
+        X = configuration(X.column(0) + Vector3{2, 0, 0},
+                          directors_from_rotation_vector({0, 0, 1}) * directors(X));
+    const Guess guess = guess_between(first, last);
+    for (int b = 0; b < model.n_bodies(); ++b) {
+        EXPECT_LT(norm(guess(2).X[b] - last.X[b]), 1e-14);
+        const Matrix34 middle =
+            configuration(first.X[b].column(0) + Vector3{1, 0, 0},
+                          directors_from_rotation_vector({0, 0, 0.5}) * directors(first.X[b]));
+        EXPECT_LT(norm(guess(1).X[b] - middle), 1e-14);
+    }
+}
+
+/// What is known at both ends is met, and stated rates are followed in between.
+TEST(Guess, FromBothEndsMeetsWhatIsKnown)
+{
+    const Model model = testing_models::two_bricks();
+    const std::vector<double> times{0, 0.1, 0.2, 0.3};
+    const Guess march = guess_from_state(model, model.start(), times).motion;
+    Ends ends;
+    ends.at_start = ends.at_end = Known::positions;
+    ends.start = model.start();
+    ends.end = march(0.3);
+    ends.end.t = 0.3;
+    const Guess still = guess_from_ends(model, ends, times);
+    ends.start.V[1] = rate(ends.start.X[1], {0, 0, 0}, {0.1, 0, 0});
+    const Guess moving = guess_from_ends(model, ends, times);
+    for (const Guess& guess : {still, moving})
+        for (int b = 0; b < model.n_bodies(); ++b) EXPECT_LT(norm(guess(0.3).X[b] - ends.end.X[b]), 1e-12);
+    EXPECT_LT(norm(moving(0.15).X[0] - march(0.15).X[0]), norm(still(0.15).X[0] - march(0.15).X[0]));
+}
+
+}   // namespace
+}   // namespace livens
