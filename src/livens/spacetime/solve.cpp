@@ -113,11 +113,10 @@ WindowOptions window_options(const Model& model, const Ends& ends, const Method&
 
 /// Conditions at both ends may leave a motion free, at conjugate and focal times: then the solution is one of
 /// many, and its digits are made of rounding.
-void refuse_undetermined(const Model& model, Window& window, SolveReport& report)
+void refuse_undetermined(Window& window, SolveReport& report)
 {
     SolveReport measured;
     window.measure_condition(measured);
-    if (report.converged() && measured.notes.empty() && measured.condition_1 < undetermined) return;
     const bool is_singular = !measured.notes.empty() || !(measured.condition_1 < undetermined);
     if (!is_singular) return;
     report.status = SolveStatus::singular;
@@ -126,7 +125,6 @@ void refuse_undetermined(const Model& model, Window& window, SolveReport& report
         (measured.notes.empty() ? to_text(measured.condition_1, 6) : std::string("infinite")) +
         "): a neighbouring motion fulfils them as well, as at conjugate and focal times; try: another "
         "duration, or the state at one end";
-    (void)model;
 }
 
 Solution solve_by_windows(const Model& model, const Problem& problem, const TimeMesh& mesh,
@@ -143,7 +141,7 @@ Solution solve_by_windows(const Model& model, const Problem& problem, const Time
     w.propose = Proposals(model, problem, mesh, ends, method, *window);
     solve_windows(*window, mesh, w, report);
     if (!ends.has_state() && !is_mixed && report.status != SolveStatus::cancelled)
-        refuse_undetermined(model, *window, report);
+        refuse_undetermined(*window, report);
     const bool is_whole = is_mixed || w.length == 0 || w.length >= mesh.n_elements();
     if (options.condition && report.converged() && is_whole) window->measure_condition(report);
     solution.motion = window->take_motion();
