@@ -115,11 +115,19 @@ livens_mutant(NAME loads_at_the_instants_of_nodes
 
 # Phi from the gradient at the node alone, not from the mean of both ends: right for linear rows only.
 livens_mutant(NAME constraint_without_mean_gradient
-              FILE spacetime/lobatto/nodes.cpp
-              OLD [[phi += (g0[12 * side + i] + g[12 * side + i]) * d[i];]]
-              NEW [[phi += 2 * g[12 * side + i] * d[i];]]
+              FILE multibody/tables.cpp
+              OLD [[sum += (g_from[12 * side + i] + g_to[12 * side + i]) * d[i];]]
+              NEW [[sum += 2 * g_to[12 * side + i] * d[i];]]
               TESTS_OF conservation
               MUST_FAIL Lobatto.HoldsConstraintsAtNodesOverTenSeconds Lobatto.KeepsPinsTogetherAndRodsLong)
+
+# Angles compared with those at the first node of an element, not from node to node: turns are lost.
+livens_mutant(NAME turns_of_an_element
+              FILE spacetime/lobatto/nodes.cpp
+              OLD [[const int from = is_quadratic ? e * degree_ : A - 1;]]
+              NEW [[const int from = e * degree_;]]
+              TESTS_OF convergence
+              MUST_FAIL Couplings.AnElementMayTurnByMoreThanAHalf)
 
 # Reflections that lead with whichever entry comes next: directions across the plane mix with those in it.
 livens_mutant(NAME reflections_without_choice

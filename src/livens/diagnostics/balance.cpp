@@ -161,10 +161,9 @@ private:
         for (int r = 0; r < model_.n_rows(); ++r) {
             if (lambda_[r] == 0) continue;
             const ConstraintRow& row = model_.row(r);
-            const RowGradient g = row_gradient(row, at, X_);
-            now.add_force(X_[row.body_j], -lambda_[r] * g.j, length_);
-            if (row.body_i != world) now.add_force(X_[row.body_i], -lambda_[r] * g.i, length_);
-            now.work += lambda_[r] * row_rate(row, at, X_);
+            const RowGradient g = constraint_gradient(row, at, X_);
+            for (const int body : g.bodies) now.add_force(X_[body], -lambda_[r] * g.of(body), length_);
+            now.work += lambda_[r] * constraint_rate(row, at, X_);
         }
     }
 

@@ -23,12 +23,8 @@ std::vector<double> rigidity_multipliers(const Model& model, int body, Instant a
             if (load.bodies[b] == body) rest += F[b];
         }
     }
-    for (int r = 0; r < model.n_rows(); ++r) {
-        const ConstraintRow& row = model.row(r);
-        if (row.body_i != body && row.body_j != body) continue;
-        const RowGradient g = row_gradient(row, at, X);
-        rest -= multipliers[r] * (row.body_j == body ? g.j : g.i);
-    }
+    for (int r = 0; r < model.n_rows(); ++r)
+        rest -= multipliers[r] * constraint_gradient(model.row(r), at, X).of(body);
     const Matrix3 along = transpose(directors(rest)) * directors(X[body]);   // (a, b): column a along d_b
     return {along(0, 0), along(1, 1), along(2, 2), along(0, 1), along(0, 2), along(1, 2)};
 }

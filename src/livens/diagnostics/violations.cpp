@@ -18,8 +18,7 @@ namespace {
 /// Phi / scale.
 double joint_violation(const ConstraintRow& row, double t, std::span<const Matrix34> X)
 {
-    const Matrix34& X_i = row.body_i == world ? world_configuration : X[row.body_i];
-    return constraint_value(row, {t}, X_i, X[row.body_j]) / row.scale;
+    return constraint_value(row, {t}, X) / row.scale;
 }
 
 /// The six 1/2 (d_a . d_b - delta_ab) of a body (P4).
@@ -50,9 +49,9 @@ double rigidity_violation(const Model& model, std::span<const Matrix34> X)
 double velocity_violation(const ConstraintRow& row, double t, std::span<const Matrix34> X,
                           std::span<const Matrix34> V)
 {
-    const RowGradient g = row_gradient(row, {t}, X);
-    double rate = dot(g.j, V[row.body_j]) + row_rate(row, {t}, X);
-    if (row.body_i != world) rate += dot(g.i, V[row.body_i]);
+    const RowGradient g = constraint_gradient(row, {t}, X);
+    double rate = constraint_rate(row, {t}, X);
+    for (const int body : g.bodies) rate += dot(g.of(body), V[body]);
     return std::abs(rate) / row.scale;
 }
 

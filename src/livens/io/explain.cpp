@@ -38,6 +38,10 @@ at the start. `[body.end]` without `[end]` would mean nothing and is refused as 
     Page{"boundary-method", R"(
 The classical rules march from the state at the start. Conditions at the end of time are for the families
 `lobatto` and `mixed`; with conditions at both ends all elements are one window.)"},
+    Page{"curve-crosses-itself", R"(
+A point slides along a curve that crosses itself, or nearly: where it does, the point would be on two
+branches, and which one it follows could not be told. Divide the curve, or round it. Calls of the library
+only.)"},
     Page{"degree", R"(There is no time basis of this degree.)"},
     Page{"degree-out-of-range", R"(
 Elements of the family lobatto have degree 1 to 16, those of the family mixed 1 to 8. A degree p of lobatto
@@ -65,6 +69,10 @@ of it is checked. A newer livens may read it.)"},
     Page{"gauss-points-out-of-range", R"(
 The number of Gauss points in an element is out of range. Without `gauss_points` there are as many as
 integrate all polynomials of the method exactly; far fewer leave functions that no point sees.)"},
+    Page{"gear-ratio", R"(
+Angles are coupled in a ratio that is not one of whole numbers up to 10000, as numbers of teeth are. After a
+turn of one wheel the other would stand anywhere, and positions would not tell whether the coupling holds.
+Calls of the library only.)"},
     Page{"inertia-negative", R"(
 A principal moment of inertia is negative. It is an integral of squares times mass.)"},
     Page{"inertia-not-symmetric", R"(The matrix of inertia must equal its transpose.)"},
@@ -87,6 +95,9 @@ are dropped. Here one of them contradicts the others: no position of the bodies 
 points, axes and lengths of the joint named and of those that close a loop with it.)"},
     Page{"joint-empty", R"(
 A joint without any row holds nothing. Scenario files cannot lead to it; calls of the library can.)"},
+    Page{"joint-method", R"(
+Only elements of the family lobatto hold joints whose rows are no quadratic forms: screws, gears and slots.
+Calls of the library only.)"},
     Page{"joint-needs-directors", R"(
 A point mass has no orientation and no other point than its own. It takes spherical joints and rods at its
 own point; weld, revolute and universal joints need a rigid body.)"},

@@ -201,11 +201,10 @@ double largest_speed(const Model& model, const State& state)
 }
 
 /// Largest |dPhi/dt| of a row that these speeds can make.
-double rate_bound(const Model& model, const State& state, const std::array<Wrench, 2>& row, double speed)
+double rate_bound(const Model& model, const State& state, std::span<const Wrench> row, double speed)
 {
     double bound = 0;
     for (const Wrench& w : row) {
-        if (w.body == world) continue;
         const Vector3 moment = moment_about(w, state.X[w.body], center(model, w.body));
         bound += norm(w.force) * speed + norm(moment) * speed / model.length();
     }
@@ -301,8 +300,7 @@ void refuse_opposite_axes(const Model& model, const State& state)
 {
     for (const Joint& joint : model.joints()) {
         for (const ConstraintRow& row : joint.branches) {
-            const Matrix34& X_i = row.body_i == world ? world_configuration : state.X[row.body_i];
-            if (constraint_value(row, X_i, state.X[row.body_j]) > 0) continue;
+            if (constraint_value(row, state.X) > 0) continue;
             throw InputError(
                 {"joint-branch", "joint[" + joint.name + "]." + row.label,
                  "the " + row.label + " of joint '" + joint.name + "' is off by half a turn at the start", "",

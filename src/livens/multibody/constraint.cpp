@@ -1,5 +1,6 @@
 #include "livens/multibody/constraint.h"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
@@ -44,33 +45,60 @@ ConstraintRow with_world_folded(ConstraintRow row)
     return row;
 }
 
-// Forms. Without body i there are no terms in it, and X_i is not looked at.
+// Forms of the bodies i and j. Without body i, which is the world then, there are no terms in it.
 
-double form_value(const QuadraticForm& f, bool has_i, const Matrix34& X_i, const Matrix34& X_j)
+struct FormGradient {
+    Matrix34 i{}, j{};
+};
+
+FormGradient form_gradient(const QuadraticForm& f, int i, int j, const Configurations& X)
 {
-    double phi = 0.5 * dot(X_j * f.c_jj, X_j) + dot(f.b_j, X_j);
-    if (has_i) phi += dot(0.5 * (X_i * f.c_ii) + X_j * transpose(f.c_ij) + f.b_i, X_i);
-    return phi + f.c;
+    const Matrix34 X_j = X[j];
+    FormGradient g{{}, X_j * f.c_jj + f.b_j};
+    if (i == world) return g;
+    const Matrix34 X_i = X[i];
+    g.j += X_i * f.c_ij;
+    g.i = X_i * f.c_ii + X_j * transpose(f.c_ij) + f.b_i;
+    return g;
 }
 
-void form_gradient(const QuadraticForm& f, bool has_i, const Matrix34& X_i, const Matrix34& X_j,
-                   Matrix34& g_i, Matrix34& g_j)
+/// <gradient, V>.
+double form_rate(const QuadraticForm& f, int i, int j, const Configurations& X, const Configurations& V)
 {
-    g_j = X_j * f.c_jj + f.b_j;
-    g_i = {};
-    if (!has_i) return;
-    g_j += X_i * f.c_ij;
-    g_i = X_i * f.c_ii + X_j * transpose(f.c_ij) + f.b_i;
+    const FormGradient g = form_gradient(f, i, j, X);
+    return dot(g.j, V[j]) + (i == world ? 0 : dot(g.i, V[i]));
 }
 
-double form_curvature(const QuadraticForm& f, bool has_i, const Matrix34& V_i, const Matrix34& V_j)
+double form_curvature(const QuadraticForm& f, int i, int j, const Configurations& V)
 {
+    const Matrix34 V_j = V[j];
     double curvature = dot(V_j * f.c_jj, V_j);
-    if (has_i) curvature += dot(V_i * f.c_ii, V_i) + 2 * dot(V_i * f.c_ij, V_j);
-    return curvature;
+    if (i == world) return curvature;
+    const Matrix34 V_i = V[i];
+    return curvature + dot(V_i * f.c_ii, V_i) + 2 * dot(V_i * f.c_ij, V_j);
 }
 
-bool has_i(const ConstraintRow& row) { return row.body_i != world; }
+/// 1/2 <gradient + gradient_from, step>, which is the form less its value at X_from: it is quadratic.
+double form_change(const QuadraticForm& f, int i, int j, const Configurations& X_from,
+                   const Configurations& X, const Configurations& step)
+{
+    return 0.5 * (form_rate(f, i, j, X_from, step) + form_rate(f, i, j, X, step));
+}
+
+/// act(q_k, body_i, body_j, k) of all coordinates.
+template <typename Act>
+SmoothFunction::Point of_coordinates(const ConstraintRow& row, const Act& act)
+{
+    SmoothFunction::Point q{};
+    for (std::size_t k = 0; k < row.coordinates.size(); ++k)
+        q[k] = act(row.coordinates[k], row.coordinates[k].body_i, row.coordinates[k].body_j);
+    return q;
+}
+
+SmoothFunction::Point coordinates(const ConstraintRow& row, const Configurations& X)
+{
+    return of_coordinates(row, [&](const auto& form, int i, int j) { return form_value(form, i, j, X); });
+}
 
 void refuse_drives(const ConstraintRow& row)
 {
@@ -79,63 +107,140 @@ void refuse_drives(const ConstraintRow& row)
 
 }   // namespace
 
-double constraint_value(const ConstraintRow& row, Instant at, const Matrix34& X_i, const Matrix34& X_j)
+double form_value(const QuadraticForm& f, int i, int j, const Configurations& X)
 {
-    double phi = form_value(row, has_i(row), X_i, X_j);
+    const Matrix34 X_j = X[j];
+    double phi = 0.5 * dot(X_j * f.c_jj, X_j) + dot(f.b_j, X_j);
+    if (i != world) {
+        const Matrix34 X_i = X[i];
+        phi += dot(0.5 * (X_i * f.c_ii) + X_j * transpose(f.c_ij) + f.b_i, X_i);
+    }
+    return phi + f.c;
+}
+
+RowBodies row_bodies(const ConstraintRow& row)
+{
+    RowBodies found;
+    const auto add = [&](int body) {
+        if (body == world || found.find(body) < found.size) return;
+        if (found.size == RowBodies::most)
+            throw InputError({"joint-row", "", "a constraint row touches too many bodies", "",
+                              "at most " + std::to_string(RowBodies::most), "", ""});
+        found.bodies[static_cast<std::size_t>(found.size++)] = body;
+    };
+    add(row.body_i);
+    add(row.body_j);
+    for (const PairForm& q : row.coordinates) {
+        add(q.body_i);
+        add(q.body_j);
+    }
+    return found;
+}
+
+double constraint_value(const ConstraintRow& row, Instant at, const Configurations& X)
+{
+    double phi = form_value(row, row.body_i, row.body_j, X);
     for (const Drive& drive : row.drives)
-        phi += drive.factor(at).value * form_value(drive.form, has_i(row), X_i, X_j);
+        phi += drive.factor(at).value * form_value(drive.form, row.body_i, row.body_j, X);
+    if (row.function) phi += row.function->at(coordinates(row, X)).value;
     return phi;
 }
 
-void constraint_gradient(const ConstraintRow& row, Instant at, const Matrix34& X_i, const Matrix34& X_j,
-                         Matrix34& g_i, Matrix34& g_j)
+RowGradient constraint_gradient(const ConstraintRow& row, Instant at, const Configurations& X)
 {
-    form_gradient(row, has_i(row), X_i, X_j, g_i, g_j);
-    add_drive_gradient(row, at, X_i, X_j, g_i, g_j);
+    RowGradient gradient{row_bodies(row)};
+    for_each_form(row, at, X, [&](const QuadraticForm& form, int i, int j, double weight) {
+        const FormGradient g = form_gradient(form, i, j, X);
+        gradient.by[gradient.bodies.find(j)] += weight * g.j;
+        if (i != world) gradient.by[gradient.bodies.find(i)] += weight * g.i;
+    });
+    return gradient;
 }
 
-void add_drive_gradient(const ConstraintRow& row, Instant at, const Matrix34& X_i, const Matrix34& X_j,
-                        Matrix34& g_i, Matrix34& g_j)
+namespace {
+
+/// K of a form as d2 form / dX dX of two bodies, entry by entry of X.
+void add_form_hessian(const QuadraticForm& f, int i, int j, double weight, int body, int other,
+                      Matrix<12, 12>& H)
 {
+    Matrix4 K{};
+    if (body == i && other == i && i != world) K += f.c_ii;
+    if (body == i && other == j) K += transpose(f.c_ij);
+    if (body == j && other == i) K += f.c_ij;
+    if (body == j && other == j) K += f.c_jj;
+    for (int to = 0; to < 4; ++to)
+        for (int from = 0; from < 4; ++from)
+            for (int d = 0; d < 3; ++d) H(3 * to + d, 3 * from + d) += weight * K(from, to);
+}
+
+}   // namespace
+
+Matrix<12, 12> constraint_hessian(const ConstraintRow& row, Instant at, const Configurations& X, int body,
+                                  int other)
+{
+    Matrix<12, 12> H{};
+    for_each_form(row, at, X, [&](const QuadraticForm& form, int i, int j, double weight) {
+        add_form_hessian(form, i, j, weight, body, other, H);
+    });
+    if (!row.function) return H;
+    const auto by = [&](const PairForm& q, int wanted) {
+        const FormGradient g = form_gradient(q, q.body_i, q.body_j, X);
+        Matrix<12, 1> column{};
+        const Matrix34 of = wanted == q.body_j ? g.j : wanted == q.body_i ? g.i : Matrix34{};
+        std::copy_n(of.a, 12, column.a);
+        return column;
+    };
+    const SmoothFunction::Value F = row.function->at(coordinates(row, X));
+    for (std::size_t k = 0; k < row.coordinates.size(); ++k)
+        for (std::size_t l = 0; l < row.coordinates.size(); ++l)
+            if (F.hessian[k][l] != 0)
+                H += F.hessian[k][l] * outer(by(row.coordinates[k], body), by(row.coordinates[l], other));
+    return H;
+}
+
+double constraint_change(const ConstraintRow& row, Instant from, const Configurations& X_from, Instant to,
+                         const Configurations& X, const Configurations& step)
+{
+    const auto change_of = [&](const QuadraticForm& form, int i, int j) {
+        return form_change(form, i, j, X_from, X, step);
+    };
+    double change = change_of(row, row.body_i, row.body_j);
     for (const Drive& drive : row.drives) {
-        Matrix34 d_i{}, d_j{};
-        form_gradient(drive.form, has_i(row), X_i, X_j, d_i, d_j);
-        const double f = drive.factor(at).value;
-        g_i += f * d_i;
-        g_j += f * d_j;
+        const double before = drive.factor(from).value, after = drive.factor(to).value;
+        change += after * change_of(drive.form, row.body_i, row.body_j) +
+                  (after - before) * form_value(drive.form, row.body_i, row.body_j, X_from);
     }
-}
-
-double constraint_change(const ConstraintRow& row, Instant from, Instant to, const Matrix34& X_i,
-                         const Matrix34& X_j)
-{
-    double change = 0;
-    for (const Drive& drive : row.drives)
-        change += (drive.factor(to).value - drive.factor(from).value) *
-                  form_value(drive.form, has_i(row), X_i, X_j);
+    if (row.function)
+        change += row.function->change(coordinates(row, X_from), of_coordinates(row, change_of));
     return change;
 }
 
-double constraint_rate(const ConstraintRow& row, Instant at, const Matrix34& X_i, const Matrix34& X_j)
+double constraint_rate(const ConstraintRow& row, Instant at, const Configurations& X)
 {
     double rate = 0;
     for (const Drive& drive : row.drives)
-        rate += drive.factor(at).first * form_value(drive.form, has_i(row), X_i, X_j);
+        rate += drive.factor(at).first * form_value(drive.form, row.body_i, row.body_j, X);
     return rate;
 }
 
-double constraint_curvature(const ConstraintRow& row, Instant at, const std::array<Matrix34, 2>& X,
-                            const std::array<Matrix34, 2>& V)
+double constraint_curvature(const ConstraintRow& row, Instant at, const Configurations& X,
+                            const Configurations& V)
 {
-    double curvature = form_curvature(row, has_i(row), V[0], V[1]);
+    double curvature = 0;
+    for_each_form(row, at, X, [&](const QuadraticForm& form, int i, int j, double weight) {
+        curvature += weight * form_curvature(form, i, j, V);
+    });
     for (const Drive& drive : row.drives) {
         const TimeValue f = drive.factor(at);
-        Matrix34 g_i{}, g_j{};
-        form_gradient(drive.form, has_i(row), X[0], X[1], g_i, g_j);
-        curvature += f.value * form_curvature(drive.form, has_i(row), V[0], V[1]) +
-                     2 * f.first * (dot(g_i, V[0]) + dot(g_j, V[1])) +
-                     f.second * form_value(drive.form, has_i(row), X[0], X[1]);
+        curvature += 2 * f.first * form_rate(drive.form, row.body_i, row.body_j, X, V) +
+                     f.second * form_value(drive.form, row.body_i, row.body_j, X);
     }
+    if (!row.function) return curvature;
+    const SmoothFunction::Value F = row.function->at(coordinates(row, X));
+    const auto rates =
+        of_coordinates(row, [&](const auto& form, int i, int j) { return form_rate(form, i, j, X, V); });
+    for (std::size_t k = 0; k < rates.size(); ++k)
+        for (std::size_t l = 0; l < rates.size(); ++l) curvature += rates[k] * F.hessian[k][l] * rates[l];
     return curvature;
 }
 
@@ -155,23 +260,16 @@ ConstraintRow frozen(const ConstraintRow& row, Instant at)
     return now;
 }
 
-double constraint_value(const ConstraintRow& row, const Matrix34& X_i, const Matrix34& X_j)
+double constraint_value(const ConstraintRow& row, const Configurations& X)
 {
     refuse_drives(row);
-    return form_value(row, has_i(row), X_i, X_j);
+    return constraint_value(row, {}, X);
 }
 
-void constraint_gradient(const ConstraintRow& row, const Matrix34& X_i, const Matrix34& X_j, Matrix34& g_i,
-                         Matrix34& g_j)
+RowGradient constraint_gradient(const ConstraintRow& row, const Configurations& X)
 {
     refuse_drives(row);
-    form_gradient(row, has_i(row), X_i, X_j, g_i, g_j);
-}
-
-double constraint_curvature(const ConstraintRow& row, const Matrix34& V_i, const Matrix34& V_j)
-{
-    refuse_drives(row);
-    return form_curvature(row, has_i(row), V_i, V_j);
+    return constraint_gradient(row, {}, X);
 }
 
 ConstraintRow inner_product_row(int body_i, const Vector4& a, int body_j, const Vector4& b, double value,

@@ -1,7 +1,12 @@
-// Every ideal joint is a few quadratic forms in X; one row is data. Drives make it depend on time.
+// Every ideal joint is a few rows, nearly all of them quadratic forms in X; one row is data. Drives make it
+// depend on time, and a smooth function of forms couples joint coordinates.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <functional>
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -13,7 +18,7 @@ namespace livens {
 /// The place of the fixed world among the bodies.
 inline constexpr int world = -1;
 
-/// A function of the bodies i and j of a row:
+/// A function of two bodies i and j:
 ///
 ///     1/2 tr(X_i C_ii X_i^T) + tr(X_i C_ij X_j^T) + 1/2 tr(X_j C_jj X_j^T)
 ///         + tr(B_i^T X_i) + tr(B_j^T X_j) + c
@@ -26,49 +31,123 @@ struct QuadraticForm {
     double c = 0;
 };
 
+/// A form and its bodies; body_j is never the world.
+struct PairForm : QuadraticForm {
+    int body_i = world;
+    int body_j = world;
+};
+
 /// What a row follows: f(t) times a form. The factor must have a continuous rate.
 struct Drive {
     TimeFunction factor;
     QuadraticForm form;
 };
 
-/// One scalar constraint, Phi(t, X) = form + sum_k f_k(t) form_k: C, B and c are functions of time.
-struct ConstraintRow : QuadraticForm {
-    int body_i = world;
-    int body_j = world;
+/// A smooth function of a few numbers q, which are forms; see joint_coordinates.h.
+struct SmoothFunction {
+    static constexpr int most = 6;
+    using Point = std::array<double, most>;
+    struct Value {
+        double value = 0;
+        Point gradient{};
+        std::array<Point, most> hessian{};
+    };
+    std::function<Value(const Point& q)> at;
+    /// F(from + step) - F(from) along the straight way: angles turn on, also where their value at a point
+    /// begins again.
+    std::function<double(const Point& from, const Point& step)> change;
+};
+
+/// One scalar constraint, Phi(t, X) = form + sum_k f_k(t) form_k + F(q_1, q_2, ..): a quadratic form, whose
+/// C, B and c may depend on time, and a smooth function of forms q_k, which may have bodies of their own.
+struct ConstraintRow : PairForm {
     double scale = 1;    ///< a violation |Phi| is reported as |Phi| / scale: a length, its square, or 1
     std::string label;   ///< what the row holds: "x", "axis 1", "distance"
-    std::vector<Drive> drives;
+    std::vector<Drive> drives{};                ///< on the bodies of the form
+    std::vector<PairForm> coordinates{};        ///< q_k, at most SmoothFunction::most
+    std::optional<SmoothFunction> function{};   ///< F
+
+    /// Whether the row is a quadratic form alone.
+    bool is_quadratic() const { return drives.empty() && !function; }
 };
 
 /// X of the world: origin and axes.
 inline constexpr Matrix34 world_configuration{0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
 
-/// Phi of a row; X_i is ignored where body_i is the world.
-double constraint_value(const ConstraintRow& row, Instant at, const Matrix34& X_i, const Matrix34& X_j);
-/// g_i = X_i C_ii + X_j C_ij^T + B_i and g_j = X_j C_jj + X_i C_ij + B_j.
-void constraint_gradient(const ConstraintRow& row, Instant at, const Matrix34& X_i, const Matrix34& X_j,
-                         Matrix34& g_i, Matrix34& g_j);
-/// Adds what drives contribute to the gradient.
-void add_drive_gradient(const ConstraintRow& row, Instant at, const Matrix34& X_i, const Matrix34& X_j,
-                        Matrix34& g_i, Matrix34& g_j);
-/// Phi at another instant less Phi, at the same X.
-double constraint_change(const ConstraintRow& row, Instant from, Instant to, const Matrix34& X_i,
-                         const Matrix34& X_j);
+/// A view of the configurations of all bodies, 12 numbers each.
+class Configurations {
+public:
+    explicit Configurations(const double* X) : X_(X) {}
+    Configurations(std::span<const Matrix34> X) : X_(X.empty() ? nullptr : X.data()->data()) {}
+    Configurations(const std::vector<Matrix34>& X) : Configurations(std::span(X)) {}
+
+    Matrix34 operator[](int body) const
+    {
+        if (body == world) return world_configuration;
+        Matrix34 X;
+        std::copy_n(X_ + 12 * body, 12, X.a);
+        return X;
+    }
+
+private:
+    const double* X_;
+};
+
+/// The bodies that a row touches, each once and without the world.
+struct RowBodies {
+    static constexpr int most = 4;
+    int size = 0;
+    std::array<int, most> bodies{};
+
+    const int* begin() const { return bodies.data(); }
+    const int* end() const { return bodies.data() + size; }
+    int find(int body) const { return static_cast<int>(std::find(begin(), end(), body) - begin()); }
+};
+/// Throws InputError for a row that touches more than RowBodies::most.
+RowBodies row_bodies(const ConstraintRow& row);
+
+/// The gradient of a row by X of each of its bodies.
+struct RowGradient {
+    RowBodies bodies;
+    std::array<Matrix34, RowBodies::most> by{};
+
+    /// Zero for a body that the row does not touch.
+    Matrix34 of(int body) const
+    {
+        const int side = bodies.find(body);
+        return side < bodies.size ? by[static_cast<std::size_t>(side)] : Matrix34{};
+    }
+};
+
+/// Calls act(form, body_i, body_j, weight) for all forms of a row: to first order Phi is the sum of weight
+/// times form.
+template <typename Act>
+void for_each_form(const ConstraintRow& row, Instant at, const Configurations& X, const Act& act);
+
+double constraint_value(const ConstraintRow& row, Instant at, const Configurations& X);
+RowGradient constraint_gradient(const ConstraintRow& row, Instant at, const Configurations& X);
+/// d2 Phi by X of one of the row's bodies and X of another.
+Matrix<12, 12> constraint_hessian(const ConstraintRow& row, Instant at, const Configurations& X, int body,
+                                  int other);
+/// Phi at another instant and place less Phi; `step` is the difference of the places, which may have digits
+/// that they have lost.
+double constraint_change(const ConstraintRow& row, Instant from, const Configurations& X_from, Instant to,
+                         const Configurations& X_to, const Configurations& step);
 /// The part of dPhi/dt that stays where X does not move; 0 without drives.
-double constraint_rate(const ConstraintRow& row, Instant at, const Matrix34& X_i, const Matrix34& X_j);
-/// d2 Phi/dt2 less what accelerations do to it:
-/// tr(V K V^T) + sum_k (2 f_k' <gradient of form_k, V> + f_k'' form_k).
-double constraint_curvature(const ConstraintRow& row, Instant at, const std::array<Matrix34, 2>& X,
-                            const std::array<Matrix34, 2>& V);
+double constraint_rate(const ConstraintRow& row, Instant at, const Configurations& X);
+/// d2 Phi/dt2 less what accelerations do to it: V K V of all forms by their weights, what drives add,
+/// sum_k (2 f_k' <gradient of form_k, V> + f_k'' form_k), and q'^T F'' q'.
+double constraint_curvature(const ConstraintRow& row, Instant at, const Configurations& X,
+                            const Configurations& V);
 /// The row as it is at an instant, without drives.
 ConstraintRow frozen(const ConstraintRow& row, Instant at);
 
-/// The same of rows without drives. Throws std::logic_error for others: they need an instant.
-double constraint_value(const ConstraintRow& row, const Matrix34& X_i, const Matrix34& X_j);
-void constraint_gradient(const ConstraintRow& row, const Matrix34& X_i, const Matrix34& X_j, Matrix34& g_i,
-                         Matrix34& g_j);
-double constraint_curvature(const ConstraintRow& row, const Matrix34& V_i, const Matrix34& V_j);
+/// The same of rows without drives. Throw std::logic_error for others: they need an instant.
+double constraint_value(const ConstraintRow& row, const Configurations& X);
+RowGradient constraint_gradient(const ConstraintRow& row, const Configurations& X);
+
+/// The value of a form.
+double form_value(const QuadraticForm& form, int body_i, int body_j, const Configurations& X);
 
 // Makers of rows. A point is (1, theta), a direction (0, a), see base/linear.h; either body may be the world,
 // and then a point or a direction is one of the world. The bodies must differ.
@@ -95,13 +174,27 @@ ConstraintRow driven_distance_row(int body_i, const Vector4& a, int body_j, cons
                                   const TimeFunction& length, double typical);
 /// (X_i a) . (cos(angle) X_j b2 - sin(angle) X_j b1) = 0: the direction a of body i is turned by angle(t)
 /// from b1 towards b2, which are perpendicular unit vectors of body j; or by half a turn more.
-ConstraintRow driven_angle_row(int body_i, const Vector4& a, int body_j, const Vector4& b1,
-                               const Vector4& b2, const TimeFunction& angle);
+ConstraintRow driven_angle_row(int body_i, const Vector4& a, int body_j, const Vector4& b1, const Vector4& b2,
+                               const TimeFunction& angle);
 /// What is positive where the angle is not half a turn more, for Joint::branches.
 ConstraintRow driven_angle_branch(int body_i, const Vector4& a, int body_j, const Vector4& b1,
                                   const Vector4& b2, const TimeFunction& angle);
 
 /// The six rows of rigidity, 1/2 (d_a . d_b - delta_ab) = 0, in the order 11, 22, 33, 12, 13, 23  (P4).
 std::vector<ConstraintRow> rigidity_rows(int body);
+
+template <typename Act>
+void for_each_form(const ConstraintRow& row, Instant at, const Configurations& X, const Act& act)
+{
+    act(row, row.body_i, row.body_j, 1.0);
+    for (const Drive& drive : row.drives) act(drive.form, row.body_i, row.body_j, drive.factor(at).value);
+    if (!row.function) return;
+    SmoothFunction::Point q{};
+    for (std::size_t k = 0; k < row.coordinates.size(); ++k)
+        q[k] = form_value(row.coordinates[k], row.coordinates[k].body_i, row.coordinates[k].body_j, X);
+    const SmoothFunction::Value F = row.function->at(q);
+    for (std::size_t k = 0; k < row.coordinates.size(); ++k)
+        act(row.coordinates[k], row.coordinates[k].body_i, row.coordinates[k].body_j, F.gradient[k]);
+}
 
 }   // namespace livens

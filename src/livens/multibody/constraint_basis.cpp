@@ -11,7 +11,7 @@ void ConstraintBasis::resize(const Tables& tables, bool all_rows)
     q.resize(tables.n_twists, most);
     rows.assign(static_cast<std::size_t>(tables.rank), 0);
     row_scale.assign(static_cast<std::size_t>(most), 1.0);
-    gradients.assign(static_cast<std::size_t>(24 * most), 0.0);
+    gradients.assign(static_cast<std::size_t>(Tables::gradient_size * most), 0.0);
     order_.assign(static_cast<std::size_t>(most), 0);
 }
 
@@ -28,7 +28,7 @@ void ConstraintBasis::exchange(ConstraintBasis& other)
 double ConstraintBasis::fill(const Tables& tables, int column, int row, Instant at, const double* X,
                              const double* maps)
 {
-    double* g = gradients.data() + 24 * column;
+    double* g = gradients.data() + Tables::gradient_size * column;
     double* out = q.column(column);
     tables.gradient(row, at, X, g);
     tables.scaled_gradient(row, X, maps, g, out);
@@ -58,7 +58,8 @@ double ConstraintBasis::choose(const Tables& tables, Instant at, const double* X
     for (int c = 0; c < tables.rank; ++c) {
         rows[c] = order_[c];
         row_scale[c] = scales[order_[c]];
-        std::copy_n(unsorted_.begin() + 24 * order_[c], 24, gradients.begin() + 24 * c);
+        std::copy_n(unsorted_.begin() + Tables::gradient_size * order_[c], Tables::gradient_size,
+                    gradients.begin() + Tables::gradient_size * c);
     }
     return smallest;
 }

@@ -13,8 +13,9 @@ struct ConstraintBasis {
     OrthogonalBasis q;               ///< of the columns D^T Ghat^T / s
     std::vector<int> rows;           ///< rank rows of the tables, in the order of the columns
     std::vector<double> row_scale;   ///< 1 / s, in the same order
-    std::vector<double> gradients;   ///< 24 numbers a row, in the same order
+    std::vector<double> gradients;   ///< Tables::gradient_size numbers a row, in the same order
 
+    const double* gradient(int column) const { return gradients.data() + Tables::gradient_size * column; }
     void resize(const Tables& tables, bool all_rows);
     void exchange(ConstraintBasis& other);
     /// The basis for given rows. Returns the smallest scaled pivot.

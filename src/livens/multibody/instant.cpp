@@ -192,7 +192,7 @@ void InstantSystem::add_reaction(const InstantState& state, int c, double factor
     for (int side = 0; side < table.n_sides; ++side) {
         const auto& body = tables_.bodies[table.bodies[side]];
         double q[6];
-        tables_.wrench(r, side, state.X.data(), state.maps.data(), state.basis.gradients.data() + 24 * c,
+        tables_.wrench(r, side, state.X.data(), state.maps.data(), state.basis.gradient(c),
                           q);
         for (int i = 0; i < body.dofs; ++i) rows[body.first + i] += factor * q[i];
     }
@@ -223,7 +223,7 @@ void InstantSystem::particular(const InstantState& state, Side from, double* y) 
     const ConstraintBasis& basis = state.basis;
     for (int c = 0; c < tables_.rank; ++c) {
         const auto& table = tables_.rows[basis.rows[c]];
-        const double* g = basis.gradients.data() + 24 * c;
+        const double* g = basis.gradient(c);
         double gamma = tables_.curvature(basis.rows[c], {state.t, from}, state.X.data(), V_.data());
         for (int side = 0; side < table.n_sides; ++side) {
             const double* a = centripetal_.data() + 12 * table.bodies[side];

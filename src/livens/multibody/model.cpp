@@ -110,7 +110,7 @@ void check_body_index(int body, int n_bodies, const std::string& path)
                       "add bodies before what refers to them"});
 }
 
-void check_form(const QuadraticForm& form, const ConstraintRow& row, const std::vector<Body>& bodies,
+void check_form(const QuadraticForm& form, int body_i, int body_j, const std::vector<Body>& bodies,
                 const std::string& path)
 {
     require_finite(form.c_ii, path, "the coefficients of a row");
@@ -121,14 +121,14 @@ void check_form(const QuadraticForm& form, const ConstraintRow& row, const std::
     require_finite(Matrix<1, 1>{form.c}, path, "the constant of a row");
     if (form.c_ii != transpose(form.c_ii) || form.c_jj != transpose(form.c_jj))
         refuse("joint-row", path, "C_ii and C_jj of a row must be symmetric");
-    if (row.body_i == world && (form.c_ii != Matrix4{} || form.c_ij != Matrix4{} || form.b_i != Matrix34{}))
+    if (body_i == world && (form.c_ii != Matrix4{} || form.c_ij != Matrix4{} || form.b_i != Matrix34{}))
         refuse("joint-row", path, "a row has terms in the world that are not folded into B_j and c");
 
     const auto is_point = [&](int body) { return body != world && bodies[body].is_point; };
     const bool i_turns = uses_directors(form.c_ii) || uses_directors(form.c_ij) || uses_directors(form.b_i);
     const bool j_turns =
         uses_directors(form.c_jj) || uses_directors(transpose(form.c_ij)) || uses_directors(form.b_j);
-    for (const auto& [body, turns] : {std::pair(row.body_i, i_turns), std::pair(row.body_j, j_turns)})
+    for (const auto& [body, turns] : {std::pair(body_i, i_turns), std::pair(body_j, j_turns)})
         if (turns && is_point(body))
             refuse("joint-needs-directors", path,
                    "the joint needs the orientation of '" + bodies[body].name + "', a point mass",
@@ -151,10 +151,33 @@ void check_drive(const Drive& drive, const std::string& path)
     }
 }
 
+/// Forms with bodies of their own, which need not be the joint's: gears turn about other joints.
+void check_coordinates(const ConstraintRow& row, const std::vector<Body>& bodies, const std::string& path)
+{
+    if (row.function ? row.coordinates.empty() || !row.function->at || !row.function->change
+                     : !row.coordinates.empty())
+        refuse("joint-row", path, "a row needs coordinates and a function of them, or none of both");
+    if (row.coordinates.size() > SmoothFunction::most)
+        refuse("joint-row", path,
+               "a row has more than " + std::to_string(SmoothFunction::most) + " coordinates");
+    for (const PairForm& q : row.coordinates) {
+        for (const int body : {q.body_i, q.body_j})
+            check_body_index(body, static_cast<int>(bodies.size()), path);
+        if (q.body_j == world || q.body_i == q.body_j)
+            refuse("joint-row", path,
+                   "the second body of a coordinate must be a body, and not its first one");
+        check_form(q, q.body_i, q.body_j, bodies, path);
+    }
+    row_bodies(row);
+}
+
 void check_row(const ConstraintRow& row, const Joint& joint, const std::vector<Body>& bodies,
                const std::string& path)
 {
-    const auto known = [&](int body) { return body == joint.first || body == joint.second; };
+    check_coordinates(row, bodies, path);
+    const auto known = [&](int body) { return row.function || body == joint.first || body == joint.second; };
+    for (const int body : {row.body_i, row.body_j})
+        check_body_index(body, static_cast<int>(bodies.size()), path);
     if (!known(row.body_i) && row.body_i != world)
         refuse("joint-row", path, "a row acts on a body that is not the joint's");
     if (!known(row.body_j) || row.body_j == world)
@@ -163,9 +186,9 @@ void check_row(const ConstraintRow& row, const Joint& joint, const std::vector<B
     if (row.body_i == row.body_j) refuse("joint-self", path, "a row needs two different bodies");
     require_finite(Matrix<1, 1>{row.scale}, path, "the scale of a row");
     if (!(row.scale > 0)) refuse("joint-scale", path, "the scale of a row must be positive");
-    check_form(row, row, bodies, path);
+    check_form(row, row.body_i, row.body_j, bodies, path);
     for (const Drive& drive : row.drives) {
-        check_form(drive.form, row, bodies, path);
+        check_form(drive.form, row.body_i, row.body_j, bodies, path);
         check_drive(drive, path);
     }
 }

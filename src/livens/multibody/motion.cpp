@@ -129,20 +129,9 @@ Reaction joint_reaction(const Model& model, int joint, std::span<const Matrix34>
                         std::span<const double> multipliers)
 {
     const Joint& j = model.joints()[joint];
-    const auto place = [&](int body) -> const Matrix34& {
-        return body == world ? world_configuration : X[body];
-    };
     Matrix34 F{};
-    for (int k = 0; k < static_cast<int>(j.rows.size()); ++k) {
-        const ConstraintRow& row = j.rows[k];
-        Matrix34 g_i{}, g_j{};
-        constraint_gradient(row, place(row.body_i), place(row.body_j), g_i, g_j);
-        const double lambda = multipliers[model.first_row(joint) + k];
-        if (row.body_j == j.second)
-            F -= lambda * g_j;
-        else if (row.body_i == j.second)
-            F -= lambda * g_i;
-    }
+    for (int k = 0; k < static_cast<int>(j.rows.size()); ++k)
+        F -= multipliers[model.first_row(joint) + k] * constraint_gradient(j.rows[k], X).of(j.second);
     const Matrix34& X_second = X[j.second];
     Reaction reaction;
     reaction.force = F.column(0);

@@ -80,7 +80,6 @@ public:
         for (int k = 0; k < rank; ++k) {
             double* y = basis_.column(k);
             for (const Wrench& w : wrenches[rows[k]]) {
-                if (w.body == world) continue;
                 const Vector3 moment = moment_about(w, X[w.body], inertias[w.body].known.center_of_mass);
                 inertias[w.body].push(X[w.body], w.force, moment, y + 6 * w.body);
             }

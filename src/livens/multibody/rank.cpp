@@ -87,8 +87,7 @@ std::vector<Pole> poles_of(const Model& model, std::span<const Matrix34> X, cons
     std::vector<double> counts(X.size(), 0.0);
     const auto each = [&](const auto& act) {
         for (const auto& row : wrenches)
-            for (const Wrench& w : row)
-                if (w.body != world) act(w, poles[w.body]);
+            for (const Wrench& w : row) act(w, poles[w.body]);
     };
     each([&](const Wrench& w, Pole& pole) {
         pole.point += (1 / ++counts[w.body]) * (w.at - pole.point);
@@ -118,7 +117,6 @@ TwistRows twist_rows(const Model& model, std::span<const Matrix34> X, std::span<
     for (const Pole& pole : poles) result.doubt = std::max(result.doubt, 8 * eps * pole.reach / pole.length);
     for (std::size_t k = 0; k < n; ++k) {
         for (const Wrench& w : wrenches[rows[k]]) {
-            if (w.body == world) continue;
             double* line = &result.columns[n * 6 * w.body + k];
             const Vector3 moment = moment_about(w, X[w.body], poles[w.body].point);
             for (int i = 0; i < 3; ++i) {

@@ -11,19 +11,6 @@ namespace {
 
 constexpr double eps = std::numeric_limits<double>::epsilon();
 
-const Matrix34& of(std::span<const Matrix34> X, int body)
-{
-    return body == world ? world_configuration : X[body];
-}
-
-/// By X_i and X_j.
-std::array<Matrix34, 2> gradient(const ConstraintRow& row, const Matrix34& X_i, const Matrix34& X_j)
-{
-    std::array<Matrix34, 2> g{};
-    constraint_gradient(row, X_i, X_j, g[0], g[1]);
-    return g;
-}
-
 template <int R, int C>
 Matrix<R, C> absolute(Matrix<R, C> m)
 {
@@ -31,12 +18,29 @@ Matrix<R, C> absolute(Matrix<R, C> m)
     return m;
 }
 
-ConstraintRow absolute(ConstraintRow row)
+/// act(row) of every form of a row, weighed, as a row without signs.
+template <typename Act>
+void for_each_positive_form(const ConstraintRow& row, std::span<const Matrix34> X, const Act& act)
 {
-    for (Matrix4* c : {&row.c_ii, &row.c_ij, &row.c_jj}) *c = absolute(*c);
-    for (Matrix34* b : {&row.b_i, &row.b_j}) *b = absolute(*b);
-    row.c = std::abs(row.c);
-    return row;
+    for_each_form(row, {}, X, [&](const QuadraticForm& form, int i, int j, double weight) {
+        ConstraintRow positive;
+        positive.body_i = i;
+        positive.body_j = j;
+        positive.c_ii = absolute(weight * form.c_ii);
+        positive.c_ij = absolute(weight * form.c_ij);
+        positive.c_jj = absolute(weight * form.c_jj);
+        positive.b_i = absolute(weight * form.b_i);
+        positive.b_j = absolute(weight * form.b_j);
+        positive.c = std::abs(weight * form.c);
+        act(positive);
+    });
+}
+
+std::vector<Matrix34> absolute(std::span<const Matrix34> X)
+{
+    std::vector<Matrix34> positive;
+    for (const Matrix34& body : X) positive.push_back(absolute(body));
+    return positive;
 }
 
 /// `terms`: the sum of the absolute terms of every entry of g.
@@ -65,11 +69,8 @@ std::vector<int> all_rows(const Model& model)
 
 std::vector<double> joint_values(const Model& model, std::span<const Matrix34> X)
 {
-    std::vector<double> phi(model.n_rows());
-    for (int r = 0; r < model.n_rows(); ++r) {
-        const ConstraintRow& row = model.row(r);
-        phi[r] = constraint_value(row, of(X, row.body_i), of(X, row.body_j));
-    }
+    std::vector<double> phi;
+    for (int r = 0; r < model.n_rows(); ++r) phi.push_back(constraint_value(model.row(r), X));
     return phi;
 }
 
@@ -77,10 +78,8 @@ std::vector<double> joint_rates(const Model& model, std::span<const Matrix34> X,
 {
     std::vector<double> rates(model.n_rows(), 0.0);
     for (int r = 0; r < model.n_rows(); ++r) {
-        const ConstraintRow& row = model.row(r);
-        const auto g = gradient(row, of(X, row.body_i), of(X, row.body_j));
-        if (row.body_i != world) rates[r] += dot(g[0], V[row.body_i]);
-        if (row.body_j != world) rates[r] += dot(g[1], V[row.body_j]);
+        const RowGradient g = constraint_gradient(model.row(r), X);
+        for (const int body : g.bodies) rates[r] += dot(g.of(body), V[body]);
     }
     return rates;
 }
@@ -88,20 +87,21 @@ std::vector<double> joint_rates(const Model& model, std::span<const Matrix34> X,
 std::vector<double> drive_rates(const Model& model, Instant at, std::span<const Matrix34> X)
 {
     std::vector<double> rates(model.n_rows(), 0.0);
-    for (int r = 0; model.has_drives() && r < model.n_rows(); ++r) {
-        const ConstraintRow& row = model.row(r);
-        rates[r] = constraint_rate(row, at, of(X, row.body_i), of(X, row.body_j));
-    }
+    for (int r = 0; model.has_drives() && r < model.n_rows(); ++r)
+        rates[r] = constraint_rate(model.row(r), at, X);
     return rates;
 }
 
 Gap widest_gap(const Model& model, std::span<const Matrix34> X, std::span<const int> rows)
 {
     const std::vector<double> phi = joint_values(model, X);
+    const std::vector<Matrix34> positive = absolute(X);
     Gap gap;
     for (const int r : rows) {
-        const ConstraintRow row = absolute(model.row(r));
-        const double terms = constraint_value(row, absolute(of(X, row.body_i)), absolute(of(X, row.body_j)));
+        const ConstraintRow& row = model.row(r);
+        double terms = 0;
+        for_each_positive_form(row, X,
+                               [&](const ConstraintRow& form) { terms += constraint_value(form, positive); });
         const double level = std::abs(phi[r]) / (4 * eps * std::max(terms, row.scale));
         const double violation = std::abs(phi[r]) / row.scale;
         if (gap.row < 0 || violation > gap.violation) gap.row = r, gap.violation = violation;
@@ -114,17 +114,21 @@ Gap widest_gap(const Model& model, std::span<const Matrix34> X, std::span<const 
 RowWrenches row_wrenches(const Model& model, std::span<const Matrix34> X)
 {
     RowWrenches wrenches(model.n_rows());
+    const std::vector<Matrix34> positive = absolute(X);
     for (int r = 0; r < model.n_rows(); ++r) {
-        const ConstraintRow& row = model.row(r);
         const Joint& joint = model.joints()[model.row_joint(r)];
-        const Matrix34 &X_i = of(X, row.body_i), &X_j = of(X, row.body_j);
-        const auto g = gradient(row, X_i, X_j);
-        const auto terms = gradient(absolute(row), absolute(X_i), absolute(X_j));
-        const auto on = [&](int body, int side) {
-            const Vector3& at = body == joint.second ? joint.point_second : joint.point_first;
-            return body == world ? Wrench{} : wrench_of(body, at, X[body], g[side], terms[side]);
-        };
-        wrenches[r] = {on(row.body_i, 0), on(row.body_j, 1)};
+        const RowGradient g = constraint_gradient(model.row(r), X);
+        RowGradient terms{g.bodies};
+        for_each_positive_form(model.row(r), X, [&](const ConstraintRow& form) {
+            const RowGradient of_form = constraint_gradient(form, positive);
+            for (const int body : of_form.bodies) terms.by[g.bodies.find(body)] += of_form.of(body);
+        });
+        for (const int body : g.bodies) {
+            const Vector3 at = body == joint.second  ? joint.point_second
+                               : body == joint.first ? joint.point_first
+                                                     : Vector3{};
+            wrenches[r].push_back(wrench_of(body, at, X[body], g.of(body), terms.of(body)));
+        }
     }
     return wrenches;
 }

@@ -33,15 +33,15 @@ Gap widest_gap(const Model& model, std::span<const Matrix34> X, std::span<const 
 /// The moment sum_i d_i x (g_i - theta_i g_0) is taken about the joint point theta, where only axes have one,
 /// however remote the reference point is. It is zero where it is not above 8 eps times its absolute terms.
 struct Wrench {
-    int body = world;   ///< nothing acts on the world
+    int body = 0;
     Vector3 at{};       ///< the joint point, body coordinates
     Vector3 force{};    ///< world axes
     Vector3 moment{};   ///< about the joint point, world axes
     double doubt = 0;   ///< rounding error of the force, relative to it
 };
 
-/// On body_i and body_j of every row.
-using RowWrenches = std::vector<std::array<Wrench, 2>>;
+/// On the bodies of every row.
+using RowWrenches = std::vector<std::vector<Wrench>>;
 RowWrenches row_wrenches(const Model& model, std::span<const Matrix34> X);
 
 /// Moment about another point of the body, moment + D (at - theta) x force.

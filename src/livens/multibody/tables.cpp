@@ -4,7 +4,6 @@
 #include <cmath>
 #include <utility>
 
-
 namespace livens {
 
 namespace {
@@ -20,36 +19,49 @@ bool touches(const QuadraticForm& form, bool is_i, int column)
     return touched;
 }
 
+void find_columns(const RowBodies& bodies, Tables::RowTable& table)
+{
+    std::array<std::array<bool, 4>, RowBodies::most> touched{};
+    const auto look = [&](const QuadraticForm& form, int i, int j) {
+        for (int column = 0; column < 4; ++column) {
+            if (i != world && touches(form, true, column)) touched[bodies.find(i)][column] = true;
+            if (touches(form, false, column)) touched[bodies.find(j)][column] = true;
+        }
+    };
+    const ConstraintRow& row = *table.row;
+    look(row, row.body_i, row.body_j);
+    for (const Drive& drive : row.drives) look(drive.form, row.body_i, row.body_j);
+    for (const PairForm& q : row.coordinates) look(q, q.body_i, q.body_j);
+    for (int side = 0; side < bodies.size; ++side)
+        for (int column = 0; column < 4; ++column)
+            if (touched[side][column]) table.columns[side].push_back(3 * column);
+}
+
 Tables::RowTable row_table(const ConstraintRow& row)
 {
     Tables::RowTable table;
     table.row = &row;
-    if (row.body_i != world) {
+    const RowBodies bodies = row_bodies(row);
+    table.n_sides = bodies.size;
+    std::copy(bodies.begin(), bodies.end(), table.bodies);
+    find_columns(bodies, table);
+    table.is_quadratic = row.is_quadratic();
+    if (!table.is_quadratic) return table;
+    const int last = table.n_sides - 1;   // body_j; body_i is side 0 unless it is the world
+    if (last == 1) {
         table.K[0][0] = row.c_ii;
         table.K[0][1] = row.c_ij;
         table.K[1][0] = transpose(row.c_ij);
         table.B[0] = row.b_i;
-        table.bodies[table.n_sides++] = row.body_i;
     }
-    const int last = table.n_sides++;
     table.K[last][last] = row.c_jj;
     table.B[last] = row.b_j;
-    table.bodies[last] = row.body_j;
     for (int from = 0; from < table.n_sides; ++from)
         for (int to = 0; to < table.n_sides; ++to)
             for (int b = 0; b < 4; ++b)
                 for (int a = 0; a < 4; ++a)
                     if (table.K[from][to](a, b) != 0)
                         table.form.push_back({from, 3 * a, to, 3 * b, table.K[from][to](a, b)});
-    table.is_driven = !row.drives.empty();
-    for (int side = 0; side < table.n_sides; ++side) {
-        const bool is_i = side == 0 && row.body_i != world;
-        for (int a = 0; a < 12; a += 3) {
-            bool touched = touches(row, is_i, a / 3);
-            for (const Drive& drive : row.drives) touched = touched || touches(drive.form, is_i, a / 3);
-            if (touched) table.columns[side].push_back(a);
-        }
-    }
     return table;
 }
 
@@ -139,6 +151,11 @@ Tables::Tables(const Model& the_model, std::vector<int> rows_to_solve, bool with
 void Tables::gradient(int r, Instant at, const double* X, double* g) const
 {
     const RowTable& t = rows[r];
+    if (!t.is_quadratic) {
+        const RowGradient gradient = constraint_gradient(*t.row, at, Configurations(X));
+        for (int side = 0; side < t.n_sides; ++side) std::copy_n(gradient.by[side].a, 12, g + 12 * side);
+        return;
+    }
     for (int side = 0; side < t.n_sides; ++side)
         for (const int a : t.columns[side])
             for (int i = a; i < a + 3; ++i) g[12 * side + i] = t.B[side].a[i];
@@ -147,65 +164,35 @@ void Tables::gradient(int r, Instant at, const double* X, double* g) const
         double* out = g + 12 * entry.to_side + entry.to;
         for (int i = 0; i < 3; ++i) out[i] += entry.value * x[i];
     }
-    if (t.is_driven) add_drives(r, at, X, g);
 }
 
-/// X of both sides as a row's functions want them; the world's is not looked at.
-std::array<Matrix34, 2> Tables::places(int r, const double* X) const
-{
-    const ConstraintRow& row = *rows[r].row;
-    return {row.body_i == world ? world_configuration : at(X, row.body_i), at(X, row.body_j)};
-}
-
-void Tables::add_drives(int r, Instant at, const double* X, double* g) const
+/// A quadratic polynomial has Phi(X) - Phi(X_0) = 1/2 <grad Phi(X_0) + grad Phi(X), X - X_0>, which does not
+/// lose the digits of a small increment.
+double Tables::change(int r, Instant from, const double* X_from, const double* g_from, Instant to,
+                      const double* X_to, const double* g_to, const double* step) const
 {
     const RowTable& t = rows[r];
-    const auto place = places(r, X);
-    Matrix34 d[2] = {};
-    add_drive_gradient(*t.row, at, place[0], place[1], d[0], d[1]);
+    if (!t.is_quadratic)
+        return constraint_change(*t.row, from, Configurations(X_from), to, Configurations(X_to),
+                                 Configurations(step));
+    double sum = 0;
     for (int side = 0; side < t.n_sides; ++side) {
-        const Matrix34& of_side = d[t.n_sides == 1 ? 1 : side];
+        const double* d = step + 12 * t.bodies[side];
         for (const int a : t.columns[side])
-            for (int i = a; i < a + 3; ++i) g[12 * side + i] += of_side.a[i];
+            for (int i = a; i < a + 3; ++i) sum += (g_from[12 * side + i] + g_to[12 * side + i]) * d[i];
     }
-}
-
-double Tables::change(int r, Instant from, Instant to, const double* X) const
-{
-    const auto place = places(r, X);
-    return constraint_change(*rows[r].row, from, to, place[0], place[1]);
+    return 0.5 * sum;
 }
 
 double Tables::rate(int r, Instant at, const double* X) const
 {
-    if (!rows[r].is_driven) return 0;
-    const auto place = places(r, X);
-    return constraint_rate(*rows[r].row, at, place[0], place[1]);
-}
-
-Matrix4 Tables::hessian(int r, Instant at, int row_side, int column_side) const
-{
-    const RowTable& t = rows[r];
-    Matrix4 K = t.K[row_side][column_side];
-    const bool has_i = t.row->body_i != world, by_i = has_i && column_side == 0;
-    for (const Drive& drive : t.row->drives) {
-        const QuadraticForm& f = drive.form;
-        const double factor = drive.factor(at).value;
-        if (has_i && row_side == 0)
-            K += factor * (by_i ? f.c_ii : f.c_ij);
-        else
-            K += factor * (by_i ? transpose(f.c_ij) : f.c_jj);
-    }
-    return K;
+    return rows[r].is_quadratic ? 0 : constraint_rate(*rows[r].row, at, Configurations(X));
 }
 
 double Tables::value(int r, Instant at, const double* X, const double* g) const
 {
     const RowTable& t = rows[r];
-    if (t.is_driven) {
-        const auto place = places(r, X);
-        return constraint_value(*t.row, at, place[0], place[1]);
-    }
+    if (!t.is_quadratic) return constraint_value(*t.row, at, Configurations(X));
     double sum = 0;
     for (int side = 0; side < t.n_sides; ++side) {
         const double* x = X + 12 * t.bodies[side];
@@ -217,7 +204,7 @@ double Tables::value(int r, Instant at, const double* X, const double* g) const
 
 double Tables::value(int r, Instant at, const double* X) const
 {
-    double g[24];
+    double g[gradient_size];
     gradient(r, at, X, g);
     return value(r, at, X, g);
 }
@@ -225,7 +212,7 @@ double Tables::value(int r, Instant at, const double* X) const
 double Tables::curvature(int r, Instant at, const double* X, const double* V) const
 {
     const RowTable& t = rows[r];
-    if (t.is_driven) return constraint_curvature(*t.row, at, places(r, X), places(r, V));
+    if (!t.is_quadratic) return constraint_curvature(*t.row, at, Configurations(X), Configurations(V));
     double sum = 0;
     for (const auto& entry : t.form) {
         const double* from = V + 12 * t.bodies[entry.from_side] + entry.from;

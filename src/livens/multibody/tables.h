@@ -35,22 +35,25 @@ struct Tables {
         bool principal = false;   ///< spin and euler are diagonal
         double euler[9] = {};     ///< E about the centre of mass, column by column
     };
-    /// A row and the bodies that it touches, its sides: two, or the one that the world holds.
+    /// A row and the bodies that it touches, its sides.
     struct RowTable {
         const ConstraintRow* row = nullptr;
         int n_sides = 0;
-        int bodies[2] = {};   ///< of each side
+        int bodies[RowBodies::most] = {};   ///< of each side
         struct Entry {
             int from_side, from;   ///< side, and place of the column in the 12 numbers of X
             int to_side, to;
             double value;
         };
-        std::vector<int> columns[2];   ///< columns of X that the gradient may touch: 0, 3, 6, 9
-        std::vector<Entry> form;       ///< entries of K that are not zero, by rows and columns
-        Matrix4 K[2][2] = {};          ///< the same as blocks
+        std::vector<int> columns[RowBodies::most];   ///< of X that the gradient may touch: 0, 3, 6, 9
+        /// A quadratic form alone has these tables; others are evaluated by constraint.h.
+        bool is_quadratic = true;
+        std::vector<Entry> form;   ///< entries of K that are not zero, by rows and columns
+        Matrix4 K[2][2] = {};      ///< the same as blocks
         Matrix34 B[2] = {};
-        bool is_driven = false;   ///< form, K and B are what does not depend on time; drives come on top
     };
+    /// Numbers of a gradient: 12 a side.
+    static constexpr int gradient_size = 12 * RowBodies::most;
 
     /// `independent`: rows of the joints, of full rank, that hold for all others.
     /// `with_rigidity`: rigidity_rows() of the bodies follow the rows of the joints.
@@ -73,8 +76,8 @@ struct Tables {
     int n_rows() const { return model->n_rows(); }
     int freedoms() const { return n_twists - rank; }
 
-    /// Gradients of row r by X_i and X_j, 12 numbers each, one after the other. Only the columns that the row
-    /// touches (RowTable::columns) are written, and only they may be read.
+    /// Gradients of row r by X of its sides, 12 numbers each, one after the other. Only the columns that the
+    /// row touches (RowTable::columns) are written, and only they may be read.
     void gradient(int r, Instant at, const double* X, double* g) const;
     /// Force and moment about the centre of mass of one side's gradient, 6 numbers.
     void wrench(int r, int side, const double* X, const double* maps, const double* g, double* q) const;
@@ -83,14 +86,13 @@ struct Tables {
     /// Phi from the absolute configuration and its gradient there: 1/2 <g + B, X> + c.
     double value(int r, Instant at, const double* X, const double* g) const;
     double value(int r, Instant at, const double* X) const;
-    /// Phi at another instant less Phi, at the same X.
-    double change(int r, Instant from, Instant to, const double* X) const;
+    /// Phi at another instant and place less Phi, from the gradients at both and how far the places differ.
+    double change(int r, Instant from, const double* X_from, const double* g_from, Instant to,
+                  const double* X_to, const double* g_to, const double* step) const;
     /// The part of dPhi/dt that stays where X does not move; 0 without drives.
     double rate(int r, Instant at, const double* X) const;
-    /// d2 Phi/dt2 less G X'': quadratic in X' = V without drives.
+    /// d2 Phi/dt2 less G X'': quadratic in X' = V unless drives add to it.
     double curvature(int r, Instant at, const double* X, const double* V) const;
-    /// The block K of the two sides, which is constant without drives.
-    Matrix4 hessian(int r, Instant at, int row_side, int column_side) const;
 
     /// raw += factor * weight, and factor * loads at the instant; X, V: 12 a body.
     void add_weight(double factor, double* raw) const;
@@ -120,9 +122,6 @@ struct Tables {
     /// out <- Y m, body by body.
     void times_mass(const double* Y, double factor, double* out) const;
 
-private:
-    std::array<Matrix34, 2> places(int r, const double* X) const;
-    void add_drives(int r, Instant at, const double* X, double* g) const;
 };
 
 }   // namespace livens

@@ -199,7 +199,10 @@ void refuse_free_bodies(const Model& model)
         for (int& g : group)
             if (g == from) g = to;
     };
-    for (int r = 0; r < model.n_rows(); ++r) tie(model.row(r).body_i, model.row(r).body_j);
+    for (int r = 0; r < model.n_rows(); ++r) {
+        tie(model.row(r).body_i, model.row(r).body_j);
+        for (const PairForm& q : model.row(r).coordinates) tie(q.body_i, q.body_j);
+    }
     for (const Load& load : model.loads())
         if (load.depends_on_X && load.potential) tie(load.bodies[0], load.bodies[1]);
     for (int b = 0; b < model.n_bodies(); ++b)
@@ -211,13 +214,20 @@ void refuse_free_bodies(const Model& model)
                               "give positions at the start or at the end"});
 }
 
-/// Rows of the other families are taken where they do not know the time.
-void refuse_drives(const Model& model, const Method& method)
+/// The other families take quadratic forms alone.
+void refuse_special_rows(const Model& model, const Method& method)
 {
-    if (!model.has_drives() || std::holds_alternative<Lobatto>(method)) return;
+    if (std::holds_alternative<Lobatto>(method)) return;
     const std::string name = std::holds_alternative<Mixed>(method) ? "mixed" : name_of(method);
-    throw InputError({"drives-method", "method.name", "the method " + name + " cannot follow drives", name,
-                      "lobatto", "", "use lobatto for joints that depend on time"});
+    if (model.has_drives())
+        throw InputError({"drives-method", "method.name", "the method " + name + " cannot follow drives",
+                          name, "lobatto", "", "use lobatto for joints that depend on time"});
+    for (int r = 0; r < model.n_rows(); ++r)
+        if (model.row(r).function)
+            throw InputError({"joint-method", "method.name",
+                              "the method " + name + " cannot hold " + model.row_name(r), name, "lobatto",
+                              "its rows must be quadratic forms of the bodies' positions and directors",
+                              "use lobatto for screws, gears and slots"});
 }
 
 void check_conditions(const Model& model, const Conditions& given, const Method& method)
@@ -268,7 +278,7 @@ void check_method(const Model& model, const Problem& problem, const TimeMesh& me
 {
     if (model.n_bodies() == 0)
         throw InputError({"no-bodies", "body", "a model needs at least one body", "", "", "", "add a body"});
-    refuse_drives(model, method);
+    refuse_special_rows(model, method);
     check_conditions(model, problem.conditions, method);
     if (mesh.n_elements() < 1)
         throw InputError(

@@ -9,11 +9,6 @@ namespace livens {
 
 namespace {
 
-const Matrix34& place(const std::vector<Matrix34>& X, int body)
-{
-    return body == world ? world_configuration : X[body];
-}
-
 template <int R, int C>
 bool finite(const Matrix<R, C>& m)
 {
@@ -82,18 +77,14 @@ void StepEquations::add_constraints(const std::vector<Matrix34>& X_a, const std:
         const ConstraintRow& row = rows_[k].form;
         const int at = n_displacements_ + static_cast<int>(k), i = row.body_i, j = row.body_j;
         const double multiplier = unknowns[at];
-        system.residual[at] = constraint_value(row, place(X_1, i), place(X_1, j));
-
-        std::array<Matrix34, 2> g_a{}, g_1{};
-        constraint_gradient(row, place(X_a, i), place(X_a, j), g_a[0], g_a[1]);
-        constraint_gradient(row, place(X_1, i), place(X_1, j), g_1[0], g_1[1]);
-        for (int side = 0; side < 2; ++side) {
-            const int body = side == 0 ? i : j;
-            if (body == world) continue;
-            add_force(body, multiplier, g_a[side], system);
+        system.residual[at] = constraint_value(row, X_1);
+        const RowGradient all_a = constraint_gradient(row, X_a), all_1 = constraint_gradient(row, X_1);
+        for (const int body : all_a.bodies) {
+            const Matrix34 g_a = all_a.of(body), g_1 = all_1.of(body);
+            add_force(body, multiplier, g_a, system);
             for (int c = 0; c < n_numbers(body); ++c) {
-                if (g_a[side][c] != 0) system.tangent.push_back({first_[body] + c, at, g_a[side][c]});
-                if (g_1[side][c] != 0) system.tangent.push_back({at, first_[body] + c, g_1[side][c]});
+                if (g_a[c] != 0) system.tangent.push_back({first_[body] + c, at, g_a[c]});
+                if (g_1[c] != 0) system.tangent.push_back({at, first_[body] + c, g_1[c]});
             }
         }
         if (multiplier == 0) continue;

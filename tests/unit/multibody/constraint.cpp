@@ -9,6 +9,8 @@
 namespace livens {
 namespace {
 
+using Bodies = std::vector<Matrix34>;
+
 /// A row and the formula it stands for, written out in points and directions.
 struct RowCase {
     ConstraintRow row;
@@ -44,7 +46,7 @@ TEST(ConstraintRow, MakersMeanTheirFormulas)
             const Matrix34 X = random.matrix<3, 4>(), Y = random.matrix<3, 4>();
             EXPECT_EQ(c.row.body_i, 0);
             EXPECT_EQ(c.row.body_j, 1);
-            EXPECT_NEAR(constraint_value(c.row, X, Y), c.formula(X, Y), 1e-14) << c.row.label;
+            EXPECT_NEAR(constraint_value(c.row, Bodies{X, Y}), c.formula(X, Y), 1e-14) << c.row.label;
         }
 }
 
@@ -53,16 +55,17 @@ TEST(ConstraintRow, WorldIsFoldedIntoTheLinearPart)
     Random random(2);
     for (int n = 0; n < 200; ++n) {
         const Matrix34 X = random.matrix<3, 4>(), W = world_configuration, junk = random.matrix<3, 4>();
+        const Bodies bodies{junk, junk, junk, junk, X};
         for (const RowCase& c : row_cases(random, world, 4)) {
             EXPECT_EQ(c.row.body_i, world);
             EXPECT_EQ(c.row.body_j, 4);
-            EXPECT_NEAR(constraint_value(c.row, junk, X), c.formula(W, X), 1e-14) << c.row.label;
+            EXPECT_NEAR(constraint_value(c.row, bodies), c.formula(W, X), 1e-14) << c.row.label;
         }
         // The world as the second body: stored the other way round, the same function with the same sign.
         for (const RowCase& c : row_cases(random, 4, world)) {
             EXPECT_EQ(c.row.body_i, world);
             EXPECT_EQ(c.row.body_j, 4);
-            EXPECT_NEAR(constraint_value(c.row, junk, X), c.formula(X, W), 1e-14) << c.row.label;
+            EXPECT_NEAR(constraint_value(c.row, bodies), c.formula(X, W), 1e-14) << c.row.label;
             EXPECT_TRUE(c.row.c_ii == Matrix4{} && c.row.c_ij == Matrix4{} && c.row.b_i == Matrix34{});
         }
     }
@@ -76,14 +79,14 @@ TEST(ConstraintRow, GradientAndCurvatureAreThoseOfAQuadraticForm)
             for (const RowCase& c : row_cases(random, i, 1)) {
                 const Matrix34 X = random.matrix<3, 4>(), Y = random.matrix<3, 4>();
                 const Matrix34 U = random.matrix<3, 4>(), V = random.matrix<3, 4>();
-                const double here = constraint_value(c.row, X, Y);
-                const double ahead = constraint_value(c.row, X + U, Y + V);
-                const double behind = constraint_value(c.row, X - U, Y - V);
-                Matrix34 g_i{}, g_j{};
-                constraint_gradient(c.row, X, Y, g_i, g_j);
+                const double here = constraint_value(c.row, Bodies{X, Y});
+                const double ahead = constraint_value(c.row, Bodies{X + U, Y + V});
+                const double behind = constraint_value(c.row, Bodies{X - U, Y - V});
+                const RowGradient g = constraint_gradient(c.row, Bodies{X, Y});
                 // A quadratic: central differences have no error of truncation, whatever the step.
-                EXPECT_NEAR(dot(g_i, U) + dot(g_j, V), 0.5 * (ahead - behind), 1e-13) << c.row.label;
-                EXPECT_NEAR(constraint_curvature(c.row, U, V), ahead - 2 * here + behind, 1e-13)
+                EXPECT_NEAR(dot(g.of(0), U) + dot(g.of(1), V), 0.5 * (ahead - behind), 1e-13) << c.row.label;
+                EXPECT_NEAR(constraint_curvature(c.row, {}, Bodies{X, Y}, Bodies{U, V}),
+                            ahead - 2 * here + behind, 1e-13)
                     << c.row.label;
             }
 }
@@ -108,13 +111,12 @@ TEST(ConstraintRow, RigidityRowsAreHalfTheMetric)
         for (int r = 0; r < 6; ++r) {
             const int a = pairs[r][0], b = pairs[r][1];
             const double want = 0.5 * (dot(X.column(a), X.column(b)) - (a == b ? 1 : 0));
-            EXPECT_NEAR(constraint_value(rows[r], {}, X), want, 1e-15);
-            Matrix34 g_i{}, g_j{}, expected{};
-            constraint_gradient(rows[r], {}, X, g_i, g_j);
+            const Bodies bodies{{}, {}, X};
+            EXPECT_NEAR(constraint_value(rows[r], bodies), want, 1e-15);
+            Matrix34 expected{};
             expected.set_column(a, (a == b ? 1.0 : 0.5) * X.column(b));
             if (a != b) expected.set_column(b, 0.5 * X.column(a));
-            EXPECT_LT(largest(g_j - expected), 1e-15);
-            EXPECT_EQ(g_i, Matrix34{});
+            EXPECT_LT(largest(constraint_gradient(rows[r], bodies).of(2) - expected), 1e-15);
         }
     }
     for (const ConstraintRow& row : rows) EXPECT_TRUE(row.body_i == world && row.body_j == 2);
@@ -126,13 +128,13 @@ TEST(ConstraintRow, PlanarDataGiveExactZerosOutOfThePlane)
     const Matrix34 X = configuration({0.3, 0, 0.7}, directors_from_rotation_vector({0, 0.4, 0}));
     const Matrix34 Y = configuration({1.1, 0, -0.2}, directors_from_rotation_vector({0, -1.9, 0}));
     const Vector4 p = point({0.1, 0, 0.9}), q = point({-0.6, 0, 0.35}), a = direction({0.6, 0, 0.8});
-    EXPECT_EQ(constraint_value(coincidence_rows(0, p, 1, q, 1)[1], X, Y), 0);
-    EXPECT_EQ(constraint_value(inner_product_row(0, a, 1, direction({0, 1, 0}), 0, 1), X, Y), 0);
+    const Bodies both{X, Y};
+    EXPECT_EQ(constraint_value(coincidence_rows(0, p, 1, q, 1)[1], both), 0);
+    EXPECT_EQ(constraint_value(inner_product_row(0, a, 1, direction({0, 1, 0}), 0, 1), both), 0);
     for (const ConstraintRow& row : {distance_row(0, p, 1, q, 1), plane_row(0, a, p, 1, q, 0, 1)}) {
-        Matrix34 g_i{}, g_j{};
-        constraint_gradient(row, X, Y, g_i, g_j);
+        const RowGradient g = constraint_gradient(row, both);
         for (const int column : {0, 1, 3})
-            EXPECT_TRUE(g_i(1, column) == 0 && g_j(1, column) == 0) << row.label;
+            EXPECT_TRUE(g.of(0)(1, column) == 0 && g.of(1)(1, column) == 0) << row.label;
     }
 }
 

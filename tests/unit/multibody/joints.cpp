@@ -12,8 +12,11 @@ namespace {
 
 std::vector<double> values(const Joint& joint, const Matrix34& X_first, const Matrix34& X_second)
 {
+    std::vector<Matrix34> X(static_cast<std::size_t>(std::max(joint.first, joint.second)) + 1);
+    if (joint.first != world) X[static_cast<std::size_t>(joint.first)] = X_first;
+    X[static_cast<std::size_t>(joint.second)] = X_second;
     std::vector<double> phi;
-    for (const ConstraintRow& row : joint.rows) phi.push_back(constraint_value(row, X_first, X_second));
+    for (const ConstraintRow& row : joint.rows) phi.push_back(constraint_value(row, X));
     return phi;
 }
 

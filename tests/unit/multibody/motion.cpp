@@ -247,7 +247,9 @@ TEST(Reaction, DoesTheVirtualWorkOfTheMultipliers)
             for (int k = 0; k < static_cast<int>(joint.rows.size()); ++k) {
                 const double step = 0.5;   // rows are quadratic: no error of truncation
                 const auto phi = [&](double h) {
-                    return constraint_value(joint.rows[k], all[joint.first], S + h * dS);
+                    std::vector<Matrix34> moved = all;
+                    moved[joint.second] = S + h * dS;
+                    return constraint_value(joint.rows[k], moved);
                 };
                 work -= lambda[model.first_row(j) + k] * (phi(step) - phi(-step)) / (2 * step);
             }

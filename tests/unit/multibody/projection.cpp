@@ -14,9 +14,7 @@ double largest_value(const Model& model, const State& state)
 {
     double worst = 0;
     for (int r = 0; r < model.n_rows(); ++r) {
-        const ConstraintRow& row = model.row(r);
-        const auto X = [&](int b) { return b == world ? world_configuration : state.X[b]; };
-        worst = std::max(worst, std::abs(constraint_value(row, X(row.body_i), X(row.body_j))) / row.scale);
+        worst = std::max(worst, std::abs(constraint_value(model.row(r), state.X)) / model.row(r).scale);
     }
     return worst;
 }
@@ -27,12 +25,10 @@ double largest_rate(const Model& model, const State& state)
     double worst = 0, speed = 1;
     for (const Matrix34& V : state.V) speed = std::max(speed, norm(V));
     for (int r = 0; r < model.n_rows(); ++r) {
-        const ConstraintRow& row = model.row(r);
-        const auto X = [&](int b) { return b == world ? world_configuration : state.X[b]; };
-        const auto V = [&](int b) { return b == world ? Matrix34{} : state.V[b]; };
-        Matrix34 g_i{}, g_j{};
-        constraint_gradient(row, X(row.body_i), X(row.body_j), g_i, g_j);
-        worst = std::max(worst, std::abs(dot(g_i, V(row.body_i)) + dot(g_j, V(row.body_j))) / row.scale);
+        const RowGradient g = constraint_gradient(model.row(r), state.X);
+        double rate = 0;
+        for (const int body : g.bodies) rate += dot(g.of(body), state.V[body]);
+        worst = std::max(worst, std::abs(rate) / model.row(r).scale);
     }
     return worst / speed;
 }

@@ -162,9 +162,7 @@ inline double violation(const Model& model, const std::vector<Matrix34>& X)
 {
     double worst = 0;
     const auto look = [&](const ConstraintRow& row) {
-        const auto place = [&](int b) { return b == world ? world_configuration : X[b]; };
-        worst = std::max(worst,
-                         std::abs(constraint_value(row, place(row.body_i), place(row.body_j))) / row.scale);
+        worst = std::max(worst, std::abs(constraint_value(row, X)) / row.scale);
     };
     for (int r = 0; r < model.n_rows(); ++r) look(model.row(r));
     for (int b = 0; b < model.n_bodies(); ++b) {

@@ -22,23 +22,4 @@ inline LoadArguments load_arguments(const Load& load, Instant at, std::span<cons
     return arguments;
 }
 
-/// Gradients of a row on its two bodies; that of the world is zero.
-struct RowGradient {
-    Matrix34 i{};
-    Matrix34 j{};
-};
-inline RowGradient row_gradient(const ConstraintRow& row, Instant at, std::span<const Matrix34> X)
-{
-    RowGradient g;
-    const Matrix34& X_i = row.body_i == world ? world_configuration : X[row.body_i];
-    constraint_gradient(row, at, X_i, X[row.body_j], g.i, g.j);
-    return g;
-}
-/// The part of dPhi/dt that stays where X does not move.
-inline double row_rate(const ConstraintRow& row, Instant at, std::span<const Matrix34> X)
-{
-    const Matrix34& X_i = row.body_i == world ? world_configuration : X[row.body_i];
-    return constraint_rate(row, at, X_i, X[row.body_j]);
-}
-
 }   // namespace livens

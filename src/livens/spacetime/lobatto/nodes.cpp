@@ -51,7 +51,7 @@ void Nodes::fix(int A, const InstantState& state)
     smallest_pivot_ = std::min(smallest_pivot_, state.smallest_pivot);
     double* values = values_.data() + static_cast<std::size_t>(A * tables_.rank);
     for (int c = 0; c < tables_.rank; ++c)
-        values[c] = tables_.value(state.basis.rows[c], at(A), X(A), state.basis.gradients.data() + 24 * c);
+        values[c] = tables_.value(state.basis.rows[c], at(A), X(A), state.basis.gradient(c));
 }
 
 void Nodes::place_at(int A, const double* X)
@@ -145,36 +145,18 @@ bool Nodes::constrain(const Stretch& stretch, bool same_choices)
     return std::isfinite(sum);
 }
 
-/// Phi is a quadratic polynomial, so Phi(X) = Phi(X_0) + 1/2 <grad Phi(X_0) + grad Phi(X), X - X_0> with the
-/// element's first node X_0, which does not lose the digits of a small increment.
 bool Nodes::constrain_node(int e, int B, bool same_choices, double& sum)
 {
     constexpr double rounding = 1e-16;   // of Phi at the start itself: nothing to correct
     constexpr double close = 1e-4;       // relative, for one linear step onto the constraints
     const int A = e * degree_ + B, k = tables_.rank;
-    const ConstraintBasis& first = basis(e * degree_);
     const std::vector<int>& rows = known_[0] != nullptr ? known_[0]->rows : tables_.independent;
     ConstraintBasis& own = bases_[A];
     tables_.map_twists(X(A), maps_.data() + place(A));
     smallest_pivot_ = std::min(smallest_pivot_, own.build(tables_, at(A), X(A), maps(A), rows, same_choices));
-    const double* reference = values_.data() + static_cast<std::size_t>(e * degree_ * k);
     for (int c = 0; c < k; ++c) {
         const auto& table = tables_.rows[static_cast<std::size_t>(own.rows[c])];
-        const double* g0 = first.gradients.data() + 24 * c;
-        const double* g = own.gradients.data() + 24 * c;
-        double phi = 0;
-        if (B == 0) {
-            phi = tables_.value(own.rows[c], at(A), X(A), g);
-        } else if (table.is_driven) {
-            phi = reference[c] + driven_value(e, B, c);
-        } else {
-            for (int side = 0; side < table.n_sides; ++side) {
-                const double* d = dX(e, B) + 12 * table.bodies[side];
-                for (const int a : table.columns[side])
-                    for (int i = a; i < a + 3; ++i) phi += (g0[12 * side + i] + g[12 * side + i]) * d[i];
-            }
-            phi = reference[c] + 0.5 * phi;
-        }
+        double phi = B == 0 ? tables_.value(own.rows[c], at(A), X(A), own.gradient(c)) : followed(e, B, c);
         if (std::abs(phi) < rounding * table.row->scale) phi = 0;
         if (!(std::abs(phi) <= close * table.row->scale)) near_ = false;
         const auto at = static_cast<std::size_t>(A * k + c);
@@ -185,21 +167,22 @@ bool Nodes::constrain_node(int e, int B, bool same_choices, double& sum)
     return near_;
 }
 
-/// The same for a row that depends on time: Phi(t, X) - Phi(t_0, X_0), first by time at X_0, then by X at t.
-double Nodes::driven_value(int e, int B, int c) const
+/// Phi from that of the element's first node, which keeps the digits of a small increment; or from node to
+/// node where angles are to be followed through several turns.
+double Nodes::followed(int e, int B, int c)
 {
-    const int first = e * degree_, A = first + B, row = bases_[A].rows[c];
-    const auto& table = tables_.rows[static_cast<std::size_t>(row)];
-    double g0[24];
-    tables_.gradient(row, at(A), X(first), g0);
-    const double* g = bases_[A].gradients.data() + 24 * c;
-    double sum = 0;
-    for (int side = 0; side < table.n_sides; ++side) {
-        const double* d = dX(e, B) + 12 * table.bodies[side];
-        for (const int a : table.columns[side])
-            for (int i = a; i < a + 3; ++i) sum += (g0[12 * side + i] + g[12 * side + i]) * d[i];
+    const int A = e * degree_ + B, row = bases_[A].rows[c];
+    const bool is_quadratic = tables_.rows[static_cast<std::size_t>(row)].is_quadratic;
+    const int from = is_quadratic ? e * degree_ : A - 1;
+    const double* step = dX(e, B);
+    if (!is_quadratic && B > 1) {
+        double* difference = work_.data() + size_;
+        for (std::size_t i = 0; i < size_; ++i) difference[i] = step[i] - dX(e, B - 1)[i];
+        step = difference;
     }
-    return tables_.change(row, at(first), at(A), X(first)) + 0.5 * sum;
+    return values_[static_cast<std::size_t>(from * tables_.rank + c)] +
+           tables_.change(row, at(from), X(from), basis(from).gradient(c), at(A), X(A), bases_[A].gradient(c),
+                          step);
 }
 
 double Nodes::correct(const Stretch& stretch)

@@ -71,8 +71,7 @@ private:
     void displace(const Set& from, int A_from, const double* twist, Set& to, int A);
     void measure_element(int e);
     bool constrain_node(int e, int B, bool same_choices, double& sum);
-
-    double driven_value(int e, int B, int c) const;
+    double followed(int e, int B, int c);
 
     const Tables& tables_;
     const LobattoRule& rule_;

@@ -176,7 +176,7 @@ void Rows::subtract(const ConstraintBasis& basis, const double* impulses, double
         const double s = impulses[c];
         for (int side = 0; side < table.n_sides; ++side) {
             double* r = out + 12 * table.bodies[side];
-            const double* g = basis.gradients.data() + 24 * c + 12 * side;
+            const double* g = basis.gradient(c) + 12 * side;
             for (const int a : table.columns[side])
                 for (int i = a; i < a + 3; ++i) r[i] -= s * g[i];
         }

@@ -48,10 +48,10 @@ void scale_block(const Tables& tables, const double* maps_A, int i, const double
     }
 }
 
-/// block <- N(X_row)^T K N(X_column), 6 x 6 row by row.
-void reduce(const Matrix<12, 12>& K, const double* X_row, const double* X_column, int dofs, double* block)
+/// block += N(X_row)^T K N(X_column), 6 x 6 row by row.
+void add_reduced(const Matrix<12, 12>& K, const double* X_row, const double* X_column, int dofs,
+                 double* block)
 {
-    std::fill(block, block + 36, 0.0);
     for (int j = 0; j < dofs; ++j) {
         double unit[6] = {0, 0, 0, 0, 0, 0}, dX[12], dF[12], row[6] = {0, 0, 0, 0, 0, 0};
         unit[j] = 1;
@@ -61,7 +61,7 @@ void reduce(const Matrix<12, 12>& K, const double* X_row, const double* X_column
             for (int c = 0; c < 12; ++c) dF[r] += K(r, c) * dX[c];
         }
         twist::rows(X_row, dF, row);
-        for (int r = 0; r < 6; ++r) block[6 * r + j] = row[r];
+        for (int r = 0; r < 6; ++r) block[6 * r + j] += row[r];
     }
 }
 
@@ -124,17 +124,20 @@ void Tangent::add_constraints(const Nodes& nodes, const Rows& rows, int A, Tange
     const ConstraintBasis& basis = nodes.basis(A);
     for (int c = 0; c < tables_.rank; ++c) {
         const auto& table = tables_.rows[basis.rows[c]];
-        if (table.form.empty() && !table.is_driven) continue;
+        if (table.form.empty() && table.is_quadratic) continue;
         for (int r = 0; r < table.n_sides; ++r) {
             for (int s = 0; s < table.n_sides; ++s) {
                 const int i = table.bodies[r], j = table.bodies[s];
                 double* to = r == s ? blocks_.data() + 36 * i : cross;
                 if (r != s) std::fill(cross, cross + 36, 0.0);
-                Matrix4 driven;
-                if (table.is_driven) driven = tables_.hessian(basis.rows[c], nodes.at(A), r, s);
-                const Matrix4& K = table.is_driven ? driven : table.K[r][s];
-                twist::add_block(K.data(), nodes.X(A) + 12 * i, nodes.X(A) + 12 * j, -rows.impulses(A)[c], to,
-                                 6);
+                const double *X_i = nodes.X(A) + 12 * i, *X_j = nodes.X(A) + 12 * j;
+                const double factor = -rows.impulses(A)[c];
+                if (table.is_quadratic)
+                    twist::add_block(table.K[r][s].data(), X_i, X_j, factor, to, 6);
+                else
+                    add_reduced(factor * constraint_hessian(*table.row, nodes.at(A),
+                                                            Configurations(nodes.X(A)), i, j),
+                                X_i, X_j, tables_.bodies[j].dofs, to);
                 if (r == s) continue;
                 scale_block(tables_, nodes.maps(A), i, nodes.maps(A), j, cross, scaled);
                 sink.block(i, j, scaled);
@@ -203,7 +206,8 @@ void Tangent::add_loads(const Stretch& stretch, const Nodes& nodes, int e, int a
                     for (int k = 0; k < 144; ++k)
                         K.a[k] += by_X * tangent.X[r][s].a[k] + by_V * tangent.V[r][s].a[k];
                 }
-                reduce(K, nodes.X(A) + 12 * i, nodes.X(B) + 12 * j, tables_.bodies[j].dofs, block);
+                std::fill(block, block + 36, 0.0);
+                add_reduced(K, nodes.X(A) + 12 * i, nodes.X(B) + 12 * j, tables_.bodies[j].dofs, block);
                 scale_block(tables_, nodes.maps(A), i, nodes.maps(B), j, block, scaled);
                 sink.block(i, j, scaled);
             }

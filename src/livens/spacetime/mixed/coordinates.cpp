@@ -95,7 +95,7 @@ void Coordinates::forces(double t, const double* X, const double* V, const doubl
     std::fill_n(F, n_X(), 0.0);
     tables.add_weight(1.0, F);
     tables.add_loads({t, Side::middle}, X, V, 1.0, F);
-    double g[24];
+    double g[Tables::gradient_size];
     for (int k = 0; k < n_rows(); ++k) {
         if (lambda[k] == 0) continue;
         const Tables::RowTable& row = tables.rows[rows[k]];
@@ -120,7 +120,7 @@ std::vector<double> Coordinates::multipliers(const State& state) const
                 columns[first[b] + c].emplace_back(first[b] + i,
                                                    tables.model->bodies()[b].mass(i / 3, c / 3));
     }
-    double g[24];
+    double g[Tables::gradient_size];
     for (std::size_t i = 0; i < gradient_entries.size(); ++i) {
         const GradientEntry& entry = gradient_entries[i];
         if (i == 0 || gradient_entries[i - 1].row != entry.row)

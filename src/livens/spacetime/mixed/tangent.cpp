@@ -94,7 +94,7 @@ void Equations::sum_element(const Fields& fields, int e)
     for (int g = 0; g < n_gauss(); ++g) {
         sample(fields, e, g);
         const double w = weight(e, g);
-        double gradient[24];
+        double gradient[Tables::gradient_size];
         for (std::size_t i = 0; i < gradients_.size(); ++i) {
             const GradientEntry& entry = m.gradient_entries[i];
             if (i == 0 || m.gradient_entries[i - 1].row != entry.row)

@@ -1,0 +1,253 @@
+#include "livens/multibody/joint_coordinates.h"
+
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <utility>
+
+#include "livens/base/error.h"
+#include "livens/base/text.h"
+
+namespace livens {
+
+namespace {
+
+using Point = SmoothFunction::Point;
+using Value = SmoothFunction::Value;
+
+/// A row of a function of forms, on the bodies of the first.
+ConstraintRow row_of(std::vector<PairForm> coordinates, SmoothFunction function, double scale,
+                     const std::string& label)
+{
+    ConstraintRow row;
+    row.body_i = coordinates.front().body_i;
+    row.body_j = coordinates.front().body_j;
+    row.scale = scale;
+    row.label = label;
+    row.coordinates = std::move(coordinates);
+    row.function = std::move(function);
+    return row;
+}
+
+[[noreturn]] void refuse(const char* code, const std::string& message, const std::string& value,
+                         const std::string& bound, const std::string& note, const std::string& help)
+{
+    throw InputError({code, "", message, value, bound, note, help});
+}
+
+// --- couplings
+
+/// Where the forms of a term stand among the numbers of a row.
+struct Term {
+    double factor;
+    std::size_t at;
+    bool is_angle;
+};
+
+/// The largest number of which all factors are whole multiples, by Euclid's algorithm; 0: none of at most
+/// 10,000 parts.
+double common_measure(const std::vector<Term>& terms)
+{
+    constexpr double rounding = 1e-11;   // of the largest factor: what decimals of a ratio leave
+    double measure = 0, largest = 0;
+    for (const Term& term : terms) {
+        if (!term.is_angle) continue;
+        double rest = std::abs(term.factor);
+        largest = std::max(largest, rest);
+        while (rest > rounding * largest)
+            measure = std::exchange(rest, std::abs(std::remainder(measure, rest)));
+    }
+    return measure * 10000 >= largest ? measure : 0;
+}
+
+Value angle_at(double c, double s)
+{
+    const double square = c * c + s * s, quartic = square * square;
+    Value angle;
+    angle.value = std::atan2(s, c);
+    angle.gradient[0] = -s / square;
+    angle.gradient[1] = c / square;
+    angle.hessian[0][0] = 2 * c * s / quartic;
+    angle.hessian[0][1] = angle.hessian[1][0] = (s * s - c * c) / quartic;
+    angle.hessian[1][1] = -2 * c * s / quartic;
+    return angle;
+}
+
+Value coupling_at(const std::vector<Term>& terms, double constant, double period, const Point& q)
+{
+    Value sum;
+    sum.value = -constant;
+    for (const auto& [factor, k, is_angle] : terms) {
+        if (!is_angle) {
+            sum.value += factor * q[k];
+            sum.gradient[k] += factor;
+            continue;
+        }
+        const Value angle = angle_at(q[k], q[k + 1]);
+        sum.value += factor * angle.value;
+        for (std::size_t i = 0; i < 2; ++i) {
+            sum.gradient[k + i] += factor * angle.gradient[i];
+            for (std::size_t j = 0; j < 2; ++j) sum.hessian[k + i][k + j] += factor * angle.hessian[i][j];
+        }
+    }
+    if (period > 0) sum.value = std::remainder(sum.value, period);
+    return sum;
+}
+
+/// Angles take the shorter way round.
+double coupling_change(const std::vector<Term>& terms, const Point& q, const Point& step)
+{
+    double sum = 0;
+    for (const auto& [factor, k, is_angle] : terms) {
+        const double c = q[k], s = is_angle ? q[k + 1] : 0, dc = step[k], ds = is_angle ? step[k + 1] : 0;
+        sum += factor * (is_angle ? std::atan2(c * ds - s * dc, c * (c + dc) + s * (s + ds)) : dc);
+    }
+    return sum;
+}
+
+// --- curves
+
+constexpr int n_samples = 256;
+
+/// A curve with samples from which nearest points are sought.
+struct SampledCurve : Curve {
+    std::vector<Vector3> samples;   ///< at first + k step
+
+    explicit SampledCurve(const Curve& curve) : Curve(curve)
+    {
+        for (int k = 0; k <= n_samples; ++k) samples.push_back(at(first + k * step()).x);
+        refuse_crossings();
+    }
+
+    double step() const { return (last - first) / n_samples; }
+
+    /// The parameter of the point nearest to x, from a parameter near it.
+    double nearest(const Vector3& x, double s) const
+    {
+        for (int i = 0; i < 50; ++i) {
+            const CurvePoint here = at(s);
+            const Vector3 r = x - here.x;
+            const double slope = dot(here.first, here.first) - dot(r, here.second);
+            // beyond the centre of curvature the distance has no minimum: along the tangent then
+            const double change = dot(r, here.first) / (slope > 0 ? slope : dot(here.first, here.first));
+            s += std::clamp(change, -4 * step(), 4 * step());
+            if (!(std::abs(change) > 1e-15 * (std::abs(s) + step()))) break;
+        }
+        return s;
+    }
+
+    double nearest(const Vector3& x) const
+    {
+        int best = 0;
+        for (int k = 1; k <= n_samples; ++k)
+            if (norm(x - samples[k]) < norm(x - samples[best])) best = k;
+        return nearest(x, first + best * step());
+    }
+
+private:
+    void refuse_crossings() const
+    {
+        constexpr int apart = 8;
+        for (int k = 0; k < n_samples; ++k)
+            for (int l = k + apart; l < n_samples; ++l) {
+                if (is_closed && k + n_samples - l < apart) continue;
+                if (norm(samples[k] - samples[l]) > norm(samples[k + 1] - samples[k])) continue;
+                refuse("curve-crosses-itself", "the curve crosses itself, or nearly",
+                       "at the parameters " + to_text(first + k * step(), 6) + " and " +
+                           to_text(first + l * step(), 6),
+                       "", "a point there would be on two branches", "divide the curve, or round it");
+            }
+    }
+};
+
+Vector3 place_of(const Point& q) { return {q[0], q[1], q[2]}; }
+
+/// d n / ds = -(n . gamma'') / |gamma'|^2 gamma' and ds/dx = gamma' / (|gamma'|^2 - r . gamma'').
+Value across_curve(const SampledCurve& curve, std::size_t normal, const Vector3& x, double s)
+{
+    const CurvePoint here = curve.at(s);
+    const Vector3 r = x - here.x, n = here.normals[normal];
+    const double square = dot(here.first, here.first);
+    const double bend = -dot(n, here.second) / (square * (square - dot(r, here.second)));
+    Value value;
+    value.value = dot(n, r);
+    for (int i = 0; i < 3; ++i) {
+        value.gradient[i] = n[i];
+        for (int j = 0; j < 3; ++j) value.hessian[i][j] = bend * here.first[i] * here.first[j];
+    }
+    return value;
+}
+
+}   // namespace
+
+JointCoordinate displacement_along(int body_i, const Vector4& n, const Vector4& a, int body_j,
+                                   const Vector4& b)
+{
+    return {{plane_row(body_i, n, a, body_j, b, 0, 1)}};
+}
+
+JointCoordinate angle_between(int body_i, const Vector4& a1, const Vector4& a2, int body_j, const Vector4& b)
+{
+    return {{inner_product_row(body_i, a1, body_j, b, 0, 1), inner_product_row(body_i, a2, body_j, b, 0, 1)}};
+}
+
+ConstraintRow coupling_row(const std::vector<CoupledCoordinate>& coupled, double constant, double scale,
+                           const std::string& label)
+{
+    std::vector<PairForm> forms;
+    std::vector<Term> terms;
+    bool has_angles = false;
+    for (const auto& [factor, coordinate] : coupled) {
+        if (!std::isfinite(factor) || factor == 0)
+            refuse("joint-row", "the factor of a coordinate must be finite and not zero", to_text(factor), "",
+                   "", "");
+        terms.push_back({factor, forms.size(), coordinate.is_angle()});
+        forms.insert(forms.end(), coordinate.forms.begin(), coordinate.forms.end());
+        has_angles = has_angles || coordinate.is_angle();
+    }
+    if (forms.empty() || forms.size() > SmoothFunction::most)
+        refuse("joint-row",
+               "a row couples at least one coordinate, and three angles or six displacements at most",
+               std::to_string(forms.size()) + " forms", "1 to " + std::to_string(SmoothFunction::most), "",
+               "");
+    const double measure = common_measure(terms);
+    if (has_angles && measure == 0)
+        refuse(
+            "gear-ratio", "the angles of a coupling turn in no ratio of whole numbers up to 10000", "", "",
+            "after one turn of one wheel the other would stand where no tooth is, so positions do not tell "
+            "whether the row holds",
+            "give the ratio of two numbers of teeth");
+    const double period = 2 * std::numbers::pi * measure;
+    return row_of(forms,
+                  {[=](const Point& q) { return coupling_at(terms, constant, period, q); },
+                   [=](const Point& q, const Point& step) { return coupling_change(terms, q, step); }},
+                  scale, label);
+}
+
+std::vector<ConstraintRow> curve_rows(const Curve& curve, int body_i, int body_j, const Vector4& b,
+                                      double scale)
+{
+    const auto sampled = std::make_shared<const SampledCurve>(curve);
+    std::vector<PairForm> place;
+    for (int k = 0; k < 3; ++k) {
+        Vector3 e{};
+        e[k] = 1;
+        place.push_back(plane_row(body_i, direction(e), point({}), body_j, b, 0, 1));
+    }
+    std::vector<ConstraintRow> rows;
+    for (std::size_t k = 0; k < 2; ++k) {
+        const auto at = [sampled, k](const Point& q) {
+            return across_curve(*sampled, k, place_of(q), sampled->nearest(place_of(q)));
+        };
+        const auto change = [sampled, k](const Point& q, const Point& step) {
+            const Vector3 from = place_of(q), to = from + place_of(step);
+            const double s = sampled->nearest(from);
+            return across_curve(*sampled, k, to, sampled->nearest(to, s)).value -
+                   across_curve(*sampled, k, from, s).value;
+        };
+        rows.push_back(row_of(place, {at, change}, scale, k == 0 ? "curve, normal 1" : "curve, normal 2"));
+    }
+    return rows;
+}
+
+}   // namespace livens

@@ -1,0 +1,265 @@
+// Rows that are functions of joint coordinates: a screw, a gear pair and a point on a curve.
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "livens/multibody/joint_coordinates.h"
+#include "livens/multibody/model.h"
+#include "livens/multibody/tables.h"
+#include "properties/joint_kit.h"
+
+namespace livens {
+namespace {
+
+using Bodies = std::vector<Matrix34>;
+using std::numbers::pi;
+
+std::string joined(const Failures& failures)
+{
+    std::string text;
+    for (const std::string& failure : failures) text += failure + "\n";
+    return text;
+}
+
+JointFrame anywhere(Random& random, const Matrix34& X_first, const Matrix34& X_second)
+{
+    return joint_frame(X_first, X_second, random.vector(), random.unit());
+}
+
+/// A unit vector across another.
+Vector3 across(const Vector3& axis)
+{
+    const Vector3 v = cross(axis, std::abs(axis[0]) < 0.7 ? Vector3{1, 0, 0} : Vector3{0, 1, 0});
+    return (1 / norm(v)) * v;
+}
+
+/// Four rows that leave a turn about the axis and a slide along it, and one that couples them; closed as it
+/// stands. Bodies exchanged, the screw stays right-handed.
+Joint screw(int first, int second, const JointFrame& frame, const Matrix34& X_first, const Matrix34& X_second)
+{
+    constexpr double pitch = 2;
+    Joint joint = revolute("j", first, second, frame);
+    joint.type = "screw";
+    joint.rows.erase(joint.rows.begin(), joint.rows.begin() + 3);
+    const Vector3 n = (1 / norm(frame.axis_first)) * frame.axis_first, u = across(n), v = cross(n, u);
+    const Vector4 a = point(frame.point_first), b = point(frame.point_second);
+    joint.rows.push_back(plane_row(first, direction(u), a, second, b, 0, 1));
+    joint.rows.push_back(plane_row(first, direction(v), a, second, b, 0, 1));
+    joint.rows[2].label = "across 1";
+    joint.rows[3].label = "across 2";
+    const Vector3 u_second = transpose(directors(X_second)) * (directors(X_first) * u);
+    joint.rows.push_back(coupling_row(
+        {{1, displacement_along(first, direction(n), a, second, b)},
+         {-pitch / (2 * pi), angle_between(first, direction(u), direction(v), second, direction(u_second))}},
+        0, 1, "screw"));
+    return joint;
+}
+
+/// A helix through the origin, whose normals do not turn about the tangent.
+CurvePoint helix(double s)
+{
+    constexpr double r = 0.8, rise = 0.3;
+    const double c = std::cos(s), d = std::sin(s), l = std::hypot(r, rise);
+    CurvePoint at{{r * c - r, r * d, rise * s}, {-r * d, r * c, rise}, {-r * c, -r * d, 0}, {}};
+    const Vector3 normal{-c, -d, 0}, binormal = (1 / l) * Vector3{rise * d, -rise * c, r};
+    const double turn = -rise / l * s;   // torsion times length, with |gamma'| = l: -rise / l^2 * l s
+    at.normals[0] = std::cos(turn) * normal + std::sin(turn) * binormal;
+    at.normals[1] = std::cos(turn) * binormal - std::sin(turn) * normal;
+    return at;
+}
+
+CurvePoint ellipse(double s)
+{
+    const double c = std::cos(s), d = std::sin(s);
+    CurvePoint at{{1.5 * c, d, 0}, {-1.5 * d, c, 0}, {-1.5 * c, -d, 0}, {}};
+    const double l = norm(at.first);
+    at.normals = {Vector3{at.first[1] / l, -at.first[0] / l, 0}, Vector3{0, 0, 1}};
+    return at;
+}
+
+/// The curve moved so that it passes the joint point where it stands at s = 0.4.
+Joint slot(int first, int second, const JointFrame& frame, const Matrix34&, const Matrix34&)
+{
+    Joint joint = spherical("j", first, second, frame);
+    joint.type = "slot";
+    const Vector3 shift = joint.point_first - helix(0.4).x;
+    Curve curve{[shift](double s) {
+                    CurvePoint at = helix(s);
+                    at.x += shift;
+                    return at;
+                },
+                -2, 2, false};
+    joint.rows = curve_rows(curve, joint.first, joint.second, point(joint.point_second), 1);
+    return joint;
+}
+
+const JointCase screw_case{"screw", 5, anywhere, screw};
+const JointCase slot_case{"slot", 2, anywhere, slot};
+
+TEST(CoupledJoints, AScrewAndASlotPassTheKit)
+{
+    EXPECT_EQ(joined(check_joint(screw_case)), "");
+    // Exchanged, the curve would be one in the other body: no order is checked.
+    for (const auto check : {check_joint_labels, check_joint_closure, check_joint_gradient, check_joint_rates,
+                             check_joint_rank, check_joint_objectivity, check_joint_world})
+        EXPECT_EQ(joined(check(slot_case)), "");
+}
+
+TEST(CoupledJoints, AWrongDerivativeFailsTheRates)
+{
+    const auto broken = [](JointCase joint, double gradient, double hessian) {
+        joint.make = [=, make = joint.make](int first, int second, const JointFrame& frame, const Matrix34& X,
+                                            const Matrix34& Y) {
+            Joint made = make(first, second, frame, X, Y);
+            SmoothFunction& f = *made.rows.back().function;
+            f.at = [=, inner = f.at](const SmoothFunction::Point& q) {
+                SmoothFunction::Value value = inner(q);
+                value.gradient[1] *= gradient;
+                value.hessian[1][1] *= hessian;
+                return value;
+            };
+            return made;
+        };
+        return joint;
+    };
+    for (const JointCase& joint : {screw_case, slot_case}) {
+        EXPECT_EQ(joined(check_joint_rates(broken(joint, 1, 1))), "") << joint.type;
+        EXPECT_NE(joined(check_joint_rates(broken(joint, 1.01, 1))), "") << joint.type;
+        EXPECT_NE(joined(check_joint_rates(broken(joint, 1, 1.01))), "") << joint.type;
+    }
+}
+
+/// Two wheels on a carrier: n_1 turns of one are n_2 of the other. Axes are those of the carrier.
+ConstraintRow gear(double n_1, double n_2)
+{
+    const Vector4 u = direction({1, 0, 0}), v = direction({0, 1, 0});
+    return coupling_row({{n_1, angle_between(0, u, v, 1, u)}, {n_2, angle_between(0, u, v, 2, u)}}, 0, 1,
+                        "gear");
+}
+
+/// Carrier and wheels, turned by a and b about the carrier's third axis; moved together by `common`.
+Bodies wheels(const Matrix3& common, double a, double b)
+{
+    const auto turned = [&](double angle) {
+        return configuration({}, common * directors_from_rotation_vector({0, 0, angle}));
+    };
+    return {configuration({}, common), turned(a), turned(b)};
+}
+
+TEST(CoupledJoints, GearsKnowWholeTurns)
+{
+    Random random(11);
+    const ConstraintRow row = gear(20, 35);   // 7 turns of the first are 4 of the second
+    for (int n = 0; n < 200; ++n) {
+        const double a = 40 * random.number();
+        const Matrix3 common = random.rotation();
+        EXPECT_NEAR(constraint_value(row, wheels(common, a, -a * 20 / 35)), 0, 1e-12);
+        // off by a little, by a tooth, and by what the wheels reach by turning
+        EXPECT_NEAR(constraint_value(row, wheels(common, a + 0.01, -a * 20 / 35)), 0.2, 1e-12);
+        EXPECT_NEAR(constraint_value(row, wheels(common, a + 2 * pi / 20, -a * 20 / 35)), 2 * pi, 1e-12);
+        EXPECT_NEAR(constraint_value(row, wheels(common, a + 2 * pi / 4, -a * 20 / 35)), 0, 1e-12);
+    }
+}
+
+TEST(CoupledJoints, TheyFollowAMotionWithoutAJump)
+{
+    const ConstraintRow row = gear(20, 35);
+    const Bodies from = wheels(identity<3>(), 3.1, 1),
+                 to = wheels(identity<3>(), 3.3, 1);   // past half a turn
+    Bodies step = to;
+    for (std::size_t b = 0; b < to.size(); ++b) step[b] -= from[b];
+    EXPECT_NEAR(constraint_change(row, {}, from, {}, to, step), 20 * 0.2, 1e-13);
+}
+
+TEST(CoupledJoints, TablesOfThreeBodiesAgreeWithDifferences)
+{
+    Random random(12);
+    Model model;
+    for (const char* name : {"carrier", "one", "two"})
+        model.add_body(rigid_body(name, box(1, {1, 2, 3}), {}));
+    Joint joint = revolute("gear", 1, 2, {});
+    joint.rows = {gear(2, -3)};
+    joint.axis_first = joint.axis_second = {};
+    model.add_joint(joint);
+    const Tables tables(model, {0});
+    ASSERT_EQ(tables.rows[0].n_sides, 3);
+    for (int n = 0; n < 20; ++n) {
+        Bodies X = wheels(random.rotation(), 3 * random.number(), 3 * random.number()), V;
+        for (Matrix34& x : X) {
+            x += 0.1 * random.matrix<3, 4>();
+            V.push_back(random.matrix<3, 4>());
+        }
+        const auto at = [&](double s) {
+            Bodies moved = X;
+            for (std::size_t b = 0; b < X.size(); ++b) moved[b] += s * V[b];
+            return tables.value(0, {}, moved[0].data());
+        };
+        constexpr double h = 0.005;
+        const auto odd = [&](int k) { return std::remainder(at(k * h) - at(-k * h), 2 * pi); };
+        double g[Tables::gradient_size], rate = 0, curvature = 0;
+        tables.gradient(0, {}, X[0].data(), g);
+        for (int side = 0; side < 3; ++side)
+            for (const int a : tables.rows[0].columns[side])
+                for (int i = a; i < a + 3; ++i)
+                    rate += g[12 * side + i] * V[tables.rows[0].bodies[side]].a[i];
+        EXPECT_NEAR(rate, (45 * odd(1) - 9 * odd(2) + odd(3)) / (60 * h), 1e-8);
+        for (int i = 0; i < 3; ++i)
+            for (int j = 0; j < 3; ++j) {
+                const auto H = constraint_hessian(model.row(0), {}, X, i, j);
+                for (int r = 0; r < 12; ++r)
+                    for (int c = 0; c < 12; ++c) curvature += V[i].a[r] * H(r, c) * V[j].a[c];
+            }
+        EXPECT_NEAR(curvature, tables.curvature(0, {}, X[0].data(), V[0].data()), 1e-11);
+    }
+}
+
+TEST(CoupledJoints, WhatNoTeethCanDoIsRefused)
+{
+    expect_complaint([] { gear(1, pi); }, "gear-ratio");
+    expect_complaint([] { gear(1, 1e-5); }, "gear-ratio");
+    EXPECT_NO_THROW(gear(1, 1.0 / 3));
+    EXPECT_NO_THROW(gear(0.1, 0.7));
+    expect_complaint([] { gear(0, 1); }, "joint-row");
+    expect_complaint([] { coupling_row({}, 0, 1, "none"); }, "joint-row");
+    const auto turn = angle_between(0, direction({1, 0, 0}), direction({0, 1, 0}), 1, direction({1, 0, 0}));
+    EXPECT_NO_THROW(coupling_row({{1, turn}, {2, turn}, {3, turn}}, 0, 1, "three"));
+    expect_complaint(
+        [&] {
+            coupling_row({{1, turn}, {2, turn}, {3, turn}, {4, turn}}, 0, 1, "four");
+        },
+        "joint-row");
+}
+
+TEST(CoupledJoints, ACurveThatCrossesItselfIsRefused)
+{
+    const auto eight = [](double s) {
+        CurvePoint at{{std::sin(2 * s), std::sin(s), 0},
+                      {2 * std::cos(2 * s), std::cos(s), 0},
+                      {-4 * std::sin(2 * s), -std::sin(s), 0},
+                      {}};
+        const double l = norm(at.first);
+        at.normals = {Vector3{at.first[1] / l, -at.first[0] / l, 0}, Vector3{0, 0, 1}};
+        return at;
+    };
+    expect_complaint(
+        [&] {
+            curve_rows({eight, 0, 2 * pi, true}, world, 0, point({}), 1);
+        },
+        "curve-crosses-itself");
+    EXPECT_NO_THROW(curve_rows({ellipse, 0, 2 * pi, true}, world, 0, point({}), 1));
+}
+
+TEST(CoupledJoints, AnEllipseHoldsAllRound)
+{
+    const auto rows = curve_rows({ellipse, 0, 2 * pi, true}, world, 0, point({}), 1);
+    for (int n = 0; n < 100; ++n) {
+        const CurvePoint at = ellipse(0.1 * n);
+        const double off = n % 2 ? 0 : 0.05;
+        const Bodies X{configuration(at.x + off * at.normals[0], identity<3>())};
+        EXPECT_NEAR(constraint_value(rows[0], X), off, 1e-14) << n;
+        EXPECT_NEAR(constraint_value(rows[1], X), 0, 1e-15) << n;
+    }
+}
+
+}   // namespace
+}   // namespace livens
