@@ -1,22 +1,15 @@
 # The experiments in their short version, judged as in the full one, and their negative controls. They run the
 # program, so there is nothing here for sanitizers that tests/system does not have already.
 if(LIVENS_BUILD_PROGRAM AND LIVENS_SLOW_TESTS)
-    if(NOT LIVENS_SYSTEM_PYTHON)
-        set(LIVENS_SYSTEM_PYTHON /usr/bin/python3)   # Debian's: another python3 may come first on the path
-        if(NOT EXISTS ${LIVENS_SYSTEM_PYTHON})
-            find_program(LIVENS_PYTHON3 python3 REQUIRED)
-            set(LIVENS_SYSTEM_PYTHON ${LIVENS_PYTHON3})
-        endif()
-    endif()
     file(GLOB folders CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/experiments/*/expected.json)
     foreach(path ${folders})
         get_filename_component(folder ${path} DIRECTORY)
         get_filename_component(name ${folder} NAME)
-        add_test(NAME experiments.${name} COMMAND ${LIVENS_SYSTEM_PYTHON} -B ${folder}/run --short
+        add_test(NAME experiments.${name} COMMAND ${livens_python} -B ${folder}/run --short
                  --livens $<TARGET_FILE:livens> --output ${PROJECT_BINARY_DIR}/paper_short/${name})
         set_tests_properties(experiments.${name} PROPERTIES LABELS slow TIMEOUT 300)
     endforeach()
-    add_test(NAME experiments.controls COMMAND ${LIVENS_SYSTEM_PYTHON} -B
+    add_test(NAME experiments.controls COMMAND ${livens_python} -B
              ${PROJECT_SOURCE_DIR}/experiments/controls/run --livens $<TARGET_FILE:livens>)
     set_tests_properties(experiments.controls PROPERTIES LABELS slow TIMEOUT 300)
 endif()

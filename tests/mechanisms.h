@@ -55,12 +55,13 @@ inline Vector3 tip(const State& state, int body, double metre = 1)
     return state.X[body] * point({metre, 0, 0});
 }
 
-/// A box of 2 x 1 x 1 m and 3 kg at rest under a torque of 2 N m along (1, 1, 1).
-inline Model free_box()
+/// A box of 2 x 1 x 1 m and 3 kg, at rest or in flight, under a torque of 2 N m along (1, 1, 1).
+inline Model free_box(const Vector3& velocity = {})
 {
     const double mu = 2 / std::sqrt(3.0);
     Model model;
-    const int body = model.add_body(rigid_body("box", box(1.5, {2, 1, 1})));
+    const int body =
+        model.add_body(rigid_body("box", box(1.5, {2, 1, 1}), {{}, identity<3>(), velocity, {}}));
     model.add_load(torque("motor", body, {mu, mu, mu}, Frame::inertial));
     return model;
 }

@@ -5,6 +5,16 @@
 
 namespace livens::tests {
 
+// The words that choose, as scenarios spell them.
+inline constexpr auto natural = Mixed::Start::natural;
+inline constexpr auto strong = Mixed::Start::strong;
+inline constexpr auto equal = Mixed::Multipliers::equal;
+inline constexpr auto lower = Mixed::Multipliers::lower;
+inline constexpr auto zero = Mixed::EndMultiplier::zero;
+inline constexpr auto lagrange = Mixed::Basis::lagrange;
+inline constexpr auto bspline = Mixed::Basis::bspline;
+inline constexpr auto nurbs = Mixed::Basis::nurbs;
+
 struct Pairing {
     Mixed::Basis basis = Mixed::Basis::lagrange;
     int degree = 1;

@@ -7,13 +7,6 @@
 namespace livens::tests {
 namespace {
 
-constexpr auto natural = Mixed::Start::natural;
-constexpr auto strong = Mixed::Start::strong;
-constexpr auto equal = Mixed::Multipliers::equal;
-constexpr auto lower = Mixed::Multipliers::lower;
-constexpr auto lagrange = Mixed::Basis::lagrange;
-constexpr auto bspline = Mixed::Basis::bspline;
-
 /// |L(1 s) - torque times 1 s| of free_box().
 double lost_angular_momentum(const Mixed& method, int n)
 {

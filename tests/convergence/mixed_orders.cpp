@@ -11,14 +11,6 @@ struct Order {
     double tolerance;
 };
 
-constexpr auto natural = Mixed::Start::natural;
-constexpr auto strong = Mixed::Start::strong;
-constexpr auto equal = Mixed::Multipliers::equal;
-constexpr auto lower = Mixed::Multipliers::lower;
-constexpr auto zero = Mixed::EndMultiplier::zero;
-constexpr auto lagrange = Mixed::Basis::lagrange;
-constexpr auto bspline = Mixed::Basis::bspline;
-
 class MixedOrders : public ::testing::TestWithParam<Order> {};
 
 /// Slope of the straight line through (log n, -log error) of errors between 1e-3 and 1e-9, by least squares.

@@ -1,17 +1,11 @@
 # The house's rules, checked as tests: the table of floors, sizes, names, documents. Each checker is also run
-# against made-up faults that it must refuse. Debian's interpreter is named by its path: another python3 may
-# come first.
+# against made-up faults that it must refuse.
 
-set(livens_python /usr/bin/python3)
-if(NOT EXISTS ${livens_python})
-    find_program(LIVENS_PYTHON python3 REQUIRED)
-    set(livens_python ${LIVENS_PYTHON})
-endif()
-foreach(check floors functions docs)
+foreach(check floors functions classes docs)
     set(script ${CMAKE_CURRENT_SOURCE_DIR}/layout/check_floors.py)
     set(arguments ${PROJECT_SOURCE_DIR})
-    if(check STREQUAL "functions")
-        list(APPEND arguments --functions)
+    if(check MATCHES "functions|classes")
+        list(APPEND arguments --${check})
     elseif(check STREQUAL "docs")
         set(script ${CMAKE_CURRENT_SOURCE_DIR}/layout/check_docs.py)
     endif()

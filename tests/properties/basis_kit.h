@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "livens/time/time_space.h"
+#include "properties/kit.h"
 
 namespace livens {
 
@@ -31,9 +32,6 @@ BasisCase basis_case(std::string family, std::string what, TimeSpace space, int 
 
 /// Every family of the library in every degree, on even and uneven elements; and what lower() makes of them.
 const std::vector<BasisCase>& basis_cases();
-
-/// What is wrong, one sentence each; empty if nothing is.
-using Failures = std::vector<std::string>;
 
 /// Functions are numbered without gaps, add up to one, their derivatives to zero; splines are not negative;
 /// at the start only the first one, at the end only the last one is not zero (continuous spaces).

@@ -10,13 +10,6 @@
 namespace livens {
 namespace {
 
-std::string joined(const Failures& failures)
-{
-    std::string text;
-    for (const std::string& failure : failures) text += failure + "\n";
-    return text;
-}
-
 TEST(BasisKit, EverySpacePasses)
 {
     for (const BasisCase& basis : basis_cases()) EXPECT_EQ(joined(check_basis(basis)), "");

@@ -8,13 +8,6 @@
 namespace livens {
 namespace {
 
-std::string joined(const Failures& failures)
-{
-    std::string text;
-    for (const std::string& failure : failures) text += failure + "\n";
-    return text;
-}
-
 /// mean + slope s + amplitude (1 - cos(rate s)), with s = t - kit_instant.
 TimeFunction wave(double mean, double slope, double amplitude, double rate)
 {

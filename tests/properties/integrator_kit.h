@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "livens/spacetime/solve.h"
+#include "properties/kit.h"
 
 namespace livens {
 
@@ -56,9 +57,6 @@ IntegratorCase integrator_case(const Method& method, const std::string& more = "
 
 /// Every method of the library, in its degrees and pairings.
 const std::vector<IntegratorCase>& integrator_cases();
-
-/// What is wrong, one sentence each; empty if nothing is.
-using Failures = std::vector<std::string>;
 
 /// The rate of the last two of at least four refinements whose errors are 50 times above the gap of two runs
 /// of a witness (Newton's and Euler's equations, tests/newton_euler.h).

@@ -1,17 +1,13 @@
 // Every method of the library, and what is stated of it: the kit runs over this list.
 #include "properties/integrator_kit.h"
 
+#include "mixed_problems.h"
+
 namespace livens {
 
 namespace {
 
-constexpr auto natural = Mixed::Start::natural;
-constexpr auto strong = Mixed::Start::strong;
-constexpr auto equal = Mixed::Multipliers::equal;
-constexpr auto lower = Mixed::Multipliers::lower;
-constexpr auto lagrange = Mixed::Basis::lagrange;
-constexpr auto bspline = Mixed::Basis::bspline;
-constexpr auto nurbs = Mixed::Basis::nurbs;
+using namespace tests;
 
 using Orders = std::array<StatedOrder, n_problems>;
 
@@ -54,23 +50,11 @@ IntegratorCase endpoint_case()
     return c;
 }
 
-struct Pairing {
-    Mixed::Basis basis;
-    int degree;
-    Mixed::Start start;
-    Mixed::Multipliers multipliers;
-};
-
 /// Momenta and (without constraints) reversal are those of the natural start: Hamilton's law with all its
 /// rows. None is stable but strong ones of Lagrange degree 1 and 2, which damp.
 IntegratorCase mixed_case(const Pairing& pairing, const Orders& orders)
 {
-    Mixed method;
-    method.basis = pairing.basis;
-    method.degree = pairing.degree;
-    method.start = pairing.start;
-    method.multipliers = pairing.multipliers;
-    IntegratorCase c = integrator_case(method);
+    IntegratorCase c = integrator_case(mixed(pairing));
     c.orders = orders;
     c.reversal = pairing.start == natural ? Reversal::points : Reversal::never;
     c.keeps_linear_momentum = true;

@@ -17,13 +17,6 @@ namespace {
 
 using Check = Failures (*)(const IntegratorCase&);
 
-std::string joined(const Failures& failures)
-{
-    std::string text;
-    for (const std::string& failure : failures) text += failure + "\n";
-    return text;
-}
-
 void expect_all_pass(Check check)
 {
     for (const IntegratorCase& c : integrator_cases()) EXPECT_EQ(joined(check(c)), "") << c.what;

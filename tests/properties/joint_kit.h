@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "livens/multibody/joints.h"
+#include "properties/kit.h"
 #include "unit/multibody/random_states.h"
 
 namespace livens {
@@ -26,9 +27,6 @@ struct JointCase {
 
 /// Every joint of the library.
 const std::vector<JointCase>& joint_cases();
-
-/// What is wrong, one sentence each; empty if nothing is.
-using Failures = std::vector<std::string>;
 
 Failures check_joint_labels(const JointCase& joint);    ///< n_rows, labels unique, scales positive
 Failures check_joint_closure(const JointCase& joint);   ///< zero at assembly, body or world first

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "livens/multibody/loads.h"
+#include "properties/kit.h"
 #include "unit/multibody/random_states.h"
 
 namespace livens {
@@ -18,9 +19,6 @@ struct LoadCase {
 
 /// Every load of the library, in every variant.
 const std::vector<LoadCase>& load_cases();
-
-/// What is wrong, one sentence each; empty if nothing is.
-using Failures = std::vector<std::string>;
 
 /// dF/dX and dF/dV equal differences of order 8 (error about 1e-12) at 1000 states with skew directors; where
 /// a flag says that there is no dependence, there is none.

@@ -22,21 +22,9 @@ const json& witness()
     return data;
 }
 
-/// The box in flight; free_box() rests.
-Model flying_box()
-{
-    const double mu = 2 / std::sqrt(3.0);
-    Placement flying;
-    flying.velocity = {5, 5, 5};
-    Model model;
-    const int body = model.add_body(rigid_body("box", box(1.5, {2, 1, 1}), flying));
-    model.add_load(torque("motor", body, {mu, mu, mu}, Frame::inertial));
-    return model;
-}
-
 Model model_of(const std::string& name)
 {
-    if (name == "free_box") return flying_box();
+    if (name == "free_box") return free_box({5, 5, 5});
     return cubes_on_rods(name == "pendulum_offset" ? 0.1 : 0);
 }
 
@@ -129,7 +117,7 @@ TEST(MixedWitness, FindsTheSameConditionNumbers)
         method.end_multiplier = Mixed::EndMultiplier::zero;
         SolveOptions options;
         options.condition = true;
-        const Model model = flying_box();
+        const Model model = free_box({5, 5, 5});
         const Solution solution =
             solve(model, {model.start()}, make_time_mesh(0, 1, record["elements"]), method, options);
         EXPECT_EQ(solution.report.unknowns, record["size"].get<int>());

@@ -2,19 +2,12 @@
 # netCDF4 or the right to mount is skipped where it is missing.
 
 if(LIVENS_BUILD_PROGRAM)
-    if(NOT LIVENS_SYSTEM_PYTHON)
-        set(LIVENS_SYSTEM_PYTHON /usr/bin/python3)   # Debian's: another python3 may come first on the path
-        if(NOT EXISTS ${LIVENS_SYSTEM_PYTHON})
-            find_program(LIVENS_PYTHON3 python3 REQUIRED)
-            set(LIVENS_SYSTEM_PYTHON ${LIVENS_PYTHON3})
-        endif()
-    endif()
     set(script ${CMAKE_CURRENT_SOURCE_DIR}/system/program_test.py)
     file(STRINGS ${script} classes REGEX "^class [A-Za-z]+\\(ProgramTest\\)")
     set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${script})
     foreach(line ${classes})
         string(REGEX REPLACE "^class ([A-Za-z]+).*" "\\1" name "${line}")
-        add_test(NAME system.${name} COMMAND ${LIVENS_SYSTEM_PYTHON} -B ${script} ${name})
+        add_test(NAME system.${name} COMMAND ${livens_python} -B ${script} ${name})
         set_tests_properties(system.${name} PROPERTIES LABELS fast TIMEOUT 120
                              ENVIRONMENT "LIVENS_PROGRAM=$<TARGET_FILE:livens>;LIVENS_SOURCE_DIR=${PROJECT_SOURCE_DIR}")
     endforeach()

@@ -4,7 +4,6 @@
 #include <limits>
 #include <optional>
 
-#include "livens/diagnostics/detail/forces.h"
 #include "livens/diagnostics/detail/largest.h"
 #include "livens/diagnostics/detail/sampler.h"
 #include "livens/diagnostics/diagnostics.h"

@@ -1,6 +1,5 @@
 #include <cassert>
 
-#include "livens/diagnostics/detail/forces.h"
 #include "livens/diagnostics/diagnostics.h"
 
 namespace livens {

@@ -5,7 +5,6 @@
 #include <string>
 
 #include "livens/base/error.h"
-#include "livens/diagnostics/detail/forces.h"
 #include "livens/diagnostics/detail/largest.h"
 #include "livens/diagnostics/detail/sampler.h"
 #include "livens/diagnostics/diagnostics.h"

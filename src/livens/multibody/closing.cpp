@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <optional>
 #include <utility>
 
 #include "livens/base/error.h"
+#include "livens/base/text.h"
 #include "livens/multibody/detail/wording.h"
 #include "livens/multibody/projection.h"
 #include "livens/multibody/rank.h"
@@ -21,17 +21,7 @@ constexpr double eps = std::numeric_limits<double>::epsilon();
 constexpr double start_tolerance = 1e-9;
 constexpr const char* project_help = "correct it, or let the start be projected onto the joints";
 
-std::string number(double x)
-{
-    char text[32];
-    std::snprintf(text, sizeof text, "%.3g", x);
-    return text;
-}
-
-std::string row_name(const Model& model, int row)
-{
-    return "joint '" + model.joints()[model.row_joint(row)].name + "', row '" + model.row(row).label + "'";
-}
+std::string number(double x) { return to_text(x, 3); }
 
 std::string joint_path(const Model& model, int row)
 {
@@ -131,14 +121,14 @@ void settle_directors(const Model& model, StartPolicy policy, State& state, std:
         const Gap worst = widest_gap(model, rest.X, rank.dependent);
         if (worst.violation > start_tolerance) {
             complain("joint-contradiction", joint_path(model, worst.row),
-                     row_name(model, worst.row) + " cannot be fulfilled together with the other joints",
+                     model.row_name(worst.row) + " cannot be fulfilled together with the other joints",
                      "violation " + number(worst.violation),
                      "remove this joint, or make its points and axes fit the others");
         }
     }
     const Gap worst = widest_gap(model, open.X, all_rows(model));
     complain("start-position", joint_path(model, worst.row),
-             row_name(model, worst.row) + " stays open: the joints cannot be closed from this start",
+             model.row_name(worst.row) + " stays open: the joints cannot be closed from this start",
              "violation " + number(worst.violation),
              "check lengths and joint points, or start nearer to the closed mechanism");
 }
@@ -166,7 +156,7 @@ void settle_positions(const Model& model, StartPolicy policy, State& state, std:
     if (!closing.closed && !gap.near) explain_open(model, closing);
     if (!gap.near && policy == StartPolicy::check) {
         complain("start-position", joint_path(model, gap.row),
-                 row_name(model, gap.row) + " is open at the start", "violation " + number(gap.violation),
+                 model.row_name(gap.row) + " is open at the start", "violation " + number(gap.violation),
                  project_help);
     }
     note_moves(model, state.X, closing.X, notes);
@@ -248,7 +238,7 @@ RateFault worst_rate(const Model& model, const State& state, std::span<const dou
         fault.relative = relative;
         fault.complaint = {"start-velocity",
                            joint_path(model, r),
-                           "the velocities at the start break " + row_name(model, r),
+                           "the velocities at the start break " + model.row_name(r),
                            "dPhi/dt = " + number(rate),
                            "",
                            "",

@@ -54,6 +54,19 @@ TimeVector window(const TimeVector& value, double from, double until)
     return {window(value[0], from, until), window(value[1], from, until), window(value[2], from, until)};
 }
 
+LoadArguments load_arguments(const Load& load, Instant at, std::span<const Matrix34> X,
+                             std::span<const Matrix34> V)
+{
+    LoadArguments arguments;
+    arguments.at = at;
+    for (int b = 0; b < 2; ++b) {
+        if (load.bodies[b] == world) continue;
+        arguments.X[b] = X[load.bodies[b]];
+        arguments.V[b] = V[load.bodies[b]];
+    }
+    return arguments;
+}
+
 double load_power(const Load& load, const LoadArguments& arguments)
 {
     LoadForces F{};

@@ -4,6 +4,7 @@
 #include <array>
 #include <functional>
 #include <limits>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -76,6 +77,10 @@ struct SpringDamper {
 /// coincide: the force is zero for free_length 0 and along no direction (zero) otherwise.
 Load spring_damper(const std::string& name, int first, const Vector3& point_first, int second,
                    const Vector3& point_second, const SpringDamper& spring);
+
+/// What a load is asked with, from X and V of all bodies.
+LoadArguments load_arguments(const Load& load, Instant at, std::span<const Matrix34> X,
+                             std::span<const Matrix34> V);
 
 /// tr(F^T V) over both bodies.
 double load_power(const Load& load, const LoadArguments& arguments);

@@ -7,21 +7,12 @@
 
 #include "livens/multibody/rank.h"
 #include "livens/multibody/rows.h"
+#include "livens/multibody/twist.h"
 #include "livens/solvers/dense.h"
 
 namespace livens {
 
 namespace {
-
-/// exp(w) d - d.
-Vector3 turn(const Vector3& d, const Vector3& w)
-{
-    const double angle = norm(w);
-    if (angle == 0) return {};
-    const double half = std::sin(0.5 * angle) / angle;
-    const Vector3 wd = cross(w, d);
-    return (std::sin(angle) / angle) * wd + (2 * half * half) * cross(w, wd);
-}
 
 /// One body in mass-orthonormal coordinates y = (sqrt(M) v_c, L^T w_body): its kinetic energy is 1/2 |y|^2,
 /// and nothing in them is a difference of large numbers. L L^T is the inertia about the centre of mass and
@@ -180,8 +171,10 @@ private:
         if (!finite) return std::numeric_limits<double>::infinity();
         const double fraction = angle > 0.5 ? 0.5 / angle : 1;
         for (std::size_t b = 0; b < X.size(); ++b) {
+            const Vector3 w = fraction * twists[b].spin;
+            const double turn[6] = {0, 0, 0, w[0], w[1], w[2]};
             Matrix34 change{};
-            for (int i = 1; i < 4; ++i) change.set_column(i, turn(X[b].column(i), fraction * twists[b].spin));
+            twist::displacement(turn, X[b].data(), change.data());
             set_reference(inertias_[b], fraction * twists[b].velocity, change);
             X[b] += change;
         }

@@ -351,31 +351,23 @@ ConditionNumbers condition_numbers(const SparseMatrix& scaled, const SparseLU& l
     Values scratch(static_cast<std::size_t>(scaled.size));
     using Input = std::span<const double>;
     using Output = std::span<double>;
-    const auto load = [&](Input x) { std::copy(x.begin(), x.end(), scratch.begin()); };
-    const LinearMap matrix = [&](Input x, Output y) {   // R^-1 S C^-1
-        load(x);
-        divide_by(scratch, C);
-        scaled.multiply(scratch, y);
-        divide_by(y, R);
+    /// y = after act(before x), with diagonal matrices.
+    const auto between = [&](auto scale, const Values& before, auto act, const Values& after) -> LinearMap {
+        return [=, &scratch, &before, &after](Input x, Output y) {
+            std::copy(x.begin(), x.end(), scratch.begin());
+            scale(scratch, before);
+            act(Input(scratch), y);
+            scale(y, after);
+        };
     };
-    const LinearMap matrix_transposed = [&](Input x, Output y) {
-        load(x);
-        divide_by(scratch, R);
-        scaled.multiply_transposed(scratch, y);
-        divide_by(y, C);
-    };
-    const LinearMap inverse = [&](Input x, Output y) {   // C S^-1 R
-        load(x);
-        multiply_by(scratch, R);
-        lu.solve(scratch, y);
-        multiply_by(y, C);
-    };
-    const LinearMap inverse_transposed = [&](Input x, Output y) {
-        load(x);
-        multiply_by(scratch, C);
-        lu.solve_transposed(scratch, y);
-        multiply_by(y, R);
-    };
+    const LinearMap matrix = between(
+        divide_by, C, [&](Input x, Output y) { scaled.multiply(x, y); }, R);
+    const LinearMap matrix_transposed = between(
+        divide_by, R, [&](Input x, Output y) { scaled.multiply_transposed(x, y); }, C);
+    const LinearMap inverse = between(
+        multiply_by, R, [&](Input x, Output y) { lu.solve(x, y); }, C);
+    const LinearMap inverse_transposed = between(
+        multiply_by, C, [&](Input x, Output y) { lu.solve_transposed(x, y); }, R);
     return {.one = one_norm(scaled, R, C) * one_norm(scaled.size, inverse, inverse_transposed),
             .two = two_norm(scaled.size, matrix, matrix_transposed)
                 * two_norm(scaled.size, inverse, inverse_transposed)};

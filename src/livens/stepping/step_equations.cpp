@@ -106,13 +106,7 @@ void StepEquations::add_loads(const StepStart& start, const std::vector<Matrix34
     // The end of a step is seen from inside the step: a load that jumps there has not jumped yet.
     const Instant at{start.t + a_ * start.h, a_ == 1 ? Side::left : Side::middle};
     for (const Load& load : model_.loads()) {
-        LoadArguments arguments;
-        arguments.at = at;
-        for (int s = 0; s < 2; ++s) {
-            if (load.bodies[s] == world) continue;
-            arguments.X[s] = X_a[load.bodies[s]];
-            arguments.V[s] = V_a[load.bodies[s]];
-        }
+        const LoadArguments arguments = load_arguments(load, at, X_a, V_a);
         LoadForces F{};
         LoadTangent T;
         load.forces(arguments, F);

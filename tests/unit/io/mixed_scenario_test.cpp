@@ -319,6 +319,15 @@ TEST(Advice, OfTheCoreIsSpelledInTheKeysOfTheFile)
     EXPECT_NE(refused.diagnostics[0].help.find("(family = \"lobatto\" in [method])"), std::string::npos)
         << shown(refused);
 
+    const auto help_for = [](const std::string& keys) {
+        const ScenarioResult result = read(mixed(keys));
+        return result.diagnostics.size() == 1 ? result.diagnostics[0].help : shown(result);
+    };
+    EXPECT_EQ(help_for("degree = 2\nmultipliers = \"lower\"\nwindow = 2"),
+              "use projected interfaces or equal multipliers, or a single block "
+              "(multipliers = \"equal\", interfaces = \"project\")");
+    EXPECT_NE(help_for("degree = 2\ngauss_points = 2").find("(momentum = \"strong\")"), std::string::npos);
+
     Complaint open{"start-position", "", "", "", "", "", "correct it, or let the start be projected"};
     EXPECT_EQ(help_in_toml(open), open.help + " (initial = \"project\" in [start])");
     open.help = "change the sign of one director";

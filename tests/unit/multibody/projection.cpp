@@ -6,31 +6,17 @@
 #include "linkages.h"
 #include "livens/multibody/closing.h"
 #include "livens/multibody/projection.h"
+#include "violations.h"
 
 namespace livens {
 namespace {
 
-double largest_value(const Model& model, const State& state)
-{
-    double worst = 0;
-    for (int r = 0; r < model.n_rows(); ++r) {
-        worst = std::max(worst, std::abs(constraint_value(model.row(r), state.X)) / model.row(r).scale);
-    }
-    return worst;
-}
-
 /// Relative to the largest speed.
-double largest_rate(const Model& model, const State& state)
+double relative_rate(const Model& model, const State& state)
 {
-    double worst = 0, speed = 1;
+    double speed = 1;
     for (const Matrix34& V : state.V) speed = std::max(speed, norm(V));
-    for (int r = 0; r < model.n_rows(); ++r) {
-        const RowGradient g = constraint_gradient(model.row(r), state.X);
-        double rate = 0;
-        for (const int body : g.bodies) rate += dot(g.of(body), state.V[body]);
-        worst = std::max(worst, std::abs(rate) / model.row(r).scale);
-    }
-    return worst / speed;
+    return largest_rate(model, state) / speed;
 }
 
 /// Turned and shifted by about `size`, with rates of about one.
@@ -62,8 +48,8 @@ TEST(Projection, ReachesRoundingAtAnyRatioOfMasses)
                 try {
                     const State start = disturbed(model, random, 1e-3);
                     const ClosedStart a = close_start(model, start, StartPolicy::project);
-                    values = std::max(values, largest_value(model, a.start));
-                    rates = std::max(rates, largest_rate(model, a.start));
+                    values = std::max(values, largest_violation(model, a.start));
+                    rates = std::max(rates, relative_rate(model, a.start));
                 } catch (const InputError& error) {
                     if (open++ == 0) std::printf("%s\n", error.what());
                 }

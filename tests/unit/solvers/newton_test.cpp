@@ -13,13 +13,19 @@
 namespace livens {
 namespace {
 
+NewtonReport converged(Equations& problem, double tolerance = 1e-12)
+{
+    const NewtonReport report = run(problem, tolerance);
+    EXPECT_EQ(report.status, SolveStatus::converged);
+    return report;
+}
+
 TEST(Newton, SolvesLinearSystemsInOneStepWithOneFactorisation)
 {
     for (const bool foretell : {false, true}) {
         Equations problem({-7, 5}, linear, linear_tangent);
         problem.foretell = foretell;
-        const NewtonReport report = run(problem);
-        EXPECT_EQ(report.status, SolveStatus::converged);
+        const NewtonReport report = converged(problem);
         EXPECT_EQ(report.iterations, 1);
         EXPECT_EQ(report.factorisations, 1);
         EXPECT_EQ(report.smallest_damping, 1);
@@ -32,8 +38,7 @@ TEST(Newton, ConvergesQuadratically)
 {
     Equations problem({2}, square, square_tangent);
     problem.solution = {std::sqrt(2.0)};
-    const NewtonReport report = run(problem, 1e-15);
-    EXPECT_EQ(report.status, SolveStatus::converged);
+    const NewtonReport report = converged(problem, 1e-15);
     EXPECT_LT(problem.distance(problem.solution), 4e-16);
     ASSERT_GE(problem.errors.size(), 2u);
     // e' = e^2 / (2 x) for a whole step; steps with old factors in between make it smaller still
@@ -44,8 +49,7 @@ TEST(Newton, ConvergesQuadratically)
 TEST(Newton, DampsWhereThePathIsCurved)
 {
     Equations problem({-1.2, 1}, rosenbrock, rosenbrock_tangent);
-    const NewtonReport report = run(problem);
-    EXPECT_EQ(report.status, SolveStatus::converged);
+    const NewtonReport report = converged(problem);
     EXPECT_LT(report.smallest_damping, 1);
     EXPECT_LT(problem.distance({1, 1}), 1e-12);
 }
@@ -53,8 +57,7 @@ TEST(Newton, DampsWhereThePathIsCurved)
 TEST(Newton, DampsWhereWholeStepsDiverge)
 {
     Equations problem({10}, arctangent, arctangent_tangent);
-    const NewtonReport report = run(problem);
-    EXPECT_EQ(report.status, SolveStatus::converged);
+    const NewtonReport report = converged(problem);
     EXPECT_LT(report.smallest_damping, 0.25);
     EXPECT_LT(problem.distance({0}), 1e-12);
     EXPECT_LE(report.factorisations, 5) << "damping 1/16, 1/8, 1/4, 1/2, 1";
@@ -100,8 +103,7 @@ TEST(Newton, FindsNoRootWhereThereIsNone)
 TEST(Newton, StepsAroundPlacesWhereRowsAreNotFinite)
 {
     Equations problem({5}, logarithm, logarithm_tangent);   // a whole step leads to -3
-    const NewtonReport report = run(problem);
-    EXPECT_EQ(report.status, SolveStatus::converged);
+    const NewtonReport report = converged(problem);
     EXPECT_LT(report.smallest_damping, 1);
     EXPECT_LT(problem.distance({1}), 1e-12);
 }
@@ -127,8 +129,7 @@ TEST(Newton, StaysAtASolution)
     for (const bool foretell : {false, true}) {
         Equations problem({1, 1}, linear, linear_tangent);
         problem.foretell = foretell;
-        const NewtonReport report = run(problem);
-        EXPECT_EQ(report.status, SolveStatus::converged);
+        const NewtonReport report = converged(problem);
         EXPECT_LE(report.iterations, 1);
         EXPECT_EQ(problem.distance({1, 1}), 0);
     }
@@ -138,8 +139,7 @@ TEST(Newton, HasNothingToDoWithoutUnknowns)
 {
     const auto nothing = [](const Values&, Values&) {};
     Equations problem({}, nothing, nothing);
-    const NewtonReport report = run(problem);
-    EXPECT_EQ(report.status, SolveStatus::converged);
+    const NewtonReport report = converged(problem);
     EXPECT_EQ(report.factorisations, 0);
     EXPECT_EQ(problem.n_residuals, 1);
 }
@@ -172,8 +172,7 @@ TEST(Newton, KeepsFactorsWhileTheyContract)
     for (const bool foretell : {false, true}) {
         Equations problem({0, 0}, mild, mild_tangent);
         problem.foretell = foretell;
-        const NewtonReport report = run(problem);
-        EXPECT_EQ(report.status, SolveStatus::converged);
+        const NewtonReport report = converged(problem);
         EXPECT_EQ(report.factorisations, 1);
         EXPECT_GE(report.iterations, 4);
         EXPECT_LT(report.contraction, 0.1);
@@ -186,8 +185,7 @@ TEST(Newton, MakesNewFactorsWhereOldOnesWouldNeedTooManySteps)
 {
     // contraction is 0.2: about seventeen steps with one factorisation
     Equations problem({1.6}, square, square_tangent);
-    const NewtonReport report = run(problem);
-    EXPECT_EQ(report.status, SolveStatus::converged);
+    const NewtonReport report = converged(problem);
     EXPECT_LE(report.iterations, 9);
     EXPECT_GE(report.factorisations, 2);
 }
@@ -202,8 +200,7 @@ TEST(Newton, UndoesStepsOfFactorsThatNoLongerServe)
     for (const bool foretell : {false, true}) {
         Equations problem({0.05}, f, tangent);
         problem.foretell = foretell;
-        const NewtonReport report = run(problem);
-        EXPECT_EQ(report.status, SolveStatus::converged);
+        const NewtonReport report = converged(problem);
         EXPECT_EQ(report.factorisations, 2);
         EXPECT_EQ(report.iterations, 2);
         EXPECT_EQ(report.smallest_damping, 1);
@@ -286,8 +283,7 @@ TEST(Newton, SolvesWhereRowsForetellGrowth)
     // rows grow along a whole step, which is right all the same: increments with the same factors shrink
     Equations problem({-1.2, 1}, rosenbrock, rosenbrock_tangent);
     problem.foretell = true;
-    const NewtonReport report = run(problem);
-    EXPECT_EQ(report.status, SolveStatus::converged);
+    const NewtonReport report = converged(problem);
     EXPECT_GT(problem.n_solves, report.iterations);
     EXPECT_LT(problem.distance({1, 1}), 1e-12);
 }
@@ -315,8 +311,7 @@ TEST(Newton, WaitsForTheCorrectionsOfTheMoves)
     for (const bool foretell : {false, true}) {
         Corrected problem({-7, 5}, linear, linear_tangent);
         problem.foretell = foretell;
-        const NewtonReport report = run(problem, 1e-7);
-        EXPECT_EQ(report.status, SolveStatus::converged);
+        const NewtonReport report = converged(problem, 1e-7);
         EXPECT_LE(problem.rows().correction, 1e-7);
         EXPECT_GE(report.iterations, 4);
     }

@@ -29,13 +29,12 @@ void check_quadrature(const Mixed& method)
     const bool is_natural = method.start == Mixed::Start::natural;
     const int fewest = is_natural ? method.degree + 1 : method.degree;
     if (method.gauss_points < fewest)
-        refuse_pairing("method.gauss_points",
-                       std::string("a ") + (is_natural ? "natural" : "strong") + " start of degree " +
-                           std::to_string(method.degree) + " needs more Gauss points",
-                       std::to_string(method.gauss_points), ">= " + std::to_string(fewest),
-                       is_natural
-                           ? "use momentum = \"strong\" for collocation at as many Gauss points as the degree"
-                           : "");
+        refuse_pairing(
+            "method.gauss_points",
+            std::string("a ") + (is_natural ? "natural" : "strong") + " start of degree " +
+                std::to_string(method.degree) + " needs more Gauss points",
+            std::to_string(method.gauss_points), ">= " + std::to_string(fewest),
+            is_natural ? "use the strong start for collocation at as many Gauss points as the degree" : "");
 }
 
 /// Positions at both ends leave one function fewer than lower multipliers constrain; the strong start
@@ -47,13 +46,13 @@ void check_conditions(const Conditions& conditions, const Mixed& method)
     if (is_two_point && method.multipliers == Mixed::Multipliers::lower)
         refuse_pairing("method.multipliers",
                        "multipliers of lower degree constrain more than positions at both ends leave free",
-                       "lower", "equal", "use multipliers = \"equal\"");
+                       "lower", "equal", "use equal multipliers");
     if (method.start == Mixed::Start::natural) return;
     for (const auto& [given, path] :
          {std::pair{conditions.at_start, "start.given"}, {conditions.at_end, "end.given"}})
         if (given == Known::momenta)
             refuse_pairing(path, "the strong start needs positions where it is given momenta", "momenta",
-                           "state", "use momentum = \"natural\"");
+                           "state", "use the natural start");
 }
 
 /// The momentum that the law hands on has a part that only a multiplier of the next block's first function
@@ -67,7 +66,7 @@ void check_interfaces(const TimeMesh& mesh, const Mixed& method)
     throw InputError({"mixed-pairing", "method.interfaces",
                       "multipliers of lower degree cannot take up what blocks carry over", "carry", "project",
                       "docs/theory.md, \"The elements of the paper\"",
-                      "use interfaces = \"project\", multipliers = \"equal\", or a single block"});
+                      "use projected interfaces or equal multipliers, or a single block"});
 }
 
 /// Knots are element ends, all of them and no others.
