@@ -116,24 +116,24 @@ livens_mutant(NAME loads_at_the_instants_of_nodes
 # Phi from the gradient at the node alone, not from the mean of both ends: right for linear rows only.
 livens_mutant(NAME constraint_without_mean_gradient
               FILE multibody/tables.cpp
-              OLD [[sum += (g_from[12 * side + i] + g_to[12 * side + i]) * d[i];]]
-              NEW [[sum += 2 * g_to[12 * side + i] * d[i];]]
+              OLD [[sum += (g_from[12 * side + a + i] + g_to[12 * side + a + i]) * d[a + i];]]
+              NEW [[sum += 2 * g_to[12 * side + a + i] * d[a + i];]]
               TESTS_OF conservation
               MUST_FAIL Lobatto.HoldsConstraintsAtNodesOverTenSeconds Lobatto.KeepsPinsTogetherAndRodsLong)
 
-# Angles compared with those at the first node of an element, not from node to node: turns are lost.
+# Angles followed from node to node by increments since the first node of the element.
 livens_mutant(NAME turns_of_an_element
               FILE spacetime/lobatto/nodes.cpp
-              OLD [[const int from = is_quadratic ? e * degree_ : A - 1;]]
-              NEW [[const int from = e * degree_;]]
+              OLD [[difference[i] = B > 1 ? step[i] - dX(e, B - 1)[i] : step[i];]]
+              NEW [[difference[i] = step[i];]]
               TESTS_OF convergence
               MUST_FAIL Couplings.AnElementMayTurnByMoreThanAHalf)
 
 # Reflections that lead with whichever entry comes next: directions across the plane mix with those in it.
 livens_mutant(NAME reflections_without_choice
               FILE solvers/dense.cpp
-              OLD [[leads_[j] = best;]]
-              NEW [[leads_[j] = j;]]
+              OLD [[reflections_[j].lead = best;]]
+              NEW [[reflections_[j].lead = j;]]
               TESTS_OF conservation
               MUST_FAIL Lobatto.KeepsPlanarMotionsPlanarForTenSeconds)
 

@@ -134,12 +134,11 @@ void expect_tables_agree(const Tables& tables, int r, const std::vector<Matrix34
     EXPECT_NEAR(tables.value(r, at, x), constraint_value(row, at, X), 1e-13);
     EXPECT_NEAR(tables.rate(r, at, x), constraint_rate(row, at, X), 1e-13);
     EXPECT_NEAR(tables.curvature(r, at, x, v), constraint_curvature(row, at, X, V), 1e-12);
-    double g[Tables::gradient_size] = {}, g_before[Tables::gradient_size] = {};
+    double g[Tables::gradient_size] = {};
     tables.gradient(r, at, x, g);
     std::vector<Matrix34> earlier = X;
     for (std::size_t b = 0; b < X.size(); ++b) earlier[b] -= V[b];
-    tables.gradient(r, before, earlier[0].data(), g_before);
-    EXPECT_NEAR(tables.change(r, before, earlier[0].data(), g_before, at, x, g, v),
+    EXPECT_NEAR(constraint_change(row, before, earlier, at, X, V),
                 constraint_value(row, at, X) - constraint_value(row, before, earlier), 1e-12);
     const RowGradient expected = constraint_gradient(row, at, X);
     const auto& table = tables.rows[static_cast<std::size_t>(r)];

@@ -12,17 +12,6 @@ void ConstraintBasis::resize(const Tables& tables, bool all_rows)
     rows.assign(static_cast<std::size_t>(tables.rank), 0);
     row_scale.assign(static_cast<std::size_t>(most), 1.0);
     gradients.assign(static_cast<std::size_t>(Tables::gradient_size * most), 0.0);
-    order_.assign(static_cast<std::size_t>(most), 0);
-}
-
-void ConstraintBasis::exchange(ConstraintBasis& other)
-{
-    q.exchange(other.q);
-    rows.swap(other.rows);
-    row_scale.swap(other.row_scale);
-    gradients.swap(other.gradients);
-    order_.swap(other.order_);
-    unsorted_.swap(other.unsorted_);
 }
 
 double ConstraintBasis::fill(const Tables& tables, int column, int row, Instant at, const double* X,
@@ -50,15 +39,14 @@ double ConstraintBasis::build(const Tables& tables, Instant at, const double* X,
 double ConstraintBasis::choose(const Tables& tables, Instant at, const double* X, const double* maps)
 {
     const int all = tables.n_rows();
+    std::vector<int> order(static_cast<std::size_t>(all));
     for (int r = 0; r < all; ++r) row_scale[r] = fill(tables, r, r, at, X, maps);
-    const double smallest = q.factorise_pivoted(tables.rank, order_);
-    unsorted_ = gradients;
-    unsorted_.insert(unsorted_.end(), row_scale.begin(), row_scale.end());
-    const double* scales = unsorted_.data() + gradients.size();
+    const double smallest = q.factorise_pivoted(tables.rank, order);
+    const std::vector<double> unsorted = gradients, scales = row_scale;
     for (int c = 0; c < tables.rank; ++c) {
-        rows[c] = order_[c];
-        row_scale[c] = scales[order_[c]];
-        std::copy_n(unsorted_.begin() + Tables::gradient_size * order_[c], Tables::gradient_size,
+        rows[c] = order[c];
+        row_scale[c] = scales[order[c]];
+        std::copy_n(unsorted.begin() + Tables::gradient_size * order[c], Tables::gradient_size,
                     gradients.begin() + Tables::gradient_size * c);
     }
     return smallest;

@@ -17,7 +17,6 @@ struct ConstraintBasis {
 
     const double* gradient(int column) const { return gradients.data() + Tables::gradient_size * column; }
     void resize(const Tables& tables, bool all_rows);
-    void exchange(ConstraintBasis& other);
     /// The basis for given rows. Returns the smallest scaled pivot.
     double build(const Tables& tables, Instant at, const double* X, const double* maps,
                  const std::vector<int>& which, bool keep_choices);
@@ -26,9 +25,6 @@ struct ConstraintBasis {
 
 private:
     double fill(const Tables& tables, int column, int row, Instant at, const double* X, const double* maps);
-
-    std::vector<int> order_;
-    std::vector<double> unsorted_;
 };
 
 }   // namespace livens

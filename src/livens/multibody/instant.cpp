@@ -30,16 +30,15 @@ void InstantState::look_back(const InstantState& earlier, bool forwards)
 {
     has_past = true;
     const double inverse = 1 / (t - earlier.t);
-    const std::size_t n = velocity.size();
     const double *v0 = earlier.velocity.data(), *v1 = velocity.data();
     const double *a0 = earlier.acceleration[forwards ? 1 : 0].data(),
                  *a1 = acceleration[forwards ? 0 : 1].data();
     double* __restrict j = jerk.data();
     double* __restrict s = snap.data();
-    for (std::size_t i = 0; i < n; ++i) {
-        const double slope = (v1[i] - v0[i]) * inverse;
-        j[i] = (2 * a0[i] + 4 * a1[i] - 6 * slope) * inverse;
-        s[i] = (6 * a0[i] + 6 * a1[i] - 12 * slope) * (inverse * inverse);
+    for (std::size_t i = 0; i < velocity.size(); ++i) {
+        const double mean = 0.5 * (a0[i] + a1[i]) - (v1[i] - v0[i]) * inverse;   // of a, less the slope of v
+        s[i] = 12 * inverse * inverse * mean;
+        j[i] = inverse * (a1[i] - a0[i] + 6 * mean);
     }
 }
 
@@ -57,18 +56,18 @@ InstantSystem::InstantSystem(const Tables& tables) : tables_(tables)
         reduced_.resize(tables.freedoms());
         z_.assign(n * static_cast<std::size_t>(tables.freedoms()), 0.0);
     }
-    for (auto* v : {&a_, &b_, &c_}) v->assign(n, 0.0);
+    for (auto* v : {&a_, &b_}) v->assign(n, 0.0);
     for (auto* v : {&V_, &centripetal_, &raw_}) v->assign(12 * tables.bodies.size(), 0.0);
 }
 
 bool InstantSystem::prepare(InstantState& state, const std::vector<int>& rows, ConstraintBasis* known)
 {
     const double* X = state.X.data();
-    tables_.map_twists(X, state.maps.data());
     state.rows_chosen = false;
     if (known != nullptr && tables_.rank == tables_.n_rows()) {
-        state.basis.exchange(*known);
+        std::swap(state.basis, *known);
     } else {
+        tables_.map_twists(X, state.maps.data());
         state.smallest_pivot = state.basis.build(tables_, {state.t}, X, state.maps.data(), rows, false);
         if (tables_.rank < tables_.n_rows() && !rows_are_fit(state)) {
             state.smallest_pivot = state.basis.choose(tables_, {state.t}, X, state.maps.data());
@@ -132,17 +131,15 @@ void InstantSystem::scatter(const InstantState& state, const double* y, double w
 }
 
 /// M y + Ghat^T lambda = forces and Ghat y = (what y holds in its first `rank` places, as Q^T y); all scaled.
-/// On return y is the solution and `multipliers` holds R S^-1 lambda, `rank` numbers.
-void InstantSystem::solve(const InstantState& state, const double* forces, double* y, double* multipliers)
+/// On return y is the solution and the first `rank` forces are R S^-1 lambda.
+void InstantSystem::solve(const InstantState& state, double* forces, double* y)
 {
     const OrthogonalBasis& q = state.basis.q;
     const int k = tables_.rank, n = tables_.n_twists;
-    double* g = c_.data();
     if (tables_.regular) {
-        std::copy(forces, forces + n, g);
-        q.apply_transposed(g);
-        for (int c = 0; c < k; ++c) multipliers[c] = g[c] - y[c];
-        std::copy(g + k, g + n, y + k);
+        q.apply_transposed(forces);
+        for (int c = 0; c < k; ++c) forces[c] -= y[c];
+        std::copy(forces + k, forces + n, y + k);
         q.apply(y);
         return;
     }
@@ -160,9 +157,8 @@ void InstantSystem::solve(const InstantState& state, const double* forces, doubl
         for (int j = 0; j < f; ++j)
             y[i] += z_[static_cast<std::size_t>(i * f + j)] * eta[static_cast<std::size_t>(j)];
     apply_mass(state, y, image.data());
-    for (int i = 0; i < n; ++i) g[i] = forces[i] - image[static_cast<std::size_t>(i)];
-    q.apply_transposed(g);
-    std::copy(g, g + k, multipliers);
+    for (int i = 0; i < n; ++i) forces[i] -= image[static_cast<std::size_t>(i)];
+    q.apply_transposed(forces);
 }
 
 void InstantSystem::from_momentum(InstantState& state, const double* p, double weight, double* lambda)
@@ -171,7 +167,7 @@ void InstantSystem::from_momentum(InstantState& state, const double* p, double w
     double* rest = b_.data();
     tables_.to_scaled_rows(state.maps.data(), p, rest);
     follow_drives(state, y);
-    solve(state, rest, y, rest);
+    solve(state, rest, y);
     state.basis.q.solve_R(rest);
     scatter(state, rest, weight, lambda);
     tables_.to_twist(state.maps.data(), y, state.velocity.data());
@@ -179,23 +175,10 @@ void InstantSystem::from_momentum(InstantState& state, const double* p, double w
     std::copy(p, p + tables_.n_twists, state.p.begin());
     for (int c = 0; c < tables_.rank; ++c) {
         const int r = state.basis.rows[c];
-        add_reaction(state, c, -weight * lambda[r], state.p.data());
+        tables_.add_wrenches(r, state.X.data(), state.maps.data(), state.basis.gradient(c),
+                             -weight * lambda[r], state.p.data());
     }
-    tables_.to_scaled_rows(state.maps.data(), state.p.data(), state.momentum.data());
-}
-
-/// rows += factor Ghat_c for column c of the basis, about the centres of mass.
-void InstantSystem::add_reaction(const InstantState& state, int c, double factor, double* rows) const
-{
-    const int r = state.basis.rows[c];
-    const auto& table = tables_.rows[r];
-    for (int side = 0; side < table.n_sides; ++side) {
-        const auto& body = tables_.bodies[table.bodies[side]];
-        double q[6];
-        tables_.wrench(r, side, state.X.data(), state.maps.data(), state.basis.gradient(c),
-                          q);
-        for (int i = 0; i < body.dofs; ++i) rows[body.first + i] += factor * q[i];
-    }
+    apply_mass(state, y, state.momentum.data());
 }
 
 void InstantSystem::from_velocity(InstantState& state)
@@ -228,7 +211,7 @@ void InstantSystem::particular(const InstantState& state, Side from, double* y) 
         for (int side = 0; side < table.n_sides; ++side) {
             const double* a = centripetal_.data() + 12 * table.bodies[side];
             for (const int column : table.columns[side])
-                for (int i = column; i < column + 3; ++i) gamma += g[12 * side + i] * a[i];
+                for (int i = 0; i < 3; ++i) gamma += g[12 * side + column + i] * a[column + i];
         }
         y[c] = -gamma * basis.row_scale[c];
     }
@@ -255,7 +238,7 @@ void InstantSystem::accelerate(InstantState& state, Side side)
     tables_.twist_rows(X, state.maps.data(), raw_.data(), y);
     tables_.to_scaled_rows(state.maps.data(), y, forces);
     particular(state, side, y);
-    solve(state, forces, y, forces);
+    solve(state, forces, y);
     const int s = side == Side::right ? 1 : 0;
     state.basis.q.solve_R(forces);
     scatter(state, forces, 1.0, state.multipliers[s].data());

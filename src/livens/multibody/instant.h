@@ -41,7 +41,8 @@ public:
     /// Prepares maps and basis for state.t and state.X, with the given independent rows as long as they are
     /// fit: the others hold to 1e-9 of their scale, and the smallest scaled pivot is above 1e-6; else rows
     /// are chosen again among all (`rows_chosen`). False if a free motion carries no inertia. `known` is
-    /// exchanged with the state's basis where it serves: built for this X with all rows of the model.
+    /// exchanged with the state's basis where it serves: built for this X with all rows of the model, as are
+    /// then state.maps.
     bool prepare(InstantState& state, const std::vector<int>& rows, ConstraintBasis* known = nullptr);
     /// velocity and momentum <- the parts of a given twist momentum N^T P that the constraints and their
     /// drives allow, Ghat velocity = -dPhi/dt (explicit). `lambda` <- the multipliers of the rest, W Ghat^T
@@ -59,9 +60,8 @@ public:
 private:
     bool rows_are_fit(const InstantState& state) const;
     bool prepare_singular(const InstantState& state);
-    void add_reaction(const InstantState& state, int c, double factor, double* rows) const;
     void apply_mass(const InstantState& state, const double* y, double* out);
-    void solve(const InstantState& state, const double* forces, double* y, double* multipliers);
+    void solve(const InstantState& state, double* forces, double* y);
     void follow_drives(const InstantState& state, double* y) const;
     void particular(const InstantState& state, Side from, double* y) const;
     void scatter(const InstantState& state, const double* y, double weight, double* lambda) const;
@@ -69,7 +69,7 @@ private:
     const Tables& tables_;
     Cholesky reduced_;        // Z^T M Z, used only where an inertia is singular
     std::vector<double> z_;   // null space, n x f; likewise
-    std::vector<double> a_, b_, c_, V_, centripetal_, raw_;
+    std::vector<double> a_, b_, V_, centripetal_, raw_;
 };
 
 }   // namespace livens

@@ -115,7 +115,8 @@ bool scale_body(const Body& body, double length, Tables::BodyTable& table)
 }   // namespace
 
 Tables::Tables(const Model& the_model, std::vector<int> rows_to_solve, bool with_rigidity)
-    : model(&the_model), independent(std::move(rows_to_solve)), rank(static_cast<int>(independent.size()))
+    : model(&the_model), independent(std::move(rows_to_solve)), rank(static_cast<int>(independent.size())),
+      n_bodies_(the_model.n_bodies())
 {
     length = the_model.length();
     for (const Body& body : the_model.bodies()) {
@@ -158,7 +159,7 @@ void Tables::gradient(int r, Instant at, const double* X, double* g) const
     }
     for (int side = 0; side < t.n_sides; ++side)
         for (const int a : t.columns[side])
-            for (int i = a; i < a + 3; ++i) g[12 * side + i] = t.B[side].a[i];
+            for (int i = 0; i < 3; ++i) g[12 * side + a + i] = t.B[side].a[a + i];
     for (const auto& entry : t.form) {
         const double* x = X + 12 * t.bodies[entry.from_side] + entry.from;
         double* out = g + 12 * entry.to_side + entry.to;
@@ -168,18 +169,15 @@ void Tables::gradient(int r, Instant at, const double* X, double* g) const
 
 /// A quadratic polynomial has Phi(X) - Phi(X_0) = 1/2 <grad Phi(X_0) + grad Phi(X), X - X_0>, which does not
 /// lose the digits of a small increment.
-double Tables::change(int r, Instant from, const double* X_from, const double* g_from, Instant to,
-                      const double* X_to, const double* g_to, const double* step) const
+double Tables::change(int r, const double* g_from, const double* g_to, const double* step) const
 {
     const RowTable& t = rows[r];
-    if (!t.is_quadratic)
-        return constraint_change(*t.row, from, Configurations(X_from), to, Configurations(X_to),
-                                 Configurations(step));
     double sum = 0;
     for (int side = 0; side < t.n_sides; ++side) {
         const double* d = step + 12 * t.bodies[side];
         for (const int a : t.columns[side])
-            for (int i = a; i < a + 3; ++i) sum += (g_from[12 * side + i] + g_to[12 * side + i]) * d[i];
+            for (int i = 0; i < 3; ++i)
+                sum += (g_from[12 * side + a + i] + g_to[12 * side + a + i]) * d[a + i];
     }
     return 0.5 * sum;
 }
@@ -197,7 +195,7 @@ double Tables::value(int r, Instant at, const double* X, const double* g) const
     for (int side = 0; side < t.n_sides; ++side) {
         const double* x = X + 12 * t.bodies[side];
         for (const int a : t.columns[side])
-            for (int i = a; i < a + 3; ++i) sum += (g[12 * side + i] + t.B[side].a[i]) * x[i];
+            for (int i = 0; i < 3; ++i) sum += (g[12 * side + a + i] + t.B[side].a[a + i]) * x[a + i];
     }
     return 0.5 * sum + t.row->c;
 }
@@ -225,9 +223,9 @@ double Tables::curvature(int r, Instant at, const double* X, const double* V) co
 void Tables::add_weight(double factor, double* raw) const
 {
     for (int b = 0; b < n_bodies(); ++b) {
+        for (int i = 0; i < 3; ++i) raw[12 * b + i] += factor * bodies[b].weight[i];
         // without an offset the weight has no part on the directors
-        const int n = bodies[b].offset ? 12 : 3;
-        for (int i = 0; i < n; ++i) raw[12 * b + i] += factor * bodies[b].weight[i];
+        for (int i = 3; bodies[b].offset && i < 12; ++i) raw[12 * b + i] += factor * bodies[b].weight[i];
     }
 }
 

@@ -72,7 +72,7 @@ struct Tables {
     int rank = 0;                   ///< how many they are
     bool regular = true;   ///< every inertia is definite; else L is that of a slightly larger one
 
-    int n_bodies() const { return static_cast<int>(bodies.size()); }
+    int n_bodies() const { return n_bodies_; }
     int n_rows() const { return model->n_rows(); }
     int freedoms() const { return n_twists - rank; }
 
@@ -81,14 +81,16 @@ struct Tables {
     void gradient(int r, Instant at, const double* X, double* g) const;
     /// Force and moment about the centre of mass of one side's gradient, 6 numbers.
     void wrench(int r, int side, const double* X, const double* maps, const double* g, double* q) const;
+    /// q += factor times these of all sides, n_twists numbers.
+    void add_wrenches(int r, const double* X, const double* maps, const double* g, double factor,
+                      double* q) const;
     /// The gradient as rows of scaled twists, n_twists numbers.
     void scaled_gradient(int r, const double* X, const double* maps, const double* g, double* out) const;
     /// Phi from the absolute configuration and its gradient there: 1/2 <g + B, X> + c.
     double value(int r, Instant at, const double* X, const double* g) const;
     double value(int r, Instant at, const double* X) const;
-    /// Phi at another instant and place less Phi, from the gradients at both and how far the places differ.
-    double change(int r, Instant from, const double* X_from, const double* g_from, Instant to,
-                  const double* X_to, const double* g_to, const double* step) const;
+    /// Phi of a quadratic form at another place less Phi, from the gradients at both and how far they differ.
+    double change(int r, const double* g_from, const double* g_to, const double* step) const;
     /// The part of dPhi/dt that stays where X does not move; 0 without drives.
     double rate(int r, Instant at, const double* X) const;
     /// d2 Phi/dt2 less G X'': quadratic in X' = V unless drives add to it.
@@ -103,13 +105,11 @@ struct Tables {
     int bad_load(Instant at, const double* X, const double* V) const;
     /// q <- the rows of raw: force, and moment about the centre of mass (not the reference point).
     void twist_rows(const double* X, const double* maps, const double* raw, double* q) const;
-    /// The same, added to what q holds.
-    void add_twist_rows(const double* X, const double* maps, const double* raw, double* q) const;
 
     /// The map D of scaled to plain twists at X, 12 numbers a body: K = R L^-T, then R times the centre of
     /// mass.
     void map_twists(const double* X, double* maps) const;
-    /// xi = D y: w = K y_2, v = y_1 / sqrt(M) + c x w.
+    /// xi = D y: w = K y_2, v = y_1 / sqrt(M) + c x w; also in place.
     void to_twist(const double* maps, const double* y, double* xi) const;
     /// Central rows in scaled twists: y_1 = f / sqrt(M), y_2 = K^T tau.
     void to_scaled_rows(const double* maps, const double* q, double* y) const;
@@ -122,6 +122,8 @@ struct Tables {
     /// out <- Y m, body by body.
     void times_mass(const double* Y, double factor, double* out) const;
 
+private:
+    int n_bodies_;   // the size of `bodies`, which every loop would divide for
 };
 
 }   // namespace livens

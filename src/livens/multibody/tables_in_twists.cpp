@@ -111,6 +111,17 @@ void Tables::wrench(int r, int side, const double* X, const double* maps, const 
     if (bodies[body].offset) to_centre(maps + 12 * body, q);
 }
 
+void Tables::add_wrenches(int r, const double* X, const double* maps, const double* g, double factor,
+                          double* q) const
+{
+    for (int side = 0; side < rows[r].n_sides; ++side) {
+        const BodyTable& body = bodies[rows[r].bodies[side]];
+        double of_side[6];
+        wrench(r, side, X, maps, g, of_side);
+        for (int i = 0; i < body.dofs; ++i) q[body.first + i] += factor * of_side[i];
+    }
+}
+
 void Tables::scaled_gradient(int r, const double* X, const double* maps, const double* g,
                                 double* out) const
 {
@@ -159,21 +170,6 @@ void Tables::twist_rows(const double* X, const double* maps, const double* raw, 
         } else {
             std::copy(raw + 12 * b, raw + 12 * b + 3, o);
         }
-    }
-}
-
-void Tables::add_twist_rows(const double* X, const double* maps, const double* raw, double* q) const
-{
-    for (int b = 0; b < n_bodies(); ++b) {
-        double* sum = q + bodies[b].first;
-        double row[6];
-        if (bodies[b].dofs == 6) {
-            twist::rows(X + 12 * b, raw + 12 * b, row);
-            if (bodies[b].offset) to_centre(maps + 12 * b, row);
-        } else {
-            std::copy(raw + 12 * b, raw + 12 * b + 3, row);
-        }
-        for (int i = 0; i < bodies[b].dofs; ++i) sum[i] += row[i];
     }
 }
 

@@ -158,30 +158,9 @@ void OrthogonalBasis::resize(int n, int most)
     most_ = most;
     k_ = 0;
     g_.assign(count(n, most), 0.0);
-    beta_.assign(static_cast<std::size_t>(most), 0.0);
-    signs_.assign(static_cast<std::size_t>(most), 1.0);
-    leads_.assign(static_cast<std::size_t>(most), 0);
-    ends_.assign(static_cast<std::size_t>(most), 0);
-    counts_.assign(static_cast<std::size_t>(most), -1);
+    reflections_.assign(static_cast<std::size_t>(most), {});
     places_.assign(count(n, most), 0);
-    norms_.assign(static_cast<std::size_t>(most), 0.0);
     scratch_.assign(static_cast<std::size_t>(n), 0.0);
-}
-
-void OrthogonalBasis::exchange(OrthogonalBasis& other)
-{
-    std::swap(n_, other.n_);
-    std::swap(most_, other.most_);
-    std::swap(k_, other.k_);
-    g_.swap(other.g_);
-    ends_.swap(other.ends_);
-    counts_.swap(other.counts_);
-    places_.swap(other.places_);
-    leads_.swap(other.leads_);
-    signs_.swap(other.signs_);
-    beta_.swap(other.beta_);
-    norms_.swap(other.norms_);
-    scratch_.swap(other.scratch_);
 }
 
 /// Brings the largest of the entries j.. of column j to place j.
@@ -190,11 +169,15 @@ void OrthogonalBasis::lead(int j, bool keep)
     double* v = column(j);
     if (!keep) {
         int best = j;
-        for (int i = j + 1; i < n_; ++i)
-            if (std::abs(v[i]) > std::abs(v[best])) best = i;
-        leads_[j] = best;
+        double largest = std::abs(v[j]);
+        for (int i = j + 1; i < n_; ++i) {
+            if (!(std::abs(v[i]) > largest)) continue;
+            best = i;
+            largest = std::abs(v[i]);
+        }
+        reflections_[j].lead = best;
     }
-    std::swap(v[j], v[leads_[j]]);
+    std::swap(v[j], v[reflections_[j].lead]);
 }
 
 /// Makes the reflector of column j from its entries j.. and puts R_jj in place.
@@ -210,39 +193,39 @@ void OrthogonalBasis::reflect(int j, bool keep_sign)
         places[used++] = i;
         end = i + 1;
     }
-    ends_[j] = end;
-    counts_[j] = 2 * used <= end - j ? used : -1;
+    reflections_[j].end = end;
+    reflections_[j].used = 2 * used <= end - j ? used : -1;
     const double head = v[j];
     const double length = std::sqrt(head * head + tail);
     // the kept sign would cancel where head has come close to it
-    if (!keep_sign || signs_[j] * head > 0.99 * length) signs_[j] = head > 0 ? -1 : 1;
-    const double r = signs_[j] * length;
+    if (!keep_sign || reflections_[j].sign * head > 0.99 * length) reflections_[j].sign = head > 0 ? -1 : 1;
+    const double r = reflections_[j].sign * length;
     const double v0 = head - r;
     if (length == 0) {
-        beta_[j] = 0;
+        reflections_[j].beta = 0;
         return;
     }
     const double scale = 1 / v0;
     for (int i = 0; i < used; ++i) v[places[i]] *= scale;
-    beta_[j] = -v0 / r;
+    reflections_[j].beta = -v0 / r;
     v[j] = r;
 }
 
 /// Exchange j, then reflection j.
 void OrthogonalBasis::reflect_column(int j, double* x) const
 {
-    std::swap(x[j], x[leads_[j]]);
+    std::swap(x[j], x[reflections_[j].lead]);
     reflect_only(j, x);
 }
 
 inline void OrthogonalBasis::reflect_only(int j, double* x) const
 {
-    if (beta_[j] == 0) return;
+    if (reflections_[j].beta == 0) return;
     const double* v = column(j);
-    const int used = counts_[j];
+    const int used = reflections_[j].used;
     if (used < 0) {
-        const int m = ends_[j] - j - 1;
-        const double t = beta_[j] * (x[j] + inner(v + j + 1, x + j + 1, m));
+        const int m = reflections_[j].end - j - 1;
+        const double t = reflections_[j].beta * (x[j] + inner(v + j + 1, x + j + 1, m));
         if (t == 0) return;
         x[j] -= t;
         subtract_scaled(x + j + 1, t, v + j + 1, m);
@@ -251,7 +234,7 @@ inline void OrthogonalBasis::reflect_only(int j, double* x) const
     const int* places = places_.data() + count(n_, j);
     double t = x[j];
     for (int i = 0; i < used; ++i) t += v[places[i]] * x[places[i]];
-    t *= beta_[j];
+    t *= reflections_[j].beta;
     x[j] -= t;
     for (int i = 0; i < used; ++i) x[places[i]] -= t * v[places[i]];
 }
@@ -274,18 +257,18 @@ double OrthogonalBasis::factorise_pivoted(int k, std::span<int> order)
     k_ = k;
     for (int j = 0; j < most_; ++j) {
         order[j] = j;
-        norms_[j] = inner(column(j), column(j), n_);
+        reflections_[j].norm = inner(column(j), column(j), n_);
     }
     double smallest = 1;
     for (int j = 0; j < k; ++j) {
         // ties go to the earlier row, so that the choice does not hang on rounding
         int best = j;
         for (int c = j + 1; c < most_; ++c) {
-            if (norms_[c] > norms_[best] * (1 + 1e-10)) best = c;
+            if (reflections_[c].norm > reflections_[best].norm * (1 + 1e-10)) best = c;
         }
         if (best != j) {
             std::swap_ranges(column(j), column(j) + n_, column(best));
-            std::swap(norms_[j], norms_[best]);
+            std::swap(reflections_[j].norm, reflections_[best].norm);
             std::swap(order[j], order[best]);
         }
         lead(j, false);
@@ -293,7 +276,7 @@ double OrthogonalBasis::factorise_pivoted(int k, std::span<int> order)
         smallest = std::min(smallest, std::abs(column(j)[j]));
         for (int c = j + 1; c < most_; ++c) {
             reflect_column(j, column(c));
-            norms_[c] = inner(column(c) + j + 1, column(c) + j + 1, n_ - j - 1);
+            reflections_[c].norm = inner(column(c) + j + 1, column(c) + j + 1, n_ - j - 1);
         }
     }
     return smallest;
@@ -301,14 +284,17 @@ double OrthogonalBasis::factorise_pivoted(int k, std::span<int> order)
 
 void OrthogonalBasis::apply_transposed(double* x) const
 {
-    for (int j = 0; j < k_; ++j) reflect_column(j, x);
+    for (int j = 0; j < k_; ++j) {
+        std::swap(x[j], x[reflections_[j].lead]);
+        reflect_only(j, x);
+    }
 }
 
 void OrthogonalBasis::apply(double* x) const
 {
     for (int j = k_ - 1; j >= 0; --j) {
         reflect_only(j, x);
-        std::swap(x[j], x[leads_[j]]);
+        std::swap(x[j], x[reflections_[j].lead]);
     }
 }
 
@@ -335,8 +321,9 @@ void OrthogonalBasis::null_space(double* z) const
     std::fill(z, z + count(n_, f), 0.0);
     for (int i = 0; i < f; ++i) z[count(k_ + i, f) + static_cast<std::size_t>(i)] = 1;
     for (int j = k_ - 1; j >= 0; --j) {
-        if (beta_[j] != 0) reflect_rows(j, z);
-        if (leads_[j] != j) std::swap_ranges(z + count(j, f), z + count(j + 1, f), z + count(leads_[j], f));
+        if (reflections_[j].beta != 0) reflect_rows(j, z);
+        if (reflections_[j].lead != j)
+            std::swap_ranges(z + count(j, f), z + count(j + 1, f), z + count(reflections_[j].lead, f));
     }
 }
 
@@ -347,14 +334,14 @@ void OrthogonalBasis::reflect_rows(int j, double* z) const
     double* w = scratch_.data();
     const double* v = column(j);
     std::fill(w, w + f, 0.0);
-    for (int i = j + 1; i < ends_[j]; ++i)
+    for (int i = j + 1; i < reflections_[j].end; ++i)
         if (v[i] != 0) subtract_scaled(w, -v[i], z + count(i, f), f);
     double* zj = z + count(j, f);
     for (int c = 0; c < f; ++c) {
-        w[c] *= beta_[j];
+        w[c] *= reflections_[j].beta;
         zj[c] = -w[c];
     }
-    for (int i = j + 1; i < ends_[j]; ++i)
+    for (int i = j + 1; i < reflections_[j].end; ++i)
         if (v[i] != 0) subtract_scaled(z + count(i, f), v[i], w, f);
 }
 

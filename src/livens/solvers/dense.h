@@ -58,7 +58,6 @@ class OrthogonalBasis {
 public:
     /// `most` columns at most.
     void resize(int n, int most);
-    void exchange(OrthogonalBasis& other);
     int n() const { return n_; }
     int rank() const { return k_; }
     /// Column j is filled in by the caller before factorise(); overwritten by it.
@@ -94,13 +93,16 @@ private:
     int most_ = 0;
     int k_ = 0;
     std::vector<double> g_;   // R above the diagonal, reflectors (first entry 1 implied) below
-    std::vector<double> signs_;
-    std::vector<int> ends_;      // entries of reflection j from here on are zero
-    std::vector<int> counts_;    // how many entries of it are not zero, if they are few; else -1
-    std::vector<int> places_;    // where they are, n a reflection
-    std::vector<int> leads_;     // row exchanged with row j before reflection j
-    std::vector<double> beta_;   // H_j = I - beta v v^T
-    std::vector<double> norms_;
+    struct Reflection {
+        double beta = 0;   // H_j = I - beta v v^T
+        double sign = 1;   // of R_jj
+        double norm = 0;   // of the column, squared, as far as it is not reduced
+        int lead = 0;      // row exchanged with row j before
+        int end = 0;       // entries from here on are zero
+        int used = -1;     // how many entries are not zero, if they are few; else -1
+    };
+    std::vector<Reflection> reflections_;
+    std::vector<int> places_;   // of their entries that are not zero, n a reflection
     mutable std::vector<double> scratch_;
 };
 

@@ -143,9 +143,8 @@ TEST(Tables, RatesAreDerivativesInTime)
             EXPECT_NEAR(rate, derivative(standing, 1), 1e-8);
             const Instant later{1.9};
             const Numbers none(bench.x.size(), 0.0);
-            double g[Tables::gradient_size];
-            bench.tables.gradient(r, now, X, g);
-            EXPECT_NEAR(bench.tables.change(r, now, X, g, later, X, g, none.data()),
+            EXPECT_NEAR(constraint_change(*bench.tables.rows[r].row, now, Configurations(X), later,
+                                          Configurations(X), Configurations(none.data())),
                         standing(later.t - now.t) - standing(0), 1e-13);
             const bool is_driven = !bench.tables.rows[r].is_quadratic;
             EXPECT_EQ(is_driven, rate != 0) << r;
@@ -257,6 +256,9 @@ TEST(Tables, WrenchesAreForcesAndMomentsAboutTheCentre)
             for (int a = 1; a < 4; ++a) moment += cross(X.column(a), G.column(a));
             EXPECT_LT(norm(Vector3{q[0], q[1], q[2]} - G.column(0)), 1e-14);
             EXPECT_LT(norm(Vector3{q[3], q[4], q[5]} - moment), 1e-13);
+            Numbers sum(static_cast<std::size_t>(bench.tables.n_twists), 1.0);
+            bench.tables.add_wrenches(r, bench.x.data(), bench.maps.data(), g.data(), 2, sum.data());
+            for (int i = 0; i < 6; ++i) EXPECT_EQ(sum[bench.tables.bodies[body].first + i], 1 + 2 * q[i]);
         }
     }
 }
@@ -266,12 +268,10 @@ TEST(Tables, ScaledRowsAreTheTransposeOfScaledTwists)
     for (unsigned seed = 1; seed <= 10; ++seed) {
         Bench bench(seed, true);
         const Numbers y = bench.any_twist(), dX = bench.rates(y), raw = bench.any_rates();
-        Numbers q(y.size()), twice(y.size(), 1.0), rows(y.size());
+        Numbers q(y.size()), rows(y.size());
         bench.tables.twist_rows(bench.x.data(), bench.maps.data(), raw.data(), q.data());
         bench.tables.to_scaled_rows(bench.maps.data(), q.data(), rows.data());
         EXPECT_NEAR(inner(rows, y), inner(raw, dX), 1e-12);
-        bench.tables.add_twist_rows(bench.x.data(), bench.maps.data(), raw.data(), twice.data());
-        for (std::size_t i = 0; i < q.size(); ++i) EXPECT_EQ(twice[i], 1 + q[i]);
     }
 }
 

@@ -36,6 +36,8 @@ public:
 
     void begin(const Stretch& stretch, const Nodes& nodes) override
     {
+        stretch_ = &stretch;
+        nodes_ = &nodes;
         for (int A = 0; A < stretch.n_nodes(); ++A)
             if (stretch.is_active(A) || stretch.is_unknown(A))
                 nodes.basis(A).q.null_space(z_.data() + place(A));
@@ -51,10 +53,7 @@ public:
     void block(int body_i, int body_j, const double* values) override;
     void close() override;
     bool factorise() override { return f_ == 0 || solver_->factorise(matrix_) == Outcome::regular; }
-    void solve(std::span<double> x, const double*) override
-    {
-        if (f_ > 0) solver_->solve(x);
-    }
+    void solve(std::span<const double> rows, const double* range, double* y) override;
     void describe(SolveReport& report) const override
     {
         if (f_ > 0 && structure_.n_elements() > 1) report.factor_entries = solver_->report().factor_entries;
@@ -73,6 +72,8 @@ private:
     void multiply_pair(int r, double* u, double* w) const;
 
     const Tables& tables_;
+    const Stretch* stretch_ = nullptr;   // current
+    const Nodes* nodes_ = nullptr;
     int f_;
     BlockStructure structure_;
     std::unique_ptr<LinearSolver> solver_;
@@ -80,6 +81,7 @@ private:
     int e_ = 0, A_ = 0, B_ = 1;     // the open pair
     std::vector<double> z_;         // null space of every node, n x f
     std::vector<double> product_;   // block of the tangent times the null space at B, n x f
+    std::vector<double> x_;         // reduced unknowns
 };
 
 void NullSpaces::mass(int body, double factor, const double* H)
@@ -151,6 +153,22 @@ void NullSpaces::close()
     }
 }
 
+void NullSpaces::solve(std::span<const double> rows, const double*, double* y)
+{
+    const int n = tables_.n_twists, k = tables_.rank;
+    x_.assign(rows.begin(), rows.end());
+    if (f_ > 0) solver_->solve(x_);
+    const double* x = x_.data();
+    for (int A = 0; A < structure_.n_nodes(); ++A) {
+        if (!stretch_->is_unknown(A)) continue;
+        std::fill(y, y + k, 0.0);
+        std::copy(x, x + f_, y + k);
+        nodes_->basis(A).q.apply(y);
+        x += f_;
+        y += n;
+    }
+}
+
 /// Nothing is scaled: rows and unknowns are in mass-orthonormal coordinates. The 2-norm knows no choice of
 /// units, axes and bases; the 1-norm feels the bases of the free motions (a factor of f^2 at the very most).
 void NullSpaces::measure_condition(SolveReport& report)
@@ -176,8 +194,8 @@ public:
     {
         const auto n = static_cast<std::size_t>(tables.n_twists);
         work_.assign(n, 0.0);
-        inverse_.assign(9 * tables.bodies.size(), 0.0);
-        range_.assign(n * static_cast<std::size_t>(tables.rank), 0.0);
+        inverse_.resize(tables.bodies.size());
+        columns_.assign(n * static_cast<std::size_t>(tables.rank), 0.0);
         schur_.resize(tables.rank);
     }
 
@@ -191,15 +209,14 @@ public:
     {
         factor_ = factor;
         if (tables_.bodies[body].dofs == 3) return;
-        Matrix3 h{};
+        Matrix3 h;
         std::copy(H, H + 9, h.a);
-        const Matrix3 inverted = inverse(h);
-        std::copy(inverted.a, inverted.a + 9, inverse_.begin() + 9 * body);
+        inverse_[body] = inverse(h);
     }
     void block(int, int, const double*) override {}   // nothing but mass comes to this element
     void close() override {}
     bool factorise() override;
-    void solve(std::span<double> x, const double* range) override;
+    void solve(std::span<const double> rows, const double* range, double* y) override;
     bool takes_constraints() const override { return true; }
     void describe(SolveReport&) const override {}
     void measure_condition(SolveReport&) override {}
@@ -210,9 +227,9 @@ private:
     const Tables& tables_;
     const OrthogonalBasis *first_ = nullptr, *last_ = nullptr;
     double factor_ = 1;             // of the mass
-    std::vector<double> inverse_;   // of H, 9 a body
+    std::vector<Matrix3> inverse_;   // of H
     DenseLU schur_;
-    std::vector<double> range_;   // Q_1^T J^-1 Y_0, rank columns of length n
+    std::vector<double> columns_;   // J^-1 Y_0, rank columns of length n
     std::vector<double> work_;
 };
 
@@ -220,11 +237,11 @@ private:
 void Bodies::invert_bodies(double* y) const
 {
     const double s = 1 / factor_;
-    for (const auto& body : tables_.bodies) {
-        double* v = y + body.first;
+    for (int body = 0; body < tables_.n_bodies(); ++body) {
+        double* v = y + tables_.bodies[body].first;
         for (int i = 0; i < 3; ++i) v[i] *= s;
-        if (body.dofs == 3) continue;
-        const double* h = inverse_.data() + 9 * (&body - tables_.bodies.data());
+        if (tables_.bodies[body].dofs == 3) continue;
+        const double* h = inverse_[body].a;
         const double a = s * v[3], b = s * v[4], c = s * v[5];
         for (int i = 0; i < 3; ++i) v[3 + i] = h[i] * a + h[3 + i] * b + h[6 + i] * c;
     }
@@ -234,31 +251,32 @@ bool Bodies::factorise()
 {
     const int k = tables_.rank, n = tables_.n_twists;
     for (int c = 0; c < k; ++c) {
-        double* column = range_.data() + c * n;
+        double* column = columns_.data() + c * n;
         std::fill(column, column + n, 0.0);
         column[c] = 1;
         first_->apply(column);
         invert_bodies(column);
-        last_->apply_transposed(column);
-        for (int r = 0; r < k; ++r) schur_.row(r)[c] = column[r];
+        std::copy(column, column + n, work_.data());
+        last_->apply_transposed(work_.data());
+        for (int r = 0; r < k; ++r) schur_.row(r)[c] = work_[r];
     }
     return factor_ != 0 && schur_.factorise();
 }
 
-void Bodies::solve(std::span<double> x, const double* range)
+void Bodies::solve(std::span<const double> rows, const double* range, double* y)
 {
-    const int k = tables_.rank, n = tables_.n_twists, f = n - k;
-    double* y = work_.data();
+    const int k = tables_.rank, n = tables_.n_twists;
+    double* nu = work_.data();
     std::fill(y, y + k, 0.0);
-    std::copy(x.begin(), x.begin() + f, y + k);
+    std::copy(rows.begin(), rows.end(), y + k);
     first_->apply(y);
     invert_bodies(y);
-    last_->apply_transposed(y);
-    std::copy(y + k, y + n, x.begin());
-    for (int c = 0; range != nullptr && c < k; ++c) y[c] -= range[c];
-    schur_.solve(y);
+    std::copy(y, y + n, nu);
+    last_->apply_transposed(nu);
+    for (int c = 0; range != nullptr && c < k; ++c) nu[c] -= range[c];
+    schur_.solve(nu);
     for (int c = 0; c < k; ++c)
-        for (int i = k; i < n; ++i) x[i - k] -= y[c] * range_[c * n + i];
+        for (int i = 0; i < n; ++i) y[i] -= nu[c] * columns_[c * n + i];
 }
 
 }   // namespace

@@ -18,10 +18,11 @@ public:
     /// Takes the null spaces of all nodes, before a tangent is formed.
     virtual void begin(const Stretch& stretch, const Nodes& nodes) = 0;
     virtual bool factorise() = 0;
-    /// x <- J^-1 x: reduced rows of active nodes in, reduced unknowns of unknown nodes out.
-    virtual void solve(std::span<double> x, const double* range) = 0;
+    /// y <- the scaled twists of unknown nodes, node after node, that the reduced rows of active nodes ask
+    /// for.
+    virtual void solve(std::span<const double> rows, const double* range, double* y) = 0;
     /// Whether solve() can take violations of the constraints in; else they are taken off before. `range`
-    /// then holds the part of the increment across the null space at node 1 (in the basis), or null.
+    /// then holds the part of y across the null space at node 1 (in the basis), or null.
     virtual bool takes_constraints() const { return false; }
     virtual void describe(SolveReport& report) const = 0;
     virtual void measure_condition(SolveReport& report) = 0;

@@ -8,7 +8,7 @@
 namespace livens {
 
 Nodes::Nodes(const Tables& tables, const LobattoRule& rule)
-    : tables_(tables), rule_(rule), degree_(rule.degree), size_(12 * tables.bodies.size())
+    : tables_(tables), rule_(rule), size_(12 * tables.bodies.size())
 {
     work_.assign(3 * size_, 0.0);   // a displacement, numbers of a twist, a twist
 }
@@ -29,11 +29,12 @@ void Nodes::open(const Stretch& stretch)
         set.X.assign(n * size_, 0.0);
         set.low.assign(n * size_, 0.0);
     }
-    dX_.assign(static_cast<std::size_t>(stretch.n_elements()) * static_cast<std::size_t>(degree_ + 1) * size_,
+    dX_.assign(static_cast<std::size_t>(stretch.n_elements()) * static_cast<std::size_t>(rule_.degree + 1) *
+                   size_,
                0.0);
     maps_.assign(n * size_, 0.0);
-    phi_.assign(n * rank, 0.0);
-    values_.assign(n * rank, 0.0);
+    phi_.scaled.assign(n * rank, 0.0);
+    phi_.values.assign(n * rank, 0.0);
     known_.assign(n, nullptr);
     bases_.resize(n);
     for (ConstraintBasis& basis : bases_) basis.resize(tables_, false);
@@ -49,7 +50,7 @@ void Nodes::fix(int A, const InstantState& state)
     std::copy(state.maps.begin(), state.maps.end(), maps_.begin() + static_cast<std::ptrdiff_t>(place(A)));
     known_[A] = &state.basis;
     smallest_pivot_ = std::min(smallest_pivot_, state.smallest_pivot);
-    double* values = values_.data() + static_cast<std::size_t>(A * tables_.rank);
+    double* values = phi_.values.data() + static_cast<std::size_t>(A * tables_.rank);
     for (int c = 0; c < tables_.rank; ++c)
         values[c] = tables_.value(state.basis.rows[c], at(A), X(A), state.basis.gradient(c));
 }
@@ -62,29 +63,34 @@ void Nodes::place_at(int A, const double* X)
 
 namespace {
 
-/// to + to_low <- x + x_low + by, without the rounding of the sum [Kahan1965].
-inline void add_two_sums(const double x, const double x_low, const double by, double& to, double& to_low)
+/// to + to_low <- x + x_low + by, without the rounding of the sum [Kahan1965]; entry by entry, so that x may
+/// be `to` itself.
+inline void add_two_sums(const double* x, const double* x_low, const double* __restrict by, double* to,
+                         double* to_low, std::size_t n)
 {
-    const double d = by + x_low, sum = x + d, back = sum - x;
-    to = sum;
-    to_low = (x - (sum - back)) + (d - back);
+    for (std::size_t i = 0; i < n; ++i) {
+        const double from = x[i], d = by[i] + x_low[i], sum = from + d, back = sum - from;
+        to[i] = sum;
+        to_low[i] = (from - (sum - back)) + (d - back);
+    }
+}
+
+/// d <- x + x_low - (x0 + x0_low).
+inline void subtract_two_sums(const double* __restrict x, const double* __restrict x_low,
+                              const double* __restrict x0, const double* __restrict x0_low,
+                              double* __restrict d, std::size_t n)
+{
+    for (std::size_t b = 0; b < n; b += 12)
+        for (std::size_t i = b; i < b + 12; ++i) d[i] = (x[i] - x0[i]) + (x_low[i] - x0_low[i]);
 }
 
 }   // namespace
 
-/// to + low <- from + low + what is in work_.
-void Nodes::add(const Set& from_set, int A_from, Set& to_set, int A)
+/// Node A of `to` <- node A_from of `from`, both parts, + what is in work_.
+void Nodes::add(const Set& from, int A_from, Set& to, int A)
 {
-    const double* __restrict by = work_.data();
-    double* __restrict to = to_set.X.data() + place(A);
-    double* __restrict low = to_set.low.data() + place(A);
-    if (&from_set == &to_set && A_from == A) {
-        for (std::size_t i = 0; i < size_; ++i) add_two_sums(to[i], low[i], by[i], to[i], low[i]);
-        return;
-    }
-    const double* __restrict from = from_set.X.data() + place(A_from);
-    const double* __restrict from_low = from_set.low.data() + place(A_from);
-    for (std::size_t i = 0; i < size_; ++i) add_two_sums(from[i], from_low[i], by[i], to[i], low[i]);
+    add_two_sums(from.X.data() + place(A_from), from.low.data() + place(A_from), work_.data(),
+                 to.X.data() + place(A), to.low.data() + place(A), size_);
 }
 
 void Nodes::displace(const Set& from, int A_from, const double* twist, Set& to, int A)
@@ -122,15 +128,10 @@ void Nodes::move(int A, const double* twist, double factor)
 
 void Nodes::measure_element(int e)
 {
-    const Set& set = sets_[current_];
-    const double* __restrict X0 = set.X.data() + place(e * degree_);
-    const double* __restrict low0 = set.low.data() + place(e * degree_);
-    for (int B = 1; B <= degree_; ++B) {
-        const double* __restrict X = set.X.data() + place(e * degree_ + B);
-        const double* __restrict low = set.low.data() + place(e * degree_ + B);
-        double* __restrict d = dX_.data() + place(e * (degree_ + 1) + B);
-        for (std::size_t i = 0; i < size_; ++i) d[i] = (X[i] - X0[i]) + (low[i] - low0[i]);
-    }
+    const int first = e * rule_.degree;
+    for (int B = 1; B <= rule_.degree; ++B)
+        subtract_two_sums(X(first + B), low(first + B), X(first), low(first),
+                          dX_.data() + place(e * (rule_.degree + 1) + B), size_);
 }
 
 bool Nodes::constrain(const Stretch& stretch, bool same_choices)
@@ -139,8 +140,8 @@ bool Nodes::constrain(const Stretch& stretch, bool same_choices)
     double sum = 0;
     for (int e = 0; e < stretch.n_elements(); ++e) {
         measure_element(e);
-        for (int B = e == 0 ? 0 : 1; B <= degree_; ++B)
-            if (stretch.is_unknown(e * degree_ + B)) constrain_node(e, B, same_choices, sum);
+        for (int B = e == 0 ? 0 : 1; B <= rule_.degree; ++B)
+            if (stretch.is_unknown(e * rule_.degree + B)) constrain_node(e, B, same_choices, sum);
     }
     return std::isfinite(sum);
 }
@@ -149,40 +150,41 @@ bool Nodes::constrain_node(int e, int B, bool same_choices, double& sum)
 {
     constexpr double rounding = 1e-16;   // of Phi at the start itself: nothing to correct
     constexpr double close = 1e-4;       // relative, for one linear step onto the constraints
-    const int A = e * degree_ + B, k = tables_.rank;
+    const int start = e * rule_.degree, A = start + B, k = tables_.rank;
+    const ConstraintBasis& first = basis(start);
+    const double *reference = phi_.values.data() + static_cast<std::size_t>(start * k), *step = dX(e, B);
     const std::vector<int>& rows = known_[0] != nullptr ? known_[0]->rows : tables_.independent;
     ConstraintBasis& own = bases_[A];
     tables_.map_twists(X(A), maps_.data() + place(A));
     smallest_pivot_ = std::min(smallest_pivot_, own.build(tables_, at(A), X(A), maps(A), rows, same_choices));
     for (int c = 0; c < k; ++c) {
         const auto& table = tables_.rows[static_cast<std::size_t>(own.rows[c])];
-        double phi = B == 0 ? tables_.value(own.rows[c], at(A), X(A), own.gradient(c)) : followed(e, B, c);
+        // from the element's first node, which keeps the digits of a small increment
+        double phi = B == 0               ? tables_.value(own.rows[c], at(A), X(A), own.gradient(c))
+                     : table.is_quadratic ? reference[c] + tables_.change(own.rows[c], first.gradient(c),
+                                                                          own.gradient(c), step)
+                                          : followed(e, B, c);
         if (std::abs(phi) < rounding * table.row->scale) phi = 0;
         if (!(std::abs(phi) <= close * table.row->scale)) near_ = false;
         const auto at = static_cast<std::size_t>(A * k + c);
-        values_[at] = phi;
-        phi_[at] = phi * own.row_scale[c];
+        phi_.values[at] = phi;
+        phi_.scaled[at] = phi * own.row_scale[c];
         sum += std::abs(phi);
     }
     return near_;
 }
 
-/// Phi from that of the element's first node, which keeps the digits of a small increment; or from node to
-/// node where angles are to be followed through several turns.
+/// Phi from that of the node before, so that angles are followed through several turns.
 double Nodes::followed(int e, int B, int c)
 {
-    const int A = e * degree_ + B, row = bases_[A].rows[c];
-    const bool is_quadratic = tables_.rows[static_cast<std::size_t>(row)].is_quadratic;
-    const int from = is_quadratic ? e * degree_ : A - 1;
+    const int A = e * rule_.degree + B;
+    const ConstraintRow& row = *tables_.rows[static_cast<std::size_t>(bases_[A].rows[c])].row;
     const double* step = dX(e, B);
-    if (!is_quadratic && B > 1) {
-        double* difference = work_.data() + size_;
-        for (std::size_t i = 0; i < size_; ++i) difference[i] = step[i] - dX(e, B - 1)[i];
-        step = difference;
-    }
-    return values_[static_cast<std::size_t>(from * tables_.rank + c)] +
-           tables_.change(row, at(from), X(from), basis(from).gradient(c), at(A), X(A), bases_[A].gradient(c),
-                          step);
+    double* difference = work_.data() + size_;
+    for (std::size_t i = 0; i < size_; ++i) difference[i] = B > 1 ? step[i] - dX(e, B - 1)[i] : step[i];
+    return phi_.values[static_cast<std::size_t>((A - 1) * tables_.rank + c)] +
+           constraint_change(row, at(A - 1), Configurations(X(A - 1)), at(A), Configurations(X(A)),
+                             Configurations(difference));
 }
 
 double Nodes::correct(const Stretch& stretch)
@@ -192,13 +194,10 @@ double Nodes::correct(const Stretch& stretch)
     double *y = work_.data() + size_, *twist = y + size_;
     for (int A = 0; A < stretch.n_nodes(); ++A) {
         if (!stretch.is_unknown(A)) continue;
+        const double* phi = violations(A);
+        if (std::all_of(phi, phi + k, [](double value) { return value == 0; })) continue;
         std::fill(y, y + n, 0.0);
-        double size = 0;
-        for (int c = 0; c < k; ++c) {
-            y[c] = -violations(A)[c];
-            size = std::max(size, std::abs(y[c]));
-        }
-        if (size == 0) continue;
+        for (int c = 0; c < k; ++c) y[c] = -phi[c];
         const OrthogonalBasis& q = bases_[A].q;
         q.solve_R_transposed(y);
         q.apply(y);

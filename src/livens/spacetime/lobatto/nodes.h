@@ -25,7 +25,7 @@ public:
     const double* X(int A) const { return sets_[current_].X.data() + place(A); }
     const double* low(int A) const { return sets_[current_].low.data() + place(A); }
     /// X less that of the element's first node, B = 0..p.
-    const double* dX(int e, int B) const { return dX_.data() + place(e * (degree_ + 1) + B); }
+    const double* dX(int e, int B) const { return dX_.data() + place(e * (rule_.degree + 1) + B); }
     const double* maps(int A) const { return maps_.data() + place(A); }
     const ConstraintBasis& basis(int A) const
     {
@@ -35,7 +35,10 @@ public:
     /// For taking a node's own basis away.
     ConstraintBasis& own_basis(int A) { return bases_[A]; }
     /// Violations of the independent rows at node A, times the scales of its basis.
-    const double* violations(int A) const { return phi_.data() + static_cast<std::size_t>(A * tables_.rank); }
+    const double* violations(int A) const
+    {
+        return phi_.scaled.data() + static_cast<std::size_t>(A * tables_.rank);
+    }
 
     void place_at(int A, const double* X);
     /// Node A: node `from` moved by a finite twist; by displacements and quaternions (s, v), 7 numbers a
@@ -66,6 +69,10 @@ private:
         std::vector<double> X, low;
     };
 
+    struct Violations {
+        std::vector<double> scaled, values;   // times the scales of the bases, and as they are
+    };
+
     std::size_t place(int A) const { return static_cast<std::size_t>(A) * size_; }
     void add(const Set& from, int A_from, Set& to, int A);
     void displace(const Set& from, int A_from, const double* twist, Set& to, int A);
@@ -75,7 +82,6 @@ private:
 
     const Tables& tables_;
     const LobattoRule& rule_;
-    int degree_;
     std::size_t size_;   // 12 a body
     Set sets_[2];
     int current_ = 0, kept_ = 0;
@@ -83,7 +89,7 @@ private:
     std::vector<double> dX_, maps_;
     std::vector<ConstraintBasis> bases_;
     std::vector<const ConstraintBasis*> known_;
-    std::vector<double> phi_, values_;   // scaled, and as they are
+    Violations phi_;
     std::vector<double> work_;
     bool near_ = true;
     double smallest_pivot_ = 1;

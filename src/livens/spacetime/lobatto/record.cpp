@@ -40,8 +40,8 @@ void Record::for_sizes(int place, Action&& action)
 void Record::reach(int place)
 {
     if (place <= reached_) return;
-    reached_ = place;
-    for_sizes(place, [](auto& values, std::size_t size) { values.resize(size); });
+    reached_ = std::min(2 * place + 8, mesh_.n_elements());
+    for_sizes(reached_, [](auto& values, std::size_t size) { values.resize(size); });
 }
 
 void Record::node(int element, int A, const double* X)
@@ -97,7 +97,6 @@ Motion Record::take()
     const auto p = static_cast<std::size_t>(degree_), bodies = static_cast<std::size_t>(m.n_bodies);
     const auto rows = static_cast<std::size_t>(m.n_rows);
     m.mesh.ends.assign(mesh_.ends.begin() + first_, mesh_.ends.begin() + last_ + 1);
-    if (first == 0 && last == static_cast<std::size_t>(mesh_.n_elements())) return std::move(motion_);
     cut(m.X.values, first * p, last * p + 1, 12 * bodies);
     cut(m.multipliers.values, first * (p + 1), last * (p + 1), rows);
     cut(m.velocities, first, last + 1, bodies);

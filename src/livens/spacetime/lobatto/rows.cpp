@@ -8,10 +8,11 @@ namespace livens {
 
 namespace {
 
-/// sum += x, for arrays that do not overlap.
-inline void accumulate(double* __restrict sum, const double* __restrict x, std::size_t n)
+/// sum += factor * x, 12 numbers a body, for arrays that do not overlap.
+inline void accumulate(double* __restrict sum, double factor, const double* __restrict x, std::size_t n)
 {
-    for (std::size_t i = 0; i < n; ++i) sum[i] += x[i];
+    for (std::size_t b = 0; b < n; b += 12)
+        for (std::size_t i = b; i < b + 12; ++i) sum[i] += factor * x[i];
 }
 
 }   // namespace
@@ -38,6 +39,14 @@ void Rows::open(const Stretch& stretch)
     reduced_.resize(static_cast<std::size_t>(n_active * tables_.freedoms()));
 }
 
+void Rows::start_with(const std::vector<double>& scaled)
+{
+    momenta_[0].scaled = scaled;
+    double largest = 0;
+    for (const double p : scaled) largest = std::max(largest, std::abs(p));
+    start_terms_ = largest;
+}
+
 void Rows::interpolate(const Stretch& stretch, const Nodes& nodes, int e, int c, double* X, double* V) const
 {
     const int n_nodes = rule_.size();
@@ -45,35 +54,18 @@ void Rows::interpolate(const Stretch& stretch, const Nodes& nodes, int e, int c,
     std::copy_n(nodes.X(e * rule_.degree), size_of_X_, X);
     std::fill_n(V, size_of_X_, 0.0);
     for (int B = 1; B < n_nodes; ++B) {
-        const double m = rule_.M[c * n_nodes + B];
-        const double d = rule_.dM[c * n_nodes + B] * inverse;
-        const double* __restrict dX = nodes.dX(e, B);
-        for (std::size_t i = 0; i < size_of_X_; ++i) {
-            X[i] += m * dX[i];
-            V[i] += d * dX[i];
-        }
+        accumulate(X, rule_.M[c * n_nodes + B], nodes.dX(e, B), size_of_X_);
+        accumulate(V, rule_.dM[c * n_nodes + B] * inverse, nodes.dX(e, B), size_of_X_);
     }
 }
 
-/// The weight is constant, and its integral against M_A is h w_A to the last digit.
-void Rows::begin(const Stretch& stretch)
-{
-    std::fill(forces_.begin(), forces_.end(), 0.0);
-    for (int e = 0; e < stretch.n_elements(); ++e)
-        for (int A = 0; A < rule_.size(); ++A)
-            tables_.add_weight(stretch.h(e) * rule_.weights[A], forces_.data() + place(e * rule_.size() + A));
-    start_terms_ = 0;
-    for (const double p : momenta_[0].scaled) start_terms_ = std::max(start_terms_, std::abs(p));
-}
-
-/// F_A at all nodes of an element. The Gauss points lie inside it, on its side of every jump.
+/// F_A of the loads at all nodes of an element. The Gauss points lie inside it, on its side of every jump.
 void Rows::add_loads(const Stretch& stretch, const Nodes& nodes, int e)
 {
     const int n_nodes = rule_.size();
     const double h = stretch.h(e);
     double* first = forces_.data() + place(e * n_nodes);
     std::fill_n(first, static_cast<std::size_t>(n_nodes) * size_of_X_, 0.0);
-    for (int A = 0; A < n_nodes; ++A) tables_.add_weight(h * rule_.weights[A], first + place(A));
     for (std::size_t c = 0; c < rule_.loads.points.size(); ++c) {
         interpolate(stretch, nodes, e, static_cast<int>(c), X_.data(), V_.data());
         std::fill(work_.begin(), work_.end(), 0.0);
@@ -81,30 +73,31 @@ void Rows::add_loads(const Stretch& stretch, const Nodes& nodes, int e)
                           h * rule_.loads.weights[c], work_.data());
         for (int A = 0; A < n_nodes; ++A) {
             const double m = rule_.M[c * n_nodes + A];
-            double* __restrict f = first + place(A);
-            for (std::size_t i = 0; i < size_of_X_; ++i) f[i] += m * work_[i];
+            accumulate(first + place(A), m, work_.data(), size_of_X_);
         }
     }
 }
 
 /// raw += h^-1 sum_B k_AB (X_B - X_0) m + F_A of element e at its local node A; the first element at a node
-/// sets it.
+/// sets it. The weight is constant, and its integral against M_A is h w_A to the last digit.
 void Rows::add_element(const Stretch& stretch, const Nodes& nodes, int e, int A, double* raw)
 {
     const int n_nodes = rule_.size();
     const double* k = rule_.k.data() + A * n_nodes;
-    double* __restrict y = work_.data();
-    const double* __restrict first = nodes.dX(e, 1);
-    for (std::size_t i = 0; i < size_of_X_; ++i) y[i] = k[1] * first[i];
-    for (int B = 2; B < n_nodes; ++B) {
-        const double* __restrict d = nodes.dX(e, B);
-        for (std::size_t i = 0; i < size_of_X_; ++i) y[i] += k[B] * d[i];
+    const double* y = nodes.dX(e, 1);
+    double factor = k[1] / stretch.h(e);
+    if (n_nodes > 2) {
+        std::fill_n(work_.data(), size_of_X_, 0.0);
+        for (int B = 1; B < n_nodes; ++B) accumulate(work_.data(), k[B], nodes.dX(e, B), size_of_X_);
+        y = work_.data();
+        factor = 1 / stretch.h(e);
     }
     const bool is_first = e == 0 || A > 0;
     double* sum = is_first ? raw : X_.data();
-    tables_.times_mass(y, 1 / stretch.h(e), sum);
-    if (!is_first) accumulate(raw, sum, size_of_X_);
-    accumulate(raw, forces(e, A), size_of_X_);
+    tables_.times_mass(y, factor, sum);
+    if (!is_first) accumulate(raw, 1, sum, size_of_X_);
+    tables_.add_weight(stretch.h(e) * rule_.weights[A], raw);
+    if (!tables_.model->loads().empty()) accumulate(raw, 1, forces(e, A), size_of_X_);
 }
 
 void Rows::twist_row(const Stretch& stretch, const Nodes& nodes, int A, double* out)
@@ -116,11 +109,15 @@ void Rows::twist_row(const Stretch& stretch, const Nodes& nodes, int A, double* 
 }
 
 /// y += the momentum at the start or - that at the end, where it is known.
-void Rows::add_end_momentum(const Stretch& stretch, const Nodes& nodes, int A, double* y) const
+void Rows::add_end_momentum(const Stretch& stretch, const Nodes& nodes, int A, double* __restrict y) const
 {
     const bool is_last = A != 0;
     const EndMomentum& given = momenta_[is_last ? 1 : 0];
-    if (!stretch.is_unknown(A)) return accumulate(y, given.scaled.data(), given.scaled.size());
+    if (!stretch.is_unknown(A)) {
+        const double* __restrict p = given.scaled.data();
+        for (int i = 0; i < tables_.n_twists; ++i) y[i] += p[i];
+        return;
+    }
     std::vector<double> about_centre = given.about_reference, scaled(about_centre.size());
     for (int b = 0; b < tables_.n_bodies(); ++b) {
         const auto& body = tables_.bodies[b];
@@ -131,42 +128,44 @@ void Rows::add_end_momentum(const Stretch& stretch, const Nodes& nodes, int A, d
 }
 
 /// lambda_A from the rows in the constraint directions; what is left are the reduced rows.
-void Rows::eliminate(const Stretch& stretch, const Nodes& nodes, int A, double* reduced)
+bool Rows::eliminate(const Stretch& stretch, const Nodes& nodes, int A, double* reduced)
 {
     const ConstraintBasis& basis = nodes.basis(A);
     const int k = tables_.rank, f = tables_.freedoms(), n = tables_.n_twists;
     double* y = work_.data();
     tables_.to_scaled_rows(nodes.maps(A), q_.data(), y);
     if (A == 0 || A == stretch.n_nodes() - 1) add_end_momentum(stretch, nodes, A, y);
-    double terms = terms_;
+    double terms = terms_, size = size_, sum = 0;
     for (int i = 0; i < n; ++i) terms = std::max(terms, std::abs(y[i]));
-    terms_ = terms;
     basis.q.apply_transposed(y);
-    for (int i = 0; i < f; ++i) reduced[i] = -y[k + i];
+    for (int i = 0; i < f; ++i) {
+        reduced[i] = -y[k + i];
+        size = std::max(size, std::abs(reduced[i]));
+        sum += std::abs(reduced[i]);   // keeps a nan, which a maximum would lose
+    }
+    terms_ = terms;
+    size_ = size;
     basis.q.solve_R(y);
     double* impulses = impulses_.data() + static_cast<std::size_t>(A * k);
     for (int c = 0; c < k; ++c) impulses[c] = y[c] * basis.row_scale[c];
+    return std::isfinite(sum);
 }
 
 bool Rows::evaluate(const Stretch& stretch, const Nodes& nodes)
 {
     terms_ = start_terms_;
+    size_ = 0;
+    bool are_finite = true;
     const bool has_loads = !tables_.model->loads().empty();
     for (int e = 0; has_loads && e < stretch.n_elements(); ++e) add_loads(stretch, nodes, e);
     double* reduced = reduced_.data();
     for (int A = 0; A < stretch.n_nodes(); ++A) {
         if (!stretch.is_active(A)) continue;
         twist_row(stretch, nodes, A, q_.data());
-        eliminate(stretch, nodes, A, reduced);
+        are_finite = eliminate(stretch, nodes, A, reduced) && are_finite;
         reduced += tables_.freedoms();
     }
-    double sum = terms_, largest = 0;
-    for (const double r : reduced_) {
-        sum += std::abs(r);   // keeps a nan, which a maximum would lose
-        largest = std::max(largest, std::abs(r));
-    }
-    size_ = largest;
-    return std::isfinite(sum);
+    return are_finite && std::isfinite(terms_);
 }
 
 void Rows::subtract(const ConstraintBasis& basis, const double* impulses, double* out) const
@@ -178,7 +177,7 @@ void Rows::subtract(const ConstraintBasis& basis, const double* impulses, double
             double* r = out + 12 * table.bodies[side];
             const double* g = basis.gradient(c) + 12 * side;
             for (const int a : table.columns[side])
-                for (int i = a; i < a + 3; ++i) r[i] -= s * g[i];
+                for (int i = 0; i < 3; ++i) r[a + i] -= s * g[a + i];
         }
     }
 }

@@ -21,14 +21,13 @@ public:
     Rows(const Tables& tables, const LobattoRule& rule);
 
     void open(const Stretch& stretch);
-    /// Momentum and weight of the window, after end_momentum() was set and lengths are known.
-    void begin(const Stretch& stretch);
     /// Momentum at the first (sign 1) or the last node (sign -1) of the window: where X is known there, in
     /// scaled rows; else linear momentum and moment about the reference point, in world axes.
     struct EndMomentum {
         std::vector<double> scaled, about_reference;
     };
     EndMomentum& end_momentum(bool last) { return momenta_[last ? 1 : 0]; }
+    void start_with(const std::vector<double>& scaled);
 
     /// False if something is not finite.
     bool evaluate(const Stretch& stretch, const Nodes& nodes);
@@ -42,7 +41,7 @@ public:
     {
         return impulses_.data() + static_cast<std::size_t>(A * tables_.rank);
     }
-    /// F_A of element e, local node A.
+    /// F_A of element e, local node A, without weight.
     const double* forces(int e, int A) const { return forces_.data() + place(e * rule_.size() + A); }
     /// The row before N^T and multipliers, at an active node.
     const double* raw(int A) const { return raw_.data() + place(A); }
@@ -60,7 +59,7 @@ private:
     void add_loads(const Stretch& stretch, const Nodes& nodes, int e);
     void add_element(const Stretch& stretch, const Nodes& nodes, int e, int A, double* raw);
     void add_end_momentum(const Stretch& stretch, const Nodes& nodes, int A, double* y) const;
-    void eliminate(const Stretch& stretch, const Nodes& nodes, int A, double* reduced);
+    bool eliminate(const Stretch& stretch, const Nodes& nodes, int A, double* reduced);
 
     const Tables& tables_;
     const LobattoRule& rule_;

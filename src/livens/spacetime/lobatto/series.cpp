@@ -58,39 +58,30 @@ void Series::predict(LobattoSystem& system, const InstantState& start) const
 {
     const LobattoRule& rule = system.rule();
     const double h = system.stretch().h(0);
-    const std::vector<double>& acceleration = start.acceleration[side_of(h)];
-    double bend = 0;
+    const double *v = start.velocity.data(), *a = start.acceleration[side_of(h)].data();
+    const double *j = start.jerk.data(), *s = start.snap.data();
+    double away = 0, turn = 0;   // by h^2 / 2 and h^2
     for (const auto& body : tables_.bodies) {
-        for (int i = 0; i < body.dofs; ++i) {
-            const int k = body.first + i;
-            const double away =
-                h * h / 2 *
-                (std::abs(acceleration[k]) +
-                 std::abs(h) / 3 * (std::abs(start.jerk[k]) + std::abs(h) / 4 * std::abs(start.snap[k])));
-            bend = std::max(bend, i < 3 ? away / (far * tables_.length) : std::abs(acceleration[k]) * h * h);
-        }
+        for (int i = body.first; i < body.first + 3; ++i)
+            away = std::max(away, std::abs(a[i]) +
+                                      std::abs(h) / 3 * (std::abs(j[i]) + std::abs(h) / 4 * std::abs(s[i])));
+        for (int i = 3; i < body.dofs; ++i) turn = std::max(turn, std::abs(a[body.first + i]));
     }
-    const double on = bend < 1 ? 1 : 0;
-    std::vector<double>& moves = system.scratch();
+    const double on = h * h * std::max(away / (2 * far * tables_.length), turn) < 1 ? 1 : 0;
+    double* __restrict move = system.scratch().data();
     for (int B = 1; B <= rule.degree; ++B) {
-        const double tau = rule.nodes[B] * h;
+        const double tau = rule.nodes[B] * h, c = on * tau * tau * tau / 12;
+        for (int i = 0; i < tables_.n_twists; ++i)
+            move[i] = tau * (v[i] + tau / 2 * on * (a[i] + tau / 3 * (j[i] + tau / 4 * s[i])));
         for (const auto& body : tables_.bodies) {
-            const double* v = start.velocity.data() + body.first;
-            const double* a = acceleration.data() + body.first;
-            const double* j = start.jerk.data() + body.first;
-            const double* s = start.snap.data() + body.first;
-            double* move = moves.data() + body.first;
-            for (int i = 0; i < body.dofs; ++i)
-                move[i] = tau * (v[i] + tau / 2 * on * (a[i] + tau / 3 * (j[i] + tau / 4 * s[i])));
-            if (body.dofs == 6) {
-                // turns do not commute: second term of the Magnus series
-                const double c = on * tau * tau * tau / 12;
-                move[3] += c * (a[4] * v[5] - a[5] * v[4]);
-                move[4] += c * (a[5] * v[3] - a[3] * v[5]);
-                move[5] += c * (a[3] * v[4] - a[4] * v[3]);
-            }
+            if (body.dofs == 3) continue;
+            // turns do not commute: second term of the Magnus series
+            const int x = body.first + 3, y = x + 1, z = x + 2;
+            move[x] += c * (a[y] * v[z] - a[z] * v[y]);
+            move[y] += c * (a[z] * v[x] - a[x] * v[z]);
+            move[z] += c * (a[x] * v[y] - a[y] * v[x]);
         }
-        system.nodes().place_from(B, 0, moves.data());
+        system.nodes().place_from(B, 0, move);
     }
 }
 

@@ -10,6 +10,7 @@ LobattoSystem::LobattoSystem(const Tables& tables, const LobattoRule& rule)
 {
     for (double k : rule.k) largest_k_ = std::max(largest_k_, std::abs(k));
     range_.assign(static_cast<std::size_t>(tables.rank), 0.0);
+    work_.assign(static_cast<std::size_t>(tables.n_twists), 0.0);
 }
 
 void LobattoSystem::open(const Stretch& stretch, const InstantState* first, const InstantState* last)
@@ -22,13 +23,8 @@ void LobattoSystem::open(const Stretch& stretch, const InstantState* first, cons
     if (!is_alike) rows_.open(stretch_);
     if (first != nullptr) nodes_.fix(0, *first);
     if (last != nullptr) nodes_.fix(stretch_.n_nodes() - 1, *last);
-    if (first != nullptr) rows_.end_momentum(false).scaled = first->momentum;
-    rows_.begin(stretch_);
+    if (first != nullptr) rows_.start_with(first->momentum);
     if (is_alike) return;
-    const auto freedoms = static_cast<std::size_t>(tables_.freedoms() * stretch_.n_nodes());
-    work_.assign(std::max(freedoms, static_cast<std::size_t>(tables_.n_twists)) +
-                     static_cast<std::size_t>(tables_.n_twists),
-                 0.0);
     if (rule_.degree == 1 && stretch_.n_elements() == 1 && stretch_.is_march() &&
         tables_.loads_with_tangent.empty())
         elimination_ = body_elimination(tables_);
@@ -67,27 +63,16 @@ bool LobattoSystem::factorise()
 
 void LobattoSystem::solve(std::span<double> dx)
 {
-    const int k = tables_.rank, n = tables_.n_twists, f = n - k;
-    double *y = work_.data(), *x = y + n;
-    const std::vector<double>& reduced = rows_.reduced();
-    std::copy(reduced.begin(), reduced.end(), x);
     if (pending_) {   // one node: its violations go into the linear system with the rows
-        for (int c = 0; c < k; ++c) range_[c] = -nodes_.violations(1)[c];
+        for (int c = 0; c < tables_.rank; ++c) range_[c] = -nodes_.violations(1)[c];
         nodes_.basis(1).q.solve_R_transposed(range_.data());
     }
-    elimination_->solve({x, reduced.size()}, pending_ ? range_.data() : nullptr);
-    double* out = dx.data();
+    elimination_->solve(rows_.reduced(), pending_ ? range_.data() : nullptr, dx.data());
+    double* twist = dx.data();
     for (int A = 0; A < stretch_.n_nodes(); ++A) {
         if (!stretch_.is_unknown(A)) continue;
-        if (pending_)
-            std::copy(range_.begin(), range_.end(), y);
-        else
-            std::fill(y, y + k, 0.0);
-        std::copy(x, x + f, y + k);
-        nodes_.basis(A).q.apply(y);
-        tables_.to_twist(nodes_.maps(A), y, out);
-        x += f;
-        out += n;
+        tables_.to_twist(nodes_.maps(A), twist, twist);
+        twist += tables_.n_twists;
     }
 }
 

@@ -43,8 +43,8 @@ private:
     struct Work {
         std::vector<double> lambda, end_lambda;   // all rows of the model
         std::vector<double> impulse;              // h w_0 lambda of the element's first node, in its basis
-        std::vector<double> momentum;             // twist rows about the centres of mass
-        std::vector<double> wrench;               // 12 a body
+        std::vector<double> momentum, wrench;     // twist rows about the centres of mass
+        std::vector<double> raw;                  // 12 a body
     };
 
     int mesh_end(int end) const;
@@ -54,7 +54,7 @@ private:
     bool begin_front(SolveReport& report);
     bool find_first_state(SolveReport& report);
     void accelerate(InstantState& state);
-    bool sum_momentum(int e);
+    void sum_momentum(int e);
     bool close_element(int e, SolveReport& report);
     void record_element(int e);
     bool rows_compatible(const InstantState& state, SolveReport& report) const;
