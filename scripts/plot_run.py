@@ -2,7 +2,7 @@
 
     plot_run.py RUN.nc PICTURE.png
 
-Needs matplotlib and one of netCDF4 and h5py; the variables are described in docs/results.md.
+Needs matplotlib and one of netCDF4 and SciPy; the variables are described in docs/results.md.
 """
 import sys
 
@@ -28,10 +28,12 @@ class Run:
             self.variables = self.file.variables
             self.attributes = {name: self.file.getncattr(name) for name in self.file.ncattrs()}
         except ModuleNotFoundError:
-            import h5py
+            from scipy.io import netcdf_file
 
-            self.file = self.variables = h5py.File(path, "r")
-            self.attributes = dict(self.file.attrs)
+            self.file = netcdf_file(path, mmap=False)
+            self.variables = self.file.variables
+            self.attributes = {name: value.decode() if isinstance(value, bytes) else value
+                               for name, value in self.file._attributes.items()}
 
     def __contains__(self, name):
         return name in self.variables

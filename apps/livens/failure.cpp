@@ -70,7 +70,7 @@ Failure current_failure()
     } catch (const InputError& e) {
         return {exit_scenario, status_of(exit_scenario), {from_complaint(e.complaint())}};
     } catch (const IoError& e) {
-        return failure(exit_input_output, e.what());
+        return {exit_input_output, status_of(exit_input_output), {plain_error(e.code(), e.what())}};
     } catch (const std::bad_alloc&) {
         return failure(exit_resources,
                        "memory is exhausted; fewer elements, output times or bodies need less");

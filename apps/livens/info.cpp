@@ -1,12 +1,11 @@
 // livens info: what a result file holds. livens export: its samples for other programs.
-#include <filesystem>
-
 #include <fmt/format.h>
 
 #include "commands.h"
 #include "console.h"
 #include "failure.h"
 #include "livens/io/results.h"
+#include "places.h"
 #include "words.h"
 
 namespace livens::program {
@@ -20,21 +19,18 @@ void names(JsonWriter& json, const char* key, const std::vector<std::string>& va
     json.end_array();
 }
 
-std::string json_of(const Run& run)
+std::string json_of(const RunHead& head)
 {
+    const Run& run = head.run;
     const SolveReport& report = run.report;
     JsonWriter json(2);
     json.begin_object();
     json.member("converged", report.reached_end()).member("status", to_string(report.status));
     json.member("message", report.message).member("title", run.title);
     json.member("version", run.version).member("method", run.method);
-    json.member("start", run.motion.start()).member("end", run.motion.end());
-    json.member("elements", run.motion.n_elements()).member("unknowns", report.unknowns);
-    json.member("newton_iterations", report.newton_iterations);
-    json.member("factorisations", report.factorisations);
+    json.member("start", head.start).member("end", head.end);
     write_figures(json, run);
-    json.member("order_at_element_ends", run.motion.order_at_ends);
-    json.member("output_times", run.output.size());
+    json.member("output_times", head.n_output_times);
     names(json, "bodies", run.body_names);
     names(json, "joints", run.joint_names);
     names(json, "notes", run.notes);
@@ -56,19 +52,20 @@ std::string list(const std::vector<std::string>& values)
 
 int info_command(const std::string& file, const Common& common)
 {
-    const Run run = read_run(file);
+    const RunHead head = read_run_head(file);
+    const Run& run = head.run;
     if (common.json) {
-        print(json_of(run));
+        print(json_of(head));
         return exit_ok;
     }
     std::string text = plain(run.title.empty() ? file : run.title) + "\n";
     text += fmt::format("  written by        livens {}\n", plain(run.version));
     text += fmt::format("  bodies            {}\n", list(run.body_names));
     if (!run.joint_names.empty()) text += fmt::format("  joints            {}\n", list(run.joint_names));
-    text += fmt::format("  time              {:.6g} s to {:.6g} s, {} output times\n", run.motion.start(),
-                        run.motion.end(), run.output.size());
+    text += fmt::format("  time              {:.6g} s to {:.6g} s, {} output times\n", head.start, head.end,
+                        head.n_output_times);
     text += fmt::format("  method            {}, {} elements, {} unknowns each\n", plain(run.method),
-                        run.motion.n_elements(), run.report.unknowns);
+                        run.report.n_elements, run.report.unknowns);
     text += figures(run);
     for (const std::string& note : run.notes) text += "  note              " + plain(note) + "\n";
     print(text + verdict(run) + "\n");
@@ -77,10 +74,10 @@ int info_command(const std::string& file, const Common& common)
 
 int export_command(const ExportArguments& arguments, const Common& common)
 {
+    check_differs(arguments.csv, arguments.run, "it is the run itself");
+    check_differs(arguments.csv, record_of(arguments.run), "it is the record beside the run");
+    check_place(arguments.csv);
     const Run run = read_run(arguments.run);
-    std::error_code error;
-    if (std::filesystem::equivalent(arguments.csv, arguments.run, error) && !error)
-        throw failure(exit_input_output, "cannot write '" + arguments.csv + "': it is the run itself");
     write_csv(arguments.csv, scenario_of_run(run.scenario_text, arguments.run).model, run);
     if (common.json) {
         JsonWriter json(2);

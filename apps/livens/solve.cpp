@@ -2,11 +2,10 @@
 #include <chrono>
 #include <ctime>
 #include <filesystem>
-#include <fstream>
+#include <memory>
+#include <new>
 
 #include <fmt/format.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include "commands.h"
 #include "console.h"
@@ -14,6 +13,7 @@
 #include "interrupt.h"
 #include "livens/base/version.h"
 #include "livens/io/results.h"
+#include "places.h"
 #include "progress.h"
 #include "words.h"
 
@@ -29,15 +29,6 @@ double seconds_since(Clock::time_point begin)
     return std::chrono::duration<double>(Clock::now() - begin).count();
 }
 
-/// Same file by any path; missing ones are compared by their folders.
-bool same_file(const fs::path& a, const fs::path& b)
-{
-    std::error_code error;
-    if (fs::equivalent(a, b, error) && !error) return true;
-    const fs::path full_a = fs::weakly_canonical(a, error), full_b = fs::weakly_canonical(b, error);
-    return !full_a.empty() && full_a == full_b;
-}
-
 struct Places {
     fs::path scenario, output, record, csv;
 };
@@ -50,22 +41,35 @@ Places places(const SolveArguments& arguments)
     p.scenario = arguments.scenario;
     p.output =
         arguments.output.empty() ? fs::path(p.scenario.stem().string() + ".nc") : fs::path(arguments.output);
-    p.record = fs::path(p.output).replace_extension(".json");
-    if (p.record == p.output) p.record += ".json";
+    p.record = record_of(p.output);
     p.csv = arguments.csv;
-    const auto refuse = [](const fs::path& file, const char* why) {
-        throw failure(exit_input_output, "cannot write '" + file.string() + "': " + why);
-    };
-    if (same_file(p.output, p.scenario)) refuse(p.output, "it is the scenario itself");
-    check_writable(p.output);
-    if (!p.csv.empty()) {
-        if (same_file(p.csv, p.scenario)) refuse(p.csv, "it is the scenario itself");
-        if (same_file(p.csv, p.output)) refuse(p.csv, "it is the result file as well");
-        if (same_file(p.csv, p.record)) refuse(p.csv, "it is the record beside the result file as well");
-        check_writable(p.csv);
-    }
+    check_differs(p.output, p.scenario, "it is the scenario itself");
+    check_place(p.output);
+    if (p.csv.empty()) return p;
+    check_differs(p.csv, p.scenario, "it is the scenario itself");
+    check_differs(p.csv, p.output, "it is the result file as well");
+    check_differs(p.csv, p.record, "it is the record beside the result file as well");
+    check_place(p.csv);
     return p;
 }
+
+/// Memory that checks and writing will want, asked for before solving and given back behind it: a motion that
+/// was solved must not be lost for want of it. Nothing of it is touched: it costs address space alone.
+class Reserve {
+public:
+    explicit Reserve(const Scenario& scenario)
+    {
+        const std::size_t numbers_an_element = 48 + 12 * scenario.model.bodies().size();
+        const std::size_t n_elements = static_cast<std::size_t>(scenario.mesh.n_elements());
+        const std::size_t size = (8u << 20) + n_elements * numbers_an_element * sizeof(double);
+        memory_ = std::make_unique_for_overwrite<char[]>(size);
+        *static_cast<volatile char*>(memory_.get()) = 0;   // or a compiler could leave it out
+    }
+    void give_back() { memory_.reset(); }
+
+private:
+    std::unique_ptr<char[]> memory_;
+};
 
 struct Solved {
     Run run;
@@ -77,6 +81,7 @@ Solved solve_scenario(const Scenario& scenario, const Common& common)
 {
     Solved solved;
     Solution solution;
+    Reserve reserve(scenario);
     const InterruptWatch watch;
     {
         ProgressLine line(error_is_terminal() && !common.quiet);
@@ -94,7 +99,13 @@ Solved solve_scenario(const Scenario& scenario, const Common& common)
     if (solution.report.status == SolveStatus::cancelled) solved.signal = InterruptWatch::signal();
 
     const Clock::time_point begin = Clock::now();
-    judge(scenario.model, solution);
+    reserve.give_back();
+    try {
+        judge(scenario.model, solution);
+    } catch (const std::bad_alloc&) {
+        if (solution.report.converged()) solution.report.status = SolveStatus::suspect;
+        solution.report.message = "memory ended before the motion was checked";
+    }
     solved.run = make_run(scenario.model, std::move(solution), scenario.method);
     solved.run.scenario_text = scenario.text;
     solved.run.title = scenario.title;
@@ -122,10 +133,7 @@ std::string json_of(const Solved& solved, const Places& p, const std::vector<Dia
     json.member("converged", report.reached_end()).member("status", to_string(report.status));
     json.member("exit_code", exit_code_of(solved));
     json.member("message", report.message).member("title", run.title).member("method", run.method);
-    json.member("elements", run.motion.n_elements()).member("unknowns", report.unknowns);
-    json.member("newton_iterations", report.newton_iterations);
-    json.member("factorisations", report.factorisations).member("blocks", report.iterations.size());
-    json.member("solve_seconds", solved.solve_seconds);
+    json.member("blocks", report.iterations.size()).member("solve_seconds", solved.solve_seconds);
     write_figures(json, run);
     json.member("start", run.motion.start()).member("end", run.motion.end());
     json.member("output", p.output.string());
@@ -153,23 +161,6 @@ std::string now_utc()
     ::gmtime_r(&now, &parts);
     return fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}Z", parts.tm_year + 1900, parts.tm_mon + 1,
                        parts.tm_mday, parts.tm_hour, parts.tm_min, parts.tm_sec);
-}
-
-/// Whether the record may take this name: nothing is there, or an older record. `livens solve ... --json >
-/// run.json` has the shell open the very file, which a rename would take away from it.
-bool may_record(const fs::path& file)
-{
-    struct stat there {
-    }, output{};
-    if (::stat(file.c_str(), &there) != 0) return true;
-    if (!S_ISREG(there.st_mode)) return false;
-    if (::fstat(STDOUT_FILENO, &output) == 0 && output.st_dev == there.st_dev &&
-        output.st_ino == there.st_ino)
-        return false;
-    std::ifstream in(file, std::ios::binary);
-    std::string head(16, '\0');
-    in.read(head.data(), static_cast<std::streamsize>(head.size()));
-    return head.starts_with("{\n  \"converged\"");
 }
 
 /// What would make the result differ from run to run lies beside it. Its loss is worth a word, not the

@@ -46,26 +46,6 @@ std::string figures(const Run& run)
     return text;
 }
 
-void write_figures(JsonWriter& json, const Run& run)
-{
-    const Verdict& s = run.verdict;
-    json.member("residual_norm", run.report.residual_norm);
-    json.member("max_constraint_violation", s.max_constraint_violation);
-    json.member("max_weak_violation", s.max_weak_violation);
-    json.member("max_velocity_violation", s.max_velocity_violation);
-    json.member("energy_drift", s.energy_drift).member("angular_momentum_drift", s.angular_momentum_drift);
-    json.member("zigzag_positions", s.zigzag_positions).member("zigzag_momenta", s.zigzag_momenta);
-    json.member("zigzag_time", s.zigzag_time);
-    const auto condition = [&](const char* key, double number) {
-        json.key(key);
-        if (number > 0) json.value(number);
-        else json.null();
-    };
-    condition("condition_1", run.report.condition_1);
-    condition("condition_2", run.report.condition_2);
-    condition("scaled_condition", run.report.scaled_condition);
-}
-
 std::string verdict(const Run& run)
 {
     const SolveReport& report = run.report;

@@ -14,8 +14,4 @@ std::string figures(const Run& run);
 /// One sentence: how good the run is.
 std::string verdict(const Run& run);
 
-/// The figures as members of an object: residual, violations, drifts, zig-zag and, where it was asked for
-/// (else null), condition numbers.
-void write_figures(JsonWriter& json, const Run& run);
-
 }   // namespace livens::program

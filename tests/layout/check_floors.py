@@ -35,7 +35,7 @@ FOREIGN = [
     (r"Eigen/", {"solvers", "multibody", "stepping"}),   # their targets rename its namespace, see cmake/rooms.cmake
     (r"suitesparse/|umfpack|metis", {"solvers"}),
     (r"toml\+\+/|toml\.hpp", {"io"}),
-    (r"netcdf|hdf5|H5", {"io"}),
+    (r"netcdf|hdf5|H5", set()),   # io reads and writes it itself
     (r"fmt/", {"io", "apps"}),
     (r"spdlog/|CLI/", {"apps"}),
     (r"gtest/|gmock/|benchmark/", set()),

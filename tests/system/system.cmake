@@ -1,5 +1,5 @@
 # Tests that run the program as a user does: one ctest a class of program_test.py. Standard library only; what needs
-# netCDF4 or the right to mount is skipped where it is missing.
+# netCDF4, xarray, ncdump or the right to mount is skipped where it is missing.
 
 if(LIVENS_BUILD_PROGRAM)
     set(script ${CMAKE_CURRENT_SOURCE_DIR}/system/program_test.py)

@@ -71,12 +71,18 @@ private:
 
 ActionSeries action(const Model& model, const Motion& motion)
 {
+    return action(model, motion, 0, motion.n_elements());
+}
+
+ActionSeries action(const Model& model, const Motion& motion, int first, int last)
+{
     assert(model.n_bodies() == motion.n_bodies);
+    assert(first >= 0 && last <= motion.n_elements());
     ActionSeries series;
-    if (motion.n_elements() < 1) return series;
+    if (last <= first) return series;
     const Quadrature rule = action_rule(motion);
     Integrands at(model, motion, rule);
-    for (int e = 0; e < motion.n_elements(); ++e) {
+    for (int e = first; e < last; ++e) {
         double lagrangian = 0, hamiltonian = 0;
         Vector3 moment{};
         for (std::size_t k = 0; k < rule.points.size(); ++k) {

@@ -73,6 +73,8 @@ struct ActionSeries {
     std::vector<Vector3> angular_momentum;   ///< N m s^2 per element
 };
 ActionSeries action(const Model& model, const Motion& motion);
+/// Of the elements `first` to `last` - 1 alone.
+ActionSeries action(const Model& model, const Motion& motion, int first, int last);
 
 /// How much a motion alternates from node to node: 0 for a smooth one, 1 for a pure zig-zag.
 ///

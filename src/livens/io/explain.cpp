@@ -82,10 +82,24 @@ Principal moments satisfy the triangle inequality J1 + J2 >= J3 for every distri
 it is a flat body or a needle. Common causes: moments about another point than the centre of mass,
 products of inertia with the wrong sign, or moments and axes in different order.)"},
     Page{"internal", R"(A fault of livens itself. Please report it with the scenario.)"},
+    Page{"io-damaged", R"(
+A result file does not fit the checksums in it, or its parts contradict each other: it was damaged on its
+way or edited by another program. The message names the part. Solve the scenario again; if the header and
+the variable `scenario` can still be read (`ncdump -v scenario`), it is in there.)"},
     Page{"io-directory", R"(The path leads to a directory where a scenario file is expected.)"},
+    Page{"io-foreign", R"(
+The file is no run of livens: it is no classic NetCDF (CDF-1, CDF-2, CDF-5), or has no `livens_format`. Runs
+are what `livens solve` writes. NetCDF-4 is HDF5, another format.)"},
+    Page{"io-not-a-file", R"(
+Results are files on a disk, which are replaced as a whole and read where needed. Devices, pipes and
+/dev/stdout cannot be that. Write to a file and copy it.)"},
     Page{"io-not-found", R"(There is no file of this name.)"},
+    Page{"io-truncated", R"(
+A result file is shorter than its header says: a copy or a download was not finished, or a disk was full.)"},
     Page{"io-unreadable", R"(
 The file exists, but reading it failed: permission is missing or the device reports an error.)"},
+    Page{"io-version", R"(
+The file was written by a livens with another major format. Solve its scenario again, or use that livens.)"},
     Page{"joint-branch", R"(
 A revolute joint makes one axis of each body coincide. Its conditions also hold when one of the two points the
 other way, and at the start they do. Reverse one of the two `axes`, or turn one of the bodies.)"},
@@ -298,7 +312,7 @@ std::vector<std::string_view> diagnostic_codes()
 
 std::string diagnostics_markdown()
 {
-    std::string out = R"(# What livens says about a scenario
+    std::string out = R"(# What livens says about scenarios and files
 
 Every message has a code, `error[unknown-key]: ...`; `livens explain CODE` prints its page. Up to twenty are
 shown in one run. `--diagnostics=json` and `--diagnostics=gnu` print them for machines and editors.

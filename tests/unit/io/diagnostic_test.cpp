@@ -196,6 +196,8 @@ TEST(Codes, EveryCodeInTheSourcesHasAPage)
                 ++n_codes;
             }
     }
+    for (const char* code : {"io-damaged", "io-foreign", "io-not-a-file", "io-truncated", "io-version"})
+        EXPECT_NE(explain(code), "") << code;   // of IoError
     EXPECT_GT(n_codes, 40) << "codes are not found any more";
 }
 

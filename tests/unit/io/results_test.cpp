@@ -8,9 +8,8 @@
 
 #include "livens/base/error.h"
 #include "livens/diagnostics/sample.h"
-#include "livens/io/detail/netcdf_file.h"
-#include "livens/io/detail/results_digest.h"
-#include "livens/io/detail/results_layout.h"
+#include "livens/io/json.h"
+#include "livens/io/results/figures.h"
 #include "livens/spacetime/solve.h"
 #include "livens/time/time_mesh.h"
 #include "unit/io/sample_run.h"
@@ -29,7 +28,7 @@ TEST_F(Results, RunComesBackToTheBit)
     write_run(in_folder("run.nc"), model, run);
     const RunFile back = read_run(in_folder("run.nc"));
 
-    EXPECT_EQ(digest(back), digest(run));   // everything; what follows guards the digest itself
+    EXPECT_EQ(image_of(model, back), image_of(model, run));   // everything that is written
     EXPECT_EQ(back.scenario_text, run.scenario_text);
     EXPECT_EQ(back.body_names, run.body_names);
     EXPECT_EQ(back.body_is_point, run.body_is_point);
@@ -63,40 +62,48 @@ TEST_F(Results, RunComesBackToTheBit)
     EXPECT_EQ(back.verdict.balance.largest_moment, run.verdict.balance.largest_moment);
 }
 
-TEST_F(Results, DigestSeesEveryPart)
+TEST_F(Results, EveryFigureComesBackAndStandsInJson)
 {
     const Model model = sample_model();
-    const RunFile run = sample_run(model);
-    const auto changed = [&](auto&& change) {
-        RunFile other = run;
-        change(other);
-        return digest(other) != digest(run);
-    };
-    EXPECT_TRUE(changed([](RunFile& r) { r.title += " "; }));
-    EXPECT_TRUE(changed([](RunFile& r) { r.scenario_text.back() = ' '; }));
-    EXPECT_TRUE(changed([](RunFile& r) { r.body_is_point[0] = true; }));
-    EXPECT_TRUE(changed([](RunFile& r) { r.motion.X.values[5] = std::nextafter(r.motion.X.values[5], 9); }));
-    EXPECT_TRUE(changed([](RunFile& r) { r.motion.P.continuous = true; }));
-    EXPECT_TRUE(changed([](RunFile& r) { r.motion.accelerations[3][2] = -0.0; }));
-    EXPECT_TRUE(changed([](RunFile& r) { r.report.status = SolveStatus::singular; }));
-    EXPECT_TRUE(changed([](RunFile& r) { r.report.message += "!"; }));
-    EXPECT_TRUE(changed([](RunFile& r) { r.verdict.balance.work[1] += 1; }));
-    EXPECT_TRUE(changed([](RunFile& r) { r.report.notes.pop_back(); }));
-    EXPECT_TRUE(changed([](RunFile& r) { r.motion.rigidity.values[7] += 1; }));
-    EXPECT_TRUE(changed([](RunFile& r) { r.motion.P.denominators = {1}; }));
-    EXPECT_TRUE(changed([](RunFile& r) { r.motion.block_ends.pop_back(); }));
-    EXPECT_TRUE(changed([](RunFile& r) { r.verdict.max_weak_violation = 0; }));
+    RunFile run = sample_run(model);
+    double next = 1000;
+    for (const Figure& figure : run_figures()) {
+        const std::string name = figure.name;
+        if (name == "n_bodies" || name == "n_rows") continue;   // sizes of what is in the file
+        ASSERT_TRUE(set_figure(run, figure, ++next)) << name;
+    }
+    const RunFile back = read_run_from(source_of(image_of(model, run)));
+    JsonWriter json;
+    json.begin_object();
+    write_figures(json, back);
+    json.end_object();
+    for (const Figure& figure : run_figures()) {
+        EXPECT_EQ(figure_of(back, figure), figure_of(run, figure)) << figure.name;
+        const std::string member =
+            std::string("\"") + figure.name + "\": " + to_text(figure_of(run, figure));
+        EXPECT_NE(json.text().find(member), std::string::npos) << member << " in " << json.text();
+    }
 }
 
-TEST_F(Results, EachMinorVersionHasADigestOfWhatItBrought)
+/// As many members as the table of figures and the walk of layout.h know: who adds one adds it there.
+TEST_F(Results, EveryMemberOfARunIsInTheFile)
 {
-    const RunFile run = sample_run(sample_model());
-    RunFile other = run;
-    other.motion.block_ends = {0};
-    other.motion.X.denominators.assign(17, 2);
-    other.verdict.zigzag_time = 0;
-    EXPECT_EQ(digest_of_minor(other, 0), digest_of_minor(run, 0)) << "1.0 readers could not check this file";
-    EXPECT_NE(digest_of_minor(other, 1), digest_of_minor(run, 1));
+    [[maybe_unused]] const auto& [r1, r2, r3, r4, r5, r6, r7, r8, r9, r10, r11, r12, r13, r14, r15] =
+        RunFile{};
+    [[maybe_unused]] const auto& [m1, m2, m3, m4, m5, m6, m7, m8, m9, m10, m11, m12, m13, m14, m15, m16, m17,
+                                  m18] = Motion{};
+    [[maybe_unused]] const auto& [f1, f2, f3, f4, f5] = Field{};
+    int report = 0, verdict = 0, balance = 0;
+    for (const Figure& figure : run_figures()) {
+        report += figure.member.index() < 4;
+        verdict += std::holds_alternative<double Verdict::*>(figure.member);
+        balance += std::holds_alternative<double Balance::*>(figure.member);
+    }
+    const std::size_t lists = 2 * sizeof(std::vector<int>);
+    EXPECT_EQ(sizeof(Balance), 12 * sizeof(std::vector<int>) + static_cast<std::size_t>(balance) * 8);
+    EXPECT_EQ(sizeof(Verdict), lists + static_cast<std::size_t>(verdict) * 8 + sizeof(Balance) +
+                                   sizeof(ViolationReport));
+    EXPECT_EQ(report, 16);   // and status, message, iterations, notes
 }
 
 TEST_F(Results, NurbsWithoutJointsAreWritten)
@@ -109,7 +116,7 @@ TEST_F(Results, NurbsWithoutJointsAreWritten)
     const RunFile run =
         make_run(model, solve(model, {model.start()}, make_time_mesh(0, 1, 4), method), method);
     write_run(in_folder("run.nc"), model, run);
-    EXPECT_EQ(digest(read_run(in_folder("run.nc"))), digest(run));
+    EXPECT_EQ(image_of(model, read_run(in_folder("run.nc"))), image_of(model, run));
 }
 
 TEST_F(Results, DenominatorsComeBackAndBendTheSamples)
@@ -122,7 +129,7 @@ TEST_F(Results, DenominatorsComeBackAndBendTheSamples)
     run.motion.rigidity.denominators = {1, 2, 3, 4};
     write_run(in_folder("run.nc"), model, run);
     const RunFile back = read_run(in_folder("run.nc"));
-    EXPECT_EQ(digest(back), digest(run));
+    EXPECT_EQ(image_of(model, back), image_of(model, run));
     EXPECT_EQ(back.motion.X.denominators, run.motion.X.denominators);
     EXPECT_EQ(back.motion.rigidity.denominators, run.motion.rigidity.denominators);
     // Halfway through the first element the middle node's weight of 1/2 and the end's of 2 do not matter, as
@@ -145,14 +152,12 @@ TEST_F(Results, MotionsThatJumpBetweenBlocksComeBack)
     X.values[72] += 0.01;
     write_run(in_folder("run.nc"), model, run);
     const RunFile back = read_run(in_folder("run.nc"));
-    EXPECT_EQ(digest(back), digest(run));
+    EXPECT_EQ(image_of(model, back), image_of(model, run));
     EXPECT_EQ(back.motion.X.values, X.values);
-    std::string image = bytes_of(in_folder("run.nc"));
-    image.resize(image.size() - 24);
-    const NetcdfReader file(image);
-    EXPECT_EQ(file.doubles({"X_node", {"X_node"}}), (std::vector<double>{0, 0.25, 0.5, 0.5, 0.75, 1}));
-    EXPECT_EQ(file.doubles({"joint_violation", {"X_node"}}).size(), 6u);
-    EXPECT_EQ(file.doubles({"action_integral", {"element"}}).size(), 2u);
+    const Image file(bytes_of(in_folder("run.nc")));
+    EXPECT_EQ(file.doubles("X_node", {"X_node"}), (std::vector<double>{0, 0.25, 0.5, 0.5, 0.75, 1}));
+    EXPECT_EQ(file.doubles("joint_violation", {"X_node"}).size(), 6u);
+    EXPECT_EQ(file.doubles("action_integral", {"element"}).size(), 2u);
 }
 
 TEST_F(Results, SameRunGivesSameBytes)
@@ -175,7 +180,7 @@ TEST_F(Results, LongTextsAndManyNamesComeBack)
     run.scenario_text = std::string(3'000'000, '#');
     run.notes.assign(3000, "note");
     write_run(in_folder("run.nc"), model, run);
-    EXPECT_EQ(digest(read_run(in_folder("run.nc"))), digest(run));
+    EXPECT_EQ(image_of(model, read_run(in_folder("run.nc"))), image_of(model, run));
 }
 
 TEST_F(Results, EmptyPartsComeBack)
@@ -193,7 +198,7 @@ TEST_F(Results, EmptyPartsComeBack)
     run.output = {0, 1};
     write_run(in_folder("run.nc"), model, run);
     const RunFile back = read_run(in_folder("run.nc"));
-    EXPECT_EQ(digest(back), digest(run));
+    EXPECT_EQ(image_of(model, back), image_of(model, run));
     EXPECT_EQ(sample_bodies(model, back.motion, 0).front().velocity, (Vector3{1, 2, 3}));
     write_csv(in_folder("run.csv"), model, back);
 }
@@ -205,43 +210,61 @@ TEST_F(Results, FileSaysWhatItHolds)
 {
     const Model model = sample_model();
     const RunFile run = sample_run(model);
-    std::string image = run_image(model, run);
-    const NetcdfReader file(image);
+    const Image file(image_of(model, run));
     const std::string manual = bytes_of(fs::path(LIVENS_SOURCE_DIR) / "docs/results.md");
-    for (const std::string& name : file.variables()) {
-        EXPECT_NE(manual.find("`" + name + "`"), std::string::npos)
-            << name << " is missing in docs/results.md";
-        for (const char* attribute : {"units", "long_name", "frame"})
-            EXPECT_FALSE(file.text_attribute_of(name, attribute).empty()) << name << ": " << attribute;
+    for (const ClassicVariable& v : file.reader().variables()) {
+        EXPECT_NE(manual.find("`" + v.name + "`"), std::string::npos)
+            << v.name << " is missing in docs/results.md";
+        for (const char* attribute : {"units", "long_name", "frame", "checksum"})
+            EXPECT_FALSE(file.text_of(v.name, attribute).empty()) << v.name << ": " << attribute;
     }
-    for (const std::string& name : file.attributes())
-        EXPECT_NE(manual.find("`" + name + "`"), std::string::npos)
-            << name << " is missing in docs/results.md";
-    EXPECT_EQ(file.text_attribute_of("quaternion", "order"), "w, x, y, z");
-    EXPECT_EQ(file.int_attribute("livens_format"), 1);
-    EXPECT_EQ(file.int_attribute("converged"), 0);
-    EXPECT_EQ(file.text_attribute("title"), "Größe");
+    for (const Attribute& attribute : file.reader().attributes())
+        EXPECT_NE(manual.find("`" + attribute.name + "`"), std::string::npos)
+            << attribute.name << " is missing in docs/results.md";
+    for (const Figure& figure : run_figures()) {
+        const std::string row =
+            std::string("| `") + figure.name + "` | " + figure.unit + " | " + figure.meaning;
+        EXPECT_NE(manual.find(row + " |\n"), std::string::npos) << "missing in docs/results.md: " << row;
+    }
+    EXPECT_EQ(file.text_of("quaternion", "order"), "w, x, y, z");
+    EXPECT_EQ(file.reader().number("livens_format"), 2);
+    EXPECT_EQ(file.reader().number("converged"), 0);
+    EXPECT_EQ(*file.reader().attribute("title"), AttributeValue("Größe"));
 }
 
-std::vector<double> numbers_of(const NetcdfReader& file, const std::string& name,
-                               std::vector<std::string> dimensions)
+TEST_F(Results, TheHeadIsReadWithoutTheMotion)
 {
-    return file.doubles({name, std::move(dimensions)});
+    const Model model = sample_model();
+    const RunFile run = sample_run(model, 1000);
+    write_run(in_folder("run.nc"), model, run);
+    std::string image = bytes_of(in_folder("run.nc"));
+    const Image file(image);
+    const std::size_t X = file.reader().variable("X")->begin;
+    image[X + 8] = static_cast<char>(image[X + 8] ^ 1);
+    put_bytes(in_folder("damaged.nc"), image);
+    EXPECT_NE(error_of_reading(in_folder("damaged.nc")).find("'X'"), std::string::npos);
+    const RunHead head = read_run_head(in_folder("damaged.nc"));
+    EXPECT_EQ(head.run.body_names, run.body_names);
+    EXPECT_EQ(head.run.notes, run.notes);
+    EXPECT_EQ(head.run.resolved, run.resolved);
+    EXPECT_EQ(head.run.report.n_elements, 1000);
+    EXPECT_EQ(head.end, 500);
+    EXPECT_EQ(head.n_output_times, 1001);
+    EXPECT_TRUE(head.run.motion.X.empty());
 }
 
 TEST_F(Results, SamplesHoldPosesAndReactions)
 {
     const Model model = sample_model();
     const RunFile run = sample_run(model);
-    std::string image = run_image(model, run);
-    const NetcdfReader file(image);
-    const std::vector<double> t = numbers_of(file, "time", {"time"});
-    const std::vector<double> p = numbers_of(file, "position", {"time", "body", "xyz"});
-    const std::vector<double> c = numbers_of(file, "center_of_mass", {"time", "body", "xyz"});
-    const std::vector<double> d = numbers_of(file, "directors", {"time", "body", "director", "xyz"});
-    const std::vector<double> q = numbers_of(file, "quaternion", {"time", "body", "quaternion_part"});
-    const std::vector<double> w = numbers_of(file, "angular_velocity_body", {"time", "body", "xyz"});
-    const std::vector<double> f = numbers_of(file, "reaction_force", {"time", "joint", "side", "xyz"});
+    const Image file(image_of(model, run));
+    const std::vector<double> t = file.doubles("time", {"time"});
+    const std::vector<double> p = file.doubles("position", {"time", "body", "xyz"});
+    const std::vector<double> c = file.doubles("center_of_mass", {"time", "body", "xyz"});
+    const std::vector<double> d = file.doubles("directors", {"time", "body", "director", "xyz"});
+    const std::vector<double> q = file.doubles("quaternion", {"time", "body", "quaternion_part"});
+    const std::vector<double> w = file.doubles("angular_velocity_body", {"time", "body", "xyz"});
+    const std::vector<double> f = file.doubles("reaction_force", {"time", "joint", "side", "xyz"});
     ASSERT_EQ(t, run.output);
     for (std::size_t i = 0; i < t.size(); ++i) {
         const double angle = 2 * t[i];
@@ -265,12 +288,11 @@ TEST_F(Results, IntegralsOverElementsAreThoseOfTheDiagnostics)
 {
     const Model model = sample_model();
     const RunFile run = sample_run(model);
-    std::string image = run_image(model, run);
-    const NetcdfReader file(image);
+    const Image file(image_of(model, run));
     const ActionSeries series = action(model, run.motion);
-    EXPECT_EQ(numbers_of(file, "action_integral", {"element"}), series.lagrangian);
-    EXPECT_EQ(numbers_of(file, "hamiltonian_integral", {"element"}), series.hamiltonian);
-    const std::vector<double> moments = numbers_of(file, "angular_momentum_integral", {"element", "xyz"});
+    EXPECT_EQ(file.doubles("action_integral", {"element"}), series.lagrangian);
+    EXPECT_EQ(file.doubles("hamiltonian_integral", {"element"}), series.hamiltonian);
+    const std::vector<double> moments = file.doubles("angular_momentum_integral", {"element", "xyz"});
     ASSERT_EQ(moments.size(), 24u);
     for (int e = 0; e < 8; ++e)
         for (int i = 0; i < 3; ++i)
@@ -314,9 +336,9 @@ TEST_F(Results, OutputBeyondTheMotionIsLeftOut)
     const Model model = sample_model();
     RunFile run = sample_run(model);
     run.output = {0, 1, 2, 77};
-    std::string image = run_image(model, run);
-    EXPECT_EQ(numbers_of(NetcdfReader(image), "time", {"time"}), (std::vector<double>{0, 1, 2}));
-    EXPECT_EQ(run_from_image(image, "").output, run.output);
+    const std::string image = image_of(model, run);
+    EXPECT_EQ(Image(image).doubles("time", {"time"}), (std::vector<double>{0, 1, 2}));
+    EXPECT_EQ(read_run_from(source_of(image)).output, run.output);
 }
 
 TEST_F(Results, CsvHasOneLinePerTime)
@@ -381,12 +403,11 @@ TEST_F(Results, ViolationsAreWrittenAsTheVerdictMeasuredThem)
     RunFile run = make_run(
         model, solve(model, {model.start()}, make_time_mesh(0, 1, 5), Lobatto{2}), Lobatto{2});
     run.verdict.violations.joints[3] = 0.125;   // seen only if nothing is evaluated again
-    std::string image = run_image(model, run);
-    const NetcdfReader file(image);
-    const std::vector<double> written = file.doubles({"joint_violation", {"X_node"}});
+    const Image file(image_of(model, run));
+    const std::vector<double> written = file.doubles("joint_violation", {"X_node"});
     EXPECT_EQ(written.size(), 11u);
     EXPECT_EQ(written[3], 0.125);
-    EXPECT_EQ(file.doubles({"rigidity_violation", {"X_node"}}), run.verdict.violations.rigidity);
+    EXPECT_EQ(file.doubles("rigidity_violation", {"X_node"}), run.verdict.violations.rigidity);
 }
 
 TEST_F(Results, RunsOfWhichNothingWasSolvedHoldTheirStart)

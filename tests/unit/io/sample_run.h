@@ -1,18 +1,21 @@
 // A run made by hand that fills every part of a result file, and a folder to put it in.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <limits>
+#include <span>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "livens/io/results.h"
+#include "livens/io/results/layout.h"
 
 namespace livens {
 
@@ -51,10 +54,64 @@ inline std::string error_of_reading(const fs::path& file)
     try {
         read_run(file);
     } catch (const IoError& error) {
-        return error.what();
+        return error.code() + ": " + error.what();
     }
     return "";
 }
+
+/// A sink into `image`, which must live as long.
+inline ByteSink into(std::string& image)
+{
+    return [&image](std::uint64_t offset, std::string_view bytes) {
+        image.resize(std::max<std::size_t>(image.size(), offset + bytes.size()));
+        bytes.copy(image.data() + offset, bytes.size());
+    };
+}
+
+/// The bytes of the file.
+inline std::string image_of(const Model& model, const RunFile& run,
+                            std::uint64_t largest = ClassicWriter::largest_in_cdf2)
+{
+    std::string image;
+    write_run_to(into(image), model, run, largest);
+    return image;
+}
+
+inline ByteSource source_of(const std::string& image)
+{
+    return {image.size(), [&image](std::uint64_t offset, std::span<char> out) {
+                ASSERT_LE(offset + out.size(), image.size()) << "read beyond the end";
+                image.copy(out.data(), out.size(), offset);
+            }};
+}
+
+/// A file in memory, as other readers see it.
+class Image {
+public:
+    explicit Image(std::string bytes) : bytes_(std::move(bytes)), reader_(source_of(bytes_)) {}
+
+    const ClassicReader& reader() const { return reader_; }
+    std::vector<double> doubles(const std::string& name, const std::vector<std::string>& dimensions) const
+    {
+        const ClassicVariable* v = reader_.variable(name);
+        if (v == nullptr || v->dimensions != dimensions || v->type != NumberType::real) {
+            ADD_FAILURE() << name << " is missing or of another shape";
+            return {};
+        }
+        std::vector<double> values(v->n_values);
+        reader_.read(*v, values);
+        return values;
+    }
+    std::string text_of(const std::string& variable, const std::string& attribute) const
+    {
+        const AttributeValue* value = find_attribute(reader_.variable(variable)->attributes, attribute);
+        return value == nullptr ? "" : std::get<std::string>(*value);
+    }
+
+private:
+    std::string bytes_;
+    ClassicReader reader_;
+};
 
 /// A rigid body that turns about z with angular velocity 2 and moves along x with velocity 3, and a point
 /// mass above it, held by a rod whose multiplier is 5 before and 7 after each instant.
@@ -177,6 +234,9 @@ inline RunFile sample_run(const Model& model, int n_elements = 8)
     v.zigzag_positions = 0.125;
     v.zigzag_momenta = 0.25;
     v.zigzag_time = 1.5;
+    v.velocity_jump = 0.0625;
+    v.velocity_jump_time = 3.5;
+    v.linear_momentum_drift = 1e-11;
     fill_balance(v.balance, n_elements + 1);
     run.version = "0.1.0";
     return run;

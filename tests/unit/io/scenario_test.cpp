@@ -462,6 +462,11 @@ TEST(ScenarioCodes, AllAreProvokedByTheseTests)
                                       "gauss-points-out-of-range",
                                       "gear-ratio",
                                       "internal",
+                                      "io-damaged",   // of result files, with these: result_files_test.cpp
+                                      "io-foreign",
+                                      "io-not-a-file",
+                                      "io-truncated",
+                                      "io-version",
                                       "joint-empty",
                                       "joint-method",
                                       "joint-row",

@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include "livens/io/detail/results_layout.h"
+#include "livens/io/results/layout.h"
 
 namespace livens {
 
@@ -11,7 +11,7 @@ constexpr int max_degree = 32;
 
 void require(bool truth, const char* what)
 {
-    if (!truth) throw IoError(std::string("the run contradicts itself: ") + what);
+    if (!truth) throw IoError(std::string("the run contradicts itself: ") + what, "io-damaged");
 }
 
 void check_mesh(const TimeMesh& mesh)

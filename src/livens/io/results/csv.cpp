@@ -1,6 +1,6 @@
+#include "livens/diagnostics/sample.h"
 #include "livens/io/json.h"
 #include "livens/io/results.h"
-#include "livens/diagnostics/sample.h"
 
 namespace livens {
 

@@ -1,0 +1,73 @@
+#include "places.h"
+
+#include <fstream>
+#include <string>
+
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "failure.h"
+#include "livens/io/results.h"
+
+namespace livens::program {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// How every record begins, and nothing else that is likely.
+bool is_record(const fs::path& file)
+{
+    std::error_code error;
+    if (!fs::is_regular_file(file, error)) return false;
+    constexpr std::string_view head = "{\n  \"converged\"";
+    std::string found(head.size(), '\0');
+    std::ifstream in(file, std::ios::binary);
+    in.read(found.data(), static_cast<std::streamsize>(found.size()));
+    return found == head;
+}
+
+[[noreturn]] void refuse(const fs::path& file, const char* why)
+{
+    throw failure(exit_input_output, "cannot write '" + file.string() + "': " + why);
+}
+
+}   // namespace
+
+bool same_file(const fs::path& a, const fs::path& b)
+{
+    std::error_code error;
+    if (fs::equivalent(a, b, error) && !error) return true;
+    const fs::path full_a = fs::weakly_canonical(a, error), full_b = fs::weakly_canonical(b, error);
+    return !full_a.empty() && full_a == full_b;
+}
+
+fs::path record_of(const fs::path& run) { return fs::path(run) += ".json"; }
+
+bool is_standard_output(const fs::path& file)
+{
+    struct stat there {
+    }, output{};
+    return ::stat(file.c_str(), &there) == 0 && ::fstat(STDOUT_FILENO, &output) == 0 &&
+           output.st_dev == there.st_dev && output.st_ino == there.st_ino;
+}
+
+bool may_record(const fs::path& file)
+{
+    std::error_code error;
+    return !fs::exists(fs::symlink_status(file, error)) || (is_record(file) && !is_standard_output(file));
+}
+
+void check_place(const fs::path& file)
+{
+    check_writable(file);
+    if (is_standard_output(file)) refuse(file, "standard output goes there");
+    if (is_record(file)) refuse(file, "it is the record of a run");
+}
+
+void check_differs(const fs::path& file, const fs::path& other, const char* why)
+{
+    if (same_file(file, other)) refuse(file, why);
+}
+
+}   // namespace livens::program

@@ -1,0 +1,25 @@
+// Where results go, and what must not be destroyed by them.
+#pragma once
+
+#include <filesystem>
+
+namespace livens::program {
+
+/// Same file by any path; missing ones are compared by their folders.
+bool same_file(const std::filesystem::path& a, const std::filesystem::path& b);
+
+/// The record of a run lies beside it, under its whole name and ".json".
+std::filesystem::path record_of(const std::filesystem::path& run);
+
+/// Whether standard output goes into this very file: a rename would take it away.
+bool is_standard_output(const std::filesystem::path& file);
+
+/// Whether the record may take this name: nothing is there, or an older record.
+bool may_record(const std::filesystem::path& file);
+
+/// Throws what happens now if `file` cannot be written or must not: if it is `other`, which `why` names, the
+/// record of a run, or standard output. Call before solving, so that nothing is computed in vain.
+void check_place(const std::filesystem::path& file);
+void check_differs(const std::filesystem::path& file, const std::filesystem::path& other, const char* why);
+
+}   // namespace livens::program

@@ -1,0 +1,212 @@
+#include "livens/io/results/atomic_file.h"
+
+#include <atomic>
+#include <cerrno>
+#include <string>
+#include <system_error>
+#include <utility>
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "livens/io/results.h"
+
+namespace livens {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string quoted(const fs::path& file) { return "'" + file.string() + "'"; }
+
+[[noreturn]] void fail(const std::string& what, int error)
+{
+    throw IoError(what + ": " + std::generic_category().message(error));
+}
+
+/// A signal may interrupt what a call does to a file; then it is called again.
+template <class Call>
+ssize_t insistent(const Call& call)
+{
+    for (;;) {
+        const ssize_t n = call();
+        if (n >= 0 || errno != EINTR) return n;
+    }
+}
+
+/// The name that a link stands for; a link to nothing yet is followed as well.
+fs::path followed(fs::path file)
+{
+    std::error_code error;
+    for (int links = 0; fs::is_symlink(fs::symlink_status(file, error)); ++links) {
+        const fs::path target = fs::read_symlink(file, error);
+        if (links == 40 || error) fail("cannot follow " + quoted(file), links == 40 ? ELOOP : error.value());
+        file = target.is_absolute() ? target : file.parent_path() / target;
+    }
+    return file;
+}
+
+fs::path folder_of(const fs::path& file)
+{
+    return file.has_parent_path() ? file.parent_path() : fs::path(".");
+}
+
+bool is_same(const struct stat& a, const struct stat& b)
+{
+    return a.st_dev == b.st_dev && a.st_ino == b.st_ino;
+}
+
+/// Removes `file` if it is a temporary that nobody has locked. What is removed is what was locked: no name is
+/// used twice by one process.
+void remove_abandoned(const fs::path& file)
+{
+    const Descriptor found(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK));
+    struct stat opened {
+    }, named{};
+    if (found.number() < 0 || ::flock(found.number(), LOCK_EX | LOCK_NB) != 0) return;
+    if (::fstat(found.number(), &opened) != 0 || !S_ISREG(opened.st_mode)) return;
+    if (::lstat(file.c_str(), &named) == 0 && is_same(opened, named)) ::unlink(file.c_str());
+}
+
+/// ".livens-<digits>-<digits>.tmp"
+bool is_temporary(const std::string& name)
+{
+    constexpr std::string_view head = ".livens-", tail = ".tmp";
+    if (!name.starts_with(head) || !name.ends_with(tail) || name.size() <= head.size() + tail.size())
+        return false;
+    const std::string_view middle =
+        std::string_view(name).substr(head.size(), name.size() - head.size() - tail.size());
+    return middle.find_first_not_of("0123456789-") == std::string_view::npos;
+}
+
+void remove_abandoned_in(const fs::path& folder)
+{
+    std::error_code error;
+    for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
+        if (is_temporary(entry->path().filename().string())) remove_abandoned(entry->path());
+}
+
+}   // namespace
+
+Descriptor& Descriptor::operator=(Descriptor&& other) noexcept
+{
+    std::swap(number_, other.number_);
+    return *this;
+}
+
+Descriptor::~Descriptor()
+{
+    if (number_ >= 0) ::close(number_);
+}
+
+AtomicFile::AtomicFile(const fs::path& file) : file_(file)
+{
+    const std::string cannot = "cannot write " + quoted(file);
+    if (file.empty() || !file.has_filename() || file.filename() == "." || file.filename() == "..")
+        throw IoError(cannot + ": it names no file");
+    // Asked of the name as it is given: /dev/stdout is a link that leads to a pipe, and to no place on a
+    // disk.
+    struct stat old {};
+    const bool is_there = ::stat(file.c_str(), &old) == 0;
+    if (!is_there && errno != ENOENT) fail(cannot, errno);
+    if (is_there && S_ISDIR(old.st_mode)) fail(cannot, EISDIR);
+    if (is_there && !S_ISREG(old.st_mode))
+        throw IoError(cannot + ": it is a device or a pipe; results are files", "io-not-a-file");
+    if (is_there && ::access(file.c_str(), W_OK) != 0) fail(cannot, errno);
+    target_ = followed(file);
+    const fs::path folder = folder_of(target_);
+    // A result replaces its predecessor by name, so it is the folder that must be writable.
+    struct stat status {};
+    if (::stat(folder.c_str(), &status) != 0) fail(cannot + ": folder " + quoted(folder), errno);
+    if (!S_ISDIR(status.st_mode)) fail(cannot + ": folder " + quoted(folder), ENOTDIR);
+    remove_abandoned_in(folder);
+    create();
+    if (!is_there || ::fchmod(out_.number(), old.st_mode & 07777) == 0) return;
+    const int error = errno;
+    ::unlink(temporary_.c_str());
+    fail("cannot set the access rights of " + quoted(file), error);
+}
+
+void AtomicFile::create()
+{
+    static std::atomic<unsigned> n_made{0};
+    const fs::path folder = folder_of(target_);
+    for (int attempt = 0; attempt < 10000; ++attempt) {
+        // The name does not contain the target's, which may be as long as the file system allows.
+        temporary_ =
+            folder / (".livens-" + std::to_string(::getpid()) + "-" + std::to_string(n_made++) + ".tmp");
+        out_ = Descriptor(::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
+        if (out_.number() < 0 && errno == EEXIST) continue;
+        if (out_.number() < 0) fail("cannot write " + quoted(file_) + ": folder " + quoted(folder), errno);
+        // Another process may have taken it for abandoned before it was locked.
+        struct stat status {};
+        ::flock(out_.number(), LOCK_EX);
+        if (::fstat(out_.number(), &status) == 0 && status.st_nlink > 0) return;
+    }
+    throw IoError("cannot write " + quoted(file_) + ": no temporary name is free");
+}
+
+AtomicFile::~AtomicFile()
+{
+    if (out_.number() >= 0 && !temporary_.empty()) ::unlink(temporary_.c_str());
+}
+
+void AtomicFile::write(std::uint64_t offset, std::string_view bytes)
+{
+    while (!bytes.empty()) {
+        const ssize_t n = insistent(
+            [&] { return ::pwrite(out_.number(), bytes.data(), bytes.size(), static_cast<off_t>(offset)); });
+        if (n < 0) fail("cannot write " + quoted(file_), errno);
+        bytes.remove_prefix(static_cast<std::size_t>(n));
+        offset += static_cast<std::uint64_t>(n);
+    }
+}
+
+void AtomicFile::commit()
+{
+    if (::fsync(out_.number()) != 0) fail("cannot write " + quoted(file_), errno);
+    // Some file systems report a full disk only when a file is closed; the lock lasts until all are.
+    if (const int twin = ::dup(out_.number()); twin >= 0 && ::close(twin) != 0)
+        fail("cannot write " + quoted(file_), errno);
+    if (::rename(temporary_.c_str(), target_.c_str()) != 0) fail("cannot replace " + quoted(file_), errno);
+    temporary_.clear();
+    // The new file stands; a folder that cannot be synced (some network file systems) takes nothing back.
+    const Descriptor folder(::open(folder_of(target_).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+    if (folder.number() >= 0) ::fsync(folder.number());
+}
+
+void replace_file(const fs::path& file, std::string_view bytes)
+{
+    AtomicFile out(file);
+    out.write(0, bytes);
+    out.commit();
+}
+
+void check_writable(const fs::path& file) { AtomicFile probe(file); }
+
+InputFile::InputFile(const fs::path& file)
+    : file_(file), in_(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK))
+{
+    const std::string cannot = "cannot read " + quoted(file);
+    struct stat status {};
+    if (in_.number() < 0 || ::fstat(in_.number(), &status) != 0) fail(cannot, errno);
+    if (S_ISDIR(status.st_mode)) fail(cannot, EISDIR);
+    if (!S_ISREG(status.st_mode)) throw IoError(cannot + ": it is no regular file", "io-not-a-file");
+    size_ = static_cast<std::uint64_t>(status.st_size);
+}
+
+void InputFile::read(std::uint64_t offset, std::span<char> out) const
+{
+    while (!out.empty()) {
+        const ssize_t n = insistent(
+            [&] { return ::pread(in_.number(), out.data(), out.size(), static_cast<off_t>(offset)); });
+        if (n < 0) fail("cannot read " + quoted(file_), errno);
+        if (n == 0) throw IoError("it became shorter while it was read", "io-truncated");
+        out = out.subspan(static_cast<std::size_t>(n));
+        offset += static_cast<std::uint64_t>(n);
+    }
+}
+
+}   // namespace livens

@@ -1,0 +1,59 @@
+// Files on the disk: written whole or not at all, read where a reader asks.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string_view>
+
+namespace livens {
+
+/// A file descriptor that closes itself.
+class Descriptor {
+public:
+    explicit Descriptor(int number) : number_(number) {}
+    Descriptor(Descriptor&& other) noexcept : number_(other.number_) { other.number_ = -1; }
+    Descriptor& operator=(Descriptor&& other) noexcept;
+    ~Descriptor();
+    int number() const { return number_; }
+
+private:
+    int number_;
+};
+
+/// A new file in place of `file`: under a temporary name in the same folder until commit(), which syncs and
+/// renames; removed if it does not come to that. See replace_file() for what is promised. Throws IoError.
+///
+/// Temporaries are named .livens-<process>-<n>.tmp and locked while somebody writes them. Those without a
+/// lock, left behind by killed processes, are removed from the folder when the next one is made there.
+class AtomicFile {
+public:
+    explicit AtomicFile(const std::filesystem::path& file);
+    ~AtomicFile();
+    AtomicFile(const AtomicFile&) = delete;
+    AtomicFile& operator=(const AtomicFile&) = delete;
+
+    void write(std::uint64_t offset, std::string_view bytes);
+    void commit();
+
+private:
+    void create();
+
+    std::filesystem::path file_, target_, temporary_;
+    Descriptor out_{-1};
+};
+
+/// A regular file; `O_NONBLOCK`, so that a pipe is refused instead of waited for. Throws IoError.
+class InputFile {
+public:
+    explicit InputFile(const std::filesystem::path& file);
+    std::uint64_t size() const { return size_; }
+    void read(std::uint64_t offset, std::span<char> out) const;
+
+private:
+    std::filesystem::path file_;
+    Descriptor in_;
+    std::uint64_t size_ = 0;
+};
+
+}   // namespace livens

@@ -1,0 +1,266 @@
+#include <algorithm>
+#include <limits>
+#include <memory>
+#include <variant>
+
+#include "livens/diagnostics/sample.h"
+#include "livens/io/json.h"
+#include "livens/io/results/writing.h"
+
+namespace livens {
+
+namespace {
+
+constexpr std::size_t chunk = 1u << 15;   // numbers of samples that are held at a time
+
+template <class Values>
+void append(std::vector<double>& out, const Values& values)
+{
+    out.insert(out.end(), values.data(), values.data() + Values::rows * Values::cols);
+}
+
+/// A variable that is filled piece by piece.
+struct Column {
+    int variable;
+    std::vector<double> values{};
+};
+
+using BodyPart = std::variant<Vector3 BodySample::*, Vector4 BodySample::*, Matrix3 BodySample::*>;
+
+struct BodyVariable {
+    const char* name;
+    const char* units;
+    const char* frame;
+    const char* long_name;
+    BodyPart part;
+};
+
+constexpr BodyVariable body_variables[] = {
+    {"position", "m", "inertial", "position of the reference point", &BodySample::position},
+    {"center_of_mass", "m", "inertial", "position of the centre of mass", &BodySample::center_of_mass},
+    {"directors", "1", "inertial", "directors [d1, d2, d3], projected to the nearest orthonormal triad",
+     &BodySample::directors},
+    {"directors_raw", "1", "inertial",
+     "directors [d1, d2, d3] of the motion, with their violation of rigidity", &BodySample::directors_raw},
+    {"quaternion", "1", "inertial", "orientation, body to world; sign continuous in time",
+     &BodySample::quaternion},
+    {"velocity", "m s-1", "inertial", "velocity of the reference point", &BodySample::velocity},
+    {"angular_velocity", "rad s-1", "inertial", "angular velocity in inertial axes",
+     &BodySample::angular_velocity},
+    {"angular_velocity_body", "rad s-1", "body-fixed", "angular velocity in body axes",
+     &BodySample::angular_velocity_body},
+    {"linear_momentum", "kg m s-1", "inertial", "linear momentum", &BodySample::linear_momentum},
+    {"angular_momentum", "kg m2 s-1", "inertial", "angular momentum about the world's origin",
+     &BodySample::angular_momentum},
+};
+
+VariableInfo info_of(const BodyVariable& v)
+{
+    VariableInfo info{v.name, {"time", "body", "xyz"}, v.units, v.frame, v.long_name};
+    if (v.part.index() == 2) info.dimensions = {"time", "body", "director", "xyz"};
+    if (v.part.index() == 1) {
+        info.dimensions = {"time", "body", "quaternion_part"};
+        info.attributes = {{"order", "w, x, y, z"}};
+    }
+    return info;
+}
+
+/// Samples at the output times that the motion has reached, some instants at a time.
+class Samples {
+public:
+    Samples(RunWriter& archive, const Model& model, const Run& run)
+        : file_(archive.file()), model_(model), motion_(run.motion)
+    {
+        const auto first = std::ranges::lower_bound(run.output, motion_.start());
+        const auto last = std::ranges::upper_bound(run.output, motion_.end());
+        times_ = {first, last};
+        if (times_.empty()) return;
+        const VariableInfo time{
+            "time", {"time"}, "s", "none", "output times that the motion has reached", {{"axis", "T"}}};
+        archive.view(time, NumberType::real, times_);
+        const std::size_t n = times_.size() * model.bodies().size();
+        for (const BodyVariable& v : body_variables) {
+            const std::size_t sizes[] = {3, 4, 9};   // of the alternatives of BodyPart
+            if (n > 0)
+                bodies_.push_back({archive.declare(info_of(v), NumberType::real, n * sizes[v.part.index()])});
+        }
+        previous_.resize(model.bodies().size(), Vector4{1, 0, 0, 0});
+        const bool has_multipliers = !motion_.end_multipliers.empty() || !motion_.multipliers.empty();
+        if (model.joints().empty() || !has_multipliers) return;
+        const std::vector<std::string> sides{"time", "joint", "side", "xyz"};
+        const std::size_t n_joint = times_.size() * model.joints().size() * 6;
+        const auto joint = [&](const char* name, const char* units, const char* long_name) {
+            joints_.push_back(
+                {archive.declare({name, sides, units, "inertial", long_name}, NumberType::real, n_joint)});
+        };
+        joint("reaction_force", "N", "force of the joint on its second body, from both sides");
+        joint("reaction_torque", "N m",
+              "torque of the joint on its second body about its joint point, from both sides");
+    }
+
+    void write()
+    {
+        std::size_t held = 0;
+        for (const double t : times_) {
+            if (!bodies_.empty()) add_bodies(t);
+            if (!joints_.empty()) add_joints(t);
+            held += 62 * model_.bodies().size() + 12 * model_.joints().size();
+            if (held < chunk) continue;
+            flush();
+            held = 0;
+        }
+        flush();
+    }
+
+private:
+    void flush()
+    {
+        for (auto* columns : {&bodies_, &joints_})
+            for (Column& column : *columns) {
+                file_.append(column.variable, std::span<const double>(column.values));
+                column.values.clear();
+            }
+    }
+
+    void add_bodies(double t)
+    {
+        std::vector<BodySample> samples = sample_bodies(model_, motion_, t);
+        for (std::size_t b = 0; b < samples.size(); ++b) {
+            previous_[b] = samples[b].quaternion = continued(previous_[b], samples[b].quaternion);
+            for (std::size_t i = 0; i < bodies_.size(); ++i)
+                std::visit([&](auto part) { append(bodies_[i].values, samples[b].*part); },
+                           body_variables[i].part);
+        }
+    }
+
+    void add_joints(double t)
+    {
+        std::vector<JointSample> samples = sample_joints(model_, motion_, t);
+        if (samples.empty()) {   // this instant has no multipliers, others have
+            const double nan = std::numeric_limits<double>::quiet_NaN();
+            const Reaction none{{nan, nan, nan}, {nan, nan, nan}};
+            samples.assign(model_.joints().size(), {none, none, false, false});
+        }
+        for (const JointSample& joint : samples) {
+            append(joints_[0].values, joint.left.force);
+            append(joints_[0].values, joint.right.force);
+            append(joints_[1].values, joint.left.torque);
+            append(joints_[1].values, joint.right.torque);
+        }
+    }
+
+    ClassicWriter& file_;
+    const Model& model_;
+    const Motion& motion_;
+    std::span<const double> times_;
+    std::vector<Column> bodies_, joints_;
+    std::vector<Vector4> previous_;
+};
+
+void write_nodes(RunWriter& archive, const char* name, const Field& field, const TimeMesh& mesh)
+{
+    if (field.empty()) return;
+    ClassicWriter& file = archive.file();
+    const int variable = archive.declare({name, {name}, "s", "none", "times of the nodes"}, NumberType::real,
+                                         file.dimension(name));
+    archive.later([&, variable] { file.append(variable, node_times(field, mesh)); });
+}
+
+/// Integrals over each element, as the paper shows them: of the Lagrangian the action, of the Hamiltonian and
+/// of the angular momentum what divided by the element's length is their mean.
+void write_integrals(RunWriter& archive, const Model& model, const Motion& motion)
+{
+    const int n = motion.n_elements();
+    if (n < 1) return;
+    const auto declare = [&](const char* name, const char* units, const char* of) {
+        return archive.declare({name, {"element"}, units, "none", std::string("integral of ") + of},
+                               NumberType::real, static_cast<std::size_t>(n));
+    };
+    const int lagrangian = declare("action_integral", "J s", "the Lagrangian T - V over each element");
+    const int hamiltonian = declare("hamiltonian_integral", "J s", "the Hamiltonian over each element");
+    const VariableInfo info{"angular_momentum_integral", {"element", "xyz"}, "kg m2", "inertial",
+                            "integral of the angular momentum about the origin over each element"};
+    const int moment = archive.declare(info, NumberType::real, static_cast<std::size_t>(3 * n));
+    archive.later([&file = archive.file(), &model, &motion, n, lagrangian, hamiltonian, moment] {
+        constexpr int some = 1 << 12;
+        for (int e = 0; e < n; e += some) {
+            const ActionSeries series = action(model, motion, e, std::min(n, e + some));
+            file.append(lagrangian, std::span<const double>(series.lagrangian));
+            file.append(hamiltonian, std::span<const double>(series.hamiltonian));
+            file.append(moment, numbers(series.angular_momentum));
+        }
+    });
+}
+
+/// A run that was read from a file has not kept them.
+void write_violations(RunWriter& archive, const Model& model, const Run& run)
+{
+    std::shared_ptr<const ViolationReport> made;
+    if (run.verdict.violations.joints.empty())
+        made = std::make_shared<const ViolationReport>(violations(model, run.motion, 0, false));
+    const ViolationReport& at = made ? *made : run.verdict.violations;
+    if (at.joints.empty()) return;
+    const auto write = [&](const char* name, const char* long_name, const std::vector<double>& values) {
+        archive.list({name, {"X_node"}, "1", "none", long_name}, values);
+    };
+    if (model.n_rows() > 0) write("joint_violation", "largest |Phi| / scale of the joints' rows", at.joints);
+    if (!std::ranges::all_of(model.bodies(), &Body::is_point))
+        write("rigidity_violation", "largest |Phi| of the bodies' rigidity", at.rigidity);
+    archive.later([made] {});   // keeps them until they are written
+}
+
+void write_model(RunWriter& archive, const Model& model)
+{
+    std::vector<Matrix4> masses;
+    std::vector<int> first, second, joint_of_row;
+    for (const Body& body : model.bodies()) masses.push_back(body.mass);
+    for (const Joint& joint : model.joints()) {
+        first.push_back(joint.first);
+        second.push_back(joint.second);
+    }
+    for (int r = 0; r < model.n_rows(); ++r) joint_of_row.push_back(model.row_joint(r));
+    VariableInfo info{"body_mass_matrix", {"body", "mass_column", "column"}, "mixed", "body-fixed",
+                      "mass matrix m = [[M, S^T], [S, E]]"};
+    info.attributes = {{"column_units", "M: kg, S: kg m, E: kg m2"}};
+    archive.list(info, std::move(masses));
+    const auto indices = [&](const char* name, const char* over, const char* meaning,
+                             std::vector<int>& values) {
+        archive.list({name, {over}, "1", "none", meaning}, std::move(values));
+    };
+    indices("joint_first_body", "joint", "first body of the joint, from 0; -1: the world", first);
+    indices("joint_second_body", "joint", "second body of the joint, from 0", second);
+    indices("row_joint", "row", "joint that the constraint row belongs to, from 0", joint_of_row);
+}
+
+std::string manifest(const Run& run)
+{
+    JsonWriter json(2);
+    json.begin_object();
+    json.member("livens_version", run.version);
+    json.key("format").begin_array().value(format_major).value(format_minor).end_array();
+    json.member("method", run.method);
+    json.key("options").raw(run.resolved.starts_with('{') ? run.resolved : "null");
+    json.key("convergence").begin_object();
+    json.member("status", to_string(run.report.status)).member("blocks", run.report.iterations.size());
+    write_figures(json, run);
+    return json.end_object().end_object().text();
+}
+
+}   // namespace
+
+void write_derived(RunWriter& archive, const Model& model, const Run& run)
+{
+    const Motion& m = run.motion;
+    write_nodes(archive, "X_node", m.X, m.mesh);
+    write_nodes(archive, "P_node", m.P, m.mesh);
+    write_nodes(archive, "multiplier_node", m.multipliers, m.mesh);
+    write_nodes(archive, "rigidity_node", m.rigidity, m.mesh);
+    write_integrals(archive, model, m);
+    write_violations(archive, model, run);
+    write_model(archive, model);
+    const auto samples = std::make_shared<Samples>(archive, model, run);
+    archive.later([samples] { samples->write(); });
+    archive.text("manifest", "versions, options, figures (JSON)", manifest(run));
+}
+
+}   // namespace livens

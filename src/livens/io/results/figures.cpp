@@ -1,0 +1,134 @@
+#include "livens/io/results/figures.h"
+
+#include <cmath>
+#include <limits>
+
+#include "livens/io/json.h"
+
+namespace livens {
+
+namespace {
+
+constexpr Figure figures[] = {
+    {"elements", "1", "time elements that were solved", &SolveReport::n_elements},
+    {"unknowns", "1", "unknowns of one window of elements", &SolveReport::unknowns},
+    {"newton_iterations", "1", "over all windows, all guesses counted", &SolveReport::newton_iterations},
+    {"most_iterations", "1", "of Newton's method in one window", &SolveReport::most_iterations},
+    {"factorisations", "1", "of the tangent of a window", &SolveReport::factorisations},
+    {"guess_factorisations", "1", "of the smaller tangents behind first guesses",
+     &SolveReport::guess_factorisations},
+    {"rescued", "1", "windows that converged from a second guess only", &SolveReport::rescued},
+    {"residual_norm", "1", "largest scaled residual at acceptance", &SolveReport::residual_norm},
+    {"smallest_pivot", "1", "of the scaled constraint Jacobian; below 1e-6 the rows nearly lose rank",
+     &SolveReport::smallest_pivot},
+    {"failed_at", "s", "near end of the window that failed", &SolveReport::failed_at},
+    {"condition_1", "1", "of the whole matrix (mixed: last block; lobatto: all, reduced), 1-norm; 0: none",
+     &SolveReport::condition_1, true},
+    {"condition_2", "1", "the same in the 2-norm", &SolveReport::condition_2, true},
+    {"scaled_condition", "1", "in the 1-norm, as it is factorised", &SolveReport::scaled_condition, true},
+    {"factor_entries", "1", "stored numbers of a window's sparse factors; 0: dense",
+     &SolveReport::factor_entries},
+    {"guess_distance", "1", "largest distance from the march it was guessed by, in lengths; 0: none",
+     &SolveReport::guess_distance},
+    {"guess_distance_time", "s", "when it first exceeds 0.05, else when it is largest",
+     &SolveReport::guess_distance_time},
+    {"max_constraint_violation", "1", "largest at nodes, each row by its length or square; rigidity included",
+     &Verdict::max_constraint_violation},
+    {"max_velocity_violation", "1/s", "the same of the rows' rates at element ends",
+     &Verdict::max_velocity_violation},
+    {"max_weak_violation", "1", "where rows hold weakly: the largest mean over an element; else 0",
+     &Verdict::max_weak_violation},
+    {"energy_drift", "1", "largest abs(energy - start - work) by kinetic energy or change of potential",
+     &Verdict::energy_drift},
+    {"linear_momentum_drift", "1", "largest error of its balance by the largest sum of abs(p) or impulse",
+     &Verdict::linear_momentum_drift},
+    {"angular_momentum_drift", "1", "largest error of its balance by the largest sum of abs(x) abs(P)",
+     &Verdict::angular_momentum_drift},
+    {"zigzag_positions", "1", "how much they alternate from node to node: 0 smooth, 1 pure zig-zag",
+     &Verdict::zigzag_positions},
+    {"zigzag_momenta", "1", "the same of momenta", &Verdict::zigzag_momenta},
+    {"zigzag_time", "s", "where the worse of both is worst", &Verdict::zigzag_time},
+    {"velocity_jump", "1", "largest h abs(V - dX/dt) at element ends, in lengths", &Verdict::velocity_jump},
+    {"velocity_jump_time", "s", "end of the element where it is largest", &Verdict::velocity_jump_time},
+    {"largest_kinetic_energy", "J", "over the element ends", &Balance::largest_kinetic},
+    {"largest_momentum", "kg m/s", "over the element ends, of the sum of abs(p)", &Balance::largest_momentum},
+    {"largest_moment_of_momentum", "kg m2/s", "likewise of the sum over columns of abs(x) abs(P)",
+     &Balance::largest_moment},
+    {"reference_energy", "J", "largest sum of abs(F) (abs(x) + length), plus the largest potential energy",
+     &Balance::reference_energy},
+    {"reference_impulse", "N s", "integral of the sum of abs(F) and of what stiffness adds",
+     &Balance::reference_impulse},
+    {"reference_moment", "N m s", "integral of these times abs(x) + length", &Balance::reference_moment},
+    {"n_bodies", "1", "bodies", &Motion::n_bodies},
+    {"n_rows", "1", "constraint rows of the joints", &Motion::n_rows},
+    {"order_at_element_ends", "1", "order of accuracy of positions and momenta at element ends",
+     &Motion::order_at_ends},
+    {"dense_order_of_X", "1", "of the polynomial between nodes", &Motion::dense_order_X},
+    {"dense_order_of_V", "1", "of its derivative there", &Motion::dense_order_V},
+    {"gauss_points", "1", "of the method's quadrature in an element; 0: its own nodes",
+     &Motion::gauss_points},
+};
+
+/// The part of a run that has such members.
+template <class Owner, class AnyRun>
+auto& part(AnyRun& run)
+{
+    if constexpr (std::is_same_v<Owner, SolveReport>) return run.report;
+    else if constexpr (std::is_same_v<Owner, Verdict>) return run.verdict;
+    else if constexpr (std::is_same_v<Owner, Balance>) return run.verdict.balance;
+    else return run.motion;
+}
+
+/// Calls `work` with the number itself.
+template <class AnyRun, class Work>
+auto with_number(AnyRun& run, const Figure& figure, Work work)
+{
+    return std::visit(
+        [&]<class Number, class Owner>(Number Owner::*member) {
+            return work(part<Owner>(run).*member);
+        },
+        figure.member);
+}
+
+}   // namespace
+
+std::span<const Figure> run_figures() { return figures; }
+
+double figure_of(const Run& run, const Figure& figure)
+{
+    return with_number(run, figure, [](const auto& number) { return static_cast<double>(number); });
+}
+
+bool is_whole(const Figure& figure)
+{
+    return std::visit([]<class Number, class Owner>(Number Owner::*) { return std::is_integral_v<Number>; },
+                      figure.member);
+}
+
+bool set_figure(Run& run, const Figure& figure, double value)
+{
+    return with_number(run, figure, [value]<class Number>(Number& number) {
+        if constexpr (std::is_integral_v<Number>) {
+            constexpr double limit = sizeof(Number) == sizeof(int) ? std::numeric_limits<int>::max() : 0x1p53;
+            if (!(std::abs(value) <= limit) || value != std::floor(value)) return false;
+        }
+        number = static_cast<Number>(value);
+        return true;
+    });
+}
+
+void write_figures(JsonWriter& json, const Run& run)
+{
+    for (const Figure& figure : figures) {
+        const double value = figure_of(run, figure);
+        json.key(figure.name);
+        if (figure.zero_is_none && value == 0)
+            json.null();
+        else if (is_whole(figure))
+            json.value(static_cast<long long>(value));
+        else
+            json.value(value);
+    }
+}
+
+}   // namespace livens

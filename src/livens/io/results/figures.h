@@ -1,0 +1,31 @@
+// The figures of a run: the one table that files, JSON and docs/results.md are made from.
+#pragma once
+
+#include <span>
+#include <variant>
+
+#include "livens/io/results.h"
+
+namespace livens {
+
+/// Where the number stands in a Run.
+using FigureMember = std::variant<int SolveReport::*, long SolveReport::*, long long SolveReport::*,
+                                  double SolveReport::*, double Verdict::*, double Balance::*, int Motion::*>;
+
+struct Figure {
+    const char* name;   ///< of the attribute, and the key in JSON
+    const char* unit;
+    const char* meaning;
+    FigureMember member;
+    bool zero_is_none = false;   ///< null in JSON then
+    int since = 0;               ///< minor version of the format; files of older ones lack it
+};
+
+std::span<const Figure> run_figures();
+
+double figure_of(const Run& run, const Figure& figure);
+bool is_whole(const Figure& figure);
+/// False if the member cannot hold this number.
+bool set_figure(Run& run, const Figure& figure, double value);
+
+}   // namespace livens
