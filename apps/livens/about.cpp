@@ -1,9 +1,14 @@
 // What the program knows about itself: schema, explanations, version.
-#include "commands.h"
+#include <algorithm>
+
+#include <unistd.h>
+
+#include "arguments.h"
 #include "console.h"
 #include "failure.h"
 #include "livens/base/version.h"
 #include "livens/io/results.h"
+#include "terminal.h"
 
 namespace livens::program {
 
@@ -13,6 +18,39 @@ std::string with_end(std::string text)
 {
     if (!text.ends_with('\n')) text += '\n';
     return text;
+}
+
+constexpr int widest_prose = 100;
+
+/// A page in Markdown for reading: paragraphs wrapped, examples set in, their labels in colour.
+std::string laid_out(std::string_view page, const Terminal& terminal)
+{
+    const int columns = terminal.columns > 0 ? std::min(terminal.columns, widest_prose) : widest_prose;
+    std::string out, paragraph;
+    const auto end_paragraph = [&] {
+        if (paragraph == "Wrong:" || paragraph == "Right:")
+            out += painted(terminal, paragraph == "Wrong:" ? Ink::bad : Ink::good, paragraph) + "\n";
+        else if (!paragraph.empty())
+            out += wrapped(paragraph, columns, 0, 0) + "\n";
+        paragraph.clear();
+    };
+    bool is_example = false;
+    while (!page.empty()) {
+        const std::string_view line = page.substr(0, page.find('\n'));
+        page.remove_prefix(std::min(line.size() + 1, page.size()));
+        if (line.starts_with("```")) {
+            is_example = !is_example;
+        } else if (is_example) {
+            out += line.empty() ? "\n" : "    " + std::string(line) + "\n";
+        } else if (line.empty()) {
+            end_paragraph();
+            out += '\n';
+        } else {
+            paragraph += (paragraph.empty() ? "" : " ") + std::string(line);
+        }
+    }
+    end_paragraph();
+    return out;
 }
 
 }   // namespace
@@ -25,15 +63,21 @@ int schema_command(bool markdown)
 
 int explain_command(const std::string& code)
 {
-    std::string text;
+    const std::vector<std::string_view> known = diagnostic_codes();
     if (code.empty()) {
-        for (const std::string_view known : diagnostic_codes()) text += std::string(known) + "\n";
-    } else {
-        text = explain(code);
-        if (text.empty())
-            throw failure(exit_usage, "there is no code '" + code + "'; 'livens explain' alone lists all");
+        std::string text;
+        for (const std::string_view one : known) text += std::string(one) + "\n";
+        print(text);
+        return exit_ok;
     }
-    print(with_end(text));
+    const std::string_view page = explain(code);
+    if (page.empty()) {
+        const std::string proposal = nearest(code, {known.begin(), known.end()});
+        throw failure(exit_usage, "there is no code '" + code + "'; " +
+                                      (proposal.empty() ? "'livens explain' alone lists all"
+                                                        : "did you mean '" + proposal + "'?"));
+    }
+    print(laid_out(page, terminal_of(STDOUT_FILENO)));
     return exit_ok;
 }
 

@@ -49,7 +49,7 @@ ClosedStart assembly_of(const Scenario& scenario)
         return close_start(scenario.model, state, scenario.options.initial);
     for (Matrix34& V : state.V) V = {};   // velocities are guesses; positions may be
     return close_start(scenario.model, state,
-                    at_start || at_end ? scenario.options.initial : StartPolicy::project);
+                       at_start || at_end ? scenario.options.initial : StartPolicy::project);
 }
 
 }   // namespace

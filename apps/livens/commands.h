@@ -9,6 +9,8 @@
 
 namespace livens::program {
 
+struct CommandInfo;
+
 struct Common {
     bool json = false;
     bool quiet = false;
@@ -43,8 +45,26 @@ struct ExportArguments {
 };
 int export_command(const ExportArguments& arguments, const Common& common);
 
+struct DiffArguments {
+    std::string first, second;   ///< result files
+    std::string rtol = "1e-6";   ///< as typed
+    std::string atol = "1e-9";
+};
+int diff_command(const DiffArguments& arguments, const Common& common);
+
+/// `name` may be empty.
+int init_command(const std::string& name, const Common& common);
+
 int schema_command(bool markdown);
 int explain_command(const std::string& code);
 int version_command(const Common& common);
+
+struct CompletionArguments {
+    std::string shell;
+    std::string bodies;   ///< a result file: its bodies, one a line, for the scripts
+    std::string joints;   ///< likewise
+};
+int completion_command(const CompletionArguments& arguments, const std::vector<CommandInfo>& commands);
+int man_command(const std::vector<CommandInfo>& commands);
 
 }   // namespace livens::program

@@ -3,28 +3,16 @@
 #include <cerrno>
 #include <system_error>
 
-#include <spdlog/sinks/stdout_color_sinks.h>
-#include <spdlog/spdlog.h>
 #include <unistd.h>
 
 #include "livens/io/json.h"
+#include "terminal.h"
 
 namespace livens::program {
 
 namespace {
 
-/// The default logger of spdlog writes to standard output; this one does not.
-spdlog::logger& logger()
-{
-    static const std::shared_ptr<spdlog::logger> instance = [] {
-        auto made = std::make_shared<spdlog::logger>("livens",
-                                                     std::make_shared<spdlog::sinks::stderr_color_sink_mt>());
-        made->set_pattern("%n: %^%l%$: %v");
-        made->set_level(spdlog::level::info);
-        return made;
-    }();
-    return *instance;
-}
+Verbosity verbosity_now = Verbosity::normal;
 
 void write_all(int descriptor, std::string_view text)
 {
@@ -37,21 +25,28 @@ void write_all(int descriptor, std::string_view text)
     }
 }
 
+/// One write a line, so that lines of several programs on one terminal stay whole.
+void say(Ink ink, const char* kind, std::string_view message)
+{
+    say_raw("livens: " + painted(terminal_of(STDERR_FILENO), ink, kind) + ": " + plain(message) + "\n");
+}
+
 }   // namespace
 
 void print(std::string_view text) { write_all(STDOUT_FILENO, text); }
 
-void set_verbosity(Verbosity verbosity)
-{
-    logger().set_level(verbosity == Verbosity::quiet     ? spdlog::level::warn
-                       : verbosity == Verbosity::verbose ? spdlog::level::debug
-                                                         : spdlog::level::info);
-}
+void set_verbosity(Verbosity verbosity) { verbosity_now = verbosity; }
 
-void say_error(std::string_view message) { logger().error("{}", plain(message)); }
-void say_warning(std::string_view message) { logger().warn("{}", plain(message)); }
-void say_note(std::string_view message) { logger().info("{}", plain(message)); }
-void say_detail(std::string_view message) { logger().debug("{}", plain(message)); }
+void say_error(std::string_view message) { say(Ink::bad, "error", message); }
+void say_warning(std::string_view message) { say(Ink::doubtful, "warning", message); }
+void say_note(std::string_view message)
+{
+    if (verbosity_now != Verbosity::quiet) say(Ink::good, "info", message);
+}
+void say_detail(std::string_view message)
+{
+    if (verbosity_now == Verbosity::verbose) say(Ink::dim, "debug", message);
+}
 
 void say_raw(std::string_view text)
 {
@@ -63,6 +58,7 @@ void say_raw(std::string_view text)
 }
 
 bool error_is_terminal() { return ::isatty(STDERR_FILENO) == 1; }
+bool output_is_terminal() { return ::isatty(STDOUT_FILENO) == 1; }
 
 std::string plain(std::string_view text)
 {

@@ -14,7 +14,7 @@ struct OutputError {
 /// All of `text` to standard output, at once and without a buffer. Throws OutputError.
 void print(std::string_view text);
 
-/// Lines on standard error with the program's name before them.
+/// Lines on standard error with the program's name before them. They are said in turn, from one thread.
 enum class Verbosity { quiet, normal, verbose };
 void set_verbosity(Verbosity verbosity);
 void say_error(std::string_view message);
@@ -25,6 +25,7 @@ void say_detail(std::string_view message);   ///< with --verbose alone
 void say_raw(std::string_view text);
 
 bool error_is_terminal();
+bool output_is_terminal();
 
 /// Text without control characters, so that a name in a file cannot steer a terminal.
 std::string plain(std::string_view text);

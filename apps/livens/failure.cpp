@@ -5,9 +5,12 @@
 #include <new>
 #include <stdexcept>
 
+#include <unistd.h>
+
 #include "console.h"
 #include "livens/base/error.h"
 #include "livens/io/results.h"
+#include "terminal.h"
 
 namespace livens::program {
 
@@ -83,14 +86,35 @@ Failure current_failure()
     }
 }
 
+std::string counted(std::ptrdiff_t n, const char* what)
+{
+    return std::to_string(n) + " " + what + (n == 1 ? "" : "s");
+}
+
+/// How many there are, and where to read on. A reader that found more than it shows says so in its last note.
+std::string last_line(const std::vector<Diagnostic>& diagnostics)
+{
+    const std::ptrdiff_t n_errors = std::ranges::count_if(diagnostics, is_error);
+    const std::ptrdiff_t n_warnings = std::ssize(diagnostics) - n_errors;
+    std::string text = plain(diagnostics.front().file) + ": ";
+    if (diagnostics.back().note.ends_with("more are not shown")) text += "more than ";
+    text += counted(n_errors, "error");
+    if (n_warnings > 0) text += ", " + counted(n_warnings, "warning");
+    const auto first = std::ranges::find_if(
+        diagnostics, [](const Diagnostic& d) { return is_error(d) && !explain(d.code).empty(); });
+    return first == diagnostics.end() ? text : text + "; livens explain " + first->code + " says more";
+}
+
 /// Findings about a file are laid out by render(); all else is a line with the program's name.
 void show(const Failure& f, const Common& common)
 {
     const bool concerns_file =
         std::ranges::any_of(f.diagnostics, [](const Diagnostic& d) { return !d.file.empty(); });
     if (concerns_file || common.diagnostics != DiagnosticFormat::human) {
-        std::string text = render(f.diagnostics, f.source, common.diagnostics, error_is_terminal());
+        std::string text =
+            render(f.diagnostics, f.source, common.diagnostics, terminal_of(STDERR_FILENO).colour);
         if (!text.ends_with('\n')) text += '\n';
+        if (common.diagnostics == DiagnosticFormat::human) text += "\n" + last_line(f.diagnostics) + "\n";
         say_raw(text);
         return;
     }
@@ -166,7 +190,8 @@ Scenario load_scenario(const std::string& file, const Common& common, std::vecto
         throw Failure{code, status_of(code), std::move(result.diagnostics), std::move(result.text)};
     }
     if (!result.diagnostics.empty() && !common.quiet) {
-        std::string text = render(result.diagnostics, result.text, common.diagnostics, error_is_terminal());
+        std::string text =
+            render(result.diagnostics, result.text, common.diagnostics, terminal_of(STDERR_FILENO).colour);
         if (!text.ends_with('\n')) text += '\n';
         say_raw(text);
     }

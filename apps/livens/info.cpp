@@ -1,12 +1,13 @@
 // livens info: what a result file holds. livens export: its samples for other programs.
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include "commands.h"
 #include "console.h"
 #include "failure.h"
 #include "livens/io/results.h"
 #include "places.h"
-#include "words.h"
+#include "summary.h"
 
 namespace livens::program {
 
@@ -58,17 +59,18 @@ int info_command(const std::string& file, const Common& common)
         print(json_of(head));
         return exit_ok;
     }
-    std::string text = plain(run.title.empty() ? file : run.title) + "\n";
-    text += fmt::format("  written by        livens {}\n", plain(run.version));
-    text += fmt::format("  bodies            {}\n", list(run.body_names));
-    if (!run.joint_names.empty()) text += fmt::format("  joints            {}\n", list(run.joint_names));
-    text += fmt::format("  time              {:.6g} s to {:.6g} s, {} output times\n", head.start, head.end,
-                        head.n_output_times);
-    text += fmt::format("  method            {}, {} elements, {} unknowns each\n", plain(run.method),
-                        run.report.n_elements, run.report.unknowns);
-    text += figures(run);
-    for (const std::string& note : run.notes) text += "  note              " + plain(note) + "\n";
-    print(text + verdict(run) + "\n");
+    Summary summary(terminal_of(STDOUT_FILENO));
+    add_verdict(summary, run, head.end);
+    summary.figure("written by", "livens " + plain(run.version));
+    summary.figure("bodies", list(run.body_names));
+    if (!run.joint_names.empty()) summary.figure("joints", list(run.joint_names));
+    summary.figure("time", fmt::format("{:.6g} s to {:.6g} s, {} output times", head.start, head.end,
+                                       head.n_output_times));
+    summary.figure("method", fmt::format("{}, {} elements, {} unknowns each", plain(run.method),
+                                         run.report.n_elements, run.report.unknowns));
+    add_figures(summary, run, common.verbose);
+    add_notes(summary, run);
+    print(summary.text());
     return exit_ok;
 }
 

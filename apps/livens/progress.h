@@ -2,10 +2,15 @@
 #pragma once
 
 #include <chrono>
+#include <string>
 
 #include "livens/solvers/report.h"
 
 namespace livens::program {
+
+/// The line after `elapsed` seconds, without its end, cut to be shorter than `columns` (0: any): residual,
+/// iterations, time and elements go, in this order.
+std::string progress_text(const Progress& progress, double elapsed, int columns);
 
 class ProgressLine {
 public:

@@ -1,6 +1,4 @@
 // livens sample: a body or a joint of a run at any instant.
-#include <charconv>
-#include <cmath>
 #include <span>
 
 #include <fmt/format.h>
@@ -8,30 +6,19 @@
 #include "commands.h"
 #include "console.h"
 #include "failure.h"
+#include "finite_number.h"
 #include "livens/base/error.h"
-#include "livens/io/results.h"
 #include "livens/diagnostics/sample.h"
+#include "livens/io/results.h"
 #include "livens/spacetime/solve.h"
 
 namespace livens::program {
 
 namespace {
 
-/// A whole finite number; independent of the locale.
-double instant(const std::string& text)
-{
-    std::string_view digits = text;
-    if (digits.starts_with('+')) digits.remove_prefix(1);
-    double t = 0;
-    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), t);
-    if (error != std::errc() || end != digits.data() + digits.size() || !std::isfinite(t))
-        throw failure(exit_usage, "--at wants a time in seconds, not '" + text + "'");
-    return t;
-}
-
 double instant_inside(const std::string& text, const Motion& motion)
 {
-    const double t = instant(text);
+    const double t = finite_number(text, "--at", "a time in seconds");
     try {
         return snap_to_element_end(motion.mesh, t);
     } catch (const InputError& error) {

@@ -15,7 +15,7 @@
 #include "livens/io/results.h"
 #include "places.h"
 #include "progress.h"
-#include "words.h"
+#include "summary.h"
 
 namespace livens::program {
 
@@ -96,7 +96,6 @@ Solved solve_scenario(const Scenario& scenario, const Common& common)
         solved.solve_seconds = seconds_since(begin);
     }
     say_detail(fmt::format("solved in {:.3g} s", solved.solve_seconds));
-    if (solution.report.status == SolveStatus::cancelled) solved.signal = InterruptWatch::signal();
 
     const Clock::time_point begin = Clock::now();
     reserve.give_back();
@@ -112,6 +111,7 @@ Solved solve_scenario(const Scenario& scenario, const Common& common)
     solved.run.resolved = scenario.resolved;
     solved.run.output = scenario.output;
     say_detail(fmt::format("checked in {:.3g} s", seconds_since(begin)));
+    solved.signal = InterruptWatch::signal();   // also where it came too late to stop anything
     return solved;
 }
 
@@ -179,33 +179,42 @@ void write_record(const Solved& solved, const Places& p, const std::vector<Diagn
     }
 }
 
-void show(const Solved& solved, const Places& p)
+/// What to do with a result of this kind.
+std::string next_step(const Run& run, const Places& p)
+{
+    const std::string file = quoted(p.output.string());
+    if (!run.report.reached_end() || run.body_names.empty()) return "next: livens info " + file;
+    return fmt::format("next: livens sample {} --body {} --at {:.6g}", file, quoted(run.body_names.front()),
+                       run.motion.end());
+}
+
+void show(const Solved& solved, const Places& p, bool verbose)
 {
     const Run& run = solved.run;
     const SolveReport& report = run.report;
-    std::string text;
-    if (!run.title.empty()) text += plain(run.title) + "\n";
     const int n_elements = run.motion.n_elements();
     const std::size_t n_blocks = report.iterations.size();
     const bool is_blocked = n_blocks != static_cast<std::size_t>(n_elements);
-    text += fmt::format("  method            {}, {} elements{}, {} unknowns each\n", run.method, n_elements,
-                        is_blocked ? fmt::format(" in {} block{}", n_blocks, n_blocks == 1 ? "" : "s") : "",
-                        report.unknowns);
-    text += fmt::format("  solved            {:.6g} s to {:.6g} s of motion in {:.3g} s\n",
-                        run.motion.start(), run.motion.end(), solved.solve_seconds);
-    text += fmt::format("  iterations        {} by Newton{}, {} factorisations\n", report.newton_iterations,
-                        n_blocks > 0 ? fmt::format(" ({:.1f} {})",
-                                                   static_cast<double>(report.newton_iterations) /
-                                                       static_cast<double>(n_blocks),
-                                                   is_blocked ? "a block" : "an element")
-                                     : "",
-                        report.factorisations);
-    text += figures(run);
-    text += fmt::format("  written           {}{}\n", plain(p.output.string()),
-                        p.csv.empty() ? "" : ", " + plain(p.csv.string()));
-    for (const std::string& note : run.notes) text += "  note              " + plain(note) + "\n";
-    text += verdict(run) + "\n";
-    print(text);
+    Summary summary(terminal_of(STDOUT_FILENO));
+    add_verdict(summary, run, run.motion.mesh.ends.empty() ? 0 : run.motion.end());
+    summary.figure(
+        "method",
+        fmt::format("{}, {} elements{}, {} unknowns each", run.method, n_elements,
+                    is_blocked ? fmt::format(" in {} block{}", n_blocks, n_blocks == 1 ? "" : "s") : "",
+                    report.unknowns));
+    summary.figure("solved", fmt::format("{:.6g} s to {:.6g} s of motion in {:.3g} s", run.motion.start(),
+                                         run.motion.end(), solved.solve_seconds));
+    const double mean = static_cast<double>(report.newton_iterations) / static_cast<double>(n_blocks);
+    summary.figure("iterations", fmt::format("{} by Newton{}, {} factorisations", report.newton_iterations,
+                                             n_blocks > 0 ? fmt::format(" ({:.1f} {})", mean,
+                                                                        is_blocked ? "a block" : "an element")
+                                                          : "",
+                                             report.factorisations));
+    add_figures(summary, run, verbose);
+    add_notes(summary, run);
+    summary.figure("written", plain(p.output.string()) + (p.csv.empty() ? "" : ", " + plain(p.csv.string())));
+    summary.aside(plain(next_step(run, p)));
+    print(summary.text());
 }
 
 }   // namespace
@@ -227,15 +236,17 @@ int solve_command(const SolveArguments& arguments, const Common& common)
         say_detail(fmt::format("written in {:.3g} s", seconds_since(writing)));
     }
     const int code = exit_code_of(solved);
-    if (code != exit_ok) {
+    const bool is_shown = !common.json && !common.quiet;
+    // A person who sees both streams in one place reads it in the summary.
+    if (code != exit_ok && !(is_shown && output_is_terminal() && error_is_terminal())) {
         const SolveReport& report = solved.run.report;
         say_error(report.message.empty() ? std::string("the run is ") + to_string(report.status)
                                          : report.message);
     }
     if (common.json)
         print(json_of(solved, p, warnings, ""));
-    else if (!common.quiet)
-        show(solved, p);
+    else if (is_shown)
+        show(solved, p, common.verbose);
     return code;
 }
 

@@ -37,7 +37,8 @@ FOREIGN = [
     (r"toml\+\+/|toml\.hpp", {"io"}),
     (r"netcdf|hdf5|H5", set()),   # io reads and writes it itself
     (r"fmt/", {"io", "apps"}),
-    (r"spdlog/|CLI/", {"apps"}),
+    (r"CLI/", {"apps"}),
+    (r"spdlog/", set()),
     (r"gtest/|gmock/|benchmark/", set()),
     (r"iostream$|print$", {"apps"}),   # the library prints nothing
 ]

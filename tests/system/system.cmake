@@ -1,14 +1,18 @@
-# Tests that run the program as a user does: one ctest a class of program_test.py. Standard library only; what needs
+# Tests that run the program as a user does: one ctest a class of these scripts. Standard library only; what needs
 # netCDF4, xarray, ncdump or the right to mount is skipped where it is missing.
 
 if(LIVENS_BUILD_PROGRAM)
-    set(script ${CMAKE_CURRENT_SOURCE_DIR}/system/program_test.py)
-    file(STRINGS ${script} classes REGEX "^class [A-Za-z]+\\(ProgramTest\\)")
-    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${script})
-    foreach(line ${classes})
-        string(REGEX REPLACE "^class ([A-Za-z]+).*" "\\1" name "${line}")
-        add_test(NAME system.${name} COMMAND ${livens_python} -B ${script} ${name})
-        set_tests_properties(system.${name} PROPERTIES LABELS fast TIMEOUT 120
-                             ENVIRONMENT "LIVENS_PROGRAM=$<TARGET_FILE:livens>;LIVENS_SOURCE_DIR=${PROJECT_SOURCE_DIR}")
+    foreach(file program_test terminal_test)
+        set(script ${CMAKE_CURRENT_SOURCE_DIR}/system/${file}.py)
+        file(STRINGS ${script} classes REGEX "^class [A-Za-z]+\\(ProgramTest\\)")
+        set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${script})
+        foreach(line ${classes})
+            string(REGEX REPLACE "^class ([A-Za-z]+).*" "\\1" name "${line}")
+            add_test(NAME system.${name} COMMAND ${livens_python} -B ${script} ${name})
+            set_tests_properties(
+                system.${name}
+                PROPERTIES LABELS fast TIMEOUT 120
+                ENVIRONMENT "LIVENS_PROGRAM=$<TARGET_FILE:livens>;LIVENS_SOURCE_DIR=${PROJECT_SOURCE_DIR}")
+        endforeach()
     endforeach()
 endif()

@@ -3,6 +3,7 @@
 #include <cassert>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <limits>
 #include <numeric>
 #include <random>
@@ -345,32 +346,42 @@ double two_norm(int n, const LinearMap& apply, const LinearMap& apply_transposed
 }
 
 ConditionNumbers condition_numbers(const SparseMatrix& scaled, const SparseLU& lu,
-                                   std::span<const double> row_scale, std::span<const double> column_scale)
+                                   std::span<const double> row_scale, std::span<const double> column_scale,
+                                   const std::function<bool()>& goes_on)
 {
     const Values R = scale_or_ones(row_scale, scaled.size), C = scale_or_ones(column_scale, scaled.size);
     Values scratch(static_cast<std::size_t>(scaled.size));
     using Input = std::span<const double>;
     using Output = std::span<double>;
-    /// y = after act(before x), with diagonal matrices.
-    const auto between = [&](auto scale, const Values& before, auto act, const Values& after) -> LinearMap {
-        return [=, &scratch, &before, &after](Input x, Output y) {
+    // y = after * f(before * x), scaled by products or quotients. Who is stopped gets infinity, which ends
+    // every search for a norm at once.
+    bool is_stopped = false;
+    const auto map = [&](auto scale, const Values& before, auto f, const Values& after) -> LinearMap {
+        return [&, scale, f](Input x, Output y) {
+            is_stopped = is_stopped || (goes_on && !goes_on());
+            if (is_stopped) {
+                std::fill(y.begin(), y.end(), not_representable);
+                return;
+            }
             std::copy(x.begin(), x.end(), scratch.begin());
             scale(scratch, before);
-            act(Input(scratch), y);
+            f(scratch, y);
             scale(y, after);
         };
     };
-    const LinearMap matrix = between(
-        divide_by, C, [&](Input x, Output y) { scaled.multiply(x, y); }, R);
-    const LinearMap matrix_transposed = between(
-        divide_by, R, [&](Input x, Output y) { scaled.multiply_transposed(x, y); }, C);
-    const LinearMap inverse = between(
-        multiply_by, R, [&](Input x, Output y) { lu.solve(x, y); }, C);
-    const LinearMap inverse_transposed = between(
-        multiply_by, C, [&](Input x, Output y) { lu.solve_transposed(x, y); }, R);
-    return {.one = one_norm(scaled, R, C) * one_norm(scaled.size, inverse, inverse_transposed),
-            .two = two_norm(scaled.size, matrix, matrix_transposed)
-                * two_norm(scaled.size, inverse, inverse_transposed)};
+    const auto S = [&](Input x, Output y) { scaled.multiply(x, y); };
+    const auto S_transposed = [&](Input x, Output y) { scaled.multiply_transposed(x, y); };
+    const auto solve = [&](Input x, Output y) { lu.solve(x, y); };
+    const auto solve_transposed = [&](Input x, Output y) { lu.solve_transposed(x, y); };
+    const LinearMap matrix = map(divide_by, C, S, R);   // R^-1 S C^-1
+    const LinearMap matrix_transposed = map(divide_by, R, S_transposed, C);
+    const LinearMap inverse = map(multiply_by, R, solve, C);   // C S^-1 R
+    const LinearMap inverse_transposed = map(multiply_by, C, solve_transposed, R);
+    const ConditionNumbers numbers{
+        .one = one_norm(scaled, R, C) * one_norm(scaled.size, inverse, inverse_transposed),
+        .two = two_norm(scaled.size, matrix, matrix_transposed) *
+               two_norm(scaled.size, inverse, inverse_transposed)};
+    return is_stopped ? ConditionNumbers{} : numbers;
 }
 
 }   // namespace livens

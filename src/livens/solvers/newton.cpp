@@ -162,6 +162,7 @@ private:
     /// After the last step was accepted. What was solved for besides is small enough to be safe.
     Verdict finish()
     {
+        report_.ended_by_rounding = !within_tolerance();
         if (!is_solved_ || !within_tolerance() || next_size_ == 0) return Verdict::converged;
         if (!problem_.move(next_, 1) || !problem_.residual())
             return return_to_kept() ? Verdict::converged : fail(SolveStatus::not_finite);

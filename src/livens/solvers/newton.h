@@ -66,6 +66,7 @@ struct NewtonReport {
     int factorisations = 0;
     bool reached_limit = false;   ///< of iterations; else not_converged means that no step, however short,
                                   ///< made the increment smaller
+    bool ended_by_rounding = false;   ///< converged, but short of the tolerance
     double residual = 0;          ///< Rows::size / Rows::terms where it ended; inf if rows were not finite
     double last_increment = 0;    ///< size of the last increment applied, damping included
     double contraction = 0;       ///< next increment, foretold or solved for, over the last whole one

@@ -46,7 +46,7 @@ struct SolveReport {
 };
 
 /// Called after each window, and between Newton's iterations on one (`done` and `t` are then as before it);
-/// return false to stop. After the last window there is nothing left to stop.
+/// return false to stop. After the last window only the computation of condition numbers is left to stop.
 struct Progress {
     int done = 0;          ///< elements solved so far, 0..n_elements, in either direction of time
     int n_elements = 0;

@@ -81,9 +81,11 @@ struct ConditionNumbers {
     double two = 0;   ///< |A|_2 |A^-1|_2
 };
 /// Of the matrix A = R^-1 S C^-1 whose scaled form S = R A C was factorised: R and C are diagonal, given by
-/// `row_scale` and `column_scale`; empty: ones.
+/// `row_scale` and `column_scale`; empty: ones. `goes_on` is asked before each product; once it says false
+/// the numbers are 0, which says that they are not known.
 ConditionNumbers condition_numbers(const SparseMatrix& scaled, const SparseLU& lu,
                                    std::span<const double> row_scale = {},
-                                   std::span<const double> column_scale = {});
+                                   std::span<const double> column_scale = {},
+                                   const std::function<bool()>& goes_on = {});
 
 }   // namespace livens

@@ -111,12 +111,34 @@ WindowOptions window_options(const Model& model, const Ends& ends, const Method&
     return w;
 }
 
+/// The caller's word while condition numbers are computed, after the last window.
+class Patience {
+public:
+    Patience(const SolveOptions& options, const TimeMesh& mesh, double t)
+        : progress_(options.progress), state_{mesh.n_elements(), mesh.n_elements(), t, 0, 0}
+    {}
+    std::function<bool()> goes_on()
+    {
+        return [this] {
+            is_exhausted_ = is_exhausted_ || (progress_ && !progress_(state_));
+            return !is_exhausted_;
+        };
+    }
+    bool is_exhausted() const { return is_exhausted_; }
+
+private:
+    const ProgressCallback& progress_;
+    Progress state_;
+    bool is_exhausted_ = false;
+};
+
 /// Conditions at both ends may leave a motion free, at conjugate and focal times: then the solution is one of
 /// many, and its digits are made of rounding.
-void refuse_undetermined(Window& window, SolveReport& report)
+void refuse_undetermined(Window& window, Patience& patience, SolveReport& report)
 {
     SolveReport measured;
-    window.measure_condition(measured);
+    window.measure_condition(measured, patience.goes_on());
+    if (patience.is_exhausted()) return;
     const bool is_singular = !measured.notes.empty() || !(measured.condition_1 < undetermined);
     if (!is_singular) return;
     report.status = SolveStatus::singular;
@@ -140,10 +162,12 @@ Solution solve_by_windows(const Model& model, const Problem& problem, const Time
     WindowOptions w = window_options(model, ends, method, options);
     w.propose = Proposals(model, problem, mesh, ends, method, *window);
     solve_windows(*window, mesh, w, report);
+    Patience patience(options, mesh, w.direction > 0 ? mesh.end() : mesh.start());
     if (!ends.has_state() && !is_mixed && report.status != SolveStatus::cancelled)
-        refuse_undetermined(*window, report);
+        refuse_undetermined(*window, patience, report);
     const bool is_whole = is_mixed || w.length == 0 || w.length >= mesh.n_elements();
-    if (options.condition && report.converged() && is_whole) window->measure_condition(report);
+    if (options.condition && report.converged() && is_whole)
+        window->measure_condition(report, patience.goes_on());
     solution.motion = window->take_motion();
     if (options.condition && report.converged() && !is_whole) {
         // the march's equations as one window of all elements, at the solution
@@ -151,7 +175,12 @@ Solution solve_by_windows(const Model& model, const Problem& problem, const Time
         const Motion& motion = solution.motion;
         if (whole.open(0, mesh.n_elements(), report) &&
             whole.start_from([&](double t) { return motion.at(t); }) && whole.equations().residual())
-            whole.measure_condition(report);
+            whole.measure_condition(report, patience.goes_on());
+    }
+    if (patience.is_exhausted()) {
+        report.status = SolveStatus::cancelled;
+        report.failed_at = solution.motion.end();
+        report.message = "stopped as asked while condition numbers were computed; the motion is complete";
     }
     return solution;
 }

@@ -54,8 +54,8 @@ public:
     virtual Place worst() const = 0;
     /// Figures that only the family knows: unknowns, pivots, entries of factors.
     virtual void describe(SolveReport& report) const = 0;
-    /// Condition numbers of the open window's matrix at the current point.
-    virtual void measure_condition(SolveReport& report) = 0;
+    /// Condition numbers of the open window's matrix at the current point; 0 once `goes_on` says false.
+    virtual void measure_condition(SolveReport& report, const std::function<bool()>& goes_on) = 0;
     /// Everything closed so far.
     virtual Motion take_motion() = 0;
 };

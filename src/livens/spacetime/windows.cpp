@@ -10,6 +10,9 @@ namespace livens {
 
 namespace {
 
+/// Below, a tolerance that rounding did not let be met deserves a word; the default is no promise of digits.
+constexpr double finest_tolerance = 1e-12;
+
 /// Of the model's length: beyond, a motion and its guess are two motions.
 constexpr double doubtful_distance = 0.05;
 
@@ -36,6 +39,11 @@ public:
             if (!solve(division[at], division[at + 1])) break;
         }
         window_.describe(report_);
+        if (rounded_ > 0 && options_.tolerance < finest_tolerance)
+            report_.notes.push_back("the tolerance " + to_text(options_.tolerance, 6) +
+                                    " is below rounding: " + count(rounded_, "window") + " of " +
+                                    std::to_string(report_.iterations.size()) +
+                                    " ended where rounding left nothing to gain");
         if (splits_ > 0)
             report_.notes.push_back(count(splits_, "window") +
                                     " failed as a whole and were solved in halves");
@@ -68,7 +76,7 @@ private:
         NewtonReport outcome, best;
         outcome.status = best.status = SolveStatus::not_converged;
         int iterations = 0, n_runs = 0;
-        is_march_ = false;
+        is_march_ = is_rescued_ = false;
         const auto run = [&] {
             outcome = newton_.run(window_.equations(), newton_options_);
             if (n_runs++ == 0) best = outcome;
@@ -86,7 +94,7 @@ private:
             guess_ = proposal.guess;
             is_march_ = proposal.is_march;
             run();
-            if (n_runs > 1 && outcome.status == SolveStatus::converged) ++report_.rescued;
+            is_rescued_ = n_runs > 1 && outcome.status == SolveStatus::converged;
         }
         if (goes_on()) outcome = best;
         outcome.iterations = iterations;
@@ -97,10 +105,12 @@ private:
 
     bool accept(int first, int last, const NewtonReport& outcome)
     {
-        report_.iterations.push_back(outcome.iterations);
         report_.residual_norm = std::max(report_.residual_norm, outcome.residual);
         if (is_march_) compare(first, last);
         if (!window_.close(report_)) return set_failed(first, last);
+        report_.iterations.push_back(outcome.iterations);
+        if (is_rescued_) ++report_.rescued;
+        if (outcome.ended_by_rounding) ++rounded_;
         report_.n_elements += last - first;
         done_ += last - first;
         time_ = mesh_.ends[options_.direction > 0 ? last : first];
@@ -151,8 +161,9 @@ private:
         const Place worst = window_.worst();
         std::string what =
             "Newton's iteration found no way on after " + count(outcome.iterations, "iteration");
-        if (outcome.reached_limit)
-            what = "Newton's iteration did not converge in " + count(outcome.iterations, "iteration") +
+        if (outcome.iterations == 0) what = "Newton's iteration found no way on from any guess";
+        if (outcome.reached_limit)   // of one attempt; there may have been several
+            what = "Newton's iteration did not converge in " + count(options_.max_iterations, "iteration") +
                    ", the limit,";
         std::string advice =
             options_.advice.empty() ? "more and shorter elements, or a lower degree" : options_.advice;
@@ -191,6 +202,8 @@ private:
     NewtonOptions newton_options_;
     Guess guess_;   // that the open window started from
     bool is_march_ = false;
+    bool is_rescued_ = false;   // converged from another guess than the first
+    int rounded_ = 0;           // windows that ended by rounding, short of the tolerance
     int splits_ = 0;
     int done_ = 0;      // elements
     double time_ = 0;   // up to which they are solved

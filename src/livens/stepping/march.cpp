@@ -88,10 +88,15 @@ private:
     int size_;
 };
 
+/// Below, a tolerance that rounding did not let be met deserves a word; the default is no promise of digits.
+constexpr double finest_tolerance = 1e-12;
+
 /// What Newton's iteration came to in one step.
 struct StepOutcome {
     SolveStatus status = SolveStatus::converged;
     int iterations = 0;
+    bool is_growing = false;          ///< the last increment was longer than the one before
+    bool is_rounded = false;          ///< ended by rounding, short of the tolerance
     StepEquations::Worst worst;   ///< of the residual at the end
     std::string load;             ///< that is not finite
 };
@@ -116,6 +121,11 @@ public:
     SteppingResult run()
     {
         for (int e = 0; e < mesh_.n_elements() && result_.report.converged(); ++e) step(e);
+        if (rounded_ > 0 && options_.tolerance < finest_tolerance)
+            result_.report.notes.push_back("the tolerance " + to_text(options_.tolerance, 6) +
+                                           " is below rounding: " + std::to_string(rounded_) + " of " +
+                                           std::to_string(result_.report.n_elements) +
+                                           " steps ended where rounding left nothing to gain");
         return std::move(result_);
     }
 
@@ -224,7 +234,9 @@ private:
             }
             for (std::size_t i = 0; i < x.size(); ++i) x[i] -= increment[i];
             const double size = equations_.increment_size(increment);
-            done = size <= options_.tolerance || (size < 1e-9 && size > 0.5 * last);
+            outcome.is_rounded = size > options_.tolerance && size < 1e-9 && size > 0.5 * last;
+            outcome.is_growing = size > last;
+            done = size <= options_.tolerance || outcome.is_rounded;
             last = size;
             system = equations_.evaluate(now_, x);
         }
@@ -252,6 +264,7 @@ private:
         now_ = next;
         append_end(V);
         report.iterations.push_back(outcome.iterations);
+        if (outcome.is_rounded) ++rounded_;
         report.residual_norm = std::max(report.residual_norm, outcome.worst.value);
         report.n_elements = element + 1;
         if (!options_.progress) return;
@@ -283,8 +296,11 @@ private:
             report.message =
                 "the tangent is singular" + where + worst + "; the joints may have lost rank there";
         } else {
-            report.message = "Newton's iteration did not converge in " + std::to_string(outcome.iterations) +
-                             " iterations" + where + worst + "; take shorter steps";
+            const std::string n = std::to_string(outcome.iterations) +
+                                  (outcome.iterations == 1 ? " iteration" : " iterations");
+            report.message = "Newton's iteration did not converge in " + n + ", the limit," +
+                             (outcome.is_growing ? " and was still diverging" : "") + where + worst +
+                             "; take shorter steps";
         }
     }
 
@@ -298,6 +314,7 @@ private:
     std::vector<double> unknowns_;   ///< of the step before
     double guess_h_ = 1;             ///< and its length
     int displacements_ = 0;
+    int rounded_ = 0;   ///< steps that ended by rounding, short of the tolerance
 };
 
 }   // namespace

@@ -118,6 +118,22 @@ TEST_P(EveryCondition, IsThatOfHilbertsMatrix)
     EXPECT_NEAR(k.two, 1.4951058642254e7, 1.4951e7 * 1e-8);
 }
 
+TEST_P(EveryCondition, IsNotKnownWhereItWasStopped)
+{
+    const SparseMatrix A = sparse(hilbert(6));
+    SparseLU lu(GetParam());
+    lu.analyse(A);
+    ASSERT_TRUE(lu.factorise(A));
+    for (const int patience : {0, 3, 10}) {
+        int n_asked = 0;
+        const ConditionNumbers k = condition_numbers(A, lu, {}, {}, [&] { return n_asked++ < patience; });
+        EXPECT_EQ(n_asked, patience + 1) << "nobody asks again who was told to stop";
+        EXPECT_EQ(k.one, 0);
+        EXPECT_EQ(k.two, 0);
+    }
+    EXPECT_EQ(condition_numbers(A, lu, {}, {}, [] { return true; }).two, of(A).two);
+}
+
 TEST_P(EveryCondition, IsThatOfADiagonal)
 {
     const ConditionNumbers k = of(sparse(diagonal({3, -1e-3, 20, 1e6, 7, 0.5, -40, 2, 1, 9})));

@@ -40,17 +40,18 @@ public:
     bool near_state(State&) const override { return true; }
     bool close(SolveReport&) override
     {
+        if (!can_close) return false;
         closed.push_back(opened.back());
         return true;
     }
     std::vector<Matrix34> positions(int) const override { return {Matrix34{1, 0, 0}}; }
     Place worst() const override { return {"joint 'elbow' (row 'x')", 0.5, ""}; }
     void describe(SolveReport& report) const override { report.unknowns = 1; }
-    void measure_condition(SolveReport&) override {}
+    void measure_condition(SolveReport&, const std::function<bool()>&) override {}
     Motion take_motion() override { return {}; }
 
     int longest = 100, broken = -1, refuses = -1;
-    bool has_own_guess = true;
+    bool has_own_guess = true, can_close = true;
     std::vector<std::pair<int, int>> opened, closed;
 
 private:
@@ -161,6 +162,25 @@ TEST(Windows, TryOneGuessAfterTheOtherAndCountAllIterations)
     EXPECT_TRUE(report.converged()) << report.message;
     EXPECT_EQ(attempts, (std::vector<int>{0, 1, 2}));
     EXPECT_EQ(report.rescued, 1);
+}
+
+TEST(Windows, AreNotCountedWhereTheyCannotBeClosed)
+{
+    Counting window;
+    window.broken = 0;
+    window.can_close = false;
+    WindowOptions options;
+    options.propose = [&](int, int, int attempt) -> WindowOptions::Proposal {
+        if (attempt > 0) return {};
+        return {[](double) {
+                    return State{1.0, {Matrix34{1, 0, 0}}, {Matrix34{}}};
+                },
+                false};
+    };
+    const SolveReport report = run(window, options);
+    EXPECT_EQ(report.rescued, 0);
+    EXPECT_TRUE(report.iterations.empty());
+    EXPECT_TRUE(report.notes.empty()) << "1 window of 0 needed a guess: " << report.notes.front();
 }
 
 TEST(Windows, TellProgressInOneWay)

@@ -1,11 +1,12 @@
 // The pages of all codes.
 #pragma once
 
-#include <string>
+#include <string_view>
 
 namespace livens {
 
-/// docs/diagnostics.md; a test compares.
-std::string diagnostics_markdown();
+/// docs/diagnostics.md, compiled in (cmake/diagnostics.cmake): a page begins with `## code`, pages stand in
+/// the order of their codes.
+std::string_view diagnostics_markdown();
 
 }   // namespace livens

@@ -58,7 +58,7 @@ public:
     {
         if (f_ > 0 && structure_.n_elements() > 1) report.factor_entries = solver_->report().factor_entries;
     }
-    void measure_condition(SolveReport& report) override;
+    void measure_condition(SolveReport& report, const std::function<bool()>& goes_on) override;
 
 private:
     std::size_t place(int A) const
@@ -171,7 +171,7 @@ void NullSpaces::solve(std::span<const double> rows, const double*, double* y)
 
 /// Nothing is scaled: rows and unknowns are in mass-orthonormal coordinates. The 2-norm knows no choice of
 /// units, axes and bases; the 1-norm feels the bases of the free motions (a factor of f^2 at the very most).
-void NullSpaces::measure_condition(SolveReport& report)
+void NullSpaces::measure_condition(SolveReport& report, const std::function<bool()>& goes_on)
 {
     const SparseMatrix whole = to_sparse(structure_, matrix_);
     SparseLU lu(SparseBackend::eigen);
@@ -181,7 +181,7 @@ void NullSpaces::measure_condition(SolveReport& report)
             "the whole matrix is singular to its factorisation: it has no condition number");
         return;
     }
-    const ConditionNumbers condition = condition_numbers(whole, lu);
+    const ConditionNumbers condition = condition_numbers(whole, lu, {}, {}, goes_on);
     report.condition_1 = report.scaled_condition = condition.one;
     report.condition_2 = condition.two;
     report.factor_entries = lu.factor_entries();
@@ -219,7 +219,7 @@ public:
     void solve(std::span<const double> rows, const double* range, double* y) override;
     bool takes_constraints() const override { return true; }
     void describe(SolveReport&) const override {}
-    void measure_condition(SolveReport&) override {}
+    void measure_condition(SolveReport&, const std::function<bool()>&) override {}
 
 private:
     void invert_bodies(double* y) const;

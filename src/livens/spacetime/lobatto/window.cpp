@@ -374,7 +374,7 @@ void LobattoWindow::describe(SolveReport& report) const
     system_.elimination().describe(report);
 }
 
-void LobattoWindow::measure_condition(SolveReport& report)
+void LobattoWindow::measure_condition(SolveReport& report, const std::function<bool()>& goes_on)
 {
     const double f = tables_.freedoms(), p = stretch_.degree;
     if (f == 0) return;   // nothing moves: there is no matrix
@@ -385,7 +385,7 @@ void LobattoWindow::measure_condition(SolveReport& report)
     const auto elimination = null_space_elimination(tables_, stretch_, whole_solver(SparseBackend::eigen));
     elimination->begin(stretch_, system_.nodes());
     system_.form_tangent(*elimination);
-    elimination->measure_condition(report);
+    elimination->measure_condition(report, goes_on);
 }
 
 }   // namespace livens

@@ -23,7 +23,7 @@ public:
     std::vector<Matrix34> positions(int element_end) const override;
     Place worst() const override;
     void describe(SolveReport& report) const override;
-    void measure_condition(SolveReport& report) override;
+    void measure_condition(SolveReport& report, const std::function<bool()>& goes_on) override;
     Motion take_motion() override { return record_.take(); }
 
 private:

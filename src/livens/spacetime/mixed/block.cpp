@@ -69,14 +69,14 @@ double Block::reference() const
     return result;
 }
 
-void Block::measure_condition(SolveReport& report)
+void Block::measure_condition(SolveReport& report, const std::function<bool()>& goes_on)
 {
     begin();
     if (!factorise()) return;
-    const ConditionNumbers condition = condition_numbers(scaled_, lu_, row_scale_, column_scale_);
+    const ConditionNumbers condition = condition_numbers(scaled_, lu_, row_scale_, column_scale_, goes_on);
     report.condition_1 = condition.one;
     report.condition_2 = condition.two;
-    report.scaled_condition = condition_numbers(scaled_, lu_).one;
+    report.scaled_condition = condition_numbers(scaled_, lu_, {}, {}, goes_on).one;
 }
 
 }   // namespace livens::mixed

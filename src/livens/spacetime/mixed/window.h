@@ -34,7 +34,10 @@ public:
     std::vector<Matrix34> positions(int element_end) const override;
     Place worst() const override;
     void describe(SolveReport& report) const override;
-    void measure_condition(SolveReport& report) override { block_->measure_condition(report); }
+    void measure_condition(SolveReport& report, const std::function<bool()>& goes_on) override
+    {
+        block_->measure_condition(report, goes_on);
+    }
     Motion take_motion() override;
 
 private:

@@ -1,0 +1,154 @@
+#include "arguments.h"
+
+#include <CLI/CLI.hpp>
+
+#include "exit_code.h"
+
+namespace livens::program {
+
+namespace {
+
+/// An option whose values are these words.
+void add_choice(CLI::App& command, const std::string& name, std::string& value,
+                const std::vector<std::string>& words, const std::string& description)
+{
+    command.add_option(name, value, description)
+        ->check(CLI::IsMember(words).description(""))
+        ->type_name(CLI::detail::join(words, "|"));
+}
+
+void add_colour(CLI::App& command, Arguments& a)
+{
+    add_choice(command, "--color", a.colour, {"auto", "always", "never"},
+               "colours and signs; auto: on terminals");
+}
+
+void add_common(CLI::App& command, Arguments& a)
+{
+    command.add_flag("--json", a.common.json, "print one JSON object, also on failure");
+    command.add_flag("-q,--quiet", a.common.quiet, "no progress, no summary");
+    command.add_flag("-v,--verbose", a.common.verbose, "more figures; what is done and how long it takes");
+    add_choice(command, "--diagnostics", a.layout, {"human", "json", "gnu"},
+               "how errors are laid out on standard error");
+}
+
+CLI::App& add_command(CLI::App& app, Arguments& a, const std::string& name, const std::string& description)
+{
+    CLI::App* command = app.add_subcommand(name, description);
+    add_colour(*command, a);
+    return *command;
+}
+
+void add_scenario_commands(CLI::App& app, Arguments& a)
+{
+    CLI::App& init = add_command(app, a, "init", "Write a small scenario to begin with");
+    init.add_option("NAME", a.name, "of the scenario; default: pendulum")->type_name("NAME");
+    add_common(init, a);
+    CLI::App& check = add_command(app, a, "check", "Check a scenario without solving it");
+    check.add_option("FILE", a.scenario, "scenario (TOML)")->required()->type_name("FILE.toml");
+    add_common(check, a);
+    CLI::App& solve = add_command(app, a, "solve", "Solve a scenario and write the motion");
+    solve.add_option("FILE", a.solve.scenario, "scenario (TOML)")->required()->type_name("FILE.toml");
+    solve
+        .add_option("-o,--output", a.solve.output, "result file; default: the scenario's stem with .nc, here")
+        ->type_name("RUN.nc");
+    solve.add_option("--csv", a.solve.csv, "write the samples as CSV too")->type_name("FILE");
+    add_common(solve, a);
+}
+
+void add_run_commands(CLI::App& app, Arguments& a)
+{
+    CLI::App& info = add_command(app, a, "info", "Say what a result file holds");
+    info.add_option("RUN", a.run, "result file")->required()->type_name("RUN.nc");
+    add_common(info, a);
+    CLI::App& sample = add_command(app, a, "sample", "A body or a joint of a run at given instants");
+    sample.add_option("RUN", a.sample.run, "result file")->required()->type_name("RUN.nc");
+    auto* body = sample.add_option("--body", a.sample.body, "pose, velocity and momentum of this body")
+                     ->type_name("BODY");
+    auto* joint = sample.add_option("--joint", a.sample.joint, "reactions of this joint")->type_name("JOINT");
+    joint->excludes(body);
+    sample.add_option("--at", a.sample.at, "instant in seconds; may be repeated")->required()->type_name("T");
+    sample.add_flag("--exact", a.sample.exact,
+                    "between element ends solve a shortened element: full order anywhere");
+    sample.add_flag("--csv", a.sample.csv, "print CSV");
+    add_common(sample, a);
+    CLI::App& exports = add_command(app, a, "export", "Write a run's samples for other programs");
+    exports.add_option("RUN", a.exports.run, "result file")->required()->type_name("RUN.nc");
+    exports.add_option("--csv", a.exports.csv, "CSV file to write")->required()->type_name("FILE");
+    add_common(exports, a);
+    CLI::App& diff = add_command(app, a, "diff", "Compare two runs at their common output times");
+    diff.add_option("A", a.diff.first, "result file")->required()->type_name("RUN.nc");
+    diff.add_option("B", a.diff.second, "result file")->required()->type_name("RUN.nc");
+    diff.add_option("--rtol", a.diff.rtol, "tolerance relative to the largest value; default 1e-6")
+        ->type_name("R");
+    diff.add_option("--atol", a.diff.atol, "and in m, rad, m/s, rad/s; default 1e-9")->type_name("A");
+    add_common(diff, a);
+}
+
+void add_other_commands(CLI::App& app, Arguments& a)
+{
+    CLI::App& schema = add_command(app, a, "schema", "Print the schema of scenarios");
+    auto* as_json = schema.add_flag("--json", a.schema_json, "as JSON Schema, for editors");
+    schema.add_flag("--md", a.schema_markdown, "as a reference page (default)")->excludes(as_json);
+    CLI::App& explain =
+        add_command(app, a, "explain", "Explain a diagnostic code by examples; without one, list them");
+    explain.add_option("CODE", a.code, "as printed in brackets, like unknown-key")->type_name("CODE");
+    CLI::App& completion =
+        add_command(app, a, "completion", "Print a script that completes commands in a shell");
+    const std::vector<std::string> shells{"bash", "zsh", "fish"};
+    add_choice(completion, "SHELL", a.completion.shell, shells, "to be read by this shell");
+    completion.add_option("--bodies", a.completion.bodies)->group("");   // for the scripts
+    completion.add_option("--joints", a.completion.joints)->group("");
+    add_command(app, a, "man", "Print the manual page, for man -l or groff");
+    CLI::App& about = add_command(app, a, "version", "Print the version");
+    about.add_flag("--json", a.common.json, "as one JSON object");
+}
+
+std::string footer()
+{
+    std::string text = "Exit codes:\n";
+    for (const ExitMeaning& e : exit_meanings)
+        text += "  " + std::string(e.code) + std::string(10 - std::string_view(e.code).size(), ' ') +
+                e.meaning + "\n";
+    return text + "\nFirst steps: livens init; livens solve pendulum.toml";
+}
+
+std::vector<OptionInfo> options_of(const CLI::App& app)
+{
+    std::vector<OptionInfo> options;
+    for (const CLI::Option* option : app.get_options()) {
+        if (option->get_group().empty()) continue;   // hidden
+        OptionInfo info;
+        for (const std::string& name : option->get_snames()) info.names.push_back("-" + name);
+        for (const std::string& name : option->get_lnames()) info.names.push_back("--" + name);
+        if (option->get_items_expected_max() > 0) info.value = option->get_type_name();
+        info.description = option->get_description();
+        info.is_required = option->get_required();
+        options.push_back(info);
+    }
+    return options;
+}
+
+}   // namespace
+
+void declare(CLI::App& app, Arguments& arguments)
+{
+    app.require_subcommand(0, 1);                        // a file may be called like a command
+    app.set_help_flag("-h,--help", "print this help");   // inherited by the commands
+    app.add_flag("--version", arguments.is_version, "print the version");
+    add_colour(app, arguments);
+    add_scenario_commands(app, arguments);
+    add_run_commands(app, arguments);
+    add_other_commands(app, arguments);
+    app.footer(footer());
+}
+
+std::vector<CommandInfo> command_table(const CLI::App& app)
+{
+    std::vector<CommandInfo> commands{{"", app.get_description(), options_of(app)}};
+    for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+        commands.push_back({command->get_name(), command->get_description(), options_of(*command)});
+    return commands;
+}
+
+}   // namespace livens::program

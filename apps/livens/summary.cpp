@@ -1,0 +1,154 @@
+#include "summary.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "console.h"
+
+namespace livens::program {
+
+namespace {
+
+std::string number(double x)
+{
+    if (x == 0) return "0";
+    return std::isfinite(x) ? fmt::format("{:.1e}", x) : "not known";
+}
+
+const char* grade(double drift)
+{
+    if (drift <= 1e-10) return "to rounding";
+    if (drift <= 1e-6) return "very well";
+    if (drift <= 1e-3) return "well enough for most purposes";
+    return "coarsely: take more elements or a higher degree";
+}
+
+const char* sign_of(const Terminal& terminal, Ink ink)
+{
+    if (ink == Ink::good) return terminal.signs ? "\u2713" : "+";
+    if (ink == Ink::doubtful) return "?";
+    return terminal.signs ? "\u2717" : "x";
+}
+
+struct Headline {
+    Ink ink;
+    std::string word;
+    std::string rest;   ///< of the sentence
+};
+
+std::string kept_of(const Run& run, double end)
+{
+    if (run.report.n_elements == 0) return "no element was solved; the file holds the start";
+    return fmt::format("the file holds the motion up to {:.6g} s", end);
+}
+
+Headline headline_of(const Run& run, double end)
+{
+    const SolveReport& report = run.report;
+    const Verdict& s = run.verdict;
+    if (report.status == SolveStatus::suspect)
+        return {Ink::doubtful, "Suspect", "the solver converged, but the motion fails its checks"};
+    if (report.status == SolveStatus::cancelled) return {Ink::bad, "Cancelled", kept_of(run, end)};
+    if (!report.converged()) {
+        const bool is_plain = report.status == SolveStatus::not_converged;
+        return {Ink::bad,
+                is_plain ? "Not converged" : fmt::format("Not converged ({})", to_string(report.status)),
+                kept_of(run, end)};
+    }
+    const char* const holds = s.max_weak_violation > 0              ? " in the mean"
+                              : s.max_constraint_violation <= 1e-10 ? " to rounding"
+                                                                    : "";
+    return {Ink::good, "Converged",
+            fmt::format("constraints hold{} and the balances are kept {}", holds,
+                        grade(std::max(s.energy_drift, s.angular_momentum_drift)))};
+}
+
+/// The texts behind a verdict that is not "converged": why it is what it is.
+std::vector<std::string> reasons_of(const Run& run)
+{
+    if (run.report.converged()) return {};
+    if (!run.verdict.reasons.empty()) return run.verdict.reasons;
+    if (run.report.message.empty()) return {};
+    return {run.report.message};
+}
+
+constexpr int name_width = 18;        // of figures, two spaces before it not counted
+constexpr int narrow_terminal = 60;   // text goes below its name
+}   // namespace
+
+void Summary::headline(Ink ink, std::string_view word, std::string_view rest)
+{
+    const std::string first = std::string(sign_of(terminal_, ink)) + " " + std::string(word);
+    text_ += painted(terminal_, ink, first) + ": " +
+             wrapped(rest, terminal_.columns, 2, width_of(first) + 2) + "\n";
+}
+
+void Summary::figure(std::string_view name, std::string_view text)
+{
+    const bool is_narrow = terminal_.columns > 0 && terminal_.columns < narrow_terminal;
+    const int indent = is_narrow ? 4 : 2 + name_width;
+    text_ += "  " + painted(terminal_, Ink::dim, fmt::format("{:<{}}", name, is_narrow ? 0 : name_width));
+    text_ += (is_narrow ? "\n    " : "") + wrapped(text, terminal_.columns, indent, indent) + "\n";
+}
+
+void Summary::aside(std::string_view text) { text_ += painted(terminal_, Ink::dim, text) + "\n"; }
+
+void add_verdict(Summary& summary, const Run& run, double end)
+{
+    const Headline h = headline_of(run, end);
+    summary.headline(h.ink, h.word, h.rest);
+    for (const std::string& reason : reasons_of(run)) summary.figure("because", plain(reason));
+    if (!run.title.empty()) summary.figure("title", plain(run.title));
+}
+
+void add_figures(Summary& summary, const Run& run, bool verbose)
+{
+    const Verdict& s = run.verdict;
+    const SolveReport& report = run.report;
+    const bool is_weak = s.max_weak_violation > 0;
+    if (run.report.n_elements == 0) return;   // there is nothing to measure
+    summary.figure(
+        "constraints",
+        fmt::format("violated by {} at most{}, their rates by {} 1/s", number(s.max_constraint_violation),
+                    is_weak ? " (they hold in the mean, within " + number(s.max_weak_violation) + ")" : "",
+                    number(s.max_velocity_violation)));
+    summary.figure("energy", fmt::format("off its balance by {} of the largest that moves or is stored",
+                                         number(s.energy_drift)));
+    summary.figure("angular momentum", fmt::format("off its balance by {} of its largest value",
+                                                   number(s.angular_momentum_drift)));
+    if (verbose) {
+        summary.figure("zig-zag",
+                       fmt::format("{} in positions, {} in momenta (0: smooth, 1: from node to node)",
+                                   number(s.zigzag_positions), number(s.zigzag_momenta)));
+        summary.figure("residual", number(report.residual_norm));
+    }
+    if (report.condition_1 > 0)
+        summary.figure("condition", fmt::format("{} in the 1-norm, {} in the 2-norm; {} as it is factorised",
+                                                number(report.condition_1), number(report.condition_2),
+                                                number(report.scaled_condition)));
+}
+
+void add_notes(Summary& summary, const Run& run)
+{
+    const std::vector<std::string> shown = reasons_of(run);
+    for (const std::string& note : run.notes)
+        if (std::ranges::find(shown, note) == shown.end()) summary.figure("note", plain(note));
+}
+
+std::string quoted(const std::string& argument)
+{
+    const auto is_harmless = [](char c) {
+        return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
+               std::string_view("_-./+:@%=,").find(c) != std::string_view::npos ||
+               static_cast<unsigned char>(c) >= 0x80;
+    };
+    if (!argument.empty() && std::ranges::all_of(argument, is_harmless)) return argument;
+    std::string out = "'";
+    for (const char c : argument) out += c == '\'' ? "'\\''" : std::string(1, c);
+    return out + "'";
+}
+
+}   // namespace livens::program

@@ -1,0 +1,14 @@
+# The pages of `livens explain` are docs/diagnostics.md itself, compiled in.
+
+set(diagnostics_file ${PROJECT_SOURCE_DIR}/docs/diagnostics.md)
+set_property(DIRECTORY ${PROJECT_SOURCE_DIR} APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${diagnostics_file})
+file(READ ${diagnostics_file} diagnostics_page)
+file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/generated/diagnostics_page.cpp @ONLY CONTENT
+"#include \"livens/io/detail/explain.h\"
+
+std::string_view livens::diagnostics_markdown()
+{
+    return R\"livens(@diagnostics_page@)livens\";
+}
+")
+target_sources(livens_room_io PRIVATE ${PROJECT_BINARY_DIR}/generated/diagnostics_page.cpp)

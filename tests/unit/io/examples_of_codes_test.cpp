@@ -1,0 +1,125 @@
+// Every example of `livens explain` does what its page says.
+#include <set>
+
+#include "unit/io/scenario_text.h"
+
+namespace livens {
+
+namespace {
+
+using test::find;
+using test::read;
+using test::shown;
+
+struct Example {
+    std::string text;
+    bool is_file = false;     ///< nothing is left out
+    bool has_bytes = false;   ///< `\x00` is a byte
+};
+
+/// The block behind a line `label`; none: nothing to run.
+std::vector<Example> examples_behind(std::string_view page, std::string_view label)
+{
+    const std::string opening = std::string(label) + "\n\n```toml";
+    const std::size_t at = page.find(opening);
+    if (at == std::string_view::npos) return {};
+    page.remove_prefix(at + opening.size());
+    const std::size_t end_of_line = page.find('\n');
+    const std::string_view kind = page.substr(0, end_of_line);
+    page.remove_prefix(end_of_line);
+    const std::string_view text = page.substr(1, page.find("\n```"));
+    return {{std::string(text), kind.starts_with(" file"), kind.ends_with(" bytes")}};
+}
+
+/// What the head of docs/diagnostics.md says is left out.
+std::string completed(const Example& example)
+{
+    std::string text = example.text;
+    if (example.has_bytes)
+        for (std::size_t at; (at = text.find("\\x00")) != std::string::npos;) text.replace(at, 4, 1, '\0');
+    if (example.is_file) return text;
+    text = "format = 1\n" + text;
+    if (text.find("[[body]]") == std::string::npos)
+        text +=
+            "\n[[body]]\nname = \"rod\"\nshape = { box = [1, 0.1, 0.1] }\nmass = 2\nposition = [0.5, 0, 0]\n";
+    if (text.find("[time]") == std::string::npos) text += "\n[time]\nend = 1\nelements = 10\n";
+    return text;
+}
+
+TEST(ExamplesOfCodes, TheWrongOnesLeadToTheCodeAndTheRightOnesToNone)
+{
+    int n_examples = 0;
+    for (const std::string_view code : diagnostic_codes()) {
+        SCOPED_TRACE(code);
+        for (const Example& wrong : examples_behind(explain(code), "Wrong:")) {
+            const ScenarioResult result = read(completed(wrong));
+            ASSERT_NE(find(result, code), nullptr) << completed(wrong) << shown(result);
+            EXPECT_EQ(result.diagnostics.size(), 1u) << "an example shows one thing:\n" << shown(result);
+            ++n_examples;
+        }
+        for (const Example& right : examples_behind(explain(code), "Right:")) {
+            const ScenarioResult result = read(completed(right));
+            EXPECT_TRUE(result.scenario.has_value() && result.diagnostics.empty())
+                << completed(right) << shown(result);
+            --n_examples;
+        }
+    }
+    EXPECT_EQ(n_examples, 0) << "each wrong one has a right one";
+}
+
+/// Codes without examples: no scenario leads to them, another code comes first, or it depends on the machine.
+TEST(ExamplesOfCodes, StandWhereverAScenarioLeads)
+{
+    const std::set<std::string_view> without{
+        "backend-missing",
+        "basis-nodes",
+        "curve-crosses-itself",
+        "degree",
+        "degree-out-of-range",
+        "drive-jumps",
+        "drives-method",
+        "gauss-points-out-of-range",
+        "gear-ratio",
+        "internal",
+        "io-directory",
+        "io-damaged",
+        "io-foreign",
+        "io-not-a-file",
+        "io-not-found",
+        "io-truncated",
+        "io-version",
+        "io-unreadable",
+        "joint-empty",
+        "joint-method",
+        "joint-row",
+        "joint-scale",
+        "joint-second",
+        "knots-not-finite",
+        "load-empty",
+        "load-negative",
+        "load-without-tangent",
+        "mass-not-positive",
+        "max-iterations-out-of-range",
+        "no-elements",
+        "point-with-directors",
+        "quadrature-points",
+        "quaternion-zero",
+        "sample-exact-method",
+        "samples",
+        "size-not-positive",
+        "start-size",
+        "time-elements",
+        "time-out-of-range",
+        "time-outside",
+        "time-start",
+        "tolerance-out-of-range",
+        "window",
+        "window-out-of-range",
+    };
+    for (const std::string_view code : diagnostic_codes())
+        EXPECT_EQ(examples_behind(explain(code), "Wrong:").size(), 1 - without.count(code)) << code;
+}
+
+}   // namespace
+
+}   // namespace livens
