@@ -4,7 +4,7 @@ set(diagnostics_file ${PROJECT_SOURCE_DIR}/docs/diagnostics.md)
 set_property(DIRECTORY ${PROJECT_SOURCE_DIR} APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${diagnostics_file})
 file(READ ${diagnostics_file} diagnostics_page)
 file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/generated/diagnostics_page.cpp @ONLY CONTENT
-"#include \"livens/io/detail/explain.h\"
+"#include \"livens/io/scenario/explain.h\"
 
 std::string_view livens::diagnostics_markdown()
 {

@@ -14,7 +14,8 @@ install(TARGETS ${libraries} EXPORT livens-targets ARCHIVE DESTINATION ${CMAKE_I
         LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
 # What users include, and no insides: tests/install/headers.txt lists it.
 install(DIRECTORY src/livens DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h"
-        PATTERN "detail" EXCLUDE PATTERN "results" EXCLUDE PATTERN "lobatto" EXCLUDE PATTERN "mixed" EXCLUDE PATTERN "stepping" EXCLUDE
+        PATTERN "detail" EXCLUDE PATTERN "results" EXCLUDE PATTERN "scenario" EXCLUDE
+        PATTERN "lobatto" EXCLUDE PATTERN "mixed" EXCLUDE PATTERN "stepping" EXCLUDE
         PATTERN "dense.h" EXCLUDE PATTERN "projection.h" EXCLUDE PATTERN "time_space.h" EXCLUDE
         PATTERN "constraint_basis.h" EXCLUDE PATTERN "instant.h" EXCLUDE PATTERN "rank.h" EXCLUDE
         PATTERN "rows.h" EXCLUDE PATTERN "tables.h" EXCLUDE PATTERN "twist.h" EXCLUDE PATTERN "blocks.h" EXCLUDE

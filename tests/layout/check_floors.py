@@ -129,7 +129,7 @@ def check_includes(check, path, room, text):
             elif not may_see(room, other):
                 way = "upward" if FLOOR[other] > FLOOR[room] else "sideways"
                 check.fault(path, number, way, f"{room} (F{FLOOR[room]}) includes {name} (F{FLOOR[other]})")
-            elif "detail" in parts[2:-1] and other != room:
+            elif {"detail", "scenario"} & set(parts[2:-1]) and other != room:
                 check.fault(path, number, "detail", f"{room} includes the inside of another room, {name}")
             elif not quoted:
                 check.fault(path, number, "include", f'write "{name}", not <{name}>')
@@ -340,6 +340,8 @@ CONTROLS = [
     ("room", {"src/livens/io/attic.cpp": '#include "livens/attic/box.h"\n'}),
     ("detail", {"src/livens/time/detail/inner.h": "#pragma once\n",
                 "src/livens/io/peek.cpp": '#include "livens/time/detail/inner.h"\n'}),
+    ("detail", {"src/livens/io/scenario/inner.h": "#pragma once\n",
+                "apps/livens/peek.cpp": '#include "livens/io/scenario/inner.h"\n'}),
     ("name", {"src/livens/time/utils.h": "#pragma once\n"}),
     ("name", {"src/livens/time/string_helpers.cpp": "int x;\n"}),
     ("name", {"src/livens/io/common/x.h": "#pragma once\n"}),

@@ -1,8 +1,11 @@
 #include "livens/io/diagnostic.h"
 
 #include <algorithm>
+#include <cstdint>
+#include <cstdio>
 
 #include "livens/io/json.h"
+#include "livens/io/scenario/findings.h"
 
 namespace livens {
 
@@ -11,22 +14,34 @@ namespace {
 constexpr int widest_line = 120;   // characters shown of a line; longer ones are cut around the place
 constexpr int lead = 40;           // characters before the place then
 
-/// One character of a text, made visible: control characters, bidirectional controls and bytes that are not
+/// Of one character in UTF-8; U+FFFD for a byte that is none.
+std::uint32_t code_point(std::string_view character)
+{
+    const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(character[i]); };
+    if (character.size() == 1) return byte(0) < 0x80 ? byte(0) : 0xfffd;
+    std::uint32_t code = byte(0) & (0xff >> (character.size() + 1));
+    for (std::size_t i = 1; i < character.size(); ++i) code = code << 6 | (byte(i) & 0x3f);
+    return code;
+}
+
+bool is_control(std::uint32_t code) { return code < 0x20 || (code >= 0x7f && code < 0xa0); }
+
+/// Marks of writing direction, and separators of lines and paragraphs: they hide what is there.
+bool is_direction(std::uint32_t code)
+{
+    return (code >= 0x2028 && code <= 0x202e) || (code >= 0x2066 && code <= 0x2069) || code == 0x200e ||
+           code == 0x200f || code == 0x061c;
+}
+
+/// One character of a text, made visible: control characters, marks of direction and bytes that are not
 /// UTF-8 are written out. Terminals obey the first two.
 std::string visible(std::string_view character)
 {
     static constexpr char digits[] = "0123456789abcdef";
-    const unsigned char first = static_cast<unsigned char>(character.front());
     if (character == "\t") return " ";
-    if (first < 0x20 || first == 0x7f || (character.size() == 1 && first >= 0x80))
-        return {'\\', 'x', digits[first >> 4], digits[first & 15]};
-    const bool is_c1 = character.size() == 2 && first == 0xc2 &&
-                       static_cast<unsigned char>(character[1]) < 0xa0;
-    const bool is_direction =
-        (character >= "\xe2\x80\xa8" && character <= "\xe2\x80\xae") ||   // U+2028 .. U+202E
-        (character >= "\xe2\x81\xa6" && character <= "\xe2\x81\xa9") ||   // U+2066 .. U+2069
-        character == "\xe2\x80\x8e" || character == "\xe2\x80\x8f" || character == "\xd8\x9c";
-    if (!is_c1 && !is_direction) return std::string(character);
+    const std::uint32_t code = code_point(character);
+    const bool is_odd_byte = code == 0xfffd && character.size() == 1;
+    if (!is_control(code) && !is_direction(code) && !is_odd_byte) return std::string(character);
     std::string text;
     for (const char c : character) {
         const unsigned char byte = static_cast<unsigned char>(c);
@@ -168,17 +183,30 @@ std::string render_json(const std::vector<Diagnostic>& diagnostics)
         json.begin_object()
             .member("severity", name(d.severity))
             .member("code", d.code)
-            .member("message", d.message);
+            .member("message", escaped(d.message));
         json.member("file", d.file)
             .member("line", d.line)
             .member("column", d.column)
             .member("length", d.length);
-        json.member("note", d.note).member("help", d.help).end_object();
+        json.member("note", escaped(d.note)).member("help", escaped(d.help)).end_object();
     }
     return json.end_array().text() + "\n";
 }
 
 }   // namespace
+
+std::string first_invisible(std::string_view text)
+{
+    for (; !text.empty(); text.remove_prefix(character_length(text))) {
+        const std::uint32_t code = code_point(text.substr(0, character_length(text)));
+        if (!is_control(code) && !is_direction(code)) continue;
+        char name[16];
+        std::snprintf(name, sizeof name, "U+%04X", code);
+        return std::string(is_control(code) ? "control characters" : "marks of writing direction") +
+               ", here " + name;
+    }
+    return {};
+}
 
 std::string render(const std::vector<Diagnostic>& diagnostics, std::string_view source,
                    DiagnosticFormat format, bool colour)

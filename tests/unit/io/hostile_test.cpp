@@ -153,6 +153,55 @@ TEST(Hostile, AMillionMistakesAreTwentyFindings)
     EXPECT_NE(result.diagnostics.back().note.find("more are not shown"), std::string::npos);
 }
 
+/// The parser holds that it cannot meet them: a bare key, a header, a value beyond ASCII.
+TEST(Hostile, LettersBeyondAsciiOutsideQuotesAreSyntaxErrors)
+{
+    for (const char* letter : {"\xc3\xa4", "\xc2\xa0", "\xe1\x9a\x80", "\xcc\x81", "\xe2\x80\xae",
+                               "\xef\xbb\xbf", "\xf0\x9f\x8c\x8d", "\xef\xbf\xbf", "\xe1\x88\xb4"})
+        for (const char* line :
+             {"# = 1", "a# = 1", "[#]", "[a.#]", "[[#]]", "x.# = 1", "x = #", "x = [#]", "x = 1 #",
+              "x = { # = 1 }", "x = 1#", "x = 1e#", "x = t#", "x = 19#9-01-01"}) {
+            std::string text = "format = 1\n" + std::string(line) + "\n";
+            text.replace(text.find('#'), 1, letter);
+            const ScenarioResult result = read(text);
+            EXPECT_FALSE(result.scenario.has_value());
+            EXPECT_TRUE(find(result, "toml-syntax") != nullptr || find(result, "missing-key") != nullptr)
+                << text << shown(result);   // some are blanks for the parser
+        }
+    const ScenarioResult key = read("format = 1\n\xc3\xa4 = 1\n");
+    ASSERT_NE(find(key, "toml-syntax"), nullptr) << shown(key);
+    EXPECT_EQ(find(key, "toml-syntax")->line, 2);
+    EXPECT_EQ(find(key, "toml-syntax")->column, 1);
+    EXPECT_NE(find(key, "toml-syntax")->help.find("quotes"), std::string::npos);
+    expect_error("format = 1\n[\xc3\xa4]\n", "toml-syntax", "[");
+}
+
+TEST(Hostile, NamesThatDeceiveAreRefusedAndShownEscaped)
+{
+    for (const auto& [mark, name] : {std::pair("\xc2\x80", "U+0080"), std::pair("\xc2\x9f", "U+009F"),
+                                     std::pair("\\u0007", "U+0007"), std::pair("\\u007F", "U+007F"),
+                                     std::pair("\xe2\x80\x8e", "U+200E"), std::pair("\xe2\x80\x8f", "U+200F"),
+                                     std::pair("\xe2\x80\xa8", "U+2028"), std::pair("\xe2\x80\xaa", "U+202A"),
+                                     std::pair("\\u202E", "U+202E"), std::pair("\xe2\x81\xa6", "U+2066"),
+                                     std::pair("\xe2\x81\xa9", "U+2069"), std::pair("\xd8\x9c", "U+061C")})
+        for (const char* given : {"\"upper\"\nshape", "\"shoulder\"", "\"push\""}) {
+            const std::string changed = "\"a" + std::string(mark) + std::string(given).substr(1);
+            const std::string text = test::replaced(test::valid_scenario, given, changed);
+            expect_error(text, "name-invalid", changed.substr(0, 2));
+            const ScenarioResult result = read(text);
+            ASSERT_NE(find(result, "name-invalid"), nullptr);
+            EXPECT_NE(find(result, "name-invalid")->message.find(name), std::string::npos) << shown(result);
+            for (const DiagnosticFormat format :
+                 {DiagnosticFormat::human, DiagnosticFormat::gnu, DiagnosticFormat::json})
+                for (const char* hidden : {"\xc2\x80", "\xc2\x9f", "\x07", "\x7f", "\xe2\x80\x8e",
+                                           "\xe2\x80\xae", "\xe2\x80\xa8", "\xe2\x81\xa6", "\xd8\x9c"})
+                    EXPECT_EQ(render(result.diagnostics, text, format).find(hidden), std::string::npos);
+        }
+    const std::string letters =
+        test::replaced(test::valid_scenario, "\"push\"", "\"Sto\xc3\x9f \xe6\x97\xa5\"");
+    EXPECT_TRUE(read(letters).scenario.has_value()) << shown(read(letters));
+}
+
 /// Random damage to valid text: no crash, and never both a scenario and an error.
 TEST(Hostile, DamagedTextNeverCrashes)
 {

@@ -1,7 +1,7 @@
 // The family mixed and conditions at both ends: what arrives, and what is told where.
 #include <filesystem>
 
-#include "livens/io/detail/builder.h"
+#include "livens/io/scenario/builder.h"
 #include "livens/io/results.h"
 #include "livens/solvers/sparse.h"
 #include "unit/io/scenario_text.h"

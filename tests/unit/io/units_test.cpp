@@ -1,4 +1,4 @@
-#include "livens/io/detail/units.h"
+#include "livens/io/scenario/units.h"
 
 #include <gtest/gtest.h>
 

@@ -25,7 +25,8 @@ struct Advice {
 
 class Findings {
 public:
-    void error(const Place& place, std::string_view code, std::string message, Advice advice = {});
+    /// Returns false, what readers then return.
+    bool error(const Place& place, std::string_view code, std::string message, Advice advice = {});
     void warning(const Place& place, std::string_view code, std::string message, Advice advice = {});
 
     /// Errors so far: a reader compares before and after to learn whether a part was in order.
@@ -43,6 +44,9 @@ private:
     int n_errors_ = 0;
     int n_dropped_ = 0;
 };
+
+/// What of a text deceives eye or terminal: "control characters, here U+009B"; empty if nothing does.
+std::string first_invisible(std::string_view text);
 
 /// The candidate that `word` is most likely a misspelling of: nearest by insertions, deletions, replacements
 /// and exchanges of neighbours, at most a third of its length (at least 1, and 2 from four letters on) away;

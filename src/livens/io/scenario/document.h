@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "livens/io/detail/findings.h"
+#include "livens/io/scenario/findings.h"
 
 namespace livens {
 

@@ -3,7 +3,7 @@
 #include <fstream>
 #include <new>
 
-#include "livens/io/detail/builder.h"
+#include "livens/io/scenario/builder.h"
 
 namespace livens {
 
@@ -11,20 +11,17 @@ namespace {
 
 bool check_counts(const Section& top, Findings& findings)
 {
-    bool is_clean = true;
-    for (const std::string_view kind : {"body", "joint", "load"}) {
+    const int before = findings.n_errors();
+    for (const std::string kind : {"body", "joint", "load"}) {
         const std::span<const Section> sections = top.sections(kind);
-        if (sections.size() <= max_bodies) continue;
-        findings.error(sections[max_bodies].place(), "resource-limit",
-                       "there are " + std::to_string(sections.size()) + " tables [[" + std::string(kind) +
-                           "]], more than " + std::to_string(max_bodies));
-        is_clean = false;
+        if (sections.size() > max_bodies)
+            sections[max_bodies].error("", "resource-limit",
+                                       "there are " + std::to_string(sections.size()) + " tables [[" + kind +
+                                           "]], more than " + std::to_string(max_bodies));
     }
-    if (top.has("body") && top.sections("body").empty() && top.find("body") != nullptr) {
-        findings.error(top.place("body"), "no-bodies", "a scenario needs at least one body");
-        is_clean = false;
-    }
-    return is_clean;
+    if (top.find("body") != nullptr && top.sections("body").empty())
+        top.error("body", "no-bodies", "a scenario needs at least one body");
+    return findings.n_errors() == before;
 }
 
 /// The version decides how everything else is read: it comes first, and another one is not read at all.
@@ -32,12 +29,10 @@ bool check_format(const Node& root, Findings& findings)
 {
     const Node* format = root.find("format");
     if (format == nullptr) return true;   // a missing key, found with the others
-    if (format->kind == Node::Kind::integer && format->number != 1) {
-        findings.error(format->place, "format-version",
-                       "this file has another format than 1, the only one known",
-                       {"", "a newer livens may read it"});
-        return false;
-    }
+    if (format->kind == Node::Kind::integer && format->number != 1)
+        return findings.error(format->place, "format-version",
+                              "this file has another format than 1, the only one known",
+                              {"", "a newer livens may read it"});
     if (root.entries().front().key != "format")
         findings.warning(format->place, "format-first", "'format' should be the first key of the file",
                          {"it decides how the rest is read", ""});
@@ -48,7 +43,7 @@ bool check_format(const Node& root, Findings& findings)
 void build(const Node& root, Scenario& scenario, Findings& findings)
 {
     if (!check_format(root, findings)) return;
-    const Section top(root, TableId::root, "the scenario", findings);
+    const Section top(root, root_table(), "the scenario", findings);
     if (!check_counts(top, findings)) return;
     Builder builder(top, findings);
     read_bodies(builder);
@@ -90,23 +85,16 @@ bool read_text(const std::filesystem::path& file, std::string& text, Findings& f
 {
     std::error_code error;
     const std::filesystem::file_status status = std::filesystem::status(file, error);
-    if (!std::filesystem::exists(status)) {
-        findings.error({}, "io-not-found", "there is no such file");
-        return false;
-    }
-    if (std::filesystem::is_directory(status)) {
-        findings.error({}, "io-directory", "this is a directory, not a file");
-        return false;
-    }
-    if (std::filesystem::is_regular_file(status)) {
-        const std::uintmax_t size = std::filesystem::file_size(file, error);
-        if (!error && size > max_scenario_bytes) {
-            findings.error({}, "resource-limit",
-                           "the file has " + std::to_string(size) + " bytes, more than " +
-                               std::to_string(max_scenario_bytes));
-            return false;
-        }
-    }
+    if (!std::filesystem::exists(status))
+        return findings.error({}, "io-not-found", "there is no such file");
+    if (std::filesystem::is_directory(status))
+        return findings.error({}, "io-directory", "this is a directory, not a file");
+    const bool is_regular = std::filesystem::is_regular_file(status);
+    const std::uintmax_t size = is_regular ? std::filesystem::file_size(file, error) : 0;
+    if (!error && size > max_scenario_bytes)
+        return findings.error({}, "resource-limit",
+                              "the file has " + std::to_string(size) + " bytes, more than " +
+                                  std::to_string(max_scenario_bytes));
     std::ifstream stream(file, std::ios::binary);
     constexpr std::size_t portion = 1u << 16;
     while (stream && text.size() <= max_scenario_bytes) {   // pipes have no size to ask for
@@ -115,9 +103,8 @@ bool read_text(const std::filesystem::path& file, std::string& text, Findings& f
         stream.read(text.data() + before, portion);
         text.resize(before + static_cast<std::size_t>(stream.gcount()));
     }
-    if (stream.is_open() && !stream.bad()) return true;
-    findings.error({}, "io-unreadable", "the file cannot be read");
-    return false;
+    return (stream.is_open() && !stream.bad()) ||
+           findings.error({}, "io-unreadable", "the file cannot be read");
 }
 
 /// Runs `work` so that nothing is thrown.

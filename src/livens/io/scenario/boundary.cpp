@@ -1,29 +1,16 @@
 // [start], [end] and [body.end]: what is known at the ends of time.
-#include "livens/io/detail/builder.h"
+#include "livens/io/scenario/builder.h"
 
 namespace livens {
 
 namespace {
 
-Known read_given(const Section* section, Known otherwise)
+bool check_end_of(const Section& end, bool is_point)
 {
-    if (section == nullptr) return otherwise;
-    const std::string given = section->text("given");
-    if (given == "nothing") return Known::nothing;
-    if (given == "positions") return Known::positions;
-    return given == "momenta" ? Known::momenta : Known::state;
-}
-
-bool check_end_of(const Section& end, bool is_point, Findings& findings)
-{
-    bool is_clean = end.is_valid() && check_pose(end, findings);
-    if (is_point)
-        is_clean = refuse_keys(end,
-                               {"directors", "quaternion", "rotation_vector", "angular_velocity",
-                                "angular_velocity_body"},
-                               "point-mass", "a point mass has no orientation", findings) &&
-                   is_clean;
-    return is_clean;
+    if (!end.is_valid() || !check_pose(end)) return false;
+    return !is_point || end.refuse({"directors", "quaternion", "rotation_vector", "angular_velocity",
+                                    "angular_velocity_body"},
+                                   "point-mass", "a point mass has no orientation");
 }
 
 /// The core knows one state of a body: what it says of `body[a].directors` is meant for the end.
@@ -42,7 +29,7 @@ void read_end_of(Builder& builder, const std::string& name, const Section& end, 
 {
     const int index = builder.bodies()[name].index;
     const bool is_point = builder.is_point(index);
-    if (!check_end_of(end, is_point, builder.findings())) return;
+    if (!check_end_of(end, is_point)) return;
     const std::string path = "body[" + name + "].end";
     builder.remember(path, end);
     builder.guard(path, [&] {
@@ -59,20 +46,14 @@ void read_end_of(Builder& builder, const std::string& name, const Section& end, 
     });
 }
 
-void refuse_end_of(const Section& body, Findings& findings)
-{
-    refuse_keys(body, {"end"}, "boundary-conditions", "[end] does not say that anything is given there",
-                findings);
-}
-
 }   // namespace
 
 void read_boundary(Builder& builder, Conditions& boundary)
 {
     const Section* const start = only_section(builder.top(), "start");
     const Section* const end = only_section(builder.top(), "end");
-    boundary.at_start = read_given(start, Known::state);
-    boundary.at_end = read_given(end, Known::nothing);
+    boundary.at_start = start != nullptr ? start->pick<Known>("given") : Known::state;
+    boundary.at_end = end != nullptr ? end->pick<Known>("given") : Known::nothing;
     if (end != nullptr && !end->is_valid()) return;   // then bodies cannot be judged
     const bool is_given = boundary.at_end != Known::nothing;
     if (is_given) {
@@ -81,18 +62,18 @@ void read_boundary(Builder& builder, Conditions& boundary)
     }
     for (const Section& body : builder.top().sections("body")) {
         if (!is_given) {
-            refuse_end_of(body, builder.findings());
+            body.refuse({"end"}, "boundary-conditions", "[end] does not say that anything is given there");
             continue;
         }
         if (!body.has("end")) {
-            builder.findings().error(body.place(), "missing-key", body.label() + " lacks 'end'",
-                                     {"[end] says that something is given at the end of time, which then "
-                                      "concerns every body",
-                                      "add a table [body.end] below it"});
+            body.error("", "missing-key", body.label() + " lacks 'end'",
+                       {"[end] says that something is given at the end of time, which then concerns every "
+                        "body",
+                        "add a table [body.end] below it"});
             continue;
         }
         const Value* name = body.find("name");
-        if (name == nullptr || !builder.bodies()[name->text].is_built) continue;   // told already
+        if (name == nullptr || !builder.bodies()[name->text].is_usable) continue;   // told already
         for (const Section& at_end : body.sections("end"))
             read_end_of(builder, name->text, at_end, boundary.end);
     }

@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <optional>
 
-#include "livens/io/detail/builder.h"
+#include "livens/io/scenario/builder.h"
 #include "livens/io/json.h"
 
 namespace livens {

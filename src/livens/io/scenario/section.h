@@ -1,15 +1,16 @@
 // A table of the scenario after the schema has been applied: known keys with values in SI units.
 #pragma once
 
+#include <initializer_list>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "livens/base/linear.h"
-#include "livens/io/detail/document.h"
-#include "livens/io/detail/findings.h"
-#include "livens/io/detail/schema.h"
+#include "livens/io/scenario/document.h"
+#include "livens/io/scenario/findings.h"
+#include "livens/io/scenario/schema.h"
 
 namespace livens {
 
@@ -19,7 +20,6 @@ class Section;
 struct Value {
     const Key* key = nullptr;
     const Node* node = nullptr;
-    Place key_place;
     bool is_valid = false;
     std::vector<double> numbers;      ///< SI; rows one after the other; truth: 0 or 1
     int n_rows = 0;                   ///< 0: a plain number
@@ -32,12 +32,16 @@ class Section {
 public:
     /// Applies the schema: unknown, misplaced, mistyped, missing keys and values out of range go to
     /// `findings`. `label` names the table in messages: "body 'upper'".
-    Section(const Node& node, TableId table, std::string label, Findings& findings);
+    Section(const Node& node, const Table& table, std::string label, Findings& findings);
 
     const std::string& label() const { return label_; }
     Place place() const { return node_->place; }
     /// Nothing was wrong with this table and those inside it.
     bool is_valid() const { return is_valid_; }
+    /// Index of its kind in the schema's table; any_kind if there is none or the file's word is none.
+    int kind() const { return kind_; }
+    /// Whether its kind has the key, given or not.
+    bool takes(std::string_view key) const { return schema_key(key) != nullptr; }
 
     /// The key stands in the file, in order or not.
     bool has(std::string_view key) const { return value(key) != nullptr; }
@@ -55,21 +59,43 @@ public:
     Vector3 row(std::string_view key, int i) const;
     /// Rows of the value as the columns of a matrix: [d1, d2, d3].
     Matrix3 columns(std::string_view key) const;
+    /// The enumerator that stands where the word does among the key's choices.
+    template <class Enum>
+    Enum pick(std::string_view key) const
+    {
+        return static_cast<Enum>(index_of(schema_key(key)->choices, text(key)));
+    }
     std::span<const Section> sections(std::string_view key) const;
 
     /// All keys with values, for the table of places.
     const std::vector<Value>& values() const { return values_; }
 
+    // What else may be wrong. All return false after an error.
+    /// An error at the value of a key, or at the table without one.
+    bool error(std::string_view key, std::string_view code, std::string message, Advice advice = {}) const;
+    /// Reports the second of those keys that stands here.
+    bool at_most_one(std::initializer_list<std::string_view> keys, std::string_view code) const;
+    /// Reports all of those keys that stand here, with the reason.
+    bool refuse(std::initializer_list<std::string_view> keys, std::string_view code,
+                const std::string& reason) const;
+
 private:
     const Value* value(std::string_view key) const;
+    const Key* schema_key(std::string_view key) const { return find_key(table_->keys_of(kind_), key); }
     std::vector<double> numbers(std::string_view key) const;
+    void read(const Entry& entry, const std::vector<const Key*>& keys);
+    void report_unknown(const Entry& entry, const std::vector<const Key*>& keys) const;
 
-    TableId table_;
+    const Table* table_;
     const Node* node_;
     std::string label_;
-    std::string type_;   ///< of the discriminator; empty if there is none or it is not valid
+    Findings* findings_;
+    int kind_;
     std::vector<Value> values_;
     bool is_valid_ = true;
 };
+
+/// The table `key` of a section; null if it is not there.
+const Section* only_section(const Section& section, std::string_view key);
 
 }   // namespace livens

@@ -1,7 +1,8 @@
 #include <algorithm>
 
-#include "livens/io/detail/explain.h"
+#include "livens/io/scenario/explain.h"
 #include "livens/io/diagnostic.h"
+#include "livens/io/scenario/findings.h"
 
 namespace livens {
 

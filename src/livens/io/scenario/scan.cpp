@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "livens/io/detail/document.h"
+#include "livens/io/scenario/document.h"
 #include "livens/io/json.h"
 #include "livens/io/scenario.h"
 
@@ -43,20 +43,17 @@ private:
 bool scan_characters(std::string_view text, Findings& findings)
 {
     constexpr std::size_t head = 4096;
-    if (text.substr(0, head).find('\0') != std::string_view::npos) {
-        findings.error({}, "not-text", "this is a binary file, not a scenario", {"", "scenarios are TOML"});
-        return false;
-    }
+    if (text.substr(0, head).find('\0') != std::string_view::npos)
+        return findings.error({}, "not-text", "this is a binary file, not a scenario",
+                              {"", "scenarios are TOML"});
     for (Cursor c(text); !c.at_end(); c.next()) {
         const unsigned char byte = static_cast<unsigned char>(c.peek());
         if (c.length() == 0)
-            findings.error(c.place(), "not-text", "this byte is not UTF-8",
-                           {"TOML files are UTF-8 text", "save the file with that encoding"});
-        else if ((byte < 0x20 && byte != '\n' && byte != '\r' && byte != '\t') || byte == 0x7f)
-            findings.error(c.place(), "not-text", "control characters are not allowed in TOML",
-                           {"", "in a text write it as \\u00.."});
-        else continue;
-        return false;
+            return findings.error(c.place(), "not-text", "this byte is not UTF-8",
+                                  {"TOML files are UTF-8 text", "save the file with that encoding"});
+        if ((byte < 0x20 && byte != '\n' && byte != '\r' && byte != '\t') || byte == 0x7f)
+            return findings.error(c.place(), "not-text", "control characters are not allowed in TOML",
+                                  {"", "in a text write it as \\u00.."});
     }
     return true;
 }
@@ -119,8 +116,7 @@ bool scan_structure(std::string_view text, Findings& findings)
 {
     int values = 0;
     Depth depth;
-    Cursor c(text);
-    while (!c.at_end()) {
+    for (Cursor c(text); !c.at_end();) {
         const char byte = c.peek();
         if (byte == '"' || byte == '\'') {
             skip_string(c);
@@ -132,16 +128,14 @@ bool scan_structure(std::string_view text, Findings& findings)
         }
         depth.see(byte);
         if (byte == '[' || byte == '{' || byte == ',' || byte == '=') ++values;
-        if (depth.is_excessive()) {
-            findings.error(c.place(), "too-deep",
-                           "values are nested deeper than " + std::to_string(max_scenario_depth) + " levels");
-            return false;
-        }
-        if (values > max_scenario_values) {
-            findings.error(c.place(), "resource-limit",
-                           "the file has more than " + std::to_string(max_scenario_values) + " values");
-            return false;
-        }
+        if (depth.is_excessive())
+            return findings.error(c.place(), "too-deep",
+                                  "values are nested deeper than " + std::to_string(max_scenario_depth) +
+                                      " levels");
+        if (values > max_scenario_values)
+            return findings.error(c.place(), "resource-limit",
+                                  "the file has more than " + std::to_string(max_scenario_values) +
+                                      " values");
         c.next();
     }
     return true;

@@ -1,11 +1,11 @@
-#include "livens/io/detail/units.h"
+#include "livens/io/scenario/units.h"
 
 #include <array>
 #include <charconv>
 #include <cmath>
 #include <numbers>
 
-#include "livens/io/json.h"
+#include "livens/base/text.h"
 
 namespace livens {
 
@@ -71,10 +71,8 @@ void multiply(Unit& unit, const Unit& factor, int exponent)
         unit.denominator *= exponent > 0 ? factor.denominator : factor.numerator;
     }
     unit.power_of_ten += exponent * factor.power_of_ten;
-    unit.dimension.length += exponent * factor.dimension.length;
-    unit.dimension.mass += exponent * factor.dimension.mass;
-    unit.dimension.time += exponent * factor.dimension.time;
-    unit.dimension.angle += exponent * factor.dimension.angle;
+    for (std::size_t i = 0; i < unit.dimension.size(); ++i)
+        unit.dimension[i] += exponent * factor.dimension[i];
 }
 
 /// unit = product [ "/" ( factor | "(" product ")" ) ];  product = factor { (" " | "*" | "·") factor };
@@ -201,7 +199,7 @@ Quantity parse_quantity(std::string_view text, std::string_view si_unit)
     const std::optional<Unit> unit = parse_unit(rest, reason);
     if (!unit) return {0, reason, std::string(known_units)};
     const std::optional<Unit> expected = parse_unit(si_unit, reason);
-    if (!expected || !(unit->dimension == expected->dimension))
+    if (!expected || unit->dimension != expected->dimension)
         return {0, "'" + std::string(rest) + "' is not a unit of this quantity",
                 "it is measured in " + wanted};
     const double value = to_si(number, *unit);

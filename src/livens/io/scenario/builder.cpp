@@ -1,6 +1,4 @@
-#include "livens/io/detail/builder.h"
-
-#include <algorithm>
+#include "livens/io/scenario/builder.h"
 
 namespace livens {
 
@@ -117,7 +115,7 @@ BodyReference Builder::find_body(const std::string& name, const Place& place, co
 {
     if (name == "world") return {world, true};
     const auto found = bodies_.find(name);
-    if (found != bodies_.end()) return {found->second.index, found->second.is_built};
+    if (found != bodies_.end()) return found->second;
     std::vector<std::string_view> known;
     for (const Section& body : top_.sections("body"))
         if (const Value* v = body.find("name")) known.push_back(v->text);
@@ -128,7 +126,8 @@ BodyReference Builder::find_body(const std::string& name, const Place& place, co
     return {};
 }
 
-bool Builder::find_pair(const Section& section, BodyReference& first, BodyReference& second)
+bool Builder::find_pair(const Section& section, std::string_view self, BodyReference& first,
+                        BodyReference& second)
 {
     const Value* between = section.find("between");
     if (between == nullptr) return false;
@@ -137,7 +136,7 @@ bool Builder::find_pair(const Section& section, BodyReference& first, BodyRefere
     second = find_body(between->texts[1], names[1].place, section);
     if (between->texts[0] != between->texts[1]) return first.is_usable && second.is_usable;
     if (between->texts[0] == "world" || bodies_.count(between->texts[0]) > 0)
-        findings_.error(names[1].place, section.text("type") == "spring" ? "load-self" : "joint-self",
+        findings_.error(names[1].place, self,
                         section.label() + " connects '" + between->texts[0] + "' with itself",
                         {"", "'between' names two different bodies, or one and \"world\""});
     return false;
@@ -154,65 +153,39 @@ const Matrix34& Builder::start_configuration(int body) const
     return body == world ? world_configuration : model_.bodies()[body].X;
 }
 
-bool check_name(const Section& section, Findings& findings)
+bool check_name(const Section& section)
 {
     const Value* name = section.find("name");
     if (name == nullptr) return !section.has("name");
     const std::string& text = name->text;
-    const bool is_printable = std::none_of(
-        text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; });
-    std::string problem;
-    if (text.empty()) problem = "a name must not be empty";
-    else if (text == "world") problem = "the name 'world' is reserved for the fixed world";
-    else if (text.size() > longest_name)
-        problem = "a name has at most " + std::to_string(longest_name) + " bytes";
-    else if (!is_printable) problem = "a name must not contain control characters";
-    if (problem.empty()) return true;
-    findings.error(section.place("name"),
-                   text.empty()      ? "name-empty"
-                   : text == "world" ? "name-reserved"
-                                     : "name-invalid",
-                   problem);
-    return false;
+    if (text.empty()) return section.error("name", "name-empty", "a name must not be empty");
+    if (text == "world")
+        return section.error("name", "name-reserved", "the name 'world' is reserved for the fixed world");
+    if (text.size() > longest_name)
+        return section.error("name", "name-invalid",
+                             "a name has at most " + std::to_string(longest_name) + " bytes");
+    const std::string culprit = first_invisible(text);
+    return culprit.empty() ||
+           section.error("name", "name-invalid", "a name must not contain " + culprit,
+                         {"control characters and marks of writing direction deceive the eye and the "
+                          "terminal",
+                          "leave it out"});
 }
 
-const Section* only_section(const Section& section, std::string_view key)
+std::string default_name(const Section& section)
 {
-    const std::span<const Section> sections = section.sections(key);
-    return sections.empty() ? nullptr : &sections.front();
+    const Value* between = section.find("between");
+    const std::string type = section.text("type");
+    if (between == nullptr) return type + " on " + section.text("body");
+    return type + " " + between->texts[0] + "-" + between->texts[1];
 }
 
-bool at_most_one(const Section& section, std::initializer_list<std::string_view> keys, std::string_view code,
-                 Findings& findings)
+bool claim_name(const Section& section, const std::string& kind, const std::string& name,
+                std::unordered_set<std::string>& taken, const Advice& advice)
 {
-    std::string_view first;
-    for (const std::string_view key : keys) {
-        if (!section.has(key)) continue;
-        if (first.empty()) {
-            first = key;
-            continue;
-        }
-        findings.error(section.place(key), code,
-                       "'" + std::string(key) + "' and '" + std::string(first) + "' of " + section.label() +
-                           " exclude each other",
-                       {"", "keep one of them"});
-        return false;
-    }
-    return true;
-}
-
-bool refuse_keys(const Section& section, std::initializer_list<std::string_view> keys, std::string_view code,
-                 const std::string& reason, Findings& findings)
-{
-    bool is_clean = true;
-    for (const std::string_view key : keys) {
-        if (!section.has(key)) continue;
-        is_clean = false;
-        findings.error(section.place(key), code,
-                       "'" + std::string(key) + "' of " + section.label() + " has no meaning: " + reason,
-                       {"", "leave it out"});
-    }
-    return is_clean;
+    return taken.insert(name).second ||
+           section.error("name", "name-duplicate", "a " + kind + " called '" + name + "' exists already",
+                         advice);
 }
 
 }   // namespace livens

@@ -8,22 +8,15 @@
 #include <vector>
 
 #include "livens/base/error.h"
-#include "livens/io/detail/section.h"
+#include "livens/io/scenario/section.h"
 #include "livens/io/scenario.h"
 
 namespace livens {
 
-/// A body as the file declares it. Joints and loads may refer to one that is not in order: that is no second
-/// error.
-struct DeclaredBody {
-    int index = 0;   ///< in the model
-    bool is_built = false;
-};
-
 /// What a name in `between` or `body` stands for.
 struct BodyReference {
     int index = world;
-    bool is_usable = false;   ///< the world, or a body that is in order
+    bool is_usable = false;   ///< the world, or a body in order; to refer to another one is no second error
 };
 
 class Builder {
@@ -35,7 +28,7 @@ public:
     Model& model() { return model_; }
     /// Call once all bodies are there: computes length().
     void close_bodies();
-    std::unordered_map<std::string, DeclaredBody>& bodies() { return bodies_; }
+    std::unordered_map<std::string, BodyReference>& bodies() { return bodies_; }
 
     /// Makes `path` known as the place of the section, and its keys as `path.key`.
     void remember(const std::string& path, const Section& section);
@@ -57,8 +50,9 @@ public:
 
     /// The body of a name in a section; an unknown one is reported at `place`.
     BodyReference find_body(const std::string& name, const Place& place, const Section& section);
-    /// Both of `between`; false unless both can be used.
-    bool find_pair(const Section& section, BodyReference& first, BodyReference& second);
+    /// Both of `between`; false unless both can be used. `self` is the code of one body named twice.
+    bool find_pair(const Section& section, std::string_view self, BodyReference& first,
+                   BodyReference& second);
 
     /// X of a body at the start, or of the world.
     const Matrix34& start_configuration(int body) const;
@@ -74,7 +68,7 @@ private:
     const Section& top_;
     Findings& findings_;
     Model model_;
-    std::unordered_map<std::string, DeclaredBody> bodies_;
+    std::unordered_map<std::string, BodyReference> bodies_;
     std::map<std::string, Place> places_;
     double length_ = 1;
 };
@@ -83,24 +77,19 @@ private:
 std::string help_in_toml(const Complaint& complaint);
 
 /// A name fit for results and messages; else an error at the name's place.
-bool check_name(const Section& section, Findings& findings);
-
-/// Reports the second of those keys that stands in the section; true if there is one at most.
-bool at_most_one(const Section& section, std::initializer_list<std::string_view> keys, std::string_view code,
-                 Findings& findings);
-/// Reports all of those keys that stand in the section, with the reason.
-bool refuse_keys(const Section& section, std::initializer_list<std::string_view> keys, std::string_view code,
-                 const std::string& reason, Findings& findings);
-
-/// The table `key` of a section; null if it is not there.
-const Section* only_section(const Section& section, std::string_view key);
+bool check_name(const Section& section);
+/// Type and bodies, for joints and loads without a name: "rod world-upper", "force on upper".
+std::string default_name(const Section& section);
+/// Reports a name (at the key, or at the table without one) that another of its kind has.
+bool claim_name(const Section& section, const std::string& kind, const std::string& name,
+                std::unordered_set<std::string>& taken, const Advice& advice);
 
 // Position, orientation and velocities of a body, at the start ([[body]]) or at the end ([body.end]).
-bool check_pose(const Section& body, Findings& findings);
+bool check_pose(const Section& body);
 /// Throws InputError. Of `director_rates` it knows nothing.
 Placement read_placement(const Section& body);
 
-// The parts of the reader. Each reports all it finds; `names` are those of joints and loads after defaults.
+// The parts of the reader. Each reports all it finds.
 void read_bodies(Builder& builder);
 void read_joints(Builder& builder);
 void read_loads(Builder& builder);

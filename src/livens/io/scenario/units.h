@@ -1,6 +1,7 @@
 // Quantities in strings: "30 deg", "5 mm", "7850 kg/m^3".
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -9,14 +10,7 @@ namespace livens {
 
 /// Exponents of the base quantities. Angles count, so that an angle cannot stand for a number or a spin for a
 /// frequency.
-struct Dimension {
-    int length = 0;
-    int mass = 0;
-    int time = 0;
-    int angle = 0;
-
-    friend constexpr bool operator==(const Dimension&, const Dimension&) = default;
-};
+using Dimension = std::array<int, 4>;   // length, mass, time, angle
 
 /// A unit is numerator / denominator * 10^power SI units. The power is kept apart so that "5 mm" is 5 / 1000,
 /// the double nearest to 0.005, and not 5 * 0.001.
@@ -24,7 +18,7 @@ struct Unit {
     double numerator = 1;
     double denominator = 1;
     int power_of_ten = 0;
-    Dimension dimension;
+    Dimension dimension{};
 };
 
 /// Reads products, quotients and powers of units with SI prefixes: "kN/m", "kg m^2", "N s/m", "kg/(m s)",

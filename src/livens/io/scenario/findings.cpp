@@ -1,4 +1,4 @@
-#include "livens/io/detail/findings.h"
+#include "livens/io/scenario/findings.h"
 
 #include <algorithm>
 #include <cassert>
@@ -55,9 +55,10 @@ void Findings::add(Severity severity, const Place& place, std::string_view code,
                       std::move(advice.help)});
 }
 
-void Findings::error(const Place& place, std::string_view code, std::string message, Advice advice)
+bool Findings::error(const Place& place, std::string_view code, std::string message, Advice advice)
 {
     add(Severity::error, place, code, std::move(message), std::move(advice));
+    return false;
 }
 
 void Findings::warning(const Place& place, std::string_view code, std::string message, Advice advice)

@@ -1,0 +1,217 @@
+// [method]: the family and its choices, and what they take of memory.
+#include <algorithm>
+
+#include "livens/io/scenario/builder.h"
+#include "livens/time/time_space.h"
+
+namespace livens {
+
+namespace {
+
+constexpr double gibibyte = 1u << 30;
+constexpr double max_motion_bytes = 8 * gibibyte;
+constexpr double max_matrix_bytes = 8 * gibibyte;
+// The whole solution of 20,000 linear elements of one rigid body (56 entries of the factors an unknown, and
+// the matrix, its pattern and copies) took 2.3 kB an unknown, as much as 150 entries of 16 bytes. Bodies that
+// hang together fill the factors: chains on ball joints had 76 entries an unknown for each body (1 to 16
+// bodies, linear). Higher degrees take more: the bound refuses nothing that would fit.
+constexpr double least_entries_per_unknown = 150;
+constexpr double entries_per_unknown_and_body = 76;
+constexpr double bytes_per_factor_entry = 16;
+
+struct MethodKind : Kind {
+    Method (*make)(const Section&);
+};
+
+Method make_lobatto(const Section& section)
+{
+    return Lobatto{section.integer("degree"), section.integer("window")};   // 0 for the word all
+}
+
+Method make_mixed(const Section& section)
+{
+    Mixed mixed;
+    mixed.basis = section.pick<Mixed::Basis>("basis");
+    mixed.degree = section.integer("degree");
+    mixed.start = section.pick<Mixed::Start>("momentum");
+    mixed.multipliers = section.pick<Mixed::Multipliers>("multipliers");
+    mixed.end_multiplier = section.pick<Mixed::EndMultiplier>("end_multiplier");
+    mixed.gauss_points = section.integer("gauss_points");   // 0: exact
+    mixed.window = section.integer("window");               // 0 for the word all
+    mixed.interfaces = section.pick<Mixed::Interfaces>("interfaces");
+    mixed.first_guess = section.pick<Mixed::FirstGuess>("first_guess");
+    if (const Value* knots = section.find("knots")) mixed.knots = knots->numbers;
+    if (const Value* weights = section.find("weights")) mixed.weights = weights->numbers;
+    mixed.linear_solver = section.pick<SparseBackend>("linear_solver");
+    return mixed;
+}
+
+/// Number of elements solved together.
+Key window(std::string_view otherwise, const std::string& doc)
+{
+    return {"window", types::integer_or_choice, "Number of elements that are solved together" + doc, "",
+            otherwise, false, {"all"}, {1, max_elements}};
+}
+
+std::vector<Key> mixed_keys()
+{
+    return {
+        Key{"degree", types::integer, "Of polynomials or splines.", "", "2"}.within({1, 8}),
+        choice("basis", {"lagrange", "bspline", "nurbs"},
+               "Of all fields. lagrange: continuous polynomials with equidistant nodes; bspline: as smooth "
+               "as the knots allow; nurbs: likewise, with `weights`."),
+        choice("momentum", {"natural", "strong"},
+               "How the momentum at the ends enters. natural: as the boundary term of Hamilton's law, which "
+               "keeps the balances of momentum to rounding; strong: as a value of the momentum field."),
+        choice("multipliers", {"equal", "lower"},
+               "Functions of the multipliers. equal: those of the positions; lower: one degree less."),
+        choice("end_multiplier", {"smooth", "zero"},
+               "The multiplier where the natural momentum of an end is defined, with equal multipliers: "
+               "smooth, of one degree less in that element, or zero, which holds the order of every degree "
+               "down to 4."),
+        Key{"gauss_points", types::integer,
+            "Of the quadrature in each element. Default: as many as integrate all polynomials exactly."}
+            .within({1, 64}),
+        window("all", ", a block; positions and momenta at the end of a block begin the next. Conditions at "
+                      "both ends need all."),
+        choice("interfaces", {"carry", "project"},
+               "Between blocks. carry: positions and momenta as they are, with what they violate; project: "
+               "moved to the nearest that fulfil rigidity and joints, so that the motion jumps a little."),
+        choice("first_guess", {"march", "steady"},
+               "Where Newton begins if the state is given at one end. march: from lobatto(2) over the same "
+               "elements, which the motion is compared with in the end; steady: straight on, for short "
+               "blocks."),
+        Key{"knots", types::list,
+            "Of splines: from `start` to `end`, ascending, the first and the last degree + 1 times, others "
+            "up to degree times. They make the elements: output times and breaks of loads must be among "
+            "them. Default: as smooth as possible on equal elements, with kinks where loads break.", "s"},
+        Key{"weights", types::list,
+            "Of NURBS, positive, one for each function: as many as knots, less degree + 1."},
+        choice("linear_solver", {"eigen", "umfpack"},
+               "Library for the sparse systems; umfpack is an option when livens is built.")};
+}
+
+const std::vector<MethodKind>& kinds()
+{
+    static const std::vector<MethodKind> all{
+        {{"lobatto", "space-time elements on Gauss-Lobatto points, order 2 degree at their ends",
+          {Key{"degree", types::integer, "Of the polynomial in each element.", "", "4"}.within({1, 16}),
+           window("1", ". Their equations are the same; conditions at both ends of time take all, whatever "
+                       "stands here.")}},
+         make_lobatto},
+        {{"mixed",
+          "the elements of Hesch, Glas and Schuss, with positions, momenta and multipliers as separate "
+          "fields and weak rigidity, all solved at once or by blocks",
+          mixed_keys()},
+         make_mixed},
+        {{"midpoint", "classical stepping, order 2", {}}, [](const Section&) { return Method(Midpoint{}); }},
+        {{"endpoint", "classical stepping, order 1", {}}, [](const Section&) { return Method(Endpoint{}); }}};
+    return all;
+}
+
+/// Keys that belong to some choices only. Nothing is ignored silently.
+void check_mixed(const Section& section, const Mixed& mixed)
+{
+    if (mixed.start == Mixed::Start::strong || mixed.multipliers == Mixed::Multipliers::lower)
+        section.refuse({"end_multiplier"}, "misplaced-key",
+                       "no multiplier is left open with momentum = \"strong\" or multipliers = \"lower\"");
+    if (section.has("basis") && section.find("basis") == nullptr) return;
+    if (mixed.basis == Mixed::Basis::lagrange)
+        section.refuse({"knots"}, "misplaced-key", "Lagrange polynomials have no knots");
+    if (mixed.basis != Mixed::Basis::nurbs)
+        section.refuse({"weights"}, "misplaced-key", "only nurbs have weights");
+    else if (!section.has("weights"))
+        section.error("basis", "missing-key", section.label() + " lacks 'weights'",
+                      {"nurbs are B-splines with weights", "without weights they are basis = \"bspline\""});
+}
+
+/// Numbers of Field and end values a node and an element end, see Motion.
+double motion_bytes(const Model& model, const Method& method, double n_elements)
+{
+    const double bodies = model.n_bodies(), rows = model.n_rows();
+    const double at_ends = 48 * bodies + 2 * rows;   // P, V, and X'' on both sides
+    double inside = 12 * bodies + rows;
+    if (const Lobatto* lobatto = std::get_if<Lobatto>(&method)) inside *= lobatto->degree;
+    if (const Mixed* mixed = std::get_if<Mixed>(&method))   // momenta and rigidity have fields of their own
+        inside = (30 * bodies + rows) * mixed->degree;
+    return sizeof(double) * n_elements * (inside + at_ends);
+}
+
+/// Of the factors of one block's matrix, which outweigh all else.
+double matrix_bytes(const Model& model, const Mixed& mixed, double n_elements)
+{
+    const double at_once = mixed.window > 0 ? std::min<double>(mixed.window, n_elements) : n_elements;
+    double unknowns = model.n_rows();   // a node
+    for (const Body& body : model.bodies()) unknowns += body.is_point ? 6 : 30;
+    const double entries = model.joints().empty() ? least_entries_per_unknown
+                                                  : std::max(least_entries_per_unknown,
+                                                             entries_per_unknown_and_body * model.n_bodies());
+    return unknowns * mixed.degree * at_once * entries * bytes_per_factor_entry;
+}
+
+std::string gibibytes(double bytes)
+{
+    return std::to_string(static_cast<long long>(bytes / gibibyte)) + " GiB";
+}
+
+}   // namespace
+
+Table method_table()
+{
+    return Table{
+        "[method]", "How it is solved.",
+        {Key{"family", types::choice, "", "", "lobatto"},
+         Key{"tolerance", types::number,
+             "Newton stops when its estimated error is below this fraction of the motion in the element; "
+             "mixed: of the model's length.", "", "1e-12"}.within({0, 0.1, true}),
+         Key{"max_iterations", types::integer, "Of Newton in one element; mixed: in one block.", "", "30"}
+             .within({1, 1000}),
+         Key{"condition", types::truth,
+             "Whether condition numbers are computed: of the whole matrix of the last block (mixed), of that "
+             "of all elements, reduced to the free motions (lobatto). They take tens to hundreds of "
+             "solutions more.", "", "false"}}}
+        .with_kinds("family", {kinds().begin(), kinds().end()});
+}
+
+Method read_method(const Section* section, Findings&)
+{
+    if (section == nullptr || section->kind() == any_kind) return Lobatto{};
+    const Method method = kinds()[static_cast<std::size_t>(section->kind())].make(*section);
+    if (const Mixed* mixed = std::get_if<Mixed>(&method)) check_mixed(*section, *mixed);
+    return method;
+}
+
+bool has_knots(const Method& method)
+{
+    const Mixed* mixed = std::get_if<Mixed>(&method);
+    return mixed != nullptr && mixed->basis != Mixed::Basis::lagrange && !mixed->knots.empty();
+}
+
+TimeMesh mesh_of_knots(const Mixed& mixed)
+{
+    const bool is_rational = mixed.basis == Mixed::Basis::nurbs && !mixed.weights.empty();
+    return {is_rational ? TimeSpace::nurbs(mixed.degree, mixed.knots, mixed.weights).ends()
+                        : TimeSpace::bspline(mixed.degree, mixed.knots).ends()};
+}
+
+bool check_size(const Model& model, const Method& method, double n_elements, const Place& place,
+                Findings& findings)
+{
+    const std::string what = std::to_string(static_cast<long long>(n_elements)) + " time elements for " +
+                             std::to_string(model.n_bodies()) + " bodies";
+    const auto fits = [&](const char* thing, double bytes, double most, const char* help) {
+        return bytes <= most ||
+               findings.error(place, "resource-limit",
+                              std::string(thing) + " would take " + gibibytes(bytes) + ", more than " +
+                                  gibibytes(most),
+                              {what, help});
+    };
+    const Mixed* mixed = std::get_if<Mixed>(&method);
+    return fits("the motion", motion_bytes(model, method, n_elements), max_motion_bytes,
+                "use fewer elements; a higher degree makes up for it") &&
+           fits("the system of one block",
+                mixed != nullptr ? matrix_bytes(model, *mixed, n_elements) : 0, max_matrix_bytes,
+                "solve fewer of them at once, for instance with window = 1000 in [method]");
+}
+
+}   // namespace livens

@@ -1,0 +1,142 @@
+// The tables of everything that a scenario may say: the reader walks them, schema_json() and
+// schema_markdown() print them, a test mutates every entry. Those of kinds stand beside their makers.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace livens {
+
+/// One form of a value in the file.
+enum class Form : std::uint8_t {
+    none,
+    flag,    ///< true
+    truth,   ///< true or false
+    integer,
+    number,   ///< or a text with a unit, where the key has one
+    text,
+    choice,   ///< one of the key's words
+    names,    ///< `count` texts
+    row,      ///< `count` numbers
+    rows,     ///< `count` rows of 3 numbers
+    table,
+    tables   ///< array of tables
+};
+
+struct KeyType {
+    std::string_view words;   ///< "three numbers", for messages and pages
+    Form form = Form::none;
+    int count = 0;              ///< 0: any number of them, at least one
+    Form other = Form::none;    ///< what may stand there instead, with as many
+
+    friend constexpr bool operator==(const KeyType&, const KeyType&) = default;
+};
+
+namespace types {
+inline constexpr KeyType flag{"true", Form::flag};
+inline constexpr KeyType truth{"true or false", Form::truth};
+inline constexpr KeyType integer{"a whole number", Form::integer};
+inline constexpr KeyType integer_or_choice{"a whole number", Form::integer, 0, Form::choice};
+inline constexpr KeyType number{"a number", Form::number};
+inline constexpr KeyType text{"a text", Form::text};
+inline constexpr KeyType choice{"", Form::choice};
+inline constexpr KeyType vector3{"three numbers", Form::row, 3};
+inline constexpr KeyType vector4{"four numbers", Form::row, 4};
+inline constexpr KeyType principal_or_full{"three numbers or three rows of three numbers", Form::row, 3,
+                                           Form::rows};
+inline constexpr KeyType triple{"three rows of three numbers", Form::rows, 3};
+inline constexpr KeyType pair{"two rows of three numbers", Form::rows, 2};
+inline constexpr KeyType names{"two texts", Form::names, 2};
+inline constexpr KeyType list{"a list of numbers", Form::row};
+inline constexpr KeyType rows{"rows of three numbers", Form::rows};
+inline constexpr KeyType number_or_list{"a number or a list of numbers", Form::number, 0, Form::row};
+inline constexpr KeyType number_or_table{"a number or a table", Form::number, 0, Form::table};
+inline constexpr KeyType table{"a table", Form::table};
+inline constexpr KeyType tables{"tables", Form::tables};
+inline constexpr KeyType later{"", Form::none};   ///< known, but not part of this version
+}   // namespace types
+
+/// low <= x <= high, or low < x with `above`.
+struct Range {
+    double low = -std::numeric_limits<double>::infinity();
+    double high = std::numeric_limits<double>::infinity();
+    bool above = false;
+
+    bool holds(double x) const { return (above ? x > low : x >= low) && x <= high; }
+    bool is_limited() const { return *this != Range(); }
+    std::string text() const;   ///< "> 0", "1 to 16", ">= 0"
+    friend constexpr bool operator==(const Range&, const Range&) = default;
+};
+inline constexpr Range positive{.low = 0, .above = true};
+inline constexpr Range not_negative{.low = 0};
+
+using Words = std::vector<std::string_view>;
+struct Table;
+
+struct Key {
+    std::string_view name;
+    KeyType type;
+    std::string doc;
+    std::string_view unit = {};       ///< SI; empty: a pure number. Texts must have its dimension
+    std::string_view fallback = {};   ///< as in TOML, a choice without quotes; empty: none
+    bool required = false;
+    Words choices = {};   ///< where an enum says the same, in its order: see Section::pick()
+    Range range = {};     ///< for every number of the value
+    std::shared_ptr<const Table> child = {};   ///< of a table, or tables
+
+    // One property each, so that an entry of a table reads as a sentence.
+    Key needed() && { return required = true, std::move(*this); }
+    Key within(const Range& r) && { return range = r, std::move(*this); }
+    Key holding(Table t) &&;
+};
+
+/// A kind of joint, load or method: the word for it and the keys that it has beyond those of all kinds.
+struct Kind {
+    std::string_view word, doc;
+    std::vector<Key> keys;
+};
+inline constexpr int any_kind = -1;
+
+struct Table {
+    std::string heading;   ///< "[[body]]"
+    std::string_view doc;
+    std::vector<Key> keys;               ///< of all kinds
+    std::string_view chooser = {};       ///< the key that says the kind, "type"; empty: there are no kinds
+    std::vector<Kind> kinds = {};
+
+    /// A table with kinds: words and meanings of the chooser are theirs.
+    Table with_kinds(std::string_view choosing_key, std::vector<Kind> all) &&;
+    /// The keys that belong to a kind (an index), or with any_kind all that belong to some.
+    std::vector<const Key*> keys_of(int kind) const;
+};
+
+/// One of some words, by default the first.
+Key choice(std::string_view name, Words words, const std::string& doc);
+
+inline constexpr int max_elements = 10'000'000;
+inline constexpr int max_bodies = 1000;
+
+// Made once, for root_table(), which holds all others.
+Table body_table();
+Table joint_table();
+Table load_table();
+Table method_table();
+const Table& root_table();
+/// All, from the root on, each before those inside it.
+std::vector<const Table*> schema_tables();
+
+const Key* find_key(const std::vector<const Key*>& keys, std::string_view name);
+/// "a", "b" or "c"
+std::string quoted_alternatives(const Words& words);
+/// Of `word`, or -1.
+int index_of(const Words& words, std::string_view word);
+/// "three numbers in m, each > 0": for messages and pages.
+std::string describe_type(const Key& key);
+/// The numbers of a fallback: "[0, 0, 0]" -> 0, 0, 0.
+std::vector<double> fallback_numbers(const Key& key);
+
+}   // namespace livens

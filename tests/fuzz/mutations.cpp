@@ -1,0 +1,139 @@
+// Random damage to scenarios, the same in every run: each text ends in findings or a scenario.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <random>
+#include <sstream>
+#include <vector>
+
+#include "fuzz/scenario.h"
+
+namespace livens {
+
+namespace {
+
+std::vector<std::string> examples()
+{
+    std::vector<std::filesystem::path> files;
+    for (const char* folder : {"/examples", "/tests/fuzz/corpus"})
+        for (const auto& entry : std::filesystem::directory_iterator(std::string(LIVENS_SOURCE_DIR) + folder))
+            if (entry.path().extension() == ".toml") files.push_back(entry.path());
+    std::sort(files.begin(), files.end());
+    std::vector<std::string> texts;
+    for (const std::filesystem::path& file : files) {
+        std::ifstream stream(file, std::ios::binary);
+        texts.emplace_back(std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>());
+    }
+    return texts;
+}
+
+/// What a text may be damaged with.
+std::vector<std::string> words()
+{
+    std::istringstream all(
+        "nan -inf 1e308 -1e-308 1e400 0 -0.0 9223372036854775807 1_0 0x7f \"\" \"5mm\" \"world\" [] {} [[]] true "
+        "[[1,0,0],[0,1,0]] 1979-05-27 [body.end] [[joint]] [[load]] [end] given=\"state\" type=\"universal\" "
+        "family=\"mixed\" basis=\"nurbs\" window=\"all\" shape={point=true} \\u202e \xc2\x85 \xe2\x80\xae "
+        "\xc3\xa4 \xff \x01 \"\"\" ''' . = [ ] { } , \" #");
+    std::vector<std::string> odd{"\r\n", "\t", "\n"};
+    for (std::string word; all >> word;) odd.push_back(word);
+    return odd;
+}
+
+/// Begin and length of a word, a line or a character of a text.
+struct Piece {
+    std::size_t begin, length;
+};
+
+class Mutation {
+public:
+    Mutation(const std::vector<std::string>& texts, unsigned seed) : texts_(texts), random_(seed) {}
+
+    std::string text()
+    {
+        std::string text = any(texts_);
+        for (std::size_t n = 1 + below(6); n > 0 && !text.empty(); --n) change(text);
+        return text;
+    }
+
+private:
+    std::size_t below(std::size_t n) { return std::uniform_int_distribution<std::size_t>(0, n - 1)(random_); }
+    template <class Values>
+    auto any(const Values& values) -> decltype(values[0])
+    {
+        return values[below(std::size(values))];
+    }
+
+    Piece piece(const std::string& text, const char* separators)
+    {
+        const std::size_t at = below(text.size());
+        const std::size_t before = text.find_last_of(separators, at);
+        const std::size_t begin = before == std::string::npos ? 0 : std::min(before + 1, at);
+        return {begin, std::min(text.find_first_of(separators, at), text.size()) - begin};
+    }
+
+    void change(std::string& text)
+    {
+        static const std::vector<std::string> odd = words();
+        const Piece word = piece(text, " \n,=[]{}\""), line = piece(text, "\n");
+        const std::string& other = any(texts_);
+        switch (below(9)) {
+        case 0:
+            text.erase(below(text.size()), below(6));
+            break;
+        case 1:
+            text.insert(below(text.size()), any(odd));
+            break;
+        case 2:
+            text[below(text.size())] = static_cast<char>(below(256));
+            break;
+        case 3:
+            text.resize(below(text.size() + 1));
+            break;
+        case 4:
+            text.replace(word.begin, word.length, any(odd));
+            break;
+        case 5:
+            text.erase(line.begin, line.length);
+            break;
+        case 6:
+            text.insert(line.begin, text.substr(line.begin, line.length + 1));
+            break;
+        case 7: {
+            const Piece from = piece(other, "\n");
+            text.insert(line.begin, other.substr(from.begin, from.length) + "\n");
+            break;
+        }
+        default: {
+            const Piece from = piece(other, " \n,=[]{}\"");
+            text.replace(word.begin, word.length, other.substr(from.begin, from.length));
+        }
+        }
+    }
+
+    const std::vector<std::string>& texts_;
+    std::mt19937 random_;
+};
+
+/// LIVENS_MUTATIONS asks for another number of them.
+TEST(Mutations, EachEndsInFindingsOrAScenario)
+{
+    const char* wanted = std::getenv("LIVENS_MUTATIONS");
+    const unsigned n = wanted != nullptr ? static_cast<unsigned>(std::atol(wanted)) : 20'000;
+    const std::vector<std::string> texts = examples();
+    ASSERT_GT(texts.size(), 10u);
+    unsigned n_valid = 0;
+    for (unsigned seed = 0; seed < n; ++seed) {
+        const std::string text = Mutation(texts, seed).text();
+        ASSERT_TRUE(test::is_answered(text)) << "seed " << seed << ":\n" << text;
+        n_valid += parse_scenario(text, "").scenario.has_value() ? 1 : 0;
+    }
+    EXPECT_GT(n_valid, n / 20) << "hardly any text gets beyond the parser";
+    EXPECT_LT(n_valid, n / 2) << "hardly any text is damaged";
+}
+
+}   // namespace
+
+}   // namespace livens
