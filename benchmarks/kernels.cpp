@@ -79,7 +79,8 @@ std::vector<Kernel> counted_kernels()
 Solution run(const Kernel& kernel)
 {
     SolveOptions options;
-    options.judge = false;   // what is counted is the solution
+    options.judge = options.divide = false;   // what is counted is the solution
+    options.tolerance = 1e-12;
     return solve(kernel.model, {kernel.model.start()}, kernel.mesh, kernel.method, options);
 }
 

@@ -74,6 +74,7 @@ private:
 struct Solved {
     Run run;
     double solve_seconds = 0;
+    double estimate_seconds = 0;
     int signal = 0;   ///< that cancelled the solution
 };
 
@@ -86,7 +87,7 @@ Solved solve_scenario(const Scenario& scenario, const Common& common)
     {
         ProgressLine line(error_is_terminal() && !common.quiet);
         SolveOptions options = scenario.options;
-        options.judge = false;   // not part of what is timed
+        options.judge = false;   // not part of what is timed, nor is the estimate
         options.progress = [&line](const Progress& progress) {
             line.show(progress);
             return InterruptWatch::signal() == 0;
@@ -94,6 +95,9 @@ Solved solve_scenario(const Scenario& scenario, const Common& common)
         const Clock::time_point begin = Clock::now();
         solution = solve(scenario.model, {scenario.conditions}, scenario.mesh, scenario.method, options);
         solved.solve_seconds = seconds_since(begin);
+        const Clock::time_point second = Clock::now();
+        estimate(scenario.model, {scenario.conditions}, scenario.method, options, solution);
+        solved.estimate_seconds = seconds_since(second);
     }
     say_detail(fmt::format("solved in {:.3g} s", solved.solve_seconds));
 
@@ -134,6 +138,7 @@ std::string json_of(const Solved& solved, const Places& p, const std::vector<Dia
     json.member("exit_code", exit_code_of(solved));
     json.member("message", report.message).member("title", run.title).member("method", run.method);
     json.member("blocks", report.iterations.size()).member("solve_seconds", solved.solve_seconds);
+    json.member("estimate_seconds", solved.estimate_seconds);
     write_figures(json, run);
     json.member("start", run.motion.start()).member("end", run.motion.end());
     json.member("output", p.output.string());

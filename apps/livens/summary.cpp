@@ -61,8 +61,12 @@ Headline headline_of(const Run& run, double end)
     const char* const holds = s.max_weak_violation > 0              ? " in the mean"
                               : s.max_constraint_violation <= 1e-10 ? " to rounding"
                                                                     : "";
+    if (std::isfinite(s.estimated_error))
+        return {Ink::good, "Converged",
+                fmt::format("good to {:.0f} digits at {:.6g} s, constraints hold{}",
+                            std::floor(s.estimated_digits), end, holds)};
     return {Ink::good, "Converged",
-            fmt::format("constraints hold{} and the balances are kept {}", holds,
+            fmt::format("constraints hold{} and the balances are kept {}; the error is not known", holds,
                         grade(std::max(s.energy_drift, s.angular_momentum_drift)))};
 }
 
@@ -110,6 +114,11 @@ void add_figures(Summary& summary, const Run& run, bool verbose)
     const SolveReport& report = run.report;
     const bool is_weak = s.max_weak_violation > 0;
     if (run.report.n_elements == 0) return;   // there is nothing to measure
+    if (std::isfinite(s.estimated_error))
+        summary.figure(
+            "estimated error",
+            fmt::format("{} at most (of the model's length, or rad), at {:.6g} s; by a second solution",
+                        number(s.estimated_error), s.estimated_error_time));
     summary.figure(
         "constraints",
         fmt::format("violated by {} at most{}, their rates by {} 1/s", number(s.max_constraint_violation),

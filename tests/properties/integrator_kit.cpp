@@ -428,7 +428,7 @@ IntegratorCase integrator_case(const Method& method, const std::string& more)
         SolveOptions options;
         options.tolerance = std::holds_alternative<Mixed>(method) ? 1e-12 : 1e-14;
         options.initial = StartPolicy::project;   // directors that are rigid only weakly are no start
-        options.judge = false;                    // long elements and short motions are what is asked about
+        options.judge = options.divide = false;                    // long elements and short motions are what is asked about
         Method at = method;
         if (auto* mixed = std::get_if<Mixed>(&at); mixed && mixed->basis == Mixed::Basis::nurbs)
             mixed->weights.assign(static_cast<std::size_t>(mesh.n_elements() + mixed->degree), 0.7);

@@ -21,9 +21,8 @@ constexpr double acceptable_weak_violation = 1e-3;
 constexpr double acceptable_nodal_violation = 0.05;
 constexpr double acceptable_zigzag = 0.5;
 constexpr double acceptable_drift = 0.05;
-// Of 480 wrong runs of lobatto over 16 problems every one was beyond, of 1518 good ones none.
-constexpr double acceptable_jump = 0.3;
 constexpr double acceptable_distance = 0.05;
+constexpr double acceptable_error = 1e-2;
 constexpr double doubtful_pivot = 1e-6;
 
 /// Reasons, gathered. nan breaks every bound.
@@ -54,9 +53,18 @@ public:
                            (has_blocks ? "smaller blocks or more elements" : "more elements") +
                            " may help");
     }
+    void error(const ErrorEstimate& estimate, const Model& model)
+    {
+        if (estimate.largest <= acceptable_error) return;
+        reasons_.push_back(
+            "its estimated error is " + to_text(estimate.largest, 3) +
+            " (lengths of the model, or rad), of body '" + model.body_name(estimate.body) + "' at " +
+            to_text(estimate.time, 6) +
+            " s, by a second solution of higher order; more elements or a higher degree may help");
+    }
     void jump(double value, double t)
     {
-        if (value <= acceptable_jump) return;
+        if (value <= acceptable_velocity_jump) return;
         reasons_.push_back(
             "the velocity from the momentum leaves the polynomial of the element that ends at " +
             to_text(t, 6) + " s (jump " + to_text(value, 3) +
@@ -103,7 +111,8 @@ void measure(Verdict& v, const Model& model, const Motion& motion, bool holds_we
 
 }   // namespace
 
-Verdict judge(const Model& model, const Motion& motion, const SolveReport& report)
+Verdict judge(const Model& model, const Motion& motion, const SolveReport& report,
+              const ErrorEstimate& estimate)
 {
     Verdict v;
     if (motion.n_elements() == 0) return v;   // nothing was solved, so there is nothing to judge
@@ -113,8 +122,17 @@ Verdict judge(const Model& model, const Motion& motion, const SolveReport& repor
         v.remarks.push_back("the constraints came close to losing rank (smallest pivot " +
                             to_text(report.smallest_pivot, 3) +
                             "): the mechanism passes near a singular position");
+    if (!estimate.empty()) {
+        v.estimated_error = estimate.largest;
+        v.estimated_digits = estimate.digits(motion.n_elements());
+        v.estimated_error_time = estimate.time;
+    }
     if (!report.converged()) return v;
     Reasons reasons(v.reasons);
+    if (!estimate.empty()) reasons.error(estimate, model);
+    if (!report.second_failed.empty())
+        v.reasons.push_back("nothing tells the error, since the second solution failed: " +
+                            report.second_failed);
     const bool has_blocks = report.iterations.size() < static_cast<std::size_t>(motion.n_elements());
     reasons.distance(report.guess_distance, report.guess_distance_time);
     reasons.violation(v.max_constraint_violation,

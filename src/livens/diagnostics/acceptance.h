@@ -6,9 +6,14 @@
 #include <vector>
 
 #include "livens/diagnostics/diagnostics.h"
+#include "livens/diagnostics/estimate.h"
 #include "livens/solvers/report.h"
 
 namespace livens {
+
+/// Beyond this velocity jump an element has not seen the motion. Of 480 wrong runs of lobatto over 16
+/// problems every one was beyond, of 1518 good ones none.
+inline constexpr double acceptable_velocity_jump = 0.3;
 
 /// What was measured of a motion, and what speaks against it. Figures are nan where there is no motion, and
 /// in a verdict that nobody asked for.
@@ -26,6 +31,9 @@ struct Verdict {
     double zigzag_time = unknown;        ///< of the worst of both, s
     double velocity_jump = 0;            ///< see VelocityJump; 0 where constraints do not hold at nodes
     double velocity_jump_time = unknown; ///< s
+    double estimated_error = unknown;    ///< largest of ErrorEstimate, if there is one
+    double estimated_digits = unknown;   ///< its negative decadic logarithm, 0 to 16
+    double estimated_error_time = unknown;   ///< where it is largest, s
     std::vector<std::string> reasons;    ///< why the motion is suspect, a line each; empty: it is not
     std::vector<std::string> remarks;    ///< what is worth a look and refuses nothing
     Balance balance;
@@ -40,8 +48,9 @@ struct Verdict {
 ///   a velocity jump > 0.3, where constraints hold at nodes: the polynomial of an element does not see its
 ///   own momentum, because the element is too long or a spurious root; it is farther than 0.05 of the model's
 ///   length from the march it was guessed by, if it was; the relative drift of energy, linear or angular
-///   momentum > 0.05;
+///   momentum > 0.05; an estimated error > 1e-2, or a second solution that failed;
 /// or if one of these figures is not a number.
-Verdict judge(const Model& model, const Motion& motion, const SolveReport& report);
+Verdict judge(const Model& model, const Motion& motion, const SolveReport& report,
+              const ErrorEstimate& estimate = {});
 
 }   // namespace livens

@@ -18,7 +18,7 @@ namespace livens {
 class JsonWriter;
 
 inline constexpr int format_major = 2;   ///< an unknown one is refused
-inline constexpr int format_minor = 0;   ///< additions only
+inline constexpr int format_minor = 1;   ///< additions only
 
 /// A run as it stands in the file: everything but the model, which is made again from the scenario text.
 struct Run {

@@ -28,11 +28,14 @@ struct SolveReport {
     long factorisations = 0;      ///< of the tangent of a window
     long guess_factorisations = 0;   ///< of the smaller tangents behind first guesses
     int rescued = 0;                 ///< windows that converged only from another guess than the first
+    int divided = 0;                 ///< elements that were too long and were divided into two
+    double divided_at = 0;           ///< near end of the first of them, s
     double residual_norm = 0;        ///< largest scaled residual at acceptance
     double smallest_pivot = 1;       ///< of the scaled constraint Jacobian; below 1e-6 deserves a look
     double failed_at = 0;            ///< near end of the failed window, s; only if not converged
     std::vector<int> iterations;     ///< per window; stepping: per element
     std::vector<std::string> notes;   ///< redundant rows, projections, ...
+    std::string second_failed;        ///< why there is no second solution, which would tell the error
     double condition_1 = 0;           ///< of the whole matrix in the 1-norm, if asked for
     double condition_2 = 0;           ///< and in the 2-norm
     double scaled_condition = 0;      ///< in the 1-norm, as it is factorised: rows and columns scaled

@@ -41,8 +41,8 @@ std::vector<double> instants(const TimeMesh& mesh, const Ends& ends, int first, 
 }
 
 /// Where windows start from, one attempt after the other. From a state: a march of lobatto(2) over the
-/// elements, for single elements of lobatto, which have their own first guess, over more and more pieces of
-/// them.
+/// elements, or more and more pieces of them. Single elements of lobatto have their own guess; where that
+/// leads nowhere they are too long, and are divided.
 class Proposals {
 public:
     Proposals(const Model& model, const Problem& problem, const TimeMesh& mesh, const Ends& ends,
@@ -62,13 +62,10 @@ public:
         const auto* mixed = std::get_if<Mixed>(&method_);
         if (mixed != nullptr && (attempt > 0 || mixed->first_guess == Mixed::FirstGuess::steady))
             return {attempt > 0 ? Guess{} : guess_steady(state), false};
-        if (attempt > 2) return {};
-        const int p = mixed != nullptr ? 1 : std::get<Lobatto>(method_).degree;
-        const bool is_element = mixed == nullptr && last - first == 1;
-        const int pieces = is_element ? 4 * p << (2 * attempt) : 1 << (2 * attempt);
+        if (attempt > 2 || (mixed == nullptr && last - first == 1)) return {};
         try {
-            return {guess_from_state(model_, state, instants(mesh_, ends_, first, last, pieces)).motion,
-                    !is_element};
+            const std::vector<double> times = instants(mesh_, ends_, first, last, 1 << (2 * attempt));
+            return {guess_from_state(model_, state, times).motion, true};
         } catch (const InputError&) {
             return {guess_steady(state),
                     false};   // what was handed on is too far from a rigid state to march on
@@ -100,6 +97,8 @@ WindowOptions window_options(const Model& model, const Ends& ends, const Method&
         w.advice = "shorter elements, or fewer of them at once";
     } else {
         w.length = std::get<Lobatto>(method).window;
+        w.may_divide = options.divide && ends.has_state();
+        if (w.may_divide) w.trust = {acceptable_velocity_jump, true};
     }
     if (!ends.has_state()) {
         w.length = 0;
@@ -149,9 +148,10 @@ void refuse_undetermined(Window& window, Patience& patience, SolveReport& report
         "duration, or the state at one end";
 }
 
-Solution solve_by_windows(const Model& model, const Problem& problem, const TimeMesh& mesh,
+Solution solve_by_windows(const Model& model, const Problem& problem, const TimeMesh& given,
                           const Method& method, const SolveOptions& options)
 {
+    TimeMesh mesh = given;
     const bool is_mixed = std::holds_alternative<Mixed>(method);
     const Ends ends = close_ends(model, problem.conditions, mesh.start(), mesh.end(), options.initial);
     const Tables tables(model, ends.independent, is_mixed);
@@ -335,13 +335,15 @@ Solution solve(const Model& model, const Problem& problem, const TimeMesh& mesh,
     check_method(model, problem, mesh, method, options);
     Solution solution = is_elements(method) ? solve_by_windows(model, problem, mesh, method, options)
                                             : solve_by_steps(model, problem, mesh, method, options);
-    if (options.judge) judge(model, solution);
+    if (!options.judge) return solution;
+    estimate(model, problem, method, options, solution);
+    judge(model, solution);
     return solution;
 }
 
 void judge(const Model& model, Solution& solution)
 {
-    solution.verdict = judge(model, solution.motion, solution.report);
+    solution.verdict = judge(model, solution.motion, solution.report, solution.estimate);
     if (solution.verdict.reasons.empty()) return;
     solution.report.status = SolveStatus::suspect;
     solution.report.message = solution.verdict.reasons.front();

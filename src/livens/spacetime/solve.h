@@ -2,6 +2,7 @@
 #pragma once
 
 #include "livens/diagnostics/acceptance.h"
+#include "livens/diagnostics/estimate.h"
 #include "livens/multibody/closing.h"
 #include "livens/multibody/motion.h"
 #include "livens/solvers/report.h"
@@ -14,7 +15,7 @@ namespace livens {
 struct SolveOptions {
     /// Newton stops when the estimated error of the scaled increment is below this (relative to the motion
     /// inside the element, at least to 1e-6 of the model's length), or at the rounding level of the residual.
-    double tolerance = 1e-12;
+    double tolerance = 1e-14;
     int max_iterations = 30;
     StartPolicy initial = StartPolicy::check;
     ProgressCallback progress;
@@ -22,13 +23,22 @@ struct SolveOptions {
     /// Condition numbers of the whole matrix, in the report: of the last block (mixed), of all elements
     /// together, reduced to the free motions (lobatto).
     bool condition = false;
-    bool judge = true;   ///< false: the caller asks judge() himself, or does without
+    /// Elements of lobatto that fail, or meet a root of their equations that is none, are divided into two
+    /// (from a state).
+    bool divide = true;
+    bool judge = true;   ///< false: the caller asks estimate() and judge() himself, or does without
+    /// What tells the error of the motion, where it is judged. The elements mixed have nothing yet.
+    enum class Estimate {
+        second,   ///< a second solution, of degree + 1 or with half the steps, on the same mesh
+        none
+    } estimate = Estimate::second;
 };
 
 struct Solution {
     Motion motion;        ///< up to the last good element end
     SolveReport report;   ///< `suspect` if the verdict has reasons; the first of them is its message
     Verdict verdict{};
+    ErrorEstimate estimate{};
 };
 
 /// Throws InputError for wrong input (degree out of range, a start that does not fit, see close_start(),
@@ -37,7 +47,13 @@ struct Solution {
 Solution solve(const Model& model, const Problem& problem, const TimeMesh& mesh, const Method& method,
                const SolveOptions& options = {});
 
-/// What solve() does last: measures the motion and lets the verdict decide between converged and suspect.
+/// What solve() does before it judges, if asked to and if the iteration converged: a second solution, and how
+/// far it is from the first. Where it fails the report says why.
+void estimate(const Model& model, const Problem& problem, const Method& method, const SolveOptions& options,
+              Solution& solution);
+
+/// What solve() does last: measures the motion and lets the verdict decide between converged and suspect. An
+/// estimate that the solution has counts.
 void judge(const Model& model, Solution& solution);
 
 /// Throws what solve() would throw for this input, without solving.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <string>
 
 #include "livens/multibody/model.h"
@@ -19,6 +20,19 @@ struct Place {
     std::string name;       ///< "joint 'elbow' (row 'x'), body 'upper'"; empty: nowhere in particular
     double t = 0;           ///< s
     std::string bad_load;   ///< a load that is not finite, by name
+};
+
+/// Beyond these an element has not seen the motion, or has met a root of its equations that is none
+/// (docs/theory.md, "Spurious elements").
+struct Trust {
+    double velocity_jump = std::numeric_limits<double>::infinity();   ///< see velocity_jump()
+    bool turns = false;   ///< refuse also a body that turns by more than 90 degrees from node to node
+};
+
+/// How many elements of a window were closed, and whether the next one was refused by Trust.
+struct Closed {
+    int n_elements = 0;
+    bool is_refused = false;
 };
 
 /// A family of elements on a mesh: it states the equations of any stretch of elements, a window, and keeps
@@ -45,9 +59,12 @@ public:
     virtual bool start_from(const Guess& guess) = 0;
     /// The state known at the near end of the open window; false if it is not all known.
     virtual bool near_state(State& state) const = 0;
-    /// Takes the solution at hand into the motion, and its far end as the near end of the next window. False:
-    /// it is no state to go on from; the report says why.
-    virtual bool close(SolveReport& report) = 0;
+    /// Takes the solution at hand into the motion, and its far end as the near end of the next window:
+    /// element by element from the near end, up to one that is not to be believed (a velocity jump or a turn
+    /// between nodes beyond `trust`), or whose end is no state to go on from (the report says why).
+    virtual Closed close(const Trust& trust, SolveReport& report) = 0;
+    /// The mesh has one element more: `element`, which is not closed, was divided in two.
+    virtual void divided(int) {}
     /// X of all bodies at an end of an element of the open window.
     virtual std::vector<Matrix34> positions(int element_end) const = 0;
     /// Where the residual is worst, or the load that is not finite.

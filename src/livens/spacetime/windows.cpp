@@ -11,14 +11,17 @@ namespace livens {
 namespace {
 
 /// Below, a tolerance that rounding did not let be met deserves a word; the default is no promise of digits.
-constexpr double finest_tolerance = 1e-12;
+constexpr double finest_tolerance = 1e-14;
 
 /// Of the model's length: beyond, a motion and its guess are two motions.
 constexpr double doubtful_distance = 0.05;
 
+/// Of the duration: what a divided element is not divided below.
+constexpr double shortest_element = 1e-9;
+
 class March {
 public:
-    March(Window& window, const TimeMesh& mesh, const WindowOptions& options, SolveReport& report)
+    March(Window& window, TimeMesh& mesh, const WindowOptions& options, SolveReport& report)
         : window_(window), mesh_(mesh), options_(options), report_(report)
     {
         newton_options_.tolerance = options.tolerance;
@@ -34,9 +37,11 @@ public:
         const std::vector<int> division = divide(mesh_.n_elements(), options_.length, options_.shortest);
         const int n = static_cast<int>(division.size()) - 1;
         time_ = options_.direction > 0 ? mesh_.start() : mesh_.end();
+        const int given = mesh_.n_elements();
         for (int i = 0; i < n; ++i) {
             const int at = options_.direction > 0 ? i : n - 1 - i;
-            if (!solve(division[at], division[at + 1])) break;
+            const int more = options_.direction > 0 ? mesh_.n_elements() - given : 0;
+            if (!solve(division[at] + more, division[at + 1] + more)) break;
         }
         window_.describe(report_);
         if (rounded_ > 0 && options_.tolerance < finest_tolerance)
@@ -47,6 +52,11 @@ public:
         if (splits_ > 0)
             report_.notes.push_back(count(splits_, "window") +
                                     " failed as a whole and were solved in halves");
+        if (report_.divided > 0)
+            report_.notes.push_back(
+                count(report_.divided, "element") +
+                " were too long for the motion and were divided into two, the first near t = " +
+                to_text(report_.divided_at, 6) + " s");
         if (report_.rescued > 0)
             report_.notes.push_back(
                 count(report_.rescued, "window") + " of " + std::to_string(report_.iterations.size()) +
@@ -60,13 +70,40 @@ private:
         if (!window_.open(first, last, report_)) return set_failed(first, last);
         NewtonReport outcome = attempt(first, last);
         if (outcome.status == SolveStatus::converged) return accept(first, last, outcome);
+        if (may_divide(first, last, outcome)) return divide_element(first);
         const int middle = (first + last) / 2;
         const bool can_split = options_.may_split && outcome.status != SolveStatus::cancelled &&
                                middle - first >= options_.shortest && last - middle >= options_.shortest;
         if (!can_split) return explain(first, last, outcome);
         ++splits_;
-        return options_.direction > 0 ? solve(first, middle) && solve(middle, last)
-                                      : solve(middle, last) && solve(first, middle);
+        return solve_parts(first, middle, last);
+    }
+
+    /// Two stretches in their order. Elements that are divided in the first one move those behind it.
+    bool solve_parts(int first, int middle, int last)
+    {
+        if (options_.direction < 0) return solve(middle, last) && solve(first, middle);
+        const int before = mesh_.n_elements();
+        if (!solve(first, middle)) return false;
+        const int more = mesh_.n_elements() - before;
+        return solve(middle + more, last + more);
+    }
+
+    bool may_divide(int first, int last, const NewtonReport& outcome) const
+    {
+        const bool is_bad_load =
+            outcome.status == SolveStatus::not_finite && !window_.worst().bad_load.empty();
+        return options_.may_divide && last - first == 1 && outcome.status != SolveStatus::cancelled &&
+               !is_bad_load && mesh_.length(first) > shortest_element * (mesh_.end() - mesh_.start());
+    }
+
+    bool divide_element(int element)
+    {
+        const double start = mesh_.ends[element], end = mesh_.ends[element + 1];
+        if (report_.divided++ == 0) report_.divided_at = options_.direction > 0 ? start : end;
+        mesh_.ends.insert(mesh_.ends.begin() + element + 1, start + (end - start) / 2);
+        window_.divided(element);
+        return solve_parts(element, element + 1, element + 2);
     }
 
     /// Newton's iteration from one guess after the other; all their iterations count. Where none leads to a
@@ -105,15 +142,20 @@ private:
 
     bool accept(int first, int last, const NewtonReport& outcome)
     {
-        report_.residual_norm = std::max(report_.residual_norm, outcome.residual);
         if (is_march_) compare(first, last);
-        if (!window_.close(report_)) return set_failed(first, last);
-        report_.iterations.push_back(outcome.iterations);
-        if (is_rescued_) ++report_.rescued;
-        if (outcome.ended_by_rounding) ++rounded_;
-        report_.n_elements += last - first;
-        done_ += last - first;
-        time_ = mesh_.ends[options_.direction > 0 ? last : first];
+        const Closed closed = window_.close(options_.trust, report_);
+        if (closed.n_elements > 0) {
+            report_.iterations.push_back(outcome.iterations);
+            report_.residual_norm = std::max(report_.residual_norm, outcome.residual);
+            if (is_rescued_) ++report_.rescued;
+            if (outcome.ended_by_rounding) ++rounded_;
+        }
+        (options_.direction > 0 ? first : last) += options_.direction * closed.n_elements;
+        report_.n_elements += closed.n_elements;
+        done_ += closed.n_elements;
+        time_ = mesh_.ends[options_.direction > 0 ? first : last];
+        if (closed.is_refused) return refuse(first, last, outcome);
+        if (first < last) return set_failed(first, last);
         const bool goes_on = !options_.progress || options_.progress({done_, mesh_.n_elements(), time_,
                                                                       outcome.iterations, outcome.residual});
         if (goes_on || done_ == mesh_.n_elements()) return true;
@@ -121,6 +163,24 @@ private:
         report_.failed_at = time_;
         report_.message =
             "stopped at t = " + to_text(time_, 6) + " s as asked; the motion up to there is complete";
+        return false;
+    }
+
+    /// The near one of the elements first..last - 1 has not seen the motion: it is solved alone, or divided.
+    bool refuse(int first, int last, NewtonReport outcome)
+    {
+        if (last - first > 1)
+            return options_.direction > 0 ? solve_parts(first, first + 1, last)
+                                          : solve_parts(first, last - 1, last);
+        outcome.status = SolveStatus::not_converged;
+        if (may_divide(first, last, outcome)) return divide_element(first);
+        set_failed(first, last);
+        report_.status = SolveStatus::not_converged;
+        report_.message =
+            name(first, last) + " (t = " + to_text(mesh_.ends[first], 6) + " to " +
+            to_text(mesh_.ends[last], 6) +
+            " s) meets its equations, but leaves the velocity that its momentum has, or turns a "
+            "body by more than 90 degrees between nodes; try: more and shorter elements";
         return false;
     }
 
@@ -195,7 +255,7 @@ private:
     }
 
     Window& window_;
-    const TimeMesh& mesh_;
+    TimeMesh& mesh_;
     const WindowOptions& options_;
     SolveReport& report_;
     Newton newton_;
@@ -221,7 +281,7 @@ std::vector<int> divide(int n_elements, int length, int shortest)
     return ends;
 }
 
-void solve_windows(Window& window, const TimeMesh& mesh, const WindowOptions& options, SolveReport& report)
+void solve_windows(Window& window, TimeMesh& mesh, const WindowOptions& options, SolveReport& report)
 {
     March(window, mesh, options, report).run();
 }

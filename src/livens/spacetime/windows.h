@@ -18,6 +18,8 @@ struct WindowOptions {
     double tolerance = 1e-12;   ///< see NewtonOptions
     int max_iterations = 30;
     bool may_split = true;        ///< a window that fails is solved in two halves
+    bool may_divide = false;      ///< an element that fails or is refused is divided into two
+    Trust trust{};
     double length_of_model = 1;   ///< m, what distances are relative to
     std::string advice{};         ///< what may help a window that failed; empty: what helps a march
     /// Guesses for the open window of elements first..last - 1, one attempt after the other from 0, where the
@@ -32,8 +34,8 @@ struct WindowOptions {
 };
 
 /// Solves all windows of the mesh, or as many as go. What happened is in the report, what was solved in the
-/// window's motion.
-void solve_windows(Window& window, const TimeMesh& mesh, const WindowOptions& options, SolveReport& report);
+/// window's motion. The mesh, which the window reads too, gets an end more for every element that is divided.
+void solve_windows(Window& window, TimeMesh& mesh, const WindowOptions& options, SolveReport& report);
 
 /// Element ends where windows of the given length begin and end; the last may be longer or shorter, but never
 /// shorter than `shortest`.

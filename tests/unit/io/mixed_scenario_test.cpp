@@ -134,7 +134,8 @@ TEST(MixedScenario, ResolvedStatesEveryChoice)
                             R"("gauss_points": "exact", )"
                             R"("window": "all", "interfaces": "carry", "first_guess": "march", )"
                             R"("linear_solver": "eigen", )"
-                            R"("tolerance": 1e-12, "max_iterations": 30, "condition": false})"),
+                            R"("tolerance": 1e-14, "max_iterations": 30, )"
+                            R"("estimate": "second", "condition": false})"),
               std::string::npos)
         << resolved;
     EXPECT_NE(good(splines("[0, 0, 0, 0.5, 1, 1, 1]")).resolved.find(R"("knots": [0, 0, 0, 0.5, 1, 1, 1])"),

@@ -279,7 +279,7 @@ TEST(Scenario, ResolvedStatesAllOptions)
         R"("time": {"start": 0, "end": 1, "elements": 10, )"
         R"("output": "element ends", "breaks": "from_loads"}, )"
         R"("method": {"family": "lobatto", "degree": 4, "window": 1, )"
-        R"("tolerance": 1e-12, "max_iterations": 30, "condition": false}, )"
+        R"("tolerance": 1e-14, "max_iterations": 30, "estimate": "second", "condition": false}, )"
         R"("start": {"given": "state", "initial": "check"}, "end": {"given": "nothing"}})");
     const Scenario midpoint = good(replaced(valid_scenario, "degree = 4", "family = \"midpoint\""));
     EXPECT_TRUE(std::holds_alternative<Midpoint>(midpoint.method));

@@ -75,22 +75,23 @@ TEST(Verdict, OfRestOnAStiffSpringHasNoReason)
     }
 }
 
-TEST(Verdict, OfLostEnergyIsSuspectAndSaysSoFirst)
+TEST(Verdict, OfLostEnergyIsSuspectAndSaysWhatIsLostFirst)
 {
     const Model model = pendulum(1);
     const Solution s = solved(model, Endpoint{}, 2, 20);
     EXPECT_EQ(s.report.status, SolveStatus::suspect);
     EXPECT_FALSE(s.report.converged());
     EXPECT_TRUE(s.report.reached_end());
-    EXPECT_NE(s.report.message.find("energy"), std::string::npos) << s.report.message;
+    EXPECT_NE(s.report.message.find("estimated error"), std::string::npos) << s.report.message;
     EXPECT_EQ(s.report.message, s.verdict.reasons.front());
+    EXPECT_TRUE(speaks_of(s.verdict.reasons, "energy"));
 }
 
 TEST(Verdict, IsNotAskedForWhereTheCallerDoesNotWantIt)
 {
     const Model model = pendulum(1);
     SolveOptions options;
-    options.judge = false;
+    options.judge = options.divide = false;
     Solution s = solve(model, {model.start()}, make_time_mesh(0, 2, 20), Endpoint{}, options);
     EXPECT_EQ(s.report.status, SolveStatus::converged);
     EXPECT_TRUE(std::isnan(s.verdict.energy_drift));
@@ -112,7 +113,13 @@ TEST(Verdict, OfElementsTooLongForTheMotionIsSuspect)
     EXPECT_TRUE(speaks_of(s.verdict.reasons, "velocities alternate from node to node near"));
     EXPECT_FALSE(speaks_of(s.verdict.reasons, "blocks")) << "it has none";
     EXPECT_FALSE(speaks_of(s.verdict.reasons, "natural"));
-    const Solution fine = solved(model, Midpoint{}, 20, 400);
+    // 0.75 rad a step keep all of this too, and have lost most of a turn behind the fiftieth
+    const Solution better = solved(model, Midpoint{}, 20, 400);
+    EXPECT_EQ(better.report.status, SolveStatus::suspect);
+    EXPECT_FALSE(speaks_of(better.verdict.reasons, "alternate"));
+    EXPECT_TRUE(speaks_of(better.verdict.reasons, "estimated error is"));
+    EXPECT_NEAR(better.verdict.estimated_error, 4.2, 0.5);   // 20 w^3 h^2 / 12 = 14 rad, up to whole turns
+    const Solution fine = solved(model, Midpoint{}, 20, 20000);
     EXPECT_TRUE(fine.report.converged()) << fine.report.message;
 }
 

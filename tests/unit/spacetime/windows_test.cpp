@@ -38,21 +38,34 @@ public:
         return true;
     }
     bool near_state(State&) const override { return true; }
-    bool close(SolveReport&) override
+    Closed close(const Trust&, SolveReport&) override
     {
-        if (!can_close) return false;
+        if (!can_close) return {};
+        const auto [first, last] = opened.back();
+        if (first <= refused && refused < last && last - first > 1) {
+            if (refused > first) closed.push_back({first, refused});
+            const int good = refused - first;
+            if (refused == last - 1) refused = -1;   // it is divided at once, and its halves are good
+            return {good, true};
+        }
+        if (first == refused) {
+            refused = -1;
+            return {0, true};
+        }
         closed.push_back(opened.back());
-        return true;
+        return {last - first, false};
     }
+    void divided(int element) override { divisions.push_back(element); }
     std::vector<Matrix34> positions(int) const override { return {Matrix34{1, 0, 0}}; }
     Place worst() const override { return {"joint 'elbow' (row 'x')", 0.5, ""}; }
     void describe(SolveReport& report) const override { report.unknowns = 1; }
     void measure_condition(SolveReport&, const std::function<bool()>&) override {}
     Motion take_motion() override { return {}; }
 
-    int longest = 100, broken = -1, refuses = -1;
+    int longest = 100, broken = -1, refuses = -1, refused = -1;
     bool has_own_guess = true, can_close = true;
     std::vector<std::pair<int, int>> opened, closed;
+    std::vector<int> divisions;
 
 private:
     struct Problem final : NewtonProblem {
@@ -79,7 +92,7 @@ using Pairs = std::vector<std::pair<int, int>>;
 SolveReport run(Counting& window, WindowOptions options, int n = 6)
 {
     SolveReport report;
-    const TimeMesh mesh = make_time_mesh(0, n, n);
+    TimeMesh mesh = make_time_mesh(0, n, n);
     solve_windows(window, mesh, options, report);
     return report;
 }
@@ -123,6 +136,41 @@ TEST(Windows, AreSplitWhereTheyFailAsAWhole)
     options.may_split = false;
     EXPECT_EQ(run(whole, options).status, SolveStatus::singular);
     EXPECT_TRUE(whole.closed.empty());
+}
+
+TEST(Windows, RefusedElementsAreSolvedAloneAndDivided)
+{
+    for (const int direction : {1, -1}) {
+        Counting window;
+        window.refused = direction > 0 ? 2 : 3;
+        WindowOptions options;
+        options.length = direction > 0 ? 3 : 1;
+        options.direction = direction;
+        options.may_divide = true;
+        const SolveReport report = run(window, options);
+        EXPECT_TRUE(report.converged()) << report.message;
+        EXPECT_EQ(window.divisions, (std::vector<int>{direction > 0 ? 2 : 3}));
+        EXPECT_EQ(report.divided, 1);
+        EXPECT_EQ(report.divided_at, direction > 0 ? 2 : 4);
+        EXPECT_EQ(report.n_elements, 7);
+        if (direction > 0)
+            EXPECT_EQ(window.closed, (Pairs{{0, 2}, {2, 3}, {3, 4}, {4, 7}}));
+        else
+            EXPECT_EQ(window.closed, (Pairs{{5, 6}, {4, 5}, {4, 5}, {3, 4}, {2, 3}, {1, 2}, {0, 1}}));
+    }
+}
+
+TEST(Windows, AnElementThatFailsIsDividedUntilItVanishes)
+{
+    Counting window;
+    window.broken = 0;
+    WindowOptions options;
+    options.may_divide = true;
+    const SolveReport report = run(window, options);
+    EXPECT_FALSE(report.converged());
+    EXPECT_GE(report.divided, 25);
+    EXPECT_LE(report.divided, 40);
+    EXPECT_TRUE(window.closed.empty());
 }
 
 TEST(Windows, NameWhereTheyFailedAndWhatToTry)

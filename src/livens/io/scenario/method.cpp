@@ -159,17 +159,30 @@ std::string gibibytes(double bytes)
 Table method_table()
 {
     return Table{
-        "[method]", "How it is solved.",
+        "[method]",
+        "How it is solved.",
         {Key{"family", types::choice, "", "", "lobatto"},
          Key{"tolerance", types::number,
              "Newton stops when its estimated error is below this fraction of the motion in the element; "
-             "mixed: of the model's length.", "", "1e-12"}.within({0, 0.1, true}),
+             "mixed: of the model's length.",
+             "", "1e-14"}
+             .within({0, 0.1, true}),
          Key{"max_iterations", types::integer, "Of Newton in one element; mixed: in one block.", "", "30"}
              .within({1, 1000}),
+         Key{"estimate",
+             types::choice,
+             "What tells the error of the motion: a second solution (of degree + 1, or with half the steps) "
+             "on "
+             "the same elements, or nothing. The elements mixed have nothing yet.",
+             "",
+             "second",
+             false,
+             {"second", "none"}},
          Key{"condition", types::truth,
              "Whether condition numbers are computed: of the whole matrix of the last block (mixed), of that "
              "of all elements, reduced to the free motions (lobatto). They take tens to hundreds of "
-             "solutions more.", "", "false"}}}
+             "solutions more.",
+             "", "false"}}}
         .with_kinds("family", {kinds().begin(), kinds().end()});
 }
 

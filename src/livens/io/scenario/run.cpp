@@ -327,6 +327,7 @@ std::string resolve(const Builder& builder, const Section& time, const Scenario&
     json.key("method").begin_object();
     write_method(json, scenario.method);
     json.member("tolerance", options.tolerance).member("max_iterations", options.max_iterations);
+    json.member("estimate", options.estimate == SolveOptions::Estimate::second ? "second" : "none");
     json.member("condition", options.condition).end_object();
     json.key("start").begin_object().member("given", word(scenario.conditions.at_start));
     json.member("initial", options.initial == StartPolicy::check ? "check" : "project").end_object();
@@ -364,6 +365,7 @@ void read_run(Builder& builder, Scenario& scenario)
     if (method != nullptr && method->has("max_iterations"))
         scenario.options.max_iterations = method->integer("max_iterations");
     if (method != nullptr) scenario.options.condition = method->truth("condition");
+    if (method != nullptr) scenario.options.estimate = method->pick<SolveOptions::Estimate>("estimate");
     if (start != nullptr && start->text("initial") == "project")
         scenario.options.initial = StartPolicy::project;
     read_boundary(builder, scenario.conditions);

@@ -1,11 +1,12 @@
 #include "livens/spacetime/lobatto/record.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace livens {
 
 Record::Record(const Tables& tables, const TimeMesh& mesh, const LobattoRule& rule)
-    : tables_(tables), mesh_(mesh), degree_(rule.degree), first_(mesh.n_elements() + 1), last_(-1)
+    : tables_(tables), mesh_(mesh), degree_(rule.degree), first_(std::numeric_limits<int>::max()), last_(-1)
 {
     Motion& m = motion_;
     m.n_bodies = tables.n_bodies();
@@ -42,6 +43,24 @@ void Record::reach(int place)
     if (place <= reached_) return;
     reached_ = std::min(2 * place + 8, mesh_.n_elements());
     for_sizes(reached_, [](auto& values, std::size_t size) { values.resize(size); });
+}
+
+void Record::divided(int element)
+{
+    if (last_ <= element) return;   // in a march forwards nothing is behind it
+    Motion& m = motion_;
+    const auto e = static_cast<std::size_t>(element), p = static_cast<std::size_t>(degree_);
+    const auto bodies = static_cast<std::size_t>(m.n_bodies), rows = static_cast<std::size_t>(m.n_rows);
+    const auto insert = [](auto& values, std::size_t at, std::size_t count) {
+        values.insert(values.begin() + static_cast<std::ptrdiff_t>(at), count, {});
+    };
+    insert(m.X.values, (e * p + 1) * 12 * bodies, p * 12 * bodies);
+    insert(m.multipliers.values, e * (p + 1) * rows, (p + 1) * rows);
+    insert(m.velocities, (e + 1) * bodies, bodies);
+    insert(m.momenta, (e + 1) * bodies, bodies);
+    insert(m.accelerations, 2 * (e + 1) * bodies, 2 * bodies);
+    insert(m.end_multipliers, 2 * (e + 1) * rows, 2 * rows);
+    ++first_, ++last_, ++reached_;
 }
 
 void Record::node(int element, int A, const double* X)

@@ -20,6 +20,8 @@ public:
     /// Everything known at an element end; `system` has just made its accelerations. `two_sided`: they
     /// differ.
     void end(int place, const InstantState& state, const InstantSystem& system, bool two_sided);
+    /// Room for an element more beside `element`, which the mesh has divided; ends behind it move on by one.
+    void divided(int element);
     void note_redundant(const std::vector<int>& rows) { redundant_ = rows; }
     const TimeMesh& mesh() const { return mesh_; }
 

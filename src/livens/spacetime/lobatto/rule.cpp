@@ -35,9 +35,9 @@ void balance_columns(LobattoRule& rule)
 
 LobattoRule lobatto_rule(int degree)
 {
-    if (degree < 1 || degree > 16)
-        throw InputError({"degree-out-of-range", "method.degree", "lobatto elements have degree 1 to 16",
-                          std::to_string(degree), "1..16", "", "4 to 8 suit most mechanisms"});
+    if (degree < 1 || degree > 17)
+        throw InputError({"degree-out-of-range", "method.degree", "lobatto elements have degree 1 to 17",
+                          std::to_string(degree), "1..17", "", "4 to 8 suit most mechanisms"});
     const LagrangeBasis basis = lobatto_basis(degree);
     const int n = degree + 1;
     LobattoRule rule{

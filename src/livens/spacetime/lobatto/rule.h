@@ -21,7 +21,7 @@ struct LobattoRule {
     int size() const { return degree + 1; }
 };
 
-/// Throws InputError unless 1 <= degree <= 16.
+/// Throws InputError unless 1 <= degree <= 17; the last is for the estimate of the error of 16.
 LobattoRule lobatto_rule(int degree);
 
 }   // namespace livens

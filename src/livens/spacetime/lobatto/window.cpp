@@ -205,16 +205,19 @@ bool LobattoWindow::find_first_state(SolveReport& report)
     return true;
 }
 
-bool LobattoWindow::close(SolveReport& report)
+Closed LobattoWindow::close(const Trust& trust, SolveReport& report)
 {
     if (stretch_.is_march())
         std::copy_n(system_.balances().impulses(0), tables_.rank, work_.impulse.begin());
     else if (!find_first_state(report))
-        return false;
-    for (int e = 0; e < stretch_.n_elements(); ++e)
-        if (!close_element(e, report)) return false;
+        return {};
+    for (int e = 0; e < stretch_.n_elements(); ++e) {
+        if (!end_element(e, report)) return {e, false};
+        if (!is_believable(e, trust)) return {e, true};
+        close_element(e);
+    }
     front_.is_ready = true;
-    return true;
+    return {stretch_.n_elements(), false};
 }
 
 /// The momentum at the end of an element from the balance of all its rows, which is its last row once the
@@ -249,8 +252,8 @@ void LobattoWindow::sum_momentum(int e)
     }
 }
 
-/// The end state of a solved element; its nodes and multipliers into the motion.
-bool LobattoWindow::close_element(int e, SolveReport& report)
+/// The end state of a solved element.
+bool LobattoWindow::end_element(int e, SolveReport& report)
 {
     const LobattoRule& rule = system_.rule();
     const Nodes& nodes = system_.nodes();
@@ -272,18 +275,62 @@ bool LobattoWindow::close_element(int e, SolveReport& report)
     const double weight = stretch_.h(e) * rule.weights[p];
     instant_.from_momentum(next, work_.momentum.data(), weight, work_.end_lambda.data());
     accelerate(next);
+    return true;
+}
+
+/// The velocity jump h |V - X_h'| at the end of an element, as velocity_jump() has it, and turns from node to
+/// node: |R_B - R_A|^2 = 4 at 90 degrees.
+bool LobattoWindow::is_believable(int e, const Trust& trust) const
+{
+    if (std::isinf(trust.velocity_jump) && !trust.turns) return true;
+    const LobattoRule& rule = system_.rule();
+    const double *D = rule.D.data() + rule.degree * rule.size(), h = stretch_.h(e);
+    bool is_good = true;
+    for (int b = 0; b < tables_.n_bodies(); ++b) {
+        const auto& body = tables_.bodies[b];
+        const int n = body.dofs == 6 ? 12 : 3;
+        double jump[12] = {};
+        for (int i = 0; i < n; ++i) jump[i] = h * instant_.rates()[12 * b + i];
+        for (int B = 1; B <= rule.degree; ++B) {
+            const double *d = system_.nodes().dX(e, B) + 12 * b,
+                         *before = system_.nodes().dX(e, B - 1) + 12 * b;
+            double turn = 0;
+            for (int i = 0; i < n; ++i) jump[i] -= D[B] * d[i];
+            for (int i = 3; i < n; ++i) turn += (d[i] - before[i]) * (d[i] - before[i]);
+            is_good = is_good && !(trust.turns && turn > 4);
+        }
+        double of_center = 0, largest = 0;
+        for (int i = 0; i < 3; ++i) {
+            const double x = jump[i] + body.center[0] * jump[3 + i] + body.center[1] * jump[6 + i] +
+                             body.center[2] * jump[9 + i];
+            of_center += x * x;
+        }
+        for (int a = 3; a < 12; a += 3)
+            largest =
+                std::max(largest, jump[a] * jump[a] + jump[a + 1] * jump[a + 1] + jump[a + 2] * jump[a + 2]);
+        const double limit = trust.velocity_jump * trust.velocity_jump;
+        is_good = is_good && of_center <= limit * tables_.length * tables_.length && largest <= 2 * limit;
+    }
+    return is_good;
+}
+
+/// The nodes and multipliers of a believed element into the motion, its end as the start of the next.
+void LobattoWindow::close_element(int e)
+{
+    const int p = system_.rule().degree, A = (e + 1) * p;
+    const double weight = stretch_.h(e) * system_.rule().weights[p];
+    InstantState &here = front_.here(), &next = front_.next();
     record_element(e);
-    if (!is_last)   // the shared node's other side
+    if (e + 1 < stretch_.n_elements())   // the shared node's other side
         for (int c = 0; c < tables_.rank; ++c)
-            work_.impulse[c] =
-                system_.balances().impulses(A)[c] - weight * work_.end_lambda[nodes.basis(A).rows[c]];
+            work_.impulse[c] = system_.balances().impulses(A)[c] -
+                               weight * work_.end_lambda[system_.nodes().basis(A).rows[c]];
     if (is_jump(next.t))
         next.forget_past();
     else
         next.look_back(here, stretch_.h(e) > 0);
     front_.now = 1 - front_.now;
     record_.end(mesh_end(e + 1), front_.here(), instant_, is_jump(next.t));
-    return true;
 }
 
 void LobattoWindow::record_element(int e)
@@ -329,63 +376,6 @@ std::vector<Matrix34> LobattoWindow::positions(int element_end) const
     for (std::size_t b = 0; b < X.size(); ++b)
         std::copy_n(system_.nodes().X(e * system_.rule().degree) + 12 * b, 12, X[b].a);
     return X;
-}
-
-Place LobattoWindow::worst() const
-{
-    Place place{"", stretch_.times[0], system_.balances().bad_load(stretch_, system_.nodes())};
-    double worst = 0;
-    int row = -1, body = -1;
-    for (int A = 0; A < stretch_.n_nodes(); ++A) {
-        if (!stretch_.is_unknown(A)) continue;
-        for (int c = 0; c < tables_.rank; ++c) {
-            const double v = std::abs(system_.nodes().violations(A)[c]);
-            if (v <= worst) continue;   // nan is worst of all
-            worst = v;
-            row = system_.nodes().basis(A).rows[c];
-            place.t = stretch_.times[stretch_.first_element(A)];
-        }
-    }
-    worst = 0;
-    std::vector<double> q(static_cast<std::size_t>(tables_.n_twists)), wrench(12 * tables_.bodies.size());
-    for (int A = 0; A < stretch_.n_nodes(); ++A) {
-        if (!stretch_.is_active(A)) continue;
-        const Nodes& nodes = system_.nodes();
-        std::copy_n(system_.balances().raw(A), wrench.size(), wrench.begin());
-        tables_.twist_rows(nodes.X(A), nodes.maps(A), wrench.data(), q.data());
-        for (int b = 0; b < tables_.n_bodies(); ++b)
-            for (int i = 0; i < tables_.bodies[b].dofs; ++i) {
-                const double v = std::abs(q[tables_.bodies[b].first + i]);
-                if (v <= worst) continue;
-                worst = v;
-                body = b;
-            }
-    }
-    if (row >= 0) place.name = tables_.model->row_name(row);
-    if (body >= 0) place.name += (row >= 0 ? ", body '" : "body '") + tables_.model->body_name(body) + "'";
-    return place;
-}
-
-void LobattoWindow::describe(SolveReport& report) const
-{
-    report.unknowns = std::max(report.unknowns, static_cast<int>(system_.balances().reduced().size()));
-    report.smallest_pivot = std::min(report.smallest_pivot, system_.nodes().smallest_pivot());
-    report.guess_factorisations = series_.factorisations();
-    system_.elimination().describe(report);
-}
-
-void LobattoWindow::measure_condition(SolveReport& report, const std::function<bool()>& goes_on)
-{
-    const double f = tables_.freedoms(), p = stretch_.degree;
-    if (f == 0) return;   // nothing moves: there is no matrix
-    if (stretch_.n_elements() * p * (2 * p + 1) * f * f > std::numeric_limits<int>::max()) {
-        report.notes.push_back("the whole matrix is too large for its condition number; use fewer elements");
-        return;
-    }
-    const auto elimination = null_space_elimination(tables_, stretch_, whole_solver(SparseBackend::eigen));
-    elimination->begin(stretch_, system_.nodes());
-    system_.form_tangent(*elimination);
-    elimination->measure_condition(report, goes_on);
 }
 
 }   // namespace livens

@@ -19,7 +19,8 @@ public:
     bool predict() override;
     bool start_from(const Guess& guess) override;
     bool near_state(State& state) const override;
-    bool close(SolveReport& report) override;
+    Closed close(const Trust& trust, SolveReport& report) override;
+    void divided(int element) override { record_.divided(element); }
     std::vector<Matrix34> positions(int element_end) const override;
     Place worst() const override;
     void describe(SolveReport& report) const override;
@@ -55,7 +56,9 @@ private:
     bool find_first_state(SolveReport& report);
     void accelerate(InstantState& state);
     void sum_momentum(int e);
-    bool close_element(int e, SolveReport& report);
+    bool end_element(int e, SolveReport& report);
+    bool is_believable(int e, const Trust& trust) const;
+    void close_element(int e);
     void record_element(int e);
     bool rows_compatible(const InstantState& state, SolveReport& report) const;
     bool fail(SolveReport& report, const std::string& message) const;

@@ -175,13 +175,13 @@ void MixedWindow::fix_known()
     block_->equations().tie(fields);
 }
 
-bool MixedWindow::close(SolveReport& report)
+Closed MixedWindow::close(const Trust&, SolveReport& report)
 {
     motion_.add(first_, block_->equations(), block_->fields());
     report.unknowns = std::max(report.unknowns, block_->n_unknowns());
     report.factor_entries = std::max(report.factor_entries, block_->factor_entries());
     const bool is_last = ends_.is_backwards() ? first_ == 0 : last_ == mesh_.n_elements();
-    return is_last || hand_on(report);
+    return {is_last || hand_on(report) ? last_ - first_ : 0, false};
 }
 
 /// The far end of a block becomes the known end of the next one.

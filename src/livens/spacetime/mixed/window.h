@@ -30,7 +30,7 @@ public:
     bool predict() override { return false; }
     bool start_from(const Guess& guess) override;
     bool near_state(State& state) const override;
-    bool close(SolveReport& report) override;
+    Closed close(const Trust& trust, SolveReport& report) override;
     std::vector<Matrix34> positions(int element_end) const override;
     Place worst() const override;
     void describe(SolveReport& report) const override;

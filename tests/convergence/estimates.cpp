@@ -1,0 +1,127 @@
+// The estimated error of a run against its true one, and elements that are refused.
+#include <numbers>
+
+#include "convergence/studies.h"
+
+namespace livens::tests {
+namespace {
+
+Solution solved(const Model& model, double end, int n, const Method& method)
+{
+    return solve(model, {model.start()}, make_time_mesh(0, end, n), method);
+}
+
+/// Largest error of centres of mass by the model's length, and of directors' turns, at the end.
+double true_error(const Model& model, const State& a, const State& exact)
+{
+    double error = 0;
+    for (int b = 0; b < model.n_bodies(); ++b) {
+        const Matrix34 d = a.X[b] - exact.X[b];
+        error = std::max(error, norm(d * point(mass_properties(model.bodies()[b].mass).center_of_mass)) /
+                                    model.length());
+        error = std::max(error, 2 * std::asin(std::min(norm(directors(d)) / std::sqrt(8.0), 1.0)));
+    }
+    return error;
+}
+
+double last_estimate(const Solution& s)
+{
+    double error = 0;
+    const auto n = static_cast<std::size_t>(s.estimate.n_bodies);
+    for (std::size_t i = s.estimate.position.size() - n; i < s.estimate.position.size(); ++i)
+        error = std::max({error, s.estimate.position[i], s.estimate.orientation[i]});
+    return error;
+}
+
+TEST(Estimates, AreTheTrueErrorWithinAFactorOfThree)
+{
+    const Model model = two_bricks();
+    const State exact = fine(model, 2, 200).end;
+    const struct {
+        Method method;
+        std::vector<int> n;
+    } cases[] = {{Lobatto{1}, {200, 400}}, {Lobatto{2}, {60, 120}},   {Lobatto{4}, {30, 45}},
+                 {Lobatto{7}, {20, 28}},   {Midpoint{}, {400, 1000}}, {Endpoint{}, {4000, 8000}}};
+    for (const auto& [method, meshes] : cases)
+        for (const int n : meshes) {
+            const Solution s = solved(model, 2, n, method);
+            ASSERT_FALSE(s.estimate.empty()) << name_of(method) << ", " << n << ": " << s.report.message;
+            const double error = true_error(model, last(s), exact), told = last_estimate(s);
+            EXPECT_LE(told, 3 * error) << name_of(method) << ", " << n;
+            EXPECT_GE(told, error / 3) << name_of(method) << ", " << n;
+            EXPECT_GE(s.verdict.estimated_error, told);
+        }
+}
+
+TEST(Estimates, OfAMarchInPiecesIsThatOfTheWhole)
+{
+    // more elements than are kept of the second solution at once, from either end
+    Model model({0, 0, -9.81});
+    model.add_body(point_mass("bob", 1, {1, 0, 0}));
+    model.add_joint(rod("rod", world, 0, {}, 1));
+    const Solution s = solved(model, 2, 9000, Lobatto{1});
+    const Solution finer = solved(model, 2, 9000, Lobatto{2});
+    ErrorMeter meter(model, s.motion);
+    meter.compare(finer.motion, 0, s.motion.n_elements());
+    const ErrorEstimate whole = meter.take();
+    ASSERT_EQ(s.estimate.position.size(), whole.position.size());
+    for (std::size_t i = 0; i < whole.position.size(); i += 100)
+        EXPECT_NEAR(s.estimate.position[i], whole.position[i], 1e-11) << i;
+    EXPECT_NEAR(s.estimate.reaction.back(), whole.reaction.back(), 1e-9);
+
+    Conditions back;
+    back.at_start = Known::nothing;
+    back.at_end = Known::state;
+    back.end = last(finer);
+    const Solution backwards = solve(model, {back}, make_time_mesh(0, 2, 9000), Lobatto{1});
+    ASSERT_FALSE(backwards.estimate.empty());
+    EXPECT_LE(backwards.estimate.position.back(), 1e-14) << "the end is given";
+    EXPECT_GT(backwards.estimate.position.front(), 1e-9);
+}
+
+TEST(Estimates, AreNotSoldWhereThereIsNone)
+{
+    const Model model = two_bricks();
+    SolveOptions options;
+    options.estimate = SolveOptions::Estimate::none;
+    const Solution s = solve(model, {model.start()}, make_time_mesh(0, 1, 20), Lobatto{4}, options);
+    EXPECT_TRUE(s.estimate.empty());
+    EXPECT_TRUE(std::isnan(s.verdict.estimated_error));
+    EXPECT_TRUE(s.report.converged());
+}
+
+TEST(Estimates, AMotionThatIsRadiansOffIsSuspect)
+{
+    const Model model = two_bricks();
+    const Solution coarse = solved(model, 10, 60, Lobatto{2});
+    EXPECT_EQ(coarse.report.status, SolveStatus::suspect);
+    EXPECT_GT(coarse.verdict.estimated_error, 1e-2);
+}
+
+/// Without refusal 10 elements of degree 16 meet a root that is none, 2 rad off (docs/theory.md).
+TEST(Refusals, DivideElementsThatMeetARootThatIsNone)
+{
+    Model model;
+    Placement placement;
+    placement.angular_velocity = {0.1, 15, 0.1};
+    model.add_body(rigid_body("top", box(1000, {0.1, 0.2, 0.3}), placement));
+    SolveOptions raw;
+    raw.judge = raw.divide = false;
+    const State exact = last(solve(model, {model.start()}, make_time_mesh(0, 4, 200), Lobatto{12}, raw));
+    int divided = 0, wrong = 0;
+    for (int n = 4; n <= 24; ++n)
+        for (const int degree : {4, 8, 12, 16}) {
+            const Solution s = solved(model, 4, n, Lobatto{degree});
+            divided += s.report.divided > 0;
+            const Solution as_it_comes =
+                solve(model, {model.start()}, make_time_mesh(0, 4, n), Lobatto{degree}, raw);
+            wrong += !as_it_comes.report.converged() || true_error(model, last(as_it_comes), exact) > 0.1;
+            if (!s.report.converged()) continue;
+            EXPECT_LE(true_error(model, last(s), exact), 10 * last_estimate(s) + 1e-9) << n << ", " << degree;
+        }
+    EXPECT_GE(divided, 5);
+    EXPECT_GE(wrong, 5) << "negative control: nothing was there to be refused";
+}
+
+}   // namespace
+}   // namespace livens::tests
