@@ -26,7 +26,7 @@ std::unique_ptr<Window> make_window(const Tables& tables, const TimeMesh& mesh, 
 {
     if (const auto* mixed = std::get_if<Mixed>(&method))
         return std::make_unique<MixedWindow>(tables, mesh, ends, *mixed);
-    return std::make_unique<LobattoWindow>(tables, mesh, ends, std::get<Lobatto>(method).degree);
+    return std::make_unique<LobattoWindow>(tables, mesh, ends, std::get<Lobatto>(method));
 }
 
 /// Instants in the direction of solution: the ends of elements first..last - 1, each divided into `pieces`.
@@ -171,7 +171,7 @@ Solution solve_by_windows(const Model& model, const Problem& problem, const Time
     solution.motion = window->take_motion();
     if (options.condition && report.converged() && !is_whole) {
         // the march's equations as one window of all elements, at the solution
-        LobattoWindow whole(tables, mesh, ends, std::get<Lobatto>(method).degree);
+        LobattoWindow whole(tables, mesh, ends, std::get<Lobatto>(method));
         const Motion& motion = solution.motion;
         if (whole.open(0, mesh.n_elements(), report) &&
             whole.start_from([&](double t) { return motion.at(t); }) && whole.equations().residual())

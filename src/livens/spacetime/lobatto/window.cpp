@@ -26,9 +26,10 @@ void polish(double* X)
 
 }   // namespace
 
-LobattoWindow::LobattoWindow(const Tables& tables, const TimeMesh& mesh, const Ends& ends, int degree)
-    : tables_(tables), ends_(ends), system_(tables, lobatto_rule(degree)), series_(tables, system_.rule()),
-      instant_(tables), record_(tables, mesh, system_.rule()), front_(tables)
+LobattoWindow::LobattoWindow(const Tables& tables, const TimeMesh& mesh, const Ends& ends,
+                             const Lobatto& method)
+    : tables_(tables), ends_(ends), system_(tables, lobatto_rule(method.degree)),
+      series_(tables, system_.rule()), instant_(tables), record_(tables, mesh, system_.rule()), front_(tables)
 {
     record_.note_redundant(ends.redundant);
     work_.lambda.assign(tables.rows.size(), 0.0);

@@ -4,6 +4,7 @@
 #include "livens/spacetime/ends.h"
 #include "livens/spacetime/lobatto/record.h"
 #include "livens/spacetime/lobatto/series.h"
+#include "livens/spacetime/method.h"
 #include "livens/spacetime/window.h"
 
 namespace livens {
@@ -12,7 +13,7 @@ namespace livens {
 class LobattoWindow final : public Window {
 public:
     /// References must outlive the window. Throws InputError for a degree out of range.
-    LobattoWindow(const Tables& tables, const TimeMesh& mesh, const Ends& ends, int degree);
+    LobattoWindow(const Tables& tables, const TimeMesh& mesh, const Ends& ends, const Lobatto& method);
 
     bool open(int first, int last, SolveReport& report) override;
     NewtonProblem& equations() override { return system_; }
