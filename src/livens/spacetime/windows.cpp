@@ -38,6 +38,7 @@ public:
         const int n = static_cast<int>(division.size()) - 1;
         time_ = options_.direction > 0 ? mesh_.start() : mesh_.end();
         const int given = mesh_.n_elements();
+        most_divisions_ = 200 + 4 * given;
         for (int i = 0; i < n; ++i) {
             const int at = options_.direction > 0 ? i : n - 1 - i;
             const int more = options_.direction > 0 ? mesh_.n_elements() - given : 0;
@@ -93,8 +94,9 @@ private:
     {
         const bool is_bad_load =
             outcome.status == SolveStatus::not_finite && !window_.worst().bad_load.empty();
-        return options_.may_divide && last - first == 1 && outcome.status != SolveStatus::cancelled &&
-               !is_bad_load && mesh_.length(first) > shortest_element * (mesh_.end() - mesh_.start());
+        return options_.may_divide && report_.divided < most_divisions_ && last - first == 1 &&
+               outcome.status != SolveStatus::cancelled && !is_bad_load &&
+               mesh_.length(first) > shortest_element * (mesh_.end() - mesh_.start());
     }
 
     bool divide_element(int element)
@@ -264,6 +266,7 @@ private:
     bool is_march_ = false;
     bool is_rescued_ = false;   // converged from another guess than the first
     int rounded_ = 0;           // windows that ended by rounding, short of the tolerance
+    int most_divisions_ = 0;   // beyond, something else is wrong
     int splits_ = 0;
     int done_ = 0;      // elements
     double time_ = 0;   // up to which they are solved
