@@ -159,6 +159,7 @@ inline Solution solve_evenly(const Model& model, double end, int n, int degree)
 {
     SolveOptions options;
     options.estimate = SolveOptions::Estimate::none;
+    options.divide = false;
     Solution solution = solve(model, {model.start()}, make_time_mesh(0, end, n), Lobatto{degree}, options);
     EXPECT_TRUE(solution.report.converged()) << solution.report.message;
     return solution;
