@@ -60,7 +60,7 @@ public:
             "its estimated error is " + to_text(estimate.largest, 3) +
             " (lengths of the model, or rad), of body '" + model.body_name(estimate.body) + "' at " +
             to_text(estimate.time, 6) +
-            " s, by a second solution of higher order; more elements or a higher degree may help");
+            " s, by a second, finer solution; more elements or a higher degree may help");
     }
     void jump(double value, double t)
     {
