@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The program that scripts/instructions runs under callgrind: `instructions NAME` solves one kernel, `--all`
 // every one. Prints a line "name elements error" each; fails if a motion is not the right one.
 #include <cstdio>

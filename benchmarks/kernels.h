@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The problems that speed is measured on, shared by the timed, the counted and the plotted programs.
 #pragma once
 

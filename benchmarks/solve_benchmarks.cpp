@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Google Benchmark: seconds of solve() alone, with the error beside them.
 #include <benchmark/benchmark.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Work against error on two bricks to 2 s: `work_error FILE.csv`, drawn by work_error.py.
 #include <algorithm>
 #include <chrono>

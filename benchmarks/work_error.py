@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Draws the CSV of build/release/benchmarks/work_error: work_error.py FILE.csv FILE.png"""
 import csv
 import sys

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # What io and the program are made with; the core needs none of it.
 
 find_package(fmt REQUIRED)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # The pages of `livens explain` are docs/diagnostics.md itself, compiled in.
 
 set(diagnostics_file ${PROJECT_SOURCE_DIR}/docs/diagnostics.md)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # `cmake --install`: the libraries, their headers, the program and the package files for find_package(livens).
 
 include(CMakePackageConfigHelpers)

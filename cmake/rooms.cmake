@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # A room is a folder of src/livens, compiled once as an object library; libraries and tests are made of rooms.
 
 find_package(Threads REQUIRED)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # UMFPACK, the paper's sparse solver. It has no CMake package; its METIS comes with it, through CHOLMOD.
 # Sets livens_umfpack to what the room that uses it adds to its arguments.
 

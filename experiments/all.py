@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Runs the experiments and prints one table of verdicts.
 
     all.py [--short] [--livens PROGRAM] [--output FOLDER] [figNN ...]

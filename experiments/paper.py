@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """What all experiments share: the paper's problems, running the program, errors and orders, plots, verdicts.
 
 The paper is Hesch, Glas, Schuss, "Space-time rigid multibody dynamics", Multibody System Dynamics (2023);

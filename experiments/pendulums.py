@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """What the experiments of section 4.2 share: true motions of the pendulums, runs by blocks, the energy of
 each element, and their pictures.
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Draws a result file into one picture: motion, energy, energy error, constraint violation.
 
     plot_run.py RUN.nc PICTURE.png

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # The experiments in their short version, judged as in the full one, and their negative controls. They run the
 # program, so there is nothing here for sanitizers that tests/system does not have already.
 if(LIVENS_BUILD_PROGRAM AND LIVENS_SLOW_TESTS)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # Files in and out: the io room stands on the whole core, so its unit tests link both libraries.
 file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/unit/io/*.cpp)
 if(LIVENS_BUILD_PROGRAM AND sources)

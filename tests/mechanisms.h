@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The mechanisms that the proofs of the engine run on, built by hand. The shipped examples say the same in
 // TOML.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What the tests of the elements `mixed` solve again and again, and how far it is from the truth.
 #pragma once
 

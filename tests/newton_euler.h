@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A witness that shares nothing with the engine but the data of bodies: Newton's and Euler's equations with
 // quaternions, ball joints by their accelerations, integrated by extrapolation.
 #pragma once

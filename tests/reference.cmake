@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # Examples as shipped against numbers from elsewhere: io reads the examples, a JSON library the numbers.
 file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/reference/*.cpp)
 if(LIVENS_BUILD_PROGRAM AND sources)

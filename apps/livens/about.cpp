@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What the program knows about itself: schema, explanations, version.
 #include <algorithm>
 

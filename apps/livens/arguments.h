@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The command line: what can be typed, what was typed, and the same as a table for help, completion and the
 // man page.
 #pragma once

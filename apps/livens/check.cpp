@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // livens check: everything that can be said about a scenario without solving it.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The subcommands: each takes its arguments, prints and returns the exit code; failures are thrown (see
 // failure.h).
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // livens completion: scripts for shells, made from the table of commands.
 #include "arguments.h"
 #include "console.h"

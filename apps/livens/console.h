@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Where words go: data to standard output, everything else to standard error.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // livens diff: how far two runs are from each other.
 #include <algorithm>
 #include <array>

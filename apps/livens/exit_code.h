@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What the program tells its caller; docs/program.md lists the same.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // livens info: what a result file holds. livens export: its samples for other programs.
 #include <fmt/format.h>
 #include <unistd.h>

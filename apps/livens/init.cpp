@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // livens init: a small scenario to begin with.
 #include <cerrno>
 #include <filesystem>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Ctrl-C and SIGTERM: the first asks for a stop at the next element, the second ends the program at once.
 #pragma once
 

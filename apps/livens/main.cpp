@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // livens, the program: arguments in, a command's exit code out.
 #include <string>
 #include <string_view>

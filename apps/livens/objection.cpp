@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What is wrong with a command line, and what was probably meant.
 #include <algorithm>
 #include <utility>

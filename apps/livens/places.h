@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Where results go, and what must not be destroyed by them.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // One line on a terminal that says how far the solution is.
 #pragma once
 

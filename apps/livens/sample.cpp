@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // livens sample: a body or a joint of a run at any instant.
 #include <span>
 

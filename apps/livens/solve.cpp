@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // livens solve: a scenario in, a solved and checked motion out.
 #include <chrono>
 #include <ctime>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A run in words for people: the verdict first, then figures.
 #pragma once
 

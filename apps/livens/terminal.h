@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // How a stream shows words: colours, signs, width. Files and pipes get plain ASCII words on lines of any
 // length.
 #pragma once

@@ -1,4 +1,5 @@
 #!/usr/bin/python3 -B
+# SPDX-License-Identifier: BSD-3-Clause
 """Makes pendulums.json: the double pendulums over their whole 80 s, in decimal arithmetic of 70 digits.
 
     make_pendulums.py        writes pendulums.json beside this file (about five minutes)

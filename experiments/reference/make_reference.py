@@ -1,4 +1,5 @@
 #!/usr/bin/python3 -B
+# SPDX-License-Identifier: BSD-3-Clause
 """Makes reference.json: the exact motions that the experiments are judged by.
 
     make_reference.py        writes reference.json beside this file (about a quarter of a minute)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Momentum, energy, constraints and planes over ten seconds.
 #include <functional>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Motions that the elements reproduce exactly: what is left is rounding, some ulps an element.
 #include <limits>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What the paper's elements keep, where, and what they do not.
 #include "livens/base/error.h"
 #include "livens/diagnostics/diagnostics.h"

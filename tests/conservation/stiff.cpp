@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Springs far stiffer than the elements are short: what does not move stays, what vibrates stays bounded.
 #include <limits>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Stiff springs released: the first guess may lie far off, the solution does not.
 #include "mechanisms.h"
 

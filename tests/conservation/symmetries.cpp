@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The motion does not depend on how the mechanism is described, and runs backwards as well as forwards.
 #include "mechanisms.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Screws, gears and slots: order 2p at element ends through many turns, and what is conserved.
 #include <numbers>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Joints that depend on time: order 2p at element ends, and motions that drives alone determine.
 #include <numbers>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // lobatto with what is given at either end of time, and in windows of any number of elements.
 #include <numbers>
 #include <regex>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The estimated error of a run against its true one, and elements that are refused.
 #include <numbers>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Inside elements: inner nodes, between nodes, the polynomial's derivative, and sampling at full order.
 #include "convergence/studies.h"
 #include "livens/time/basis.h"

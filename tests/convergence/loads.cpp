@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Order 2p under loads of every kind, against Newton's and Euler's equations with quaternions.
 #include "convergence/studies.h"
 #include "newton_euler.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Orders of the paper's elements on the free box under a constant torque, pairing by pairing.
 #include "mixed_problems.h"
 

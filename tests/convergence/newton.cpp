@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What a solution costs: iterations and factorisations.
 #include "mechanisms.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Position and velocity at element ends converge with order 2p.
 #include "convergence/studies.h"
 

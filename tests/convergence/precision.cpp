@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Down to the last digits, and beside a witness that shares nothing with the elements.
 #include <array>
 

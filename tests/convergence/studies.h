@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Orders of convergence: meshes, errors, rates.
 #pragma once
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # Hostile files. `fuzz_mutations` is deterministic; `fuzz.scenario` is libFuzzer for a minute, in a build of its
 # own (LIVENS_FUZZ) by Clang, skipped where there is none with libFuzzer. For longer runs:
 #   cmake -B build/fuzz -G Ninja -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_COMPILER=clang++ -DLIVENS_FUZZ=ON -DLIVENS_BUILD_TESTS=ON

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Random damage to scenarios, the same in every run: each text ends in findings or a scenario.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // libFuzzer's target for scenarios; fuzz.cmake says how it is built and run.
 #include "fuzz/scenario.h"
 

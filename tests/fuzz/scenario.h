@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What must hold for any text: it ends in a scenario or in an error, never in both or neither, and every
 // finding can be printed.
 #pragma once

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # cmake -DNM= -DPREFIX= -P check_symbols.cmake: no symbol of the installed core is in the namespace Eigen, and
 # some are in livens (so that a listing that could not be read does not pass).
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # An outside project finds the installed livens, solves the free box and compares a number: with the
 # compiler's default flags and with processor flags that the library was not built with, which a program that
 # uses Eigen itself may have.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # cmake -DBUILD= -DPREFIX= -DCONFIG= -P install_prefix.cmake: installs the finished build into an empty
 # PREFIX and looks at what is there: the headers of headers.txt, no other, and all that these include.
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # cmake -DPROJECT= -DBUILD= -DPREFIX= -DCOMPILER= -DGENERATOR= -DFLAGS= -P run_outside.cmake: configures,
 # builds and runs the outside project against the installed livens.
 

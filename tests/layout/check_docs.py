@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The documents agree with the sources. Standard library only.
 
     check_docs.py ROOT              code names, links and examples

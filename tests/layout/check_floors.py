@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The table of floors (docs/architecture.md) and the sizes, checked on the sources. Standard library only.
 
     check_floors.py ROOT               includes, names and sizes of files

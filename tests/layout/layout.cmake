@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # The house's rules, checked as tests: the table of floors, sizes, names, documents. Each checker is also run
 # against made-up faults that it must refuse.
 

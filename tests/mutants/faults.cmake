@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # The faults, room by room. A fault is small, compiles, and is one that somebody could make; see mutants.cmake.
 
 # Gauss-Lobatto weights of a rule with one point more; right for no degree.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # Negative controls by mutation: one deliberate fault a program, and the tests that must notice it.
 #
 # livens_mutant(NAME name             the test is mutant.<name>

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # cmake -DNAME= -DORIGINAL= -DFOLDER= -DMUTATED= -P mutate.cmake: ORIGINAL with FOLDER/old.txt, which must
 # stand in it exactly once, replaced by FOLDER/new.txt.
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # cmake -DPROGRAM= -DMUST_FAIL="filter;..." -P run_mutant.cmake: succeeds only if the program ran to its end
 # (no crash) and every filter matches a test that failed.
 

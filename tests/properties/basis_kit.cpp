@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "properties/basis_kit.h"
 
 #include <algorithm>

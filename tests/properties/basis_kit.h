@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What every space of functions of time must fulfil; a new family gets it by a line in
 // basis_kit_registry.cpp.
 #pragma once

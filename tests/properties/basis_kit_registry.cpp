@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Every family of functions of time in every degree: the kit runs over this list.
 #include <numbers>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Rows that are functions of joint coordinates: a screw, a gear pair and a point on a curve.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Joints that depend on time, by the kit that every joint passes.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What every method of integration must fulfil, and what is stated of each; a new method, degree or pairing
 // gets it by a line in integrator_kit_registry.cpp.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Every method of the library, and what is stated of it: the kit runs over this list.
 #include "properties/integrator_kit.h"
 

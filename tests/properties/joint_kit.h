@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What every joint must fulfil; a new one gets it by a line in joint_kit_registry.cpp.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Every joint of the library, one entry a joint: the kit runs over this list.
 #include "properties/joint_kit.h"
 

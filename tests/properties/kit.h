@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What the conformance kits share: a kit says what is wrong with a case, one sentence each, and runs over a
 // registry that no file of its folder escapes.
 #pragma once

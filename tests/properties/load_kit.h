@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What every load must fulfil; a new one gets it by a line in load_kit_registry.cpp.
 #pragma once
 

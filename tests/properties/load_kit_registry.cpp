@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Every load of the library in every variant, one entry each: the kit runs over this list.
 #include "properties/load_kit.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // An example on far fewer elements than it is shipped with.
 #include <regex>
 #include <sstream>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Every example that has a published or recomputed motion meets it, as shipped, at all listed times.
 //
 // Tolerances are largest differences of a coordinate, in the unit of the quantity. Numbers in benchmarks.json

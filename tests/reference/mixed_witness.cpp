@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The paper's elements against another program of them: tests/reference/data/mixed.json.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Reactions by hand: what each joint exerts on its second body, at rest and in steady rotation.
 #include <gtest/gtest.h>
 

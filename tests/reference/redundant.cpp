@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Reactions in a loop of joints that hold more than they need: they do not depend on the rows that were
 // chosen.
 #include "livens/diagnostics/sample.h"

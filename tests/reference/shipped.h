@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Examples as shipped, solved and compared with numbers from elsewhere.
 #pragma once
 

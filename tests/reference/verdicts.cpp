@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The examples as shipped are believed; with far too few elements they are not, though every balance is kept.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The program as a user meets it: commands, exit codes, wrong input, full disks, signals.
 
     LIVENS_PROGRAM=build/release/livens python3 program_test.py [CLASS ...]

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # Tests that run the program as a user does: one ctest a class of these scripts. Standard library only; what needs
 # netCDF4, xarray, ncdump or the right to mount is skipped where it is missing.
 

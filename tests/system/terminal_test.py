@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The program on a terminal: what people see at which width, what is proposed to them, what shells complete.
 
     LIVENS_PROGRAM=build/release/livens python3 terminal_test.py [CLASS ...]

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Wrong input, reported as data: what is wrong, where, by which bound, and what to do.
 #pragma once
 

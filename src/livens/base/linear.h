@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The small dense types of every public struct: plain doubles without alignment, so that a library and a
 // program built with different processor flags agree on their layout.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Whether a motion that a solver calls converged may be believed: bounds on figures of the motion itself.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What is conserved, and how well: free functions of a motion, whoever made it.
 #pragma once
 

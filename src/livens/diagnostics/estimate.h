@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // How far a motion is from the true one: by another solution of higher order.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A motion at single instants: poses, velocities, momenta and reactions as users want them.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Messages about a file: what rustc would print.
 #pragma once
 

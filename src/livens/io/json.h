@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Writing JSON: the one writer of everything that livens prints for machines.
 #pragma once
 

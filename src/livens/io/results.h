@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Result files: classic NetCDF, written whole or not at all.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Scenario files (TOML): one file describes bodies, joints, loads, time and method.
 #pragma once
 

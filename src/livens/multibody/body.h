@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // One rigid body or point mass: its mass matrix and its state at the start.
 #pragma once
 

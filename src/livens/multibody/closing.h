@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Closing the mechanism: independent rows, and a start that fulfils them.
 #pragma once
 

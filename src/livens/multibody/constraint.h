@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Every ideal joint is a few rows, nearly all of them quadratic forms in X; one row is data. Drives make it
 // depend on time, and a smooth function of forms couples joint coordinates.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The directions that joints hold and those they leave free, at one configuration.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The makers of rows, see constraint.h.
 #include <cmath>
 #include <utility>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The state at an element end: velocity from the momentum, acceleration and reactions from the equations of
 // motion.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Numbers of joints that are no quadratic forms, and the rows that hold them: angles that may turn round and
 // round, screws, gears, racks, and points on curves.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Joints: names for sets of constraint rows.
 #pragma once
 

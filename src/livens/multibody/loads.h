@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Loads: generalised forces as functions of time, configuration and velocity.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Mass, centre and inertia of a rigid body, and the 4 x 4 mass matrix made of them.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The mechanism: bodies, joints, loads and gravity.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A motion: what every method returns and every diagnosis reads.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Moving a configuration, or its rates, onto joint rows: nearest in the mass metric.
 #pragma once
 

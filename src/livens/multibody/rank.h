@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Which joint rows are independent in a configuration, and whether what they leave free has inertia.
 //
 // Rank is geometry: no mass enters it. Inertia is judged by the digits that mass matrices hold.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Reactions where joints are redundant: of all that move the bodies alike, the least.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What the joint rows of a model say in one configuration: values, rates, rounding levels, and wrenches.
 #pragma once
 

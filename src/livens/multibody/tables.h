@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The model as the engine reads it: flat tables, unknowns numbered, and the coordinates that it is solved in.
 //
 // Unknowns are twists in mass-orthonormal coordinates: y = (sqrt(M) v_c, L^T w_body) with the velocity v_c of

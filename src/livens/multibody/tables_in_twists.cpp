@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What the tables say in twists, plain and mass-orthonormal.
 #include <algorithm>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Rigid kinematics: the reduction of a body's twelve numbers to a twist. Rows, columns, finite displacements,
 // and the terms of the tangent.
 //

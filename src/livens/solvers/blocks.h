@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Matrices of systems whose unknowns stand at nodes of time: dense blocks, element by element.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Norms and condition numbers of matrices known by their products and solutions alone.
 #include <algorithm>
 #include <cassert>

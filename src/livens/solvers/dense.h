@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Small dense factorisations on plain arrays: LU, orthogonal bases of constraint rows, Cholesky.
 //
 // They run thousands of times a second on matrices of 2 to a few hundred unknowns, so they allocate nothing

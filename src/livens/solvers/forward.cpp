@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Systems that are known at one end: block triangular over elements.
 #include <algorithm>
 #include <array>

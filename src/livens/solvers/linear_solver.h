@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Direct solvers of systems in blocks.
 #pragma once
 

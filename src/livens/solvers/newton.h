@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Newton's iteration: one damping and one stopping rule for whatever can be put as a NewtonProblem.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Sparse direct solution: LU with row exchanges, behind one interface for several libraries.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The backend that is always there: Eigen's supernodal SparseLU in the natural order.
 //
 // The unknowns come node by node in time, and that order is as good as any for a few bodies: elimination runs

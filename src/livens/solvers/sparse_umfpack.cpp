@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The backend of the paper: UMFPACK in METIS' order. Compiled where LIVENS_UMFPACK asks for it: UMFPACK is
 // under the GPL, and so is a program that contains it.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // One sparse matrix of all blocks.
 #include <algorithm>
 #include <cassert>

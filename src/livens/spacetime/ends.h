@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The ends of time as the engine sees them: conditions, closed and consistent.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The error of a motion by a second solution on the same elements.
 #include <algorithm>
 #include <variant>

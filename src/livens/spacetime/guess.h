@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Motions that are about right, for Newton's iteration to start from.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What is asked: conditions at the ends of time.
 #pragma once
 

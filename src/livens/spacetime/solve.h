@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The one entry: model, conditions, time elements and method in; motion and report out.
 #pragma once
 

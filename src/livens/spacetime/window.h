@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The seam between families of elements and those who solve them: a stretch of elements solved together.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The one driver: windows in their order, guesses, progress, messages, and what to do about a window that
 // fails.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The equations of one step of a classical rule, in directors with weak rigidity.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Classical time stepping with directors: independent witnesses, written for clarity. They share nothing with
 // spacetime.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Lagrange polynomials on given nodes of the unit interval.
 #pragma once
 

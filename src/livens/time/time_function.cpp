@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "livens/time/time_function.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Scalar functions of time with two derivatives, for loads and, later, drives.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Spaces of functions of time over a block of elements: what the fields of a motion are made of.
 #pragma once
 

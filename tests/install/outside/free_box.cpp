@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The free box under a constant torque, solved by an installed livens from a program that also uses Eigen.
 #include <array>
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Eigen as a stranger uses it, with the stranger's processor flags: sizes that take the blocked, vectorised
 // kernels, whose inline functions the linker would share with the library's if both had the same names.
 #include <algorithm>

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """End states and condition numbers of the mixed elements, made without any code of livens.
 
 Fields q, pi, lambda over one time basis, assembled for the whole interval; full Newton steps from two guesses

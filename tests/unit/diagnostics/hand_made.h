@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Motions written down instead of solved, for tests of what is said about a motion.
 #pragma once
 

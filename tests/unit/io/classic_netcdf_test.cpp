@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The format itself: bytes made by hand from the specification, and everything that hostile bytes can say.
 #include "livens/io/results/classic_netcdf.h"
 

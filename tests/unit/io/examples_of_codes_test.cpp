@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Every example of `livens explain` does what its page says.
 #include <set>
 

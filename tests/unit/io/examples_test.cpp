@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The examples as shipped: all are read without a word, and hold every instant that the tests compare at.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Files that mean harm, or are no scenarios at all: every one ends in a diagnostic, quickly.
 #include <sys/stat.h>
 #include <unistd.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The family mixed and conditions at both ends: what arrives, and what is told where.
 #include <filesystem>
 

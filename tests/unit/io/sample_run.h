@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A run made by hand that fills every part of a result file, and a folder to put it in.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What a scenario means: each key arrives in the model, and each contradiction is told at its place.
 #include "livens/io/scenario.h"
 

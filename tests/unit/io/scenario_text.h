@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What the tests of scenarios share: a small valid scenario, and looking for a finding.
 #pragma once
 

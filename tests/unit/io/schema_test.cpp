@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Every entry of the schema is misspelled, repeated, mistyped, left out, pushed out of its range and given
 // odd numbers.
 #include "livens/io/scenario/schema.h"

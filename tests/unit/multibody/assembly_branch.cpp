@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Rows a . b = 0 admit an axis turned end for end; assembly does not.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The saddle system of one instant against a dense system in twelve coordinates a body, with multipliers of
 // rigidity, made of values of rows and solved by Gaussian elimination.
 #include "livens/multibody/instant.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Linkages of known rank, with any masses, at any place and in any unit of length.
 #pragma once
 

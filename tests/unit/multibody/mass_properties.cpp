@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "livens/multibody/mass_properties.h"
 
 #include <gtest/gtest.h>

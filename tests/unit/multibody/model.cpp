@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "livens/multibody/model.h"
 
 #include <gtest/gtest.h>

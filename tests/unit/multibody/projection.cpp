@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Projections onto the joints reach rounding whatever the masses are, and are the nearest in the mass metric.
 #include <gtest/gtest.h>
 

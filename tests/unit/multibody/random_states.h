@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Random numbers and configurations for tests; the same on every machine.
 #pragma once
 

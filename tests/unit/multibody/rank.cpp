@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The rank of joint rows is geometry: masses, units, the place and reference points do not matter.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Reactions of redundant joints depend neither on the rows that were chosen nor on the axes of space.
 #include "livens/multibody/reactions.h"
 

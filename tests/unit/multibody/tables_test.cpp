@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The tables that the engine reads against the model that they are made of.
 #include "livens/multibody/tables.h"
 

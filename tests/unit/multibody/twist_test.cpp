@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The twist reduction against plain rotation matrices.
 #include <gtest/gtest.h>
 

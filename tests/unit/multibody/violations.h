@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // How far a state is from the joints of a model, by the definition of their rows.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Whether a spin carries inertia is judged by the digits that mass matrices and joints hold.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A mechanism with every kind of row and body, its states as flat arrays, and what rows say by differences of
 // their values alone.
 #pragma once

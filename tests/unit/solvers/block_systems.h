@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Systems in blocks for the tests of their solvers.
 #pragma once
 

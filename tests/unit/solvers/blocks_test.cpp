@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Matrices in blocks against their sum.
 #include <gtest/gtest.h>
 

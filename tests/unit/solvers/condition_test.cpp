@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Norms and condition numbers against exact ones, and against singular values found by Jacobi rotations.
 #include <gtest/gtest.h>
 

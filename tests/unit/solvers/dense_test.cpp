@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Factorisations against their defining equations.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What every solver of block systems must do, and what each says of itself.
 #include <gtest/gtest.h>
 

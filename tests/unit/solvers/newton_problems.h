@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Systems of one to three equations for the tests of Newton's iteration.
 #pragma once
 

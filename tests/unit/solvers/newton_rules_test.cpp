@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The rules of Newton's iteration, each by increments and rows that are written down.
 #include <gtest/gtest.h>
 

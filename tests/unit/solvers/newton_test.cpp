@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Newton's iteration on systems of one to three equations.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Matrices for the tests of the sparse solvers.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Sparse factorisations: every backend of the build against dense ones and against its defining equations.
 #include <gtest/gtest.h>
 

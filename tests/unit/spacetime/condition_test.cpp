@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Condition numbers of the whole matrix of lobatto.
 #include <gtest/gtest.h>
 #include <mechanisms.h>   // of all tests, not of this folder

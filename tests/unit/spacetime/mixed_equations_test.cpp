@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The system of a block of the elements `mixed`: as many rows as unknowns, and a matrix that is its
 // derivative.
 #include <gtest/gtest.h>

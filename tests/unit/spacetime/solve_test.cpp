@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What the one entry refuses, and how it says so.
 #include <gtest/gtest.h>
 

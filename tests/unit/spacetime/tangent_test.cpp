@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The tangent of windows of lobatto against differences of their rows, and what it does for Newton.
 #include <gtest/gtest.h>
 

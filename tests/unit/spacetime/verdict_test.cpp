@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // solve() judges what it hands back.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The driver of windows, tried with a family that is no mechanics; and guesses.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "livens/stepping/step_equations.h"
 
 #include <gtest/gtest.h>

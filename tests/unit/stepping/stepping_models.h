@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Mechanisms and small references that the tests of stepping share.
 #pragma once
 

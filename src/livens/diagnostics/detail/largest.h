@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A running maximum that does not lose a NaN.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The fields of a motion at fixed places of every element.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "livens/io/results/atomic_file.h"
 
 #include <atomic>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Files on the disk: written whole or not at all, read where a reader asks.
 #pragma once
 

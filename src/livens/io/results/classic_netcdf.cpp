@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The writer of the classic NetCDF format, and its checksum.
 #include <cassert>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Classic NetCDF, the formats CDF-1, CDF-2 and CDF-5, without any library: a header of names, dimensions and
 // attributes, and behind it arrays, highest byte first. [NetCDF classic format specification]
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What writer and reader of the classic NetCDF format share: sizes, tags, the order of bytes.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The reader of the classic NetCDF format.
 #include <cassert>
 #include <limits>

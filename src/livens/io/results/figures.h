@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The figures of a run: the one table that files, JSON and docs/results.md are made from.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What a result file holds of a Run besides its figures: stated once, walked by the writer and the reader.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // An archive (see layout.h) that writes: first everything is declared, then the values follow.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // [[body]], its shape, and where bodies are at both ends of time.
 #include <array>
 #include <cmath>

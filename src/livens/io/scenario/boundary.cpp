@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // [start], [end] and [body.end]: what is known at the ends of time.
 #include "livens/io/scenario/builder.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // From the sections of a scenario to a model: one object that the parts of the reader fill together.
 #pragma once
 

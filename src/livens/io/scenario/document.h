@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A TOML file as a tree of values that know where they stand. The only source that sees toml++ is
 // toml_reader.cpp.
 #pragma once

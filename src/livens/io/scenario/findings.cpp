@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "livens/io/scenario/findings.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Collecting what is wrong with a file, all of it, and putting it in order.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // [[joint]]: one table of kinds, from which the schema, the reader and the documentation follow.
 #include <cmath>
 

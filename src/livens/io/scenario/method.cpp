@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // [method]: the family and its choices, and what they take of memory.
 #include <algorithm>
 

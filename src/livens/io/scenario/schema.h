@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The tables of everything that a scenario may say: the reader walks them, schema_json() and
 // schema_markdown() print them, a test mutates every entry. Those of kinds stand beside their makers.
 #pragma once

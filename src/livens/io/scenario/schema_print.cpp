@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The schema for editors and for people.
 #include <algorithm>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A table of the scenario after the schema has been applied: known keys with values in SI units.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The only source that includes toml++: it compiles slowly, and its errors and positions are translated here.
 #include <algorithm>
 #include <cctype>

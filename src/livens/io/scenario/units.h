@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Quantities in strings: "30 deg", "5 mm", "7850 kg/m^3".
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What body and model ask of directors.
 #pragma once
 

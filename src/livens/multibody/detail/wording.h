@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Numbers and places as the room's error messages spell them.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "livens/base/error.h"
 #include "livens/multibody/detail/joint_frame.h"
 #include "livens/multibody/detail/wording.h"

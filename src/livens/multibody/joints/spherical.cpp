@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "livens/multibody/detail/joint_frame.h"
 
 namespace livens {

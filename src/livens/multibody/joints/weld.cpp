@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "livens/multibody/body.h"
 #include "livens/multibody/detail/joint_frame.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "livens/multibody/detail/load_values.h"
 
 namespace livens {

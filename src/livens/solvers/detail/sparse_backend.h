@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What a sparse library has to do to stand behind SparseLU.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The linear algebra of a window behind a small interface: blocks of the tangent go in, increments of the
 // null-space unknowns come out.
 #pragma once

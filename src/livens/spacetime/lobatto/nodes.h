@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The configurations of a window's nodes, moved by twists and held to the constraints.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The motion of solved elements of lobatto(p), in whatever order they come.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The rows of a window: momentum balances of its nodes, and the multipliers that joints put into them.
 #pragma once
 

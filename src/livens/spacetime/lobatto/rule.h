@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The tables of one Lobatto element on the unit interval.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Where Newton's iteration of one element starts from.  (docs/theory.md, "Newton's iteration")
 #pragma once
 

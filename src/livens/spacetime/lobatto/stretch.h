@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The elements of a window, in the direction in which they are solved.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The equations of lobatto(p) on one window, as Newton's iteration sees them.
 #pragma once
 

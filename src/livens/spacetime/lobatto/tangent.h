@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The exact tangent of a window, block by block.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // lobatto(p) as a family: its windows, what they hand on, and its motion.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What a window of lobatto tells about itself.
 #include <algorithm>
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A block of the family mixed as Newton's iteration sees it.
 #pragma once
 

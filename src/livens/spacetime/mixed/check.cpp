@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Which methods, meshes and conditions make solvable systems.
 #include <cmath>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The numbers of X that the elements `mixed` take for unknowns, and the rows that hold them.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Momenta that are given at an end of time.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The equations of one block: rows and whole matrix, formed element by element.
 #pragma once
 

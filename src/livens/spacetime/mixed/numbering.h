@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Which coefficients of the fields are unknown, and which rows are solved for them.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Scales of unknowns and rows, and what is measured in them.
 #include <algorithm>
 #include <cmath>

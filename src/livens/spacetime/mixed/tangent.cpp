@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The whole matrix of a block: its pattern is found once, then element after element adds to it.
 #include <algorithm>
 #include <cassert>

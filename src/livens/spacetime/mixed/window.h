@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The elements of the paper as a family: blocks of elements, what they hand on, and their motion.
 #pragma once
 
