@@ -16,12 +16,14 @@ install(TARGETS ${libraries} EXPORT livens-targets ARCHIVE DESTINATION ${CMAKE_I
 # What users include, and no insides: tests/install/headers.txt lists it.
 install(DIRECTORY src/livens DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h"
         PATTERN "detail" EXCLUDE PATTERN "results" EXCLUDE PATTERN "scenario" EXCLUDE
+        PATTERN "exports" EXCLUDE
         PATTERN "lobatto" EXCLUDE PATTERN "mixed" EXCLUDE PATTERN "stepping" EXCLUDE
         PATTERN "dense.h" EXCLUDE PATTERN "projection.h" EXCLUDE PATTERN "time_space.h" EXCLUDE
         PATTERN "constraint_basis.h" EXCLUDE PATTERN "instant.h" EXCLUDE PATTERN "rank.h" EXCLUDE
         PATTERN "rows.h" EXCLUDE PATTERN "tables.h" EXCLUDE PATTERN "twist.h" EXCLUDE PATTERN "blocks.h" EXCLUDE
         PATTERN "linear_solver.h" EXCLUDE PATTERN "newton.h" EXCLUDE PATTERN "ends.h" EXCLUDE PATTERN "guess.h"
-        EXCLUDE PATTERN "window.h" EXCLUDE PATTERN "windows.h" EXCLUDE)
+        EXCLUDE PATTERN "window.h" EXCLUDE PATTERN "windows.h" EXCLUDE PATTERN "accuracy.h" EXCLUDE
+        PATTERN "pace.h" EXCLUDE PATTERN "second.h" EXCLUDE PATTERN "largest.h" EXCLUDE)
 install(EXPORT livens-targets NAMESPACE livens:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/livens)
 configure_package_config_file(cmake/livens-config.cmake.in ${PROJECT_BINARY_DIR}/livens-config.cmake
                               INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/livens)

@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 
 #include "exit_code.h"
+#include "livens/io/exports.h"
 
 namespace livens::program {
 
@@ -53,7 +54,7 @@ void add_scenario_commands(CLI::App& app, Arguments& a)
     solve
         .add_option("-o,--output", a.solve.output, "result file; default: the scenario's stem with .nc, here")
         ->type_name("RUN.nc");
-    solve.add_option("--csv", a.solve.csv, "write the samples as CSV too")->type_name("FILE");
+    solve.add_option("--csv", a.solve.csv, "write the samples as CSV too")->type_name("FILE.csv");
     add_common(solve, a);
 }
 
@@ -73,9 +74,13 @@ void add_run_commands(CLI::App& app, Arguments& a)
                     "between element ends solve a shortened element: full order anywhere");
     sample.add_flag("--csv", a.sample.csv, "print CSV");
     add_common(sample, a);
-    CLI::App& exports = add_command(app, a, "export", "Write a run's samples for other programs");
+    CLI::App& exports =
+        add_command(app, a, "export", "Write a run for other programs, in one format or more");
     exports.add_option("RUN", a.exports.run, "result file")->required()->type_name("RUN.nc");
-    exports.add_option("--csv", a.exports.csv, "CSV file to write")->required()->type_name("FILE");
+    a.exports.files.resize(export_formats().size());
+    for (std::size_t i = 0; const ExportFormat& format : export_formats())
+        exports.add_option(std::string("--") + format.word, a.exports.files[i++], format.what)
+            ->type_name(std::string("FILE") + format.extension);
     add_common(exports, a);
     CLI::App& diff = add_command(app, a, "diff", "Compare two runs at their common output times");
     diff.add_option("A", a.diff.first, "result file")->required()->type_name("RUN.nc");

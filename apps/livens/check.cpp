@@ -20,8 +20,12 @@ std::string json_of(const Scenario& scenario, const ClosedStart& assembly,
     json.member("bodies", scenario.model.n_bodies()).member("joints", scenario.model.joints().size());
     json.member("loads", scenario.model.loads().size()).member("rows", scenario.model.n_rows());
     json.member("degrees_of_freedom", assembly.degrees_of_freedom);
-    json.member("start", scenario.mesh.start()).member("end", scenario.mesh.end());
-    json.member("elements", scenario.mesh.n_elements()).member("output_times", scenario.output.size());
+    json.member("start", start_of(scenario.time)).member("end", end_of(scenario.time));
+    if (const auto* mesh = std::get_if<TimeMesh>(&scenario.time))
+        json.member("elements", mesh->n_elements());
+    else
+        json.member("accuracy", std::get<Span>(scenario.time).accuracy);
+    json.member("output_times", scenario.output.size());
     json.key("options").raw(scenario.resolved.empty() ? "null" : scenario.resolved);
     json.key("redundant_rows").begin_array();
     for (const int r : assembly.redundant) {
@@ -53,6 +57,16 @@ ClosedStart assembly_of(const Scenario& scenario)
                        at_start || at_end ? scenario.options.initial : StartPolicy::project);
 }
 
+/// How time is divided, for people.
+std::string division_of(const Scenario& scenario)
+{
+    const std::string times = fmt::format("{} output times", scenario.output.size());
+    if (const auto* mesh = std::get_if<TimeMesh>(&scenario.time))
+        return fmt::format("in {} elements, {}", mesh->n_elements(), times);
+    return fmt::format("to an accuracy of {:.6g}, {}", std::get<Span>(scenario.time).accuracy,
+                       scenario.output.empty() ? "element ends are output times" : times);
+}
+
 }   // namespace
 
 int check_command(const std::string& file, const Common& common)
@@ -67,10 +81,10 @@ int check_command(const std::string& file, const Common& common)
     if (common.quiet) return exit_ok;
     std::string text = fmt::format(
         "{}: no errors\n  {} bodies, {} joints with {} rows, {} loads, {} degrees of freedom\n"
-        "  {:.6g} s to {:.6g} s in {} elements, {} output times\n",
+        "  {:.6g} s to {:.6g} s {}\n",
         plain(file), scenario.model.n_bodies(), scenario.model.joints().size(), scenario.model.n_rows(),
-        scenario.model.loads().size(), assembly.degrees_of_freedom, scenario.mesh.start(),
-        scenario.mesh.end(), scenario.mesh.n_elements(), scenario.output.size());
+        scenario.model.loads().size(), assembly.degrees_of_freedom, start_of(scenario.time),
+        end_of(scenario.time), division_of(scenario));
     for (const std::string& note : assembly.notes) text += "  note: " + plain(note) + "\n";
     print(text);
     return exit_ok;

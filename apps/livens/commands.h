@@ -42,7 +42,7 @@ int sample_command(const SampleArguments& arguments, const Common& common);
 
 struct ExportArguments {
     std::string run;
-    std::string csv;
+    std::vector<std::string> files;   ///< one a format of export_formats(); empty: not asked for
 };
 int export_command(const ExportArguments& arguments, const Common& common);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// livens info: what a result file holds. livens export: its samples for other programs.
+// livens info: what a result file holds.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -7,7 +7,6 @@
 #include "console.h"
 #include "failure.h"
 #include "livens/io/results.h"
-#include "places.h"
 #include "summary.h"
 
 namespace livens::program {
@@ -72,26 +71,6 @@ int info_command(const std::string& file, const Common& common)
     add_figures(summary, run, common.verbose);
     add_notes(summary, run);
     print(summary.text());
-    return exit_ok;
-}
-
-int export_command(const ExportArguments& arguments, const Common& common)
-{
-    check_differs(arguments.csv, arguments.run, "it is the run itself");
-    check_differs(arguments.csv, record_of(arguments.run), "it is the record beside the run");
-    check_place(arguments.csv);
-    const Run run = read_run(arguments.run);
-    write_csv(arguments.csv, scenario_of_run(run.scenario_text, arguments.run).model, run);
-    if (common.json) {
-        JsonWriter json(2);
-        json.begin_object()
-            .member("csv", arguments.csv)
-            .member("converged", run.report.reached_end())
-            .end_object();
-        print(json.text() + "\n");
-    } else {
-        say_note("wrote " + arguments.csv);
-    }
     return exit_ok;
 }
 

@@ -16,17 +16,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// How every record begins, and nothing else that is likely.
-bool is_record(const fs::path& file)
+bool begins_with(const fs::path& file, std::string_view head)
 {
     std::error_code error;
     if (!fs::is_regular_file(file, error)) return false;
-    constexpr std::string_view head = "{\n  \"converged\"";
     std::string found(head.size(), '\0');
     std::ifstream in(file, std::ios::binary);
     in.read(found.data(), static_cast<std::streamsize>(found.size()));
     return found == head;
 }
+
+/// How every record begins, and nothing else that is likely.
+bool is_record(const fs::path& file) { return begins_with(file, "{\n  \"converged\""); }
 
 [[noreturn]] void refuse(const fs::path& file, const char* why)
 {
@@ -64,6 +65,17 @@ void check_place(const fs::path& file)
     check_writable(file);
     if (is_standard_output(file)) refuse(file, "standard output goes there");
     if (is_record(file)) refuse(file, "it is the record of a run");
+}
+
+void check_export_place(const fs::path& file, const ExportFormat& format, const fs::path& run)
+{
+    check_differs(file, run, "it is the run itself");
+    check_differs(file, record_of(run), "it is the record beside the run");
+    check_place(file);
+    if (begins_with(file, "CDF")) refuse(file, "it is a result file");
+    if (file.extension() != format.extension)
+        throw failure(exit_usage, std::string("--") + format.word + " writes files that end in '" +
+                                      format.extension + "', not '" + file.filename().string() + "'");
 }
 
 void check_differs(const fs::path& file, const fs::path& other, const char* why)

@@ -4,6 +4,8 @@
 
 #include <filesystem>
 
+#include "livens/io/exports.h"
+
 namespace livens::program {
 
 /// Same file by any path; missing ones are compared by their folders.
@@ -21,6 +23,9 @@ bool may_record(const std::filesystem::path& file);
 /// Throws what happens now if `file` cannot be written or must not: if it is `other`, which `why` names, the
 /// record of a run, or standard output. Call before solving, so that nothing is computed in vain.
 void check_place(const std::filesystem::path& file);
+/// Likewise for an export of `run`, which overwrites no result at all and ends as its readers expect.
+void check_export_place(const std::filesystem::path& file, const ExportFormat& format,
+                        const std::filesystem::path& run);
 void check_differs(const std::filesystem::path& file, const std::filesystem::path& other, const char* why);
 
 }   // namespace livens::program

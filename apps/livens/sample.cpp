@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // livens sample: a body or a joint of a run at any instant.
+#include <cmath>
+#include <limits>
 #include <span>
 
 #include <fmt/format.h>
@@ -50,6 +52,8 @@ void add_triad(JsonWriter& json, const char* key, const Matrix3& d)
     json.end_array();
 }
 
+constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+
 struct Query {
     const SampleArguments& arguments;
     const Run& run;
@@ -57,19 +61,53 @@ struct Query {
     int index;   ///< of the body or joint
 };
 
+ExactSample solved_at(const Query& q, double t)
+{
+    return sample_exactly(q.scenario.model, q.run.motion, q.scenario.method, t, q.scenario.options);
+}
+
+/// For --exact.
+ExactSample exact_at(const Query& q, double t)
+{
+    if (std::holds_alternative<Mixed>(q.scenario.method))
+        throw failure(exit_usage, "--exact cannot be had of the family mixed: each element depends on all "
+                                  "others of its block; make the instant an output time");
+    ExactSample exact = solved_at(q, t);
+    if (!exact.report.converged()) throw failure(exit_not_converged, exact.report.message);
+    return exact;
+}
+
 BodySample body_at(const Query& q, double t)
 {
     if (!q.arguments.exact)
         return sample_bodies(q.scenario.model, q.run.motion, t)[static_cast<std::size_t>(q.index)];
-    if (std::holds_alternative<Mixed>(q.scenario.method))
-        throw failure(exit_usage, "--exact cannot be had of the family mixed: each element depends on all "
-                                  "others of its block; make the instant an output time");
-    const ExactSample exact =
-        sample_exactly(q.scenario.model, q.run.motion, q.scenario.method, t, q.scenario.options);
-    if (!exact.report.converged()) throw failure(exit_not_converged, exact.report.message);
+    const ExactSample exact = exact_at(q, t);
     const Body& body = q.scenario.model.bodies()[q.index];
     const Matrix34 &X = exact.state.X[q.index], &V = exact.state.V[q.index];
     return sample_body(body, X, V, V * body.mass);
+}
+
+/// Where the polynomial is what is shown, its own distance from the solution adds to the error of both ends.
+bool is_interpolated(const Query& q, double t)
+{
+    return !q.arguments.exact && element_end_at(q.run.motion.mesh, t) < 0;
+}
+
+/// nan where there is no estimate.
+BodyGap body_error(const Query& q, double t)
+{
+    const ErrorEstimate& e = q.run.estimate;
+    const auto at = [&](const std::vector<double>& errors) {
+        return ErrorEstimate::at(errors, e.n_bodies, q.index, q.run.motion.mesh, t);
+    };
+    BodyGap error{at(e.position), at(e.orientation), at(e.velocity)};
+    if (e.empty() || !is_interpolated(q, t)) return error;
+    const ExactSample exact = solved_at(q, t);
+    if (!exact.report.converged()) return {unknown, unknown, unknown};
+    const BodyGap gap = gap_between(sample_state(q.run.motion, t), exact.state,
+                                    q.scenario.model.bodies()[q.index], q.index, e.length);
+    return {error.position + gap.position, error.orientation + gap.orientation,
+            error.velocity + gap.velocity};
 }
 
 void body_members(JsonWriter& json, const Query& q, double t)
@@ -92,19 +130,38 @@ void body_members(JsonWriter& json, const Query& q, double t)
     }
     add(json, "linear_momentum", s.linear_momentum);
     add(json, "angular_momentum", s.angular_momentum);
+    const BodyGap error = body_error(q, t);
+    json.member("estimated_position_error", error.position);
+    json.member("estimated_orientation_error", error.orientation);
+    json.member("estimated_velocity_error", error.velocity);
     const bool is_end = element_end_at(q.run.motion.mesh, t) >= 0;
     json.member("source", is_end ? "element end" : q.arguments.exact ? "solved" : "polynomial");
 }
 
 JointSample joint_at(const Query& q, double t)
 {
-    if (q.arguments.exact && element_end_at(q.run.motion.mesh, t) < 0)
-        throw failure(exit_usage,
-                      "--exact gives the state of bodies; reactions are exact at element ends alone");
-    const std::vector<JointSample> samples = sample_joints(q.scenario.model, q.run.motion, t);
+    const std::vector<JointSample> samples =
+        q.arguments.exact ? exact_at(q, t).joints : sample_joints(q.scenario.model, q.run.motion, t);
     if (samples.empty())
         throw failure(exit_input_output, "the run holds no multipliers, so it knows no reactions");
     return samples[static_cast<std::size_t>(q.index)];
+}
+
+double joint_error(const Query& q, double t)
+{
+    const ErrorEstimate& e = q.run.estimate;
+    const double error = ErrorEstimate::at(e.reaction, e.n_joints, q.index, q.run.motion.mesh, t);
+    if (e.reaction.empty() || !is_interpolated(q, t)) return error;
+    const ExactSample exact = solved_at(q, t);
+    if (!exact.report.converged() || exact.joints.empty()) return unknown;
+    const JointSample here = joint_at(q, t), &there = exact.joints[static_cast<std::size_t>(q.index)];
+    return e.largest_reaction > 0 ? error + gap_between(here, there, e.length) / e.largest_reaction : error;
+}
+
+const char* source_of(const Query& q, const JointSample& s, double t)
+{
+    if (q.arguments.exact && element_end_at(q.run.motion.mesh, t) < 0) return "solved";
+    return s.is_acceleration_level ? "acceleration level" : "interpolated multipliers";
 }
 
 void joint_members(JsonWriter& json, const Query& q, double t)
@@ -121,7 +178,8 @@ void joint_members(JsonWriter& json, const Query& q, double t)
     };
     side("left", s.left);
     side("right", s.right);
-    json.member("source", s.is_acceleration_level ? "acceleration level" : "interpolated multipliers");
+    json.member("estimated_reaction_error", joint_error(q, t));
+    json.member("source", source_of(q, s, t));
     json.member("unique", s.is_unique);
 }
 
@@ -172,6 +230,9 @@ std::string text_of(const Query& q, double t)
         }
         if (!s.is_unique)
             out += "  (not unique: other joints of the loop could carry part of it; these are the least)\n";
+        if (const double error = joint_error(q, t) * q.run.estimate.largest_reaction; std::isfinite(error))
+            out += fmt::format("  {:<22} {:.1e} N, {:.1e} N m\n", "estimated error", error,
+                               error * q.run.estimate.length);
         return out + (s.is_acceleration_level ? "" : "  (interpolated multipliers: between element ends)\n");
     }
     const BodySample s = body_at(q, t);
@@ -187,6 +248,10 @@ std::string text_of(const Query& q, double t)
     }
     add_row(out, "linear momentum", "N s", s.linear_momentum);
     add_row(out, "angular momentum", "N m s", s.angular_momentum);
+    const BodyGap error = body_error(q, t);
+    if (std::isfinite(error.position))
+        out += fmt::format("  {:<22} {:.1e} m, {:.1e} rad, {:.1e} m/s\n", "estimated error",
+                           error.position * q.run.estimate.length, error.orientation, error.velocity);
     return out;
 }
 
@@ -201,8 +266,9 @@ std::string csv_of(const Query& q, const std::vector<double>& times)
     const bool is_body = !q.arguments.body.empty();
     std::string out =
         is_body ? "t [s],x [m],y [m],z [m],qw,qx,qy,qz,vx [m/s],vy [m/s],vz [m/s],wx [rad/s],wy [rad/s],"
-                  "wz [rad/s]\r\n"
-                : "t [s],fx [N],fy [N],fz [N],mx [N m],my [N m],mz [N m]\r\n";
+                  "wz [rad/s],estimated_position_error [1],estimated_orientation_error [rad],"
+                  "estimated_velocity_error [m/s]\r\n"
+                : "t [s],fx [N],fy [N],fz [N],mx [N m],my [N m],mz [N m],estimated_reaction_error [1]\r\n";
     for (const double t : times) {
         out += to_text(t);
         if (is_body) {
@@ -211,10 +277,13 @@ std::string csv_of(const Query& q, const std::vector<double>& times)
             add_cells(out, s.quaternion);
             add_cells(out, s.velocity);
             add_cells(out, s.angular_velocity);
+            const BodyGap error = body_error(q, t);
+            add_cells(out, Vector3{error.position, error.orientation, error.velocity});
         } else {
             const JointSample s = joint_at(q, t);
             add_cells(out, s.right.force);
             add_cells(out, s.right.torque);
+            add_cells(out, Matrix<1, 1>{joint_error(q, t)});
         }
         out += "\r\n";
     }

@@ -48,9 +48,7 @@ Places places(const SolveArguments& arguments)
     check_place(p.output);
     if (p.csv.empty()) return p;
     check_differs(p.csv, p.scenario, "it is the scenario itself");
-    check_differs(p.csv, p.output, "it is the result file as well");
-    check_differs(p.csv, p.record, "it is the record beside the result file as well");
-    check_place(p.csv);
+    check_export_place(p.csv, export_formats().front(), p.output);
     return p;
 }
 
@@ -61,7 +59,8 @@ public:
     explicit Reserve(const Scenario& scenario)
     {
         const std::size_t numbers_an_element = 48 + 12 * scenario.model.bodies().size();
-        const std::size_t n_elements = static_cast<std::size_t>(scenario.mesh.n_elements());
+        const auto* mesh = std::get_if<TimeMesh>(&scenario.time);   // else it is known later
+        const std::size_t n_elements = mesh == nullptr ? 0 : static_cast<std::size_t>(mesh->n_elements());
         const std::size_t size = (8u << 20) + n_elements * numbers_an_element * sizeof(double);
         memory_ = std::make_unique_for_overwrite<char[]>(size);
         *static_cast<volatile char*>(memory_.get()) = 0;   // or a compiler could leave it out
@@ -94,11 +93,10 @@ Solved solve_scenario(const Scenario& scenario, const Common& common)
             return InterruptWatch::signal() == 0;
         };
         const Clock::time_point begin = Clock::now();
-        solution = solve(scenario.model, {scenario.conditions}, scenario.mesh, scenario.method, options);
-        solved.solve_seconds = seconds_since(begin);
-        const Clock::time_point second = Clock::now();
+        solution = solve(scenario.model, {scenario.conditions}, scenario.time, scenario.method, options);
+        solved.solve_seconds = seconds_since(begin) - solution.estimate_seconds;
         estimate(scenario.model, {scenario.conditions}, scenario.method, options, solution);
-        solved.estimate_seconds = seconds_since(second);
+        solved.estimate_seconds = solution.estimate_seconds;
     }
     say_detail(fmt::format("solved in {:.3g} s", solved.solve_seconds));
 
@@ -110,11 +108,12 @@ Solved solve_scenario(const Scenario& scenario, const Common& common)
         if (solution.report.converged()) solution.report.status = SolveStatus::suspect;
         solution.report.message = "memory ended before the motion was checked";
     }
-    solved.run = make_run(scenario.model, std::move(solution), scenario.method);
+    const Method method = solution.method;
+    solved.run = make_run(scenario.model, std::move(solution), method);
     solved.run.scenario_text = scenario.text;
     solved.run.title = scenario.title;
     solved.run.resolved = scenario.resolved;
-    solved.run.output = scenario.output;
+    solved.run.output = scenario.output.empty() ? solved.run.motion.mesh.ends : scenario.output;
     say_detail(fmt::format("checked in {:.3g} s", seconds_since(begin)));
     solved.signal = InterruptWatch::signal();   // also where it came too late to stop anything
     return solved;

@@ -46,6 +46,20 @@ std::string kept_of(const Run& run, double end)
     return fmt::format("the file holds the motion up to {:.6g} s", end);
 }
 
+/// "7 digits until 31 s"
+std::string until(double digits, double t)
+{
+    return fmt::format("{:.0f} digit{} until {:.6g} s", digits, digits == 1 ? "" : "s", t);
+}
+
+/// "7 digits until 31 s, to 2 digits until 60 s"; files before format 2.2 know the last of it alone.
+std::string good_of(const Verdict& s, double end)
+{
+    const std::string last = until(std::floor(s.estimated_digits), end);
+    if (!std::isfinite(s.good_digits)) return last;
+    return until(s.good_digits, s.good_until) + (s.good_until < end ? ", to " + last : "");
+}
+
 Headline headline_of(const Run& run, double end)
 {
     const SolveReport& report = run.report;
@@ -64,8 +78,7 @@ Headline headline_of(const Run& run, double end)
                                                                     : "";
     if (std::isfinite(s.estimated_error))
         return {Ink::good, "Converged",
-                fmt::format("good to {:.0f} digits at {:.6g} s, constraints hold{}",
-                            std::floor(s.estimated_digits), end, holds)};
+                fmt::format("good to {}, constraints hold{}", good_of(s, end), holds)};
     return {Ink::good, "Converged",
             fmt::format("constraints hold{} and the balances are kept {}; the error is not known", holds,
                         grade(std::max(s.energy_drift, s.angular_momentum_drift)))};
@@ -118,8 +131,10 @@ void add_figures(Summary& summary, const Run& run, bool verbose)
     if (std::isfinite(s.estimated_error))
         summary.figure(
             "estimated error",
-            fmt::format("{} at most (of the model's length, or rad), at {:.6g} s; by a second solution",
-                        number(s.estimated_error), s.estimated_error_time));
+            fmt::format(
+                "{} at most (of the model's length, or rad), at {:.6g} s; by a second solution{}",
+                number(s.estimated_error), s.estimated_error_time,
+                report.converged() || !(s.good_digits > 0) ? "" : "; " + until(s.good_digits, s.good_until)));
     summary.figure(
         "constraints",
         fmt::format("violated by {} at most{}, their rates by {} 1/s", number(s.max_constraint_violation),

@@ -81,6 +81,15 @@ TEST(Couplings, AScrewHasOrder2pAndManyTurns)
     EXPECT_LE(far.verdict.violations.velocity_level, 1e-10);
 }
 
+TEST(Couplings, AScrewIsFollowedByRadau)
+{
+    for (const auto& [degree, n] : {std::pair{2, std::vector{84, 101, 121}}, {3, {345, 414, 496}}}) {
+        const Study s = radau_study(nut(), 1, nut_at(1), degree, n);
+        EXPECT_NEAR(last_rate(s, &Distance::X, 0), 2 * degree - 1, 0.15) << "p = " << degree;
+        EXPECT_NEAR(last_rate(s, &Distance::V, 0), 2 * degree - 1, 0.15) << "p = " << degree;
+    }
+}
+
 TEST(Couplings, AnElementMayTurnByMoreThanAHalf)
 {
     // at the end by two turns, of which its nodes make 16 steps

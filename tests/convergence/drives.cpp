@@ -111,6 +111,17 @@ TEST(Drives, APendulumOnADrivenPivotHasOrder2p)
     expect_fine(solve_evenly(led_pendulum(), 1, 20, 8), witness);
 }
 
+TEST(Drives, AreFollowedByRadauWithOrder2pLess1)
+{
+    const State witness = led_witness(1, 60);
+    for (const auto& [degree, n] :
+         {std::pair{2, std::vector{48, 58, 70, 84, 101}}, {3, {26, 31, 37, 44, 53}}}) {
+        const Study s = radau_study(led_pendulum(), 1, witness, degree, n);
+        EXPECT_NEAR(last_rate(s, &Distance::X, 0), 2 * degree - 1, 0.15) << "p = " << degree;
+        EXPECT_NEAR(last_rate(s, &Distance::V, 0), 2 * degree - 1, 0.15) << "p = " << degree;
+    }
+}
+
 TEST(Drives, TheirPowerIsInTheBalance)
 {
     const Model model = led_pendulum();

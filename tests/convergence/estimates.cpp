@@ -64,7 +64,7 @@ TEST(Estimates, OfAMarchInPiecesIsThatOfTheWhole)
     const Solution finer = solved(model, 2, 9000, Lobatto{2});
     ErrorMeter meter(model, s.motion);
     meter.compare(finer.motion, 0, s.motion.n_elements());
-    const ErrorEstimate whole = meter.take();
+    const ErrorEstimate whole = meter.take(s.motion.n_elements());
     ASSERT_EQ(s.estimate.position.size(), whole.position.size());
     for (std::size_t i = 0; i < whole.position.size(); i += 100)
         EXPECT_NEAR(s.estimate.position[i], whole.position[i], 1e-11) << i;

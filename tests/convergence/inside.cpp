@@ -88,5 +88,33 @@ TEST(Lobatto, SamplesExactlyWithOrder2P)
     }
 }
 
+// Reactions too: those of the polynomials have order p.
+TEST(Lobatto, SamplesReactionsExactlyWithOrder2P)
+{
+    const Bricks bricks;
+    const double t = 0.377;
+    const Motion fine = solve_evenly(bricks.model, t, 20, 12).motion;
+    const std::vector<JointSample> there = sample_joints(bricks.model, fine, t);
+    ASSERT_EQ(there.size(), bricks.model.joints().size());
+    const auto off = [&](const std::vector<JointSample>& here) {
+        double largest = 0;
+        for (std::size_t j = 0; j < there.size(); ++j)
+            largest = std::max(largest, gap_between(here[j], there[j], 1) / size_of(there[j], 1));
+        return largest;
+    };
+    for (auto [p, n] : {std::pair{2, std::vector{64, 80, 100, 125}}, {3, {25, 31, 38, 47}}}) {
+        const Study s = study(n, [&, degree = p](int m) {
+            const Motion motion = bricks.solved(m, degree);
+            const ExactSample sample = sample_exactly(bricks.model, motion, Lobatto{degree}, t);
+            EXPECT_TRUE(sample.report.converged()) << sample.report.message;
+            EXPECT_TRUE(sample.joints.at(0).is_acceleration_level);
+            return Distance{off(sample.joints), off(sample_joints(bricks.model, motion, t))};
+        });
+        EXPECT_GE(slope(s, &Distance::X, 1e-11), 2 * p - 0.7) << "lobatto(" << p << ")";
+        EXPECT_LE(slope(s, &Distance::V, 1e-11), p + 0.7) << "the polynomials, lobatto(" << p << ")";
+        EXPECT_LT(100 * s.error.back().X, s.error.back().V);
+    }
+}
+
 }   // namespace
 }   // namespace livens::tests

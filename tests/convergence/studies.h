@@ -79,4 +79,24 @@ inline Study lobatto_study(const Model& model, double end, const Fine& reference
     });
 }
 
+/// Neither divided nor judged.
+inline SolveOptions undivided()
+{
+    SolveOptions options;
+    options.divide = options.judge = false;
+    return options;
+}
+
+/// The study of radau(p) against the end of another motion.
+inline Study radau_study(const Model& model, double end, const State& reference, int degree,
+                         const std::vector<int>& n)
+{
+    return study(n, [&](int elements) {
+        const Solution s =
+            solve(model, {model.start()}, make_time_mesh(0, end, elements), Radau{degree}, undivided());
+        EXPECT_TRUE(s.report.converged()) << s.report.message;
+        return distance(last(s), reference);
+    });
+}
+
 }   // namespace livens::tests

@@ -47,8 +47,8 @@ livens_mutant(NAME velocity_without_drives
 # The last weight off by one part in a thousand: the order is gone.
 livens_mutant(NAME one_weight
               FILE spacetime/lobatto/rule.cpp
-              OLD [[rule.k.assign(]]
-              NEW [[rule.weights[degree] *= 1.001; rule.k.assign(]]
+              OLD [[rule.weights = gauss_lobatto(n).weights;]]
+              NEW [[rule.weights = gauss_lobatto(n).weights; rule.weights[rule.degree] *= 1.001;]]
               TESTS_OF convergence
               MUST_FAIL Lobatto.ConvergesWithOrder2POnTheFreeBox
                         Lobatto.ConvergesWithOrder2POnTwoBricksInSpace
@@ -82,16 +82,16 @@ livens_mutant(NAME missing_geometric_term_by_differences
 # Loads taken where the element starts, their moments where it has come to: a spring that turns what it holds.
 livens_mutant(NAME loads_at_the_start
               FILE spacetime/lobatto/rows.cpp
-              OLD [[tables_.add_loads({stretch.times[e] + rule_.loads.points[c] * h, Side::middle}, X_.data(), V_.data(),]]
-              NEW [[tables_.add_loads({stretch.times[e] + rule_.loads.points[c] * h, Side::middle}, nodes.X(e * rule_.degree), V_.data(),]]
+              OLD [[tables_.add_loads(at, X_.data(), V_.data(),]]
+              NEW [[tables_.add_loads(at, nodes.X(e * rule_.degree), V_.data(),]]
               TESTS_OF conservation
               MUST_FAIL Lobatto.BalancesAngularMomentumOverTenSeconds Lobatto.KeepsMomentaOfAFloatingChain)
 
 # Loads at as many Gauss-Lobatto points: springs are no Gauss collocation then, and stable no longer.
 livens_mutant(NAME loads_at_lobatto_points
               FILE spacetime/lobatto/rule.cpp
-              OLD [[gauss(degree), {}, {}]]
-              NEW [[degree > 1 ? gauss_lobatto(degree) : gauss(1), {}, {}]]
+              OLD [[rule.loads = gauss(rule.degree);]]
+              NEW [[rule.loads = rule.degree > 1 ? gauss_lobatto(rule.degree) : gauss(1);]]
               TESTS_OF properties
               MUST_FAIL IntegratorKit.EveryMethodIsStableAsStated
                         IntegratorKit.EveryMethodIsStableInTurnsAsStated
@@ -107,9 +107,10 @@ livens_mutant(NAME loads_given_to_one_node
 
 # The instant of a node for what is taken at a Gauss point: right for constant loads only.
 livens_mutant(NAME loads_at_the_instants_of_nodes
-              FILE spacetime/lobatto/rows.cpp
-              OLD [[rule_.loads.points[c] * h, Side::middle},]]
-              NEW [[rule_.nodes[c] * h, Side::middle},]]
+              FILE spacetime/lobatto/stretch.h
+              RECOMPILE spacetime/lobatto/rows.cpp
+              OLD [[rule.loads.points[c] * h(e), Side::middle}]]
+              NEW [[rule.nodes[c] * h(e), Side::middle}]]
               TESTS_OF convergence
               MUST_FAIL LobattoLoads.HaveOrder2PWithTorquesThatVaryInTime
                         LobattoLoads.HaveOrder2PWithAllOfThemOnTwoBodies)
@@ -137,6 +138,40 @@ livens_mutant(NAME reflections_without_choice
               NEW [[reflections_[j].lead = j;]]
               TESTS_OF conservation
               MUST_FAIL Lobatto.KeepsPlanarMotionsPlanarForTenSeconds)
+
+# --- Radau points
+
+# The momentum at the start shared out by the weights: right for degree 1 only.
+livens_mutant(NAME radau_momentum_by_weights
+              FILE spacetime/lobatto/rule.cpp
+              OLD [[rule.c[a] = static_cast<double>(-w * rule.D[a * n]);]]
+              NEW [[rule.c[a] = static_cast<double>(w);]]
+              TESTS_OF convergence
+              MUST_FAIL Radau.ConvergesWithOrder2PLess1OnTheFreeBox Radau.FollowsAStiffElasticPendulum)
+
+# The jump where the polynomial meets the velocity.
+livens_mutant(NAME radau_jump_at_the_end
+              FILE diagnostics/velocity_jump.cpp
+              OLD [[const bool at_start = motion.X.points == Points::radau;]]
+              NEW [[const bool at_start = false;]]
+              TESTS_OF convergence
+              MUST_FAIL Radau.TellsTheErrorOfAnElementByItsVelocityJump)
+
+# The energy of a motion that damps not looked at at all.
+livens_mutant(NAME radau_blow_up_hidden
+              FILE diagnostics/balance.cpp
+              OLD [[risen[end] = sum < 0 ? 0 : sum;]]
+              NEW [[risen[end] = 0 * sum;]]
+              TESTS_OF unit_spacetime
+              MUST_FAIL Verdict.OfEnergyThatRadauGainsIsSuspect)
+
+# What bears a preload taken for what lets go.
+livens_mutant(NAME frequency_of_a_preload_reversed
+              FILE multibody/frequencies.cpp
+              OLD [[b, b, -maps_]]
+              NEW [[b, b, maps_]]
+              TESTS_OF unit_multibody
+              MUST_FAIL Frequencies.OfAPreloadThatABodyBears)
 
 # --- the paper's elements
 

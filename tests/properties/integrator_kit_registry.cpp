@@ -32,6 +32,18 @@ IntegratorCase lobatto_case(int degree)
     return lobatto_case(degree, {});
 }
 
+/// Order 2p - 1; what stiffness makes of it is damped, also that of constraint forces.
+IntegratorCase radau_case(int degree)
+{
+    IntegratorCase c = integrator_case(Radau{degree});
+    const double order = 2 * degree - 1;
+    if (degree <= 4) c.orders = {{{order}, {order}, {order}}};
+    c.keeps_linear_momentum = true;
+    c.is_stable = c.is_stable_with_preload = true;
+    if (degree > 2) c.seen = 0;
+    return c;
+}
+
 IntegratorCase midpoint_case()
 {
     IntegratorCase c = integrator_case(Midpoint{});
@@ -87,6 +99,7 @@ std::vector<IntegratorCase> all_cases()
     std::vector<IntegratorCase> cases{midpoint_case(), endpoint_case(), collocation_case(1),
                                       collocation_case(2)};
     for (int degree = 1; degree <= 16; ++degree) cases.push_back(lobatto_case(degree));
+    for (int degree = 1; degree <= 8; ++degree) cases.push_back(radau_case(degree));
     // No rate is stated where an error of another order still wins (the hinged brick with the natural start),
     // where Newton may fail (two bricks with the strong start), and, of some pairings, to save time.
     for (const auto& [pairing, orders] : std::vector<std::pair<Pairing, Orders>>{

@@ -19,11 +19,11 @@ TEST(Coarse, SpringMassConvergesWithFiveElements)
     const ScenarioResult read = parse_scenario(text, "spring_mass.toml");
     ASSERT_TRUE(read.scenario) << render(read.diagnostics, read.text, DiagnosticFormat::human);
     const Scenario& s = *read.scenario;
-    ASSERT_EQ(s.mesh.n_elements(), 5);
-    const Solution solution = solve(s.model, {s.conditions}, s.mesh, s.method, s.options);
+    ASSERT_EQ(std::get<TimeMesh>(s.time).n_elements(), 5);
+    const Solution solution = solve(s.model, {s.conditions}, s.time, s.method, s.options);
     ASSERT_TRUE(solution.report.converged()) << solution.report.message;
     for (int e = 0; e <= 5; ++e) {
-        const double t = s.mesh.ends[e];
+        const double t = std::get<TimeMesh>(s.time).ends[e];
         const double exact = 1 + 0.2 * std::exp(-t) * (std::cos(10 * t) + 0.1 * std::sin(10 * t));
         EXPECT_NEAR(solution.motion.at_end(e).X[0](0, 0), exact, 5e-5) << t;
     }

@@ -71,7 +71,7 @@ inline Shipped solve_example(const std::string& name)
         throw std::runtime_error("examples/" + name + ".toml cannot be read");
     }
     const Scenario& s = *read.scenario;
-    Shipped shipped{s.model, solve(s.model, {s.model.start()}, s.mesh, s.method, s.options)};
+    Shipped shipped{s.model, solve(s.model, {s.model.start()}, s.time, s.method, s.options)};
     EXPECT_TRUE(shipped.solution.report.converged()) << shipped.solution.report.message;
     return shipped;
 }

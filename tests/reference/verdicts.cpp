@@ -14,7 +14,7 @@ Solution solved(const Scenario& s)
 {
     SolveOptions options = s.options;
     options.condition = false;   // takes longer than the solution
-    return solve(s.model, {s.conditions}, s.mesh, s.method, options);
+    return solve(s.model, {s.conditions}, s.time, s.method, options);
 }
 
 TEST(Verdicts, NoExampleIsSuspect)
@@ -43,7 +43,7 @@ Scenario with_elements(const std::string& name, int elements)
     }
     ScenarioResult read = parse_scenario(text.str(), name);
     EXPECT_TRUE(read.scenario.has_value()) << name;
-    EXPECT_EQ(read.scenario->mesh.n_elements(), elements);
+    EXPECT_EQ(std::get<TimeMesh>(read.scenario->time).n_elements(), elements);
     return std::move(*read.scenario);
 }
 

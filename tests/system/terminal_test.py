@@ -7,6 +7,7 @@ Transcripts are compared with tests/system/transcripts; LIVENS_WRITE_TRANSCRIPTS
 """
 import fcntl
 import json
+import math
 import os
 import pty
 import re
@@ -160,6 +161,31 @@ class Looks(ProgramTest):
                 self.assertNotIn("\n", line)
                 self.assertEqual("residual" in line, columns == 120, line)
                 self.assertEqual("to go" in line, columns > 15, line)
+
+    def test_digits_are_said_until_they_are_lost(self):
+        """A motion that grows errors: what is said first agrees with the errors in the file, and with a finer run."""
+        text = (SOURCE / "examples" / "double_pendulum_offset.toml").read_text()
+        text = re.sub(r"^output.*\n", "", text, flags=re.M)
+        for name, elements in (("run", 480), ("fine", 720)):
+            time = f"end = 24\nelements = {elements}"
+            self.write(f"{name}.toml", re.sub(r"^end = .*\nelements = .*", time, text, flags=re.M))
+        first = self.expect(0, "solve", "run.toml").out.split("\n")[0]
+        found = re.search(r"good to (\d+) digits until ([0-9.]+) s, to (\d+) digits until 24 s", first)
+        self.assertIsNotNone(found, first)
+        self.assertIn(found[0], self.expect(0, "info", "run.nc").out)
+        digits, until, last = int(found[1]), float(found[2]), int(found[3])
+        figures = json.loads(self.expect(0, "info", "run.nc", "--json").out)
+        self.assertEqual((figures["good_digits"], figures["good_until"]), (digits, until))
+        self.assertGreater(digits, last)
+        self.run_program("solve", "fine.toml")
+        worst = {}
+        for t in (until, 24.0):
+            query = ("--body", "lower", "--at", str(t), "--json")
+            run, fine = (json.loads(self.expect(0, "sample", f"{name}.nc", *query).out) for name in ("run", "fine"))
+            worst[t] = math.dist(run["center_of_mass"], fine["center_of_mass"]) / figures["model_length"]
+            self.assertLess(run["estimated_position_error"], 10.0 ** -(digits if t == until else last))
+        self.assertLess(worst[until], 3 * 10.0**-digits)   # estimates are within a factor of three
+        self.assertGreater(worst[24.0], 10.0**-digits)
 
     def test_more_with_verbose(self):
         self.write("small.toml", SMALL)

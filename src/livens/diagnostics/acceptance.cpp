@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "livens/diagnostics/acceptance.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "livens/base/text.h"
-#include "livens/diagnostics/detail/largest.h"
+#include "livens/base/largest.h"
 
 namespace livens {
 namespace {
@@ -24,6 +25,8 @@ constexpr double acceptable_zigzag = 0.5;
 constexpr double acceptable_drift = 0.05;
 constexpr double acceptable_distance = 0.05;
 constexpr double acceptable_error = 1e-2;
+/// Of positions in lengths and rad: what a few steps lose of sixteen digits.
+constexpr double rounding_at_start = 1e-13;
 constexpr double doubtful_pivot = 1e-6;
 
 /// Reasons, gathered. nan breaks every bound.
@@ -54,9 +57,9 @@ public:
                            (has_blocks ? "smaller blocks or more elements" : "more elements") +
                            " may help");
     }
-    void error(const ErrorEstimate& estimate, const Model& model)
+    void error(const ErrorEstimate& estimate, const Model& model, double bound)
     {
-        if (estimate.largest <= acceptable_error) return;
+        if (estimate.largest <= bound) return;
         reasons_.push_back(
             "its estimated error is " + to_text(estimate.largest, 3) +
             " (lengths of the model, or rad), of body '" + model.body_name(estimate.body) + "' at " +
@@ -97,7 +100,7 @@ void measure(Verdict& v, const Model& model, const Motion& motion, bool holds_we
     v.max_weak_violation = off.joints_weakly;   // 0 where they were not asked for
     raise_to(v.max_weak_violation, off.rigidity_weakly);
     v.balance = balance(model, motion);
-    v.energy_drift = v.balance.relative_energy_drift();
+    v.energy_drift = motion.damps() ? v.balance.relative_energy_rise() : v.balance.relative_energy_drift();
     v.linear_momentum_drift = v.balance.relative_linear_momentum_drift();
     v.angular_momentum_drift = v.balance.relative_angular_momentum_drift();
     const Zigzag z = zigzag(model, motion);
@@ -113,7 +116,7 @@ void measure(Verdict& v, const Model& model, const Motion& motion, bool holds_we
 }   // namespace
 
 Verdict judge(const Model& model, const Motion& motion, const SolveReport& report,
-              const ErrorEstimate& estimate)
+              const ErrorEstimate& estimate, std::span<const double> growth)
 {
     Verdict v;
     if (motion.n_elements() == 0) return v;   // nothing was solved, so there is nothing to judge
@@ -123,14 +126,31 @@ Verdict judge(const Model& model, const Motion& motion, const SolveReport& repor
         v.remarks.push_back("the constraints came close to losing rank (smallest pivot " +
                             to_text(report.smallest_pivot, 3) +
                             "): the mechanism passes near a singular position");
+    const double lost = motion.damps() ? v.balance.relative_energy_loss() : 0;
+    if (lost > acceptable_drift)
+        v.remarks.push_back("the method has damped " + to_text(lost, 3) +
+                            " of the energy: motions that its elements do not resolve, or elements that are "
+                            "too long for the motion, which the estimated error would tell");
     if (!estimate.empty()) {
         v.estimated_error = estimate.largest;
-        v.estimated_digits = estimate.digits(motion.n_elements());
+        v.estimated_digits = estimate.digits();
         v.estimated_error_time = estimate.time;
+        const ErrorEstimate::Good good = estimate.good(motion.mesh);
+        v.good_digits = good.digits;
+        v.good_until = good.until;
     }
+    for (std::size_t e = 0; e < growth.size(); ++e) {
+        if (e == 0) v.growth = 0;
+        raise_to(v.growth, growth[e]);
+        if (std::isnan(v.horizon) && growth[e] * rounding_at_start >= acceptable_error)
+            v.horizon = motion.mesh.ends[e];
+    }
+    if (!std::isnan(v.horizon))
+        v.remarks.push_back("what rounding does to the start has grown to 0.01 by " + to_text(v.horizon, 4) +
+                            " s: behind, double precision says nothing of this motion");
     if (!report.converged()) return v;
     Reasons reasons(v.reasons);
-    if (!estimate.empty()) reasons.error(estimate, model);
+    if (!estimate.empty()) reasons.error(estimate, model, std::max(acceptable_error, report.accuracy));
     if (!report.second_failed.empty())
         v.reasons.push_back("nothing tells the error, since the second solution failed: " +
                             report.second_failed);
@@ -139,7 +159,8 @@ Verdict judge(const Model& model, const Motion& motion, const SolveReport& repor
     reasons.violation(v.max_constraint_violation,
                       holds_weakly ? acceptable_nodal_violation : acceptable_violation, " at element nodes");
     reasons.violation(v.max_weak_violation, acceptable_weak_violation, " in the mean over an element");
-    reasons.zigzag(v.zigzag_positions, v.zigzag_time, "velocities", has_blocks);
+    if (!motion.damps())   // else an element rings within itself, once, where it damps
+        reasons.zigzag(v.zigzag_positions, v.zigzag_time, "velocities", has_blocks);
     if (v.zigzag_momenta != v.zigzag_positions)   // else the momentum is that of the same velocities
         reasons.zigzag(v.zigzag_momenta, v.zigzag_time, "momenta", has_blocks);
     reasons.jump(v.velocity_jump, v.velocity_jump_time);

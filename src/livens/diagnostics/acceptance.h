@@ -3,6 +3,7 @@
 #pragma once
 
 #include <limits>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -35,6 +36,10 @@ struct Verdict {
     double estimated_error = unknown;    ///< largest of ErrorEstimate, if there is one
     double estimated_digits = unknown;   ///< its negative decadic logarithm, 0 to 16
     double estimated_error_time = unknown;   ///< where it is largest, s
+    double good_digits = unknown;            ///< see ErrorEstimate::good()
+    double good_until = unknown;             ///< likewise, s
+    double growth = unknown;    ///< largest of a perturbation of the start, where it was measured
+    double horizon = unknown;   ///< s, where 1e-13 has grown to 1e-2; unknown also if that is after the end
     std::vector<std::string> reasons;    ///< why the motion is suspect, a line each; empty: it is not
     std::vector<std::string> remarks;    ///< what is worth a look and refuses nothing
     Balance balance;
@@ -45,13 +50,14 @@ struct Verdict {
 ///   |Phi| / scale at nodes > 1e-6, where constraints hold at points;
 ///   its mean over an element > 1e-3, or |Phi| / scale at nodes > 0.05, where they hold weakly (the latter
 ///   are errors of the discretisation, not of the solution, and fall with the elements);
-///   Zigzag of positions or momenta > 0.5, for any method: elements too long to see the motion;
+///   Zigzag of positions or momenta > 0.5: elements too long to see the motion (positions of a method that
+///   damps are left out: its elements ring once where they damp);
 ///   a velocity jump > 0.3, where constraints hold at nodes: the polynomial of an element does not see its
 ///   own momentum, because the element is too long or a spurious root; it is farther than 0.05 of the model's
 ///   length from the march it was guessed by, if it was; the relative drift of energy, linear or angular
-///   momentum > 0.05; an estimated error > 1e-2, or a second solution that failed;
+///   momentum > 0.05; an estimated error > 1e-2 (or the accuracy asked for); a second solution that failed;
 /// or if one of these figures is not a number.
 Verdict judge(const Model& model, const Motion& motion, const SolveReport& report,
-              const ErrorEstimate& estimate = {});
+              const ErrorEstimate& estimate = {}, std::span<const double> growth = {});
 
 }   // namespace livens

@@ -5,7 +5,7 @@
 #include <limits>
 #include <optional>
 
-#include "livens/diagnostics/detail/largest.h"
+#include "livens/base/largest.h"
 #include "livens/diagnostics/detail/sampler.h"
 #include "livens/diagnostics/diagnostics.h"
 #include "livens/time/quadrature.h"
@@ -48,6 +48,11 @@ struct Supply {
     }
 };
 
+Quadrature nodal_rule(const Field& field)
+{
+    return field.points == Points::lobatto ? gauss_lobatto(field.degree + 1) : radau(field.degree);
+}
+
 /// Where loads are taken, as by the method: at its Gauss points, where alone its momentum balances are exact.
 /// Without such points one multiplier an element marks a stepping rule with one stage: endpoint (order 1)
 /// takes forces at the end of the step, midpoint in its middle.
@@ -55,14 +60,14 @@ Quadrature load_rule(const Motion& motion)
 {
     if (motion.gauss_points > 0) return gauss(motion.gauss_points);
     const bool one_stage = motion.X.degree == 1 && motion.multipliers.degree == 0;
-    if (!one_stage) return gauss_lobatto(motion.X.degree + 1);
+    if (!one_stage) return nodal_rule(motion.X);
     return {{motion.order_at_ends == 1 ? 1.0 : 0.5}, {1.0}};
 }
 
 /// Where joints are taken: where the method holds them, at its nodes or at the points of its loads.
 Quadrature joint_rule(const Motion& motion)
 {
-    if (motion.constraints_hold == "element nodes") return gauss_lobatto(motion.X.degree + 1);
+    if (motion.constraints_hold == "element nodes") return nodal_rule(motion.X);
     return load_rule(motion);
 }
 
@@ -231,13 +236,37 @@ double relative(const std::vector<double>& drift, double moving, double level)
     return worst <= rounding * level ? 0 : worst / std::max(moving, rounding * level);
 }
 
+/// The largest kinetic energy or change of potential energy.
+double moving_energy(const Balance& balance)
+{
+    double moving = balance.largest_kinetic;
+    for (const double v : balance.potential) raise_to(moving, std::abs(v - balance.potential.front()));
+    return moving;
+}
+
 }   // namespace
 
 double Balance::relative_energy_drift() const
 {
-    double moving = largest_kinetic;
-    for (const double v : potential) raise_to(moving, std::abs(v - potential.front()));
-    return relative(energy_drift, moving, reference_energy);
+    return relative(energy_drift, moving_energy(*this), reference_energy);
+}
+
+double Balance::relative_energy_rise() const
+{
+    std::vector<double> risen(energy.size(), 0.0);
+    for (std::size_t end = 1; end < energy.size(); ++end) {
+        const double supplied = std::max(work[end] - work[end - 1], 0.0);
+        const double sum = risen[end - 1] + (energy[end] - energy[end - 1]) - supplied;
+        risen[end] = sum < 0 ? 0 : sum;
+    }
+    return relative(risen, moving_energy(*this), reference_energy);
+}
+
+double Balance::relative_energy_loss() const
+{
+    if (energy.empty()) return 0;
+    const double lost = energy.front() - (energy.back() - work.back());
+    return relative({std::max(lost, 0.0)}, moving_energy(*this), reference_energy);
 }
 
 double Balance::relative_linear_momentum_drift() const

@@ -49,6 +49,11 @@ struct Balance {
 
     /// Relative to the largest kinetic energy or change of potential energy since the start.
     double relative_energy_drift() const;
+    // For motions that damp, relative to the same. What the energy has risen by, since any earlier end,
+    // beyond what loads supplied to each element (docs/theory.md, "What is diagnosed"); what energy less work
+    // has fallen by from start to end.
+    double relative_energy_rise() const;
+    double relative_energy_loss() const;
     /// Relative to largest_momentum or the largest impulse.
     double relative_linear_momentum_drift() const;
     /// Relative to largest_moment.
@@ -103,9 +108,10 @@ struct Zigzag {
 /// A motion that is not a number has values that are not. Throws InputError for a window below 6.
 Zigzag zigzag(const Model& model, const Motion& motion, int window = 16);
 
-/// How far the polynomial of an element is from the velocity that its momentum has at its end: the largest
+/// How far the polynomial of an element is from the velocity that its momentum has at its end, and with Radau
+/// points, which meet that velocity at the end, at its start: the largest
 ///
-///     h |V_end - X_h'(end)|      of the centre of mass by the model's length, of directors by sqrt(2)
+///     h |V - X_h'|      of the centre of mass by the model's length, of directors by sqrt(2)
 ///
 /// over bodies and elements. It is of order h^(degree + 1) for elements that resolve the motion, and of the
 /// size of the motion inside an element for those that do not, however well their balances close.
@@ -114,6 +120,14 @@ struct VelocityJump {
     double time = 0;   ///< end of the worst element, s
 };
 VelocityJump velocity_jump(const Model& model, const Motion& motion);
+
+/// What an element with such a velocity jump J adds to the error of X, in lengths of the model or rad:
+///
+///     C_p J^q      q = (2p + 1) / (p + 1) with Gauss-Lobatto points, 2p / (p + 1) with Radau points
+///
+/// so that it has the order of the local error, h^(2p + 1) or h^(2p). C_p is a median over problems
+/// (docs/theory.md, "The local error"); single elements are off by a factor of 5 or so to both sides.
+double local_error(Points points, int degree, double jump);
 
 /// Largest violations of joint rows, each divided by its scale, and of rigidity |1/2 (d_a . d_b - delta_ab)|,
 /// which point masses do not have. A motion that is not a number has violations that are not. Where X jumps

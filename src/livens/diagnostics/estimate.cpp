@@ -4,32 +4,26 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
-#include "livens/diagnostics/detail/largest.h"
-#include "livens/diagnostics/sample.h"
+#include "livens/base/largest.h"
 
 namespace livens {
 
 namespace {
 
-/// Reactions of all joints on both sides of an instant: [f, t / length].
-using Loads = std::vector<std::array<double, 12>>;
-
-Loads loads_at(const Model& model, const Motion& motion, double t)
+/// Reactions on both sides of an instant: [f, t / length].
+std::array<double, 12> loads_of(const JointSample& joint, double length)
 {
-    Loads loads;
-    const double length = model.length();
-    for (const JointSample& joint : sample_joints(model, motion, t)) {
-        std::array<double, 12>& all = loads.emplace_back();
-        int k = 0;
-        for (const Reaction* side : {&joint.left, &joint.right})
-            for (int i = 0; i < 3; ++i) {
-                all[k++] = side->force[i];
-                all[k++] = side->torque[i] / length;
-            }
-    }
-    return loads;
+    std::array<double, 12> all;
+    int k = 0;
+    for (const Reaction* side : {&joint.left, &joint.right})
+        for (int i = 0; i < 3; ++i) {
+            all[k++] = side->force[i];
+            all[k++] = side->torque[i] / length;
+        }
+    return all;
 }
 
 double norm_of(const std::array<double, 12>& load)
@@ -39,79 +33,139 @@ double norm_of(const std::array<double, 12>& load)
     return std::sqrt(0.5 * sum);
 }
 
+double digits_of(double error) { return std::clamp(-std::log10(error), 0.0, 16.0); }   // nan stays nan
+
 }   // namespace
 
 ErrorMeter::ErrorMeter(const Model& model, const Motion& motion, double factor)
-    : model_(model), motion_(motion), factor_(factor), length_(model.length())
+    : model_(model), motion_(motion), factor_(factor)
+{
+    estimate_.n_bodies = model.n_bodies();
+    estimate_.length = model.length();
+    estimate_.largest = 0;
+    estimate_.largest_reaction = 0;
+}
+
+void ErrorMeter::reach(int end)
 {
     constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-    const auto ends = static_cast<std::size_t>(motion.n_elements()) + 1;
-    estimate_.n_bodies = model.n_bodies();
-    estimate_.n_joints = motion.end_multipliers.empty() ? 0 : static_cast<int>(model.joints().size());
+    const std::size_t so_far = estimate_.position.size() / static_cast<std::size_t>(estimate_.n_bodies);
+    const auto ends = std::max(so_far, static_cast<std::size_t>(end) + 1);
     for (auto* errors : {&estimate_.position, &estimate_.orientation, &estimate_.velocity})
-        errors->assign(ends * static_cast<std::size_t>(estimate_.n_bodies), unknown);
-    estimate_.reaction.assign(ends * static_cast<std::size_t>(estimate_.n_joints), unknown);
+        errors->resize(ends * static_cast<std::size_t>(estimate_.n_bodies), unknown);
+    estimate_.reaction.resize(ends * static_cast<std::size_t>(estimate_.n_joints), unknown);
 }
 
 void ErrorMeter::compare(const Motion& finer, int first, int last)
 {
+    estimate_.n_joints = motion_.end_multipliers.empty() ? 0 : static_cast<int>(model_.joints().size());
+    reach(last);
     for (int end = first; end <= last; ++end) {
         const int there = element_end_at(finer.mesh, motion_.mesh.ends[end]);
         if (there < 0) continue;
         compare_states(end, motion_.at_end(end), finer.at_end(there));
         if (estimate_.n_joints > 0 && !finer.end_multipliers.empty()) compare_reactions(end, finer);
     }
+    estimate_.find_largest(motion_.mesh);
 }
 
 void ErrorMeter::compare_states(int end, const State& a, const State& b)
 {
     for (int k = 0; k < estimate_.n_bodies; ++k) {
-        const Matrix34 dX = a.X[k] - b.X[k], dV = a.V[k] - b.V[k];
-        const Vector4 centre = point(mass_properties(model_.bodies()[k].mass).center_of_mass);
-        // the chord of a turn by phi is 2 sqrt(2) sin(phi / 2)
-        const double chord = norm(directors(dX)) / (2 * std::sqrt(2.0));
+        const BodyGap gap = gap_between(a, b, model_.bodies()[k], k, estimate_.length);
         const auto at = static_cast<std::size_t>(end * estimate_.n_bodies + k);
-        estimate_.position[at] = factor_ * norm(dX * centre) / length_;
-        estimate_.orientation[at] = chord <= 1 ? factor_ * 2 * std::asin(chord) : factor_ * std::acos(-1.0);
-        if (std::isnan(chord)) estimate_.orientation[at] = chord;
-        estimate_.velocity[at] = factor_ * norm(dV * centre);
+        estimate_.position[at] = factor_ * gap.position;
+        estimate_.orientation[at] = factor_ * gap.orientation;
+        estimate_.velocity[at] = factor_ * gap.velocity;
     }
 }
 
 void ErrorMeter::compare_reactions(int end, const Motion& finer)
 {
     const double t = motion_.mesh.ends[end];
-    const Loads a = loads_at(model_, motion_, t), b = loads_at(model_, finer, t);
+    const std::vector<JointSample> a = sample_joints(model_, motion_, t), b = sample_joints(model_, finer, t);
     for (std::size_t j = 0; j < a.size(); ++j) {
-        std::array<double, 12> gap;
-        for (std::size_t i = 0; i < gap.size(); ++i) gap[i] = a[j][i] - b[j][i];
-        estimate_.reaction[static_cast<std::size_t>(end * estimate_.n_joints) + j] = factor_ * norm_of(gap);
-        largest_load_ = std::max(largest_load_, norm_of(a[j]));
+        estimate_.reaction[static_cast<std::size_t>(end * estimate_.n_joints) + j] =
+            factor_ * gap_between(a[j], b[j], estimate_.length);
+        raise_to(estimate_.largest_reaction, size_of(a[j], estimate_.length));
     }
 }
 
-ErrorEstimate ErrorMeter::take()
+ErrorEstimate ErrorMeter::take(int last)
 {
-    estimate_.largest = 0;
-    for (std::size_t i = 0; i < estimate_.position.size(); ++i)
-        for (const double error : {estimate_.position[i], estimate_.orientation[i]})
-            if (raise_to(estimate_.largest, error)) {
-                estimate_.time = motion_.mesh.ends[i / static_cast<std::size_t>(estimate_.n_bodies)];
-                estimate_.body = static_cast<int>(i % static_cast<std::size_t>(estimate_.n_bodies));
-            }
-    for (double& error : estimate_.reaction) error = largest_load_ > 0 ? error / largest_load_ : 0;
+    reach(last);
+    const double size = estimate_.largest_reaction;
+    for (double& error : estimate_.reaction) error = size > 0 ? error / size : 0;
+    if (estimate_.n_joints == 0) estimate_.largest_reaction = std::numeric_limits<double>::quiet_NaN();
     return std::move(estimate_);
 }
 
-double ErrorEstimate::digits(int end) const
+double ErrorEstimate::error(int end) const
 {
-    double error = 0;
-    const auto n = static_cast<std::size_t>((end + 1) * n_bodies);
-    for (std::size_t i = 0; i < std::min(n, position.size()); ++i) {
-        raise_to(error, position[i]);
-        raise_to(error, orientation[i]);
+    double worst = 0;
+    const auto n = static_cast<std::size_t>(n_bodies), first = static_cast<std::size_t>(end) * n;
+    for (std::size_t i = first; i < first + n; ++i) {
+        raise_to(worst, position[i]);
+        raise_to(worst, orientation[i]);
     }
-    return error > 0 ? std::max(-std::log10(error), 0.0) : 16;
+    return worst;
+}
+
+BodyGap gap_between(const State& a, const State& b, const Body& body, int index, double length)
+{
+    const Matrix34 dX = a.X[index] - b.X[index], dV = a.V[index] - b.V[index];
+    const Vector4 centre = point(mass_properties(body.mass).center_of_mass);
+    // the chord of a turn by phi is 2 sqrt(2) sin(phi / 2)
+    const double chord = norm(directors(dX)) / (2 * std::sqrt(2.0));
+    return {norm(dX * centre) / length, chord > 1 ? std::numbers::pi : 2 * std::asin(chord),
+            norm(dV * centre)};
+}
+
+double gap_between(const JointSample& a, const JointSample& b, double length)
+{
+    std::array<double, 12> gap = loads_of(a, length);
+    const std::array<double, 12> other = loads_of(b, length);
+    for (std::size_t i = 0; i < gap.size(); ++i) gap[i] -= other[i];
+    return norm_of(gap);
+}
+
+double size_of(const JointSample& joint, double length) { return norm_of(loads_of(joint, length)); }
+
+void ErrorEstimate::find_largest(const TimeMesh& mesh)
+{
+    std::size_t compared = position.size();   // what a finer motion did not reach says nothing
+    while (compared > 0 && std::isnan(position[compared - 1])) --compared;
+    largest = compared > 0 ? 0 : std::numeric_limits<double>::quiet_NaN();
+    for (std::size_t i = 0; i < compared; ++i)
+        for (const double error : {position[i], orientation[i]})
+            if (raise_to(largest, error)) {
+                time = mesh.ends[i / static_cast<std::size_t>(n_bodies)];
+                body = static_cast<int>(i % static_cast<std::size_t>(n_bodies));
+            }
+}
+
+double ErrorEstimate::digits() const { return digits_of(largest); }
+
+ErrorEstimate::Good ErrorEstimate::good(const TimeMesh& mesh) const
+{
+    Good best{0, mesh.end()};
+    double error = 0;
+    for (int end = 0; end < static_cast<int>(mesh.ends.size()); ++end) {
+        raise_to(error, this->error(end));
+        const Good here{std::floor(digits_of(error)), mesh.ends[end]};
+        const double said = here.digits * (here.until - mesh.start());
+        if (said > 0 && said >= best.digits * (best.until - mesh.start())) best = here;
+    }
+    return best;
+}
+
+double ErrorEstimate::at(const std::vector<double>& errors, int n, int index, const TimeMesh& mesh, double t)
+{
+    if (errors.empty()) return std::numeric_limits<double>::quiet_NaN();
+    const int end = element_end_at(mesh, t), first = end >= 0 ? end : mesh.element_at(t);
+    double error = errors[static_cast<std::size_t>(first * n + index)];
+    if (end < 0) raise_to(error, errors[static_cast<std::size_t>((first + 1) * n + index)]);
+    return error;
 }
 
 }   // namespace livens

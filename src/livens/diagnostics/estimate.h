@@ -5,10 +5,23 @@
 #include <limits>
 #include <vector>
 
+#include "livens/diagnostics/sample.h"
 #include "livens/multibody/model.h"
 #include "livens/multibody/motion.h"
 
 namespace livens {
+
+/// How far two states of one body are apart.
+struct BodyGap {
+    double position = 0;      ///< between the centres of mass, in lengths of the model
+    double orientation = 0;   ///< rad; 0 for point masses
+    double velocity = 0;      ///< m/s, of the centre of mass
+};
+BodyGap gap_between(const State& a, const State& b, const Body& body, int index, double length);
+
+/// Between two reactions of a joint, or of all of one: forces, and torques by the length of the model, N.
+double gap_between(const JointSample& a, const JointSample& b, double length);
+double size_of(const JointSample& joint, double length);
 
 /// Estimated errors at the element ends of a motion; empty where there is none.
 ///
@@ -23,13 +36,29 @@ struct ErrorEstimate {
     /// Of a joint's force, or torque by the length of the model, relative to the largest of the run; entry
     /// end * n_joints + joint. Empty where the motion has no reactions at element ends.
     std::vector<double> reaction;
+    double length = std::numeric_limits<double>::quiet_NaN();             ///< of the model, m
+    double largest_reaction = std::numeric_limits<double>::quiet_NaN();   ///< of all joints and ends, N
     double largest = std::numeric_limits<double>::quiet_NaN();   ///< of all positions and orientations
     double time = 0;                                             ///< of that, s
     int body = -1;                                               ///< likewise
 
     bool empty() const { return position.empty(); }
-    /// Digits that all positions and orientations have up to an element end: -log10 of the largest.
-    double digits(int end) const;
+    /// The largest of all bodies' positions and orientations at an element end.
+    double error(int end) const;
+    /// Digits that all positions and orientations have: -log10 of the largest, 0 to 16.
+    double digits() const;
+    /// Of all that can be said as "n digits until t" what says most: n (t - start) is largest. Whole digits.
+    struct Good {
+        double digits = 0;
+        double until = 0;   ///< an element end, s
+    };
+    Good good(const TimeMesh& mesh) const;
+
+    /// At t the error of one of `n` bodies or joints: at an element end its own, between two ends the larger,
+    /// which is that of the elements alone, not of the polynomial between them. nan where there is none.
+    static double at(const std::vector<double>& errors, int n, int index, const TimeMesh& mesh, double t);
+    /// Sets largest, time and body.
+    void find_largest(const TimeMesh& mesh);
 };
 
 /// The distance of a motion from a finer one, which may come piece by piece. In a closed loop with redundant
@@ -42,17 +71,19 @@ public:
 
     /// At the element ends first..last of the motion, all of which `finer` has.
     void compare(const Motion& finer, int first, int last);
-    /// What was not compared is not a number.
-    ErrorEstimate take();
+    /// The largest error so far, when, and of which body.
+    const ErrorEstimate& so_far() const { return estimate_; }
+    /// Up to an element end of the motion. What was not compared is not a number.
+    ErrorEstimate take(int last);
 
 private:
+    void reach(int end);
     void compare_states(int end, const State& a, const State& b);
     void compare_reactions(int end, const Motion& finer);
 
     const Model& model_;
     const Motion& motion_;
-    double factor_, length_;
-    double largest_load_ = 0;
+    double factor_;
     ErrorEstimate estimate_;
 };
 

@@ -13,7 +13,6 @@
 #include "livens/diagnostics/diagnostics.h"
 #include "livens/multibody/body.h"
 #include "livens/multibody/reactions.h"
-#include "livens/time/quadrature.h"
 
 namespace livens {
 
@@ -93,8 +92,7 @@ BodySample sample_body(const Body& body, const Matrix34& X, const Matrix34& V, c
 
 std::vector<double> node_times(const Field& field, const TimeMesh& mesh)
 {
-    const std::vector<double> s =
-        field.degree == 0 ? std::vector<double>{0.5} : gauss_lobatto(field.degree + 1).points;
+    const std::vector<double> s = field.basis().nodes();
     std::vector<double> times;
     for (int e = 0; e < mesh.n_elements(); ++e)
         for (std::size_t a = field.continuous && e > 0 ? 1 : 0; a < s.size(); ++a)

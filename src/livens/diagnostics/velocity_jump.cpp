@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <cmath>
+#include <span>
 #include <vector>
 
-#include "livens/diagnostics/detail/largest.h"
+#include "livens/base/largest.h"
 #include "livens/diagnostics/detail/sampler.h"
 #include "livens/diagnostics/diagnostics.h"
 
@@ -12,14 +14,15 @@ VelocityJump velocity_jump(const Model& model, const Motion& motion)
 {
     VelocityJump jump;
     const double length = model.length();
-    const ElementSampler ends(motion, {1.0});
+    const bool at_start = motion.X.points == Points::radau;
+    const ElementSampler ends(motion, {at_start ? 0.0 : 1.0});
     std::vector<Vector4> centres;
     for (const Body& body : model.bodies())
         centres.push_back(point(body.is_point ? Vector3{} : mass_properties(body.mass).center_of_mass));
     std::vector<Matrix34> slopes(model.bodies().size());
     for (int e = 0; e < motion.n_elements(); ++e) {
         const double h = motion.mesh.length(e);
-        const std::span<const Matrix34> V = velocities_at_end(motion, e + 1);
+        const std::span<const Matrix34> V = velocities_at_end(motion, at_start ? e : e + 1);
         ends.velocities(e, 0, slopes);
         for (std::size_t b = 0; b < slopes.size(); ++b) {
             const Matrix34 gap = h * (V[b] - slopes[b]);
@@ -30,6 +33,17 @@ VelocityJump velocity_jump(const Model& model, const Motion& motion)
         }
     }
     return jump;
+}
+
+double local_error(Points points, int degree, double jump)
+{
+    // p = 1, 2, ..; the last holds for all above.
+    static constexpr double of_lobatto[] = {0.44, 0.13, 0.058, 0.04};
+    static constexpr double of_radau[] = {0.4, 0.36, 0.35, 0.22, 0.22, 0.17, 0.15};
+    const bool is_radau = points == Points::radau;
+    const std::span<const double> C = is_radau ? std::span<const double>(of_radau) : of_lobatto;
+    const double c = C[std::min(static_cast<std::size_t>(degree), C.size()) - 1];
+    return c * std::pow(jump, (2.0 * degree + (is_radau ? 0 : 1)) / (degree + 1));
 }
 
 }   // namespace livens

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "livens/base/error.h"
-#include "livens/diagnostics/detail/largest.h"
+#include "livens/base/largest.h"
 #include "livens/diagnostics/detail/sampler.h"
 #include "livens/diagnostics/diagnostics.h"
 #include "livens/diagnostics/sample.h"
@@ -110,7 +110,7 @@ void at_velocity_level(const Model& model, const Motion& motion, std::span<Matri
 void between_nodes(const Model& model, const Motion& motion, int samples, std::span<Matrix34> X,
                    ViolationReport& report)
 {
-    const ElementSampler between(motion, points_between(gauss_lobatto(motion.X.degree + 1).points, samples));
+    const ElementSampler between(motion, points_between(motion.X.basis().nodes(), samples));
     for (int e = 0; e < motion.n_elements(); ++e) {
         for (int k = 0; k < between.size(); ++k) {
             between.positions(e, k, X);

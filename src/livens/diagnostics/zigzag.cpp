@@ -7,7 +7,7 @@
 #include <string>
 
 #include "livens/base/error.h"
-#include "livens/diagnostics/detail/largest.h"
+#include "livens/base/largest.h"
 #include "livens/diagnostics/detail/sampler.h"
 #include "livens/diagnostics/diagnostics.h"
 

@@ -19,7 +19,7 @@ namespace livens {
 class JsonWriter;
 
 inline constexpr int format_major = 2;   ///< an unknown one is refused
-inline constexpr int format_minor = 1;   ///< additions only
+inline constexpr int format_minor = 2;   ///< additions only
 
 /// A run as it stands in the file: everything but the model, which is made again from the scenario text.
 struct Run {
@@ -36,6 +36,7 @@ struct Run {
     Motion motion;
     SolveReport report;
     Verdict verdict;   ///< from a file without reasons, remarks and violations
+    ErrorEstimate estimate;
     std::vector<std::string> notes;   ///< of the report and of the verdict
     std::string version;   ///< of the livens that wrote it
 };
@@ -60,10 +61,6 @@ RunHead read_run_head(const std::filesystem::path& file);
 
 /// The figures of report, verdict and motion as members of an object, named as in the file; null: not known.
 void write_figures(JsonWriter& json, const Run& run);
-
-/// CSV of the samples at the output times: t, then per body position, quaternion (w, x, y, z), velocity,
-/// angular velocity; then energies. Written as atomically as the run.
-void write_csv(const std::filesystem::path& file, const Model& model, const Run& run);
 
 /// Throws IoError now if `file` could not be written: the folder is missing, it is a directory, no
 /// permission, a device or a pipe. A temporary file is made there and removed again, to be sure. Call before

@@ -2,6 +2,7 @@
 // Scenario files (TOML): one file describes bodies, joints, loads, time and method.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -14,14 +15,24 @@
 
 namespace livens {
 
+/// The surface of a shape, for pictures: a profile that is turned about d3 in so many steps, then stretched
+/// along d1, d2, d3. Its origin is the centre of mass.
+struct Outline {
+    std::vector<std::array<double, 2>> profile;   ///< (radius, height), inside on the left; empty: no shape
+    int sides = 24;                               ///< with 4 the sides of a square are normal to d1 and d2
+    Vector3 stretch{1, 1, 1};
+};
+Outline ball_outline();   ///< of radius 1
+
 /// A scenario that has been read, checked and closed as far as it can be without solving.
 struct Scenario {
     std::string file;   ///< as given by the caller; messages only, never written to results
     std::string text;   ///< the file itself
     std::string title;
     Model model;
-    TimeMesh mesh;   ///< element ends hold jumps of loads (unless breaks = "ignore") and output times
-    std::vector<double> output;   ///< output times; all element ends if the scenario lists none
+    std::vector<Outline> outlines;   ///< of the bodies
+    Time time;   ///< element ends hold jumps of loads (unless breaks = "ignore") and output times
+    std::vector<double> output;   ///< output times; all element ends, where known, if the scenario lists none
     Method method;
     Conditions conditions;      ///< what is given at start and end, and the states there, with their times
     SolveOptions options;   ///< tolerance, max_iterations, initial, condition

@@ -15,16 +15,17 @@ namespace {
 
 constexpr int max_degree = 32;
 
-/// Lagrange bases on Gauss-Lobatto points, built once, all at the first call.
-const LagrangeBasis& basis_of_degree(int degree)
+/// Lagrange bases, built once, all at the first call.
+const LagrangeBasis& known_basis(Points points, int degree)
 {
     static const std::vector<LagrangeBasis> bases = [] {
         std::vector<LagrangeBasis> all;
-        for (int p = 1; p <= max_degree; ++p) all.push_back(lobatto_basis(p));
+        for (const Points any : {Points::lobatto, Points::radau})
+            for (int p = 1; p <= max_degree; ++p) all.push_back(basis_on(any, p));
         return all;
     }();
     assert(degree >= 1 && degree <= max_degree);
-    return bases[degree - 1];
+    return bases[(points == Points::lobatto ? 0 : max_degree) + degree - 1];
 }
 
 Matrix34 body_of(std::span<const double> stacked, int body)
@@ -48,6 +49,11 @@ std::span<double> Field::coefficient(int element, int a)
                                              n_values);
 }
 
+LagrangeBasis Field::basis() const
+{
+    return degree == 0 ? LagrangeBasis({0.5}) : known_basis(points, degree);
+}
+
 void Field::evaluate(int element, double s, int derivative, std::span<double> out) const
 {
     assert(derivative == 0 || derivative == 1);
@@ -61,7 +67,7 @@ void Field::evaluate(int element, double s, int derivative, std::span<double> ou
 
     const std::size_t n = static_cast<std::size_t>(degree) + 1;
     std::array<double, max_degree + 1> M{}, D{};
-    const LagrangeBasis& basis = basis_of_degree(degree);
+    const LagrangeBasis& basis = known_basis(points, degree);
     if (derivative == 0 || !denominators.empty()) basis.values(s, std::span(M.data(), n));
     if (derivative == 1) basis.derivatives(s, std::span(D.data(), n));
     make_rational(element, std::span(M.data(), n), std::span(D.data(), derivative == 1 ? n : 0));

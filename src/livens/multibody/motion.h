@@ -8,6 +8,7 @@
 
 #include "livens/base/linear.h"
 #include "livens/multibody/model.h"
+#include "livens/time/basis.h"
 #include "livens/time/time_mesh.h"
 
 namespace livens {
@@ -15,7 +16,7 @@ namespace livens {
 /// A function of time that is a polynomial in every element, or a quotient of two, by its values at that
 /// element's local nodes.
 ///
-/// Local nodes are Gauss-Lobatto points of `degree` (degree 0: one value an element). If continuous,
+/// Local nodes are the `points` of `degree` (degree 0: one value an element). If continuous,
 /// neighbours share the value at their common end: coefficient (e, a) is entry e * degree + a; else e *
 /// (degree + 1) + a. With denominators W_a (NURBS, one for each coefficient) the function is
 /// sum_a M_a W_a x_a / sum_a M_a W_a with the Lagrange polynomials M_a of these nodes.
@@ -25,10 +26,13 @@ struct Field {
     bool continuous = true;
     std::vector<double> values;           ///< coefficient after coefficient
     std::vector<double> denominators{};   ///< positive, one a coefficient; empty: polynomials
+    Points points = Points::lobatto;
 
     bool empty() const { return values.empty(); }
     /// Place of coefficient (element, a) among all.
     int index(int element, int a) const { return element * (continuous ? degree : degree + 1) + a; }
+    /// The basis on the local nodes in [0, 1]; the node of degree 0 is 1/2.
+    LagrangeBasis basis() const;
     std::span<const double> coefficient(int element, int a) const;
     std::span<double> coefficient(int element, int a);
     /// Value (derivative = 0) or derivative by the local coordinate s in [0, 1] (divide by the element's
@@ -76,6 +80,8 @@ struct Motion {
     int n_elements() const { return mesh.n_elements(); }
     double start() const { return mesh.start(); }
     double end() const { return mesh.end(); }
+    /// The method takes energy by construction: what is lost is not held against the motion.
+    bool damps() const { return X.points == Points::radau; }
 
     /// X and V at any instant: at element ends the end values, else the polynomial and its derivative.
     State at(double t) const;

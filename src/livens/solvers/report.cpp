@@ -16,6 +16,8 @@ const char* to_string(SolveStatus status)
         return "not finite";
     case SolveStatus::cancelled:
         return "cancelled";
+    case SolveStatus::inaccurate:
+        return "not accurate";
     case SolveStatus::suspect:
         return "suspect";
     }

@@ -14,6 +14,7 @@ enum class SolveStatus {
     singular,        ///< a tangent lost rank or the constraints did; likewise
     not_finite,      ///< a load or a state became nan or inf; likewise
     cancelled,       ///< stopped by the caller; likewise
+    inaccurate,      ///< the accuracy that was asked for was not reached; the motion ends where it was lost
     suspect          ///< the iteration converged, but the motion fails the checks made of it
 };
 
@@ -31,6 +32,11 @@ struct SolveReport {
     int rescued = 0;                 ///< windows that converged only from another guess than the first
     int divided = 0;                 ///< elements that were too long and were divided into two
     double divided_at = 0;           ///< near end of the first of them, s
+    int refused = 0;                 ///< elements that were solved again, shorter, for the accuracy asked for
+    double accuracy = 0;             ///< that was asked for; 0: none
+    int tries = 0;                   ///< motions until it was reached
+    long long evaluations = 0;       ///< of the equations at a node of an element, in the motion
+    long long evaluations_in_all = 0;   ///< of all tries and their second solutions
     double residual_norm = 0;        ///< largest scaled residual at acceptance
     double smallest_pivot = 1;       ///< of the scaled constraint Jacobian; below 1e-6 deserves a look
     double failed_at = 0;            ///< near end of the failed window, s; only if not converged

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The error of a motion by a second solution on the same elements.
 #include <algorithm>
+#include <chrono>
 #include <variant>
 
-#include "livens/spacetime/solve.h"
+#include "livens/spacetime/second.h"
 
 namespace livens {
 
@@ -23,18 +24,6 @@ TimeMesh halved(const TimeMesh& mesh)
     return finer;
 }
 
-/// The same problem with one degree more, or with half the steps.
-Solution solve_finer(const Model& model, const Problem& problem, const TimeMesh& mesh, const Method& method,
-                     const SolveOptions& options)
-{
-    if (const auto* lobatto = std::get_if<Lobatto>(&method)) {
-        Lobatto finer = *lobatto;
-        ++finer.degree;
-        return solve(model, problem, mesh, finer, options);
-    }
-    return solve(model, problem, halved(mesh), method, options);
-}
-
 /// The error by the distance from the finer solution.
 double order_factor(const Method& method)
 {
@@ -45,40 +34,75 @@ double order_factor(const Method& method)
 
 }   // namespace
 
+Second::Second(const Model& model, const Problem& problem, const Method& method, const SolveOptions& options,
+               const Motion& first)
+    : model_(model), problem_(problem), method_(method), options_(options), first_(first),
+      meter_(model, first, order_factor(method)), is_backwards_(problem.conditions.at_end == Known::state),
+      at_(is_backwards_ ? first.n_elements() : 0)
+{
+    problem_.guess = [&first](double t) { return first.at(t); };
+    options_.condition = options_.judge = false;
+    if (auto* lobatto = std::get_if<Lobatto>(&method_)) ++lobatto->degree;
+    if (auto* radau = std::get_if<Radau>(&method_)) ++radau->degree;
+}
+
+bool Second::advance(int end)
+{
+    const int first = std::min(at_, end), last = std::max(at_, end);
+    TimeMesh mesh{{first_.mesh.ends.begin() + first, first_.mesh.ends.begin() + last + 1}};
+    if (!is_nodal(method_)) mesh = halved(mesh);
+    const auto begin = std::chrono::steady_clock::now();
+    Solution second = solve(model_, problem_, mesh, method_, options_);
+    seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    report_ = std::move(second.report);
+    evaluations_ += report_.evaluations;
+    if (!report_.converged()) return false;
+    meter_.compare(second.motion, first, last);
+    (is_backwards_ ? problem_.conditions.end : problem_.conditions.start) =
+        second.motion.at_end(is_backwards_ ? 0 : second.motion.n_elements());
+    options_.initial = StartPolicy::project;   // an end state holds its constraints to rounding
+    at_ = end;
+    return true;
+}
+
+namespace {
+
+void measure_error(const Model& model, const Problem& problem, const Method& method,
+                   const SolveOptions& options, Solution& solution)
+{
+    const int n = solution.motion.n_elements();
+    const Conditions& given = problem.conditions;
+    const bool is_march = given.at_end == Known::state || given.at_start == Known::state;
+    const int piece = is_march ? std::min(n, elements_at_once) : n;
+    Second second(model, problem, method, options, solution.motion);
+    for (int done = piece;; done = std::min(done + piece, n)) {
+        const bool is_good = second.advance(given.at_end == Known::state ? n - done : done);
+        solution.estimate_seconds = second.seconds();
+        if (!is_good) {
+            if (second.report().status == SolveStatus::cancelled)
+                solution.report.notes.push_back("stopped as asked before the error was estimated");
+            else
+                solution.report.second_failed = second.report().message;
+            return;
+        }
+        if (done == n) break;
+    }
+    solution.estimate = second.take(n);
+}
+
+}   // namespace
+
 void estimate(const Model& model, const Problem& problem, const Method& method, const SolveOptions& options,
               Solution& solution)
 {
-    if (options.estimate == SolveOptions::Estimate::none || !solution.report.converged() ||
-        std::holds_alternative<Mixed>(method))
-        return;
-    const Motion& motion = solution.motion;
-    const int n = motion.n_elements();
-    const bool backwards = problem.conditions.at_end == Known::state;
-    const bool is_march = backwards || problem.conditions.at_start == Known::state;
-    const int piece = is_march ? std::min(n, elements_at_once) : n;
-    ErrorMeter meter(model, motion, order_factor(method));
-    Problem rest = problem;
-    rest.guess = [&motion](double t) { return motion.at(t); };
-    SolveOptions quiet = options;
-    quiet.condition = quiet.judge = false;
-    for (int done = 0; done < n; done += piece) {
-        const int first = backwards ? std::max(n - done - piece, 0) : done, last = std::min(first + piece, n);
-        const TimeMesh mesh{
-            {motion.mesh.ends.begin() + first, motion.mesh.ends.begin() + (backwards ? n - done : last) + 1}};
-        const Solution second = solve_finer(model, rest, mesh, method, quiet);
-        if (!second.report.converged()) {
-            if (second.report.status == SolveStatus::cancelled)
-                solution.report.notes.push_back("stopped as asked before the error was estimated");
-            else
-                solution.report.second_failed = second.report.message;
-            return;
-        }
-        meter.compare(second.motion, first, backwards ? n - done : last);
-        (backwards ? rest.conditions.end : rest.conditions.start) =
-            second.motion.at_end(backwards ? 0 : second.motion.n_elements());
-        quiet.initial = StartPolicy::project;   // an end state holds its constraints to rounding
-    }
-    solution.estimate = meter.take();
+    if (!solution.report.converged() || std::holds_alternative<Mixed>(method)) return;
+    if (options.estimate == SolveOptions::Estimate::second && solution.estimate.empty())
+        measure_error(model, problem, method, options, solution);
+    if (!options.growth) return;
+    const auto begin = std::chrono::steady_clock::now();
+    solution.growth = growth(model, problem, solution.method, options, solution.motion);
+    solution.estimate_seconds +=
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
 }   // namespace livens

@@ -65,7 +65,7 @@ MarchGuess guess_from_state(const Model& model, const State& state, std::span<co
     if (!is_forwards) std::reverse(mesh.ends.begin(), mesh.ends.end());
     const Ends ends = close_ends(model, conditions, mesh.start(), mesh.end(), StartPolicy::project);
     const Tables tables(model, ends.independent);
-    LobattoWindow window(tables, mesh, ends, Lobatto{2});
+    LobattoWindow window(tables, mesh, ends, lobatto_rule(2));
     SolveReport report;
     const WindowOptions options{.direction = is_forwards ? 1 : -1};
     solve_windows(window, mesh, options, report);

@@ -13,9 +13,16 @@ namespace livens {
 /// Continuous X of degree p per element, nodes and quadrature at Gauss-Lobatto points; order 2p at element
 /// ends.
 struct Lobatto {
-    int degree = 4;   ///< 1..16
+    int degree = 4;   ///< 1..16; 0: as an accuracy has it, see Span
     /// Elements solved together, 0: all. The equations are the same; conditions at both ends take all.
     int window = 1;
+};
+
+/// The stiffly accurate sibling: nodes at the start and at the right Radau points, where loads are taken and
+/// constraints and equations of motion hold; order 2p - 1 at element ends. It damps what it does not resolve,
+/// and takes the state at the start only.
+struct Radau {
+    int degree = 4;   ///< 1..8
 };
 
 /// The elements of the paper: X, P and multipliers are separate fields over one time basis, directors are
@@ -72,9 +79,21 @@ struct Mixed {
 struct Midpoint {};   ///< energy-momentum midpoint rule, order 2
 struct Endpoint {};   ///< implicit Euler, order 1
 
-using Method = std::variant<Lobatto, Mixed, Midpoint, Endpoint>;
+using Method = std::variant<Lobatto, Radau, Mixed, Midpoint, Endpoint>;
 
-/// "lobatto(6)", "mixed(bspline, 2, natural, equal)", "midpoint", "endpoint".
+/// Lobatto and Radau: one family on two sets of points, with constraints at the nodes.
+inline bool is_nodal(const Method& method)
+{
+    return std::holds_alternative<Lobatto>(method) || std::holds_alternative<Radau>(method);
+}
+
+/// Not the classical rules.
+inline bool is_elements(const Method& method)
+{
+    return is_nodal(method) || std::holds_alternative<Mixed>(method);
+}
+
+/// "lobatto(6)", "radau(4)", "mixed(bspline, 2, natural, equal)", "midpoint", "endpoint".
 std::string name_of(const Method& method);
 
 }   // namespace livens

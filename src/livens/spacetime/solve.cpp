@@ -8,6 +8,7 @@
 
 #include "livens/base/error.h"
 #include "livens/base/text.h"
+#include "livens/spacetime/accuracy.h"
 #include "livens/spacetime/guess.h"
 #include "livens/spacetime/lobatto/window.h"
 #include "livens/spacetime/mixed/window.h"
@@ -27,7 +28,7 @@ std::unique_ptr<Window> make_window(const Tables& tables, const TimeMesh& mesh, 
 {
     if (const auto* mixed = std::get_if<Mixed>(&method))
         return std::make_unique<MixedWindow>(tables, mesh, ends, *mixed);
-    return std::make_unique<LobattoWindow>(tables, mesh, ends, std::get<Lobatto>(method));
+    return std::make_unique<LobattoWindow>(tables, mesh, ends, rule_of(method));
 }
 
 /// Instants in the direction of solution: the ends of elements first..last - 1, each divided into `pieces`.
@@ -42,8 +43,8 @@ std::vector<double> instants(const TimeMesh& mesh, const Ends& ends, int first, 
 }
 
 /// Where windows start from, one attempt after the other. From a state: a march of lobatto(2) over the
-/// elements, or more and more pieces of them. Single elements of lobatto have their own guess; where that
-/// leads nowhere they are too long, and are divided.
+/// elements, or more and more pieces of them. Single elements of lobatto and radau have their own guess;
+/// where that leads nowhere they are too long, and are divided.
 class Proposals {
 public:
     Proposals(const Model& model, const Problem& problem, const TimeMesh& mesh, const Ends& ends,
@@ -97,7 +98,7 @@ WindowOptions window_options(const Model& model, const Ends& ends, const Method&
         w.may_split = false;   // shorter blocks are other equations
         w.advice = "shorter elements, or fewer of them at once";
     } else {
-        w.length = std::get<Lobatto>(method).window;
+        if (const auto* lobatto = std::get_if<Lobatto>(&method)) w.length = lobatto->window;
         w.may_divide = options.divide && ends.has_state();
         if (w.may_divide) w.trust = {acceptable_velocity_jump, true};
     }
@@ -158,6 +159,7 @@ Solution solve_by_windows(const Model& model, const Problem& problem, const Time
     const Tables tables(model, ends.independent, is_mixed);
     const std::unique_ptr<Window> window = make_window(tables, mesh, ends, method);
     Solution solution;
+    solution.method = method;
     SolveReport& report = solution.report;
     report.notes = ends.notes;
     WindowOptions w = window_options(model, ends, method, options);
@@ -166,13 +168,14 @@ Solution solve_by_windows(const Model& model, const Problem& problem, const Time
     Patience patience(options, mesh, w.direction > 0 ? mesh.end() : mesh.start());
     if (!ends.has_state() && !is_mixed && report.status != SolveStatus::cancelled)
         refuse_undetermined(*window, patience, report);
-    const bool is_whole = is_mixed || w.length == 0 || w.length >= mesh.n_elements();
+    const bool is_whole = !std::holds_alternative<Lobatto>(method) || w.length == 0 ||
+                          w.length >= mesh.n_elements();   // else the last window is all there is
     if (options.condition && report.converged() && is_whole)
         window->measure_condition(report, patience.goes_on());
     solution.motion = window->take_motion();
     if (options.condition && report.converged() && !is_whole) {
         // the march's equations as one window of all elements, at the solution
-        LobattoWindow whole(tables, mesh, ends, std::get<Lobatto>(method));
+        LobattoWindow whole(tables, mesh, ends, rule_of(method));
         const Motion& motion = solution.motion;
         if (whole.open(0, mesh.n_elements(), report) &&
             whole.start_from([&](double t) { return motion.at(t); }) && whole.equations().residual())
@@ -194,148 +197,21 @@ Solution solve_by_steps(const Model& model, const Problem& problem, const TimeMe
         std::holds_alternative<Midpoint>(method) ? SteppingRule::midpoint : SteppingRule::endpoint;
     SteppingResult result = march_stepping(model, start, mesh, rule,
                                            {options.tolerance, options.max_iterations, options.progress});
-    return {std::move(result.motion), std::move(result.report)};
-}
-
-bool is_elements(const Method& method)
-{
-    return std::holds_alternative<Lobatto>(method) || std::holds_alternative<Mixed>(method);
-}
-
-void check_state(const Model& model, const State& state, const char* path)
-{
-    if (state.X.size() == model.bodies().size() && state.V.size() == model.bodies().size()) return;
-    throw InputError({"start-size", path, std::string("the ") + path + " needs X and V of every body",
-                      std::to_string(state.X.size()), std::to_string(model.n_bodies()), "", ""});
-}
-
-/// Momenta at both ends do not say where free bodies are: bodies that neither joints nor loads tie to the
-/// world, directly or through others, can be displaced together.
-void refuse_free_bodies(const Model& model)
-{
-    std::vector<int> group(model.bodies().size());
-    for (int b = 0; b < model.n_bodies(); ++b) group[b] = b;
-    std::vector<bool> is_held(group.size(), false);
-    const auto tie = [&](int i, int j) {
-        if (i == world) std::swap(i, j);
-        if (i == world) return;
-        if (j == world) {
-            is_held[group[i]] = true;
-            return;
-        }
-        const int from = group[j], to = group[i];
-        if (from == to) return;
-        is_held[to] = is_held[to] || is_held[from];
-        for (int& g : group)
-            if (g == from) g = to;
-    };
-    for (int r = 0; r < model.n_rows(); ++r) {
-        tie(model.row(r).body_i, model.row(r).body_j);
-        for (const PairForm& q : model.row(r).coordinates) tie(q.body_i, q.body_j);
-    }
-    for (const Load& load : model.loads())
-        if (load.depends_on_X && load.potential) tie(load.bodies[0], load.bodies[1]);
-    for (int b = 0; b < model.n_bodies(); ++b)
-        if (!is_held[group[b]])
-            throw InputError({"boundary-conditions", "end.given",
-                              "momenta at both ends do not tell where body '" + model.body_name(b) + "' is",
-                              "", "positions at one end at least",
-                              "it could be displaced in any direction without any change of its momenta",
-                              "give positions at the start or at the end"});
-}
-
-/// The other families take quadratic forms alone.
-void refuse_special_rows(const Model& model, const Method& method)
-{
-    if (std::holds_alternative<Lobatto>(method)) return;
-    const std::string name = std::holds_alternative<Mixed>(method) ? "mixed" : name_of(method);
-    if (model.has_drives())
-        throw InputError({"drives-method", "method.name", "the method " + name + " cannot follow drives",
-                          name, "lobatto", "", "use lobatto for joints that depend on time"});
-    for (int r = 0; r < model.n_rows(); ++r)
-        if (model.row(r).function)
-            throw InputError({"joint-method", "method.name",
-                              "the method " + name + " cannot hold " + model.row_name(r), name, "lobatto",
-                              "its rows must be quadratic forms of the bodies' positions and directors",
-                              "use lobatto for screws, gears and slots"});
-}
-
-void check_conditions(const Model& model, const Conditions& given, const Method& method)
-{
-    const auto is_at = [&](const State& state, Known known, const char* path) {
-        if (known != Known::nothing) check_state(model, state, path);
-    };
-    is_at(given.start, given.at_start, "start");
-    is_at(given.end, given.at_end, "end");
-    const int positions = (knows_positions(given.at_start) ? 1 : 0) + (knows_positions(given.at_end) ? 1 : 0);
-    const int momenta = (knows_momenta(given.at_start) ? 1 : 0) + (knows_momenta(given.at_end) ? 1 : 0);
-    if (positions + momenta != 2)
-        throw InputError({"boundary-conditions", "end.given",
-                          "the conditions at the ends of time do not determine a motion", "",
-                          "two of: positions and momenta at the start, positions and momenta at the end", "",
-                          "give the state at one end, or one half of it at each"});
-    if (given.at_start == Known::state) return;
-    if (!is_elements(method))
-        throw InputError({"boundary-method", "start.given",
-                          "the method " + name_of(method) + " needs the whole state at the start", "",
-                          "the state at the start", "",
-                          "use lobatto or mixed for conditions at the end of time"});
-    if (positions > 0) return;
-    if (std::holds_alternative<Mixed>(method))
-        throw InputError({"boundary-conditions", "end.given", "the elements mixed need positions at one end",
-                          "", "positions at one end at least", "", "use lobatto for momenta at both ends"});
-    refuse_free_bodies(model);
+    return {std::move(result.motion), method, std::move(result.report)};
 }
 
 }   // namespace
 
-std::string name_of(const Method& method)
-{
-    if (const auto* lobatto = std::get_if<Lobatto>(&method))
-        return "lobatto(" + std::to_string(lobatto->degree) + ")";
-    if (std::holds_alternative<Midpoint>(method)) return "midpoint";
-    if (std::holds_alternative<Endpoint>(method)) return "endpoint";
-    const Mixed& mixed = std::get<Mixed>(method);
-    const char* const bases[] = {"lagrange", "bspline", "nurbs"};
-    return std::string("mixed(") + bases[static_cast<int>(mixed.basis)] + ", " +
-           std::to_string(mixed.degree) + ", " +
-           (mixed.start == Mixed::Start::natural ? "natural" : "strong") + ", " +
-           (mixed.multipliers == Mixed::Multipliers::equal ? "equal" : "lower") + ")";
-}
-
-void check_method(const Model& model, const Problem& problem, const TimeMesh& mesh, const Method& method,
-                  const SolveOptions& options)
-{
-    if (model.n_bodies() == 0)
-        throw InputError({"no-bodies", "body", "a model needs at least one body", "", "", "", "add a body"});
-    refuse_special_rows(model, method);
-    check_conditions(model, problem.conditions, method);
-    if (mesh.n_elements() < 1)
-        throw InputError(
-            {"no-elements", "time.elements", "at least one time element is needed", "", ">= 1", "", ""});
-    if (!(options.tolerance > 0) || !(options.tolerance < 1))
-        throw InputError({"tolerance-out-of-range", "method.tolerance",
-                          "the tolerance must lie between 0 and 1", to_text(options.tolerance),
-                          "0 < tolerance < 1", "", ""});
-    if (options.max_iterations < 1)
-        throw InputError({"max-iterations-out-of-range", "method.max_iterations",
-                          "at least one iteration is needed", std::to_string(options.max_iterations), ">= 1",
-                          "", ""});
-    if (const auto* mixed = std::get_if<Mixed>(&method)) check_mixed(model, problem.conditions, mesh, *mixed);
-    if (const auto* lobatto = std::get_if<Lobatto>(&method)) {
-        lobatto_rule(lobatto->degree);   // throws
-        if (lobatto->window < 0)
-            throw InputError({"window-out-of-range", "method.window", "a window has at least one element",
-                              std::to_string(lobatto->window), "1 to all", "", ""});
-    }
-}
-
-Solution solve(const Model& model, const Problem& problem, const TimeMesh& mesh, const Method& method,
+Solution solve(const Model& model, const Problem& problem, const Time& time, const Method& method,
                const SolveOptions& options)
 {
-    check_method(model, problem, mesh, method, options);
-    Solution solution = is_elements(method) ? solve_by_windows(model, problem, mesh, method, options)
-                                            : solve_by_steps(model, problem, mesh, method, options);
+    check_method(model, problem, time, method, options);
+    const auto* mesh = std::get_if<TimeMesh>(&time);
+    Solution solution =
+        mesh == nullptr
+            ? solve_to_accuracy(model, problem, std::get<Span>(time), method, options)
+        : is_elements(method) ? solve_by_windows(model, problem, *mesh, method, options)
+                              : solve_by_steps(model, problem, *mesh, method, options);
     if (!options.judge) return solution;
     estimate(model, problem, method, options, solution);
     judge(model, solution);
@@ -344,21 +220,26 @@ Solution solve(const Model& model, const Problem& problem, const TimeMesh& mesh,
 
 void judge(const Model& model, Solution& solution)
 {
-    solution.verdict = judge(model, solution.motion, solution.report, solution.estimate);
+    solution.verdict = judge(model, solution.motion, solution.report, solution.estimate, solution.growth);
     if (solution.verdict.reasons.empty()) return;
     solution.report.status = SolveStatus::suspect;
     solution.report.message = solution.verdict.reasons.front();
 }
 
-ExactSample sample_exactly(const Model& model, const Motion& motion, const Method& method, double t,
+ExactSample sample_exactly(const Model& model, const Motion& motion, const Method& given, double t,
                            const SolveOptions& options)
 {
+    Method method = given;
+    if (auto* lobatto = std::get_if<Lobatto>(&method); lobatto != nullptr && lobatto->degree == 0)
+        lobatto->degree = motion.X.degree;
+    if (auto* radau = std::get_if<Radau>(&method); radau != nullptr && radau->degree == 0)
+        radau->degree = motion.X.degree;
     if (!(t >= motion.start() && t <= motion.end()))
         throw InputError({"time-out-of-range", "at", "the instant lies outside the motion", to_text(t),
                           to_text(motion.start()) + " to " + to_text(motion.end()), "", ""});
     const int element = motion.mesh.element_at(t);
     for (int end = element; end <= element + 1; ++end)
-        if (motion.mesh.ends[end] == t) return {motion.at_end(end), {}};
+        if (motion.mesh.ends[end] == t) return {motion.at_end(end), sample_joints(model, motion, t), {}};
     if (std::holds_alternative<Mixed>(method))
         throw InputError(
             {"sample-exact-method", "at", "the elements of the family mixed cannot be solved one by one", "",
@@ -373,7 +254,8 @@ ExactSample sample_exactly(const Model& model, const Motion& motion, const Metho
     const TimeMesh one{{motion.mesh.ends[element], t}};
     Solution s = is_elements(method) ? solve_by_windows(model, problem, one, method, quiet)
                                      : solve_by_steps(model, problem, one, method, quiet);
-    return {s.motion.at_end(s.motion.mesh.n_elements()), std::move(s.report)};
+    const double there = s.motion.end();   // t, if it converged
+    return {sample_state(s.motion, there), sample_joints(model, s.motion, there), std::move(s.report)};
 }
 
 }   // namespace livens

@@ -33,38 +33,54 @@ struct SolveOptions {
         second,   ///< a second solution, of degree + 1 or with half the steps, on the same mesh
         none
     } estimate = Estimate::second;
+    /// Whether a neighbouring motion tells how perturbations grow, after the estimate (state at the start).
+    bool growth = false;
 };
 
 struct Solution {
     Motion motion;        ///< up to the last good element end
+    Method method;        ///< that was taken: a degree that was left open is chosen
     SolveReport report;   ///< `suspect` if the verdict has reasons; the first of them is its message
     Verdict verdict{};
     ErrorEstimate estimate{};
+    /// By how much a perturbation of the start has grown, at element ends, in lengths and rad by lengths and
+    /// rad at the start; empty if nobody asked, as far as the neighbouring motion came if it failed.
+    std::vector<double> growth{};
+    double estimate_seconds = 0;   ///< that the second solution and the neighbouring motion took
 };
 
 /// Throws InputError for wrong input (degree out of range, a start that does not fit, see close_start(),
 /// pairings and conditions that make no solvable system, `mass-singular` where the method divides by m).
 /// Numerical failure is in the report.
-Solution solve(const Model& model, const Problem& problem, const TimeMesh& mesh, const Method& method,
+/// With an accuracy the motion comes with its estimate, or with the status `inaccurate`.
+Solution solve(const Model& model, const Problem& problem, const Time& time, const Method& method,
                const SolveOptions& options = {});
 
 /// What solve() does before it judges, if asked to and if the iteration converged: a second solution, and how
-/// far it is from the first. Where it fails the report says why.
+/// far it is from the first, where it fails the report says why; and growth(), if asked for.
 void estimate(const Model& model, const Problem& problem, const Method& method, const SolveOptions& options,
               Solution& solution);
+
+/// By how much a small perturbation of all positions and velocities at the start (velocities by the fastest
+/// rate there is) has grown at element ends: a neighbouring motion on the same elements, brought near again
+/// every 16 of them. Empty where nothing can move, or without a state at the start.
+std::vector<double> growth(const Model& model, const Problem& problem, const Method& method,
+                           const SolveOptions& options, const Motion& motion);
 
 /// What solve() does last: measures the motion and lets the verdict decide between converged and suspect. An
 /// estimate that the solution has counts.
 void judge(const Model& model, Solution& solution);
 
 /// Throws what solve() would throw for this input, without solving.
-void check_method(const Model& model, const Problem& problem, const TimeMesh& mesh, const Method& method,
+void check_method(const Model& model, const Problem& problem, const Time& time, const Method& method,
                   const SolveOptions& options = {});
 
-/// The state at any instant in the full order of the method: one shortened element is solved from the start
-/// of the element that contains t (from the stored end state). Status and message are in the report.
+/// State and reactions at any instant in the full order of the method: one shortened element is solved from
+/// the start of the element that contains t (from the stored end state). Status and message are in the
+/// report. A degree that was left open is that of the motion.
 struct ExactSample {
     State state;
+    std::vector<JointSample> joints;   ///< as sample_joints() has them, of the acceleration level
     SolveReport report;
 };
 ExactSample sample_exactly(const Model& model, const Motion& motion, const Method& method, double t,

@@ -30,10 +30,13 @@ struct Trust {
     bool turns = false;   ///< refuse also a body that turns by more than 90 degrees from node to node
 };
 
-/// How many elements of a window were closed, and whether the next one was refused by Trust.
+/// How many elements of a window were closed, whether the next one was refused by Trust, and the velocity
+/// jump of the last one that was looked at (infinite where a body turned too far; 0 if Trust asks for
+/// nothing).
 struct Closed {
     int n_elements = 0;
     bool is_refused = false;
+    double velocity_jump = 0;
 };
 
 /// A family of elements on a mesh: it states the equations of any stretch of elements, a window, and keeps
@@ -74,6 +77,8 @@ public:
     virtual void describe(SolveReport& report) const = 0;
     /// Condition numbers of the open window's matrix at the current point; 0 once `goes_on` says false.
     virtual void measure_condition(SolveReport& report, const std::function<bool()>& goes_on) = 0;
+    /// What was closed so far of a march forwards, in arrays that may be longer; null: the family cannot say.
+    virtual const Motion* so_far() { return nullptr; }
     /// Everything closed so far.
     virtual Motion take_motion() = 0;
 };

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "livens/base/text.h"
@@ -20,6 +21,12 @@ constexpr double doubtful_distance = 0.05;
 /// Of the duration: what a divided element is not divided below.
 constexpr double shortest_element = 1e-9;
 
+/// Iterations of an element that is about as long as it can be.
+constexpr int slow = 10;
+
+/// The velocity jump of an element without a solution.
+constexpr double unseen = std::numeric_limits<double>::infinity();
+
 class March {
 public:
     March(Window& window, TimeMesh& mesh, const WindowOptions& options, SolveReport& report)
@@ -29,15 +36,24 @@ public:
         newton_options_.max_iterations = options.max_iterations;
         if (options.progress)
             newton_options_.goes_on = [this](int iterations) {
-                return options_.progress({done_, mesh_.n_elements(), time_, iterations, 0});
+                return options_.progress({done_, n_elements(), time_, iterations, 0});
             };
     }
 
     void run()
     {
+        time_ = options_.direction > 0 ? mesh_.start() : mesh_.end();
+        options_.pace != nullptr ? run_at_pace(*options_.pace) : run_mesh();
+        window_.describe(report_);
+        take_notes();
+    }
+
+private:
+    /// Windows of the mesh as it is.
+    void run_mesh()
+    {
         const std::vector<int> division = divide(mesh_.n_elements(), options_.length, options_.shortest);
         const int n = static_cast<int>(division.size()) - 1;
-        time_ = options_.direction > 0 ? mesh_.start() : mesh_.end();
         const int given = mesh_.n_elements();
         most_divisions_ = 200 + 4 * given;
         for (int i = 0; i < n; ++i) {
@@ -45,7 +61,46 @@ public:
             const int more = options_.direction > 0 ? mesh_.n_elements() - given : 0;
             if (!solve(division[at] + more, division[at + 1] + more)) break;
         }
-        window_.describe(report_);
+    }
+
+    /// One element after the other, each as long as the pace has it. An element that fails or is refused is
+    /// tried again, shorter.
+    void run_at_pace(Pace& pace)
+    {
+        while (time_ < pace.end()) {
+            const double start = time_, length = pace.next_end(start) - start;
+            mesh_.ends.push_back(pace.next_end(start));
+            const int e = mesh_.n_elements() - 1;
+            if (!window_.open(e, e + 1, report_)) return void(set_failed(e, e + 1));
+            const NewtonReport outcome = attempt(e, e + 1);
+            Closed closed{0, outcome.status != SolveStatus::converged, unseen};
+            if (!closed.is_refused) closed = window_.close({pace.largest_jump(), true}, report_);
+            if (closed.n_elements > 0) {
+                pace.accepted(length, closed.velocity_jump, outcome.iterations > slow);
+                if (!take(e, e + 1, closed, outcome) || (options_.goes_on && !options_.goes_on())) return;
+                continue;
+            }
+            ++report_.refused;
+            const bool can_help = closed.is_refused && may_shorten(outcome);
+            if (!can_help || !pace.refused(length, closed.velocity_jump)) return give_up(e, closed, outcome);
+            mesh_.ends.pop_back();
+        }
+    }
+
+    /// Elements have vanished, or shorter ones do not help.
+    void give_up(int element, const Closed& closed, const NewtonReport& outcome)
+    {
+        if (!closed.is_refused) return void(set_failed(element, element + 1));   // the report says why
+        if (outcome.status != SolveStatus::converged) return void(explain(element, element + 1, outcome));
+        set_failed(element, element + 1);
+        report_.status = SolveStatus::not_converged;
+        report_.message = "the elements vanish near t = " + to_text(mesh_.ends[element], 6) +
+                          " s: however short they are, each loses more than it may; try: a lower accuracy, "
+                          "or look for a load that jumps there";
+    }
+
+    void take_notes()
+    {
         if (rounded_ > 0 && options_.tolerance < finest_tolerance)
             report_.notes.push_back("the tolerance " + to_text(options_.tolerance, 6) +
                                     " is below rounding: " + count(rounded_, "window") + " of " +
@@ -65,7 +120,6 @@ public:
                 " needed a guess from many small elements; more elements would be cheaper");
     }
 
-private:
     /// Elements first..last - 1, split where they fail together.
     bool solve(int first, int last)
     {
@@ -93,11 +147,16 @@ private:
 
     bool may_divide(int first, int last, const NewtonReport& outcome) const
     {
+        return options_.may_divide && report_.divided < most_divisions_ && last - first == 1 &&
+               may_shorten(outcome) && mesh_.length(first) > shortest_element * (mesh_.end() - mesh_.start());
+    }
+
+    /// Whether what failed may be for want of shorter elements.
+    bool may_shorten(const NewtonReport& outcome) const
+    {
         const bool is_bad_load =
             outcome.status == SolveStatus::not_finite && !window_.worst().bad_load.empty();
-        return options_.may_divide && report_.divided < most_divisions_ && last - first == 1 &&
-               outcome.status != SolveStatus::cancelled && !is_bad_load &&
-               mesh_.length(first) > shortest_element * (mesh_.end() - mesh_.start());
+        return outcome.status != SolveStatus::cancelled && !is_bad_load;
     }
 
     bool divide_element(int element)
@@ -146,7 +205,12 @@ private:
     bool accept(int first, int last, const NewtonReport& outcome)
     {
         if (is_march_) compare(first, last);
-        const Closed closed = window_.close(options_.trust, report_);
+        return take(first, last, window_.close(options_.trust, report_), outcome);
+    }
+
+    /// Counts what was closed of the elements first..last - 1.
+    bool take(int first, int last, const Closed& closed, const NewtonReport& outcome)
+    {
         if (closed.n_elements > 0) {
             report_.iterations.push_back(outcome.iterations);
             report_.residual_norm = std::max(report_.residual_norm, outcome.residual);
@@ -159,14 +223,27 @@ private:
         time_ = mesh_.ends[options_.direction > 0 ? first : last];
         if (closed.is_refused) return refuse(first, last, outcome);
         if (first < last) return set_failed(first, last);
-        const bool goes_on = !options_.progress || options_.progress({done_, mesh_.n_elements(), time_,
+        const bool goes_on = !options_.progress || options_.progress({done_, n_elements(), time_,
                                                                       outcome.iterations, outcome.residual});
-        if (goes_on || done_ == mesh_.n_elements()) return true;
+        if (goes_on || is_done()) return true;
         report_.status = SolveStatus::cancelled;
         report_.failed_at = time_;
         report_.message =
             "stopped at t = " + to_text(time_, 6) + " s as asked; the motion up to there is complete";
         return false;
+    }
+
+    /// Of the mesh, or as many as it will be if it grows as it did.
+    int n_elements() const
+    {
+        if (options_.pace == nullptr) return mesh_.n_elements();
+        const double share = (time_ - mesh_.start()) / (options_.pace->end() - mesh_.start());
+        return share > 0 ? static_cast<int>(std::lround(std::min(done_ / share, 1e9))) : 0;
+    }
+
+    bool is_done() const
+    {
+        return options_.pace != nullptr ? time_ >= options_.pace->end() : done_ == mesh_.n_elements();
     }
 
     /// The near one of the elements first..last - 1 has not seen the motion: it is solved alone, or divided.

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "livens/spacetime/pace.h"
 #include "livens/spacetime/window.h"
 #include "livens/time/time_mesh.h"
 
@@ -32,6 +33,10 @@ struct WindowOptions {
     };
     std::function<Proposal(int first, int last, int attempt)> propose{};
     ProgressCallback progress{};
+    /// Set: the mesh begins with the start alone and grows, one element a window, as the pace has it.
+    Pace* pace = nullptr;
+    /// Called when elements were closed; false ends the march there, which is no failure.
+    std::function<bool()> goes_on{};
 };
 
 /// Solves all windows of the mesh, or as many as go. What happened is in the report, what was solved in the

@@ -5,6 +5,7 @@
 #include <cassert>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "livens/base/error.h"
 #include "livens/base/text.h"
@@ -116,13 +117,18 @@ void LagrangeBasis::derivatives(double s, std::span<double> out) const
     }
 }
 
-LagrangeBasis lobatto_basis(int degree)
+LagrangeBasis basis_on(Points points, int degree)
 {
     if (degree < 1 || degree > 32) {
         throw InputError({"degree", "method.degree", "there is no time basis of this degree",
                           std::to_string(degree), "1 .. 32", "", ""});
     }
-    return LagrangeBasis(gauss_lobatto(degree + 1).points);
+    if (points == Points::lobatto) return LagrangeBasis(gauss_lobatto(degree + 1).points);
+    std::vector<double> nodes = radau(degree).points;
+    nodes.insert(nodes.begin(), 0.0);
+    return LagrangeBasis(std::move(nodes));
 }
+
+LagrangeBasis lobatto_basis(int degree) { return basis_on(Points::lobatto, degree); }
 
 }   // namespace livens

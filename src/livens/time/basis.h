@@ -33,7 +33,14 @@ private:
     std::vector<double> differentiation_;
 };
 
-/// The basis on Gauss-Lobatto points of the given degree (1..32, else InputError).
+/// What the nodes of an element are.
+enum class Points {
+    lobatto,   ///< the Gauss-Lobatto points
+    radau      ///< 0 and the right Radau points
+};
+
+/// The basis on these points of the given degree (1..32, else InputError).
+LagrangeBasis basis_on(Points points, int degree);
 LagrangeBasis lobatto_basis(int degree);
 
 }   // namespace livens

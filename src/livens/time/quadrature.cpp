@@ -110,4 +110,22 @@ Quadrature gauss_lobatto(int n_points)
     return rule;
 }
 
+Quadrature radau(int n_points)
+{
+    const int n =
+        n_points;   // points are the roots of P_n - P_{n-1}, whose slope is n (P_n + P_{n-1}) / (1 + x)
+    Quadrature rule = empty_rule(n, 1);
+    for (int i = 0; i < n; ++i) {
+        const Real guess = std::cos(2 * std::numbers::pi_v<Real> * (n - 1 - i) / (2 * n - 1));
+        const Real x = i == n - 1 ? 1 : newton(guess, [n](Real y) {
+            const LegendrePair l = legendre(n, y);
+            return (l.p - l.previous) * (1 + y) / (n * (l.p + l.previous));
+        });
+        const Real p = legendre(n, x).previous;
+        rule.points[static_cast<std::size_t>(i)] = static_cast<double>((1 + x) / 2);
+        rule.weights[static_cast<std::size_t>(i)] = static_cast<double>((1 + x) / (2 * n * n * p * p));
+    }
+    return rule;
+}
+
 }   // namespace livens

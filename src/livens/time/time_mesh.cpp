@@ -71,6 +71,18 @@ int TimeMesh::element_at(double t) const
     return std::clamp(static_cast<int>(after - ends.begin()) - 1, 0, n_elements() - 1);
 }
 
+double start_of(const Time& time)
+{
+    if (const auto* mesh = std::get_if<TimeMesh>(&time)) return mesh->start();
+    return std::get<Span>(time).start;
+}
+
+double end_of(const Time& time)
+{
+    if (const auto* mesh = std::get_if<TimeMesh>(&time)) return mesh->end();
+    return std::get<Span>(time).end;
+}
+
 TimeMesh make_time_mesh(double start, double end, int n_elements, std::span<const double> required)
 {
     check_interval(start, end, n_elements);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <span>
+#include <variant>
 #include <vector>
 
 namespace livens {
@@ -26,6 +27,21 @@ struct TimeMesh {
     /// The element that contains t: the one that starts there at an element end, except at the last.
     int element_at(double t) const;
 };
+
+/// A time whose elements are found while it is solved, such that the motion is as accurate as is asked for.
+struct Span {
+    double start = 0, end = 1;   ///< s
+    /// Largest error of the positions of centres of mass, in lengths of the model, and of orientations, in
+    /// rad, at element ends; 0 < accuracy <= 0.1.
+    double accuracy = 1e-6;
+    std::vector<double> output{};   ///< s; they become element ends
+};
+
+/// Elements that are given, or an accuracy from which they follow.
+using Time = std::variant<TimeMesh, Span>;
+
+double start_of(const Time& time);
+double end_of(const Time& time);
 
 /// At least `n_elements` of equal length between `start` and `end`, and every required instant inside an
 /// element end.

@@ -69,7 +69,7 @@ TEST(Examples, HoldEveryInstantOfTheReferences)
     for (const auto& [name, times] : instants) {
         const Scenario scenario = example(name);
         const std::vector<double>& output = scenario.output;
-        const std::vector<double>& ends = scenario.mesh.ends;
+        const std::vector<double>& ends = std::get<TimeMesh>(scenario.time).ends;
         for (const double t : times) {
             EXPECT_EQ(std::count(output.begin(), output.end(), t), 1) << name << " at " << t;
             EXPECT_EQ(std::count(ends.begin(), ends.end(), t), 1) << name << " at " << t;
@@ -111,7 +111,7 @@ double gap(const Matrix34& X, const Matrix3& triad) { return norm(project_direct
 
 Motion solved(const Scenario& s)
 {
-    Solution solution = solve(s.model, {s.conditions}, s.mesh, s.method, s.options);
+    Solution solution = solve(s.model, {s.conditions}, s.time, s.method, s.options);
     EXPECT_TRUE(solution.report.converged()) << s.title << ": " << solution.report.message;
     return std::move(solution.motion);
 }

@@ -101,6 +101,17 @@ TEST(MixedScenario, EndMultipliersBelongToTheNaturalEqualPairing)
                      "\"zero\"");
 }
 
+TEST(RadauScenario, HasADegreeAndTheStateAtTheStart)
+{
+    const std::string radau = "family = \"radau\"\n";
+    EXPECT_EQ(std::get<Radau>(good(solved_by(radau)).method).degree, 4);
+    EXPECT_EQ(std::get<Radau>(good(solved_by(radau + "degree = 8")).method).degree, 8);
+    expect_error(solved_by(radau + "degree = 9"), "out-of-range", "9\n");
+    expect_error(solved_by(radau + "window = 2"), "misplaced-key", "window");
+    const std::string resolved = good(solved_by(radau)).resolved;
+    EXPECT_NE(resolved.find(R"({"family": "radau", "degree": 4, )"), std::string::npos) << resolved;
+}
+
 TEST(MixedScenario, ConditionIsAskedForInEveryFamily)
 {
     EXPECT_FALSE(good(mixed("")).options.condition);
@@ -136,7 +147,7 @@ TEST(MixedScenario, ResolvedStatesEveryChoice)
                             R"("window": "all", "interfaces": "carry", "first_guess": "march", )"
                             R"("linear_solver": "eigen", )"
                             R"("tolerance": 1e-14, "max_iterations": 30, )"
-                            R"("estimate": "second", "condition": false})"),
+                            R"("estimate": "second", "growth": false, "condition": false})"),
               std::string::npos)
         << resolved;
     EXPECT_NE(good(splines("[0, 0, 0, 0.5, 1, 1, 1]")).resolved.find(R"("knots": [0, 0, 0, 0.5, 1, 1, 1])"),
@@ -148,8 +159,8 @@ TEST(MixedScenario, ResolvedStatesEveryChoice)
 TEST(MixedScenario, KnotsMakeTheMesh)
 {
     const Scenario s = good(splines("[0, 0, 0, 0.2, 0.5, 0.5, \"600 ms\", 1, 1, 1]"));
-    EXPECT_EQ(s.mesh.ends, (std::vector<double>{0, 0.2, 0.5, 0.6, 1}));
-    EXPECT_EQ(s.output, s.mesh.ends);
+    EXPECT_EQ(std::get<TimeMesh>(s.time).ends, (std::vector<double>{0, 0.2, 0.5, 0.6, 1}));
+    EXPECT_EQ(s.output, std::get<TimeMesh>(s.time).ends);
     EXPECT_NE(s.resolved.find(R"("elements": 4)"), std::string::npos);
     const Scenario listed = good(splines("[0, 0, 0, 0.2, 0.5, 1, 1, 1]", "", "end = 1\noutput = [0.2, 1]"));
     EXPECT_EQ(listed.output, (std::vector<double>{0.2, 1}));
@@ -176,8 +187,8 @@ TEST(MixedScenario, LoadsBreakAtKnotsOrAreIgnored)
     };
     const std::string beside = "[0, 0, 0, 0.5, 1, 1, 1]", on = "[0, 0, 0, 0.3, 0.3, 1, 1, 1]";
     expect_error(text(beside, "end = 1"), "knots-mesh", beside);
-    EXPECT_EQ(good(text(beside, "end = 1\nbreaks = \"ignore\"")).mesh.n_elements(), 2);
-    EXPECT_EQ(good(text(on, "end = 1")).mesh.n_elements(), 2);
+    EXPECT_EQ(std::get<TimeMesh>(good(text(beside, "end = 1\nbreaks = \"ignore\"")).time).n_elements(), 2);
+    EXPECT_EQ(std::get<TimeMesh>(good(text(on, "end = 1")).time).n_elements(), 2);
 }
 
 TEST(MixedScenario, KnotsAndWeightsBelongToTheirBases)

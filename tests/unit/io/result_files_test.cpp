@@ -151,6 +151,9 @@ TEST_F(Results, RunsThatContradictThemselvesAreRefused)
         return false;
     };
     EXPECT_TRUE(refused([](RunFile& r) { r.motion.X.values.pop_back(); }));
+    EXPECT_TRUE(refused([](RunFile& r) { r.estimate.velocity.pop_back(); }));
+    EXPECT_TRUE(refused([](RunFile& r) { r.estimate.position.clear(); }));
+    EXPECT_TRUE(refused([](RunFile& r) { r.estimate.reaction.push_back(0); }));
     EXPECT_TRUE(refused([](RunFile& r) { r.motion.X.degree = 33; }));
     EXPECT_TRUE(refused([](RunFile& r) { r.motion.X.n_values = 0; }));
     EXPECT_TRUE(refused([](RunFile& r) { r.motion.mesh.ends[3] = 0; }));

@@ -9,6 +9,7 @@
 
 #include "livens/base/error.h"
 #include "livens/diagnostics/sample.h"
+#include "livens/io/exports.h"
 #include "livens/io/json.h"
 #include "livens/io/results/figures.h"
 #include "livens/spacetime/solve.h"
@@ -61,6 +62,43 @@ TEST_F(Results, RunComesBackToTheBit)
     EXPECT_TRUE(std::isnan(back.verdict.angular_momentum_drift));
     EXPECT_EQ(back.verdict.balance.linear_impulse, run.verdict.balance.linear_impulse);
     EXPECT_EQ(back.verdict.balance.largest_moment, run.verdict.balance.largest_moment);
+    const ErrorEstimate &e = back.estimate, &written = run.estimate;
+    EXPECT_EQ(e.position, written.position);
+    EXPECT_EQ(e.orientation, written.orientation);
+    EXPECT_EQ(e.velocity, written.velocity);
+    EXPECT_EQ(e.reaction, written.reaction);
+    EXPECT_EQ(e.n_joints, 1);
+    EXPECT_EQ(e.length, 2.5);
+    EXPECT_EQ(e.largest, 2e-7);
+    EXPECT_EQ(e.time, 4);
+    EXPECT_EQ(e.body, 1);
+}
+
+TEST_F(Results, EstimatedErrorsStandBesideTheSamples)
+{
+    const Model model = sample_model();
+    RunFile run = sample_run(model);
+    run.output = {0.5, 0.75, 4};   // the second is no element end: nothing is known of the polynomial there
+    const Image file(image_of(model, run));
+    const auto errors = [&](const char* name, const char* over) {
+        return file.doubles(name, {"time", over});
+    };
+    const std::vector<double> position = errors("estimated_position_error", "body");
+    const std::vector<double> orientation = errors("estimated_orientation_error", "body");
+    const std::vector<double> reaction = errors("estimated_reaction_error", "joint");
+    ASSERT_EQ(position.size(), 6u);
+    EXPECT_EQ(position[0], run.estimate.position[2]);
+    EXPECT_TRUE(std::isnan(position[2]) && std::isnan(position[3]) && std::isnan(reaction[1]));
+    EXPECT_EQ(orientation[5], 2e-7);
+    EXPECT_EQ(reaction[2], run.estimate.reaction[8]);
+    EXPECT_EQ(errors("estimated_velocity_error", "body")[4], run.estimate.velocity[16]);
+    EXPECT_EQ(file.text_of("estimated_velocity_error", "units"), "m s-1");
+
+    run.estimate = {};
+    const Image without(image_of(model, run));
+    EXPECT_EQ(without.reader().variable("estimated_position_error"), nullptr);
+    EXPECT_EQ(without.reader().variable("end_reaction_error"), nullptr);
+    EXPECT_TRUE(read_run_from(source_of(image_of(model, run))).estimate.empty());
 }
 
 TEST_F(Results, EveryFigureComesBackAndStandsInJson)
@@ -89,11 +127,11 @@ TEST_F(Results, EveryFigureComesBackAndStandsInJson)
 /// As many members as the table of figures and the walk of layout.h know: who adds one adds it there.
 TEST_F(Results, EveryMemberOfARunIsInTheFile)
 {
-    [[maybe_unused]] const auto& [r1, r2, r3, r4, r5, r6, r7, r8, r9, r10, r11, r12, r13, r14, r15] =
+    [[maybe_unused]] const auto& [r1, r2, r3, r4, r5, r6, r7, r8, r9, r10, r11, r12, r13, r14, r15, r16] =
         RunFile{};
     [[maybe_unused]] const auto& [m1, m2, m3, m4, m5, m6, m7, m8, m9, m10, m11, m12, m13, m14, m15, m16, m17,
                                   m18] = Motion{};
-    [[maybe_unused]] const auto& [f1, f2, f3, f4, f5] = Field{};
+    [[maybe_unused]] const auto& [f1, f2, f3, f4, f5, f6] = Field{};
     int report = 0, verdict = 0, balance = 0;
     for (const Figure& figure : run_figures()) {
         report += figure.member.index() < 4;
@@ -104,7 +142,7 @@ TEST_F(Results, EveryMemberOfARunIsInTheFile)
     EXPECT_EQ(sizeof(Balance), 12 * sizeof(std::vector<int>) + static_cast<std::size_t>(balance) * 8);
     EXPECT_EQ(sizeof(Verdict), lists + static_cast<std::size_t>(verdict) * 8 + sizeof(Balance) +
                                    sizeof(ViolationReport));
-    EXPECT_EQ(report, 18);   // and status, message, iterations, notes, why a second solution failed
+    EXPECT_EQ(report, 23);   // and status, message, iterations, notes, why a second solution failed
 }
 
 TEST_F(Results, NurbsWithoutJointsAreWritten)
@@ -139,6 +177,32 @@ TEST_F(Results, DenominatorsComeBackAndBendTheSamples)
     const double s = 0.25, M[] = {(1 - s) * (1 - 2 * s), 4 * s * (1 - s), s * (2 * s - 1)};
     const double top = M[1] * 0.5 * 0.75 + M[2] * 2 * 1.5, bottom = M[0] + M[1] * 0.5 + M[2] * 2;
     EXPECT_NEAR(sample_bodies(model, back.motion, 0.125)[0].position[0], top / bottom, 1e-14);
+}
+
+TEST_F(Results, MotionsOnRadauPointsComeBackAndAreSampledAsTheyAre)
+{
+    Model model({0, 0, -9.81});
+    model.add_body(point_mass("bob", 2, {1, 0, 0}));
+    model.add_joint(rod("rod", world, 0, {}, 1));
+    const Method method = Radau{3};
+    const RunFile run =
+        make_run(model, solve(model, {model.start()}, make_time_mesh(0, 1, 8), method), method);
+    EXPECT_EQ(run.method, "radau(3)");
+    EXPECT_EQ(run.motion.order_at_ends, 5);
+    write_run(in_folder("run.nc"), model, run);
+    const RunFile back = read_run(in_folder("run.nc"));
+    EXPECT_EQ(back.motion.X.points, Points::radau);
+    EXPECT_EQ(back.motion.multipliers.points, Points::radau);
+    EXPECT_EQ(image_of(model, back), image_of(model, run));
+    for (const double t : {0.01, 0.2, 0.77}) EXPECT_EQ(back.motion.at(t).X[0], run.motion.at(t).X[0]);
+    const std::vector<double> times = node_times(back.motion.X, back.motion.mesh);
+    EXPECT_NEAR(times[1], (4 - std::sqrt(6.0)) / 80, 1e-16);
+    // the rod is as long at the nodes as it should be, and would not be if they were others
+    EXPECT_LE(violations(model, back.motion, 0).joints_at_nodes, 1e-14);
+    EXPECT_NEAR(norm(back.motion.at(times[1]).X[0].column(0)), 1, 1e-14);
+    Motion other = back.motion;
+    other.X.points = Points::lobatto;
+    EXPECT_GT(std::abs(norm(other.at(times[1]).X[0].column(0)) - 1), 1e-6);
 }
 
 TEST_F(Results, MotionsThatJumpBetweenBlocksComeBack)
@@ -225,6 +289,10 @@ TEST_F(Results, FileSaysWhatItHolds)
     for (const Figure& figure : run_figures()) {
         const std::string row =
             std::string("| `") + figure.name + "` | " + figure.unit + " | " + figure.meaning;
+        EXPECT_NE(manual.find(row + " |\n"), std::string::npos) << "missing in docs/results.md: " << row;
+    }
+    for (const ExportFormat& f : export_formats()) {
+        const std::string row = std::string("| `--") + f.word + "` | `" + f.extension + "` | " + f.what;
         EXPECT_NE(manual.find(row + " |\n"), std::string::npos) << "missing in docs/results.md: " << row;
     }
     EXPECT_EQ(file.text_of("quaternion", "order"), "w, x, y, z");

@@ -239,6 +239,18 @@ inline RunFile sample_run(const Model& model, int n_elements = 8)
     v.velocity_jump_time = 3.5;
     v.linear_momentum_drift = 1e-11;
     fill_balance(v.balance, n_elements + 1);
+    ErrorEstimate& e = run.estimate;
+    e.n_bodies = 2;
+    e.n_joints = 1;
+    for (int i = 0; i <= n_elements; ++i) {
+        for (auto* errors : {&e.position, &e.orientation, &e.velocity})
+            errors->insert(errors->end(), {1e-9 * i, 1e-8 / (i + 1)});
+        e.reaction.push_back(1e-6 * i);
+    }
+    e.orientation.back() = 2e-7;
+    e.length = 2.5;
+    e.largest_reaction = 14;
+    e.find_largest(run.motion.mesh);
     run.version = "0.1.0";
     return run;
 }

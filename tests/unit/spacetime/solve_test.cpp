@@ -44,6 +44,31 @@ TEST(Solve, NamesSmallNumbersToTheLastDigit)
     EXPECT_EQ(outside.value + " of " + outside.bound, "2e-07 of 0 to 1e-07");
 }
 
+TEST(Solve, NamesRadauAndRefusesWhatItCannotDo)
+{
+    EXPECT_EQ(name_of(Radau{3}), "radau(3)");
+    Model model;
+    model.add_body(point_mass("mass", 1, {}, {1, 0, 0}));
+    const TimeMesh mesh = make_time_mesh(0, 1, 4);
+    const auto code = [&](const Conditions& conditions, int degree) -> std::string {
+        try {
+            solve(model, {conditions}, mesh, Radau{degree});
+        } catch (const InputError& error) {
+            return error.complaint().code + " " + error.complaint().path;
+        }
+        return "";
+    };
+    State end = model.start();
+    end.t = 1;
+    end.X[0].set_column(0, {1, 0, 0});
+    EXPECT_EQ(code({model.start()}, 8), "");
+    EXPECT_EQ(code({model.start()}, 0), "degree-out-of-range method.degree");
+    EXPECT_EQ(code({model.start()}, 10), "degree-out-of-range method.degree");
+    EXPECT_EQ(code({model.start(), Known::nothing, end, Known::state}, 4), "boundary-method start.given");
+    EXPECT_EQ(code({model.start(), Known::positions, end, Known::positions}, 4),
+              "boundary-method start.given");
+}
+
 TEST(Solve, AdvisesInConceptsAndNotInTheKeysOfFiles)
 {
     const Model model = stone();

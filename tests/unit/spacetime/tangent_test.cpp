@@ -150,7 +150,7 @@ private:
 
 public:
     Tables tables;
-    LobattoRule rule;
+    ElementRule rule;
     Stretch stretch;
     LobattoSystem system;
     std::vector<std::vector<double>> maps, impulses;

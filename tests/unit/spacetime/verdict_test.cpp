@@ -33,7 +33,7 @@ bool speaks_of(const std::vector<std::string>& texts, const std::string& word)
         texts, [&](const std::string& text) { return text.find(word) != std::string::npos; });
 }
 
-const Method every_method[] = {Lobatto{1}, Lobatto{4}, Mixed{}, Midpoint{}, Endpoint{}};
+const Method every_method[] = {Lobatto{1}, Lobatto{4}, Radau{2}, Radau{5}, Mixed{}, Midpoint{}, Endpoint{}};
 
 TEST(Verdict, OfAGoodRunHasFiguresAndNoReason)
 {
@@ -85,6 +85,40 @@ TEST(Verdict, OfLostEnergyIsSuspectAndSaysWhatIsLostFirst)
     EXPECT_TRUE(s.report.reached_end());
     EXPECT_NE(s.report.message.find("estimated error"), std::string::npos) << s.report.message;
     EXPECT_EQ(s.report.message, s.verdict.reasons.front());
+    EXPECT_TRUE(speaks_of(s.verdict.reasons, "energy"));
+}
+
+TEST(Verdict, OfEnergyThatRadauDampsIsARemark)
+{
+    // a spring that vibrates by 1e-5 m, 300 rad an element
+    Model model;
+    model.add_body(point_mass("mass", 1, {1 + 1e-5, 0, 0}));
+    model.add_load(spring_damper("spring", world, {}, 0, {}, {1e8, 0, 1}));
+    const Solution s = solved(model, Radau{4}, 1, 33);
+    EXPECT_TRUE(s.report.converged()) << s.report.message;
+    EXPECT_EQ(s.verdict.energy_drift, 0);
+    EXPECT_NEAR(s.verdict.balance.relative_energy_loss(), 1, 1e-6);
+    EXPECT_TRUE(speaks_of(s.verdict.remarks, "has damped"));
+}
+
+// The same motion, but that its energy rises from its lowest by a tenth of the largest: no balance with the
+// start tells.
+TEST(Verdict, OfEnergyThatRadauGainsIsSuspect)
+{
+    Model model;
+    model.add_body(point_mass("mass", 1, {1, 0, 0}, {1, 0, 0}));
+    model.add_load(spring_damper("damper", world, {}, 0, {}, {0, 1e4, 0}));
+    Solution s = solved(model, Radau{3}, 1, 20);
+    EXPECT_TRUE(s.report.converged()) << s.report.message;
+    for (std::size_t end = 15; end < s.motion.velocities.size(); ++end) {
+        s.motion.velocities[end] = s.motion.velocities[0];
+        s.motion.velocities[end] *= std::sqrt(0.1);
+        s.motion.momenta[end] = s.motion.velocities[end] * model.bodies()[0].mass;
+    }
+    judge(model, s);
+    EXPECT_EQ(s.report.status, SolveStatus::suspect);
+    EXPECT_NEAR(s.verdict.energy_drift, 0.1, 1e-6);
+    EXPECT_LT(s.verdict.balance.energy.back(), s.verdict.balance.energy.front());
     EXPECT_TRUE(speaks_of(s.verdict.reasons, "energy"));
 }
 

@@ -173,6 +173,20 @@ TEST(LagrangeBasis, SurvivesManyNodes)
     EXPECT_NEAR(found.derivative, exact.derivative, 1e-10);
 }
 
+TEST(LagrangeBasis, StandsOnTheStartAndRadauPointsIfAsked)
+{
+    for (int p = 1; p <= 32; ++p) {
+        const LagrangeBasis basis = basis_on(Points::radau, p);
+        ASSERT_EQ(basis.degree(), p);
+        EXPECT_EQ(basis.nodes().front(), 0.0);
+        const std::vector<double> rest(basis.nodes().begin() + 1, basis.nodes().end());
+        EXPECT_EQ(rest, radau(p).points);
+        EXPECT_EQ(basis_on(Points::lobatto, p).nodes(), gauss_lobatto(p + 1).points);
+    }
+    EXPECT_THROW(basis_on(Points::radau, 0), InputError);
+    EXPECT_THROW(basis_on(Points::radau, 33), InputError);
+}
+
 TEST(LagrangeBasis, RefusesBadNodesAndDegrees)
 {
     EXPECT_THROW(LagrangeBasis({}), InputError);

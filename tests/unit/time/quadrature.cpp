@@ -130,12 +130,46 @@ TEST(GaussLobatto, PointsAndWeightsAreRightToTheLastBits)
     }
 }
 
+TEST(Radau, IsExactToItsDegreeAndNoFurther)
+{
+    for (int n = 1; n <= 64; ++n) {
+        const Quadrature rule = radau(n);
+        for (int degree = 0; degree <= 2 * n - 2; ++degree) {
+            EXPECT_LT(legendre_error(rule, degree), 4 * eps) << n << " points, degree " << degree;
+        }
+        EXPECT_GT(legendre_error(rule, 2 * n - 1), 0.01 / n) << n;
+    }
+}
+
+TEST(Radau, EndsWithOneToTheBit)
+{
+    for (int n = 1; n <= 64; ++n) {
+        const Quadrature rule = radau(n);
+        EXPECT_EQ(rule.points.back(), 1.0);
+        EXPECT_GT(rule.points.front(), 0.0);
+        for (int i = 1; i < n; ++i) EXPECT_LT(rule.points[i - 1], rule.points[i]) << n;
+        for (const double w : rule.weights) EXPECT_GT(w, 0) << n;
+    }
+}
+
+TEST(Radau, PointsAndWeightsAreRightToTheLastBits)
+{
+    const double root = std::sqrt(6.0);   // n = 3: (4 -+ root 6) / 10, (16 -+ root 6) / 36
+    expect_close(radau(2), {2, 0, 1.0 / 3, 0.75});
+    expect_close(radau(2), {2, 1, 1, 0.25});
+    expect_close(radau(3), {3, 0, (4 - root) / 10, (16 - root) / 36});
+    expect_close(radau(3), {3, 1, (4 + root) / 10, (16 + root) / 36});
+    expect_close(radau(3), {3, 2, 1, 1.0 / 9});
+}
+
 TEST(Quadrature, RefusesRulesThatDoNotExist)
 {
     EXPECT_THROW(gauss(0), InputError);
     EXPECT_THROW(gauss(65), InputError);
     EXPECT_THROW(gauss_lobatto(1), InputError);
     EXPECT_THROW(gauss_lobatto(-3), InputError);
+    EXPECT_THROW(radau(0), InputError);
+    EXPECT_THROW(radau(65), InputError);
 }
 
 }   // namespace

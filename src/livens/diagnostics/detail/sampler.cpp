@@ -5,24 +5,16 @@
 #include <array>
 #include <cassert>
 
-#include "livens/time/basis.h"
-
 namespace livens {
 namespace {
 
-constexpr std::size_t most_nodes = 33;   // of a field: degree 32, the largest of lobatto_basis
+constexpr std::size_t most_nodes = 33;   // of a field: degree 32, the largest of basis_on
 using Row = std::array<double, most_nodes>;
 
 void unstack(std::span<const double> stacked, std::span<Matrix34> bodies)
 {
     assert(stacked.size() == 12 * bodies.size());
     for (std::size_t b = 0; b < bodies.size(); ++b) std::copy_n(stacked.data() + 12 * b, 12, bodies[b].a);
-}
-
-/// A field of degree 0 has one value an element, wherever its node is thought to be.
-LagrangeBasis basis_of(const Field& field)
-{
-    return field.degree == 0 ? LagrangeBasis({0.5}) : lobatto_basis(field.degree);
 }
 
 /// out += sum over A of row_A (x_A - x_0), for entries first, first + 1, .. of the coefficients. In
@@ -41,7 +33,7 @@ void add_changes(const Field& field, int element, std::span<const double> row, s
 
 FieldTable::FieldTable(const Field& field, std::span<const double> points) : field_(&field)
 {
-    const LagrangeBasis basis = basis_of(field);
+    const LagrangeBasis basis = field.basis();
     const std::size_t n = static_cast<std::size_t>(basis.size());
     assert(n <= most_nodes);
     values_.resize(points.size() * n);

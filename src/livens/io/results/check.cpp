@@ -82,6 +82,15 @@ void check_balance(const Balance& b, std::size_t ends)
             "the number of energies or momenta at element ends");
 }
 
+void check_estimate(const ErrorEstimate& e, std::size_t ends)
+{
+    const std::size_t n = ends * static_cast<std::size_t>(e.n_bodies);
+    for (const auto* errors : {&e.position, &e.orientation, &e.velocity})
+        require(errors->size() == (e.empty() ? 0 : n), "the number of estimated errors of bodies");
+    require(e.reaction.size() == ends * static_cast<std::size_t>(e.n_joints),
+            "the number of estimated errors of reactions");
+}
+
 }   // namespace
 
 void check_run(const Run& run)
@@ -94,6 +103,7 @@ void check_run(const Run& run)
     require(run.row_labels.size() == static_cast<std::size_t>(run.motion.n_rows),
             "the number of constraint rows");
     check_balance(run.verdict.balance, run.motion.mesh.ends.size());
+    check_estimate(run.estimate, run.motion.mesh.ends.size());
     for (std::size_t i = 0; i < run.output.size(); ++i) {
         require(std::isfinite(run.output[i]), "an output time is not finite");
         require(i == 0 || run.output[i] > run.output[i - 1], "output times do not ascend");

@@ -66,11 +66,47 @@ VariableInfo info_of(const BodyVariable& v)
     return info;
 }
 
+struct ErrorVariable {
+    VariableInfo info;
+    std::vector<double> ErrorEstimate::*errors;
+};
+
+/// Beside what they judge.
+const std::vector<ErrorVariable>& error_variables()
+{
+    static const std::vector<ErrorVariable> all{
+        {{"estimated_position_error",
+          {"time", "body"},
+          "1",
+          "none",
+          "estimated error of the centre of mass, in lengths of the model (model_length)"},
+         &ErrorEstimate::position},
+        {{"estimated_orientation_error",
+          {"time", "body"},
+          "rad",
+          "none",
+          "estimated error of the orientation; 0 for point masses"},
+         &ErrorEstimate::orientation},
+        {{"estimated_velocity_error",
+          {"time", "body"},
+          "m s-1",
+          "none",
+          "estimated error of the velocity of the centre of mass"},
+         &ErrorEstimate::velocity},
+        {{"estimated_reaction_error",
+          {"time", "joint"},
+          "1",
+          "none",
+          "estimated error of force, or torque by model_length, relative to largest_reaction"},
+         &ErrorEstimate::reaction}};
+    return all;
+}
+
 /// Samples at the output times that the motion has reached, some instants at a time.
 class Samples {
 public:
     Samples(RunWriter& archive, const Model& model, const Run& run)
-        : file_(archive.file()), model_(model), motion_(run.motion)
+        : file_(archive.file()), model_(model), motion_(run.motion), estimate_(run.estimate)
     {
         const auto first = std::ranges::lower_bound(run.output, motion_.start());
         const auto last = std::ranges::upper_bound(run.output, motion_.end());
@@ -86,6 +122,7 @@ public:
                 bodies_.push_back({archive.declare(info_of(v), NumberType::real, n * sizes[v.part.index()])});
         }
         previous_.resize(model.bodies().size(), Vector4{1, 0, 0, 0});
+        declare_errors(archive);
         const bool has_multipliers = !motion_.end_multipliers.empty() || !motion_.multipliers.empty();
         if (model.joints().empty() || !has_multipliers) return;
         const std::vector<std::string> sides{"time", "joint", "side", "xyz"};
@@ -105,6 +142,7 @@ public:
         for (const double t : times_) {
             if (!bodies_.empty()) add_bodies(t);
             if (!joints_.empty()) add_joints(t);
+            add_errors(t);
             held += 62 * model_.bodies().size() + 12 * model_.joints().size();
             if (held < chunk) continue;
             flush();
@@ -114,9 +152,36 @@ public:
     }
 
 private:
+    void declare_errors(RunWriter& archive)
+    {
+        const std::size_t n_ends = motion_.mesh.ends.size();
+        for (const ErrorVariable& v : error_variables()) {
+            const std::vector<double>& errors = estimate_.*v.errors;
+            if (errors.empty()) continue;
+            const std::size_t n = times_.size() * (errors.size() / n_ends);
+            errors_.push_back({archive.declare(v.info, NumberType::real, n)});
+            errors_at_ends_.push_back(&errors);
+        }
+    }
+
+    /// Output times are element ends; at another instant nothing is known of the polynomial's error.
+    void add_errors(double t)
+    {
+        const int end = element_end_at(motion_.mesh, snap_to_element_end(motion_.mesh, t));
+        for (std::size_t i = 0; i < errors_.size(); ++i) {
+            const std::size_t n = errors_at_ends_[i]->size() / motion_.mesh.ends.size();
+            const auto first = errors_at_ends_[i]->begin() + static_cast<std::ptrdiff_t>(n) * end;
+            std::vector<double>& values = errors_[i].values;
+            if (end >= 0)
+                values.insert(values.end(), first, first + static_cast<std::ptrdiff_t>(n));
+            else
+                values.insert(values.end(), n, std::numeric_limits<double>::quiet_NaN());
+        }
+    }
+
     void flush()
     {
-        for (auto* columns : {&bodies_, &joints_})
+        for (auto* columns : {&bodies_, &joints_, &errors_})
             for (Column& column : *columns) {
                 file_.append(column.variable, std::span<const double>(column.values));
                 column.values.clear();
@@ -153,8 +218,10 @@ private:
     ClassicWriter& file_;
     const Model& model_;
     const Motion& motion_;
+    const ErrorEstimate& estimate_;
     std::span<const double> times_;
-    std::vector<Column> bodies_, joints_;
+    std::vector<Column> bodies_, joints_, errors_;
+    std::vector<const std::vector<double>*> errors_at_ends_;
     std::vector<Vector4> previous_;
 };
 

@@ -10,8 +10,9 @@
 namespace livens {
 
 /// Where the number stands in a Run.
-using FigureMember = std::variant<int SolveReport::*, long SolveReport::*, long long SolveReport::*,
-                                  double SolveReport::*, double Verdict::*, double Balance::*, int Motion::*>;
+using FigureMember =
+    std::variant<int SolveReport::*, long SolveReport::*, long long SolveReport::*, double SolveReport::*,
+                 double Verdict::*, double Balance::*, int Motion::*, double ErrorEstimate::*>;
 
 struct Figure {
     const char* name;   ///< of the attribute, and the key in JSON

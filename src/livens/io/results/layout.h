@@ -26,6 +26,13 @@ struct VariableInfo {
 /// read beyond its arrays: every file is a stranger, whatever its checksums say.
 void check_run(const Run& run);
 
+/// How a file names the local nodes of a field.
+inline const char* words_for(Points points)
+{
+    return points == Points::lobatto ? "Gauss-Lobatto points of each element, in ascending time"
+                                     : "start and right Radau points of each element, in ascending time";
+}
+
 /// Vectors of small matrices are arrays of doubles (base/linear.h says so).
 template <class T>
 inline constexpr bool is_matrix = std::is_class_v<T>;
@@ -154,6 +161,21 @@ void visit_balance(Archive& archive, AnyBalance& b)
            b.angular_momentum_drift);
 }
 
+template <class Archive, class AnyEstimate>
+void visit_estimate(Archive& archive, AnyEstimate& e)
+{
+    const auto errors = [&](const char* name, const char* over, const char* units, const char* meaning,
+                            auto& values) {
+        archive.list({name, {"element_end", over}, units, "none", meaning}, values);
+    };
+    errors("end_position_error", "body", "1", "estimated, of the centre of mass, in lengths of the model",
+           e.position);
+    errors("end_orientation_error", "body", "rad", "estimated; 0 for point masses", e.orientation);
+    errors("end_velocity_error", "body", "m s-1", "estimated, of the centre of mass", e.velocity);
+    errors("end_reaction_error", "joint", "1", "estimated, relative to the largest reaction of the run",
+           e.reaction);
+}
+
 template <class Archive, class AnyRun>
 void visit_run(Archive& archive, AnyRun& run)
 {
@@ -161,6 +183,7 @@ void visit_run(Archive& archive, AnyRun& run)
     visit_model(archive, run);
     visit_motion(archive, run.motion);
     visit_balance(archive, run.verdict.balance);
+    visit_estimate(archive, run.estimate);
 }
 
 }   // namespace livens

@@ -96,6 +96,7 @@ public:
         field.n_values = static_cast<int>(n);
         field.degree = integer_of(info.name, "degree");
         field.continuous = integer_of(info.name, "continuous") != 0;
+        field.points = points_of(info.name);
     }
     /// Damage is told wherever it is, also in what livens itself makes anew.
     void verify_rest() const
@@ -120,6 +121,15 @@ private:
         const int* number = value == nullptr ? nullptr : std::get_if<int>(value);
         if (number == nullptr) refuse("variable " + variable + " lacks its " + attribute);
         return *number;
+    }
+
+    Points points_of(const std::string& variable) const
+    {
+        const AttributeValue* value = find_attribute(file_.variable(variable)->attributes, "nodes");
+        const std::string* words = value == nullptr ? nullptr : std::get_if<std::string>(value);
+        for (const Points points : {Points::lobatto, Points::radau})
+            if (words != nullptr && *words == words_for(points)) return points;
+        refuse("variable " + variable + " has nodes that this livens does not know");
     }
 
     const ClassicReader& file_;
@@ -160,7 +170,10 @@ Run read_run_from(ByteSource source, bool verify)
     RunReader archive(file);
     visit_run(archive, run);
     archive.verify_rest();
+    run.estimate.n_bodies = run.motion.n_bodies;
+    run.estimate.n_joints = run.estimate.reaction.empty() ? 0 : static_cast<int>(run.joint_names.size());
     check_run(run);
+    if (!run.estimate.empty()) run.estimate.find_largest(run.motion.mesh);
     return run;
 }
 

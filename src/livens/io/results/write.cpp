@@ -109,8 +109,7 @@ void RunWriter::field(VariableInfo info, const Field& field)
 {
     info.attributes.push_back({"degree", field.degree});
     info.attributes.push_back({"continuous", field.continuous ? 1 : 0});
-    info.attributes.push_back(
-        {"nodes", std::string("Gauss-Lobatto points of each element, in ascending time")});
+    info.attributes.push_back({"nodes", std::string(words_for(field.points))});
     list(info, field.values);
 }
 
@@ -133,6 +132,7 @@ Run make_run(const Model& model, Solution solution, const Method& method)
     run.motion = std::move(solution.motion);
     run.report = std::move(solution.report);
     run.verdict = std::move(solution.verdict);
+    run.estimate = std::move(solution.estimate);
     run.version = version;
     return run;
 }

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // [[body]], its shape, and where bodies are at both ends of time.
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "livens/base/text.h"
 #include "livens/io/scenario/builder.h"
@@ -15,52 +17,125 @@ constexpr double quaternion_slack = 1e-6;   // | |q| - 1 |: more than printed di
 struct Shape {
     Key key;
     MassProperties (*make)(double density, const Section& shape);
+    Outline (*outline)(const Section& shape);
 };
+
+/// From one angle above the equator to another, in rad, of radius 1 about a height.
+std::vector<std::array<double, 2>> arc(double from, double to, double radius, double height)
+{
+    constexpr int steps = 6;   // a quarter of the way round has as many as the equator
+    std::vector<std::array<double, 2>> points;
+    for (int i = 0; i <= steps; ++i) {
+        const double angle = from + (to - from) * i / steps;
+        const double r = std::cos(angle);
+        points.push_back({r > 1e-9 ? radius * r : 0, height + radius * std::sin(angle)});
+    }
+    return points;
+}
+
+Outline capsule_outline(double radius, double length)
+{
+    constexpr double pole = std::numbers::pi / 2;
+    Outline outline{arc(-pole, 0, radius, -0.5 * length), 24, {1, 1, 1}};
+    const auto upper = arc(0, pole, radius, 0.5 * length);
+    outline.profile.insert(outline.profile.end(), upper.begin() + (length > 0 ? 0 : 1), upper.end());
+    return outline;
+}
+
+Outline stretched(Outline outline, const Vector3& stretch)
+{
+    outline.stretch = stretch;
+    return outline;
+}
+
+Outline box_outline(const Vector3& edges)
+{
+    const double r = std::numbers::sqrt2 / 2;
+    return {{{0, -0.5}, {r, -0.5}, {r, 0.5}, {0, 0.5}}, 4, edges};
+}
+
+/// The centre of mass is a quarter of the height above the base.
+Outline cone_outline(double radius, double height)
+{
+    return {{{0, -0.25 * height}, {radius, -0.25 * height}, {0, 0.75 * height}}, 24, {1, 1, 1}};
+}
+
+Outline cylinder_outline(double radius, double length, double bore)
+{
+    const double h = 0.5 * length;
+    Outline outline{{{bore, -h}, {radius, -h}, {radius, h}, {bore, h}}, 24, {1, 1, 1}};
+    if (bore > 0) outline.profile.push_back({bore, -h});
+    return outline;
+}
 
 Key length(std::string_view name, const std::string& doc)
 {
     return Key{name, types::number, doc, "m"}.needed().within(positive);
 }
 
+double radius_of_sphere(const Section& shape)
+{
+    const Section* table = only_section(shape, "sphere");
+    return table != nullptr ? table->number("radius") : shape.number("sphere");
+}
+
 const std::vector<Shape>& shapes()
 {
     static const std::vector<Shape> all{
         {Key{"box", types::vector3, "Edges along d1, d2, d3.", "m"}.within(positive),
-         [](double density, const Section& shape) { return box(density, shape.vector("box")); }},
-        {Key{"sphere", types::number_or_table, "Radius, or a table with it.", "m"}.within(positive)
-             .holding({"sphere of shape", "", {length("radius", "Of the sphere.")}}),
-         [](double density, const Section& shape) {
-             const Section* table = only_section(shape, "sphere");
-             return sphere(density, table != nullptr ? table->number("radius") : shape.number("sphere"));
+         [](double density, const Section& shape) { return box(density, shape.vector("box")); },
+         [](const Section& shape) { return box_outline(shape.vector("box")); }},
+        {Key{"sphere", types::number_or_table, "Radius, or a table with it.", "m"}.within(positive).holding(
+             {"sphere of shape", "", {length("radius", "Of the sphere.")}}),
+         [](double density, const Section& shape) { return sphere(density, radius_of_sphere(shape)); },
+         [](const Section& shape) {
+             const double r = radius_of_sphere(shape);
+             return stretched(ball_outline(), {r, r, r});
          }},
-        {Key{"cylinder", types::table, "Solid or tube."}
-             .holding({"cylinder of shape", "",
-                       {length("radius", "Outer radius."), length("length", "Along d3."),
-                        Key{"inner_radius", types::number, "Of the bore of a tube.", "m", "0"}
-                            .within(not_negative)}}),
+        {Key{"cylinder", types::table, "Solid or tube."}.holding(
+             {"cylinder of shape",
+              "",
+              {length("radius", "Outer radius."), length("length", "Along d3."),
+               Key{"inner_radius", types::number, "Of the bore of a tube.", "m", "0"}.within(not_negative)}}),
          [](double density, const Section& shape) {
              const Section& c = *only_section(shape, "cylinder");
              return cylinder(density, c.number("radius"), c.number("length"), c.number("inner_radius"));
+         },
+         [](const Section& shape) {
+             const Section& c = *only_section(shape, "cylinder");
+             return cylinder_outline(c.number("radius"), c.number("length"), c.number("inner_radius"));
          }},
-        {Key{"capsule", types::table, "Cylinder between two half spheres."}
-             .holding({"capsule of shape", "",
-                       {length("radius", "Of cylinder and half spheres."),
-                        length("length", "Of the cylindrical part, along d3.")}}),
+        {Key{"capsule", types::table, "Cylinder between two half spheres."}.holding(
+             {"capsule of shape",
+              "",
+              {length("radius", "Of cylinder and half spheres."),
+               length("length", "Of the cylindrical part, along d3.")}}),
          [](double density, const Section& shape) {
              const Section& c = *only_section(shape, "capsule");
              return capsule(density, c.number("radius"), c.number("length"));
+         },
+         [](const Section& shape) {
+             const Section& c = *only_section(shape, "capsule");
+             return capsule_outline(c.number("radius"), c.number("length"));
          }},
         {Key{"ellipsoid", types::vector3, "Semi-axes along d1, d2, d3.", "m"}.within(positive),
-         [](double density, const Section& shape) { return ellipsoid(density, shape.vector("ellipsoid")); }},
-        {Key{"cone", types::table, "Solid cone, apex along +d3, origin at its centre of mass."}
-             .holding({"cone of shape", "",
-                       {length("radius", "Of the base."), length("height", "From base to apex, along d3.")}}),
+         [](double density, const Section& shape) { return ellipsoid(density, shape.vector("ellipsoid")); },
+         [](const Section& shape) { return stretched(ball_outline(), shape.vector("ellipsoid")); }},
+        {Key{"cone", types::table, "Solid cone, apex along +d3, origin at its centre of mass."}.holding(
+             {"cone of shape",
+              "",
+              {length("radius", "Of the base."), length("height", "From base to apex, along d3.")}}),
          [](double density, const Section& shape) {
              const Section& c = *only_section(shape, "cone");
              return cone(density, c.number("radius"), c.number("height"));
+         },
+         [](const Section& shape) {
+             const Section& c = *only_section(shape, "cone");
+             return cone_outline(c.number("radius"), c.number("height"));
          }},
-        {Key{"point", types::flag, "A point mass: no orientation, no inertia; needs `mass`."}, nullptr},
-        {Key{"mesh", types::later, "A solid bounded by triangles."}, nullptr}};
+        {Key{"point", types::flag, "A point mass: no orientation, no inertia; needs `mass`."}, nullptr,
+         nullptr},
+        {Key{"mesh", types::later, "A solid bounded by triangles."}, nullptr, nullptr}};
     return all;
 }
 
@@ -160,20 +235,24 @@ bool check_body(const Section& body, Findings& findings)
     return findings.n_errors() == before && body.is_valid();
 }
 
-MassProperties shape_properties(const Section& shape, double density)
+const Shape& shape_of(const Section& shape)
 {
     const std::string_view word = shape.values().front().key->name;
-    for (const Shape& s : shapes())
-        if (s.key.name == word) return s.make(density, shape);
-    return {};
+    return *std::ranges::find(shapes(), word, [](const Shape& s) { return s.key.name; });
+}
+
+Outline read_outline(const Section& body)
+{
+    const Section* shape = only_section(body, "shape");
+    return shape == nullptr || is_point_mass(body) ? Outline{} : shape_of(*shape).outline(*shape);
 }
 
 MassProperties read_mass(const Section& body)
 {
     const Vector3 center = body.vector("center_of_mass");
     if (const Section* shape = only_section(body, "shape")) {
-        const MassProperties solid = shape_properties(*shape,
-                                                      body.has("density") ? body.number("density") : 1);
+        const MassProperties solid =
+            shape_of(*shape).make(body.has("density") ? body.number("density") : 1, *shape);
         return with_center(body.has("mass") ? with_mass(solid, body.number("mass")) : solid, center);
     }
     MassProperties properties{body.number("mass"), center, {}};
@@ -204,6 +283,8 @@ Body build_body(const Section& section, const std::string& name)
 }
 
 }   // namespace
+
+Outline ball_outline() { return capsule_outline(1, 0); }
 
 Table body_table()
 {
@@ -273,6 +354,7 @@ void read_bodies(Builder& builder)
         builder.remember(path, section);
         body.is_usable = is_good && builder.guard(path, [&] {
             body.index = builder.model().add_body(build_body(section, named->text));
+            builder.outlines().push_back(read_outline(section));
         });
     }
     builder.close_bodies();

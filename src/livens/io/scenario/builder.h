@@ -27,6 +27,7 @@ public:
     const Section& top() const { return top_; }
     Findings& findings() { return findings_; }
     Model& model() { return model_; }
+    std::vector<Outline>& outlines() { return outlines_; }   ///< of the bodies so far
     /// Call once all bodies are there: computes length().
     void close_bodies();
     std::unordered_map<std::string, BodyReference>& bodies() { return bodies_; }
@@ -69,6 +70,7 @@ private:
     const Section& top_;
     Findings& findings_;
     Model model_;
+    std::vector<Outline> outlines_;
     std::unordered_map<std::string, BodyReference> bodies_;
     std::map<std::string, Place> places_;
     double length_ = 1;
@@ -101,6 +103,11 @@ void check_ends(Builder& builder, const Conditions& boundary, StartPolicy policy
 Method read_method(const Section* section, Findings& findings);
 /// Time, method, conditions: everything of the scenario but the model.
 void read_run(Builder& builder, Scenario& scenario);
+
+/// Elements and output times. False after an error.
+bool read_time(Builder& builder, const Section& time, const Section* method, Scenario& scenario);
+/// Whether elements are to be found: an accuracy is stated, or no elements are.
+bool follows_accuracy(const Section& time, const Method& method);
 
 /// Knots make the mesh.
 bool has_knots(const Method& method);

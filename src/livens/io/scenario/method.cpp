@@ -29,6 +29,8 @@ Method make_lobatto(const Section& section)
     return Lobatto{section.integer("degree"), section.integer("window")};   // 0 for the word all
 }
 
+Method make_radau(const Section& section) { return Radau{section.integer("degree")}; }
+
 Method make_mixed(const Section& section)
 {
     Mixed mixed;
@@ -95,11 +97,17 @@ std::vector<Key> mixed_keys()
 const std::vector<MethodKind>& kinds()
 {
     static const std::vector<MethodKind> all{
-        {{"lobatto", "space-time elements on Gauss-Lobatto points, order 2 degree at their ends",
+        {{"lobatto",
+          "space-time elements on Gauss-Lobatto points, order 2 degree at their ends",
           {Key{"degree", types::integer, "Of the polynomial in each element.", "", "4"}.within({1, 16}),
            window("1", ". Their equations are the same; conditions at both ends of time take all, whatever "
                        "stands here.")}},
          make_lobatto},
+        {{"radau",
+          "the same on Radau points, order 2 degree - 1, which damps vibrations that its elements do not "
+          "resolve; from the state at the start",
+          {Key{"degree", types::integer, "Of the polynomial in each element.", "", "4"}.within({1, 8})}},
+         make_radau},
         {{"mixed",
           "the elements of Hesch, Glas and Schuss, with positions, momenta and multipliers as separate "
           "fields and weak rigidity, all solved at once or by blocks",
@@ -133,6 +141,7 @@ double motion_bytes(const Model& model, const Method& method, double n_elements)
     const double at_ends = 48 * bodies + 2 * rows;   // P, V, and X'' on both sides
     double inside = 12 * bodies + rows;
     if (const Lobatto* lobatto = std::get_if<Lobatto>(&method)) inside *= lobatto->degree;
+    if (const Radau* radau = std::get_if<Radau>(&method)) inside *= radau->degree;
     if (const Mixed* mixed = std::get_if<Mixed>(&method))   // momenta and rigidity have fields of their own
         inside = (30 * bodies + rows) * mixed->degree;
     return sizeof(double) * n_elements * (inside + at_ends);
@@ -179,10 +188,14 @@ Table method_table()
              "second",
              false,
              {"second", "none"}},
+         Key{"growth", types::truth,
+             "Whether a neighbouring motion tells how perturbations of the start grow, and the horizon "
+             "beyond which double precision says nothing; about as costly as the motion. Default: true with "
+             "`accuracy` of `[time]`, else false."},
          Key{"condition", types::truth,
              "Whether condition numbers are computed: of the whole matrix of the last block (mixed), of that "
-             "of all elements, reduced to the free motions (lobatto). They take tens to hundreds of "
-             "solutions more.",
+             "of all elements, reduced to the free motions (lobatto), of that of the last element likewise "
+             "(radau). They take tens to hundreds of solutions more.",
              "", "false"}}}
         .with_kinds("family", {kinds().begin(), kinds().end()});
 }

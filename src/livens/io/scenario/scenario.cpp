@@ -53,14 +53,15 @@ void build(const Node& root, Scenario& scenario, Findings& findings)
     read_run(builder, scenario);
     if (findings.n_errors() > 0) return;
     scenario.conditions.start = builder.model().start();
-    scenario.conditions.start.t = scenario.mesh.start();
-    scenario.conditions.end.t = scenario.mesh.end();
+    scenario.conditions.start.t = start_of(scenario.time);
+    scenario.conditions.end.t = end_of(scenario.time);
     const bool fits = builder.guard("method", [&] {
-        check_method(builder.model(), {scenario.conditions}, scenario.mesh, scenario.method,
+        check_method(builder.model(), {scenario.conditions}, scenario.time, scenario.method,
                      scenario.options);
     });
     if (fits) check_ends(builder, scenario.conditions, scenario.options.initial);
     scenario.model = std::move(builder.model());
+    scenario.outlines = std::move(builder.outlines());
 }
 
 void parse(Scenario& scenario, Findings& findings)

@@ -14,18 +14,25 @@ namespace {
 Table time_table()
 {
     return {
-        "[time]", "What is solved: from `start` to `end` in at least `elements` time elements.",
+        "[time]",
+        "What is solved: from `start` to `end`, to an `accuracy`, from which time elements follow, or in at "
+        "least `elements` of them.",
         {Key{"start", types::number, "Of the motion.", "s", "0"},
          Key{"end", types::number, "Of the motion, after `start`.", "s"}.needed(),
          Key{"elements", types::integer,
              "Of equal length (end - start) / elements; output times and jumps of loads add some where they "
-             "do not fall on that grid. Needed, unless `knots` of `[method]` make the elements."}
+             "do not fall on that grid. Instead of `accuracy`."}
              .within({1, max_elements}),
          Key{"output", types::number_or_list,
              "Interval between output times (start and end are output times, too), or their ascending list. "
              "They become element ends, where results are most accurate. Default: all element ends.", "s"},
          choice("breaks", {"from_loads", "ignore"}, "Whether elements end where loads jump or bend."),
-         Key{"accuracy", types::later, "The wished-for error, from which elements follow."}}};
+         Key{"accuracy", types::number,
+             "Largest error of centres of mass, in lengths of the model, and of orientations, in rad, at all "
+             "element ends; elements and, unless it is stated, the degree follow from it. For the families "
+             "lobatto and radau with the state at the start. Default where neither `elements` nor `knots` of "
+             "`[method]` stand.", "", "1e-6"}
+             .within({0, 0.1, true})}};
 }
 
 Key given(std::string_view otherwise, const std::string& doc)

@@ -9,12 +9,16 @@ namespace livens {
 
 namespace {
 
+/// Rows of radau(p) are numbered with the node before their own, as a march has them.
+int place_of_row(const Stretch& stretch, int A) { return stretch.points == Points::radau ? A - 1 : A; }
+
 BlockStructure structure_of(const Stretch& stretch, int freedoms)
 {
     BlockStructure structure;
+    structure.n_rows.assign(static_cast<std::size_t>(stretch.n_nodes()), 0);
     for (int A = 0; A < stretch.n_nodes(); ++A) {
         structure.n_unknowns.push_back(stretch.is_unknown(A) ? freedoms : 0);
-        structure.n_rows.push_back(stretch.is_active(A) ? freedoms : 0);
+        if (stretch.is_active(A)) structure.n_rows[place_of_row(stretch, A)] = freedoms;
     }
     for (int e = 0; e < stretch.n_elements(); ++e)
         structure.elements.push_back({e * stretch.degree, (e + 1) * stretch.degree});
@@ -141,7 +145,7 @@ void NullSpaces::close()
 {
     if (f_ == 0) return;
     const int f = f_, n = tables_.n_twists, stride = matrix_.stride(e_);
-    double* block = matrix_.block(e_, A_, B_);
+    double* block = matrix_.block(e_, place_of_row(*stretch_, A_), B_);
     int r = 0;
     for (; r + 1 < f; r += 2) multiply_pair(r, block + r * stride, block + (r + 1) * stride);
     if (r == f) return;

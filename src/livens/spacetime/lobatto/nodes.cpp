@@ -8,7 +8,7 @@
 
 namespace livens {
 
-Nodes::Nodes(const Tables& tables, const LobattoRule& rule)
+Nodes::Nodes(const Tables& tables, const ElementRule& rule)
     : tables_(tables), rule_(rule), size_(12 * tables.bodies.size())
 {
     work_.assign(3 * size_, 0.0);   // a displacement, numbers of a twist, a twist

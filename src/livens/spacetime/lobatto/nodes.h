@@ -16,7 +16,7 @@ namespace livens {
 /// node after node.
 class Nodes {
 public:
-    Nodes(const Tables& tables, const LobattoRule& rule);
+    Nodes(const Tables& tables, const ElementRule& rule);
 
     void open(const Stretch& stretch);
     /// Node A is a known state, whose basis and maps serve; node 0, or the last where X is given there.
@@ -82,7 +82,7 @@ private:
     double followed(int e, int B, int c);
 
     const Tables& tables_;
-    const LobattoRule& rule_;
+    const ElementRule& rule_;
     std::size_t size_;   // 12 a body
     Set sets_[2];
     int current_ = 0, kept_ = 0;

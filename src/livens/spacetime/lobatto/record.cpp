@@ -6,19 +6,19 @@
 
 namespace livens {
 
-Record::Record(const Tables& tables, const TimeMesh& mesh, const LobattoRule& rule)
+Record::Record(const Tables& tables, const TimeMesh& mesh, const ElementRule& rule)
     : tables_(tables), mesh_(mesh), degree_(rule.degree), first_(std::numeric_limits<int>::max()), last_(-1)
 {
     Motion& m = motion_;
     m.n_bodies = tables.n_bodies();
     m.n_rows = tables.model->n_rows();
-    m.X = {12 * m.n_bodies, degree_, true, {}, {}};
-    m.multipliers = {m.n_rows, degree_, false, {}, {}};
-    m.order_at_ends = 2 * degree_;
+    m.X = {12 * m.n_bodies, degree_, true, {}, {}, rule.points};
+    m.multipliers = {m.n_rows, degree_, false, {}, {}, rule.points};
+    m.order_at_ends = rule.points == Points::lobatto ? 2 * degree_ : 2 * degree_ - 1;
     m.dense_order_X = degree_ + 1;
     m.dense_order_V = degree_;
     m.constraints_hold = "element nodes";
-    m.gauss_points = degree_;
+    if (rule.points == Points::lobatto) m.gauss_points = degree_;
     for_sizes(mesh.n_elements(), [](auto& values, std::size_t size) { values.reserve(size); });
     work_.assign(12 * static_cast<std::size_t>(m.n_bodies), 0.0);
 }
@@ -107,6 +107,12 @@ void Record::cut(std::vector<T>& values, std::size_t first, std::size_t last, st
 {
     values.resize(last * stride);
     values.erase(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(first * stride));
+}
+
+const Motion& Record::so_far()
+{
+    motion_.mesh.ends.assign(mesh_.ends.begin(), mesh_.ends.begin() + last_ + 1);
+    return motion_;
 }
 
 Motion Record::take()

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The motion of solved elements of lobatto(p), in whatever order they come.
+// The motion of solved elements of lobatto(p) or radau(p), in whatever order they come.
 #pragma once
 
 #include <vector>
@@ -13,7 +13,7 @@ namespace livens {
 /// Fills a motion element by element; elements that were never closed are cut off at the end.
 class Record {
 public:
-    Record(const Tables& tables, const TimeMesh& mesh, const LobattoRule& rule);
+    Record(const Tables& tables, const TimeMesh& mesh, const ElementRule& rule);
 
     /// X of local node A of a mesh element, 12 numbers a body; its joint multipliers, one-sided at the ends.
     void node(int element, int A, const double* X);
@@ -26,6 +26,8 @@ public:
     void note_redundant(const std::vector<int>& rows) { redundant_ = rows; }
     const TimeMesh& mesh() const { return mesh_; }
 
+    /// What is written of a march forwards, in arrays that may be longer.
+    const Motion& so_far();
     Motion take();
 
 private:

@@ -18,7 +18,7 @@ inline void accumulate(double* __restrict sum, double factor, const double* __re
 
 }   // namespace
 
-Rows::Rows(const Tables& tables, const LobattoRule& rule)
+Rows::Rows(const Tables& tables, const ElementRule& rule)
     : tables_(tables), rule_(rule), size_of_X_(12 * tables.bodies.size())
 {
     for (EndMomentum& momentum : momenta_) {
@@ -40,12 +40,16 @@ void Rows::open(const Stretch& stretch)
     reduced_.resize(static_cast<std::size_t>(n_active * tables_.freedoms()));
 }
 
-void Rows::start_with(const std::vector<double>& scaled)
+void Rows::start_with(const InstantState& first)
 {
-    momenta_[0].scaled = scaled;
+    momenta_[0].scaled = first.momentum;
     double largest = 0;
-    for (const double p : scaled) largest = std::max(largest, std::abs(p));
+    for (const double p : first.momentum) largest = std::max(largest, std::abs(p));
     start_terms_ = largest;
+    if (rule_.points == Points::lobatto) return;
+    momenta_[0].columns.resize(size_of_X_);
+    tables_.rates_of(first.X.data(), first.velocity.data(), V_.data());
+    tables_.times_mass(V_.data(), 1.0, momenta_[0].columns.data());
 }
 
 void Rows::interpolate(const Stretch& stretch, const Nodes& nodes, int e, int c, double* X, double* V) const
@@ -60,7 +64,7 @@ void Rows::interpolate(const Stretch& stretch, const Nodes& nodes, int e, int c,
     }
 }
 
-/// F_A of the loads at all nodes of an element. The Gauss points lie inside it, on its side of every jump.
+/// F_A of the loads at all nodes of an element.
 void Rows::add_loads(const Stretch& stretch, const Nodes& nodes, int e)
 {
     const int n_nodes = rule_.size();
@@ -70,8 +74,8 @@ void Rows::add_loads(const Stretch& stretch, const Nodes& nodes, int e)
     for (std::size_t c = 0; c < rule_.loads.points.size(); ++c) {
         interpolate(stretch, nodes, e, static_cast<int>(c), X_.data(), V_.data());
         std::fill(work_.begin(), work_.end(), 0.0);
-        tables_.add_loads({stretch.times[e] + rule_.loads.points[c] * h, Side::middle}, X_.data(), V_.data(),
-                          h * rule_.loads.weights[c], work_.data());
+        const Instant at = stretch.load_point(rule_, e, static_cast<int>(c));
+        tables_.add_loads(at, X_.data(), V_.data(), h * rule_.loads.weights[c], work_.data());
         for (int A = 0; A < n_nodes; ++A) {
             const double m = rule_.M[c * n_nodes + A];
             accumulate(first + place(A), m, work_.data(), size_of_X_);
@@ -106,6 +110,7 @@ void Rows::twist_row(const Stretch& stretch, const Nodes& nodes, int A, double* 
     double* raw = raw_.data() + place(A);
     for (int e = stretch.first_element(A); e <= stretch.last_element(A); ++e)
         add_element(stretch, nodes, e, A - e * rule_.degree, raw);
+    if (stretch.points == Points::radau) accumulate(raw, rule_.c[A], momenta_[0].columns.data(), size_of_X_);
     tables_.twist_rows(nodes.X(A), nodes.maps(A), raw, out);
 }
 
@@ -135,7 +140,7 @@ bool Rows::eliminate(const Stretch& stretch, const Nodes& nodes, int A, double* 
     const int k = tables_.rank, f = tables_.freedoms(), n = tables_.n_twists;
     double* y = work_.data();
     tables_.to_scaled_rows(nodes.maps(A), q_.data(), y);
-    if (A == 0 || A == stretch.n_nodes() - 1) add_end_momentum(stretch, nodes, A, y);
+    if (A == 0 || (stretch.P_last && A == stretch.n_nodes() - 1)) add_end_momentum(stretch, nodes, A, y);
     double terms = terms_, size = size_, sum = 0;
     for (int i = 0; i < n; ++i) terms = std::max(terms, std::abs(y[i]));
     basis.q.apply_transposed(y);
@@ -189,8 +194,8 @@ std::string Rows::bad_load(const Stretch& stretch, const Nodes& nodes) const
     for (int e = 0; e < stretch.n_elements(); ++e)
         for (std::size_t c = 0; c < rule_.loads.points.size(); ++c) {
             interpolate(stretch, nodes, e, static_cast<int>(c), X.data(), V.data());
-            const double t = stretch.times[e] + rule_.loads.points[c] * stretch.h(e);
-            const int load = tables_.bad_load({t, Side::middle}, X.data(), V.data());
+            const Instant at = stretch.load_point(rule_, e, static_cast<int>(c));
+            const int load = tables_.bad_load(at, X.data(), V.data());
             if (load >= 0) return tables_.model->loads()[load].name;
         }
     return "";

@@ -13,22 +13,24 @@ namespace livens {
 ///
 ///     N^T [ sum_e ( h^-1 sum_B k_AB (X_B - X_0) m + F_A ) + P(0) - P(T) - W_A G^T lambda_A ] = 0
 ///
-/// over the elements e at A, with F_A = h sum_c w_c M_A(s_c) F(X(s_c), X'(s_c)) at the Gauss points and the
-/// momenta at the first and the last node of the window (docs/theory.md, "The element"). Multipliers are
+/// over the elements e at A, with F_A = h sum_c w_c M_A(s_c) F(X(s_c), X'(s_c)) at the load points and the
+/// momenta at the first and the last node of the window (docs/theory.md, "The element"); with radau c_A P(0)
+/// at every node, and no other momentum ("Radau points"). Multipliers are
 /// eliminated node by node with an orthogonal basis of the constraint directions; what they leave are the
 /// reduced rows, which are solved.
 class Rows {
 public:
-    Rows(const Tables& tables, const LobattoRule& rule);
+    Rows(const Tables& tables, const ElementRule& rule);
 
     void open(const Stretch& stretch);
     /// Momentum at the first (sign 1) or the last node (sign -1) of the window: where X is known there, in
     /// scaled rows; else linear momentum and moment about the reference point, in world axes.
     struct EndMomentum {
         std::vector<double> scaled, about_reference;
+        std::vector<double> columns;   ///< X' m, 12 numbers a body, for rows that share it (radau)
     };
     EndMomentum& end_momentum(bool last) { return momenta_[last ? 1 : 0]; }
-    void start_with(const std::vector<double>& scaled);
+    void start_with(const InstantState& first);
 
     /// False if something is not finite.
     bool evaluate(const Stretch& stretch, const Nodes& nodes);
@@ -50,7 +52,7 @@ public:
     void twist_row(const Stretch& stretch, const Nodes& nodes, int A, double* out);
     /// out -= G^T impulses, in the order of the node's basis.
     void subtract(const ConstraintBasis& basis, const double* impulses, double* out) const;
-    /// X and X' at Gauss point c.
+    /// X and X' at load point c.
     void interpolate(const Stretch& stretch, const Nodes& nodes, int e, int c, double* X, double* V) const;
     /// Name of a load that is not finite, empty if all are.
     std::string bad_load(const Stretch& stretch, const Nodes& nodes) const;
@@ -63,7 +65,7 @@ private:
     bool eliminate(const Stretch& stretch, const Nodes& nodes, int A, double* reduced);
 
     const Tables& tables_;
-    const LobattoRule& rule_;
+    const ElementRule& rule_;
     std::size_t size_of_X_;
     EndMomentum momenta_[2];
     std::vector<double> forces_, raw_, q_;   // q_: N^T raw

@@ -16,7 +16,7 @@ namespace {
 /// Makes sum_A k_AB = 0 hold for the rounded numbers too: what is left of a column goes into its smallest
 /// entry. A sum that is not zero is a force proportional to the displacement, and drives the momentum element
 /// by element.
-void balance_columns(LobattoRule& rule)
+void balance_columns(ElementRule& rule)
 {
     const int n = rule.size();
     for (int round = 0; round < 3; ++round) {
@@ -32,17 +32,38 @@ void balance_columns(LobattoRule& rule)
     }
 }
 
-}   // namespace
-
-LobattoRule lobatto_rule(int degree)
+/// Makes sum_B x_B s_B = value hold for the rounded numbers of a row too, in its smallest entry but the
+/// first: steady motion is then steady to rounding.
+void balance_row(const ElementRule& rule, double* x, double value)
 {
-    if (degree < 1 || degree > 17)
-        throw InputError({"degree-out-of-range", "method.degree", "lobatto elements have degree 1 to 17",
-                          std::to_string(degree), "1..17", "", "4 to 8 suit most mechanisms"});
-    const LagrangeBasis basis = lobatto_basis(degree);
-    const int n = degree + 1;
-    LobattoRule rule{
-        degree, basis.nodes(), gauss_lobatto(n).weights, basis.differentiation(), {}, gauss(degree), {}, {}};
+    for (int round = 0; round < 3; ++round) {
+        long double sum = -static_cast<long double>(value);
+        int smallest = 1;
+        for (int b = 1; b < rule.size(); ++b) {
+            sum += static_cast<long double>(x[b]) * rule.nodes[b];
+            if (std::abs(x[b]) < std::abs(x[smallest])) smallest = b;
+        }
+        x[smallest] = static_cast<double>(x[smallest] - sum / rule.nodes[smallest]);
+    }
+}
+
+void check_degree(Points points, int degree)
+{
+    const int most = points == Points::lobatto ? 17 : 9;
+    if (degree >= 1 && degree <= most) return;
+    const std::string last = std::to_string(most - 1);
+    throw InputError(
+        {"degree-out-of-range", "method.degree",
+         std::string(points == Points::lobatto ? "lobatto" : "radau") + " elements have degree 1 to " + last,
+         std::to_string(degree), "1.." + last, "", "4 to 8 suit most mechanisms"});
+}
+
+/// Hamilton's law: k_AB = sum_C w_C D_CA D_CB.
+void fill_lobatto(ElementRule& rule)
+{
+    const int n = rule.size();
+    rule.weights = gauss_lobatto(n).weights;
+    rule.loads = gauss(rule.degree);
     rule.k.assign(static_cast<std::size_t>(n * n), 0.0);
     for (int a = 0; a < n; ++a) {
         for (int b = 0; b <= a; ++b) {
@@ -53,7 +74,48 @@ LobattoRule lobatto_rule(int degree)
         }
     }
     balance_columns(rule);
-    const auto size = static_cast<std::size_t>(n);
+}
+
+/// Collocation: minus w_A times the slope at node A of the polynomial through the velocities, V_0 at the
+/// start and sum_B D_CB X_B at the other nodes, - w_A (D_A0 V_0 + sum_C>0 D_AC D_CB X_B).
+void fill_radau(ElementRule& rule)
+{
+    const int n = rule.size();
+    rule.loads = radau(rule.degree);
+    rule.weights = rule.loads.weights;
+    rule.weights.insert(rule.weights.begin(), 0.0);
+    rule.k.assign(static_cast<std::size_t>(n * n), 0.0);
+    rule.c.assign(static_cast<std::size_t>(n), 0.0);
+    for (int a = 1; a < n; ++a) {
+        const auto w = static_cast<long double>(rule.weights[a]);
+        rule.c[a] = static_cast<double>(-w * rule.D[a * n]);
+        for (int b = 0; b < n; ++b) {
+            long double sum = 0;
+            for (int c = 1; c < n; ++c)
+                sum += static_cast<long double>(rule.D[a * n + c]) * rule.D[c * n + b];
+            rule.k[a * n + b] = static_cast<double>(-w * sum);
+        }
+        balance_row(rule, rule.k.data() + a * n, -rule.c[a]);
+    }
+    balance_row(rule, rule.D.data() + rule.degree * n, 1);
+}
+
+}   // namespace
+
+ElementRule element_rule(Points points, int degree)
+{
+    check_degree(points, degree);
+    const LagrangeBasis basis = basis_on(points, degree);
+    ElementRule rule;
+    rule.points = points;
+    rule.degree = degree;
+    rule.nodes = basis.nodes();
+    rule.D = basis.differentiation();
+    if (points == Points::lobatto)
+        fill_lobatto(rule);
+    else
+        fill_radau(rule);
+    const auto size = static_cast<std::size_t>(rule.size());
     rule.M.resize(size * rule.loads.points.size());
     rule.dM.resize(rule.M.size());
     for (std::size_t c = 0; c < rule.loads.points.size(); ++c) {
@@ -61,6 +123,12 @@ LobattoRule lobatto_rule(int degree)
         basis.derivatives(rule.loads.points[c], std::span(rule.dM).subspan(c * size, size));
     }
     return rule;
+}
+
+ElementRule rule_of(const Method& method)
+{
+    if (const auto* radau = std::get_if<Radau>(&method)) return element_rule(Points::radau, radau->degree);
+    return element_rule(Points::lobatto, std::get<Lobatto>(method).degree);
 }
 
 }   // namespace livens

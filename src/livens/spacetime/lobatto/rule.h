@@ -1,28 +1,37 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The tables of one Lobatto element on the unit interval.
+// The tables of one element of lobatto(p) or radau(p) on the unit interval.
 #pragma once
 
 #include <vector>
 
+#include "livens/spacetime/method.h"
+#include "livens/time/basis.h"
 #include "livens/time/quadrature.h"
 
 namespace livens {
 
-/// Degree p: n = p + 1 nodes, where constraints hold, and p Gauss points, where loads are taken.
-struct LobattoRule {
+/// Degree p: n = p + 1 nodes, where constraints hold, and p points where loads are taken: Gauss points with
+/// lobatto; the nodes but the first, which has no weight and no row, with radau.
+struct ElementRule {
+    Points points = Points::lobatto;
     int degree = 0;
     std::vector<double> nodes;     ///< s_A in [0, 1]
     std::vector<double> weights;   ///< w_A, sum 1
     std::vector<double> D;         ///< D_CA = M_A'(s_C), row by row
-    std::vector<double> k;         ///< k_AB = sum_C w_C D_CA D_CB, row by row
-    Quadrature loads;              ///< the p Gauss points s_c
+    std::vector<double> k;   ///< k_AB, row by row: sum_C w_C D_CA D_CB, with radau - w_A sum_C>0 D_AC D_CB
+    std::vector<double> c;   ///< share c_A of row A in the momentum at the start; empty: row 0 has it all
+    Quadrature loads;        ///< the p points s_c
     std::vector<double> M;         ///< M_A(s_c) at [c * n + A]
     std::vector<double> dM;        ///< M_A'(s_c) likewise
 
     int size() const { return degree + 1; }
 };
 
-/// Throws InputError unless 1 <= degree <= 17; the last is for the estimate of the error of 16.
-LobattoRule lobatto_rule(int degree);
+/// Throws InputError unless 1 <= degree <= 17 (lobatto) or 9 (radau); the last is for the estimate of the
+/// error of the one before.
+ElementRule element_rule(Points points, int degree);
+/// Throws InputError for a degree out of range, and std::bad_variant_access for a method that is not nodal.
+ElementRule rule_of(const Method& method);
+inline ElementRule lobatto_rule(int degree) { return element_rule(Points::lobatto, degree); }
 
 }   // namespace livens

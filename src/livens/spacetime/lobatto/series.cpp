@@ -23,10 +23,10 @@ int side_of(double h) { return h > 0 ? 1 : 0; }
 
 }   // namespace
 
-Series::Series(const Tables& tables, const LobattoRule& rule) : tables_(tables)
+Series::Series(const Tables& tables, const ElementRule& rule) : tables_(tables)
 {
     if (rule.degree < 4) return;
-    const LobattoRule half = lobatto_rule(rule.degree / 2);
+    const ElementRule half = element_rule(rule.points, rule.degree / 2);
     coarse_ = std::make_unique<LobattoSystem>(tables, half);
     coarse_series_ = std::make_unique<Series>(tables, half);
     const LagrangeBasis basis(half.nodes);
@@ -57,7 +57,7 @@ double Series::error(const InstantState& start, double h) const
 /// half a length (a stiff spring that vibrates within the element), constant twist is the safer guess.
 void Series::predict(LobattoSystem& system, const InstantState& start) const
 {
-    const LobattoRule& rule = system.rule();
+    const ElementRule& rule = system.rule();
     const double h = system.stretch().h(0);
     const double *v = start.velocity.data(), *a = start.acceleration[side_of(h)].data();
     const double *j = start.jerk.data(), *s = start.snap.data();

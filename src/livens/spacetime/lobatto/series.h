@@ -14,7 +14,7 @@ namespace livens {
 /// ends too early, the solution of half the degree, which is guessed likewise.
 class Series {
 public:
-    Series(const Tables& tables, const LobattoRule& rule);
+    Series(const Tables& tables, const ElementRule& rule);
 
     /// Places all nodes of the open system.
     void place(LobattoSystem& system, const InstantState& start);
@@ -22,6 +22,11 @@ public:
     long factorisations() const
     {
         return factorisations_ + (coarse_series_ ? coarse_series_->factorisations() : 0);
+    }
+    /// Evaluations of the equations at a node so far.
+    long long evaluations() const
+    {
+        return coarse_ ? coarse_->evaluations() + coarse_series_->evaluations() : 0;
     }
 
 private:

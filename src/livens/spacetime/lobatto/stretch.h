@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "livens/spacetime/lobatto/rule.h"
+#include "livens/time/time_mesh.h"
 
 namespace livens {
 
@@ -22,22 +23,28 @@ namespace livens {
 /// | X at the first, P at the last| 1..n      | 1..n                 | 1..n        |
 /// | P at the first, X at the last| 0..n-1    | 0..n-1               | 0..n-1      |
 /// | P at both                    | 0..n      | 0..n                 | 0..n        |
+/// | X and P at the first, radau  | 1..n      | 1..n                 | 1..n        |
 struct Stretch {
     std::vector<double> times;   ///< element ends
     int degree = 1;
+    Points points = Points::lobatto;   ///< radau: one element, whose state is known at the first node
     bool X_first = true, P_first = true, X_last = false, P_last = false;
 
     int n_elements() const { return static_cast<int>(times.size()) - 1; }
     int n_nodes() const { return n_elements() * degree + 1; }
     double h(int e) const { return times[static_cast<std::size_t>(e) + 1] - times[e]; }
     bool is_unknown(int A) const { return !(A == 0 && X_first) && !(A == n_nodes() - 1 && X_last); }
-    bool is_active(int A) const { return !(A == 0 && !P_first) && !(A == n_nodes() - 1 && !P_last); }
+    bool is_active(int A) const
+    {
+        const bool is_radau = points == Points::radau;
+        return A == 0 ? P_first && !is_radau : P_last || is_radau || A != n_nodes() - 1;
+    }
     /// All is known at the first node: the equations are block triangular over elements.
     bool is_march() const { return X_first && P_first; }
     /// The first and last element that node A belongs to.
     int first_element(int A) const { return A == 0 ? 0 : (A - 1) / degree; }
     int last_element(int A) const { return A == n_nodes() - 1 ? n_elements() - 1 : A / degree; }
-    double time(const LobattoRule& rule, int A) const
+    double time(const ElementRule& rule, int A) const
     {
         const int e = first_element(A), a = A - e * degree;
         return a == 0 ? times[static_cast<std::size_t>(e)]
@@ -45,8 +52,14 @@ struct Stretch {
                    ? times[static_cast<std::size_t>(e) + 1]
                    : times[static_cast<std::size_t>(e)] + rule.nodes[static_cast<std::size_t>(a)] * h(e);
     }
+    /// The instant of load point c of element e, seen from inside the element.
+    Instant load_point(const ElementRule& rule, int e, int c) const
+    {
+        if (rule.loads.points[c] == 1) return {times[static_cast<std::size_t>(e) + 1], Side::left};
+        return {times[e] + rule.loads.points[c] * h(e), Side::middle};
+    }
     /// Quadrature weight of node A: the sum of h w over its elements.
-    double weight(const LobattoRule& rule, int A) const
+    double weight(const ElementRule& rule, int A) const
     {
         double sum = 0;
         for (int e = first_element(A); e <= last_element(A); ++e) sum += h(e) * rule.weights[A - e * degree];

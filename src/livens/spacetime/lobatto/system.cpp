@@ -6,7 +6,7 @@
 
 namespace livens {
 
-LobattoSystem::LobattoSystem(const Tables& tables, const LobattoRule& rule)
+LobattoSystem::LobattoSystem(const Tables& tables, const ElementRule& rule)
     : tables_(tables), rule_(rule), nodes_(tables, rule_), rows_(tables, rule_), tangent_(tables, rule_)
 {
     for (double k : rule.k) largest_k_ = std::max(largest_k_, std::abs(k));
@@ -24,10 +24,10 @@ void LobattoSystem::open(const Stretch& stretch, const InstantState* first, cons
     if (!is_alike) rows_.open(stretch_);
     if (first != nullptr) nodes_.fix(0, *first);
     if (last != nullptr) nodes_.fix(stretch_.n_nodes() - 1, *last);
-    if (first != nullptr) rows_.start_with(first->momentum);
+    if (first != nullptr) rows_.start_with(*first);
     if (is_alike) return;
-    if (rule_.degree == 1 && stretch_.n_elements() == 1 && stretch_.is_march() &&
-        tables_.loads_with_tangent.empty())
+    if (rule_.degree == 1 && rule_.points == Points::lobatto && stretch_.n_elements() == 1 &&
+        stretch_.is_march() && tables_.loads_with_tangent.empty())
         elimination_ = body_elimination(tables_);
     else
         elimination_ = null_space_elimination(
@@ -96,7 +96,7 @@ bool LobattoSystem::move(std::span<const double> dx, double damping)
 /// Motion and impulse inside the elements.
 void LobattoSystem::measure()
 {
-    motion_ = impulse_ = 0;
+    largest_.motion = largest_.impulse = 0;
     for (int e = 0; e < stretch_.n_elements(); ++e) {
         const double inverse = 1 / std::abs(stretch_.h(e));
         for (int B = 1; B <= rule_.degree; ++B) {
@@ -106,9 +106,9 @@ void LobattoSystem::measure()
                 double u = 0, turn = 0;
                 for (int i = 0; i < 3; ++i) u = std::max(u, std::abs(d[i]));
                 for (int i = 3; i < 12; ++i) turn = std::max(turn, std::abs(d[i]));
-                motion_ = std::max(motion_, std::max(u / tables_.length, turn));
-                impulse_ = std::max(
-                    impulse_,
+                largest_.motion = std::max(largest_.motion, std::max(u / tables_.length, turn));
+                largest_.impulse = std::max(
+                    largest_.impulse,
                     ((u + body.reach * turn) / body.inverse_root_mass + body.root_inertia * turn) * inverse);
             }
         }
@@ -126,13 +126,13 @@ double LobattoSystem::size_of(std::span<const double> dx) const
 }
 
 /// A body may fly many lengths while its turns need their digits all the same.
-double LobattoSystem::scale() const { return std::clamp(motion_, 1e-6, 1.0); }
+double LobattoSystem::scale() const { return std::clamp(largest_.motion, 1e-6, 1.0); }
 
 /// The sums over k_AB cancel: their rounding is that of their largest term.
 NewtonProblem::Rows LobattoSystem::rows() const
 {
-    return {rows_.size(), std::max(impulse_, rows_.terms()),
-            1e-16 * (largest_k_ * impulse_ + rows_.terms() + tangent_.load_rounding()),
+    return {rows_.size(), std::max(largest_.impulse, rows_.terms()),
+            1e-16 * (largest_k_ * largest_.impulse + rows_.terms() + tangent_.load_rounding()),
             stretch_.n_elements() == 1, correction_};
 }
 

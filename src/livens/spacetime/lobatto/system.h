@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The equations of lobatto(p) on one window, as Newton's iteration sees them.
+// The equations of lobatto(p) or radau(p) on one window, as Newton's iteration sees them.
 #pragma once
 
 #include <memory>
@@ -14,7 +14,7 @@ namespace livens {
 /// node after the other. Multipliers are eliminated; every move ends with a pull back onto the constraints.
 class LobattoSystem final : public NewtonProblem {
 public:
-    LobattoSystem(const Tables& tables, const LobattoRule& rule);
+    LobattoSystem(const Tables& tables, const ElementRule& rule);
 
     /// Makes a stretch current, with the states known at its ends (null: X is unknown there). To be followed
     /// by places for all unknown nodes, and settle().
@@ -22,7 +22,7 @@ public:
     /// Placed nodes may lie far from the constraints: pulls until the bases fit the nodes. False: not finite.
     bool settle();
 
-    const LobattoRule& rule() const { return rule_; }
+    const ElementRule& rule() const { return rule_; }
     const Stretch& stretch() const { return stretch_; }
     Nodes& nodes() { return nodes_; }
     const Nodes& nodes() const { return nodes_; }
@@ -38,7 +38,13 @@ public:
     bool bases_fit() const { return correction_ < 1e-15; }
 
     int n_unknowns() const override;
-    bool residual() override { return rows_.evaluate(stretch_, nodes_); }
+    bool residual() override
+    {
+        evaluations_ += stretch_.n_nodes();
+        return rows_.evaluate(stretch_, nodes_);
+    }
+    /// Of the equations at a node, so far.
+    long long evaluations() const { return evaluations_; }
     bool factorise() override;
     void solve(std::span<double> dx) override;
     bool move(std::span<const double> dx, double damping) override;
@@ -48,10 +54,15 @@ public:
     NewtonProblem::Rows rows() const override;
 
 private:
+    struct Largest {
+        double motion = 0;    // inside an element, in lengths and radians
+        double impulse = 0;   // mass times motion over h, in scaled rows
+    };
+
     void measure();
 
     const Tables& tables_;
-    LobattoRule rule_;
+    ElementRule rule_;
     Stretch stretch_;
     Nodes nodes_;
     livens::Rows rows_;
@@ -61,8 +72,8 @@ private:
     bool in_use_ = false;     // a tangent is: null spaces vary smoothly
     bool pending_ = false;    // violations are left to the next linear step
     double correction_ = 0;   // largest pull of the last move
-    double motion_ = 0;       // largest motion inside an element, in lengths and radians
-    double impulse_ = 0;      // largest mass times motion over h, in scaled rows
+    Largest largest_;
+    long long evaluations_ = 0;
     std::vector<double> work_, range_;
 };
 

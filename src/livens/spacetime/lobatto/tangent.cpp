@@ -68,7 +68,7 @@ void add_reduced(const Matrix<12, 12>& K, const double* X_row, const double* X_c
 
 }   // namespace
 
-Tangent::Tangent(const Tables& tables, const LobattoRule& rule) : tables_(tables), rule_(rule)
+Tangent::Tangent(const Tables& tables, const ElementRule& rule) : tables_(tables), rule_(rule)
 {
     const std::size_t size = 12 * tables.bodies.size();
     blocks_.assign(3 * size, 0.0);
@@ -167,7 +167,7 @@ double Tangent::rounding_of(const Load& load, const LoadArguments& at, const Loa
     return size;
 }
 
-/// dF/dX and dF/dX' of all loads at the Gauss points of an element.
+/// dF/dX and dF/dX' of all loads at the load points of an element.
 void Tangent::evaluate_loads(const Stretch& stretch, const Nodes& nodes, const Rows& rows, int e)
 {
     const std::size_t n = tables_.loads_with_tangent.size();
@@ -176,7 +176,7 @@ void Tangent::evaluate_loads(const Stretch& stretch, const Nodes& nodes, const R
         rows.interpolate(stretch, nodes, e, c, X_.data(), V_.data());
         for (std::size_t l = 0; l < n; ++l) {
             const Load& load = tables_.model->loads()[tables_.loads_with_tangent[l]];
-            const Instant at{stretch.times[e] + rule_.loads.points[c] * stretch.h(e), Side::middle};
+            const Instant at = stretch.load_point(rule_, e, c);
             const LoadArguments arguments = Tables::arguments(load, at, X_.data(), V_.data());
             LoadTangent& tangent = load_tangents_[c * n + l];
             load.tangent(arguments, tangent);

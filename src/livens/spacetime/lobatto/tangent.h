@@ -25,7 +25,7 @@ public:
 /// which are not differentiated (docs/theory.md, "The tangent").
 class Tangent {
 public:
-    Tangent(const Tables& tables, const LobattoRule& rule);
+    Tangent(const Tables& tables, const ElementRule& rule);
 
     void form(const Stretch& stretch, const Nodes& nodes, const Rows& rows, TangentSink& sink);
 
@@ -41,7 +41,7 @@ private:
     void add_loads(const Stretch& stretch, const Nodes& nodes, int e, int a, int b, TangentSink& sink);
 
     const Tables& tables_;
-    const LobattoRule& rule_;
+    const ElementRule& rule_;
     std::vector<LoadTangent> load_tangents_;   // of one element: loads with tangents, Gauss point after point
     std::vector<double> blocks_;               // 36 a body
     std::vector<double> total_, X_, V_;        // 12 a body

@@ -28,9 +28,9 @@ void polish(double* X)
 }   // namespace
 
 LobattoWindow::LobattoWindow(const Tables& tables, const TimeMesh& mesh, const Ends& ends,
-                             const Lobatto& method)
-    : tables_(tables), ends_(ends), system_(tables, lobatto_rule(method.degree)),
-      series_(tables, system_.rule()), instant_(tables), record_(tables, mesh, system_.rule()), front_(tables)
+                             const ElementRule& rule)
+    : tables_(tables), ends_(ends), system_(tables, rule), series_(tables, system_.rule()), instant_(tables),
+      record_(tables, mesh, system_.rule()), front_(tables)
 {
     record_.note_redundant(ends.redundant);
     work_.lambda.assign(tables.rows.size(), 0.0);
@@ -52,6 +52,7 @@ bool LobattoWindow::open(int first, int last, SolveReport& report)
     first_ = first;
     last_ = last;
     stretch_.degree = system_.rule().degree;
+    stretch_.points = system_.rule().points;
     stretch_.times.resize(static_cast<std::size_t>(last - first) + 1);
     for (int e = 0; e <= last - first; ++e) stretch_.times[e] = record_.mesh().ends[mesh_end(e)];
     if (!ends_.has_state()) {
@@ -129,7 +130,7 @@ bool LobattoWindow::predict()
 
 bool LobattoWindow::start_from(const Guess& guess)
 {
-    const LobattoRule& rule = system_.rule();
+    const ElementRule& rule = system_.rule();
     std::vector<double> X(12 * tables_.bodies.size());
     for (int A = 0; A < stretch_.n_nodes(); ++A) {
         if (!stretch_.is_unknown(A)) continue;
@@ -213,17 +214,22 @@ Closed LobattoWindow::close(const Trust& trust, SolveReport& report)
         std::copy_n(system_.balances().impulses(0), tables_.rank, work_.impulse.begin());
     else if (!find_first_state(report))
         return {};
+    const bool is_watched = trust.turns || !std::isinf(trust.velocity_jump);
+    Closed closed;
     for (int e = 0; e < stretch_.n_elements(); ++e) {
-        if (!end_element(e, report)) return {e, false};
-        if (!is_believable(e, trust)) return {e, true};
+        if (!end_element(e, report)) return closed;
+        if (is_watched) closed.velocity_jump = velocity_jump(e, trust.turns);
+        closed.is_refused = !(closed.velocity_jump <= trust.velocity_jump);
+        if (closed.is_refused) return closed;
         close_element(e);
+        ++closed.n_elements;
     }
     front_.is_ready = true;
-    return {stretch_.n_elements(), false};
+    return closed;
 }
 
-/// The momentum at the end of an element from the balance of all its rows, which is its last row once the
-/// others are solved:
+/// The momentum at the end of an element from the balance of all its rows, which with lobatto is its last row
+/// once the others are solved:
 ///
 ///     p = p_0 + sum_A f_A,      s = s_0 + sum_A tau_A
 ///
@@ -236,41 +242,60 @@ void LobattoWindow::sum_momentum(int e)
     const int p = system_.rule().degree;
     const bool has_loads = !tables_.model->loads().empty();
     std::vector<double>&sum = work_.momentum, &wrench = work_.wrench;
+    const int without = is_radau() ? 0 : p;   // the node that has no multiplier of its own
     sum = front_.here().p;
     for (const auto& body : tables_.bodies)   // the weight has no moment about the centre
         for (int i = 0; i < 3; ++i) sum[body.first + i] += stretch_.h(e) * body.weight[i];
     for (int a = 0; a <= p; ++a) {
         const int A = e * p + a;
+        if (a == without && !has_loads) continue;
         if (has_loads)
             std::copy_n(rows.forces(e, a), work_.raw.size(), work_.raw.begin());
         else
             std::fill(work_.raw.begin(), work_.raw.end(), 0.0);
-        if (a < p)
+        if (a != without)
             rows.subtract(nodes.basis(A), a == 0 ? work_.impulse.data() : rows.impulses(A), work_.raw.data());
-        else if (!has_loads)
-            continue;
         tables_.twist_rows(nodes.X(A), nodes.maps(A), work_.raw.data(), wrench.data());
         for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += wrench[i];
     }
 }
 
+/// The spin about the centres of mass at the end of an element of radau is that of the polynomial's own
+/// velocity, as its rows do not balance moments.
+void LobattoWindow::take_spin_of_polynomial(int e)
+{
+    const ElementRule& rule = system_.rule();
+    const Nodes& nodes = system_.nodes();
+    const int p = rule.degree, A = (e + 1) * p;
+    std::vector<double> V(work_.raw.size(), 0.0);
+    for (int B = 1; B <= p; ++B)
+        for (std::size_t i = 0; i < V.size(); ++i)
+            V[i] += rule.D[p * rule.size() + B] / stretch_.h(e) * nodes.dX(e, B)[i];
+    tables_.times_mass(V.data(), 1.0, work_.raw.data());
+    tables_.twist_rows(nodes.X(A), nodes.maps(A), work_.raw.data(), work_.wrench.data());
+    for (const auto& body : tables_.bodies)
+        for (int i = 3; i < body.dofs; ++i) work_.momentum[body.first + i] = work_.wrench[body.first + i];
+}
+
 /// The end state of a solved element.
 bool LobattoWindow::end_element(int e, SolveReport& report)
 {
-    const LobattoRule& rule = system_.rule();
+    const ElementRule& rule = system_.rule();
     const Nodes& nodes = system_.nodes();
     const int p = rule.degree, A = (e + 1) * p;
     const bool is_last = e + 1 == stretch_.n_elements();
     InstantState &here = front_.here(), &next = front_.next();
     next.t = stretch_.times[e + 1];
     sum_momentum(e);
+    if (is_radau()) take_spin_of_polynomial(e);
     std::copy_n(nodes.X(A), next.X.size(), next.X.begin());
     std::copy_n(nodes.low(A), next.X.size(), next.X_low.begin());
     std::copy_n(nodes.maps(A), next.X.size(), next.maps.begin());
     for (int b = 0; mesh_end(e) % 16 == 15 && b < tables_.n_bodies(); ++b)
         if (tables_.bodies[b].dofs == 6) polish(next.X.data() + 12 * b);
-    ConstraintBasis* known =
-        is_last && stretch_.is_unknown(A) && system_.bases_fit() ? &system_.nodes().own_basis(A) : nullptr;
+    // the node's own basis, where nothing asks for it any more
+    const bool is_free = is_last && !is_radau() && stretch_.is_unknown(A);
+    ConstraintBasis* known = is_free && system_.bases_fit() ? &system_.nodes().own_basis(A) : nullptr;
     if (!instant_.prepare(next, here.basis.rows, known))
         return fail(report, "the free motions carry no inertia at t = " + to_text(next.t, 6) + " s");
     if (!rows_compatible(next, report)) return false;
@@ -278,42 +303,6 @@ bool LobattoWindow::end_element(int e, SolveReport& report)
     instant_.from_momentum(next, work_.momentum.data(), weight, work_.end_lambda.data());
     accelerate(next);
     return true;
-}
-
-/// The velocity jump h |V - X_h'| at the end of an element, as velocity_jump() has it, and turns from node to
-/// node: |R_B - R_A|^2 = 4 at 90 degrees.
-bool LobattoWindow::is_believable(int e, const Trust& trust) const
-{
-    if (std::isinf(trust.velocity_jump) && !trust.turns) return true;
-    const LobattoRule& rule = system_.rule();
-    const double *D = rule.D.data() + rule.degree * rule.size(), h = stretch_.h(e);
-    bool is_good = true;
-    for (int b = 0; b < tables_.n_bodies(); ++b) {
-        const auto& body = tables_.bodies[b];
-        const int n = body.dofs == 6 ? 12 : 3;
-        double jump[12] = {};
-        for (int i = 0; i < n; ++i) jump[i] = h * instant_.rates()[12 * b + i];
-        for (int B = 1; B <= rule.degree; ++B) {
-            const double *d = system_.nodes().dX(e, B) + 12 * b,
-                         *before = system_.nodes().dX(e, B - 1) + 12 * b;
-            double turn = 0;
-            for (int i = 0; i < n; ++i) jump[i] -= D[B] * d[i];
-            for (int i = 3; i < n; ++i) turn += (d[i] - before[i]) * (d[i] - before[i]);
-            is_good = is_good && !(trust.turns && turn > 4);
-        }
-        double of_center = 0, largest = 0;
-        for (int i = 0; i < 3; ++i) {
-            const double x = jump[i] + body.center[0] * jump[3 + i] + body.center[1] * jump[6 + i] +
-                             body.center[2] * jump[9 + i];
-            of_center += x * x;
-        }
-        for (int a = 3; a < 12; a += 3)
-            largest =
-                std::max(largest, jump[a] * jump[a] + jump[a + 1] * jump[a + 1] + jump[a + 2] * jump[a + 2]);
-        const double limit = trust.velocity_jump * trust.velocity_jump;
-        is_good = is_good && of_center <= limit * tables_.length * tables_.length && largest <= 2 * limit;
-    }
-    return is_good;
 }
 
 /// The nodes and multipliers of a believed element into the motion, its end as the start of the next.
@@ -337,22 +326,29 @@ void LobattoWindow::close_element(int e)
 
 void LobattoWindow::record_element(int e)
 {
-    const LobattoRule& rule = system_.rule();
+    const ElementRule& rule = system_.rule();
     const int p = rule.degree;
     const bool back = ends_.is_backwards();
     const int element = std::min(mesh_end(e), mesh_end(e + 1));
+    const int without = is_radau() ? 0 : p;   // as above
     for (int a = 0; a <= p; ++a) {
         const int A = e * p + a, place = back ? p - a : a;
         if (a > 0 && a < p) record_.node(element, place, system_.nodes().X(A));
-        if (a == p) {
-            record_.multipliers(element, place, work_.end_lambda.data());
+        if (a == without) {   // at the start of radau what the equations of motion ask for
+            record_.multipliers(element, place,
+                                (a == p ? work_.end_lambda : front_.here().multipliers[1]).data());
             continue;
         }
         const double* impulses = a == 0 ? work_.impulse.data() : system_.balances().impulses(A);
         const std::vector<int>& rows = system_.nodes().basis(A).rows;
-        std::fill(work_.lambda.begin(), work_.lambda.end(), 0.0);
-        for (int c = 0; c < tables_.rank; ++c)
-            work_.lambda[rows[c]] = impulses[c] / (stretch_.h(e) * rule.weights[a]);
+        if (a == p)
+            work_.lambda = work_.end_lambda;
+        else if (tables_.rank < tables_.n_rows())
+            std::fill(work_.lambda.begin(), work_.lambda.end(), 0.0);
+        for (int c = 0; c < tables_.rank; ++c) {
+            const double own = impulses[c] / (stretch_.h(e) * rule.weights[a]);
+            work_.lambda[rows[c]] = a == p ? work_.lambda[rows[c]] + own : own;
+        }
         record_.multipliers(element, place, work_.lambda.data());
     }
 }

@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// lobatto(p) as a family: its windows, what they hand on, and its motion.
+// lobatto(p) and radau(p) as families: their windows, what they hand on, and its motion.
 #pragma once
 
 #include "livens/spacetime/ends.h"
 #include "livens/spacetime/lobatto/record.h"
 #include "livens/spacetime/lobatto/series.h"
-#include "livens/spacetime/method.h"
 #include "livens/spacetime/window.h"
 
 namespace livens {
 
-/// Windows from the end where the state is known, or one window of all elements.
+/// Windows from the end where the state is known, or one window of all elements; radau: single elements from
+/// the state at the start.
 class LobattoWindow final : public Window {
 public:
-    /// References must outlive the window. Throws InputError for a degree out of range.
-    LobattoWindow(const Tables& tables, const TimeMesh& mesh, const Ends& ends, const Lobatto& method);
+    /// References must outlive the window.
+    LobattoWindow(const Tables& tables, const TimeMesh& mesh, const Ends& ends, const ElementRule& rule);
 
     bool open(int first, int last, SolveReport& report) override;
     NewtonProblem& equations() override { return system_; }
@@ -27,6 +27,7 @@ public:
     Place worst() const override;
     void describe(SolveReport& report) const override;
     void measure_condition(SolveReport& report, const std::function<bool()>& goes_on) override;
+    const Motion* so_far() override { return &record_.so_far(); }
     Motion take_motion() override { return record_.take(); }
 
 private:
@@ -51,6 +52,7 @@ private:
     };
 
     int mesh_end(int end) const;
+    bool is_radau() const { return stretch_.points == Points::radau; }
     bool is_jump(double t) const;
     void set_momenta(const State& given, std::vector<double>& momenta) const;
     bool set_state(InstantState& state, const State& given, SolveReport& report);
@@ -58,8 +60,9 @@ private:
     bool find_first_state(SolveReport& report);
     void accelerate(InstantState& state);
     void sum_momentum(int e);
+    void take_spin_of_polynomial(int e);
     bool end_element(int e, SolveReport& report);
-    bool is_believable(int e, const Trust& trust) const;
+    double velocity_jump(int e, bool refuse_turns) const;
     void close_element(int e);
     void record_element(int e);
     bool rows_compatible(const InstantState& state, SolveReport& report) const;

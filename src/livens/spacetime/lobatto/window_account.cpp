@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "livens/base/largest.h"
 #include "livens/spacetime/lobatto/window.h"
 
 namespace livens {
@@ -43,11 +44,56 @@ Place LobattoWindow::worst() const
     return place;
 }
 
+/// The velocity jump h |V - X_h'| at the end of an element (radau: at its start), as velocity_jump() of
+/// diagnostics has it; infinite where a body turns by more than 90 degrees from node to node:
+/// |R_B - R_A|^2 = 4 there.
+double LobattoWindow::velocity_jump(int e, bool refuse_turns) const
+{
+    const ElementRule& rule = system_.rule();
+    const bool at_start = rule.points == Points::radau;
+    const double *D = rule.D.data() + (at_start ? 0 : rule.degree * rule.size()), h = stretch_.h(e);
+    const double* V = instant_.rates();   // at the end
+    std::vector<double> first_V(at_start ? 12 * tables_.bodies.size() : 0);
+    if (at_start) {
+        tables_.rates_of(front_.here().X.data(), front_.here().velocity.data(), first_V.data());
+        V = first_V.data();
+    }
+    double of_centres = 0, of_directors = 0, widest_turn = 0;   // squares
+    for (int b = 0; b < tables_.n_bodies(); ++b) {
+        const auto& body = tables_.bodies[b];
+        const int n = body.dofs == 6 ? 12 : 3;
+        double jump[12] = {};
+        for (int i = 0; i < n; ++i) jump[i] = h * V[12 * b + i];
+        for (int B = 1; B <= rule.degree; ++B) {
+            const double *d = system_.nodes().dX(e, B) + 12 * b,
+                         *before = system_.nodes().dX(e, B - 1) + 12 * b;
+            double turn = 0;
+            for (int i = 0; i < n; ++i) jump[i] -= D[B] * d[i];
+            for (int i = 3; i < n; ++i) turn += (d[i] - before[i]) * (d[i] - before[i]);
+            raise_to(widest_turn, turn);
+        }
+        double of_centre = 0;
+        for (int i = 0; i < 3; ++i) {
+            const double x = jump[i] + body.center[0] * jump[3 + i] + body.center[1] * jump[6 + i] +
+                             body.center[2] * jump[9 + i];
+            of_centre += x * x;
+        }
+        raise_to(of_centres, of_centre);
+        for (int a = 3; a < 12; a += 3)
+            raise_to(of_directors, jump[a] * jump[a] + jump[a + 1] * jump[a + 1] + jump[a + 2] * jump[a + 2]);
+    }
+    if (refuse_turns && !(widest_turn <= 4)) return std::numeric_limits<double>::infinity();
+    double largest = std::sqrt(of_centres) / tables_.length;
+    raise_to(largest, std::sqrt(0.5 * of_directors));
+    return largest;
+}
+
 void LobattoWindow::describe(SolveReport& report) const
 {
     report.unknowns = std::max(report.unknowns, static_cast<int>(system_.balances().reduced().size()));
     report.smallest_pivot = std::min(report.smallest_pivot, system_.nodes().smallest_pivot());
     report.guess_factorisations = series_.factorisations();
+    report.evaluations = system_.evaluations() + series_.evaluations();
     system_.elimination().describe(report);
 }
 

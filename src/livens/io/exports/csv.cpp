@@ -1,18 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "livens/diagnostics/sample.h"
+#include "livens/io/exports.h"
 #include "livens/io/json.h"
-#include "livens/io/results.h"
 
 namespace livens {
 
 namespace {
 
 /// RFC 4180: quotes around what holds a separator; line breaks cannot be in a header that other programs
-/// should read.
-std::string header_cell(std::string name)
+/// should read. Spreadsheets take text in quotes for formulas too: an apostrophe says that it is none.
+std::string header_cell(const std::string& name)
 {
-    std::string quoted;
-    bool needs_quotes = false;
+    const std::size_t first = name.find_first_not_of(" \t");
+    bool needs_quotes = first != std::string::npos && std::string_view("=+-@").find(name[first]) < 4;
+    needs_quotes |= name.starts_with('\t');
+    std::string quoted = needs_quotes ? "'" : "";
     for (const char c : name) {
         if (c == ',' || c == '"' || c == ';') needs_quotes = true;
         if (c == '"') quoted += '"';

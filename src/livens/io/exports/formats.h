@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the writers of exports share.
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "livens/io/exports.h"
+
+namespace livens {
+
+/// Sizes and places from `narrow` on are written with 64 bits.
+void write_npz(const std::filesystem::path& file, const ExportInput& input,
+               std::uint64_t narrow = 0xffffffff);
+void write_gltf(const std::filesystem::path& file, const ExportInput& input);
+void write_pvd(const std::filesystem::path& file, const ExportInput& input);
+
+/// Appends a number, lowest byte first, whatever the machine.
+template <class Number>
+void put(std::string& out, Number number)
+{
+    using Bits = std::conditional_t<
+        sizeof(Number) == 8, std::uint64_t,
+        std::conditional_t<sizeof(Number) == 4, std::uint32_t,
+                           std::conditional_t<sizeof(Number) == 2, std::uint16_t, std::uint8_t>>>;
+    const Bits bits = std::bit_cast<Bits>(number);
+    for (std::size_t i = 0; i < sizeof bits; ++i) out += static_cast<char>(bits >> (8 * i) & 0xff);
+}
+
+/// Triangles that bound a body, in its own coordinates; seen from outside their corners go round to the left.
+struct Surface {
+    std::vector<Vector3> points;    ///< m
+    std::vector<Vector3> normals;   ///< of length 1, outwards
+    std::vector<std::array<int, 3>> triangles;
+};
+
+/// One a body: of its outline, else, as a mark, an octahedron at its centre of mass (a ball for point
+/// masses).
+std::vector<Surface> surfaces_of(const Scenario& scenario);
+
+/// The output times that the motion has reached.
+std::vector<double> reached_times(const Run& run);
+
+}   // namespace livens

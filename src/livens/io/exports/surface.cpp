@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Triangles of outlines: a profile turned about d3.
+#include <cmath>
+#include <numbers>
+
+#include "livens/io/exports/formats.h"
+
+namespace livens {
+
+namespace {
+
+using Vector2 = std::array<double, 2>;   // radius, height
+
+constexpr int fewest_round_sides = 8;    // with fewer a body has edges along d3, else it is round
+constexpr double smooth_cosine = 0.75;   // between normals of neighbours that belong to one curve
+constexpr double mark = 0.05;            // of the model's length
+
+/// Outward normal of each piece of a profile that has its inside on the left.
+std::vector<Vector2> normals_of(const std::vector<Vector2>& profile)
+{
+    std::vector<Vector2> normals;
+    for (std::size_t i = 0; i + 1 < profile.size(); ++i) {
+        const double r = profile[i + 1][0] - profile[i][0], z = profile[i + 1][1] - profile[i][1];
+        const double size = std::hypot(r, z);
+        normals.push_back({z / size, -r / size});
+    }
+    return normals;
+}
+
+/// Of two neighbours the mean, if both belong to one curve; else that of the first.
+Vector2 blended(const Vector2& own, const Vector2& neighbour)
+{
+    if (own[0] * neighbour[0] + own[1] * neighbour[1] < smooth_cosine) return own;
+    const double r = own[0] + neighbour[0], z = own[1] + neighbour[1], size = std::hypot(r, z);
+    return {r / size, z / size};
+}
+
+Vector3 unit(const Vector3& v) { return (1 / norm(v)) * v; }
+
+class Turning {
+public:
+    Turning(const Outline& outline, const Vector3& place) : outline_(outline), place_(place) {}
+
+    Surface take()
+    {
+        const std::vector<Vector2>& profile = outline_.profile;
+        const std::vector<Vector2> normals = normals_of(profile);
+        for (std::size_t i = 0; i < normals.size(); ++i) {
+            const Vector2 low = i > 0 ? blended(normals[i], normals[i - 1]) : normals[i];
+            const Vector2 high = i + 1 < normals.size() ? blended(normals[i], normals[i + 1]) : normals[i];
+            for (int k = 0; k < outline_.sides; ++k) add_face(k, {profile[i], profile[i + 1]}, {low, high});
+        }
+        return std::move(surface_);
+    }
+
+private:
+    using Piece = std::array<Vector2, 2>;   // its lower and its upper end
+
+    double angle(double k) const { return 2 * std::numbers::pi * (k + 0.5) / outline_.sides; }
+
+    /// Four corners of a piece between two meridians; at the axis two of them are one.
+    void add_face(int k, const Piece& ends, const Piece& normals)
+    {
+        const int first = static_cast<int>(surface_.points.size());
+        const bool is_round = outline_.sides >= fewest_round_sides;
+        for (const int side : {0, 1})
+            for (const int end : {0, 1}) {
+                const double at = angle(k + side), facing = is_round ? at : angle(k + 0.5);
+                add_corner(at, ends[end], facing, normals[end]);
+            }
+        if (ends[0][0] > 0) surface_.triangles.push_back({first, first + 2, first + 3});
+        if (ends[1][0] > 0) surface_.triangles.push_back({first, first + 3, first + 1});
+    }
+
+    void add_corner(double angle, const Vector2& at, double facing, const Vector2& normal)
+    {
+        const Vector3& stretch = outline_.stretch;
+        const Vector3 p{at[0] * std::cos(angle), at[0] * std::sin(angle), at[1]};
+        Vector3 n{normal[0] * std::cos(facing), normal[0] * std::sin(facing), normal[1]}, q;
+        for (int i = 0; i < 3; ++i) {
+            q[i] = place_[i] + stretch[i] * p[i];
+            n[i] /= stretch[i];
+        }
+        surface_.points.push_back(q);
+        surface_.normals.push_back(unit(n));
+    }
+
+    const Outline& outline_;
+    Vector3 place_;
+    Surface surface_;
+};
+
+}   // namespace
+
+std::vector<Surface> surfaces_of(const Scenario& scenario)
+{
+    std::vector<Surface> surfaces;
+    const Model& model = scenario.model;
+    const double size = mark * model.length();
+    for (std::size_t b = 0; b < model.bodies().size(); ++b) {
+        const Body& body = model.bodies()[b];
+        const Vector3 centre = body.is_point ? Vector3{} : mass_properties(body.mass).center_of_mass;
+        Outline outline = b < scenario.outlines.size() ? scenario.outlines[b] : Outline{};
+        if (outline.profile.empty()) {
+            outline = body.is_point ? ball_outline() : Outline{{{0, -1}, {1, 0}, {0, 1}}, 4};
+            outline.stretch = {size, size, size};
+        }
+        surfaces.push_back(Turning(outline, centre).take());
+    }
+    return surfaces;
+}
+
+}   // namespace livens

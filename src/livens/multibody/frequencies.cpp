@@ -1,0 +1,277 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "livens/multibody/frequencies.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <Eigen/Dense>
+
+#include "livens/multibody/body.h"
+#include "livens/multibody/closing.h"
+#include "livens/multibody/instant.h"
+#include "livens/multibody/twist.h"
+
+namespace livens {
+
+namespace {
+
+using Block = Eigen::Matrix<double, 6, 6>;
+using Columns = Eigen::Matrix<double, 12, 6>;   // N D of a body: its X by its scaled twist
+
+/// Part of a form on scaled twists: what a source does to body i when body j moves.
+struct Term {
+    int source, i, j;
+    Block K;
+};
+using Terms = std::vector<Term>;
+
+class Forms {
+public:
+    Forms(const Tables& tables, const InstantState& state, Side side)
+        : tables_(tables), state_(state), at_{state.t, side}
+    {
+        std::vector<double> y(static_cast<std::size_t>(tables.n_twists), 0.0), xi(y.size());
+        std::vector<double> dX(state.X.size());
+        for (int b = 0; b < tables.n_bodies(); ++b) {
+            Columns c = Columns::Zero();
+            Block D = Block::Zero();
+            for (int k = 0; k < tables.bodies[b].dofs; ++k) {
+                double& unit = y[tables.bodies[b].first + k];
+                unit = 1;
+                tables.to_twist(state.maps.data(), y.data(), xi.data());
+                unit = 0;
+                const double* own = xi.data() + tables.bodies[b].first;
+                for (int r = 0; r < tables.bodies[b].dofs; ++r) D(r, k) = own[r];
+                double twist[6] = {};
+                std::copy_n(own, tables.bodies[b].dofs, twist);
+                twist::columns(state.X.data() + 12 * b, twist, c.col(k).data());
+            }
+            columns_.push_back(c);
+            maps_.push_back(D);
+        }
+    }
+
+    /// - dF/dX and - dF/dX' of the loads.
+    void add_loads(Terms& springs, Terms& dampers) const
+    {
+        std::vector<double> V(state_.X.size());
+        tables_.rates_of(state_.X.data(), state_.velocity.data(), V.data());
+        for (const int l : tables_.loads_with_tangent) {
+            const Load& load = tables_.model->loads()[l];
+            LoadTangent tangent{};
+            load.tangent(Tables::arguments(load, at_, state_.X.data(), V.data()), tangent);
+            for (int r = 0; r < 2; ++r)
+                for (int s = 0; s < 2; ++s) {
+                    const int i = load.bodies[r], j = load.bodies[s];
+                    if (i == world || j == world) continue;
+                    springs.push_back({l, i, j, reduced(tangent.X[r][s], -1, i, j)});
+                    dampers.push_back({l, i, j, reduced(tangent.V[r][s], -1, i, j)});
+                }
+        }
+    }
+
+    /// sum lambda K of the joints' rows, joint by joint, and the same of rigidity: its multipliers are what
+    /// is left of F - G^T lambda - X'' m, whose turning with the body is the geometric term.
+    void add_constraints(Terms& terms) const
+    {
+        const int s = at_.side == Side::left ? 0 : 1;
+        const std::vector<double>& lambda = state_.multipliers[s];
+        std::vector<double> r = forces_less_inertia(s);
+        for (int c = 0; c < tables_.n_rows(); ++c) {
+            if (lambda[c] == 0) continue;
+            const Tables::RowTable& row = tables_.rows[c];
+            double gradient[Tables::gradient_size] = {};
+            tables_.gradient(c, at_, state_.X.data(), gradient);
+            for (int k = 0; k < row.n_sides; ++k) {
+                const int i = row.bodies[k];
+                for (const int a : row.columns[k])
+                    for (int n = a; n < a + 3; ++n) r[12 * i + n] -= lambda[c] * gradient[12 * k + n];
+                for (int m = 0; m < row.n_sides; ++m) {
+                    const int j = row.bodies[m];
+                    const auto K = constraint_hessian(*row.row, at_, Configurations(state_.X.data()), i, j);
+                    terms.push_back({tables_.model->row_joint(c), i, j, reduced(K, lambda[c], i, j)});
+                }
+            }
+        }
+        for (int b = 0; b < tables_.n_bodies(); ++b) {
+            if (tables_.bodies[b].dofs == 3) continue;
+            Block K = Block::Zero();   // symmetric where the moments balance
+            twist::add_geometric(state_.X.data() + 12 * b, r.data() + 12 * b, K.data(), 6);
+            terms.push_back({-1, b, b, -maps_[b].transpose() * K * maps_[b]});
+        }
+    }
+
+    /// The mass itself: the identity unless an inertia is singular.
+    void add_mass(Terms& terms) const
+    {
+        for (int b = 0; b < tables_.n_bodies(); ++b) {
+            Block M = Block::Identity();
+            if (tables_.bodies[b].dofs == 6) {
+                Eigen::Matrix3d inertia;
+                tables_.spin_mass(b, state_.X.data(), state_.X.data(), inertia.data());
+                M.bottomRightCorner<3, 3>() = inertia;
+            }
+            terms.push_back({-1, b, b, M});
+        }
+    }
+
+private:
+    Block reduced(const Matrix<12, 12>& K, double factor, int i, int j) const
+    {
+        const Eigen::Map<const Eigen::Matrix<double, 12, 12>> full(K.data());
+        return factor * columns_[i].transpose() * full * columns_[j];
+    }
+
+    std::vector<double> forces_less_inertia(int side) const
+    {
+        std::vector<double> V(state_.X.size()), A(V.size()), r(V.size());
+        tables_.rates_of(state_.X.data(), state_.velocity.data(), V.data());
+        tables_.rates_of(state_.X.data(), state_.acceleration[side].data(), A.data());
+        for (int b = 0; b < tables_.n_bodies(); ++b) {
+            const auto& body = tables_.bodies[b];
+            if (body.dofs == 3) continue;
+            double spin[6] = {}, centripetal[12];
+            std::copy_n(state_.velocity.data() + body.first + 3, 3, spin + 3);
+            twist::columns(V.data() + 12 * b, spin, centripetal);
+            for (int i = 0; i < 12; ++i) A[12 * b + i] += centripetal[i];
+        }
+        tables_.times_mass(A.data(), -1.0, r.data());
+        tables_.add_weight(1.0, r.data());
+        tables_.add_loads(at_, state_.X.data(), V.data(), 1.0, r.data());
+        return r;
+    }
+
+    const Tables& tables_;
+    const InstantState& state_;
+    Instant at_;
+    std::vector<Columns> columns_;
+    std::vector<Block> maps_;
+};
+
+/// An eigenvalue, and the body and the source that have the largest part in it.
+struct Mode {
+    double value = 0;
+    int body = -1, source = -1;
+};
+
+/// Terms on the free motions.
+class Spectrum {
+public:
+    Spectrum(const Tables& tables, const InstantState& state, const Terms& mass)
+        : tables_(tables), z_(tables.n_twists, tables.freedoms())
+    {
+        std::vector<double> z(static_cast<std::size_t>(z_.size()));
+        state.basis.q.null_space(z.data());
+        for (int i = 0; i < z_.rows(); ++i)
+            for (int j = 0; j < z_.cols(); ++j) z_(i, j) = z[static_cast<std::size_t>(i * z_.cols() + j)];
+        mass_ = on_free_motions(mass);
+    }
+
+    /// The largest eigenvalue, if it is positive.
+    Mode highest(const Terms& terms) const
+    {
+        Mode mode;
+        if (terms.empty() || z_.cols() == 0) return mode;
+        const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(on_free_motions(terms), mass_);
+        if (solver.info() != Eigen::Success || !(solver.eigenvalues().tail(1)(0) > 0)) return mode;
+        mode.value = solver.eigenvalues().tail(1)(0);
+        const Eigen::VectorXd y = z_ * solver.eigenvectors().rightCols(1);
+        double most = 0;
+        for (int b = 0; b < tables_.n_bodies(); ++b) {
+            if (part(y, b).squaredNorm() <= most) continue;
+            most = part(y, b).squaredNorm();
+            mode.body = b;
+        }
+        mode.source = most_active(terms, y);
+        return mode;
+    }
+
+private:
+    Eigen::VectorXd part(const Eigen::VectorXd& y, int body) const
+    {
+        return y.segment(tables_.bodies[body].first, tables_.bodies[body].dofs);
+    }
+
+    Eigen::MatrixXd on_free_motions(const Terms& terms) const
+    {
+        Eigen::MatrixXd K = Eigen::MatrixXd::Zero(z_.rows(), z_.rows());
+        for (const Term& t : terms) {
+            const int m = tables_.bodies[t.i].dofs, n = tables_.bodies[t.j].dofs;
+            K.block(tables_.bodies[t.i].first, tables_.bodies[t.j].first, m, n) += t.K.topLeftCorner(m, n);
+        }
+        const Eigen::MatrixXd reduced = z_.transpose() * K * z_;
+        return 0.5 * (reduced + reduced.transpose());
+    }
+
+    int most_active(const Terms& terms, const Eigen::VectorXd& y) const
+    {
+        int most = -1;
+        double largest = 0, work = 0;
+        for (std::size_t k = 0; k < terms.size(); ++k) {   // terms of a source follow each other
+            const Term& t = terms[k];
+            if (k == 0 || t.source != terms[k - 1].source) work = 0;
+            const int m = tables_.bodies[t.i].dofs, n = tables_.bodies[t.j].dofs;
+            work += part(y, t.i).dot(t.K.topLeftCorner(m, n) * part(y, t.j));
+            const bool is_last = k + 1 == terms.size() || terms[k + 1].source != t.source;
+            if (!is_last || work <= largest) continue;
+            largest = work;
+            most = t.source;
+        }
+        return most;
+    }
+
+    const Tables& tables_;
+    Eigen::MatrixXd z_, mass_;
+};
+
+}   // namespace
+
+std::string Frequency::where(const Model& model) const
+{
+    if (body < 0) return "";
+    return "body '" + model.body_name(body) + "'" + (name.empty() ? ", which bears a preload" : ", " + name);
+}
+
+HighestFrequencies highest_frequencies(const Tables& tables, const InstantState& state, Side side)
+{
+    const Forms forms(tables, state, side);
+    Terms springs, dampers, constraints, mass;
+    forms.add_loads(springs, dampers);
+    forms.add_constraints(constraints);
+    forms.add_mass(mass);
+    const Spectrum spectrum(tables, state, mass);
+    const Model& model = *tables.model;
+    const auto load = [&](const Mode& mode, double rate) {
+        return Frequency{rate, mode.body,
+                         mode.source < 0 ? "" : "load '" + model.loads()[mode.source].name + "'"};
+    };
+    const Mode spring = spectrum.highest(springs), damper = spectrum.highest(dampers),
+               bearing = spectrum.highest(constraints);
+    return {load(spring, std::sqrt(spring.value)),
+            load(damper, damper.value),
+            {std::sqrt(bearing.value), bearing.body,
+             bearing.source < 0 ? "" : "joint '" + model.joints()[bearing.source].name + "'"}};
+}
+
+HighestFrequencies highest_frequencies(const Model& model, const State& state, Side side)
+{
+    const ClosedStart closed = close_start(model, state, StartPolicy::project);
+    const Tables tables(model, closed.independent);
+    InstantSystem instant(tables);
+    InstantState here;
+    here.resize(tables);
+    here.t = state.t;
+    for (int b = 0; b < tables.n_bodies(); ++b) {
+        const Matrix34 &X = closed.start.X[b], &V = closed.start.V[b];
+        std::copy_n(X.a, 12, here.X.begin() + 12 * b);
+        const auto& body = tables.bodies[b];
+        const Vector3 w = body.dofs == 6 ? angular_velocity(X, V) : Vector3{};
+        for (int i = 0; i < body.dofs; ++i) here.velocity[body.first + i] = i < 3 ? V(i, 0) : w[i - 3];
+    }
+    if (!instant.prepare(here, tables.independent)) return {};   // close_start() has refused it
+    instant.accelerate(here, side);
+    return highest_frequencies(tables, here, side);
+}
+
+}   // namespace livens

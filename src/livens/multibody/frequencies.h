@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How fast a mechanism can vibrate about a state, and how fast its dampers take motions away.
+#pragma once
+
+#include <string>
+
+#include "livens/multibody/model.h"
+
+namespace livens {
+
+struct InstantState;
+struct Tables;
+
+/// A rate, and who makes it.
+struct Frequency {
+    double rate = 0;         ///< 0: there is none
+    int body = -1;           ///< which has the largest part of its kinetic energy
+    std::string name = "";   ///< the load or joint that does most of the work; empty: the body's own rigidity
+
+    /// "body 'bob', load 'strut'"
+    std::string where(const Model& model) const;
+};
+
+/// Of the motions that the joints leave free, in the mass metric: the largest eigenvalues of the symmetric
+/// parts of Z^T N^T (..) N Z against Z^T Mr Z.  (docs/theory.md, "Highest frequencies")
+///
+/// unit     rad/s; dampers: 1/s
+struct HighestFrequencies {
+    Frequency springs;       ///< the root of that of - dF/dX
+    Frequency dampers;       ///< that of - dF/dX'
+    Frequency constraints;   ///< the root of that of sum lambda K of joints, and of what bears rigidity
+};
+
+/// At a state with accelerations and multipliers on that side.
+HighestFrequencies highest_frequencies(const Tables& tables, const InstantState& state,
+                                       Side side = Side::right);
+
+/// At a state of a model, closed as by StartPolicy::project; throws InputError, see close_start().
+HighestFrequencies highest_frequencies(const Model& model, const State& state, Side side = Side::right);
+
+}   // namespace livens

@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A motion as accurate as is asked for: elements found while marching, judged by the second solution.
+#include "livens/spacetime/accuracy.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "livens/base/text.h"
+#include "livens/multibody/body.h"
+#include "livens/spacetime/lobatto/window.h"
+#include "livens/spacetime/second.h"
+#include "livens/spacetime/windows.h"
+
+namespace livens {
+
+namespace {
+
+// Measured on 436 cases of twelve problems (docs/theory.md, "To an accuracy").
+constexpr double first_share = 0.03;   // of the accuracy: what the elements of the first try lose
+constexpr double target = 0.2;         // of the accuracy: what the next try aims at
+constexpr double hopeless = 30;        // times the accuracy: where a try is broken off
+constexpr int most_tries = 6;
+constexpr double finest = 1e-17;       // that an element can be asked to lose
+constexpr double blind_share = 0.01;   // of the tolerance, for the next try where the second solution failed
+constexpr int preferred_degree = 7, high_degree = 12, lowest_degree = 3;
+constexpr int preferred_radau = 5, high_radau = 8;
+constexpr double high_accuracy = 1e-9;   // below, the high degree
+constexpr double fit = 1.5;              // times the time between stops: longer elements are of no use
+constexpr int looked_at = 8;             // elements that tell whether they fit between stops
+constexpr int least_piece = 16;          // elements that the second solution solves together
+
+const int& degree_of(const Method& method)
+{
+    if (const auto* radau = std::get_if<Radau>(&method)) return radau->degree;
+    return std::get<Lobatto>(method).degree;
+}
+int& degree_of(Method& method) { return const_cast<int&>(degree_of(std::as_const(method))); }
+
+/// What becomes an element end: start, end, output times, jumps of loads and drives.
+std::vector<double> stops_of(const Model& model, const Span& span)
+{
+    std::vector<double> required = model.load_breaks();
+    required.insert(required.end(), span.output.begin(), span.output.end());
+    return make_time_mesh(span.start, span.end, 1, required).ends;
+}
+
+/// In which velocities or weights move or turn something by half a length or radian, at most a hundredth of
+/// the time.
+double first_length(const Model& model, const State& start, double duration)
+{
+    const double length = model.length();
+    double rate = std::sqrt(norm(model.gravity()) / length);
+    for (const Matrix34& V : start.V) rate = std::max({rate, norm(V.column(0)) / length, norm(directors(V))});
+    return std::min(0.01 * duration, 0.5 / rate);
+}
+
+/// One march over the time.
+struct Try {
+    Solution solution;
+    bool is_broken_off = false;   // the error became hopeless
+    bool fits_badly = false;      // the degree is too high for the stops; nothing else counts then
+    double mean_length = 0;       // of elements, without stops
+    int better_degree = 0;        // where it fits badly
+};
+
+class ToAccuracy {
+public:
+    ToAccuracy(const Model& model, const Problem& problem, const Span& span, const Method& method,
+               const SolveOptions& options)
+        : model_(model), problem_(problem), span_(span), options_(options),
+          ends_(close_ends(model, problem.conditions, span.start, span.end, options.initial)),
+          tables_(model, ends_.independent), stops_(stops_of(model, span)), method_(method),
+          is_free_(degree_of(method) == 0), tolerance_(first_share * span.accuracy),
+          length_(first_length(model, ends_.start, span.end - span.start))
+    {
+        const bool is_high = span.accuracy < high_accuracy;
+        if (is_free_ && std::holds_alternative<Radau>(method_))
+            degree_of(method_) = is_high ? high_radau : preferred_radau;
+        else if (is_free_)
+            degree_of(method_) = is_high ? high_degree : preferred_degree;
+    }
+
+    Solution run()
+    {
+        long long evaluations = 0;
+        double seconds = 0;
+        for (int tries = 1;; ++tries) {
+            Try one = march();
+            SolveReport& report = one.solution.report;
+            report.evaluations_in_all = evaluations += report.evaluations_in_all;
+            one.solution.estimate_seconds = seconds += one.solution.estimate_seconds;
+            if (one.fits_badly) {
+                degree_of(method_) = one.better_degree;
+                is_free_ = false;
+                --tries;
+                continue;
+            }
+            report.tries = tries;
+            report.accuracy = span_.accuracy;
+            if (!report.converged()) return std::move(one.solution);
+            const ErrorEstimate& found = one.solution.estimate;
+            if (!one.is_broken_off && found.largest <= span_.accuracy) return std::move(one.solution);
+            if (tries == most_tries || tolerance_ <= finest) return give_up(std::move(one));
+            const double over = found.largest / span_.accuracy * (one.is_broken_off ? 3 : 1);
+            const double share =
+                over > 0 ? std::pow(target / over, 1 + 0.5 / degree_of(method_)) : blind_share;
+            tolerance_ = std::max(finest, tolerance_ * std::min(0.3, share));
+            length_ = std::min(length_, one.mean_length);
+        }
+    }
+
+private:
+    Try march()
+    {
+        Try one;
+        SolveReport& report = one.solution.report;
+        TimeMesh mesh{{span_.start}};
+        LobattoWindow window(tables_, mesh, ends_, rule_of(method_));
+        Second second(model_, problem_, method_, options_, *window.so_far());
+        const ElementRule rule = rule_of(method_);
+        Pace pace(rule.points, rule.degree, tolerance_, length_, stops_);
+        WindowOptions w;
+        w.tolerance = options_.tolerance;
+        w.max_iterations = options_.max_iterations;
+        w.progress = options_.progress;
+        w.length_of_model = model_.length();
+        w.pace = &pace;
+        w.goes_on = [&] {
+            const int n = mesh.n_elements();
+            if (is_free_ && n == looked_at) {
+                one.fits_badly =
+                    degree_of(method_) > lowest_degree && pace.mean_length() > fit * pace.mean_stop();
+                if (one.fits_badly) return false;
+            }
+            if (n - second.reached() < std::max(least_piece, second.reached() / 4)) return true;
+            window.so_far();
+            one.is_broken_off = !second.advance(n) || is_hopeless(second);
+            return !one.is_broken_off;
+        };
+        report.notes = ends_.notes;
+        solve_windows(window, mesh, w, report);
+        if (one.fits_badly) one.better_degree = fitting_degree(pace);
+        one.mean_length = pace.mean_length();
+        finish(one, second, window.so_far()->n_elements());
+        one.solution.motion = window.take_motion();
+        one.solution.method = method_;
+        return one;
+    }
+
+    /// The rest of the second solution, and what it says.
+    void finish(Try& one, Second& second, int n) const
+    {
+        SolveReport& report = one.solution.report;
+        const SolveReport& of_second = second.report();
+        const bool is_wanted = !one.fits_badly && n > 0 && report.status != SolveStatus::cancelled;
+        if (is_wanted && second.reached() < n && of_second.converged() && !second.advance(n))
+            one.is_broken_off = true;
+        report.evaluations_in_all = report.evaluations + second.evaluations();
+        one.solution.estimate_seconds = second.seconds();
+        if (of_second.status == SolveStatus::cancelled) {
+            report.status = SolveStatus::cancelled;
+            report.message = of_second.message;
+        } else if (!of_second.converged()) {
+            report.second_failed = of_second.message;
+        }
+        if (second.reached() > 0) one.solution.estimate = second.take(n);
+    }
+
+    bool is_hopeless(const Second& second) const
+    {
+        return !(second.so_far().largest <= hopeless * span_.accuracy);
+    }
+
+    int fitting_degree(const Pace& pace) const
+    {
+        int degree = degree_of(method_) - 1;
+        while (degree > lowest_degree && pace.mean_length(degree) > fit * pace.mean_stop()) --degree;
+        return degree;
+    }
+
+    Solution give_up(Try&& last) const
+    {
+        const ErrorEstimate& found = last.solution.estimate;
+        SolveReport& report = last.solution.report;
+        const Motion& motion = last.solution.motion;
+        int good = 0;
+        while (!found.empty() && good < motion.n_elements() && found.error(good + 1) <= span_.accuracy)
+            ++good;
+        report.status = SolveStatus::inaccurate;
+        report.failed_at = motion.mesh.ends[good];
+        report.message = "the accuracy " + to_text(span_.accuracy, 6) +
+                         " holds up to t = " + to_text(report.failed_at, 6) + " s; ";
+        if (found.largest > span_.accuracy)
+            report.message += "the error of body '" + model_.body_name(found.body) + "' is about " +
+                              to_text(found.largest, 3) + " at " + to_text(found.time, 6) + " s";
+        else
+            report.message +=
+                "behind, the second solution, which tells the error, failed: " + report.second_failed;
+        report.message += " (try " + std::to_string(report.tries) +
+                          ", with ever shorter elements); try: an earlier end of time, or a lower accuracy";
+        return std::move(last.solution);
+    }
+
+    const Model& model_;
+    const Problem& problem_;
+    const Span& span_;
+    const SolveOptions& options_;
+    Ends ends_;
+    Tables tables_;
+    std::vector<double> stops_;
+    Method method_;
+    bool is_free_;   // the degree
+    double tolerance_, length_;
+};
+
+}   // namespace
+
+Solution solve_to_accuracy(const Model& model, const Problem& problem, const Span& span, const Method& method,
+                           const SolveOptions& options)
+{
+    return ToAccuracy(model, problem, span, method, options).run();
+}
+
+}   // namespace livens

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What solve() refuses before it solves anything, and what methods are called.
+#include <algorithm>
+#include <utility>
+
+#include "livens/base/error.h"
+#include "livens/base/text.h"
+#include "livens/spacetime/lobatto/rule.h"
+#include "livens/spacetime/mixed/window.h"
+#include "livens/spacetime/solve.h"
+
+namespace livens {
+
+namespace {
+
+void check_state(const Model& model, const State& state, const char* path)
+{
+    if (state.X.size() == model.bodies().size() && state.V.size() == model.bodies().size()) return;
+    throw InputError({"start-size", path, std::string("the ") + path + " needs X and V of every body",
+                      std::to_string(state.X.size()), std::to_string(model.n_bodies()), "", ""});
+}
+
+/// Momenta at both ends do not say where free bodies are: bodies that neither joints nor loads tie to the
+/// world, directly or through others, can be displaced together.
+void refuse_free_bodies(const Model& model)
+{
+    std::vector<int> group(model.bodies().size());
+    for (int b = 0; b < model.n_bodies(); ++b) group[b] = b;
+    std::vector<bool> is_held(group.size(), false);
+    const auto tie = [&](int i, int j) {
+        if (i == world) std::swap(i, j);
+        if (i == world) return;
+        if (j == world) {
+            is_held[group[i]] = true;
+            return;
+        }
+        const int from = group[j], to = group[i];
+        if (from == to) return;
+        is_held[to] = is_held[to] || is_held[from];
+        for (int& g : group)
+            if (g == from) g = to;
+    };
+    for (int r = 0; r < model.n_rows(); ++r) {
+        tie(model.row(r).body_i, model.row(r).body_j);
+        for (const PairForm& q : model.row(r).coordinates) tie(q.body_i, q.body_j);
+    }
+    for (const Load& load : model.loads())
+        if (load.depends_on_X && load.potential) tie(load.bodies[0], load.bodies[1]);
+    for (int b = 0; b < model.n_bodies(); ++b)
+        if (!is_held[group[b]])
+            throw InputError({"boundary-conditions", "end.given",
+                              "momenta at both ends do not tell where body '" + model.body_name(b) + "' is",
+                              "", "positions at one end at least",
+                              "it could be displaced in any direction without any change of its momenta",
+                              "give positions at the start or at the end"});
+}
+
+/// The other families take quadratic forms alone.
+void refuse_special_rows(const Model& model, const Method& method)
+{
+    if (is_nodal(method)) return;
+    const std::string name = std::holds_alternative<Mixed>(method) ? "mixed" : name_of(method);
+    if (model.has_drives())
+        throw InputError({"drives-method", "method.name", "the method " + name + " cannot follow drives",
+                          name, "lobatto or radau", "", "use lobatto for joints that depend on time"});
+    for (int r = 0; r < model.n_rows(); ++r)
+        if (model.row(r).function)
+            throw InputError({"joint-method", "method.name",
+                              "the method " + name + " cannot hold " + model.row_name(r), name,
+                              "lobatto or radau",
+                              "its rows must be quadratic forms of the bodies' positions and directors",
+                              "use lobatto for screws, gears and slots"});
+}
+
+/// What finds its elements itself can only march.
+void check_accuracy(const Conditions& given, const Span& span, const Method& method,
+                    const SolveOptions& options)
+{
+    if (!(span.accuracy > 0) || !(span.accuracy <= 0.1))
+        throw InputError({"accuracy-out-of-range", "time.accuracy", "the accuracy must lie between 0 and 0.1",
+                          to_text(span.accuracy), "0 < accuracy <= 0.1",
+                          "it is an error, in lengths of the model and in rad", ""});
+    const auto refuse = [](const char* place, const std::string& why) {
+        throw InputError({"accuracy-elements", place, "elements are not found for an accuracy here", "", "",
+                          why, "give elements instead of the accuracy"});
+    };
+    const auto* lobatto = std::get_if<Lobatto>(&method);
+    if (!is_nodal(method)) refuse("method.family", "only lobatto and radau find their elements themselves");
+    if (given.at_start != Known::state)
+        refuse("start.given", "they are found while marching from a state at the start");
+    if (lobatto != nullptr && lobatto->window != 1)
+        refuse("method.window", "they are found one by one, in windows of one element");
+    if (options.estimate == SolveOptions::Estimate::none)
+        refuse("method.estimate", "nothing tells the error without the second solution");
+    if (options.condition)
+        refuse("method.condition", "condition numbers belong to a mesh that is known before");
+    const int degree = lobatto != nullptr ? lobatto->degree : std::get<Radau>(method).degree;
+    if (degree != 0) rule_of(method);                       // throws
+    make_time_mesh(span.start, span.end, 1, span.output);   // throws
+}
+
+void check_conditions(const Model& model, const Conditions& given, const Method& method)
+{
+    const auto is_at = [&](const State& state, Known known, const char* path) {
+        if (known != Known::nothing) check_state(model, state, path);
+    };
+    is_at(given.start, given.at_start, "start");
+    is_at(given.end, given.at_end, "end");
+    const int positions = (knows_positions(given.at_start) ? 1 : 0) + (knows_positions(given.at_end) ? 1 : 0);
+    const int momenta = (knows_momenta(given.at_start) ? 1 : 0) + (knows_momenta(given.at_end) ? 1 : 0);
+    if (positions + momenta != 2)
+        throw InputError({"boundary-conditions", "end.given",
+                          "the conditions at the ends of time do not determine a motion", "",
+                          "two of: positions and momenta at the start, positions and momenta at the end", "",
+                          "give the state at one end, or one half of it at each"});
+    if (given.at_start == Known::state) return;
+    if (!is_elements(method) || std::holds_alternative<Radau>(method))
+        throw InputError({"boundary-method", "start.given",
+                          "the method " + name_of(method) + " needs the whole state at the start", "",
+                          "the state at the start", "",
+                          "use lobatto or mixed for conditions at the end of time"});
+    if (positions > 0) return;
+    if (std::holds_alternative<Mixed>(method))
+        throw InputError({"boundary-conditions", "end.given", "the elements mixed need positions at one end",
+                          "", "positions at one end at least", "", "use lobatto for momenta at both ends"});
+    refuse_free_bodies(model);
+}
+
+}   // namespace
+
+std::string name_of(const Method& method)
+{
+    if (const auto* lobatto = std::get_if<Lobatto>(&method))
+        return "lobatto(" + std::to_string(lobatto->degree) + ")";
+    if (const auto* radau = std::get_if<Radau>(&method))
+        return "radau(" + std::to_string(radau->degree) + ")";
+    if (std::holds_alternative<Midpoint>(method)) return "midpoint";
+    if (std::holds_alternative<Endpoint>(method)) return "endpoint";
+    const Mixed& mixed = std::get<Mixed>(method);
+    const char* const bases[] = {"lagrange", "bspline", "nurbs"};
+    return std::string("mixed(") + bases[static_cast<int>(mixed.basis)] + ", " +
+           std::to_string(mixed.degree) + ", " +
+           (mixed.start == Mixed::Start::natural ? "natural" : "strong") + ", " +
+           (mixed.multipliers == Mixed::Multipliers::equal ? "equal" : "lower") + ")";
+}
+
+void check_method(const Model& model, const Problem& problem, const Time& time, const Method& method,
+                  const SolveOptions& options)
+{
+    if (model.n_bodies() == 0)
+        throw InputError({"no-bodies", "body", "a model needs at least one body", "", "", "", "add a body"});
+    refuse_special_rows(model, method);
+    check_conditions(model, problem.conditions, method);
+    const auto* mesh = std::get_if<TimeMesh>(&time);
+    if (mesh != nullptr && mesh->n_elements() < 1)
+        throw InputError(
+            {"no-elements", "time.elements", "at least one time element is needed", "", ">= 1", "", ""});
+    if (!(options.tolerance > 0) || !(options.tolerance < 1))
+        throw InputError({"tolerance-out-of-range", "method.tolerance",
+                          "the tolerance must lie between 0 and 1", to_text(options.tolerance),
+                          "0 < tolerance < 1", "", ""});
+    if (options.max_iterations < 1)
+        throw InputError({"max-iterations-out-of-range", "method.max_iterations",
+                          "at least one iteration is needed", std::to_string(options.max_iterations), ">= 1",
+                          "", ""});
+    if (mesh == nullptr) return check_accuracy(problem.conditions, std::get<Span>(time), method, options);
+    if (const auto* mixed = std::get_if<Mixed>(&method))
+        check_mixed(model, problem.conditions, *mesh, *mixed);
+    if (is_nodal(method)) rule_of(method);   // throws
+    if (const auto* lobatto = std::get_if<Lobatto>(&method); lobatto != nullptr && lobatto->window < 0)
+        throw InputError({"window-out-of-range", "method.window", "a window has at least one element",
+                          std::to_string(lobatto->window), "1 to all", "", ""});
+}
+
+}   // namespace livens

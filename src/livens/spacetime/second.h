@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A second, finer solution that follows the first one and tells its error.
+#pragma once
+
+#include "livens/spacetime/solve.h"
+
+namespace livens {
+
+/// The same problem with one degree more (with half the steps, for the classical methods) on the same
+/// elements, of which it may divide some. It goes on from its own end states, so what it finds are global
+/// errors. Nothing of it is kept but these.
+class Second {
+public:
+    /// References must outlive it; the motion may grow. `method` is that of the first solution.
+    Second(const Model& model, const Problem& problem, const Method& method, const SolveOptions& options,
+           const Motion& first);
+
+    /// From where it is to an element end of the first motion. False: it failed, see report().
+    bool advance(int end);
+    int reached() const { return at_; }   ///< element end
+    const ErrorEstimate& so_far() const { return meter_.so_far(); }
+    const SolveReport& report() const { return report_; }   ///< of what was solved last
+    long long evaluations() const { return evaluations_; }
+    double seconds() const { return seconds_; }
+    /// Up to an element end of the first motion.
+    ErrorEstimate take(int last) { return meter_.take(last); }
+
+private:
+    const Model& model_;
+    Problem problem_;   // of what is to come
+    Method method_;
+    SolveOptions options_;
+    const Motion& first_;
+    ErrorMeter meter_;
+    bool is_backwards_;
+    int at_;
+    SolveReport report_;
+    long long evaluations_ = 0;
+    double seconds_ = 0;
+};
+
+}   // namespace livens

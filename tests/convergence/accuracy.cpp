@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Motions to an accuracy, against a witness that shares nothing with the engine.
+#include <algorithm>
+#include <numbers>
+
+#include "convergence/studies.h"
+#include "livens/base/error.h"
+#include "newton_euler.h"
+
+namespace livens::tests {
+namespace {
+
+/// A model, and what tells its true states.
+struct Case {
+    const char* name;
+    Model model;
+    double end;
+    std::vector<BallJoint> joints{};
+    Pushes pushes = [](double, Movers&) {};
+    int steps = 0;   ///< of the witness, between two output times
+};
+
+/// A fast spin about the unstable axis: bursts.
+Model flipping_box()
+{
+    Placement spinning;
+    spinning.angular_velocity = {1e-3, 8, 1e-3};
+    Model model;
+    model.add_body(rigid_body("box", {3, {}, Matrix3{1, 0, 0, 0, 2, 0, 0, 0, 3}}, spinning));
+    return model;
+}
+
+/// A force along y that acts from 0.3 s to 0.31 s alone, on one end of a free box.
+Model kicked_box()
+{
+    Model model;
+    const int box = model.add_body(rigid_body("box", {2, {}, Matrix3{1, 0, 0, 0, 2, 0, 0, 0, 3}}));
+    model.add_load(point_force("kick", box, {1, 0, 0}, {0, window(1, 0.3, 0.31), 0}, Frame::inertial));
+    return model;
+}
+
+double error_of(const Model& model, const State& a, const State& b)
+{
+    double error = 0;
+    for (int i = 0; i < model.n_bodies(); ++i) {
+        const Matrix34 d = a.X[i] - b.X[i];
+        const Vector4 centre = point(mass_properties(model.bodies()[i].mass).center_of_mass);
+        error = std::max(error, norm(d * centre) / model.length());
+        error = std::max(error, 2 * std::asin(std::min(norm(directors(d)) / std::sqrt(8.0), 1.0)));
+    }
+    return error;
+}
+
+/// True states at five output times.
+std::vector<State> true_states(const Case& c)
+{
+    const NewtonEuler witness(c.model, c.pushes, c.joints);
+    std::vector<State> states;
+    for (int k = 1; k <= 5; ++k) states.push_back(witness.run(0, c.end * k / 5, c.steps * k));
+    return states;
+}
+
+double true_error(const Case& c, const std::vector<State>& exact, const Solution& s)
+{
+    double error = 0;
+    for (const State& state : exact) error = std::max(error, error_of(c.model, s.motion.at(state.t), state));
+    return error;
+}
+
+Span span_of(double end, double accuracy)
+{
+    Span span{0, end, accuracy};
+    for (int k = 1; k <= 5; ++k) span.output.push_back(end * k / 5);
+    return span;
+}
+
+TEST(Accuracy, IsReachedAndItsEstimateIsRight)
+{
+    const Case cases[] = {{"two bricks",
+                           two_bricks(),
+                           2,
+                           {{world, {}, 0, {}}, {0, {1, 0, 0}, 1, {}}},
+                           [](double, Movers&) {},
+                           60},
+                          {"flipping box", flipping_box(), 3, {}, [](double, Movers&) {}, 60},
+                          {"heavy top", heavy_top(), 0.5, {{world, {}, 0, {}}}, [](double, Movers&) {}, 40}};
+    for (const Case& c : cases) {
+        const std::vector<State> exact = true_states(c);
+        int least = 0;
+        for (const double accuracy : {1e-3, 1e-5, 1e-7, 1e-9, 1e-10}) {
+            const Solution s = solve(c.model, {c.model.start()}, span_of(c.end, accuracy), Lobatto{0});
+            ASSERT_TRUE(s.report.converged()) << c.name << ", " << accuracy << ": " << s.report.message;
+            const double error = true_error(c, exact, s);
+            EXPECT_LE(error, accuracy) << c.name;
+            EXPECT_LE(s.verdict.estimated_error, accuracy) << c.name;
+            EXPECT_GE(5 * s.verdict.estimated_error + 1e-12, error) << c.name << ", " << accuracy;
+            // it does not reach it by being as accurate as it can be
+            EXPECT_GE(s.verdict.estimated_error, 1e-6 * accuracy) << c.name << ", " << accuracy;
+            const int work = s.motion.n_elements() * std::get<Lobatto>(s.method).degree;
+            if (accuracy < 1e-9) continue;   // another degree
+            EXPECT_GE(work, least) << c.name << ", " << accuracy;
+            least = work;
+        }
+    }
+}
+
+TEST(Accuracy, MeetsALoadThatIsShorterThanAnElement)
+{
+    const Model model = kicked_box();
+    const Solution s = solve(model, {model.start()}, Span{0, 10, 1e-8}, Lobatto{0});
+    ASSERT_TRUE(s.report.converged()) << s.report.message;
+    // an impulse of 1 N for 0.01 s at 1 m: half of a m/s is 0.005; the axis keeps its direction
+    const State end = last(s);
+    EXPECT_NEAR(end.V[0].column(0)[1], 0.005, 1e-12);
+    const Vector3 spin =
+        0.5 * (cross(end.X[0].column(1), end.V[0].column(1)) + cross(end.X[0].column(2), end.V[0].column(2)) +
+               cross(end.X[0].column(3), end.V[0].column(3)));
+    EXPECT_NEAR(spin[2], 0.01 / 3, 1e-9);   // the arm turns by 2e-7 rad meanwhile
+    // a negative control: given elements that miss the instants lose it
+    const Solution blind = solve(model, {model.start()}, make_time_mesh(0, 10, 10), Lobatto{4});
+    EXPECT_GT(std::abs(last(blind).V[0].column(0)[1] - 0.005), 1e-4);
+}
+
+TEST(Accuracy, OutputTimesAreElementEndsAndTheDegreeFitsBetweenThem)
+{
+    const Model model = cubes_on_rods(0);
+    Span span{0, 2, 1e-6};
+    for (int k = 1; k <= 400; ++k) span.output.push_back(0.005 * k);
+    const Solution s = solve(model, {model.start()}, span, Lobatto{0});
+    ASSERT_TRUE(s.report.converged()) << s.report.message;
+    EXPECT_EQ(s.motion.n_elements(), 400);
+    for (int k = 1; k <= 400; ++k) EXPECT_EQ(s.motion.mesh.ends[k], span.output[k - 1]);
+    EXPECT_EQ(std::get<Lobatto>(s.method).degree, 3);
+    // a degree that is stated is kept
+    const Solution held = solve(model, {model.start()}, span, Lobatto{5});
+    EXPECT_EQ(std::get<Lobatto>(held.method).degree, 5);
+}
+
+TEST(Accuracy, WorksAboutAsMuchAsTheBestUniformMesh)
+{
+    // evaluations of the accepted march with its refused elements, for the same true error
+    const Case c{"two bricks",
+                 two_bricks(),
+                 2,
+                 {{world, {}, 0, {}}, {0, {1, 0, 0}, 1, {}}},
+                 [](double, Movers&) {},
+                 60};
+    const std::vector<State> exact = true_states(c);
+    SolveOptions plain;
+    plain.estimate = SolveOptions::Estimate::none;
+    for (const double accuracy : {1e-4, 1e-6, 1e-8}) {
+        const Solution s = solve(c.model, {c.model.start()}, span_of(c.end, accuracy), Lobatto{0});
+        ASSERT_TRUE(s.report.converged());
+        const double error = true_error(c, exact, s);
+        long long best = 1LL << 40;
+        for (const int degree : {3, 5, 7, 9, 12})
+            for (int n = 10; n < 200; n = n * 11 / 10 + 1) {
+                const Solution even =
+                    solve(c.model, {c.model.start()}, make_time_mesh(0, c.end, 5 * ((n + 4) / 5)),
+                          Lobatto{degree}, plain);
+                if (even.report.divided > 0 || true_error(c, exact, even) > error) continue;
+                best = std::min(best, even.report.evaluations);
+                break;
+            }
+        EXPECT_LE(static_cast<double>(s.report.evaluations), 1.8 * static_cast<double>(best)) << accuracy;
+        EXPECT_LE(s.report.refused, 0.25 * s.motion.n_elements()) << accuracy;
+    }
+}
+
+TEST(Accuracy, SaysWhereItIsLost)
+{
+    // chaos: rounding grows beyond it
+    const Model model = cubes_on_rods(0.2);
+    const Solution s = solve(model, {model.start()}, Span{0, 80, 1e-6}, Lobatto{0});
+    EXPECT_EQ(s.report.status, SolveStatus::inaccurate);
+    EXPECT_GT(s.report.failed_at, 10);
+    EXPECT_LT(s.report.failed_at, 40);
+    EXPECT_NE(s.report.message.find("holds up to t = "), std::string::npos) << s.report.message;
+    EXPECT_NE(s.report.message.find("body '"), std::string::npos) << s.report.message;
+    EXPECT_GE(s.motion.end(), s.report.failed_at);
+    ASSERT_FALSE(s.estimate.empty());
+    EXPECT_LE(s.estimate.error(s.motion.mesh.element_at(s.report.failed_at)), 1e-6);
+}
+
+TEST(Accuracy, RefusesWhatItCannotDo)
+{
+    const Model model = two_bricks();
+    const auto code = [&](const livens::Problem& problem, const Span& span, const Method& method,
+                          const SolveOptions& options = {}) -> std::string {
+        try {
+            solve(model, problem, span, method, options);
+        } catch (const InputError& error) {
+            return error.complaint().code;
+        }
+        return "";
+    };
+    const livens::Problem start{{model.start()}};
+    EXPECT_EQ(code(start, {0, 1, 0}, Lobatto{}), "accuracy-out-of-range");
+    EXPECT_EQ(code(start, {0, 1, 0.2}, Lobatto{}), "accuracy-out-of-range");
+    EXPECT_EQ(code(start, {0, 1, std::nan("")}, Lobatto{}), "accuracy-out-of-range");
+    EXPECT_EQ(code(start, {0, 1, 1e-6}, Mixed{}), "accuracy-elements");
+    EXPECT_EQ(code(start, {0, 1, 1e-6}, Midpoint{}), "accuracy-elements");
+    EXPECT_EQ(code(start, {0, 1, 1e-6}, Lobatto{4, 2}), "accuracy-elements");
+    EXPECT_EQ(code(start, {1, 0, 1e-6}, Lobatto{}), "time-end");
+    SolveOptions blind;
+    blind.estimate = SolveOptions::Estimate::none;
+    EXPECT_EQ(code(start, {0, 1, 1e-6}, Lobatto{}, blind), "accuracy-elements");
+    livens::Problem backwards = start;
+    std::swap(backwards.conditions.start, backwards.conditions.end);
+    std::swap(backwards.conditions.at_start, backwards.conditions.at_end);
+    EXPECT_EQ(code(backwards, {0, 1, 1e-6}, Lobatto{}), "accuracy-elements");
+    EXPECT_EQ(code(start, {0, 1, 1e-6}, Lobatto{17}), "degree-out-of-range");
+}
+
+TEST(Accuracy, StopsAsAsked)
+{
+    const Model model = two_bricks();
+    SolveOptions options;
+    int calls = 0;
+    options.progress = [&](const Progress&) { return ++calls < 40; };
+    const Solution s = solve(model, {model.start()}, Span{0, 20, 1e-9}, Lobatto{0}, options);
+    EXPECT_EQ(s.report.status, SolveStatus::cancelled);
+    EXPECT_LT(s.motion.end(), 20);
+}
+
+}   // namespace
+}   // namespace livens::tests
