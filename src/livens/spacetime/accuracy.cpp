@@ -197,8 +197,10 @@ private:
         else
             report.message +=
                 "behind, the second solution, which tells the error, failed: " + report.second_failed;
+        const bool is_rounding = tolerance_ <= finest;
         report.message += " (try " + std::to_string(report.tries) +
-                          ", with ever shorter elements); try: an earlier end of time, or a lower accuracy";
+                          (is_rounding ? ", where rounding alone is left" : ", with ever shorter elements") +
+                          "); try: an earlier end of time, or a larger error in accuracy";
         return std::move(last.solution);
     }
 

@@ -95,8 +95,8 @@ private:
         set_failed(element, element + 1);
         report_.status = SolveStatus::not_converged;
         report_.message = "the elements vanish near t = " + to_text(mesh_.ends[element], 6) +
-                          " s: however short they are, each loses more than it may; try: a lower accuracy, "
-                          "or look for a load that jumps there";
+                          " s: however short they are, each loses more than it may; try: a larger "
+                          "error in accuracy, or look for a load that jumps there";
     }
 
     void take_notes()
