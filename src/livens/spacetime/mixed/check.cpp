@@ -96,7 +96,7 @@ void check_blocks(const Conditions& conditions, const TimeMesh& mesh, const Mixe
         refuse("knots and weights belong to a single block", "all", "solve all elements together");
     if (conditions.at_start != Known::state && conditions.at_end != Known::state)
         refuse("conditions at both ends need a single block", "all", "solve all elements together");
-    if (method.basis != Mixed::Basis::lagrange && method.window < method.degree)
+    if (method.window < shortest_block(method))
         throw InputError({"spline-degree", "method.degree",
                           "the degree of a spline cannot exceed the number of elements of a block",
                           std::to_string(method.degree), "<= " + std::to_string(method.window), "",
