@@ -52,6 +52,8 @@ public:
         }
     }
 
+    const std::vector<Columns>& columns() const { return columns_; }
+
     /// - dF/dX and - dF/dX' of the loads.
     void add_loads(Terms& springs, Terms& dampers) const
     {
@@ -168,6 +170,27 @@ public:
         mass_ = on_free_motions(mass);
     }
 
+    /// Of the positive eigenvalues, ascending. `columns`: X of each body by its scaled twist.
+    std::vector<Vibration> vibrations(const Terms& terms, const std::vector<Columns>& columns) const
+    {
+        std::vector<Vibration> found;
+        if (terms.empty() || z_.cols() == 0) return found;
+        const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(on_free_motions(terms), mass_);
+        if (solver.info() != Eigen::Success) return found;
+        for (int i = 0; i < solver.eigenvalues().size(); ++i) {
+            if (!(solver.eigenvalues()(i) > 0)) continue;
+            Vibration one{std::sqrt(solver.eigenvalues()(i))};
+            const Eigen::VectorXd y = z_ * solver.eigenvectors().col(i);
+            for (int b = 0; b < tables_.n_bodies(); ++b) {
+                const Eigen::VectorXd moved = columns[b].leftCols(tables_.bodies[b].dofs) * part(y, b);
+                one.shift = std::max(one.shift, moved.head(3).norm());
+                one.turn = std::max(one.turn, moved.tail(9).norm() / std::sqrt(2.0));
+            }
+            found.push_back(one);
+        }
+        return found;
+    }
+
     /// The largest eigenvalue, if it is positive.
     Mode highest(const Terms& terms) const
     {
@@ -248,10 +271,13 @@ HighestFrequencies highest_frequencies(const Tables& tables, const InstantState&
     };
     const Mode spring = spectrum.highest(springs), damper = spectrum.highest(dampers),
                bearing = spectrum.highest(constraints);
-    return {load(spring, std::sqrt(spring.value)),
-            load(damper, damper.value),
-            {std::sqrt(bearing.value), bearing.body,
-             bearing.source < 0 ? "" : "joint '" + model.joints()[bearing.source].name + "'"}};
+    const Frequency of_constraints{
+        std::sqrt(bearing.value), bearing.body,
+        bearing.source < 0 ? "" : "joint '" + model.joints()[bearing.source].name + "'"};
+    Terms restoring = springs;
+    restoring.insert(restoring.end(), constraints.begin(), constraints.end());
+    return {load(spring, std::sqrt(spring.value)), load(damper, damper.value), of_constraints,
+            spectrum.vibrations(restoring, forms.columns())};
 }
 
 HighestFrequencies highest_frequencies(const Model& model, const State& state, Side side)

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "livens/multibody/model.h"
 
@@ -21,6 +22,14 @@ struct Frequency {
     std::string where(const Model& model) const;
 };
 
+/// A way to vibrate, and how far it goes with an energy of 1/2 J at 1 rad/s: as the root of the energy, and
+/// by the rate.
+struct Vibration {
+    double rate = 0;    ///< rad/s
+    double shift = 0;   ///< of the body that moves most, m
+    double turn = 0;    ///< of the body that turns most, rad
+};
+
 /// Of the motions that the joints leave free, in the mass metric: the largest eigenvalues of the symmetric
 /// parts of Z^T N^T (..) N Z against Z^T Mr Z.  (docs/theory.md, "Highest frequencies")
 ///
@@ -29,6 +38,12 @@ struct HighestFrequencies {
     Frequency springs;       ///< the root of that of - dF/dX
     Frequency dampers;       ///< that of - dF/dX'
     Frequency constraints;   ///< the root of that of sum lambda K of joints, and of what bears rigidity
+    std::vector<Vibration> vibrations{};   ///< of springs and constraints together, ascending rates
+
+    const Frequency& fastest_vibration() const
+    {
+        return springs.rate < constraints.rate ? constraints : springs;
+    }
 };
 
 /// At a state with accelerations and multipliers on that side.

@@ -45,16 +45,6 @@ std::vector<double> stops_of(const Model& model, const Span& span)
     return make_time_mesh(span.start, span.end, 1, required).ends;
 }
 
-/// In which velocities or weights move or turn something by half a length or radian, at most a hundredth of
-/// the time.
-double first_length(const Model& model, const State& start, double duration)
-{
-    const double length = model.length();
-    double rate = std::sqrt(norm(model.gravity()) / length);
-    for (const Matrix34& V : start.V) rate = std::max({rate, norm(V.column(0)) / length, norm(directors(V))});
-    return std::min(0.01 * duration, 0.5 / rate);
-}
-
 /// One march over the time.
 struct Try {
     Solution solution;
@@ -67,12 +57,12 @@ struct Try {
 class ToAccuracy {
 public:
     ToAccuracy(const Model& model, const Problem& problem, const Span& span, const Method& method,
-               const SolveOptions& options)
-        : model_(model), problem_(problem), span_(span), options_(options),
+               const SolveOptions& options, const Doubt& doubt)
+        : model_(model), problem_(problem), span_(span), options_(options), doubt_(doubt),
           ends_(close_ends(model, problem.conditions, span.start, span.end, options.initial)),
           tables_(model, ends_.independent), stops_(stops_of(model, span)), method_(method),
           is_free_(degree_of(method) == 0), tolerance_(first_share * span.accuracy),
-          length_(first_length(model, ends_.start, span.end - span.start))
+          length_(std::min(0.01 * (span.end - span.start), time_of_motion(model, ends_.start)))
     {
         const bool is_high = span.accuracy < high_accuracy;
         if (is_free_ && std::holds_alternative<Radau>(method_))
@@ -133,8 +123,15 @@ private:
                     degree_of(method_) > lowest_degree && pace.mean_length() > fit * pace.mean_stop();
                 if (one.fits_badly) return false;
             }
-            if (n - second.reached() < std::max(least_piece, second.reached() / 4)) return true;
-            window.so_far();
+            const bool is_piece = n - second.reached() >= std::max(least_piece, second.reached() / 4);
+            if (!is_piece && n != looked_at) return true;
+            window.describe(report);
+            const Look look{*window.so_far(), pace.mean_length(), report.evaluations + second.evaluations()};
+            if (doubt_ && doubt_(look)) {
+                report.status = SolveStatus::cancelled;
+                return false;
+            }
+            if (!is_piece) return true;
             one.is_broken_off = !second.advance(n) || is_hopeless(second);
             return !one.is_broken_off;
         };
@@ -145,6 +142,8 @@ private:
         finish(one, second, window.so_far()->n_elements());
         one.solution.motion = window.take_motion();
         one.solution.method = method_;
+        if (report.converged() && !one.is_broken_off)
+            add_lost_vibrations(model_, one.solution.motion, one.solution.estimate);
         return one;
     }
 
@@ -208,6 +207,7 @@ private:
     const Problem& problem_;
     const Span& span_;
     const SolveOptions& options_;
+    const Doubt& doubt_;
     Ends ends_;
     Tables tables_;
     std::vector<double> stops_;
@@ -218,10 +218,20 @@ private:
 
 }   // namespace
 
-Solution solve_to_accuracy(const Model& model, const Problem& problem, const Span& span, const Method& method,
-                           const SolveOptions& options)
+double time_of_motion(const Model& model, const State& state)
 {
-    return ToAccuracy(model, problem, span, method, options).run();
+    const double length = model.length();
+    double rate = std::sqrt(norm(model.gravity()) / length);
+    for (const Matrix34& V : state.V) rate = std::max({rate, norm(V.column(0)) / length, norm(directors(V))});
+    return 0.5 / rate;
+}
+
+Solution solve_to_accuracy(const Model& model, const Problem& problem, const Span& span, const Method& method,
+                           const SolveOptions& options, const Doubt& doubt)
+{
+    if (const auto* either = std::get_if<Auto>(&method))
+        return solve_to_accuracy(model, problem, span, *either, options);
+    return ToAccuracy(model, problem, span, method, options, doubt).run();
 }
 
 }   // namespace livens

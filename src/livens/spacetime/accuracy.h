@@ -2,15 +2,33 @@
 // A motion as accurate as is asked for.  (docs/theory.md, "To an accuracy")
 #pragma once
 
+#include <functional>
+
 #include "livens/spacetime/solve.h"
 
 namespace livens {
+
+/// A march on its way.
+struct Look {
+    const Motion& motion;   ///< so far
+    double mean_length;     ///< of its elements, s
+    long long evaluations;
+};
+/// True: the march ends there, with SolveStatus::cancelled.
+using Doubt = std::function<bool(const Look&)>;
+
+/// In which velocities or weights move or turn something by half a length of the model or half a radian.
+double time_of_motion(const Model& model, const State& state);
 
 /// Marches with elements as long as their local errors allow, with a second solution beside, and again with
 /// shorter ones until the global estimate is within the accuracy: six times at most. What comes back is not
 /// judged. The method is nodal, the state given at the start; degree
 /// 0 is chosen.
-Solution solve_to_accuracy(const Model& model, const Problem& problem, const Span& span,
-                           const Method& method, const SolveOptions& options);
+Solution solve_to_accuracy(const Model& model, const Problem& problem, const Span& span, const Method& method,
+                           const SolveOptions& options, const Doubt& doubt = {});
+
+/// The same by lobatto or radau; a note says why radau was taken, and of which body, spring or joint.
+Solution solve_to_accuracy(const Model& model, const Problem& problem, const Span& span, const Auto& either,
+                           const SolveOptions& options);
 
 }   // namespace livens

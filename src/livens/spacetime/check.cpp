@@ -86,6 +86,7 @@ void check_accuracy(const Conditions& given, const Span& span, const Method& met
                           why, "give elements instead of the accuracy"});
     };
     const auto* lobatto = std::get_if<Lobatto>(&method);
+    const auto* either = std::get_if<Auto>(&method);
     if (!is_nodal(method)) refuse("method.family", "only lobatto and radau find their elements themselves");
     if (given.at_start != Known::state)
         refuse("start.given", "they are found while marching from a state at the start");
@@ -95,8 +96,10 @@ void check_accuracy(const Conditions& given, const Span& span, const Method& met
         refuse("method.estimate", "nothing tells the error without the second solution");
     if (options.condition)
         refuse("method.condition", "condition numbers belong to a mesh that is known before");
-    const int degree = lobatto != nullptr ? lobatto->degree : std::get<Radau>(method).degree;
-    if (degree != 0) rule_of(method);                       // throws
+    const int degree = lobatto != nullptr  ? lobatto->degree
+                       : either != nullptr ? either->degree
+                                           : std::get<Radau>(method).degree;
+    if (degree != 0) rule_of(either != nullptr ? Lobatto{degree} : method);   // throws
     make_time_mesh(span.start, span.end, 1, span.output);   // throws
 }
 
@@ -131,6 +134,7 @@ std::string name_of(const Method& method)
         return "lobatto(" + std::to_string(lobatto->degree) + ")";
     if (const auto* radau = std::get_if<Radau>(&method))
         return "radau(" + std::to_string(radau->degree) + ")";
+    if (std::holds_alternative<Auto>(method)) return "auto";
     if (std::holds_alternative<Midpoint>(method)) return "midpoint";
     if (std::holds_alternative<Endpoint>(method)) return "endpoint";
     const Mixed& mixed = std::get<Mixed>(method);
@@ -159,6 +163,11 @@ void check_method(const Model& model, const Problem& problem, const Time& time, 
                           "at least one iteration is needed", std::to_string(options.max_iterations), ">= 1",
                           "", ""});
     if (mesh == nullptr) return check_accuracy(problem.conditions, std::get<Span>(time), method, options);
+    if (std::holds_alternative<Auto>(method))
+        throw InputError({"accuracy-elements", "method.family",
+                          "the family of elements that are given is not chosen", "auto", "lobatto or radau",
+                          "which of them suits depends on how long elements are found to be",
+                          "name the family, or give accuracy instead of elements"});
     if (const auto* mixed = std::get_if<Mixed>(&method))
         check_mixed(model, problem.conditions, *mesh, *mixed);
     if (is_nodal(method)) rule_of(method);   // throws

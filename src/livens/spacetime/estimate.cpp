@@ -2,8 +2,11 @@
 // The error of a motion by a second solution on the same elements.
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <variant>
 
+#include "livens/base/largest.h"
+#include "livens/multibody/frequencies.h"
 #include "livens/spacetime/second.h"
 
 namespace livens {
@@ -71,6 +74,32 @@ bool Second::advance(int end)
     return true;
 }
 
+void add_lost_vibrations(const Model& model, const Motion& motion, ErrorEstimate& found)
+{
+    if (!motion.damps() || found.empty()) return;
+    double longest = 0;
+    for (int e = 0; e < motion.n_elements(); ++e) raise_to(longest, motion.mesh.length(e));
+    double shift = 0, turn = 0, speed = 0;   // by the root of twice the energy
+    for (const int end : {0, motion.n_elements() / 2, motion.n_elements()}) {
+        const HighestFrequencies at = highest_frequencies(model, motion.at_end(end));
+        for (const Vibration& one : at.vibrations) {
+            if (one.rate * longest < motion.X.degree || one.rate < at.dampers.rate) continue;
+            raise_to(shift, one.shift / one.rate);
+            raise_to(turn, one.turn / one.rate);
+            raise_to(speed, one.shift);
+        }
+    }
+    if (shift == 0 && turn == 0) return;
+    const Balance b = balance(model, motion);
+    const double lost = b.energy.front() - (b.energy.back() - b.work.back());
+    const double root = std::sqrt(2 * std::max(lost, 0.0));
+    for (double& error : found.position) error += root * shift / found.length;
+    for (double& error : found.velocity) error += root * speed;
+    for (std::size_t i = 0; i < found.orientation.size(); ++i)
+        if (!model.bodies()[i % model.bodies().size()].is_point) found.orientation[i] += root * turn;
+    found.find_largest(motion.mesh);
+}
+
 namespace {
 
 void measure_error(const Model& model, const Problem& problem, const Method& method,
@@ -94,6 +123,7 @@ void measure_error(const Model& model, const Problem& problem, const Method& met
         if (done == n) break;
     }
     solution.estimate = second.take(n);
+    add_lost_vibrations(model, solution.motion, solution.estimate);
 }
 
 }   // namespace

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How perturbations of the start grow: a neighbouring motion, carried along.  (docs/theory.md, "The horizon")
+// How perturbations of the start grow: neighbouring motions, carried along.  (docs/theory.md, "The horizon")
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 
+#include "livens/base/largest.h"
 #include "livens/multibody/body.h"
 #include "livens/multibody/twist.h"
 #include "livens/spacetime/solve.h"
@@ -14,12 +15,15 @@ namespace {
 
 /// Of lengths of the model and rad: far above rounding, far below what bends.
 constexpr double small = 1e-6;
-/// Elements after which the neighbour is brought near again.
+/// Elements after which a neighbour is brought near again.
 constexpr int piece = 16;
+/// Start of the numbers that make a neighbour. One of them may happen to lie beside the direction that grows.
+constexpr std::uint64_t seeds[] = {0x9e3779b97f4a7c15u, 0xbf58476d1ce4e5b9u};
 
 /// Numbers between -1 and 1 that are the same on every machine.
 class Noise {
 public:
+    explicit Noise(std::uint64_t seed) : state_(seed) {}
     double operator()()
     {
         state_ ^= state_ << 13, state_ ^= state_ >> 7, state_ ^= state_ << 17;
@@ -27,7 +31,7 @@ public:
     }
 
 private:
-    std::uint64_t state_ = 0x9e3779b97f4a7c15u;
+    std::uint64_t state_;
 };
 
 double distance(const Model& model, const State& a, const State& b)
@@ -53,13 +57,12 @@ State between(const State& state, const State& neighbour, double share)
 }
 
 /// A state beside this one, off by about `small` in all that can move.
-State neighbour_of(const Model& model, const State& state)
+State neighbour_of(const Model& model, const State& state, Noise noise)
 {
     const double length = model.length();
     double rate = std::sqrt(norm(model.gravity()) / length);
     for (const Matrix34& V : state.V)
         rate = std::max({rate, norm(V.column(0)) / length, norm(directors(V)) / std::sqrt(2.0)});
-    Noise noise;
     const auto any = [&](double size) {
         const double x = noise(), y = noise(), z = noise();
         return size * Vector3{x, y, z};
@@ -80,17 +83,11 @@ State neighbour_of(const Model& model, const State& state)
     return s;
 }
 
-}   // namespace
-
-std::vector<double> growth(const Model& model, const Problem& problem, const Method& method,
-                           const SolveOptions& options, const Motion& motion)
+/// At element ends, as far as the neighbour's motion can be solved.
+std::vector<double> growth_beside(State neighbour, const Model& model, const Method& method,
+                                  const SolveOptions& quiet, const Motion& motion)
 {
     std::vector<double> grown;
-    if (problem.conditions.at_start != Known::state || motion.n_elements() == 0) return grown;
-    SolveOptions quiet = options;
-    quiet.condition = quiet.judge = false;
-    quiet.initial = StartPolicy::project;
-    State neighbour = neighbour_of(model, motion.at_end(0));
     double so_far = 1;   // growth at the near end of the piece
     for (int first = 0, n = motion.n_elements(); first < n; first += piece) {
         const int last = std::min(first + piece, n);
@@ -107,6 +104,25 @@ std::vector<double> growth(const Model& model, const Problem& problem, const Met
         so_far *= end / begin;
         neighbour = between(motion.at_end(last), beside.motion.at(mesh.end()), end > 0 ? small / end : 0);
         neighbour.t = mesh.end();
+    }
+    return grown;
+}
+
+}   // namespace
+
+std::vector<double> growth(const Model& model, const Problem& problem, const Method& method,
+                           const SolveOptions& options, const Motion& motion)
+{
+    std::vector<double> grown;
+    if (problem.conditions.at_start != Known::state || motion.n_elements() == 0) return grown;
+    SolveOptions quiet = options;
+    quiet.condition = quiet.judge = false;
+    quiet.initial = StartPolicy::project;
+    for (const std::uint64_t seed : seeds) {
+        const State neighbour = neighbour_of(model, motion.at_end(0), Noise(seed));
+        const std::vector<double> one = growth_beside(neighbour, model, method, quiet, motion);
+        grown.resize(std::max(grown.size(), one.size()), 0.0);
+        for (std::size_t e = 0; e < one.size(); ++e) raise_to(grown[e], one[e]);
     }
     return grown;
 }

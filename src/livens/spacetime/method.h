@@ -80,12 +80,19 @@ struct Mixed {
 struct Midpoint {};   ///< energy-momentum midpoint rule, order 2
 struct Endpoint {};   ///< implicit Euler, order 1
 
-using Method = std::variant<Lobatto, Radau, Mixed, Midpoint, Endpoint>;
+/// Lobatto; Radau where fast decays, or vibrations that do not matter, would rule lobatto's elements. With an
+/// accuracy only; Solution::method says what was taken.
+struct Auto {
+    int degree = 0;   ///< 1..16, radau takes 8 of it at most; 0: as the accuracy has it, see Span
+};
+
+using Method = std::variant<Lobatto, Radau, Mixed, Midpoint, Endpoint, Auto>;
 
 /// Lobatto and Radau: one family on two sets of points, with constraints at the nodes.
 inline bool is_nodal(const Method& method)
 {
-    return std::holds_alternative<Lobatto>(method) || std::holds_alternative<Radau>(method);
+    return std::holds_alternative<Lobatto>(method) || std::holds_alternative<Radau>(method) ||
+           std::holds_alternative<Auto>(method);
 }
 
 /// Not the classical rules.
@@ -94,7 +101,7 @@ inline bool is_elements(const Method& method)
     return is_nodal(method) || std::holds_alternative<Mixed>(method);
 }
 
-/// "lobatto(6)", "radau(4)", "mixed(bspline, 2, natural, equal)", "midpoint", "endpoint".
+/// "lobatto(6)", "radau(4)", "mixed(bspline, 2, natural, equal)", "midpoint", "endpoint", "auto".
 std::string name_of(const Method& method);
 
 }   // namespace livens

@@ -39,4 +39,9 @@ private:
     double seconds_ = 0;
 };
 
+/// Vibrations that radau's elements do not resolve are taken by any degree alike, so that the second solution
+/// does not tell: the energy that was lost bounds how far they went. Nothing where dampers are faster, and
+/// for lobatto.  (docs/theory.md, "What radau takes")
+void add_lost_vibrations(const Model& model, const Motion& motion, ErrorEstimate& found);
+
 }   // namespace livens

@@ -249,11 +249,11 @@ void judge(const Model& model, Solution& solution)
 ExactSample sample_exactly(const Model& model, const Motion& motion, const Method& given, double t,
                            const SolveOptions& options)
 {
-    Method method = given;
-    if (auto* lobatto = std::get_if<Lobatto>(&method); lobatto != nullptr && lobatto->degree == 0)
-        lobatto->degree = motion.X.degree;
-    if (auto* radau = std::get_if<Radau>(&method); radau != nullptr && radau->degree == 0)
-        radau->degree = motion.X.degree;
+    Method method = given;   // the motion knows what was taken of what was left open
+    if (is_nodal(given) && motion.X.points == Points::radau)
+        method = Radau{motion.X.degree};
+    else if (is_nodal(given))
+        method = Lobatto{motion.X.degree};
     if (!(t >= motion.start() && t <= motion.end()))
         throw InputError({"time-out-of-range", "at", "the instant lies outside the motion", to_text(t),
                           to_text(motion.start()) + " to " + to_text(motion.end()), "", ""});

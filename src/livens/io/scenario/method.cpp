@@ -29,6 +29,11 @@ Method make_lobatto(const Section& section)
     return Lobatto{section.integer("degree"), section.integer("window")};   // 0 for the word all
 }
 
+Method make_auto(const Section& section)
+{
+    return Auto{section.has("degree") ? section.integer("degree") : 0};
+}
+
 Method make_radau(const Section& section) { return Radau{section.integer("degree")}; }
 
 Method make_mixed(const Section& section)
@@ -118,6 +123,14 @@ const std::vector<MethodKind>& kinds()
           "resolve; from the state at the start",
           {Key{"degree", types::integer, "Of the polynomial in each element.", "", "4"}.within({1, 8})}},
          make_radau},
+        {{"auto",
+          "lobatto, or radau where fast decays, or vibrations that do not matter, would rule its elements; "
+          "with an accuracy only, and then the default",
+          {Key{"degree", types::integer,
+               "Of the polynomial in each element; radau takes 8 of it at most. Default: as the accuracy has "
+               "it."}
+               .within({1, 16})}},
+         make_auto},
         {{"mixed",
           "the elements of Hesch, Glas and Schuss, with positions, momenta and multipliers as separate "
           "fields and weak rigidity, all solved at once or by blocks",
@@ -200,8 +213,9 @@ Table method_table()
              false,
              {"second", "none"}},
          Key{"growth", types::truth,
-             "Whether a neighbouring motion tells how perturbations of the start grow, and the horizon "
-             "beyond which double precision says nothing; about as costly as the motion. Default: true with "
+             "Whether two neighbouring motions tell how perturbations of the start grow, and the horizon "
+             "beyond which double precision says nothing; about twice as costly as the motion. Default: true "
+             "with "
              "`accuracy` of `[time]`, else false."},
          Key{"condition", types::truth,
              "Whether condition numbers are computed: of the whole matrix of the last block (mixed), of that "

@@ -62,6 +62,9 @@ void write_method(JsonWriter& json, const Method& method)
     } else if (const Radau* radau = std::get_if<Radau>(&method)) {
         json.member("family", "radau");
         write_degree(json, radau->degree);
+    } else if (const Auto* either = std::get_if<Auto>(&method)) {
+        json.member("family", "auto");
+        write_degree(json, either->degree);
     } else
         json.member("family", std::holds_alternative<Midpoint>(method) ? "midpoint" : "endpoint");
 }
@@ -97,6 +100,18 @@ std::string resolve(const Builder& builder, const Section& time, const Scenario&
 }
 
 /// Complaints about what the file leaves to its defaults point at what comes nearest.
+/// What is not stated follows from the accuracy.
+void leave_open(Method& method, bool has_family, bool has_degree)
+{
+    auto* lobatto = std::get_if<Lobatto>(&method);
+    if (!has_family && lobatto != nullptr)
+        method = Auto{has_degree ? lobatto->degree : 0};
+    else if (lobatto != nullptr && !has_degree)
+        lobatto->degree = 0;
+    else if (auto* radau = std::get_if<Radau>(&method); radau != nullptr && !has_degree)
+        radau->degree = 0;
+}
+
 void remember_defaults(Builder& builder)
 {
     const Section* time = only_section(builder.top(), "time");
@@ -123,10 +138,7 @@ void read_run(Builder& builder, Scenario& scenario)
     scenario.method = read_method(method, builder.findings());
     const bool is_to_accuracy = time != nullptr && follows_accuracy(*time, scenario.method);
     const auto states = [&](const char* key) { return method != nullptr && method->has(key); };
-    if (auto* lobatto = std::get_if<Lobatto>(&scenario.method); lobatto != nullptr && !states("degree"))
-        lobatto->degree = is_to_accuracy ? 0 : lobatto->degree;
-    if (auto* radau = std::get_if<Radau>(&scenario.method); radau != nullptr && !states("degree"))
-        radau->degree = is_to_accuracy ? 0 : radau->degree;
+    if (is_to_accuracy) leave_open(scenario.method, states("family"), states("degree"));
     scenario.options.growth = states("growth") ? method->truth("growth") : is_to_accuracy;
     if (method != nullptr && method->has("tolerance"))
         scenario.options.tolerance = method->number("tolerance");

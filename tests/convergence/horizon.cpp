@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How perturbations of the start grow, and until when double precision says something.
+#include "convergence/studies.h"
+
+namespace livens::tests {
+namespace {
+
+Solution with_growth(const Model& model, double end, int n, const Method& method)
+{
+    SolveOptions options;
+    options.growth = true;
+    return solve(model, {model.start()}, make_time_mesh(0, end, n), method, options);
+}
+
+/// Chaos: motions that differ by 1e-13 at the start differ by 1e-2 after 50 s and 26 s or so.
+TEST(Horizon, OfTheDoublePendulumsIsWhereTwoIntegrationsPart)
+{
+    const Solution centred = with_growth(cubes_on_rods(0), 60, 720, Lobatto{8});
+    EXPECT_NEAR(centred.verdict.horizon, 50, 5);
+    const Solution offset = with_growth(cubes_on_rods(0.1), 35, 420, Lobatto{8});
+    EXPECT_NEAR(offset.verdict.horizon, 26, 4);
+}
+
+TEST(Horizon, NoneOfAPendulumThatSwings)
+{
+    Model model({0, 0, -9.81});
+    model.add_body(point_mass("bob", 1, {1, 0, 0}));
+    model.add_joint(rod("rod", world, 0, {}, 1));
+    const Solution s = with_growth(model, 60, 600, Lobatto{6});
+    ASSERT_EQ(s.growth.size(), 601u);
+    EXPECT_TRUE(std::isnan(s.verdict.horizon));
+    EXPECT_LT(s.verdict.growth, 1e4);   // it drifts in time: linearly
+}
+
+/// On its head a pendulum leaves as exp(sqrt(g / l) t); the growth is that of any neighbour.
+TEST(Horizon, GrowthOnAnUnstableRestIsItsExponential)
+{
+    Model model({0, 0, -9.81});
+    model.add_body(point_mass("bob", 1, {0, 0, 1}));
+    model.add_joint(rod("rod", world, 0, {}, 1));
+    for (const Method& method : {Method(Lobatto{6}), Method(Radau{6})}) {
+        const Solution s = with_growth(model, 4, 80, method);
+        ASSERT_EQ(s.growth.size(), 81u);
+        EXPECT_NEAR(std::log(s.growth[80] / s.growth[40]) / 2, std::sqrt(9.81), 0.01);
+        EXPECT_NEAR(s.growth[0], 1, 1e-12);
+    }
+}
+
+}   // namespace
+}   // namespace livens::tests
