@@ -105,6 +105,13 @@ void check_blocks(const Conditions& conditions, const TimeMesh& mesh, const Mixe
 
 }   // namespace
 
+TimeMesh mesh_of_knots(const Mixed& mixed)
+{
+    const bool is_rational = mixed.basis == Mixed::Basis::nurbs && !mixed.weights.empty();
+    return {is_rational ? TimeSpace::nurbs(mixed.degree, mixed.knots, mixed.weights).ends()
+                        : TimeSpace::bspline(mixed.degree, mixed.knots).ends()};
+}
+
 void check_mixed(const Model& model, const Conditions& conditions, const TimeMesh& mesh, const Mixed& method)
 {
     if (method.degree < 1 || method.degree > 8)
