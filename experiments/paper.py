@@ -27,6 +27,7 @@ import pathlib
 import subprocess
 import sys
 import tempfile
+import textwrap
 
 import numpy as np
 
@@ -317,11 +318,36 @@ def plotting():
         return None
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
-    plt.rcParams.update({"font.size": 10, "axes.grid": True, "grid.alpha": 0.3, "lines.linewidth": 1.2,
-                         "lines.markersize": 4.5, "legend.fontsize": 8, "legend.frameon": False,
+    plt.rcParams.update({"font.size": 7.5, "axes.grid": True, "grid.alpha": 0.3, "lines.linewidth": 0.9,
+                         "lines.markersize": 3, "legend.fontsize": 6.5, "legend.frameon": False,
+                         "axes.titlesize": 7.5, "axes.linewidth": 0.6, "axes.titlelocation": "left",
+                         "legend.handlelength": 1.6, "legend.labelspacing": 0.3,
                          "svg.hashsalt": "livens", "figure.constrained_layout.use": True,
                          "axes.prop_cycle": matplotlib.cycler(color=COLOURS, marker=list(MARKERS))})
     return plt
+
+
+WIDTH = 174 / 25.4   # inches: both columns of a journal's page
+
+
+def fit_to_page(figure, stretch):
+    """As wide as a page, with letters before the titles of panels, if there are many.
+
+    stretch   of the height, since text takes more of a smaller picture
+    """
+    wide, high = figure.get_size_inches()
+    figure.set_size_inches(WIDTH, stretch * high * WIDTH / wide)
+    panels = [axes for axes in figure.axes if axes.axison or axes.name == "3d"]
+    for letter, axes in zip("abcdefghijkl", panels if len(panels) > 1 else ()):
+        room = axes.get_subplotspec().get_position(figure).width * WIDTH * 72 / 3.9   # letters in a line
+        side = "center" if axes.name == "3d" else "left"
+        title = f"({letter}) {axes.get_title(side)}"
+        axes.set_title(textwrap.fill(title, max(int(room), 20)), loc=side)
+
+
+def told(name, run):
+    """A label that says so where the program calls the run suspect."""
+    return f"{name} (suspect)" if run.code == SUSPECT else name
 
 
 def style_of_method(name):
@@ -334,13 +360,18 @@ def style_of_method(name):
 def loglog(axes, rows, y="error", ylabel="Err (P26)", group="method", style=None, beside=False):
     """Curves of y over h on logarithmic axes, one for each value of `group`, in the order of the rows.
 
-    style(name) gives keywords of plot, its label, too, if it is not the name; `beside` puts the legend right
+    Runs that the program calls suspect have a ring. style(name) gives keywords of plot, its label, too, if it
+    is not the name; `beside` puts the legend right
     of the axes, where many need room.
     """
     for name in dict.fromkeys(row[group] for row in rows):
         points = sorted((row["h"], row[y]) for row in rows if row[group] == name and row[y] > 0)
         if points:
             axes.loglog(*zip(*points), **({"label": name} | (style(name) if style else {})))
+    suspect = [(row["h"], row[y]) for row in rows if row.get("status") == "suspect" and row[y] > 0]
+    if suspect:
+        axes.loglog(*zip(*suspect), linestyle="", marker="o", markersize=6, markeredgewidth=0.5,
+                    fillstyle="none", color="0.5", label="ringed: suspect", zorder=0)
     axes.set(xlabel="element length h (s)", ylabel=ylabel)
     axes.minorticks_off()
     low, high = axes.get_xlim()
@@ -355,7 +386,7 @@ def slope(axes, exponent, h, value):
     ends = np.array([h / 2, h * 2])
     axes.plot(ends, value * (ends / h) ** exponent, "--", marker="", color="0.4", linewidth=0.9)
     axes.annotate(f"{exponent:g}", (h, value), textcoords="offset points",
-                  xytext=(4, -11 if exponent > 0 else 3), color="0.4", fontsize=8)
+                  xytext=(4, -9 if exponent > 0 else 3), color="0.4", fontsize=6.5)
 
 
 def cube(centre, directors, edges):
@@ -459,7 +490,8 @@ class Experiment:
             if run.code != CONVERGED:
                 doubtful.setdefault((name, run.figures["status"]), []).append(str(n))
             if run.code != NOT_CONVERGED:
-                rows.append({"method": name, "elements": n, "h": float(run.h.max())} | measure(run))
+                rows.append({"method": name, "elements": n, "h": float(run.h.max()),
+                             "status": run.figures["status"]} | measure(run))
         for (name, status), numbers in doubtful.items():
             self.remark(f"{name}: {status} with {', '.join(numbers)} elements")
         return rows
@@ -495,15 +527,16 @@ class Experiment:
             writer.writeheader()
             writer.writerows(rows)
 
-    def draw(self, picture):
-        """Writes plot.svg and plot.png of picture(plt) -> figure."""
+    def draw(self, picture, stretch=1.2):
+        """Writes plot.svg and plot.png of picture(plt) -> figure, see fit_to_page()."""
         plt = plotting()
         if plt is None:
             self.remark("no picture: matplotlib is not installed")
             return
         figure = picture(plt)
+        fit_to_page(figure, stretch)
         figure.savefig(self.output / "plot.svg", metadata={"Date": None})
-        figure.savefig(self.output / "plot.png", dpi=140)
+        figure.savefig(self.output / "plot.png", dpi=200)
         plt.close(figure)
 
     def finish(self):

@@ -54,6 +54,7 @@ inline Solution solve_mixed_evenly(const Model& model, double end, int n, const 
 {
     SolveOptions options;
     options.tolerance = tolerance;
+    options.estimate = SolveOptions::Estimate::none;   // coarse on purpose; see convergence/mixed_estimates
     // Collocation at so few points leaves momenta at inner element ends that are none: it would be suspect.
     options.judge = method.gauss_points != method.degree;
     Solution solution = solve(model, {model.start()}, make_time_mesh(0, end, n), method, options);

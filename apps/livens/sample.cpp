@@ -61,8 +61,12 @@ struct Query {
     int index;   ///< of the body or joint
 };
 
+/// Not converged: it cannot be had.
 ExactSample solved_at(const Query& q, double t)
 {
+    ExactSample none;
+    none.report.status = SolveStatus::not_converged;
+    if (std::holds_alternative<Mixed>(q.scenario.method)) return none;   // all elements of a block are one
     return sample_exactly(q.scenario.model, q.run.motion, q.scenario.method, t, q.scenario.options);
 }
 

@@ -201,6 +201,14 @@ livens_mutant(NAME mixed_wrong_tie
               TESTS_OF convergence
               MUST_FAIL FreeBox/MixedOrders.AreThoseMeasured/Quartic FreeBox/MixedOrders.AreThoseMeasured/Sextic)
 
+# Multipliers that go on smoothly where a load jumps: orders above 4 are lost.
+livens_mutant(NAME mixed_multipliers_not_torn
+              FILE spacetime/mixed/window.cpp
+              OLD [[if (is_break && space.first(e)]]
+              NEW [[if (!is_break && space.first(e)]]
+              TESTS_OF convergence
+              MUST_FAIL MixedJumps.InsideABlockCostNoOrder)
+
 # A block that begins with the momentum the last one began with.
 livens_mutant(NAME mixed_momentum_not_handed_on
               FILE spacetime/mixed/window.cpp

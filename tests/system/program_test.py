@@ -258,6 +258,13 @@ class Solve(ProgramTest):
             self.assertIs(s["converged"], False)
             self.expect(0, "export", "run.nc", "--csv", "run.csv")
 
+    def test_blocks_whose_first_one_fails(self):
+        blocks = ('family = "mixed"\ndegree = 1\nwindow = 5\ninterfaces = "project"\nmax_iterations = 1')
+        result = self.solve(SMALL.replace('family = "lobatto"\ndegree = 4', blocks), code=NOT_CONVERGED)
+        self.assertEqual((result["status"], result["elements"]), ("not converged", 0))
+        self.assertIn("did not converge in 1 iteration, the limit, in the window of elements 0 to 4", result["message"])
+        self.assertEqual(json.loads(self.expect(0, "info", "run.nc", "--json").out)["message"], result["message"])
+
     def test_mixed_elements_in_blocks(self):
         text = SMALL.replace('family = "lobatto"\ndegree = 4', 'family = "mixed"\nwindow = 4\ncondition = true')
         result = self.solve(text)

@@ -79,7 +79,7 @@ public:
     {
         if (value <= acceptable_distance) return;
         reasons_.push_back("the motion is " + to_text(value, 3) +
-                           " of the model's length away from a march of lobatto(2) over the same elements, "
+                           " of the model's length away from a march of lobatto over the same elements, "
                            "which it leaves near " +
                            to_text(t, 6) +
                            " s: one of the two is wrong; smaller blocks, more elements or a higher degree "

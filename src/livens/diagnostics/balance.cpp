@@ -55,7 +55,7 @@ Quadrature nodal_rule(const Field& field)
 
 /// Where loads are taken, as by the method: at its Gauss points, where alone its momentum balances are exact.
 /// Without such points one multiplier an element marks a stepping rule with one stage: endpoint (order 1)
-/// takes forces at the end of the step, midpoint in its middle.
+/// takes forces at the end of the step, midpoint, in old files, in its middle.
 Quadrature load_rule(const Motion& motion)
 {
     if (motion.gauss_points > 0) return gauss(motion.gauss_points);

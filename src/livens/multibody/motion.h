@@ -67,7 +67,7 @@ struct Motion {
     std::vector<double> end_multipliers;   ///< acceleration level, (2 * end + side) * n_rows + row; or empty
 
     // What may be believed.
-    int order_at_ends = 0;             ///< of X and momenta at element ends
+    int order_at_ends = 0;             ///< of X and momenta at element ends; 0: none is known
     int dense_order_X = 0;             ///< of X between nodes
     int dense_order_V = 0;             ///< of its derivative between nodes
     std::string constraints_hold;      ///< "element nodes", "element ends", "weakly" (as integrals)

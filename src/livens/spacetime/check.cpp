@@ -6,6 +6,7 @@
 #include "livens/base/error.h"
 #include "livens/base/text.h"
 #include "livens/spacetime/lobatto/rule.h"
+#include "livens/spacetime/mixed/bases.h"
 #include "livens/spacetime/mixed/window.h"
 #include "livens/spacetime/solve.h"
 
@@ -119,11 +120,7 @@ void check_conditions(const Model& model, const Conditions& given, const Method&
                           "the method " + name_of(method) + " needs the whole state at the start", "",
                           "the state at the start", "",
                           "use lobatto or mixed for conditions at the end of time"});
-    if (positions > 0) return;
-    if (std::holds_alternative<Mixed>(method))
-        throw InputError({"boundary-conditions", "end.given", "the elements mixed need positions at one end",
-                          "", "positions at one end at least", "", "use lobatto for momenta at both ends"});
-    refuse_free_bodies(model);
+    if (positions == 0) refuse_free_bodies(model);
 }
 
 }   // namespace
@@ -137,9 +134,7 @@ std::string name_of(const Method& method)
     if (std::holds_alternative<Midpoint>(method)) return "midpoint";
     if (std::holds_alternative<Endpoint>(method)) return "endpoint";
     const Mixed& mixed = std::get<Mixed>(method);
-    const char* const bases[] = {"lagrange", "bspline", "nurbs"};
-    return std::string("mixed(") + bases[static_cast<int>(mixed.basis)] + ", " +
-           std::to_string(mixed.degree) + ", " +
+    return "mixed(" + std::string(mixed::basis_of(mixed).word) + ", " + std::to_string(mixed.degree) + ", " +
            (mixed.start == Mixed::Start::natural ? "natural" : "strong") + ", " +
            (mixed.multipliers == Mixed::Multipliers::equal ? "equal" : "lower") + ")";
 }

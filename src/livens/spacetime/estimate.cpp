@@ -44,12 +44,18 @@ Second::Second(const Model& model, const Problem& problem, const Method& method,
     options_.condition = options_.judge = false;
     if (auto* lobatto = std::get_if<Lobatto>(&method_)) ++lobatto->degree;
     if (auto* radau = std::get_if<Radau>(&method_)) ++radau->degree;
+    if (const auto* mixed = std::get_if<Mixed>(&method)) {
+        method_ = mixed->witness();
+        options_.max_iterations = SolveOptions{}.max_iterations;   // the given number is one for blocks
+    }
 }
 
 bool Second::advance(int end)
 {
     const int first = std::min(at_, end), last = std::max(at_, end);
     TimeMesh mesh{{first_.mesh.ends.begin() + first, first_.mesh.ends.begin() + last + 1}};
+    for (const double t : missed(mesh, model_.load_breaks()))   // what one solution missed, two would
+        mesh.ends.insert(std::ranges::upper_bound(mesh.ends, t), t);
     if (!is_nodal(method_)) mesh = halved(mesh);
     const auto begin = std::chrono::steady_clock::now();
     Solution second = solve(model_, problem_, mesh, method_, options_);
@@ -95,7 +101,7 @@ void measure_error(const Model& model, const Problem& problem, const Method& met
 void estimate(const Model& model, const Problem& problem, const Method& method, const SolveOptions& options,
               Solution& solution)
 {
-    if (!solution.report.converged() || std::holds_alternative<Mixed>(method)) return;
+    if (!solution.report.converged()) return;
     if (options.estimate == SolveOptions::Estimate::second && solution.estimate.empty())
         measure_error(model, problem, method, options, solution);
     if (!options.growth) return;

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "livens/base/error.h"
+#include "livens/diagnostics/acceptance.h"
 #include "livens/multibody/body.h"
 #include "livens/multibody/twist.h"
 #include "livens/spacetime/lobatto/window.h"
@@ -54,9 +55,26 @@ Guess bent(const Guess& motion, double from, const State& to)
     };
 }
 
+/// How far the momenta of two states are apart: linear ones, and by the model's length moments of momentum.
+double missing_momentum(const Model& model, const State& reached, const State& known)
+{
+    const double length = model.length();
+    double sum = 0;
+    for (std::size_t b = 0; b < known.X.size(); ++b) {
+        Vector3 gap[2]{};
+        for (const auto& [state, sign] : {std::pair{&reached, 1.0}, {&known, -1.0}}) {
+            const Matrix34 P = sign * (state->V[b] * model.bodies()[b].mass);
+            gap[0] += P.column(0);
+            for (int c = 1; c < 4; ++c) gap[1] += cross(state->X[b].column(c), P.column(c));
+        }
+        sum += norm(gap[0]) + norm(gap[1]) / length;
+    }
+    return sum;
+}
+
 }   // namespace
 
-MarchGuess guess_from_state(const Model& model, const State& state, std::span<const double> times)
+MarchGuess guess_from_state(const Model& model, const State& state, std::span<const double> times, int degree)
 {
     const bool is_forwards = times.back() > times.front();
     Conditions conditions{state, Known::state, state, Known::nothing};
@@ -65,9 +83,10 @@ MarchGuess guess_from_state(const Model& model, const State& state, std::span<co
     if (!is_forwards) std::reverse(mesh.ends.begin(), mesh.ends.end());
     const Ends ends = close_ends(model, conditions, mesh.start(), mesh.end(), StartPolicy::project);
     const Tables tables(model, ends.independent);
-    LobattoWindow window(tables, mesh, ends, lobatto_rule(2));
+    LobattoWindow window(tables, mesh, ends, lobatto_rule(degree));
     SolveReport report;
-    const WindowOptions options{.direction = is_forwards ? 1 : -1};
+    const WindowOptions options{
+        .direction = is_forwards ? 1 : -1, .may_divide = true, .trust = {acceptable_velocity_jump, true}};
     solve_windows(window, mesh, options, report);
     auto march = std::make_shared<Motion>(window.take_motion());
     const double reached = march->mesh.ends.empty() ? times.front()
@@ -122,20 +141,23 @@ Guess guess_from_ends(const Model& model, const Ends& ends, std::span<const doub
     const bool from_start = knows_positions(ends.at_start) || !knows_positions(ends.at_end);
     const State &near = from_start ? ends.start : ends.end, &far = from_start ? ends.end : ends.start;
     const Known at_far = from_start ? ends.at_end : ends.at_start;
-    State begin = near;
-    if (!is_moving(begin)) {
-        if (knows_positions(at_far)) return guess_between(ends.start, ends.end);
-        begin = with_rates(near, far);
-    }
     std::vector<double> march(times.begin(), times.end());
     if (!from_start) std::reverse(march.begin(), march.end());
-    Guess motion;
-    try {
-        motion = guess_from_state(model, begin, march).motion;
-    } catch (const InputError&) {
-        motion = guess_steady(begin);   // the stated rates are far from any that the joints allow
-    }
-    return knows_positions(at_far) ? bent(motion, begin.t, far) : motion;
+    const auto motion_from = [&](const State& begin) {
+        try {
+            return guess_from_state(model, begin, march).motion;
+        } catch (const InputError&) {
+            return guess_steady(begin);   // the stated rates are far from any that the joints allow
+        }
+    };
+    if (knows_positions(at_far))
+        return is_moving(near) ? bent(motion_from(near), near.t, far) : guess_between(ends.start, ends.end);
+    Guess motion = motion_from(near);
+    if (is_moving(near)) return motion;
+    // let go at rest, or with the rates of the far end: as comes nearer to the momenta known there
+    Guess other = motion_from(with_rates(near, far));
+    return missing_momentum(model, other(far.t), far) < missing_momentum(model, motion(far.t), far) ? other
+                                                                                                    : motion;
 }
 
 }   // namespace livens

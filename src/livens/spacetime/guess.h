@@ -10,13 +10,14 @@
 
 namespace livens {
 
-/// From a state along the given instants, which rise or fall from its own: a march of lobatto(2) over them,
-/// and where that fails straight on from its last good element.
+/// From a state along the given instants, which rise or fall from its own: a march of lobatto(degree) over
+/// them, dividing elements as solve() does, and where that fails straight on from its last good element.
 struct MarchGuess {
     Guess motion;
     double reached = 0;   ///< s; the last instant if all went well
 };
-MarchGuess guess_from_state(const Model& model, const State& state, std::span<const double> times);
+MarchGuess guess_from_state(const Model& model, const State& state, std::span<const double> times,
+                            int degree = 2);
 
 /// Points and directors going on steadily from a state.
 Guess guess_steady(const State& state);

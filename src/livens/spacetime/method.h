@@ -30,11 +30,8 @@ struct Radau {
 /// free and rigidity holds weakly (P10, P11, P23). Order 2 to degree + 1 at the ends of blocks, see
 /// docs/theory.md.
 struct Mixed {
-    enum class Basis {
-        lagrange,   ///< continuous, equidistant nodes
-        bspline,    ///< as smooth as the knots allow
-        nurbs       ///< likewise, with weights
-    };
+    /// What each of them is stands in mixed/bases.cpp, in this order.
+    enum class Basis { lagrange, bspline, nurbs };
     /// How the momentum at the ends enters.
     enum class Start {
         natural,   ///< as the boundary term of Hamilton's law (P10); momenta balance to rounding
@@ -56,7 +53,7 @@ struct Mixed {
     enum class Interfaces { carry, project };
     /// Where Newton begins when the state is given at one end.
     enum class FirstGuess {
-        march,   ///< a march of lobatto(2) over the block's elements
+        march,   ///< a march of lobatto(degree + 2) over the block's elements
         steady   ///< straight on with the velocities given: good for short blocks only
     };
 
@@ -74,6 +71,10 @@ struct Mixed {
     std::vector<double> knots;
     std::vector<double> weights;   ///< of NURBS, one for each function; needs a single block
     SparseBackend linear_solver = SparseBackend::eigen;
+
+    /// lobatto of a higher order than these elements have with any basis and pairing, on the same mesh: their
+    /// guess, and the second solution that tells their error.
+    Lobatto witness() const { return {degree + 2}; }
 };
 
 /// Classical rules, one step per element: independent witnesses.

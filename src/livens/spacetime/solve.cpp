@@ -42,7 +42,7 @@ std::vector<double> instants(const TimeMesh& mesh, const Ends& ends, int first, 
     return times;
 }
 
-/// Where windows start from, one attempt after the other. From a state: a march of lobatto(2) over the
+/// Where windows start from, one attempt after the other. From a state: a march of lobatto over the
 /// elements, or more and more pieces of them. Single elements of lobatto and radau have their own guess;
 /// where that leads nowhere they are too long, and are divided.
 class Proposals {
@@ -67,7 +67,7 @@ public:
         if (attempt > 2 || (mixed == nullptr && last - first == 1)) return {};
         try {
             const std::vector<double> times = instants(mesh_, ends_, first, last, 1 << (2 * attempt));
-            return {guess_from_state(model_, state, times).motion, true};
+            return {guess_from_state(model_, state, times, mixed ? mixed->witness().degree : 2).motion, true};
         } catch (const InputError&) {
             return {guess_steady(state),
                     false};   // what was handed on is too far from a rigid state to march on
@@ -200,6 +200,25 @@ Solution solve_by_steps(const Model& model, const Problem& problem, const TimeMe
     return {std::move(result.motion), method, std::move(result.report)};
 }
 
+/// Loads that break inside elements hold every order down: to 1 where they jump, to 2 where they bend.
+void lower_orders(const Model& model, Motion& motion)
+{
+    const std::vector<double> breaks = missed(motion.mesh, model.load_breaks());
+    if (breaks.empty()) return;
+    const Tables tables(model, {});
+    for (const double t : breaks) {
+        const State state = motion.at(t);
+        std::vector<double> X, V, jump(12 * state.X.size(), 0.0);
+        for (const Matrix34& x : state.X) X.insert(X.end(), std::begin(x.a), std::end(x.a));
+        for (const Matrix34& v : state.V) V.insert(V.end(), std::begin(v.a), std::end(v.a));
+        tables.add_loads({t, Side::right}, X.data(), V.data(), 1, jump.data());
+        tables.add_loads({t, Side::left}, X.data(), V.data(), -1, jump.data());
+        const int order = std::ranges::any_of(jump, [](double f) { return f != 0; }) ? 1 : 2;
+        for (int* stated : {&motion.order_at_ends, &motion.dense_order_X, &motion.dense_order_V})
+            *stated = std::min(*stated, order);
+    }
+}
+
 }   // namespace
 
 Solution solve(const Model& model, const Problem& problem, const Time& time, const Method& method,
@@ -212,6 +231,7 @@ Solution solve(const Model& model, const Problem& problem, const Time& time, con
             ? solve_to_accuracy(model, problem, std::get<Span>(time), method, options)
         : is_elements(method) ? solve_by_windows(model, problem, *mesh, method, options)
                               : solve_by_steps(model, problem, *mesh, method, options);
+    lower_orders(model, solution.motion);
     if (!options.judge) return solution;
     estimate(model, problem, method, options, solution);
     judge(model, solution);

@@ -28,9 +28,10 @@ struct SolveOptions {
     /// (from a state).
     bool divide = true;
     bool judge = true;   ///< false: the caller asks estimate() and judge() himself, or does without
-    /// What tells the error of the motion, where it is judged. The elements mixed have nothing yet.
+    /// What tells the error of the motion, where it is judged.
     enum class Estimate {
-        second,   ///< a second solution, of degree + 1 or with half the steps, on the same mesh
+        second,   ///< a second solution, of degree + 1 or with half the steps, on the same mesh; mixed: its
+                  ///< witness
         none
     } estimate = Estimate::second;
     /// Whether a neighbouring motion tells how perturbations grow, after the estimate (state at the start).

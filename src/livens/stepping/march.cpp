@@ -145,6 +145,7 @@ private:
         motion.order_at_ends = rule == SteppingRule::midpoint ? 2 : 1;
         motion.dense_order_X = motion.order_at_ends;
         motion.dense_order_V = 1;
+        motion.gauss_points = rule == SteppingRule::midpoint ? 1 : 0;
         motion.constraints_hold = "element ends";
         motion.redundant_rows = assembly.redundant;
         for (const std::string& note : assembly.notes) result_.report.notes.push_back(note);

@@ -83,6 +83,18 @@ double end_of(const Time& time)
     return std::get<Span>(time).end;
 }
 
+std::vector<double> missed(const TimeMesh& mesh, std::span<const double> instants)
+{
+    const double reach = merge_fraction * (mesh.end() - mesh.start());
+    std::vector<double> inside;
+    for (const double t : instants) {
+        if (!(t >= mesh.start() && t <= mesh.end())) continue;
+        const auto next = std::lower_bound(mesh.ends.begin(), mesh.ends.end(), t - reach);
+        if (next == mesh.ends.end() || *next > t + reach) inside.push_back(t);
+    }
+    return inside;
+}
+
 TimeMesh make_time_mesh(double start, double end, int n_elements, std::span<const double> required)
 {
     check_interval(start, end, n_elements);

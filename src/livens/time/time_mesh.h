@@ -43,6 +43,10 @@ using Time = std::variant<TimeMesh, Span>;
 double start_of(const Time& time);
 double end_of(const Time& time);
 
+/// Those of the instants inside the time of a mesh that no element end is near, within 1e-9 of the whole
+/// time.
+std::vector<double> missed(const TimeMesh& mesh, std::span<const double> instants);
+
 /// At least `n_elements` of equal length between `start` and `end`, and every required instant inside an
 /// element end.
 ///

@@ -30,7 +30,7 @@ struct Case {
 
 const Given all_conditions[] = {
     {true, true, false, false}, {false, false, true, true}, {true, false, true, false},
-    {true, false, false, true}, {false, true, true, false},
+    {true, false, false, true}, {false, true, true, false}, {false, true, false, true},
 };
 
 std::vector<Case> cases()
@@ -52,14 +52,17 @@ std::vector<Case> cases()
 }
 
 class MixedEquations : public ::testing::TestWithParam<Case> {};
+/// Those of the same degree as positions: the others jump between elements by themselves.
+class TornMultipliers : public MixedEquations {};
 
 /// Everything that a block needs, with fields that are no motion at all.
 struct Block {
-    Block(const Model& model, const Case& c, const TimeSpace& space)
+    Block(const Model& model, const Case& c, const TimeSpace& space, std::vector<int> tears = {})
         : tables(model, close_start(model, model.start(), StartPolicy::check).independent, true),
           coordinates(tables),
-          equations(setup(model, c, space), Numbering(c.given, c.start, c.multipliers, space.size(),
-                                                      coordinates.size, coordinates.n_rows())),
+          equations(setup(model, c, space, tears),
+                    Numbering(c.given, c.start, c.multipliers, space.size(), coordinates.size,
+                              coordinates.n_rows(), firsts(space, tears))),
           fields(equations.zero_fields())
     {
         fields.X0 = coordinates.gather(model.start().X);
@@ -73,7 +76,15 @@ struct Block {
         equations.tie(fields);
     }
 
-    Equations::Setup setup(const Model& model, const Case& c, const TimeSpace& space) const
+    static std::vector<int> firsts(const TimeSpace& space, const std::vector<int>& elements)
+    {
+        std::vector<int> functions;
+        for (const int e : elements) functions.push_back(space.first(e));
+        return functions;
+    }
+
+    Equations::Setup setup(const Model& model, const Case& c, const TimeSpace& space,
+                           const std::vector<int>& tears) const
     {
         mixed::EndMomentum known{std::vector<Matrix34>(model.bodies().size(), Matrix34{}), {}}, turning;
         for (const Body& body : model.bodies()) {
@@ -87,7 +98,8 @@ struct Block {
                 c.start,
                 Mixed::EndMultiplier::smooth,
                 c.given.X_at_start ? known : turning,
-                c.given.X_at_end ? known : turning};
+                c.given.X_at_end ? known : turning,
+                tears};
     }
 
     Tables tables;
@@ -136,6 +148,25 @@ TEST_P(MixedEquations, HaveTheMatrixOfTheirResidual)
     }
 }
 
+TEST_P(TornMultipliers, HaveTheTangentOfTheirEquations)
+{
+    const Model model = testing_models::everything();
+    for (const TimeSpace& space : {TimeSpace::lagrange({0, 0.2, 0.5, 0.6}, 2),
+                                   TimeSpace::nurbs(2, {0, 0, 0, 0.2, 0.2, 0.5, 0.5, 0.6, 0.6, 0.6},
+                                                    {1, 1.3, 0.8, 1.1, 0.9, 1, 1.2})}) {
+        Block whole(model, GetParam(), space), block(model, GetParam(), space, {1, 2});
+        EXPECT_EQ(block.equations.size(), whole.equations.size());
+        EXPECT_EQ(block.fields.lambda.size() - whole.fields.lambda.size(), 2u * block.coordinates.n_rows());
+        SparseMatrix J;
+        for (unsigned seed = 1; seed <= 3; ++seed) EXPECT_LT(tangent_error(block, J, seed), 1e-8);
+        // left and right of a tear they differ, and nowhere else
+        std::vector<double> left(static_cast<std::size_t>(block.coordinates.n_rows())), right(left);
+        block.equations.evaluate_multipliers(block.fields, 0, 1, left.data());
+        block.equations.evaluate_multipliers(block.fields, 1, 0, right.data());
+        EXPECT_GT(std::abs(left[0] - right[0]), 1e-3);
+    }
+}
+
 TEST_P(MixedEquations, AreAsManyAsTheirUnknowns)
 {
     const Model model = testing_models::everything();
@@ -156,7 +187,16 @@ TEST_P(MixedEquations, AreAsManyAsTheirUnknowns)
     EXPECT_EQ(std::count(in_row.begin(), in_row.end(), 0), 0);
 }
 
+std::vector<Case> cases_with_equal_multipliers()
+{
+    std::vector<Case> equal = cases();
+    std::erase_if(equal, [](const Case& c) { return c.multipliers == Mixed::Multipliers::lower; });
+    return equal;
+}
+
 INSTANTIATE_TEST_SUITE_P(AllPairings, MixedEquations, ::testing::ValuesIn(cases()),
+                         [](const auto& of) { return of.param.name; });
+INSTANTIATE_TEST_SUITE_P(AllPairings, TornMultipliers, ::testing::ValuesIn(cases_with_equal_multipliers()),
                          [](const auto& of) { return of.param.name; });
 
 TEST(MixedEquationsPattern, GrowsWhenALoadBeginsToAct)

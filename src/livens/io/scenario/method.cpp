@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "livens/io/scenario/builder.h"
+#include "livens/spacetime/mixed/bases.h"
 
 namespace livens {
 
@@ -55,13 +56,22 @@ Key window(std::string_view otherwise, const std::string& doc)
             otherwise, false, {"all"}, {1, max_elements}};
 }
 
+Key basis()
+{
+    Words words;
+    std::string doc = "Of all fields.";
+    for (const mixed::Basis& one : mixed::bases()) {
+        doc += (words.empty() ? " " : "; ") + std::string(one.word) + ": " + std::string(one.doc);
+        words.push_back(one.word);
+    }
+    return choice("basis", words, doc + ".");
+}
+
 std::vector<Key> mixed_keys()
 {
     return {
         Key{"degree", types::integer, "Of polynomials or splines.", "", "2"}.within({1, 8}),
-        choice("basis", {"lagrange", "bspline", "nurbs"},
-               "Of all fields. lagrange: continuous polynomials with equidistant nodes; bspline: as smooth "
-               "as the knots allow; nurbs: likewise, with `weights`."),
+        basis(),
         choice("momentum", {"natural", "strong"},
                "How the momentum at the ends enters. natural: as the boundary term of Hamilton's law, which "
                "keeps the balances of momentum to rounding; strong: as a value of the momentum field."),
@@ -80,13 +90,14 @@ std::vector<Key> mixed_keys()
                "Between blocks. carry: positions and momenta as they are, with what they violate; project: "
                "moved to the nearest that fulfil rigidity and joints, so that the motion jumps a little."),
         choice("first_guess", {"march", "steady"},
-               "Where Newton begins if the state is given at one end. march: from lobatto(2) over the same "
-               "elements, which the motion is compared with in the end; steady: straight on, for short "
+               "Where Newton begins if the state is given at one end. march: from a lobatto march over the "
+               "same elements, which the motion is compared with in the end; steady: straight on, for short "
                "blocks."),
         Key{"knots", types::list,
             "Of splines: from `start` to `end`, ascending, the first and the last degree + 1 times, others "
             "up to degree times. They make the elements: output times and breaks of loads must be among "
-            "them. Default: as smooth as possible on equal elements, with kinks where loads break.", "s"},
+            "them. Default: as smooth as possible on equal elements, with kinks where loads break.",
+            "s"},
         Key{"weights", types::list,
             "Of NURBS, positive, one for each function: as many as knots, less degree + 1."},
         choice("linear_solver", {"eigen", "umfpack"},
@@ -124,10 +135,12 @@ void check_mixed(const Section& section, const Mixed& mixed)
         section.refuse({"end_multiplier"}, "misplaced-key",
                        "no multiplier is left open with momentum = \"strong\" or multipliers = \"lower\"");
     if (section.has("basis") && section.find("basis") == nullptr) return;
-    if (mixed.basis == Mixed::Basis::lagrange)
-        section.refuse({"knots"}, "misplaced-key", "Lagrange polynomials have no knots");
-    if (mixed.basis != Mixed::Basis::nurbs)
-        section.refuse({"weights"}, "misplaced-key", "only nurbs have weights");
+    const mixed::Basis& basis = mixed::basis_of(mixed);
+    if (!basis.has_knots)
+        section.refuse({"knots"}, "misplaced-key",
+                       "no knots belong to a " + std::string(basis.word) + " basis");
+    if (!basis.has_weights)
+        section.refuse({"weights"}, "misplaced-key", "only quotients (nurbs) have weights");
     else if (!section.has("weights"))
         section.error("basis", "missing-key", section.label() + " lacks 'weights'",
                       {"nurbs are B-splines with weights", "without weights they are basis = \"bspline\""});
@@ -208,9 +221,8 @@ Table method_table()
              .within({1, 1000}),
          Key{"estimate",
              types::choice,
-             "What tells the error of the motion: a second solution (of degree + 1, or with half the steps) "
-             "on "
-             "the same elements, or nothing. The elements mixed have nothing yet.",
+             "What tells the error of the motion: a second solution on the same elements (of degree + 1, or "
+             "with half the steps; mixed: lobatto of degree + 2), or nothing.",
              "",
              "second",
              false,
@@ -238,7 +250,7 @@ Method read_method(const Section* section, Findings&)
 bool has_knots(const Method& method)
 {
     const Mixed* mixed = std::get_if<Mixed>(&method);
-    return mixed != nullptr && mixed->basis != Mixed::Basis::lagrange && !mixed->knots.empty();
+    return mixed != nullptr && mixed::basis_of(*mixed).has_knots && !mixed->knots.empty();
 }
 
 bool check_size(const Model& model, const Method& method, double n_elements, const Place& place,

@@ -1,12 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <algorithm>
-#include <charconv>
-#include <cmath>
-#include <cstdlib>
-#include <optional>
-
-#include "livens/io/scenario/builder.h"
 #include "livens/io/json.h"
+#include "livens/io/scenario/builder.h"
+#include "livens/spacetime/mixed/bases.h"
 
 namespace livens {
 
@@ -32,11 +27,8 @@ void write_window(JsonWriter& json, int window)
 
 void write_mixed(JsonWriter& json, const Mixed& mixed)
 {
-    const Mixed::Basis basis = mixed.basis;
     json.member("family", "mixed");
-    json.member("basis", basis == Mixed::Basis::lagrange  ? "lagrange"
-                         : basis == Mixed::Basis::bspline ? "bspline"
-                                                          : "nurbs");
+    json.member("basis", mixed::basis_of(mixed).word);
     json.member("degree", mixed.degree);
     json.member("momentum", mixed.start == Mixed::Start::natural ? "natural" : "strong");
     json.member("multipliers", mixed.multipliers == Mixed::Multipliers::equal ? "equal" : "lower");

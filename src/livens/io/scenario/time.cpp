@@ -4,7 +4,6 @@
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
-#include <optional>
 
 #include "livens/base/text.h"
 #include "livens/io/scenario/builder.h"
@@ -199,18 +198,6 @@ bool make_span(Builder& builder, const Section& time, Scenario& scenario)
     return true;
 }
 
-/// The first instant that no element end is near, if there is one.
-std::optional<double> missed(const std::vector<double>& instants, const TimeMesh& mesh)
-{
-    const double slack = resolution * (mesh.end() - mesh.start());
-    for (const double t : instants) {
-        if (t < mesh.start() || t > mesh.end()) continue;
-        const auto next = std::lower_bound(mesh.ends.begin(), mesh.ends.end(), t - slack);
-        if (next == mesh.ends.end() || *next > t + slack) return t;
-    }
-    return std::nullopt;
-}
-
 /// Whether elements made of knots fit what [time] says.
 bool check_knot_mesh(Builder& builder, const Section& time, const Section& method, const TimeMesh& mesh,
                      Findings& findings)
@@ -232,9 +219,10 @@ bool check_knot_mesh(Builder& builder, const Section& time, const Section& metho
                           ", but the knots of [method] make " + std::to_string(mesh.n_elements()),
                       {"", "leave it out"});
     if (time.text("breaks") != "from_loads") return true;
-    const std::optional<double> t = missed(builder.model().load_breaks(), mesh);
-    if (!t) return true;
-    return refuse(method.place("knots"), "a load breaks at " + to_text(*t) + " s, where there is no knot",
+    const std::vector<double> breaks = missed(mesh, builder.model().load_breaks());
+    if (breaks.empty()) return true;
+    return refuse(method.place("knots"),
+                  "a load breaks at " + to_text(breaks[0]) + " s, where there is no knot",
                   {"elements end where loads jump or bend, or lose their order",
                    "add a knot there, degree times for a jump, or set breaks = \"ignore\" in [time]"});
 }
@@ -251,11 +239,11 @@ bool make_knot_mesh(Builder& builder, const Section& time, const Section& method
     if (!check_size(builder.model(), scenario.method, mesh.n_elements(), method.place("knots"), findings))
         return false;
     if (!read_output(time, scenario.output, findings)) return false;
-    const std::optional<double> t = missed(scenario.output, mesh);
+    const std::vector<double> outputs = missed(mesh, scenario.output);
     scenario.time = std::move(mesh);
-    if (!t) return true;
+    if (outputs.empty()) return true;
     findings.error(time.place("output"), "knots-mesh",
-                   "the output time " + to_text(*t) + " s is no knot of [method]",
+                   "the output time " + to_text(outputs[0]) + " s is no knot of [method]",
                    {"output times are element ends, and knots make the elements",
                     "add a knot there, or leave 'output' out: then all knots are output times"});
     return false;

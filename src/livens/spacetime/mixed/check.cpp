@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "livens/base/error.h"
+#include "livens/spacetime/mixed/bases.h"
 #include "livens/spacetime/mixed/window.h"
 #include "livens/spacetime/windows.h"
 
@@ -96,7 +97,7 @@ void check_blocks(const Conditions& conditions, const TimeMesh& mesh, const Mixe
         refuse("knots and weights belong to a single block", "all", "solve all elements together");
     if (conditions.at_start != Known::state && conditions.at_end != Known::state)
         refuse("conditions at both ends need a single block", "all", "solve all elements together");
-    if (method.basis != Mixed::Basis::lagrange && method.window < method.degree)
+    if (method.window < shortest_block(method))
         throw InputError({"spline-degree", "method.degree",
                           "the degree of a spline cannot exceed the number of elements of a block",
                           std::to_string(method.degree), "<= " + std::to_string(method.window), "",
@@ -105,12 +106,7 @@ void check_blocks(const Conditions& conditions, const TimeMesh& mesh, const Mixe
 
 }   // namespace
 
-TimeMesh mesh_of_knots(const Mixed& mixed)
-{
-    const bool is_rational = mixed.basis == Mixed::Basis::nurbs && !mixed.weights.empty();
-    return {is_rational ? TimeSpace::nurbs(mixed.degree, mixed.knots, mixed.weights).ends()
-                        : TimeSpace::bspline(mixed.degree, mixed.knots).ends()};
-}
+TimeMesh mesh_of_knots(const Mixed& method) { return {basis_of(method).space(method, {}, {}).ends()}; }
 
 void check_mixed(const Model& model, const Conditions& conditions, const TimeMesh& mesh, const Mixed& method)
 {

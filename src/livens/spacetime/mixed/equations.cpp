@@ -30,7 +30,7 @@ Equations::Equations(Setup setup, const Numbering& numbering)
     : setup_(std::move(setup)), numbering_(numbering)
 {
     tabulate();
-    if (setup_.start == Mixed::Start::natural) tie_ends();
+    make_ties();
     const Coordinates& m = *setup_.coordinates;
     for (int l = 0; l < static_cast<int>(m.tables.model->loads().size()); ++l) {
         const Load& load = m.tables.model->loads()[l];
@@ -57,7 +57,9 @@ void Equations::tabulate()
     std::vector<int> n_elements(static_cast<std::size_t>(space.size()), 0);
     tables_.lengths.assign(n_elements.size(), 0.0);
     tables_.centres.assign(n_elements.size(), 0.0);
-    for (int e = 0; e < space.n_elements(); ++e) {
+    for (int e = 0, n_tears = 0; e < space.n_elements(); ++e) {
+        n_tears += std::binary_search(setup_.tears.begin(), setup_.tears.end(), e);
+        tables_.n_tears.push_back(n_tears);
         for (int g = 0; g < n_gauss(); ++g) {
             const std::size_t at = static_cast<std::size_t>(e) * rule.points.size() + g;
             const auto part = [&](std::vector<double>& table, int n) {
@@ -78,27 +80,25 @@ void Equations::tabulate()
     }
 }
 
-/// Where a row defines the momentum, the multiplier of its function is no unknown. It is tied to the others
-/// of its element so that the multipliers are of degree p - 1 there: their p-th derivative vanishes.
-void Equations::tie_ends()
+/// Where a row defines the momentum, and on one side of a tear, the multiplier of a function is no unknown.
+/// It is tied to the others of its element, where it lives alone, so that the multipliers are of degree p - 1
+/// there: their p-th derivative vanishes. In the strong form the one at an end keeps its value.
+void Equations::make_ties()
 {
-    const int p = setup_.multipliers.degree(), n = numbering_.n_multiplier_functions();
-    for (const bool at_end : {false, true}) {
-        const int frozen = at_end ? n - 1 : 0, first = at_end ? n - 1 - p : 0;
-        if (numbering_.lambda(frozen) >= 0) continue;
-        if (setup_.end_multiplier == Mixed::EndMultiplier::zero) {
-            ties_.push_back({frozen, {}});
-            continue;
+    const int p = setup_.multipliers.degree(), last = numbering_.n_multiplier_functions() - 1;
+    for (int e = 0; e < setup_.space.n_elements(); ++e)
+        for (const int frozen : {first_multiplier(e), first_multiplier(e) + p}) {
+            const bool is_end = frozen == 0 || frozen == last;
+            if (numbering_.lambda(frozen) >= 0 || (is_end && setup_.start == Mixed::Start::strong)) continue;
+            Tie& tie = ties_.emplace_back(Tie{frozen, {}});
+            if (is_end && setup_.end_multiplier == Mixed::EndMultiplier::zero) continue;
+            const std::vector<double> derivative = setup_.multipliers.highest_derivative(e);
+            const int first = first_multiplier(e);
+            // Both of an element that has no unknown one between them are zero.
+            for (int a = 0; a <= p; ++a)
+                if (numbering_.lambda(first + a) >= 0)
+                    tie.terms.emplace_back(first + a, -derivative[a] / derivative[frozen - first]);
         }
-        const std::vector<double> derivative =
-            setup_.multipliers.highest_derivative(at_end ? setup_.multipliers.n_elements() - 1 : 0);
-        Tie tie{frozen, {}};
-        // With positions at both ends of a single element the other end's multiplier is none either: zero.
-        for (int a = 0; a <= p; ++a)
-            if (numbering_.lambda(first + a) >= 0)
-                tie.terms.emplace_back(first + a, -derivative[a] / derivative[frozen - first]);
-        ties_.push_back(tie);
-    }
 }
 
 void Equations::tie(Fields& fields) const
@@ -120,7 +120,7 @@ Fields Equations::zero_fields() const
     fields.X0.assign(n, 0.0);
     fields.x.assign(n * setup_.space.size(), 0.0);
     fields.P.assign(n * setup_.space.size(), 0.0);
-    fields.lambda.assign(static_cast<std::size_t>(m.n_rows()) * setup_.multipliers.size(), 0.0);
+    fields.lambda.assign(static_cast<std::size_t>(m.n_rows()) * numbering_.n_multiplier_functions(), 0.0);
     return fields;
 }
 
@@ -140,7 +140,7 @@ void Equations::sample(const Fields& fields, int e, int g)
         sample_.p_rate.assign(n, 0.0);
         combine(fields.P, first, n, rates, sample_.p_rate.data());
     }
-    combine(fields.lambda, setup_.multipliers.first(e), m.n_rows(),
+    combine(fields.lambda, first_multiplier(e), m.n_rows(),
             {L(e, g), static_cast<std::size_t>(n_local_multipliers())}, sample_.lambda.data());
     for (auto* v : {&sample_.X, &sample_.V, &sample_.F}) v->resize(m.n_X());
     m.spread(sample_.x.data(), sample_.X.data());
@@ -272,36 +272,37 @@ void Equations::add(Fields& fields, std::span<const double> increment, double fa
         move(fields.x, A, numbering_.X(A), m.size);
         move(fields.P, A, numbering_.P(A), m.size);
     }
-    for (int A = 0; A < setup_.multipliers.size(); ++A)
+    for (int A = 0; A < numbering_.n_multiplier_functions(); ++A)
         move(fields.lambda, A, numbering_.lambda(A), m.n_rows());
     tie(fields);
 }
 
-void Equations::evaluate(const TimeSpace& space, const std::vector<double>& coefficients, int n, int element,
-                         double s, double* out) const
+void Equations::evaluate(const TimeSpace& space, int first, const std::vector<double>& coefficients, int n,
+                         int element, double s, double* out) const
 {
     std::array<double, 9> values{}, rates{};
     const std::size_t count = static_cast<std::size_t>(space.degree()) + 1;
     space.evaluate(element, s, {values.data(), count}, {rates.data(), count});
-    combine(coefficients, space.first(element), n, {values.data(), count}, out);
+    combine(coefficients, first, n, {values.data(), count}, out);
 }
 
 void Equations::evaluate_X(const Fields& fields, int element, double s, double* X) const
 {
     std::copy(fields.X0.begin(), fields.X0.end(), X);
-    evaluate(setup_.space, fields.x, setup_.coordinates->size, element, s, X);
+    evaluate(setup_.space, setup_.space.first(element), fields.x, setup_.coordinates->size, element, s, X);
 }
 
 void Equations::evaluate_P(const Fields& fields, int element, double s, double* P) const
 {
     std::fill_n(P, setup_.coordinates->size, 0.0);
-    evaluate(setup_.space, fields.P, setup_.coordinates->size, element, s, P);
+    evaluate(setup_.space, setup_.space.first(element), fields.P, setup_.coordinates->size, element, s, P);
 }
 
 void Equations::evaluate_multipliers(const Fields& fields, int element, double s, double* lambda) const
 {
     std::fill_n(lambda, setup_.coordinates->n_rows(), 0.0);
-    evaluate(setup_.multipliers, fields.lambda, setup_.coordinates->n_rows(), element, s, lambda);
+    evaluate(setup_.multipliers, first_multiplier(element), fields.lambda, setup_.coordinates->n_rows(),
+             element, s, lambda);
 }
 
 }   // namespace livens::mixed

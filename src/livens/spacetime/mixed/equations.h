@@ -55,6 +55,7 @@ public:
         Mixed::Start start;
         Mixed::EndMultiplier end_multiplier;
         EndMomentum at_start, at_end;
+        std::vector<int> tears{};   ///< elements at whose start equal multipliers may jump
     };
     Equations(Setup setup, const Numbering& numbering);
 
@@ -91,6 +92,8 @@ public:
     void evaluate_X(const Fields& fields, int element, double s, double* X) const;
     void evaluate_P(const Fields& fields, int element, double s, double* P) const;
     void evaluate_multipliers(const Fields& fields, int element, double s, double* lambda) const;
+    /// First trial function of an element's multipliers; test functions are those of setup().multipliers.
+    int first_multiplier(int e) const { return setup_.multipliers.first(e) + tables_.n_tears[e]; }
     /// Middle of the elements where function A lives.
     double centre(int A) const { return tables_.centres[A]; }
 
@@ -107,6 +110,7 @@ private:
         std::vector<double> M, D, L;
         std::vector<double> lengths;   ///< mean element length of each function
         std::vector<double> centres;   ///< middle of the elements where it lives
+        std::vector<int> n_tears;      ///< up to the start of each element
     };
     /// Rows of all functions, the solved and the others.
     struct RawRows {
@@ -141,13 +145,13 @@ private:
     int n_local_multipliers() const { return setup_.multipliers.degree() + 1; }
 
     void tabulate();
-    void tie_ends();
+    void make_ties();
     void sample(const Fields& fields, int e, int g);
     void add_rows(int e, int g);
     void add_boundary(const Fields& fields, std::vector<double>& r) const;
     std::vector<Matrix34> given_momentum(const Fields& fields, bool at_end) const;
-    void evaluate(const TimeSpace& space, const std::vector<double>& coefficients, int n, int element,
-                  double s, double* out) const;
+    void evaluate(const TimeSpace& space, int first, const std::vector<double>& coefficients, int n,
+                  int element, double s, double* out) const;
 
     void make_pattern(SparseMatrix& J);
     void clear(Local& local) const;

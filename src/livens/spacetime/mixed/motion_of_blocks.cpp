@@ -2,8 +2,10 @@
 #include "livens/spacetime/mixed/motion_of_blocks.h"
 
 #include <algorithm>
+#include <functional>
 
 #include "livens/multibody/projection.h"
+#include "livens/spacetime/mixed/bases.h"
 #include "livens/time/quadrature.h"
 
 namespace livens::mixed {
@@ -17,15 +19,16 @@ std::vector<double> nodes_of(int degree)
 }
 
 /// Order of X and momenta at the ends of one block, as measured (docs/theory.md, "The elements of the
-/// paper").
+/// paper"); 0: NURBS of unequal weights, whose error need not fall.
 int order_of_block(const Mixed& method)
 {
     const int p = method.degree;
+    if (std::ranges::adjacent_find(method.weights, std::not_equal_to<>()) != method.weights.end()) return 0;
     if (p == 1 || method.gauss_points == p) return 2;
     const bool is_natural_equal =
         method.start == Mixed::Start::natural && method.multipliers == Mixed::Multipliers::equal;
     if (is_natural_equal && method.end_multiplier == Mixed::EndMultiplier::zero) return std::min(p + 1, 4);
-    if (is_natural_equal || method.basis != Mixed::Basis::lagrange) return p + 1;
+    if (is_natural_equal || basis_of(method).has_knots) return p + 1;
     return p % 2 == 0 ? p : p + 1;
 }
 
@@ -35,7 +38,7 @@ int order_of(const Mixed& method, std::size_t n_blocks)
 {
     const bool is_handed_on_well =
         method.start == Mixed::Start::natural && method.interfaces == Mixed::Interfaces::carry;
-    return order_of_block(method) - (n_blocks > 1 && !is_handed_on_well ? 1 : 0);
+    return std::max(order_of_block(method) - (n_blocks > 1 && !is_handed_on_well ? 1 : 0), 0);
 }
 
 }   // namespace

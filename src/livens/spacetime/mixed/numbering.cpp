@@ -1,18 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "livens/spacetime/mixed/numbering.h"
 
+#include <algorithm>
 #include <cassert>
 
 namespace livens::mixed {
 
 Numbering::Numbering(const Given& given, Mixed::Start start, Mixed::Multipliers multipliers, int n,
-                     int n_coordinates, int n_rows)
+                     int n_coordinates, int n_rows, const std::vector<int>& torn)
 {
     const bool is_natural = start == Mixed::Start::natural;
     const bool is_equal = multipliers == Mixed::Multipliers::equal;
     const auto at_ends = [&](int A, bool first, bool last) {
         return !((A == 0 && !first) || (A == n - 1 && !last));
     };
+    const bool opens_left = is_natural && !given.P_at_end;
     int rows = 0;
     const auto number = [](std::vector<int>& places, bool is_there, int& count, int how_many) {
         places.push_back(is_there ? count : -1);
@@ -27,7 +29,10 @@ Numbering::Numbering(const Given& given, Mixed::Start start, Mixed::Multipliers 
         number(row_dP_, P, rows, n_coordinates);
         number(row_dX_, dX, rows, n_coordinates);
         if (!is_equal && A == n - 1) break;
+        const bool is_torn = is_equal && std::binary_search(torn.begin(), torn.end(), A);
+        if (is_torn && opens_left) number(lambda_, false, n_unknowns_, n_rows);
         number(lambda_, is_equal ? dX : true, n_unknowns_, n_rows);
+        if (is_torn && !opens_left) number(lambda_, false, n_unknowns_, n_rows);
         number(row_dlambda_, is_equal ? X : true, rows, n_rows);
     }
     assert(rows == n_unknowns_);

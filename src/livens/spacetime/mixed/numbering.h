@@ -25,10 +25,13 @@ struct Given {
 ///
 /// in the first and in the last function; all others are unknown and have their rows. Multipliers of lower
 /// degree are unknown and tested throughout.
+///
+/// At a torn function equal multipliers have two, left and right, of which one is unknown as it was before:
+/// the left one is open where the last one is, else the right one.
 class Numbering {
 public:
-    Numbering(const Given& given, Mixed::Start start, Mixed::Multipliers multipliers,
-              int n_functions, int n_coordinates, int n_rows);
+    Numbering(const Given& given, Mixed::Start start, Mixed::Multipliers multipliers, int n_functions,
+              int n_coordinates, int n_rows, const std::vector<int>& torn = {});
 
     int size() const { return n_unknowns_; }
     /// First of the numbers of function A, -1 where there are none.

@@ -40,9 +40,14 @@ void Equations::scales(const Fields& fields, std::vector<double>& of_rows,
     }
     for (int A = 0; A < setup_.multipliers.size(); ++A) {
         const double h = tables_.lengths[A];
-        fill(of_columns, numbering_.lambda(A), m.n_rows(), [&](int k) { return factors[k] / h; });
         fill(of_rows, numbering_.row_dlambda(A), m.n_rows(), [&](int k) { return factors[k] / (h * h); });
     }
+    for (int e = 0; e < setup_.space.n_elements(); ++e)
+        for (int a = 0; a < n_local_multipliers(); ++a) {
+            const double h = tables_.lengths[setup_.multipliers.first(e) + a];
+            fill(of_columns, numbering_.lambda(first_multiplier(e) + a), m.n_rows(),
+                 [&](int k) { return factors[k] / h; });
+        }
 }
 
 double Equations::size_of(std::span<const double> increment) const

@@ -219,12 +219,13 @@ void Equations::visit_constraints(int e, Sink&& sink) const
     const std::size_t n = m.gradient_entries.size();
     for (int a = 0; a < n_local(); ++a)
         for (int b = 0; b < n_local_multipliers(); ++b) {
-            const int A = setup_.space.first(e) + a, B = setup_.multipliers.first(e) + b;
+            const int A = setup_.space.first(e) + a, B = first_multiplier(e) + b;
             const int row_dX = numbering_.row_dX(A), X = numbering_.X(A);
+            const int lambda = numbering_.lambda(B);
+            const int row_dlambda = numbering_.row_dlambda(setup_.multipliers.first(e) + b);
             const Tie* tie = nullptr;
-            for (const Tie& other : ties_)
-                if (other.function == B) tie = &other;
-            const int lambda = numbering_.lambda(B), row_dlambda = numbering_.row_dlambda(B);
+            for (std::size_t i = 0; lambda < 0 && i < ties_.size(); ++i)
+                if (ties_[i].function == B) tie = &ties_[i];
             const double* G = local_.G.data() + (static_cast<std::size_t>(a) * n_local_multipliers() + b) * n;
             for (std::size_t i = 0; i < n; ++i) {
                 const GradientEntry& entry = m.gradient_entries[i];

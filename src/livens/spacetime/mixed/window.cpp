@@ -7,6 +7,7 @@
 
 #include "livens/base/error.h"
 #include "livens/base/text.h"
+#include "livens/spacetime/mixed/bases.h"
 
 namespace livens {
 
@@ -19,7 +20,7 @@ namespace {
 int exact_points(const Mixed& method)
 {
     const int p = method.degree;
-    return (3 * p + 2) / 2 + (method.basis == Mixed::Basis::nurbs ? p : 0);
+    return (3 * p + 2) / 2 + (basis_of(method).has_weights ? p : 0);
 }
 
 /// Coefficients whose function takes the columns' values at the interpolation points, in place.
@@ -47,18 +48,27 @@ void interpolate(const TimeSpace& space, int n_values, std::vector<double>& colu
     }
 }
 
+/// Elements that begin where a load breaks. Where the functions may bend there, multipliers jump as it does.
+std::vector<int> tears_of(const TimeSpace& space, const std::vector<double>& breaks)
+{
+    std::vector<int> elements;
+    const double reach = 1e-9 * (space.ends().back() - space.ends().front());   // as in clamped_knots()
+    for (int e = 1; e < space.n_elements(); ++e) {
+        const bool is_break =
+            std::ranges::any_of(breaks, [&](double t) { return std::abs(t - space.ends()[e]) <= reach; });
+        if (is_break && space.first(e) - space.first(e - 1) == space.degree()) elements.push_back(e);
+    }
+    return elements;
+}
+
 }   // namespace
 
-int shortest_block(const Mixed& method) { return method.basis == Mixed::Basis::lagrange ? 1 : method.degree; }
+int shortest_block(const Mixed& method) { return basis_of(method).has_knots ? method.degree : 1; }
 
 TimeSpace space_of(const Model& model, const Mixed& method, const TimeMesh& mesh, int first, int last)
 {
     const std::vector<double> ends(mesh.ends.begin() + first, mesh.ends.begin() + last + 1);
-    if (method.basis == Mixed::Basis::lagrange) return TimeSpace::lagrange(ends, method.degree);
-    const std::vector<double> knots =
-        method.knots.empty() ? clamped_knots(method.degree, ends, model.load_breaks()) : method.knots;
-    if (method.basis == Mixed::Basis::bspline) return TimeSpace::bspline(method.degree, knots);
-    return TimeSpace::nurbs(method.degree, knots, method.weights);
+    return basis_of(method).space(method, ends, model.load_breaks());
 }
 
 MixedWindow::MixedWindow(const Tables& tables, const TimeMesh& mesh, const Ends& ends, const Mixed& method)
@@ -91,14 +101,19 @@ bool MixedWindow::open(int first, int last, SolveReport&)
     end_.state.t = mesh_.ends[last];
     const TimeSpace functions = space_of(*tables_.model, method_, mesh_, first, last);
     const bool is_equal = method_.multipliers == Mixed::Multipliers::equal;
+    const std::vector<int> tears =
+        is_equal ? tears_of(functions, tables_.model->load_breaks()) : std::vector<int>{};
+    std::vector<int> torn;
+    for (const int e : tears) torn.push_back(functions.first(e));
     const Numbering numbering(given_, method_.start, method_.multipliers, functions.size(), coordinates_.size,
-                              coordinates_.n_rows());
+                              coordinates_.n_rows(), torn);
     const int gauss_points = method_.gauss_points > 0 ? method_.gauss_points : exact_points(method_);
-    block_.emplace(Equations({&coordinates_, functions, is_equal ? functions : functions.lower(),
-                              gauss_points, method_.start, method_.end_multiplier,
-                              momentum_of(given_.X_at_start, start_), momentum_of(given_.X_at_end, end_)},
-                             numbering),
-                   method_.linear_solver);
+    block_.emplace(
+        Equations({&coordinates_, functions, is_equal ? functions : functions.lower(), gauss_points,
+                   method_.start, method_.end_multiplier, momentum_of(given_.X_at_start, start_),
+                   momentum_of(given_.X_at_end, end_), tears},
+                  numbering),
+        method_.linear_solver);
     return true;
 }
 
@@ -124,6 +139,7 @@ void MixedWindow::take_guess(const Guess& guess)
     Fields& fields = block_->fields();
     const TimeSpace &space = equations.setup().space, &multipliers = equations.setup().multipliers;
     const int n = coordinates_.size, n_rows = coordinates_.n_rows();
+    const bool is_equal = method_.multipliers == Mixed::Multipliers::equal;
     const std::vector<double> points = space.interpolation_points();
     for (std::size_t A = 0; A < points.size(); ++A) {
         State state = guess(points[A]);
@@ -136,11 +152,20 @@ void MixedWindow::take_guess(const Guess& guess)
             fields.x[A * n + i] = x[i] - fields.X0[i];
             fields.P[A * n + i] = p[i];
         }
-        if (multipliers.size() == space.size()) put_multipliers(static_cast<int>(A), state);
+        if (is_equal) put_multipliers(static_cast<int>(A), state);
     }
     interpolate(space, n, fields.x);
     interpolate(space, n, fields.P);
-    if (multipliers.size() == space.size()) return interpolate(space, n_rows, fields.lambda);
+    if (is_equal) {
+        interpolate(space, n_rows, fields.lambda);
+        const std::vector<double> whole = fields.lambda;   // as if nothing was torn
+        for (int e = 0; e < space.n_elements(); ++e)
+            std::copy_n(whole.begin() + static_cast<std::ptrdiff_t>(space.first(e)) * n_rows,
+                        (space.degree() + 1) * n_rows,
+                        fields.lambda.begin() +
+                            static_cast<std::ptrdiff_t>(equations.first_multiplier(e)) * n_rows);
+        return;
+    }
     for (int A = 0; A < multipliers.size(); ++A) {
         State state = guess(equations.centre(A));
         state.t = equations.centre(A);

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "livens/spacetime/mixed/bases.h"
+
+namespace livens::mixed {
+
+namespace {
+
+std::vector<double> knots_of(const Mixed& method, const std::vector<double>& ends,
+                             const std::vector<double>& kinks)
+{
+    return method.knots.empty() ? clamped_knots(method.degree, ends, kinks) : method.knots;
+}
+
+constexpr Basis table[] = {
+    {"lagrange", "continuous polynomials with equidistant nodes", false, false,
+     [](const Mixed& method, const std::vector<double>& ends, const std::vector<double>&) {
+         return TimeSpace::lagrange(ends, method.degree);
+     }},
+    {"bspline", "as smooth as the knots allow", true, false,
+     [](const Mixed& method, const std::vector<double>& ends, const std::vector<double>& kinks) {
+         return TimeSpace::bspline(method.degree, knots_of(method, ends, kinks));
+     }},
+    {"nurbs", "likewise, with `weights`", true, true,
+     [](const Mixed& method, const std::vector<double>& ends, const std::vector<double>& kinks) {
+         return TimeSpace::nurbs(method.degree, knots_of(method, ends, kinks), method.weights);
+     }},
+};
+
+}   // namespace
+
+std::span<const Basis> bases() { return table; }
+
+}   // namespace livens::mixed
