@@ -30,7 +30,7 @@ inline void use(const Run& run)
         sample_bodies(scenario->model, run.motion, t);
         sample_joints(scenario->model, run.motion, t);
     }
-    run.estimate.good(run.motion.mesh);
+    if (!run.estimate.empty()) run.estimate.good(run.motion.mesh);
     for (int b = 0; b < run.motion.n_bodies; ++b)
         ErrorEstimate::at(run.estimate.position, run.motion.n_bodies, b, run.motion.mesh, run.motion.end());
     JsonWriter json;
