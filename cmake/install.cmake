@@ -10,7 +10,13 @@ endif()
 if(LIVENS_BUILD_PROGRAM)
     list(APPEND libraries livens_io)
     install(TARGETS livens RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+    # Where the shells and man look without being told.
+    install(FILES ${livens_pages}/livens.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+    install(FILES ${livens_pages}/livens DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
+    install(FILES ${livens_pages}/_livens DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions)
+    install(FILES ${livens_pages}/livens.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
 endif()
+install(FILES LICENSE NOTICES DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(TARGETS ${libraries} EXPORT livens-targets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
         LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
 # What users include, and no insides: tests/install/headers.txt lists it.
@@ -18,7 +24,7 @@ install(DIRECTORY src/livens DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCH
         PATTERN "detail" EXCLUDE PATTERN "results" EXCLUDE PATTERN "scenario" EXCLUDE
         PATTERN "exports" EXCLUDE
         PATTERN "lobatto" EXCLUDE PATTERN "mixed" EXCLUDE PATTERN "stepping" EXCLUDE
-        PATTERN "dense.h" EXCLUDE PATTERN "projection.h" EXCLUDE PATTERN "time_space.h" EXCLUDE
+        PATTERN "dense.h" EXCLUDE PATTERN "elementary.h" EXCLUDE PATTERN "projection.h" EXCLUDE PATTERN "time_space.h" EXCLUDE
         PATTERN "constraint_basis.h" EXCLUDE PATTERN "instant.h" EXCLUDE PATTERN "rank.h" EXCLUDE
         PATTERN "rows.h" EXCLUDE PATTERN "tables.h" EXCLUDE PATTERN "twist.h" EXCLUDE PATTERN "blocks.h" EXCLUDE
         PATTERN "linear_solver.h" EXCLUDE PATTERN "newton.h" EXCLUDE PATTERN "ends.h" EXCLUDE PATTERN "guess.h"

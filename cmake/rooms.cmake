@@ -12,11 +12,12 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_L
     target_compile_options(livens_flags INTERFACE -Wno-restrict)
 endif()
 
-# livens_room(NAME [EIGEN] [LIBRARIES lib...]): LIBRARIES are linked by whatever the room is linked into. EIGEN rooms use Eigen inside their sources, never in a header. Eigen is given another
-# namespace there: its inline functions depend on processor flags, and a program that uses Eigen with other flags must
-# not share them through the linker.
+# livens_room(NAME [EIGEN] [STACKS] [LIBRARIES lib...]): LIBRARIES are linked by whatever the room is linked into. STACKS:
+# see livens_harden(). EIGEN rooms use Eigen inside their sources, never in a header. Eigen is given another namespace
+# there: its inline functions depend on processor flags, and a program that uses Eigen with other flags must not share
+# them through the linker.
 function(livens_room name)
-    cmake_parse_arguments(arg "EIGEN" "" "LIBRARIES" ${ARGN})
+    cmake_parse_arguments(arg "EIGEN;STACKS" "" "LIBRARIES" ${ARGN})
     file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/livens/${name}/*.cpp)
     if(NOT sources)
         add_library(livens_room_${name} INTERFACE)
@@ -24,6 +25,10 @@ function(livens_room name)
     endif()
     add_library(livens_room_${name} OBJECT ${sources})
     set_target_properties(livens_room_${name} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+    if(arg_STACKS)
+        set(stacks STACKS)
+    endif()
+    livens_harden(livens_room_${name} ${stacks})
     target_link_libraries(livens_room_${name} PRIVATE $<BUILD_INTERFACE:livens_flags> ${arg_LIBRARIES})
     set_target_properties(livens_room_${name} PROPERTIES LIVENS_LIBRARIES "${arg_LIBRARIES}")
     if(arg_EIGEN)
@@ -48,7 +53,14 @@ function(livens_library name)
     endforeach()
     add_library(livens_${name} ${objects})
     add_library(livens::${name} ALIAS livens_${name})
-    set_target_properties(livens_${name} PROPERTIES EXPORT_NAME ${name} LINKER_LANGUAGE CXX VERSION ${PROJECT_VERSION})
+    set_target_properties(livens_${name} PROPERTIES EXPORT_NAME ${name} LINKER_LANGUAGE CXX
+                          VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+    set_target_properties(livens_${name} PROPERTIES INSTALL_RPATH "$<$<BOOL:${BUILD_SHARED_LIBS}>:$ORIGIN>")
+    livens_harden(livens_${name})
+    if(BUILD_SHARED_LIBS)   # what templates of other libraries became in here is nobody else's
+        target_link_options(livens_${name} PRIVATE -Wl,--version-script=${PROJECT_SOURCE_DIR}/cmake/exported.map -Wl,-z,defs)
+        set_property(TARGET livens_${name} PROPERTY LINK_DEPENDS ${PROJECT_SOURCE_DIR}/cmake/exported.map)
+    endif()
     target_compile_features(livens_${name} PUBLIC cxx_std_20)
     target_include_directories(livens_${name} INTERFACE $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src>
                                $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
@@ -73,7 +85,13 @@ function(livens_test name)
     endforeach()
     target_link_libraries(${name} PRIVATE livens_flags ${arg_LIBRARIES} GTest::gtest GTest::gtest_main Threads::Threads)
     target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
-    target_compile_definitions(${name} PRIVATE LIVENS_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+    # To those alone that ask for it: a compiler's cache serves all others in any folder.
+    foreach(source ${arg_SOURCES})
+        file(STRINGS ${source} asks REGEX "LIVENS_SOURCE_DIR|shipped\\.h|kit\\.h")
+        if(asks)
+            set_property(SOURCE ${source} APPEND PROPERTY COMPILE_DEFINITIONS LIVENS_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+        endif()
+    endforeach()
     set(label fast)
     if(arg_SLOW)
         set(label slow)

@@ -6,6 +6,7 @@
 #include "console.h"
 #include "failure.h"
 #include "livens/multibody/closing.h"
+#include "memory.h"
 
 namespace livens::program {
 
@@ -26,6 +27,7 @@ std::string json_of(const Scenario& scenario, const ClosedStart& assembly,
     else
         json.member("accuracy", std::get<Span>(scenario.time).accuracy);
     json.member("output_times", scenario.output.size());
+    json.member("memory_bytes", static_cast<long long>(memory_needed(scenario).most()));
     json.key("options").raw(scenario.resolved.empty() ? "null" : scenario.resolved);
     json.key("redundant_rows").begin_array();
     for (const int r : assembly.redundant) {
@@ -74,6 +76,7 @@ int check_command(const std::string& file, const Common& common)
     std::vector<Diagnostic> warnings;
     const Scenario scenario = load_scenario(file, common, &warnings);
     const ClosedStart assembly = assembly_of(scenario);
+    check_memory(scenario);
     if (common.json) {
         print(json_of(scenario, assembly, warnings));
         return exit_ok;
@@ -81,10 +84,11 @@ int check_command(const std::string& file, const Common& common)
     if (common.quiet) return exit_ok;
     std::string text = fmt::format(
         "{}: no errors\n  {} bodies, {} joints with {} rows, {} loads, {} degrees of freedom\n"
-        "  {:.6g} s to {:.6g} s {}\n",
+        "  {:.6g} s to {:.6g} s {}\n  {} of memory at least{}\n",
         plain(file), scenario.model.n_bodies(), scenario.model.joints().size(), scenario.model.n_rows(),
         scenario.model.loads().size(), assembly.degrees_of_freedom, start_of(scenario.time),
-        end_of(scenario.time), division_of(scenario));
+        end_of(scenario.time), division_of(scenario), bytes_in_words(memory_needed(scenario).most()),
+        std::holds_alternative<Span>(scenario.time) ? ", and what the elements take that are found" : "");
     for (const std::string& note : assembly.notes) text += "  note: " + plain(note) + "\n";
     print(text);
     return exit_ok;

@@ -12,6 +12,7 @@
 #include "console.h"
 #include "failure.h"
 #include "finite_number.h"
+#include "livens/base/elementary.h"
 #include "livens/diagnostics/sample.h"
 #include "livens/io/results.h"
 #include "summary.h"
@@ -60,7 +61,7 @@ double angle_between(const Matrix3& first, const Matrix3& second)
         const Vector3 difference = first.column(i) - second.column(i);
         sum += dot(difference, difference);
     }
-    return 2 * std::asin(std::min(1.0, std::sqrt(sum / 8)));
+    return 2 * arc_sine(std::min(1.0, std::sqrt(sum / 8)));
 }
 
 /// A difference that is not a number is larger than any other, and stays.
@@ -115,8 +116,8 @@ Comparison compare(const DiffArguments& arguments, const Run& a, const Run& b)
         (place_of(b.body_names, name) < b.body_names.size() ? c.bodies : c.alone).push_back(name);
     for (const std::string& name : b.body_names)
         if (place_of(a.body_names, name) == a.body_names.size()) c.alone.push_back(name);
-    const Model first = scenario_of_run(a.scenario_text, arguments.first).model;
-    const Model second = scenario_of_run(b.scenario_text, arguments.second).model;
+    const Model first = scenario_of_run(a, arguments.first).model;
+    const Model second = scenario_of_run(b, arguments.second).model;
     c.largest.resize(c.bodies.size());
     for (const double t : c.times) {
         const std::vector<BodySample> of_a = sample_bodies(first, a.motion, t);

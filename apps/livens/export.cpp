@@ -21,7 +21,7 @@ int export_command(const ExportArguments& arguments, const Common& common)
     }
     if (is_empty) throw failure(exit_usage, "export wants one or more of " + options + " with a file");
     const Run run = read_run(arguments.run);
-    const Scenario scenario = scenario_of_run(run.scenario_text, arguments.run);
+    const Scenario scenario = scenario_of_run(run, arguments.run);
     JsonWriter json(2);
     json.begin_object();
     for (std::size_t i = 0; i < formats.size(); ++i) {

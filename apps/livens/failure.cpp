@@ -200,12 +200,17 @@ Scenario load_scenario(const std::string& file, const Common& common, std::vecto
     return std::move(*result.scenario);
 }
 
-Scenario scenario_of_run(const std::string& text, const std::string& run_file)
+Scenario scenario_of_run(const Run& run, const std::string& run_file)
 {
-    ScenarioResult result = parse_scenario(text, "scenario in " + run_file);
+    ScenarioResult result = parse_scenario(run.scenario_text, "scenario in " + run_file);
     if (!result.scenario)
         throw Failure{exit_input_output, "the run's scenario cannot be read by this version",
                       std::move(result.diagnostics), std::move(result.text)};
+    try {
+        check_model(result.scenario->model, run);
+    } catch (const IoError& error) {
+        throw IoError("cannot read '" + run_file + "': " + error.what(), error.code());
+    }
     return std::move(*result.scenario);
 }
 

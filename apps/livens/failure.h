@@ -10,6 +10,7 @@
 #include "exit_code.h"
 #include "livens/io/diagnostic.h"
 #include "livens/io/json.h"
+#include "livens/io/results.h"
 #include "livens/io/scenario.h"
 
 namespace livens::program {
@@ -32,8 +33,9 @@ int guarded(const Common& common, const std::function<int()>& command);
 Scenario load_scenario(const std::string& file, const Common& common,
                        std::vector<Diagnostic>* warnings = nullptr);
 
-/// The model of a run, made again from the text in its file. `run_file` serves for messages.
-Scenario scenario_of_run(const std::string& text, const std::string& run_file);
+/// The model of a run, made again from the text in its file; throws if it is not the motion's. `run_file`
+/// serves for messages.
+Scenario scenario_of_run(const Run& run, const std::string& run_file);
 
 /// `diagnostics` as a JSON array.
 void write_diagnostics(JsonWriter& json, const std::vector<Diagnostic>& diagnostics);

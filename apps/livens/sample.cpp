@@ -305,7 +305,7 @@ int sample_command(const SampleArguments& arguments, const Common& common)
                                               : index_of(run.joint_names, arguments.joint, "joint");
     std::vector<double> times;
     for (const std::string& text : arguments.at) times.push_back(instant_inside(text, run.motion));
-    const Scenario scenario = scenario_of_run(run.scenario_text, arguments.run);
+    const Scenario scenario = scenario_of_run(run, arguments.run);
     const Query query{arguments, run, scenario, index};
     if (!run.report.converged())
         say_warning(std::string("the run is not converged: ") + to_string(run.report.status));

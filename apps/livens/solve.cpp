@@ -14,6 +14,7 @@
 #include "interrupt.h"
 #include "livens/base/version.h"
 #include "livens/io/results.h"
+#include "memory.h"
 #include "places.h"
 #include "progress.h"
 #include "summary.h"
@@ -58,10 +59,7 @@ class Reserve {
 public:
     explicit Reserve(const Scenario& scenario)
     {
-        const std::size_t numbers_an_element = 48 + 12 * scenario.model.bodies().size();
-        const auto* mesh = std::get_if<TimeMesh>(&scenario.time);   // else it is known later
-        const std::size_t n_elements = mesh == nullptr ? 0 : static_cast<std::size_t>(mesh->n_elements());
-        const std::size_t size = (8u << 20) + n_elements * numbers_an_element * sizeof(double);
+        const auto size = static_cast<std::size_t>(memory_needed(scenario).checks);
         memory_ = std::make_unique_for_overwrite<char[]>(size);
         *static_cast<volatile char*>(memory_.get()) = 0;   // or a compiler could leave it out
     }
@@ -231,6 +229,7 @@ int solve_command(const SolveArguments& arguments, const Common& common)
     const Scenario scenario = load_scenario(arguments.scenario, common, &warnings);
     say_detail(fmt::format("read and checked the scenario in {:.3g} s", seconds_since(begin)));
     const Places p = places(arguments);
+    check_memory(scenario);
     const Solved solved = solve_scenario(scenario, common);
     {
         const SignalPause pause;

@@ -54,6 +54,27 @@ TEST(Estimates, AreTheTrueErrorWithinAFactorOfThree)
         }
 }
 
+TEST(Estimates, OfReactionsDoNotDependOnTheUnitOfLength)
+{
+    const auto estimate = [](double unit) {   // units a metre
+        Model model({0, 3 * unit, -9.81 * unit});
+        const double size = 0.5 * unit;
+        Placement place;
+        place.position = {size, 0, 0};
+        place.velocity = {0, 0, -2 * size};
+        place.angular_velocity = {0, 2, 0};
+        model.add_body(rigid_body("door", box(1000 / (unit * unit * unit), {2 * size, 0.1 * size, size}), place));
+        JointFrame hinge;
+        hinge.axis_first = hinge.axis_second = {0, 1, 0};
+        hinge.point_second = {-size, 0, 0};
+        model.add_joint(revolute("hinge", world, 0, hinge));
+        const Solution s = solved(model, 0.5, 10, Lobatto{2});
+        return s.estimate.reaction.empty() ? 0 : s.estimate.reaction.back();
+    };
+    EXPECT_GT(estimate(1), 1e-8);
+    EXPECT_NEAR(estimate(1000), estimate(1), 1e-4 * estimate(1));
+}
+
 TEST(Estimates, OfAMarchInPiecesIsThatOfTheWhole)
 {
     // more elements than are kept of the second solution at once, from either end

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The table of floors (docs/architecture.md) and the sizes, checked on the sources. Standard library only.
 
-    check_floors.py ROOT               includes, names and sizes of files
+    check_floors.py ROOT               licences, includes, names and sizes of files
     check_floors.py ROOT --functions   lengths of functions, by universal-ctags (exit 77 where it is missing)
     check_floors.py ROOT --classes     data members of classes, likewise
     ... --controls                     small trees with one fault each, every one of which must be refused
@@ -53,6 +53,9 @@ LINE, HEADER, SOURCE, TEST, FUNCTION, BASE = 110, 300, 400, 600, 60, 300
 # Own data members of a class in these rooms, static ones not counted; more is two classes.
 MEMBERS, NARROW_ROOMS = 15, {"spacetime"}
 BAD_NAMES = {"util", "utils", "utility", "utilities", "common", "misc", "helper", "helpers"}
+LICENCE = "SPDX-License-Identifier: BSD-3-Clause"
+LICENSED_FOLDERS = ("src", "apps", "tests", "benchmarks", "experiments", "cmake", "scripts", ".ci")
+LICENSED_SUFFIXES = {".h", ".cpp", ".py", ".cmake", ".map"}
 ALLOWANCE = re.compile(r"//\s*layout allows (long-file|long-function|long-line): \S.{9,}")
 
 
@@ -197,6 +200,17 @@ def check_wording(check, path, text):
             check.fault(path, line, "wording", f"{literal} speaks TOML: name the concept, io adds the key")
 
 
+def check_licences(check):
+    """Every source names its licence in its first line, or after that of its interpreter."""
+    for path in sorted(p for folder in LICENSED_FOLDERS for p in (check.root / folder).rglob("*") if p.is_file()):
+        with path.open("rb") as file:
+            head = [file.readline().decode("utf-8", "replace") for _ in range(2)]
+        is_script = head[0].startswith("#!")
+        if is_script or path.suffix in LICENSED_SUFFIXES or path.name == "CMakeLists.txt":
+            if LICENCE not in head[int(is_script)]:
+                check.fault(path, 1, "licence", f"its first line does not say {LICENCE}")
+
+
 def check_circles(check, graph):
     """graph: file -> [(line, included file)]. Reports each circle once, at its first edge found."""
     state = {}
@@ -219,6 +233,7 @@ def check_circles(check, graph):
 
 def check_floors(root):
     check = Check(root)
+    check_licences(check)
     graph = {}
     base_lines = 0
     for path, room in files_with_rooms(root):
@@ -318,7 +333,13 @@ GOOD = {
     "tests/unit/time/mesh_test.cpp": '#include "livens/time/mesh.h"\n#include <gtest/gtest.h>\n',
 }
 
+NO_LICENCE = "@"   # stands in a control's text; all others get the licence's line in front of them
+
 CONTROLS = [
+    ("licence", {"src/livens/time/free.cpp": "@int free;\n"}),
+    ("licence", {"cmake/late.cmake": f"@# rooms\n# {LICENCE}\n"}),
+    ("licence", {"tests/mutants/script": "@#!/usr/bin/env python3\nprint()\n"}),
+    ("licence", {"benchmarks/CMakeLists.txt": "@# SPDX-License-Identifier: MIT\n"}),
     ("upward", {"src/livens/base/up.h": '#pragma once\n#include "livens/time/mesh.h"\n'}),
     ("upward", {"src/livens/multibody/up.cpp": '#  include   "livens/diagnostics/energy.h"\n'}),
     ("upward", {"src/livens/time/up.cpp": 'const char* s = "/*";\n#include "livens/io/file.h"\n'}),
@@ -348,10 +369,10 @@ CONTROLS = [
     ("name", {"src/livens/io/common/x.h": "#pragma once\n"}),
     ("name", {"src/livens/time/odd.hpp": "#pragma once\n"}),
     ("long-line", {"src/livens/time/wide.cpp": "// " + "x" * 108 + "\n"}),
-    ("long-file", {"src/livens/time/tall.h": "#pragma once\n" + "//\n" * 300}),
-    ("long-file", {"src/livens/time/tall.cpp": "//\n" * 401}),
+    ("long-file", {"src/livens/time/tall.h": "#pragma once\n" + "//\n" * 299}),
+    ("long-file", {"src/livens/time/tall.cpp": "//\n" * 400}),
     ("long-file", {"src/livens/time/tall.cpp": "//\n" * 400 + "// layout allows long-file: no\n"}),
-    ("long-file", {"tests/unit/time/tall_test.cpp": "//\n" * 601}),
+    ("long-file", {"tests/unit/time/tall_test.cpp": "//\n" * 600}),
     ("base", {"src/livens/base/a.h": "#pragma once\n" + "//\n" * 160, "src/livens/base/b.cpp": "//\n" * 160}),
     ("header", {"src/livens/time/twice.h": "int twice();\n"}),
     ("header", {"src/livens/time/open.h": "#pragma once\nusing namespace std;\n"}),
@@ -412,6 +433,7 @@ def faults_of(check, tree):
         root = pathlib.Path(folder)
         for name, text in tree.items():
             (root / name).parent.mkdir(parents=True, exist_ok=True)
+            text = text.replace(NO_LICENCE, "") if NO_LICENCE in text else f"// {LICENCE}\n{text}"
             (root / name).write_text(text, encoding="utf-8")
         return check(root)
 
@@ -462,7 +484,7 @@ def main():
     if options.controls:
         reasoned = "//\n" * 600 + "// layout allows long-file: a table of points that belongs together\n"
         good = [GOOD, {**GOOD, "src/livens/time/tall.cpp": reasoned,
-                       "tests/unit/time/tall_test.cpp": "//\n" * 600}]
+                       "tests/unit/time/tall_test.cpp": "//\n" * 599}]
         return report(run_controls(check_floors, CONTROLS, good), "negative controls of floors")
     if options.functions:
         return report(check_functions(root), "lengths of functions")

@@ -160,8 +160,8 @@ livens_mutant(NAME radau_jump_at_the_end
 # The energy of a motion that damps not looked at at all.
 livens_mutant(NAME radau_blow_up_hidden
               FILE diagnostics/balance.cpp
-              OLD [[risen[end] = sum < 0 ? 0 : sum;]]
-              NEW [[risen[end] = 0 * sum;]]
+              OLD [[risen_ = sum < 0 ? 0 : sum;]]
+              NEW [[risen_ = 0 * sum;]]
               TESTS_OF unit_spacetime
               MUST_FAIL Verdict.OfEnergyThatRadauGainsIsSuspect)
 
@@ -217,3 +217,108 @@ livens_mutant(NAME mixed_momentum_not_handed_on
               TESTS_OF conservation
               MUST_FAIL MixedMomentum.BalancesOverBlocksByTheDiagnosticsOfAnyMotion
                         MixedConditions.AtTheEndLeadBackToTheStart)
+
+# --- diagnostics
+
+# Every step taken as long as the first: where elements are uneven, velocities of a smooth motion alternate.
+livens_mutant(NAME zigzag_of_equal_steps
+              FILE diagnostics/zigzag.cpp
+              OLD [[const double step = motion.mesh.length(e) / n;]]
+              NEW [[const double step = motion.mesh.length(0) / n;]]
+              TESTS_OF unit_diagnostics
+              MUST_FAIL Zigzag.DoesNotMindUnevenElements)
+
+# Work supplied counted as lost.
+livens_mutant(NAME work_with_the_wrong_sign
+              FILE diagnostics/balance.cpp
+              OLD [[std::abs(piece.energy.back() - start_.energy - total_.work)]]
+              NEW [[std::abs(piece.energy.back() - start_.energy + total_.work)]]
+              TESTS_OF unit_diagnostics
+              MUST_FAIL Balance.CountsTheWorkOfADamperAndTheEnergyOfASpring)
+
+# A piece of the balance that begins at its own start, not at that of the motion.
+livens_mutant(NAME balance_of_a_piece
+              FILE diagnostics/balance.cpp
+              OLD [[        if (end_ == 0)]]
+              NEW [[        if (piece.t.size() == 1)]]
+              TESTS_OF unit_diagnostics
+              MUST_FAIL Balance.InPiecesIsThatOfTheWhole)
+
+# --- stepping
+
+# Not quite the middle: order 1.
+livens_mutant(NAME midpoint_off_the_middle
+              FILE stepping/step_equations.cpp
+              OLD [[rule == SteppingRule::midpoint ? 0.5 : 1.0]]
+              NEW [[rule == SteppingRule::midpoint ? 0.51 : 1.0]]
+              TESTS_OF unit_stepping
+              MUST_FAIL Stepping.FreeTopConvergesWithTheRulesOrder
+                        Stepping.MidpointKeepsTheEnergyAndEndpointLosesIt)
+
+# The tangent without the part of loads that depend on velocities: the answer stays.
+livens_mutant(NAME stepping_without_damping_in_the_tangent
+              FILE stepping/step_equations.cpp
+              OLD [=[a_ * T.X[s][w] + (1 / start.h) * T.V[s][w]]=]
+              NEW [=[a_ * T.X[s][w] + (0 / start.h) * T.V[s][w]]=]
+              TESTS_OF unit_stepping
+              MUST_FAIL */StepTangent.MatchesDifferences/*)
+
+# --- files
+
+# A checksum that is there, whatever it says.
+livens_mutant(NAME checksum_not_compared
+              FILE io/results/classic_netcdf_read.cpp
+              OLD [[if (stored == nullptr || *stored != AttributeValue(checksum.text()))]]
+              NEW [[if (stored == nullptr)]]
+              TESTS_OF unit_io
+              MUST_FAIL Results.EveryFlippedBitIsSeen)
+
+# A variable that ends behind the file.
+livens_mutant(NAME sizes_believed
+              FILE io/results/classic_netcdf_read.cpp
+              OLD [[v.begin > source_.size - v.n_bytes)]]
+              NEW [[v.begin > source_.size)]]
+              TESTS_OF unit_io
+              MUST_FAIL Results.EveryTruncationIsToldAsOne)
+
+# A link replaced instead of what it stands for.
+livens_mutant(NAME links_replaced
+              FILE io/results/atomic_file.cpp
+              OLD [[    target_ = followed(file);]]
+              NEW [[    target_ = file;]]
+              TESTS_OF unit_io
+              MUST_FAIL Results.LinksStayAndRightsAreKept)
+
+# --- the program
+
+# Temporaries of others that still write, removed.
+livens_mutant(NAME temporaries_without_locks
+              FILE io/results/atomic_file.cpp
+              OLD [[if (found.number() < 0 || ::flock(found.number(), LOCK_EX | LOCK_NB) != 0) return;]]
+              NEW [[if (found.number() < 0) return;]]
+              TESTS_OF livens
+              MUST_FAIL program_test.Signals.test_temporaries_of_the_dead_are_removed_and_no_others)
+
+# A run that is suspect reported as one that is not.
+livens_mutant(NAME suspect_is_fine
+              FILE apps/livens/solve.cpp
+              OLD [[report.reached_end() ? exit_suspect : exit_not_converged]]
+              NEW [[report.reached_end() ? exit_ok : exit_not_converged]]
+              TESTS_OF livens
+              MUST_FAIL program_test.Solve.test_midpoint_and_endpoint)
+
+# The same file by another name.
+livens_mutant(NAME names_for_files
+              FILE apps/livens/places.cpp
+              OLD [[    if (same_file(file, other)) refuse(file, why);]]
+              NEW [[    if (file == other) refuse(file, why);]]
+              TESTS_OF livens
+              MUST_FAIL program_test.Files.test_the_scenario_is_never_overwritten)
+
+# Memory asked for and not looked at.
+livens_mutant(NAME memory_unlimited
+              FILE apps/livens/memory.cpp
+              OLD [[if (need.most() <= left) return;]]
+              NEW [[return;]]
+              TESTS_OF livens
+              MUST_FAIL program_test.Files.test_memory_is_checked_before_solving)

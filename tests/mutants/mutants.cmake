@@ -2,13 +2,14 @@
 # Negative controls by mutation: one deliberate fault a program, and the tests that must notice it.
 #
 # livens_mutant(NAME name             the test is mutant.<name>
-#               FILE room/file.cpp    under src/livens; a header needs RECOMPILE as well
+#               FILE room/file.cpp    under src/livens, or apps/livens/...; a header needs RECOMPILE as well
 #               OLD text NEW text     OLD stands exactly once in FILE, otherwise the build stops
-#               TESTS_OF target       a program made by livens_test; its objects are linked again
-#               MUST_FAIL name...     tests of it as --gtest_filter spells them; each must match a FAILED test
+#               TESTS_OF target       a program made by livens_test; its objects are linked again. Or the program, livens
+#               MUST_FAIL name...     tests of it as --gtest_filter spells them; each must match a FAILED test. Of the
+#                                     program: script.Class.test_method of tests/system
 #               [RECOMPILE file...])  sources under src/livens to compile with the fault; default: FILE
 #
-# A mutant is linked from its own object, the test program's objects and livens_core; the linker takes the
+# A mutant is linked from its own object, the test program's objects and the libraries; the linker takes the
 # faulty object and leaves the good one in the archive. Only the faulty source is compiled again.
 
 function(livens_mutant)
@@ -20,6 +21,9 @@ function(livens_mutant)
         endif()
     endforeach()
     set(original ${PROJECT_SOURCE_DIR}/src/livens/${arg_FILE})
+    if(arg_FILE MATCHES "^apps/")
+        set(original ${PROJECT_SOURCE_DIR}/${arg_FILE})
+    endif()
     if(NOT EXISTS ${original} OR NOT TARGET ${arg_TESTS_OF})
         message(FATAL_ERROR "mutant '${arg_NAME}': no ${original} or no test program ${arg_TESTS_OF}")
     endif()
@@ -55,22 +59,36 @@ function(livens_mutant)
     endif()
     string(REGEX REPLACE "/.*" "" room ${arg_FILE})
     set(target mutant_${arg_NAME})
-    add_executable(${target} ${sources} $<TARGET_OBJECTS:${arg_TESTS_OF}>)
+    # A good object of the program must stay away; one of a library is not asked for.
+    get_filename_component(file ${arg_FILE} NAME)
+    add_executable(${target} ${sources} "$<FILTER:$<TARGET_OBJECTS:${arg_TESTS_OF}>,EXCLUDE,apps/.*/${file}>")
+    if(arg_TESTS_OF STREQUAL "livens")
+        set(libraries livens_io CLI11::CLI11 fmt::fmt-header-only)
+        set(test -DPYTHON=${livens_python} -DTESTS=${PROJECT_SOURCE_DIR}/tests/system)
+        set(script run_program_mutant.cmake)
+    else()
+        set(libraries $<$<STREQUAL:${room},io>:livens_io> GTest::gtest GTest::gtest_main)
+        set(test)
+        set(script run_mutant.cmake)
+    endif()
     # As the room is compiled, but with the faulty folder first, and without warnings: a fault may leave
     # things unused.
     target_include_directories(${target} BEFORE PRIVATE ${folder})
-    target_include_directories(${target} SYSTEM
-                               PRIVATE $<TARGET_PROPERTY:livens_room_${room},INCLUDE_DIRECTORIES>)
-    target_compile_definitions(${target} PRIVATE $<TARGET_PROPERTY:livens_room_${room},COMPILE_DEFINITIONS>)
-    target_link_libraries(${target} PRIVATE livens_flags livens_core
-                          GTest::gtest GTest::gtest_main Threads::Threads)
+    if(room STREQUAL "apps")
+        target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/apps/livens)
+    else()
+        target_include_directories(${target} SYSTEM
+                                   PRIVATE $<TARGET_PROPERTY:livens_room_${room},INCLUDE_DIRECTORIES>)
+        target_compile_definitions(${target} PRIVATE $<TARGET_PROPERTY:livens_room_${room},COMPILE_DEFINITIONS>)
+    endif()
+    target_link_libraries(${target} PRIVATE livens_flags ${libraries} livens_core Threads::Threads)
     target_compile_options(${target} PRIVATE -w)
     add_test(NAME mutant.${arg_NAME}
-             COMMAND ${CMAKE_COMMAND} -DPROGRAM=$<TARGET_FILE:${target}> "-DMUST_FAIL=${arg_MUST_FAIL}"
-                     -P ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/run_mutant.cmake)
+             COMMAND ${CMAKE_COMMAND} -DPROGRAM=$<TARGET_FILE:${target}> "-DMUST_FAIL=${arg_MUST_FAIL}" ${test}
+                     -P ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/${script})
     set_tests_properties(mutant.${arg_NAME} PROPERTIES LABELS mutant TIMEOUT 300)
 endfunction()
 
-if(LIVENS_SLOW_TESTS)
+if(LIVENS_SLOW_TESTS AND NOT BUILD_SHARED_LIBS)   # which would keep their insides to themselves
     include(${CMAKE_CURRENT_LIST_DIR}/faults.cmake)
 endif()

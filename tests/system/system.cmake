@@ -3,16 +3,24 @@
 # netCDF4, xarray, ncdump or the right to mount is skipped where it is missing.
 
 if(LIVENS_BUILD_PROGRAM)
-    foreach(file program_test terminal_test export_test)
+    foreach(file program_test terminal_test export_test hard_ends)
         set(script ${CMAKE_CURRENT_SOURCE_DIR}/system/${file}.py)
-        file(STRINGS ${script} classes REGEX "^class [A-Za-z]+\\(ProgramTest\\)")
+        file(STRINGS ${script} classes REGEX "^class [A-Za-z]+\\((ProgramTest|HardTest)\\)")
         set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${script})
+        list(FILTER classes EXCLUDE REGEX "class HardTest")
+        set(label fast)
+        if(file STREQUAL "hard_ends")   # hard_ends.py --long is for people
+            set(label slow)
+        endif()
+        if(label STREQUAL "slow" AND NOT LIVENS_SLOW_TESTS)
+            continue()
+        endif()
         foreach(line ${classes})
             string(REGEX REPLACE "^class ([A-Za-z]+).*" "\\1" name "${line}")
             add_test(NAME system.${name} COMMAND ${livens_python} -B ${script} ${name})
             set_tests_properties(
                 system.${name}
-                PROPERTIES LABELS fast TIMEOUT 120
+                PROPERTIES LABELS ${label} TIMEOUT 600
                 ENVIRONMENT "LIVENS_PROGRAM=$<TARGET_FILE:livens>;LIVENS_SOURCE_DIR=${PROJECT_SOURCE_DIR}")
         endforeach()
     endforeach()

@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-namespace livens {
+namespace [[gnu::visibility("default")]] livens {
 
 /// Everything a reader of the message needs; `io` adds file, line and column to it from `path`.
 struct Complaint {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstddef>
 
-namespace livens {
+namespace [[gnu::visibility("default")]] livens {
 
 /// Dense matrix of fixed size, stored column by column; aggregate, so `Vector3{1, 2, 3}` lists a column.
 ///

@@ -5,7 +5,7 @@
 #include <charconv>
 #include <string>
 
-namespace livens {
+namespace [[gnu::visibility("default")]] livens {
 
 /// The shortest text that reads back as the same double: "0.1", "1e-12", "nan". Independent of the locale.
 inline std::string to_text(double value)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-namespace livens {
+namespace [[gnu::visibility("default")]] livens {
 
 inline constexpr const char* version = "0.1.0";
 

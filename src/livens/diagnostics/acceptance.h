@@ -11,7 +11,7 @@
 #include "livens/diagnostics/estimate.h"
 #include "livens/solvers/report.h"
 
-namespace livens {
+namespace [[gnu::visibility("default")]] livens {
 
 /// Beyond this velocity jump an element has not seen the motion. Of 480 wrong runs of lobatto over 16
 /// problems every one was beyond, of 1518 good ones none.
@@ -42,8 +42,9 @@ struct Verdict {
     double horizon = unknown;   ///< s, where 1e-13 has grown to 1e-2; unknown also if that is after the end
     std::vector<std::string> reasons;    ///< why the motion is suspect, a line each; empty: it is not
     std::vector<std::string> remarks;    ///< what is worth a look and refuses nothing
-    Balance balance;
-    ViolationReport violations;   ///< at nodes; means only where constraints hold weakly, nothing in between
+    BalanceFigures balance;
+    /// At nodes, without their series; means only where constraints hold weakly, nothing in between.
+    ViolationReport violations;
 };
 
 /// Measures a motion and, if the report says that it converged, judges it. It has a reason to be suspect if

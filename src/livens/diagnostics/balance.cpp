@@ -5,9 +5,9 @@
 #include <limits>
 #include <optional>
 
-#include "livens/base/largest.h"
 #include "livens/diagnostics/detail/sampler.h"
 #include "livens/diagnostics/diagnostics.h"
+#include "livens/diagnostics/largest.h"
 #include "livens/time/quadrature.h"
 
 namespace livens {
@@ -193,115 +193,178 @@ double moment_of_momentum(std::span<const Matrix34> X, std::span<const Matrix34>
     return sum;
 }
 
-/// Energies and momenta at one element end.
-void append_state(const Model& model, const Motion& motion, int end, std::span<Matrix34> X, Balance& balance)
+/// What the largest drift is over; `level` is what rounding is relative to.
+double relative(double drift, double moving, double level)
 {
-    const std::span<const Matrix34> V = velocities_at_end(motion, end);
-    const std::span<const Matrix34> P =
-        std::span<const Matrix34>(motion.momenta).subspan(static_cast<std::size_t>(end) * X.size(), X.size());
-    positions_at_end(motion, end, X);
-    const Instant at{motion.mesh.ends[end], end == motion.n_elements() ? Side::left : Side::right};
-
-    balance.t.push_back(at.t);
-    balance.kinetic.push_back(kinetic_energy(model, X, V));
-    balance.potential.push_back(potential_energy(model, at, X, V));
-    balance.energy.push_back(balance.kinetic.back() + balance.potential.back());
-    balance.linear_momentum.push_back(linear_momentum(P));
-    balance.angular_momentum.push_back(angular_momentum(X, P));
-    raise_to(balance.largest_kinetic, balance.kinetic.back());
-    raise_to(balance.largest_moment, moment_of_momentum(X, P));
-    double momentum = 0;
-    for (const Matrix34& p : P) momentum += norm(p.column(0));
-    raise_to(balance.largest_momentum, momentum);
+    return drift <= rounding * level ? 0 : drift / std::max(moving, rounding * level);
 }
 
-void append_supply(const Supply& total, Balance& balance)
-{
-    const std::size_t end = balance.work.size();
-    balance.work.push_back(total.work);
-    balance.linear_impulse.push_back(total.linear);
-    balance.angular_impulse.push_back(total.angular);
-    balance.energy_drift.push_back(std::abs(balance.energy[end] - balance.energy[0] - total.work));
-    balance.linear_momentum_drift.push_back(
-        norm(balance.linear_momentum[end] - balance.linear_momentum[0] - total.linear));
-    balance.angular_momentum_drift.push_back(
-        norm(balance.angular_momentum[end] - balance.angular_momentum[0] - total.angular));
-}
+/// Goes from element end to element end.
+class Balancing {
+public:
+    Balancing(const Model& model, const Motion& motion)
+        : model_(model), motion_(motion), supply_(model, motion),
+          X_(static_cast<std::size_t>(motion.n_bodies))
+    {}
 
-/// See Balance; `moving` is what is in motion, `level` what rounding is relative to.
-double relative(const std::vector<double>& drift, double moving, double level)
-{
-    double worst = 0;
-    for (const double d : drift) raise_to(worst, d);
-    return worst <= rounding * level ? 0 : worst / std::max(moving, rounding * level);
-}
+    /// The next `n` ends, or what is left of them. False: nothing is.
+    bool next(int n, Balance& piece)
+    {
+        const int last = n < motion_.n_elements() + 1 - end_ ? end_ + n : motion_.n_elements() + 1;
+        if (end_ == last) return false;
+        reserve(static_cast<std::size_t>(last - end_), piece);
+        for (; end_ < last; ++end_) {
+            if (end_ > 0) total_.add(1, supply_.over(end_ - 1));
+            append_state(piece);
+            append_supply(piece);
+        }
+        static_cast<BalanceFigures&>(piece) = figures();
+        return true;
+    }
+    BalanceFigures figures() const
+    {
+        BalanceFigures figures = figures_;
+        figures.reference_energy += supply_.largest_gross_moment();
+        figures.reference_impulse = total_.gross;
+        figures.reference_moment = total_.gross_moment;
+        return figures;
+    }
 
-/// The largest kinetic energy or change of potential energy.
-double moving_energy(const Balance& balance)
-{
-    double moving = balance.largest_kinetic;
-    for (const double v : balance.potential) raise_to(moving, std::abs(v - balance.potential.front()));
-    return moving;
-}
+private:
+    static void reserve(std::size_t n, Balance& piece)
+    {
+        piece = {};
+        for (auto* list : {&piece.t, &piece.kinetic, &piece.potential, &piece.energy, &piece.work,
+                           &piece.energy_drift, &piece.linear_momentum_drift, &piece.angular_momentum_drift})
+            list->reserve(n);
+        for (auto* list :
+             {&piece.linear_momentum, &piece.angular_momentum, &piece.linear_impulse, &piece.angular_impulse})
+            list->reserve(n);
+    }
+    /// Energies and momenta.
+    void append_state(Balance& piece)
+    {
+        const std::span<const Matrix34> V = velocities_at_end(motion_, end_);
+        const std::span<const Matrix34> P =
+            std::span<const Matrix34>(motion_.momenta)
+                .subspan(static_cast<std::size_t>(end_) * X_.size(), X_.size());
+        positions_at_end(motion_, end_, X_);
+        const Instant at{motion_.mesh.ends[end_], end_ == motion_.n_elements() ? Side::left : Side::right};
+        const double kinetic = kinetic_energy(model_, X_, V), potential = potential_energy(model_, at, X_, V);
+
+        piece.t.push_back(at.t);
+        piece.kinetic.push_back(kinetic);
+        piece.potential.push_back(potential);
+        piece.energy.push_back(kinetic + potential);
+        piece.linear_momentum.push_back(linear_momentum(P));
+        piece.angular_momentum.push_back(angular_momentum(X_, P));
+        if (end_ == 0) {
+            last_energy_ = kinetic + potential;
+            start_ = {potential, last_energy_, piece.linear_momentum[0], piece.angular_momentum[0]};
+        }
+        raise_to(figures_.largest_kinetic, kinetic);
+        raise_to(figures_.largest_change, std::abs(potential - start_.potential));
+        raise_to(figures_.reference_energy, std::abs(potential));
+        raise_to(figures_.largest_moment, moment_of_momentum(X_, P));
+        double momentum = 0;
+        for (const Matrix34& p : P) momentum += norm(p.column(0));
+        raise_to(figures_.largest_momentum, momentum);
+    }
+    void append_supply(Balance& piece)
+    {
+        piece.work.push_back(total_.work);
+        piece.linear_impulse.push_back(total_.linear);
+        piece.angular_impulse.push_back(total_.angular);
+        piece.energy_drift.push_back(std::abs(piece.energy.back() - start_.energy - total_.work));
+        piece.linear_momentum_drift.push_back(
+            norm(piece.linear_momentum.back() - start_.linear_momentum - total_.linear));
+        piece.angular_momentum_drift.push_back(
+            norm(piece.angular_momentum.back() - start_.angular_momentum - total_.angular));
+        raise_to(figures_.largest_impulse, norm(total_.linear));
+        raise_to(figures_.largest_energy_drift, piece.energy_drift.back());
+        raise_to(figures_.largest_linear_momentum_drift, piece.linear_momentum_drift.back());
+        raise_to(figures_.largest_angular_momentum_drift, piece.angular_momentum_drift.back());
+        append_rise(piece.energy.back());
+    }
+    /// From the lowest that it was since the start.
+    void append_rise(double energy)
+    {
+        const double supplied = std::max(total_.work - last_work_, 0.0);
+        const double sum = risen_ + (energy - last_energy_) - supplied;
+        risen_ = sum < 0 ? 0 : sum;
+        raise_to(figures_.largest_energy_rise, risen_);
+        figures_.energy_loss = start_.energy - (energy - total_.work);
+        last_energy_ = energy;
+        last_work_ = total_.work;
+    }
+
+    const Model& model_;
+    const Motion& motion_;
+    SupplyIntegral supply_;
+    Supply total_;
+    std::vector<Matrix34> X_;
+    BalanceFigures figures_;   // references without what is integrated
+    struct {
+        double potential, energy;
+        Vector3 linear_momentum, angular_momentum;
+    } start_{};
+    double last_energy_ = 0, last_work_ = 0, risen_ = 0;   // at the end before
+    int end_ = 0;
+};
 
 }   // namespace
 
-double Balance::relative_energy_drift() const
+double BalanceFigures::relative_energy_drift() const
 {
-    return relative(energy_drift, moving_energy(*this), reference_energy);
+    return relative(largest_energy_drift, moving_energy(), reference_energy);
 }
 
-double Balance::relative_energy_rise() const
+double BalanceFigures::relative_energy_rise() const
 {
-    std::vector<double> risen(energy.size(), 0.0);
-    for (std::size_t end = 1; end < energy.size(); ++end) {
-        const double supplied = std::max(work[end] - work[end - 1], 0.0);
-        const double sum = risen[end - 1] + (energy[end] - energy[end - 1]) - supplied;
-        risen[end] = sum < 0 ? 0 : sum;
-    }
-    return relative(risen, moving_energy(*this), reference_energy);
+    return relative(largest_energy_rise, moving_energy(), reference_energy);
 }
 
-double Balance::relative_energy_loss() const
+double BalanceFigures::relative_energy_loss() const
 {
-    if (energy.empty()) return 0;
-    const double lost = energy.front() - (energy.back() - work.back());
-    return relative({std::max(lost, 0.0)}, moving_energy(*this), reference_energy);
+    return relative(std::max(energy_loss, 0.0), moving_energy(), reference_energy);
 }
 
-double Balance::relative_linear_momentum_drift() const
+double BalanceFigures::moving_energy() const
+{
+    double moving = largest_kinetic;
+    raise_to(moving, largest_change);
+    return moving;
+}
+
+double BalanceFigures::relative_linear_momentum_drift() const
 {
     double moving = largest_momentum;
-    for (const Vector3& impulse : linear_impulse) raise_to(moving, norm(impulse));
-    return relative(linear_momentum_drift, moving, reference_impulse + moving);
+    raise_to(moving, largest_impulse);
+    return relative(largest_linear_momentum_drift, moving, reference_impulse + moving);
 }
 
-double Balance::relative_angular_momentum_drift() const
+double BalanceFigures::relative_angular_momentum_drift() const
 {
-    return relative(angular_momentum_drift, largest_moment, reference_moment + largest_moment);
+    return relative(largest_angular_momentum_drift, largest_moment, reference_moment + largest_moment);
+}
+
+BalanceFigures balance(const Model& model, const Motion& motion, int n_ends,
+                       const std::function<void(Balance&)>& take)
+{
+    assert(model.n_bodies() == motion.n_bodies && model.n_rows() == motion.n_rows);
+    assert(motion.momenta.size() == motion.mesh.ends.size() * static_cast<std::size_t>(motion.n_bodies));
+    Balancing balancing(model, motion);
+    Balance piece;
+    while (balancing.next(n_ends, piece)) take(piece);
+    return balancing.figures();
 }
 
 Balance balance(const Model& model, const Motion& motion)
 {
-    assert(model.n_bodies() == motion.n_bodies && model.n_rows() == motion.n_rows);
-    assert(motion.momenta.size() == motion.mesh.ends.size() * static_cast<std::size_t>(motion.n_bodies));
-    Balance result;
-    if (motion.mesh.ends.empty()) return result;
-    std::vector<Matrix34> X(static_cast<std::size_t>(motion.n_bodies));
-    SupplyIntegral supply(model, motion);
-    Supply total;
-    append_state(model, motion, 0, X, result);
-    append_supply(total, result);
-    for (int e = 0; e < motion.n_elements(); ++e) {
-        append_state(model, motion, e + 1, X, result);
-        total.add(1, supply.over(e));
-        append_supply(total, result);
-    }
-    for (const double v : result.potential) raise_to(result.reference_energy, std::abs(v));
-    result.reference_energy += supply.largest_gross_moment();
-    result.reference_impulse = total.gross;
-    result.reference_moment = total.gross_moment;
-    return result;
+    Balance whole;
+    balance(model, motion, std::numeric_limits<int>::max(),
+            [&](Balance& piece) { whole = std::move(piece); });
+    return whole;
 }
 
 }   // namespace livens

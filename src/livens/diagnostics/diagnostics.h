@@ -2,50 +2,37 @@
 // What is conserved, and how well: free functions of a motion, whoever made it.
 #pragma once
 
+#include <functional>
 #include <span>
 #include <vector>
 
 #include "livens/multibody/model.h"
 #include "livens/multibody/motion.h"
 
-namespace livens {
+namespace [[gnu::visibility("default")]] livens {
 
-/// Energies (J), momenta (N s, N m s about the world's origin) and their balances at the element ends.
+/// What is left of the balances of a whole motion, see Balance; 0 before anything was balanced.
 ///
-/// Balances are what is left when the supply since the start is taken off: energy less the work of loads
-/// without potential and of drives; momentum less the impulse of gravity, loads and of joints to the world.
-/// Supplies are integrated with the quadrature of the method: its Gauss points, or the Gauss-Lobatto rule of
-/// the motion's own nodes, which makes momentum balances exact: lobatto's at all element ends, those of the
-/// elements `mixed` with a natural start at the ends of blocks. A motion without Gauss points, with X of
-/// degree 1 and one multiplier an element was stepped: midpoint's supplies are taken in the middle (momentum
-/// balances exact), those of a method of order 1 at the end of the element (linear momentum exact). Rows
-/// without multipliers leave the joints' impulse in the drift.
-struct Balance {
-    std::vector<double> t;
-    std::vector<double> kinetic;
-    std::vector<double> potential;
-    std::vector<double> energy;
-    std::vector<double> work;   ///< of loads without potential and of drives, since the start
-    std::vector<Vector3> linear_momentum;
-    std::vector<Vector3> angular_momentum;
-    std::vector<Vector3> linear_impulse;   ///< supplied since the start
-    std::vector<Vector3> angular_impulse;
-    std::vector<double> energy_drift;   ///< |energy - start - work|
-    std::vector<double> linear_momentum_drift;
-    std::vector<double> angular_momentum_drift;
-    double largest_kinetic = 0;      ///< over the ends
-    double largest_momentum = 0;     ///< over the ends, of the sum of the bodies' |p|
-    double largest_moment = 0;       ///< largest sum over bodies and columns of |x| |P|
-    double reference_energy = 0;     ///< J: largest sum of |F| (|x| + L), plus the largest |potential|
-    double reference_impulse = 0;    ///< N s: integral of the sum of |F| + |dF/dX| (|x| + L)
-    double reference_moment = 0;     ///< N m s: integral of the sum of these times |x| + L
-
-    // Each is the largest drift over the larger of what is in motion and of the rounding level, and 0 below
-    // that level, 16 times the spacing of numbers at the references above: over all forces (weights, loads,
-    // joints) and columns, with L the model's length, as constraints place bodies to the rounding of it and
-    // stiff loads turn that into forces (their dF/dX' counts by 1 / h). So
-    // a mechanism at rest has none, whose motion and drift are rounding both, and a slow one is not measured
-    // by what it could be (a rod of 3e9 m is a slide as well).
+/// Each relative drift is the largest drift over the larger of what is in motion and of the rounding level,
+/// and 0 below that level, 16 times the spacing of numbers at the references: over all forces (weights,
+/// loads, joints) and columns, with L the model's length, as constraints place bodies to the rounding of it
+/// and stiff loads turn that into forces (their dF/dX' counts by 1 / h). So a mechanism at rest has none,
+/// whose motion and drift are rounding both, and a slow one is not measured by what it could be (a rod of 3e9
+/// m is a slide as well).
+struct BalanceFigures {
+    double largest_kinetic = 0;     ///< over the ends
+    double largest_momentum = 0;    ///< over the ends, of the sum of the bodies' |p|
+    double largest_moment = 0;      ///< largest sum over bodies and columns of |x| |P|
+    double reference_energy = 0;    ///< J: largest sum of |F| (|x| + L), plus the largest |potential|
+    double reference_impulse = 0;   ///< N s: integral of the sum of |F| + |dF/dX| (|x| + L)
+    double reference_moment = 0;    ///< N m s: integral of the sum of these times |x| + L
+    double largest_change = 0;      ///< J: of the potential energy since the start
+    double largest_impulse = 0;     ///< N s: supplied since the start
+    double largest_energy_drift = 0;
+    double largest_energy_rise = 0;   ///< see relative_energy_rise()
+    double energy_loss = 0;           ///< J: from start to end, of energy less work
+    double largest_linear_momentum_drift = 0;
+    double largest_angular_momentum_drift = 0;
 
     /// Relative to the largest kinetic energy or change of potential energy since the start.
     double relative_energy_drift() const;
@@ -58,8 +45,40 @@ struct Balance {
     double relative_linear_momentum_drift() const;
     /// Relative to largest_moment.
     double relative_angular_momentum_drift() const;
+
+private:
+    double moving_energy() const;
+};
+
+/// Energies (J), momenta (N s, N m s about the world's origin) and their balances at the element ends.
+///
+/// Balances are what is left when the supply since the start is taken off: energy less the work of loads
+/// without potential and of drives; momentum less the impulse of gravity, loads and of joints to the world.
+/// Supplies are integrated with the quadrature of the method: its Gauss points, or the Gauss-Lobatto rule of
+/// the motion's own nodes, which makes momentum balances exact: lobatto's at all element ends, those of the
+/// elements `mixed` with a natural start at the ends of blocks. A motion without Gauss points, with X of
+/// degree 1 and one multiplier an element was stepped: midpoint's supplies are taken in the middle (momentum
+/// balances exact), those of a method of order 1 at the end of the element (linear momentum exact). Rows
+/// without multipliers leave the joints' impulse in the drift.
+struct Balance : BalanceFigures {
+    std::vector<double> t;
+    std::vector<double> kinetic;
+    std::vector<double> potential;
+    std::vector<double> energy;
+    std::vector<double> work;   ///< of loads without potential and of drives, since the start
+    std::vector<Vector3> linear_momentum;
+    std::vector<Vector3> angular_momentum;
+    std::vector<Vector3> linear_impulse;   ///< supplied since the start
+    std::vector<Vector3> angular_impulse;
+    std::vector<double> energy_drift;   ///< |energy - start - work|
+    std::vector<double> linear_momentum_drift;
+    std::vector<double> angular_momentum_drift;
 };
 Balance balance(const Model& model, const Motion& motion);
+/// The same, `n_ends` element ends at a time, for motions that leave no room for more: `take` is handed one
+/// piece after the other, each with the figures so far.
+BalanceFigures balance(const Model& model, const Motion& motion, int n_ends,
+                       const std::function<void(Balance&)>& take);
 
 double kinetic_energy(const Model& model, std::span<const Matrix34> X, std::span<const Matrix34> V);
 /// Gravity (body of mass M at height: -M g . x) and the loads' potentials.

@@ -7,7 +7,8 @@
 #include <numbers>
 #include <utility>
 
-#include "livens/base/largest.h"
+#include "livens/base/elementary.h"
+#include "livens/diagnostics/largest.h"
 
 namespace livens {
 
@@ -33,7 +34,10 @@ double norm_of(const std::array<double, 12>& load)
     return std::sqrt(0.5 * sum);
 }
 
-double digits_of(double error) { return std::clamp(-std::log10(error), 0.0, 16.0); }   // nan stays nan
+double digits_of(double error)
+{
+    return std::clamp(-logarithm(error) / std::numbers::ln10, 0.0, 16.0);   // nan stays nan
+}
 
 }   // namespace
 
@@ -117,7 +121,7 @@ BodyGap gap_between(const State& a, const State& b, const Body& body, int index,
     const Vector4 centre = point(mass_properties(body.mass).center_of_mass);
     // the chord of a turn by phi is 2 sqrt(2) sin(phi / 2)
     const double chord = norm(directors(dX)) / (2 * std::sqrt(2.0));
-    return {norm(dX * centre) / length, chord > 1 ? std::numbers::pi : 2 * std::asin(chord),
+    return {norm(dX * centre) / length, chord > 1 ? std::numbers::pi : 2 * arc_sine(chord),
             norm(dV * centre)};
 }
 

@@ -9,7 +9,7 @@
 #include "livens/multibody/model.h"
 #include "livens/multibody/motion.h"
 
-namespace livens {
+namespace [[gnu::visibility("default")]] livens {
 
 /// How far two states of one body are apart.
 struct BodyGap {

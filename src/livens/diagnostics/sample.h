@@ -7,7 +7,7 @@
 #include "livens/multibody/model.h"
 #include "livens/multibody/motion.h"
 
-namespace livens {
+namespace [[gnu::visibility("default")]] livens {
 
 /// One body at one instant. A point mass has no orientation: its directors, quaternion and angular velocities
 /// are nan.

@@ -4,9 +4,10 @@
 #include <span>
 #include <vector>
 
-#include "livens/base/largest.h"
+#include "livens/base/elementary.h"
 #include "livens/diagnostics/detail/sampler.h"
 #include "livens/diagnostics/diagnostics.h"
+#include "livens/diagnostics/largest.h"
 
 namespace livens {
 
@@ -43,7 +44,7 @@ double local_error(Points points, int degree, double jump)
     const bool is_radau = points == Points::radau;
     const std::span<const double> C = is_radau ? std::span<const double>(of_radau) : of_lobatto;
     const double c = C[std::min(static_cast<std::size_t>(degree), C.size()) - 1];
-    return c * std::pow(jump, (2.0 * degree + (is_radau ? 0 : 1)) / (degree + 1));
+    return c * power(jump, (2.0 * degree + (is_radau ? 0 : 1)) / (degree + 1));
 }
 
 }   // namespace livens

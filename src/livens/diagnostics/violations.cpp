@@ -6,9 +6,9 @@
 #include <string>
 
 #include "livens/base/error.h"
-#include "livens/base/largest.h"
 #include "livens/diagnostics/detail/sampler.h"
 #include "livens/diagnostics/diagnostics.h"
+#include "livens/diagnostics/largest.h"
 #include "livens/diagnostics/sample.h"
 #include "livens/time/quadrature.h"
 

@@ -7,9 +7,9 @@
 #include <string>
 
 #include "livens/base/error.h"
-#include "livens/base/largest.h"
 #include "livens/diagnostics/detail/sampler.h"
 #include "livens/diagnostics/diagnostics.h"
+#include "livens/diagnostics/largest.h"
 
 namespace livens {
 namespace {
@@ -74,7 +74,11 @@ struct Worst {
 /// Squares of a function of time and of its second differences, sample after sample.
 class Squares {
 public:
-    explicit Squares(std::vector<Matrix4> metric) : metric_(std::move(metric)) {}
+    Squares(std::vector<Matrix4> metric, std::size_t n) : metric_(std::move(metric))
+    {
+        samples_.reserve(n);
+        differences_.reserve(n);
+    }
 
     /// The next sample, and the second difference about the last one if there is any.
     void append(const Bodies& g, const Bodies* second_difference)
@@ -110,10 +114,15 @@ private:
 /// A velocity or a momentum, one sample after the other.
 class Series {
 public:
-    /// `noise` times 1 / step is what rounding may make of a sample.
-    Series(Metric metric, double noise)
-        : parts_{Squares(std::move(metric.centres)), Squares(std::move(metric.spins))}, noise_(noise)
-    {}
+    /// `noise` times 1 / step is what rounding may make of a sample; `n` samples will come.
+    Series(Metric metric, double noise, int n)
+        : parts_{Squares(std::move(metric.centres), static_cast<std::size_t>(n)),
+                 Squares(std::move(metric.spins), static_cast<std::size_t>(n))},
+          noise_(noise)
+    {
+        times_.reserve(static_cast<std::size_t>(n));
+        steps_.reserve(static_cast<std::size_t>(n));
+    }
 
     void append(double t, double step, const Bodies& g)
     {
@@ -201,8 +210,8 @@ double position_noise(const Model& model, const Motion& motion)
 /// Mean velocities of steps inside elements, so that jumps of X between blocks do not enter.
 Series step_velocities(const Model& model, const Motion& motion, double noise)
 {
-    Series series(Metric::of_velocities(model), noise);
     const int n = motion.X.degree;
+    Series series(Metric::of_velocities(model), noise, motion.n_elements() * n);
     const ElementSampler sampler(motion, equal_steps(n));
     Bodies here(static_cast<std::size_t>(motion.n_bodies)), next(here.size());
     for (int e = 0; e < motion.n_elements(); ++e) {
@@ -221,8 +230,8 @@ Series step_velocities(const Model& model, const Motion& motion, double noise)
 /// The field of momenta at the starts of its steps, and at the very end.
 Series momenta(const Model& model, const Motion& motion, double noise)
 {
-    Series series(Metric::of_momenta(model), noise);
     const int n = std::max(motion.P.degree, 1);
+    Series series(Metric::of_momenta(model), noise, motion.n_elements() * n + 1);
     const ElementSampler sampler(motion, equal_steps(n));
     Bodies P(static_cast<std::size_t>(motion.n_bodies));
     for (int e = 0; e < motion.n_elements(); ++e) {
@@ -237,7 +246,7 @@ Series momenta(const Model& model, const Motion& motion, double noise)
 /// Velocities at element ends, which are momenta: V in the metric of m is P in that of m^-1.
 Series end_velocities(const Model& model, const Motion& motion, double noise)
 {
-    Series series(Metric::of_velocities(model), noise);
+    Series series(Metric::of_velocities(model), noise, motion.n_elements() + 1);
     for (int end = 0; end <= motion.n_elements(); ++end) {
         const std::span<const Matrix34> V = velocities_at_end(motion, end);
         const double step = motion.mesh.length(std::max(end - 1, 0));

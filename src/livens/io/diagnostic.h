@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace livens {
+namespace [[gnu::visibility("default")]] livens {
 
 enum class Severity { error, warning };
 

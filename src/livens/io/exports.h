@@ -8,7 +8,7 @@
 #include "livens/io/results.h"
 #include "livens/io/scenario.h"
 
-namespace livens {
+namespace [[gnu::visibility("default")]] livens {
 
 /// What an export is made of.
 struct ExportInput {

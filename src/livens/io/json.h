@@ -10,7 +10,7 @@
 
 #include "livens/base/text.h"
 
-namespace livens {
+namespace [[gnu::visibility("default")]] livens {
 
 /// Appends one JSON value (RFC 8259) to a text. Calls must nest properly and every value of an object needs
 /// its key: both are asserted.

@@ -14,7 +14,7 @@
 #include "livens/solvers/report.h"
 #include "livens/spacetime/solve.h"
 
-namespace livens {
+namespace [[gnu::visibility("default")]] livens {
 
 class JsonWriter;
 
@@ -58,6 +58,10 @@ struct RunHead {
     long long n_output_times = 0;
 };
 RunHead read_run_head(const std::filesystem::path& file);
+
+/// Throws IoError unless the run is one of this model, so that both can be used together: the scenario in a
+/// file is a stranger to its motion, whatever the checksums say.
+void check_model(const Model& model, const Run& run);
 
 /// The figures of report, verdict and motion as members of an object, named as in the file; null: not known.
 void write_figures(JsonWriter& json, const Run& run);

@@ -13,7 +13,7 @@
 #include "livens/multibody/model.h"
 #include "livens/spacetime/solve.h"
 
-namespace livens {
+namespace [[gnu::visibility("default")]] livens {
 
 /// The surface of a shape, for pictures: a profile that is turned about d3 in so many steps, then stretched
 /// along d1, d2, d3. Its origin is the centre of mass.
@@ -44,6 +44,17 @@ struct ScenarioResult {
     std::vector<Diagnostic> diagnostics;   ///< up to 20
     std::string text;                      ///< what was read, for render()
 };
+
+/// Memory that solving and writing will take at least, bytes.
+struct MemoryNeed {
+    double motion = 0;
+    double system = 0;   ///< the equations of the elements that are solved together
+    double checks = 0;   ///< the estimate of the error, and series while they are judged
+
+    /// What is there at a time: the system goes before the motion is checked.
+    double most() const { return motion + (system > checks ? system : checks); }
+};
+MemoryNeed memory_needed(const Scenario& scenario);
 
 /// Largest scenario in bytes, and deepest nesting; both are checked before parsing.
 inline constexpr std::size_t max_scenario_bytes = 16u << 20;

@@ -4,6 +4,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 
+#include "livens/base/elementary.h"
 #include "livens/base/error.h"
 #include "livens/multibody/detail/directors.h"
 #include "livens/multibody/detail/wording.h"
@@ -90,11 +91,11 @@ Matrix3 directors_from_quaternion(const Vector4& quaternion)
 Matrix3 directors_from_rotation_vector(const Vector3& rotation_vector)
 {
     require_finite(rotation_vector, "", "a rotation vector");
-    const double angle = std::hypot(rotation_vector[0], rotation_vector[1], rotation_vector[2]);
+    const double angle = hypotenuse(rotation_vector[0], rotation_vector[1], rotation_vector[2]);
     if (angle == 0) return identity<3>();
-    const double s = std::sin(angle / 2) / angle;
-    return directors_from_quaternion(
-        {std::cos(angle / 2), s * rotation_vector[0], s * rotation_vector[1], s * rotation_vector[2]});
+    const SineCosine half = sine_cosine(angle / 2);
+    const Vector3 v = (half.sine / angle) * rotation_vector;
+    return directors_from_quaternion({half.cosine, v[0], v[1], v[2]});
 }
 
 /// [Shepperd 1978]: divide by the largest of the four parts, so that half turns lose no digits.

@@ -7,7 +7,7 @@
 #include "livens/base/linear.h"
 #include "livens/multibody/mass_properties.h"
 
-namespace livens {
+namespace [[gnu::visibility("default")]] livens {
 
 /// A rigid body is a reference point and three directors, X = [phi d1 d2 d3] (P3).
 /// A point mass has no directors: its X, V and m are zero outside the first column (and row), and it has

@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "livens/base/elementary.h"
 #include "livens/base/error.h"
 #include "livens/base/text.h"
 #include "livens/multibody/detail/wording.h"
@@ -143,7 +144,7 @@ void note_moves(const Model& model, std::span<const Matrix34> before, std::span<
         for (int i = 1; i < 4; ++i) turn = std::max(turn, norm(after[b].column(i) - before[b].column(i)));
         if (shift <= start_tolerance * model.length() && turn <= start_tolerance) continue;
         notes.push_back("the start of body '" + model.body_name(b) + "' was moved by " + number(shift) +
-                        " m and turned by " + number(2 * std::asin(std::min(1.0, 0.5 * turn))) +
+                        " m and turned by " + number(2 * arc_sine(std::min(1.0, 0.5 * turn))) +
                         " rad to close the joints");
     }
 }

@@ -7,7 +7,7 @@
 
 #include "livens/multibody/model.h"
 
-namespace livens {
+namespace [[gnu::visibility("default")]] livens {
 
 enum class StartPolicy {
     check,    ///< an inconsistent start is an InputError that names the row

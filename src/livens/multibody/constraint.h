@@ -14,7 +14,7 @@
 #include "livens/base/linear.h"
 #include "livens/time/time_function.h"
 
-namespace livens {
+namespace [[gnu::visibility("default")]] livens {
 
 /// The place of the fixed world among the bodies.
 inline constexpr int world = -1;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "livens/base/elementary.h"
 #include "livens/base/error.h"
 #include "livens/multibody/constraint.h"
 
@@ -108,13 +109,13 @@ TimeFunction composed(const TimeFunction& inner, Outer outer)
 
 TimeValue cosine(const TimeValue& angle)
 {
-    const double c = std::cos(angle.value), s = std::sin(angle.value);
+    const auto [s, c] = sine_cosine(angle.value);
     return chain(angle, c, -s, -c);
 }
 
 TimeValue sine(const TimeValue& angle)
 {
-    const double c = std::cos(angle.value), s = std::sin(angle.value);
+    const auto [s, c] = sine_cosine(angle.value);
     return chain(angle, s, c, -s);
 }
 

@@ -7,7 +7,7 @@
 
 #include "livens/multibody/model.h"
 
-namespace livens {
+namespace [[gnu::visibility("default")]] livens {
 
 struct InstantState;
 struct Tables;

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <utility>
 
+#include "livens/base/elementary.h"
 #include "livens/base/error.h"
 #include "livens/base/text.h"
 
@@ -65,7 +66,7 @@ Value angle_at(double c, double s)
 {
     const double square = c * c + s * s, quartic = square * square;
     Value angle;
-    angle.value = std::atan2(s, c);
+    angle.value = arc_tangent(s, c);
     angle.gradient[0] = -s / square;
     angle.gradient[1] = c / square;
     angle.hessian[0][0] = 2 * c * s / quartic;
@@ -101,7 +102,7 @@ double coupling_change(const std::vector<Term>& terms, const Point& q, const Poi
     double sum = 0;
     for (const auto& [factor, k, is_angle] : terms) {
         const double c = q[k], s = is_angle ? q[k + 1] : 0, dc = step[k], ds = is_angle ? step[k + 1] : 0;
-        sum += factor * (is_angle ? std::atan2(c * ds - s * dc, c * (c + dc) + s * (s + ds)) : dc);
+        sum += factor * (is_angle ? arc_tangent(c * ds - s * dc, c * (c + dc) + s * (s + ds)) : dc);
     }
     return sum;
 }

@@ -9,7 +9,7 @@
 
 #include "livens/multibody/constraint.h"
 
-namespace livens {
+namespace [[gnu::visibility("default")]] livens {
 
 /// One form, a displacement; or two, which are cosine and sine of an angle up to a common factor.
 struct JointCoordinate {

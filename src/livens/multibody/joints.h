@@ -8,7 +8,7 @@
 #include "livens/base/linear.h"
 #include "livens/multibody/constraint.h"
 
-namespace livens {
+namespace [[gnu::visibility("default")]] livens {
 
 /// A joint between `first` (a body or the world) and `second` (a body). A new kind of joint is a new function
 /// that fills in rows; nothing else in livens asks for the kind.

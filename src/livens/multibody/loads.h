@@ -13,7 +13,7 @@
 #include "livens/multibody/constraint.h"
 #include "livens/time/time_function.h"
 
-namespace livens {
+namespace [[gnu::visibility("default")]] livens {
 
 /// What a load may look at: the instant, and X and dX/dt of its one or two bodies (the world's where there is
 /// none).

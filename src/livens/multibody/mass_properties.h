@@ -6,7 +6,7 @@
 
 #include "livens/base/linear.h"
 
-namespace livens {
+namespace [[gnu::visibility("default")]] livens {
 
 /// Mass properties in body-fixed axes.
 struct MassProperties {

@@ -10,7 +10,7 @@
 #include "livens/multibody/joints.h"
 #include "livens/multibody/loads.h"
 
-namespace livens {
+namespace [[gnu::visibility("default")]] livens {
 
 /// Positions and their rates of all bodies at one instant.
 struct State {

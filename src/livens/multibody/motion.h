@@ -11,7 +11,7 @@
 #include "livens/time/basis.h"
 #include "livens/time/time_mesh.h"
 
-namespace livens {
+namespace [[gnu::visibility("default")]] livens {
 
 /// A function of time that is a polynomial in every element, or a quotient of two, by its values at that
 /// element's local nodes.

@@ -7,7 +7,7 @@
 
 #include "livens/multibody/model.h"
 
-namespace livens {
+namespace [[gnu::visibility("default")]] livens {
 
 struct UniqueReactions {
     std::vector<double> multipliers;     ///< of all rows of the model

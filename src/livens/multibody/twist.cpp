@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "livens/base/elementary.h"
 #include "livens/multibody/body.h"
 
 namespace livens::twist {
@@ -31,8 +32,9 @@ void displacement(const double* twist, const double* X, double* dX)
         q[0] = 1 - angle2 * (1.0 / 8 - angle2 * (1.0 / 384 - angle2 / 46080));
     } else {
         const double angle = std::sqrt(angle2);
-        factor = std::sin(0.5 * angle) / angle;
-        q[0] = std::cos(0.5 * angle);
+        const SineCosine half = sine_cosine(0.5 * angle);
+        factor = half.sine / angle;
+        q[0] = half.cosine;
     }
     for (int i = 0; i < 3; ++i) q[i + 1] = factor * w[i];
     displacement(twist, q, X, dX);
@@ -57,7 +59,7 @@ Vector3 turn_between(const Matrix34& from, const Matrix34& to)
     const Vector4 q = quaternion_from_directors(project_directors(R));
     const Vector3 v{q[1], q[2], q[3]};
     const double s = norm(v);
-    return s > 0 ? (2 * std::atan2(s, q[0]) / s) * v : Vector3{};
+    return s > 0 ? (2 * arc_tangent(s, q[0]) / s) * v : Vector3{};
 }
 
 Matrix34 moved(const Matrix34& X, const Vector3& step, const Vector3& turn)

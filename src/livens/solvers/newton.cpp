@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "livens/solvers/newton.h"
-
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <limits>
+
+#include "livens/base/elementary.h"
 
 namespace livens {
 
@@ -143,7 +144,7 @@ private:
             contraction = size_before_ > 0 ? size_ / size_before_ : 0.1 * contraction;
             if (size_ > far_step) return false;
         }
-        const double steps_left = std::log(tolerance_ / left()) / std::log(std::min(contraction, 0.9));
+        const double steps_left = logarithm(tolerance_ / left()) / logarithm(std::min(contraction, 0.9));
         return !(contraction > slow_contraction || whole_steps_ + steps_left > most_whole_steps);
     }
 

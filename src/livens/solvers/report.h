@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace livens {
+namespace [[gnu::visibility("default")]] livens {
 
 enum class SolveStatus {
     converged,

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-namespace livens {
+namespace [[gnu::visibility("default")]] livens {
 
 /// Square matrix by compressed columns; the rows of a column ascend strictly.
 struct SparseMatrix {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "livens/base/elementary.h"
 #include "livens/base/text.h"
 #include "livens/multibody/body.h"
 #include "livens/spacetime/lobatto/window.h"
@@ -93,8 +94,7 @@ public:
             if (!one.is_broken_off && found.largest <= span_.accuracy) return std::move(one.solution);
             if (tries == most_tries || tolerance_ <= finest) return give_up(std::move(one));
             const double over = found.largest / span_.accuracy * (one.is_broken_off ? 3 : 1);
-            const double share =
-                over > 0 ? std::pow(target / over, 1 + 0.5 / degree_of(method_)) : blind_share;
+            const double share = over > 0 ? power(target / over, 1 + 0.5 / degree_of(method_)) : blind_share;
             tolerance_ = std::max(finest, tolerance_ * std::min(0.3, share));
             length_ = std::min(length_, one.mean_length);
         }

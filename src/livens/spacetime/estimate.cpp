@@ -90,9 +90,7 @@ void add_lost_vibrations(const Model& model, const Motion& motion, ErrorEstimate
         }
     }
     if (shift == 0 && turn == 0) return;
-    const Balance b = balance(model, motion);
-    const double lost = b.energy.front() - (b.energy.back() - b.work.back());
-    const double root = std::sqrt(2 * std::max(lost, 0.0));
+    const double root = std::sqrt(2 * std::max(balance(model, motion).energy_loss, 0.0));
     for (double& error : found.position) error += root * shift / found.length;
     for (double& error : found.velocity) error += root * speed;
     for (std::size_t i = 0; i < found.orientation.size(); ++i)

@@ -7,8 +7,9 @@
 #include <vector>
 
 #include "livens/solvers/sparse.h"
+#include "livens/time/time_mesh.h"
 
-namespace livens {
+namespace [[gnu::visibility("default")]] livens {
 
 /// Continuous X of degree p per element, nodes and quadrature at Gauss-Lobatto points; order 2p at element
 /// ends.
@@ -100,6 +101,9 @@ inline bool is_elements(const Method& method)
 {
     return is_nodal(method) || std::holds_alternative<Mixed>(method);
 }
+
+/// The elements between the knots of a method that has some. Throws what is wrong with knots and weights.
+TimeMesh mesh_of_knots(const Mixed& mixed);
 
 /// "lobatto(6)", "radau(4)", "mixed(bspline, 2, natural, equal)", "midpoint", "endpoint", "auto".
 std::string name_of(const Method& method);

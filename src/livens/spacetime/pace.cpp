@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "livens/base/elementary.h"
 #include "livens/diagnostics/acceptance.h"
 #include "livens/diagnostics/diagnostics.h"
 
@@ -32,7 +33,7 @@ double order(Points points, int degree) { return exponent(points, degree) * (deg
 
 double velocity_jump_of(Points points, int degree, double error)
 {
-    return std::pow(error / local_error(points, degree, 1), 1 / exponent(points, degree));
+    return power(error / local_error(points, degree, 1), 1 / exponent(points, degree));
 }
 
 Pace::Pace(Points points, int degree, double tolerance, double first_length, std::vector<double> stops)
@@ -54,7 +55,7 @@ double Pace::next_end(double t) const
 double Pace::suggestion(double length, double jump) const
 {
     const double error = local_error(points_, degree_, jump);
-    return length * safety * std::pow(tolerance_ / error, 1 / order(points_, degree_));
+    return length * safety * power(tolerance_ / error, 1 / order(points_, degree_));
 }
 
 void Pace::accepted(double length, double jump, bool is_slow)
@@ -66,7 +67,7 @@ void Pace::accepted(double length, double jump, bool is_slow)
     if (is_rounding && tells_length_) return;
     if (!is_rounding && !tells_length_) sum_of_scales_ = n_accepted_ = 0;
     tells_length_ = !is_rounding;
-    sum_of_scales_ += std::log(length) - std::log(std::max(jump, least_jump)) / (degree_ + 1);
+    sum_of_scales_ += logarithm(length) - logarithm(std::max(jump, least_jump)) / (degree_ + 1);
     ++n_accepted_;
 }
 
@@ -80,8 +81,8 @@ bool Pace::refused(double length, double jump)
 double Pace::mean_length(int degree) const
 {
     if (n_accepted_ == 0) return 0;
-    const double scale = std::exp(sum_of_scales_ / n_accepted_);
-    return safety * scale * std::pow(velocity_jump_of(points_, degree, tolerance_), 1.0 / (degree + 1));
+    const double scale = exponential(sum_of_scales_ / n_accepted_);
+    return safety * scale * power(velocity_jump_of(points_, degree, tolerance_), 1.0 / (degree + 1));
 }
 
 double Pace::mean_stop() const

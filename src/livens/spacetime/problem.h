@@ -6,7 +6,7 @@
 
 #include "livens/multibody/model.h"
 
-namespace livens {
+namespace [[gnu::visibility("default")]] livens {
 
 /// What is known at one end of time.
 enum class Known {

@@ -11,7 +11,7 @@
 #include "livens/spacetime/problem.h"
 #include "livens/time/time_mesh.h"
 
-namespace livens {
+namespace [[gnu::visibility("default")]] livens {
 
 struct SolveOptions {
     /// Newton stops when the estimated error of the scaled increment is below this (relative to the motion

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-namespace livens {
+namespace [[gnu::visibility("default")]] livens {
 
 /// The polynomials of degree n - 1 that are 1 at one node and 0 at the others.
 /// Evaluated by the barycentric formula [Berrut and Trefethen 2004, eq. 4.2 and 9.3-9.5].

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-namespace livens {
+namespace [[gnu::visibility("default")]] livens {
 
 /// Points and weights on [0, 1], points ascending, weights adding up to 1.
 ///

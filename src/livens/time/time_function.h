@@ -7,7 +7,7 @@
 
 #include "livens/time/time_mesh.h"
 
-namespace livens {
+namespace [[gnu::visibility("default")]] livens {
 
 struct TimeValue {
     double value = 0;

@@ -6,7 +6,7 @@
 #include <variant>
 #include <vector>
 
-namespace livens {
+namespace [[gnu::visibility("default")]] livens {
 
 /// A side of an instant: loads that jump in time have two values there.
 enum class Side { left = -1, middle = 0, right = 1 };

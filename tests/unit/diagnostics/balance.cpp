@@ -63,6 +63,44 @@ TEST(Balance, OfAFreeFallIsExact)
     EXPECT_EQ(b.largest_kinetic, largest(b.kinetic));
 }
 
+TEST(Balance, InPiecesIsThatOfTheWhole)
+{
+    Fall f;
+    f.fall.velocities[2] *= 1.01;
+    f.fall.momenta[3] *= 0.99;
+    const Balance whole = balance(f.model, f.fall);
+    for (const int n_ends : {1, 2, 4, 5, 100}) {
+        std::vector<double> drift;
+        std::vector<Vector3> momentum;
+        int n_pieces = 0;
+        const BalanceFigures figures = balance(f.model, f.fall, n_ends, [&](Balance& piece) {
+            ++n_pieces;
+            EXPECT_LE(piece.t.size(), static_cast<std::size_t>(n_ends));
+            drift.insert(drift.end(), piece.energy_drift.begin(), piece.energy_drift.end());
+            momentum.insert(momentum.end(), piece.angular_momentum.begin(), piece.angular_momentum.end());
+        });
+        EXPECT_EQ(n_pieces, (4 + n_ends) / n_ends);   // five ends
+        EXPECT_EQ(drift, whole.energy_drift);
+        EXPECT_EQ(momentum, whole.angular_momentum);
+        EXPECT_EQ(figures.relative_energy_drift(), whole.relative_energy_drift());
+        EXPECT_EQ(figures.relative_energy_rise(), whole.relative_energy_rise());
+        EXPECT_EQ(figures.relative_energy_loss(), whole.relative_energy_loss());
+        EXPECT_EQ(figures.relative_linear_momentum_drift(), whole.relative_linear_momentum_drift());
+        EXPECT_EQ(figures.relative_angular_momentum_drift(), whole.relative_angular_momentum_drift());
+        EXPECT_EQ(figures.reference_impulse, whole.reference_impulse);
+    }
+    EXPECT_EQ(whole.largest_energy_drift, largest(whole.energy_drift));
+    double lowest = whole.energy[0], rise = 0;   // nothing is supplied
+    for (const double energy : whole.energy) {
+        lowest = std::min(lowest, energy);
+        rise = std::max(rise, energy - lowest);
+    }
+    EXPECT_GT(rise, 0);
+    EXPECT_NEAR(whole.largest_energy_rise, rise, 1e-12 * rise);
+    EXPECT_NEAR(whole.energy_loss, whole.energy.front() - whole.energy.back(), 1e-12 * rise);
+    EXPECT_EQ(whole.largest_change, std::abs(whole.potential.back() - whole.potential.front()));
+}
+
 TEST(Balance, ShowsAWrongVelocity)
 {
     Fall f;

@@ -180,21 +180,6 @@ inline void fill_motion(Motion& m, const Model& model, int n_elements)
     for (int e = 0; e <= n_elements; e += 2) m.block_ends.push_back(e);
 }
 
-inline void fill_balance(Balance& b, int n_ends)
-{
-    for (int i = 0; i < n_ends; ++i) {
-        const double x = 0.1 * i;
-        b.t.push_back(0.5 * i);
-        for (auto* list : {&b.kinetic, &b.potential, &b.energy, &b.work, &b.energy_drift,
-                           &b.linear_momentum_drift, &b.angular_momentum_drift})
-            list->push_back(x + static_cast<double>(list->size()));
-        for (auto* list : {&b.linear_momentum, &b.angular_momentum, &b.linear_impulse, &b.angular_impulse})
-            list->push_back({x, -x, 1 / (x + 3)});
-    }
-    b.largest_kinetic = 12.5;
-    b.largest_moment = std::numeric_limits<double>::denorm_min();
-}
-
 inline RunFile sample_run(const Model& model, int n_elements = 8)
 {
     RunFile run;
@@ -238,7 +223,8 @@ inline RunFile sample_run(const Model& model, int n_elements = 8)
     v.velocity_jump = 0.0625;
     v.velocity_jump_time = 3.5;
     v.linear_momentum_drift = 1e-11;
-    fill_balance(v.balance, n_elements + 1);
+    v.balance.largest_kinetic = 12.5;
+    v.balance.largest_moment = std::numeric_limits<double>::denorm_min();
     ErrorEstimate& e = run.estimate;
     e.n_bodies = 2;
     e.n_joints = 1;

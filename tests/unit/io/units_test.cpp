@@ -67,6 +67,11 @@ TEST(Units, AmbiguousAndUnknownOnesAreRefused)
         EXPECT_NE(reason, "") << text;
         EXPECT_NE(parse_quantity(text, "m").error, "") << text;
     }
+    for (const char* text : {"J/kg m", "m/s/s", "m^-1/s s"}) {
+        std::string reason;
+        parse_unit(text, reason);
+        EXPECT_NE(reason.find("as in kg/(m s)"), std::string::npos) << text << ": " << reason;
+    }
 }
 
 TEST(Units, OtherDimensionsAreRefused)

@@ -45,8 +45,8 @@ TEST(Verdict, OfAGoodRunHasFiguresAndNoReason)
         EXPECT_TRUE(s.verdict.reasons.empty());
         EXPECT_LT(s.verdict.energy_drift, is_coarse ? 0.05 : 0.01);
         EXPECT_LT(s.verdict.zigzag_positions, 0.01);
-        EXPECT_EQ(s.verdict.balance.energy.size(), s.motion.mesh.ends.size());
-        EXPECT_EQ(s.verdict.violations.joints.size(), s.motion.X.values.size() / 12);
+        EXPECT_GT(s.verdict.balance.largest_kinetic, 0);
+        EXPECT_TRUE(s.verdict.violations.joints.empty()) << "a verdict keeps nothing as long as the motion";
     }
 }
 
@@ -118,7 +118,7 @@ TEST(Verdict, OfEnergyThatRadauGainsIsSuspect)
     judge(model, s);
     EXPECT_EQ(s.report.status, SolveStatus::suspect);
     EXPECT_NEAR(s.verdict.energy_drift, 0.1, 1e-6);
-    EXPECT_LT(s.verdict.balance.energy.back(), s.verdict.balance.energy.front());
+    EXPECT_GT(s.verdict.balance.relative_energy_loss(), 0.5);
     EXPECT_TRUE(speaks_of(s.verdict.reasons, "energy"));
 }
 
@@ -130,7 +130,7 @@ TEST(Verdict, IsNotAskedForWhereTheCallerDoesNotWantIt)
     Solution s = solve(model, {model.start()}, make_time_mesh(0, 2, 20), Endpoint{}, options);
     EXPECT_EQ(s.report.status, SolveStatus::converged);
     EXPECT_TRUE(std::isnan(s.verdict.energy_drift));
-    EXPECT_TRUE(s.verdict.balance.energy.empty());
+    EXPECT_EQ(s.verdict.balance.largest_kinetic, 0);
     judge(model, s);
     EXPECT_EQ(s.report.status, SolveStatus::suspect) << "asked later, it says the same";
 }

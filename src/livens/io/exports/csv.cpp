@@ -49,19 +49,13 @@ void add_cells(std::string& line, const Matrix<Rows, Cols>& values)
     }
 }
 
-/// Energies are known at element ends; elsewhere they are formed from the state.
-void add_energies(std::string& line, const Model& model, const Run& run, double t)
+/// As in the balance: where loads jump, what follows.
+void add_energies(std::string& line, const Model& model, const Motion& motion, double t)
 {
-    const int end = element_end_at(run.motion.mesh, t);
-    double kinetic = 0, potential = 0;
-    if (end >= 0 && !run.verdict.balance.kinetic.empty() && !run.verdict.balance.potential.empty()) {
-        kinetic = run.verdict.balance.kinetic[end];
-        potential = run.verdict.balance.potential[end];
-    } else {
-        const State state = sample_state(run.motion, t);
-        kinetic = kinetic_energy(model, state.X, state.V);
-        potential = potential_energy(model, {t, Side::middle}, state.X, state.V);
-    }
+    const State state = sample_state(motion, t);
+    const Instant at{t, t == motion.end() ? Side::left : Side::right};
+    const double kinetic = kinetic_energy(model, state.X, state.V);
+    const double potential = potential_energy(model, at, state.X, state.V);
     add_cells(line, Vector3{kinetic, potential, kinetic + potential});
 }
 
@@ -85,7 +79,7 @@ void write_csv(const std::filesystem::path& file, const Model& model, const Run&
             add_cells(text, s.velocity);
             add_cells(text, s.angular_velocity);
         }
-        add_energies(text, model, run, t);
+        add_energies(text, model, run.motion, t);
         text += "\r\n";
     }
     replace_file(file, text);

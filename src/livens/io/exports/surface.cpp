@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "livens/base/elementary.h"
 #include "livens/io/exports/formats.h"
 
 namespace livens {
@@ -21,7 +22,7 @@ std::vector<Vector2> normals_of(const std::vector<Vector2>& profile)
     std::vector<Vector2> normals;
     for (std::size_t i = 0; i + 1 < profile.size(); ++i) {
         const double r = profile[i + 1][0] - profile[i][0], z = profile[i + 1][1] - profile[i][1];
-        const double size = std::hypot(r, z);
+        const double size = hypotenuse(r, z, 0);
         normals.push_back({z / size, -r / size});
     }
     return normals;
@@ -31,7 +32,7 @@ std::vector<Vector2> normals_of(const std::vector<Vector2>& profile)
 Vector2 blended(const Vector2& own, const Vector2& neighbour)
 {
     if (own[0] * neighbour[0] + own[1] * neighbour[1] < smooth_cosine) return own;
-    const double r = own[0] + neighbour[0], z = own[1] + neighbour[1], size = std::hypot(r, z);
+    const double r = own[0] + neighbour[0], z = own[1] + neighbour[1], size = hypotenuse(r, z, 0);
     return {r / size, z / size};
 }
 
@@ -75,8 +76,9 @@ private:
     void add_corner(double angle, const Vector2& at, double facing, const Vector2& normal)
     {
         const Vector3& stretch = outline_.stretch;
-        const Vector3 p{at[0] * std::cos(angle), at[0] * std::sin(angle), at[1]};
-        Vector3 n{normal[0] * std::cos(facing), normal[0] * std::sin(facing), normal[1]}, q;
+        const SineCosine turned = sine_cosine(angle), faced = sine_cosine(facing);
+        const Vector3 p{at[0] * turned.cosine, at[0] * turned.sine, at[1]};
+        Vector3 n{normal[0] * faced.cosine, normal[0] * faced.sine, normal[1]}, q;
         for (int i = 0; i < 3; ++i) {
             q[i] = place_[i] + stretch[i] * p[i];
             n[i] /= stretch[i];

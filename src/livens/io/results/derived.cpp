@@ -20,6 +20,9 @@ void append(std::vector<double>& out, const Values& values)
     out.insert(out.end(), values.data(), values.data() + Values::rows * Values::cols);
 }
 
+std::span<const double> all_of(const std::vector<double>& values) { return values; }
+std::span<const double> all_of(const std::vector<Vector3>& values) { return numbers(values); }
+
 /// A variable that is filled piece by piece.
 struct Column {
     int variable;
@@ -234,6 +237,54 @@ void write_nodes(RunWriter& archive, const char* name, const Field& field, const
     archive.later([&, variable] { file.append(variable, node_times(field, mesh)); });
 }
 
+using BalancePart = std::variant<std::vector<double> Balance::*, std::vector<Vector3> Balance::*>;
+
+struct BalanceVariable {
+    const char* name;
+    const char* units;
+    const char* long_name;
+    BalancePart part;
+};
+
+constexpr BalanceVariable balance_variables[] = {
+    {"balance_time", "s", "times of the balances: the element ends", &Balance::t},
+    {"kinetic_energy", "J", "kinetic energy", &Balance::kinetic},
+    {"potential_energy", "J", "potential energy of gravity and of loads that have one", &Balance::potential},
+    {"energy", "J", "kinetic and potential energy", &Balance::energy},
+    {"work", "J", "work of the loads without potential since the start", &Balance::work},
+    {"energy_error", "J", "|energy - energy at the start - work|", &Balance::energy_drift},
+    {"total_linear_momentum", "kg m s-1", "linear momentum of all bodies", &Balance::linear_momentum},
+    {"total_angular_momentum", "kg m2 s-1", "angular momentum of all bodies about the origin",
+     &Balance::angular_momentum},
+    {"linear_impulse", "kg m s-1", "impulse of gravity, loads and joints to the world since the start",
+     &Balance::linear_impulse},
+    {"angular_impulse", "kg m2 s-1", "its moment about the origin", &Balance::angular_impulse},
+    {"linear_momentum_error", "kg m s-1", "|linear momentum - at the start - impulse|",
+     &Balance::linear_momentum_drift},
+    {"angular_momentum_error", "kg m2 s-1", "|angular momentum - at the start - moment of the impulse|",
+     &Balance::angular_momentum_drift},
+};
+
+/// The series of the balance are a third of a motion of degree 1: they are made again while they are written.
+void write_balance(RunWriter& archive, const Model& model, const Motion& motion)
+{
+    std::vector<int> variables;
+    for (const BalanceVariable& v : balance_variables) {
+        const bool is_vector = v.part.index() == 1;
+        VariableInfo info{v.name, {"element_end"}, v.units, is_vector ? "inertial" : "none", v.long_name};
+        if (is_vector) info.dimensions.push_back("xyz");
+        variables.push_back(
+            archive.declare(info, NumberType::real, motion.mesh.ends.size() * (is_vector ? 3 : 1)));
+    }
+    archive.later([&file = archive.file(), &model, &motion, variables] {
+        balance(model, motion, 1 << 12, [&](Balance& piece) {
+            for (std::size_t i = 0; i < variables.size(); ++i)
+                std::visit([&](auto part) { file.append(variables[i], all_of(piece.*part)); },
+                           balance_variables[i].part);
+        });
+    });
+}
+
 /// Integrals over each element, as the paper shows them: of the Lagrangian the action, of the Hamiltonian and
 /// of the angular momentum what divided by the element's length is their mean.
 void write_integrals(RunWriter& archive, const Model& model, const Motion& motion)
@@ -260,21 +311,24 @@ void write_integrals(RunWriter& archive, const Model& model, const Motion& motio
     });
 }
 
-/// A run that was read from a file has not kept them.
-void write_violations(RunWriter& archive, const Model& model, const Run& run)
+void write_violations(RunWriter& archive, const Model& model, const Motion& motion)
 {
-    std::shared_ptr<const ViolationReport> made;
-    if (run.verdict.violations.joints.empty())
-        made = std::make_shared<const ViolationReport>(violations(model, run.motion, 0, false));
-    const ViolationReport& at = made ? *made : run.verdict.violations;
-    if (at.joints.empty()) return;
-    const auto write = [&](const char* name, const char* long_name, const std::vector<double>& values) {
-        archive.list({name, {"X_node"}, "1", "none", long_name}, values);
+    if (motion.X.empty()) return;
+    ClassicWriter& file = archive.file();
+    const auto declare = [&](bool is_there, const char* name, const char* long_name) {
+        if (!is_there) return -1;
+        return archive.declare({name, {"X_node"}, "1", "none", long_name}, NumberType::real,
+                               file.dimension("X_node"));
     };
-    if (model.n_rows() > 0) write("joint_violation", "largest |Phi| / scale of the joints' rows", at.joints);
-    if (!std::ranges::all_of(model.bodies(), &Body::is_point))
-        write("rigidity_violation", "largest |Phi| of the bodies' rigidity", at.rigidity);
-    archive.later([made] {});   // keeps them until they are written
+    const int joints =
+        declare(model.n_rows() > 0, "joint_violation", "largest |Phi| / scale of the joints' rows");
+    const int rigidity = declare(!std::ranges::all_of(model.bodies(), &Body::is_point), "rigidity_violation",
+                                 "largest |Phi| of the bodies' rigidity");
+    archive.later([&, joints, rigidity] {
+        const ViolationReport at = violations(model, motion, 0, false);
+        if (joints >= 0) file.append(joints, std::span(at.joints));
+        if (rigidity >= 0) file.append(rigidity, std::span(at.rigidity));
+    });
 }
 
 void write_model(RunWriter& archive, const Model& model)
@@ -319,12 +373,13 @@ std::string manifest(const Run& run)
 void write_derived(RunWriter& archive, const Model& model, const Run& run)
 {
     const Motion& m = run.motion;
+    write_balance(archive, model, m);
     write_nodes(archive, "X_node", m.X, m.mesh);
     write_nodes(archive, "P_node", m.P, m.mesh);
     write_nodes(archive, "multiplier_node", m.multipliers, m.mesh);
     write_nodes(archive, "rigidity_node", m.rigidity, m.mesh);
     write_integrals(archive, model, m);
-    write_violations(archive, model, run);
+    write_violations(archive, model, m);
     write_model(archive, model);
     const auto samples = std::make_shared<Samples>(archive, model, run);
     archive.later([samples] { samples->write(); });

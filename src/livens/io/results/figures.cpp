@@ -79,15 +79,17 @@ constexpr Figure figures[] = {
     {"growth", "1", "largest of a perturbation of the start, in lengths and rad", &Verdict::growth, false, 2},
     {"horizon", "s", "where 1e-13 at the start has grown to 1e-2; not known also if after the end",
      &Verdict::horizon, false, 2},
-    {"largest_kinetic_energy", "J", "over the element ends", &Balance::largest_kinetic},
-    {"largest_momentum", "kg m/s", "over the element ends, of the sum of abs(p)", &Balance::largest_momentum},
+    {"largest_kinetic_energy", "J", "over the element ends", &BalanceFigures::largest_kinetic},
+    {"largest_momentum", "kg m/s", "over the element ends, of the sum of abs(p)",
+     &BalanceFigures::largest_momentum},
     {"largest_moment_of_momentum", "kg m2/s", "likewise of the sum over columns of abs(x) abs(P)",
-     &Balance::largest_moment},
+     &BalanceFigures::largest_moment},
     {"reference_energy", "J", "largest sum of abs(F) (abs(x) + length), plus the largest potential energy",
-     &Balance::reference_energy},
+     &BalanceFigures::reference_energy},
     {"reference_impulse", "N s", "integral of the sum of abs(F) and of what stiffness adds",
-     &Balance::reference_impulse},
-    {"reference_moment", "N m s", "integral of these times abs(x) + length", &Balance::reference_moment},
+     &BalanceFigures::reference_impulse},
+    {"reference_moment", "N m s", "integral of these times abs(x) + length",
+     &BalanceFigures::reference_moment},
     {"n_bodies", "1", "bodies", &Motion::n_bodies},
     {"n_rows", "1", "constraint rows of the joints", &Motion::n_rows},
     {"order_at_element_ends", "1", "order of accuracy of positions and momenta at element ends",
@@ -104,7 +106,8 @@ auto& part(AnyRun& run)
 {
     if constexpr (std::is_same_v<Owner, SolveReport>) return run.report;
     else if constexpr (std::is_same_v<Owner, Verdict>) return run.verdict;
-    else if constexpr (std::is_same_v<Owner, Balance>) return run.verdict.balance;
+    else if constexpr (std::is_same_v<Owner, BalanceFigures>)
+        return run.verdict.balance;
     else if constexpr (std::is_same_v<Owner, ErrorEstimate>)
         return run.estimate;
     else return run.motion;

@@ -12,7 +12,7 @@ namespace livens {
 /// Where the number stands in a Run.
 using FigureMember =
     std::variant<int SolveReport::*, long SolveReport::*, long long SolveReport::*, double SolveReport::*,
-                 double Verdict::*, double Balance::*, int Motion::*, double ErrorEstimate::*>;
+                 double Verdict::*, double BalanceFigures::*, int Motion::*, double ErrorEstimate::*>;
 
 struct Figure {
     const char* name;   ///< of the attribute, and the key in JSON

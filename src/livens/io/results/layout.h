@@ -134,33 +134,6 @@ void visit_motion(Archive& archive, AnyMotion& m)
     indices("block_end", "element ends, from 0, between blocks of elements solved together", m.block_ends);
 }
 
-template <class Archive, class AnyBalance>
-void visit_balance(Archive& archive, AnyBalance& b)
-{
-    const auto series = [&](const char* name, const char* units, const char* meaning, auto& values) {
-        archive.list({name, {"element_end"}, units, "none", meaning}, values);
-    };
-    const auto vectors = [&](const char* name, const char* units, const char* meaning, auto& values) {
-        archive.list({name, {"element_end", "xyz"}, units, "inertial", meaning}, values);
-    };
-    series("balance_time", "s", "times of the balances: the element ends", b.t);
-    series("kinetic_energy", "J", "kinetic energy", b.kinetic);
-    series("potential_energy", "J", "potential energy of gravity and of loads that have one", b.potential);
-    series("energy", "J", "kinetic and potential energy", b.energy);
-    series("work", "J", "work of the loads without potential since the start", b.work);
-    series("energy_error", "J", "|energy - energy at the start - work|", b.energy_drift);
-    vectors("total_linear_momentum", "kg m s-1", "linear momentum of all bodies", b.linear_momentum);
-    vectors("total_angular_momentum", "kg m2 s-1", "angular momentum of all bodies about the origin",
-            b.angular_momentum);
-    vectors("linear_impulse", "kg m s-1", "impulse of gravity, loads and joints to the world since the start",
-            b.linear_impulse);
-    vectors("angular_impulse", "kg m2 s-1", "its moment about the origin", b.angular_impulse);
-    series("linear_momentum_error", "kg m s-1", "|linear momentum - at the start - impulse|",
-           b.linear_momentum_drift);
-    series("angular_momentum_error", "kg m2 s-1", "|angular momentum - at the start - moment of the impulse|",
-           b.angular_momentum_drift);
-}
-
 template <class Archive, class AnyEstimate>
 void visit_estimate(Archive& archive, AnyEstimate& e)
 {
@@ -182,7 +155,6 @@ void visit_run(Archive& archive, AnyRun& run)
     visit_head(archive, run);
     visit_model(archive, run);
     visit_motion(archive, run.motion);
-    visit_balance(archive, run.verdict.balance);
     visit_estimate(archive, run.estimate);
 }
 

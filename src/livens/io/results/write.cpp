@@ -25,15 +25,17 @@ std::uint64_t length_of(const std::string& dimension)
 
 std::string text_dimension(const std::string& name) { return name + "_length"; }
 
+}   // namespace
+
 void check_model(const Model& model, const Run& run)
 {
     bool fits = model.n_bodies() == run.motion.n_bodies && model.n_rows() == run.motion.n_rows &&
                 model.joints().size() == run.joint_names.size();
-    for (int b = 0; fits && b < model.n_bodies(); ++b) fits = model.bodies()[b].name == run.body_names[b];
-    if (!fits) throw IoError("cannot write a run with another model than its own");
+    for (int b = 0; fits && b < model.n_bodies(); ++b)
+        fits =
+            model.bodies()[b].name == run.body_names[b] && model.bodies()[b].is_point == run.body_is_point[b];
+    if (!fits) throw IoError("the motion is one of another model than the scenario's", "io-damaged");
 }
-
-}   // namespace
 
 int RunWriter::declare(const VariableInfo& info, NumberType type, std::size_t n_values)
 {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "livens/base/elementary.h"
 #include "livens/base/text.h"
 #include "livens/io/scenario/builder.h"
 
@@ -26,9 +27,8 @@ std::vector<std::array<double, 2>> arc(double from, double to, double radius, do
     constexpr int steps = 6;   // a quarter of the way round has as many as the equator
     std::vector<std::array<double, 2>> points;
     for (int i = 0; i <= steps; ++i) {
-        const double angle = from + (to - from) * i / steps;
-        const double r = std::cos(angle);
-        points.push_back({r > 1e-9 ? radius * r : 0, height + radius * std::sin(angle)});
+        const auto [sine, cosine] = sine_cosine(from + (to - from) * i / steps);
+        points.push_back({cosine > 1e-9 ? radius * cosine : 0, height + radius * sine});
     }
     return points;
 }

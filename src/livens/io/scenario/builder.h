@@ -111,8 +111,6 @@ bool follows_accuracy(const Section& time, const Method& method);
 
 /// Knots make the mesh.
 bool has_knots(const Method& method);
-/// Throws InputError for knots and weights that make no basis.
-TimeMesh mesh_of_knots(const Mixed& mixed);
 
 /// What motion and equations will take at least; a scenario of a few lines must not fill the memory of a
 /// machine. The motion has at most 8 GiB, the factors of one block's matrix (mixed) too: 150 entries of

@@ -159,29 +159,57 @@ void check_mixed(const Section& section, const Mixed& mixed)
                       {"nurbs are B-splines with weights", "without weights they are basis = \"bspline\""});
 }
 
+int degree_of(const Method& method)
+{
+    if (const auto* lobatto = std::get_if<Lobatto>(&method)) return lobatto->degree;
+    if (const auto* radau = std::get_if<Radau>(&method)) return radau->degree;
+    const auto* mixed = std::get_if<Mixed>(&method);
+    return mixed != nullptr ? mixed->degree : 1;
+}
+
+double elements_at_once(int window, double n_elements)
+{
+    return window > 0 ? std::min<double>(window, n_elements) : n_elements;
+}
+
 /// Numbers of Field and end values a node and an element end, see Motion.
 double motion_bytes(const Model& model, const Method& method, double n_elements)
 {
     const double bodies = model.n_bodies(), rows = model.n_rows();
     const double at_ends = 48 * bodies + 2 * rows;   // P, V, and X'' on both sides
-    double inside = 12 * bodies + rows;
-    if (const Lobatto* lobatto = std::get_if<Lobatto>(&method)) inside *= lobatto->degree;
-    if (const Radau* radau = std::get_if<Radau>(&method)) inside *= radau->degree;
-    if (const Mixed* mixed = std::get_if<Mixed>(&method))   // momenta and rigidity have fields of their own
-        inside = (30 * bodies + rows) * mixed->degree;
-    return sizeof(double) * n_elements * (inside + at_ends);
+    // The elements mixed have fields of momenta and of rigidity of their own.
+    const double inside = (std::holds_alternative<Mixed>(method) ? 30 : 12) * bodies + rows;
+    return sizeof(double) * n_elements * (inside * std::max(degree_of(method), 1) + at_ends);
+}
+
+/// Of lobatto's elements that are solved together: blocks of the unknowns of one node, a row of 6 (3 for
+/// point masses) a body, and what belongs to a node besides. Chains of 1, 4 and 8 bodies took 4.4, 29 and 87
+/// kB a node.
+double window_bytes(const Model& model, const Lobatto& lobatto, double n_elements)
+{
+    if (lobatto.window == 1) return 0;
+    double unknowns = 0;
+    for (const Body& body : model.bodies()) unknowns += body.is_point ? 3 : 6;
+    return lobatto.degree * elements_at_once(lobatto.window, n_elements) * unknowns * (600 + 24 * unknowns);
 }
 
 /// Of the factors of one block's matrix, which outweigh all else.
 double matrix_bytes(const Model& model, const Mixed& mixed, double n_elements)
 {
-    const double at_once = mixed.window > 0 ? std::min<double>(mixed.window, n_elements) : n_elements;
     double unknowns = model.n_rows();   // a node
     for (const Body& body : model.bodies()) unknowns += body.is_point ? 6 : 30;
     const double entries = model.joints().empty() ? least_entries_per_unknown
                                                   : std::max(least_entries_per_unknown,
                                                              entries_per_unknown_and_body * model.n_bodies());
-    return unknowns * mixed.degree * at_once * entries * bytes_per_factor_entry;
+    return unknowns * mixed.degree * elements_at_once(mixed.window, n_elements) * entries *
+           bytes_per_factor_entry;
+}
+
+double system_bytes(const Model& model, const Method& method, double n_elements)
+{
+    if (const auto* lobatto = std::get_if<Lobatto>(&method)) return window_bytes(model, *lobatto, n_elements);
+    const auto* mixed = std::get_if<Mixed>(&method);
+    return mixed != nullptr ? matrix_bytes(model, *mixed, n_elements) : 0;
 }
 
 std::string gibibytes(double bytes)
@@ -239,8 +267,6 @@ bool has_knots(const Method& method)
     return mixed != nullptr && mixed::basis_of(*mixed).has_knots && !mixed->knots.empty();
 }
 
-TimeMesh mesh_of_knots(const Mixed& mixed) { return {mixed::basis_of(mixed).space(mixed, {}, {}).ends()}; }
-
 bool check_size(const Model& model, const Method& method, double n_elements, const Place& place,
                 Findings& findings)
 {
@@ -253,12 +279,32 @@ bool check_size(const Model& model, const Method& method, double n_elements, con
                                   gibibytes(most),
                               {what, help});
     };
-    const Mixed* mixed = std::get_if<Mixed>(&method);
     return fits("the motion", motion_bytes(model, method, n_elements), max_motion_bytes,
                 "use fewer elements; a higher degree makes up for it") &&
-           fits("the system of one block",
-                mixed != nullptr ? matrix_bytes(model, *mixed, n_elements) : 0, max_matrix_bytes,
+           fits("the system of one block", system_bytes(model, method, n_elements), max_matrix_bytes,
                 "solve fewer of them at once, for instance with window = 1000 in [method]");
+}
+
+MemoryNeed memory_needed(const Scenario& scenario)
+{
+    const Model& model = scenario.model;
+    Method method = scenario.method;
+    const bool is_march =
+        scenario.conditions.at_start == Known::state || scenario.conditions.at_end == Known::state;
+    if (auto* lobatto = std::get_if<Lobatto>(&method); lobatto != nullptr && !is_march) lobatto->window = 0;
+    const auto* mesh = std::get_if<TimeMesh>(&scenario.time);
+    const double n_output = static_cast<double>(scenario.output.size());
+    // for an accuracy at least one between output times is found
+    const double n = mesh != nullptr ? mesh->n_elements() : std::max(n_output - 1, 1.0);
+    const bool is_estimated = scenario.options.estimate == SolveOptions::Estimate::second;
+    const double estimates =
+        is_estimated ? 3 * model.n_bodies() + static_cast<int>(model.joints().size()) : 0;
+    MemoryNeed need;
+    need.motion =
+        motion_bytes(model, method, n) + sizeof(double) * (2 * n + n_output);   // ends and iterations
+    need.system = system_bytes(model, method, n);
+    need.checks = sizeof(double) * (estimates * n + 6 * n * degree_of(method)) + (8u << 20);
+    return need;
 }
 
 }   // namespace livens

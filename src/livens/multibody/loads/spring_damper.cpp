@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <utility>
 
+#include "livens/base/elementary.h"
 #include "livens/multibody/detail/load_values.h"
 
 namespace livens {
@@ -25,7 +26,7 @@ struct Spring {
         Line line;
         line.r = arguments.X[1] * points[1] - arguments.X[0] * points[0];
         line.w = arguments.V[1] * points[1] - arguments.V[0] * points[0];
-        line.l = std::hypot(line.r[0], line.r[1], line.r[2]);
+        line.l = hypotenuse(line.r[0], line.r[1], line.r[2]);
         if (line.l > 0)
             for (int i = 0; i < 3; ++i) line.u[i] = line.r[i] / line.l;
         line.rate = dot(line.u, line.w);

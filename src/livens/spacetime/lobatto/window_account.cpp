@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "livens/base/largest.h"
+#include "livens/diagnostics/largest.h"
 #include "livens/spacetime/lobatto/window.h"
 
 namespace livens {

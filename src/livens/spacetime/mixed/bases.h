@@ -23,8 +23,8 @@ struct Basis {
                        const std::vector<double>& kinks);
 };
 
-/// In the order of Mixed::Basis.
-std::span<const Basis> bases();
+/// In the order of Mixed::Basis. Exported, as scenarios make their keys of it.
+[[gnu::visibility("default")]] std::span<const Basis> bases();
 
 inline const Basis& basis_of(const Mixed& method) { return bases()[static_cast<std::size_t>(method.basis)]; }
 

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "livens/base/error.h"
+#include "livens/spacetime/mixed/bases.h"
 #include "livens/spacetime/mixed/window.h"
 #include "livens/spacetime/windows.h"
 
@@ -104,6 +105,8 @@ void check_blocks(const Conditions& conditions, const TimeMesh& mesh, const Mixe
 }
 
 }   // namespace
+
+TimeMesh mesh_of_knots(const Mixed& method) { return {basis_of(method).space(method, {}, {}).ends()}; }
 
 void check_mixed(const Model& model, const Conditions& conditions, const TimeMesh& mesh, const Mixed& method)
 {
