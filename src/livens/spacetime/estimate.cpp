@@ -54,6 +54,7 @@ bool Second::advance(int end)
 {
     const int first = std::min(at_, end), last = std::max(at_, end);
     TimeMesh mesh{{first_.mesh.ends.begin() + first, first_.mesh.ends.begin() + last + 1}};
+    mesh.required = mesh.ends;
     for (const double t : missed(mesh, model_.load_breaks()))   // what one solution missed, two would
         mesh.ends.insert(std::ranges::upper_bound(mesh.ends, t), t);
     if (!is_nodal(method_)) mesh = halved(mesh);

@@ -94,7 +94,8 @@ std::vector<double> growth(const Model& model, const Problem& problem, const Met
     double so_far = 1;   // growth at the near end of the piece
     for (int first = 0, n = motion.n_elements(); first < n; first += piece) {
         const int last = std::min(first + piece, n);
-        const TimeMesh mesh{{motion.mesh.ends.begin() + first, motion.mesh.ends.begin() + last + 1}};
+        TimeMesh mesh{{motion.mesh.ends.begin() + first, motion.mesh.ends.begin() + last + 1}};
+        mesh.required = mesh.ends;
         const Solution beside = solve(model, {{neighbour}}, mesh, method, quiet);
         if (!beside.report.converged()) return grown;
         const double begin = distance(model, motion.at_end(first), beside.motion.at_end(0));

@@ -217,12 +217,17 @@ Closed LobattoWindow::close(const Trust& trust, SolveReport& report)
     const bool is_watched = trust.turns || !std::isinf(trust.velocity_jump);
     Closed closed;
     for (int e = 0; e < stretch_.n_elements(); ++e) {
+        closed.loss = trust.full_rank ? rank_loss(e) : RankLoss::none;
+        closed.is_refused = closed.loss != RankLoss::none;
+        if (closed.is_refused) return closed;
         if (!end_element(e, report)) return closed;
         if (is_watched) closed.velocity_jump = velocity_jump(e, trust.turns);
         closed.is_refused = !(closed.velocity_jump <= trust.velocity_jump);
         if (closed.is_refused) return closed;
         close_element(e);
         ++closed.n_elements;
+        for (int A = e * system_.rule().degree; A <= (e + 1) * system_.rule().degree; ++A)
+            smallest_pivot_ = std::min(smallest_pivot_, system_.nodes().pivot(A));
     }
     front_.is_ready = true;
     return closed;

@@ -88,10 +88,26 @@ double LobattoWindow::velocity_jump(int e, bool refuse_turns) const
     return largest;
 }
 
+/// By the smallest pivots at the nodes of an element against the largest of them: a hundredth at its end,
+/// where velocities and accelerations are projected, and a ten-thousandth inside, where positions alone are.
+RankLoss LobattoWindow::rank_loss(int e) const
+{
+    constexpr double least_at_end = 1e-2, least_inside = 1e-4;
+    const int p = system_.rule().degree;
+    const Nodes& nodes = system_.nodes();
+    double largest = 0, inside = 1;
+    for (int a = 0; a <= p; ++a) {
+        raise_to(largest, nodes.pivot(e * p + a));
+        if (a > 0 && a < p) inside = std::min(inside, nodes.pivot(e * p + a));
+    }
+    if (nodes.pivot((e + 1) * p) < least_at_end * largest) return RankLoss::at_end;
+    return inside < least_inside * largest ? RankLoss::inside : RankLoss::none;
+}
+
 void LobattoWindow::describe(SolveReport& report) const
 {
     report.unknowns = std::max(report.unknowns, static_cast<int>(system_.balances().reduced().size()));
-    report.smallest_pivot = std::min(report.smallest_pivot, system_.nodes().smallest_pivot());
+    report.smallest_pivot = std::min(report.smallest_pivot, smallest_pivot_);
     report.guess_factorisations = series_.factorisations();
     report.evaluations = system_.evaluations() + series_.evaluations();
     system_.elimination().describe(report);
