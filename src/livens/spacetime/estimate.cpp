@@ -4,6 +4,8 @@
 #include <chrono>
 #include <variant>
 
+#include "livens/base/error.h"
+#include "livens/base/text.h"
 #include "livens/spacetime/second.h"
 
 namespace livens {
@@ -59,7 +61,14 @@ bool Second::advance(int end)
         mesh.ends.insert(std::ranges::upper_bound(mesh.ends, t), t);
     if (!is_nodal(method_)) mesh = halved(mesh);
     const auto begin = std::chrono::steady_clock::now();
-    Solution second = solve(model_, problem_, mesh, method_, options_);
+    Solution second;
+    try {
+        second = solve(model_, problem_, mesh, method_, options_);
+    } catch (const InputError& error) {   // about a state that the last piece made, not one that was given
+        second.report.status = SolveStatus::singular;
+        second.report.message =
+            error.complaint().message + " of a piece at t = " + to_text(mesh.start(), 6) + " s";
+    }
     seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     report_ = std::move(second.report);
     evaluations_ += report_.evaluations;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "livens/base/error.h"
 #include "livens/multibody/body.h"
 #include "livens/multibody/twist.h"
 #include "livens/spacetime/solve.h"
@@ -96,7 +97,12 @@ std::vector<double> growth(const Model& model, const Problem& problem, const Met
         const int last = std::min(first + piece, n);
         TimeMesh mesh{{motion.mesh.ends.begin() + first, motion.mesh.ends.begin() + last + 1}};
         mesh.required = mesh.ends;
-        const Solution beside = solve(model, {{neighbour}}, mesh, method, quiet);
+        Solution beside;
+        try {
+            beside = solve(model, {{neighbour}}, mesh, method, quiet);
+        } catch (const InputError&) {   // the motion has come to a singular position
+            return grown;
+        }
         if (!beside.report.converged()) return grown;
         const double begin = distance(model, motion.at_end(first), beside.motion.at_end(0));
         if (!(begin > 0)) return {};   // nothing can move

@@ -8,6 +8,7 @@
 
 #include "livens/base/error.h"
 #include "livens/base/text.h"
+#include "livens/multibody/singular.h"
 #include "livens/spacetime/accuracy.h"
 #include "livens/spacetime/guess.h"
 #include "livens/spacetime/lobatto/window.h"
@@ -196,6 +197,7 @@ Solution solve_by_steps(const Model& model, const Problem& problem, const TimeMe
                         const Method& method, const SolveOptions& options)
 {
     const ClosedStart start = close_start(model, problem.conditions.start, options.initial);
+    refuse_singular_start(model, start);
     const auto rule =
         std::holds_alternative<Midpoint>(method) ? SteppingRule::midpoint : SteppingRule::endpoint;
     SteppingResult result = march_stepping(model, start, mesh, rule,

@@ -199,8 +199,8 @@ private:
         if (is_march_) compare(first, last);
         const int end = options_.direction > 0 ? last : first;
         const bool is_single = last - first == 1;
-        const Closed closed =
-            close(options_.trust, !is_single || can_move(end), !is_single || may_divide(first, last, outcome));
+        const Closed closed = close(options_.trust, !is_single || can_move(end),
+                                    !is_single || may_divide(first, last, outcome));
         if (!is_single || closed.loss == RankLoss::none) return take(first, last, closed, outcome);
         if (closed.loss == RankLoss::inside) return divide_element(first, uneven);
         count_shift(mesh_.ends[end]);

@@ -14,6 +14,10 @@ namespace livens {
 
 namespace {
 
+/// Of the largest pivot in an element: below, reactions at its end have no digit left (docs/theory.md,
+/// "Singular positions").
+constexpr double least_for_reactions = 1e-4;
+
 /// Re-orthonormalises directors that have drifted beyond rounding: one Newton step of the polar factor.
 void polish(double* X)
 {
@@ -327,6 +331,8 @@ void LobattoWindow::close_element(int e)
         next.look_back(here, stretch_.h(e) > 0);
     front_.now = 1 - front_.now;
     record_.end(mesh_end(e + 1), front_.here(), instant_, is_jump(next.t));
+    if (rank_left(e, p, p) < least_for_reactions)
+        record_.forget_reactions(mesh_end(e + 1), instant_.weak_rows(front_.here()));
 }
 
 void LobattoWindow::record_element(int e)

@@ -63,6 +63,7 @@ private:
     void take_spin_of_polynomial(int e);
     bool end_element(int e, SolveReport& report);
     double velocity_jump(int e, bool refuse_turns) const;
+    double rank_left(int e, int first, int last) const;
     RankLoss rank_loss(int e) const;
     void close_element(int e);
     void record_element(int e);

@@ -88,20 +88,25 @@ double LobattoWindow::velocity_jump(int e, bool refuse_turns) const
     return largest;
 }
 
-/// By the smallest pivots at the nodes of an element against the largest of them: a hundredth at its end,
-/// where velocities and accelerations are projected, and a ten-thousandth inside, where positions alone are.
+/// Pivots at local nodes first..last of an element: the smallest of them by the largest of all its nodes.
+double LobattoWindow::rank_left(int e, int first, int last) const
+{
+    const int p = system_.rule().degree;
+    double largest = 0, smallest = std::numeric_limits<double>::infinity();
+    for (int a = 0; a <= p; ++a) {
+        const double pivot = system_.nodes().pivot(e * p + a);
+        raise_to(largest, pivot);
+        if (a >= first && a <= last) smallest = std::min(smallest, pivot);
+    }
+    return smallest / largest;
+}
+
 RankLoss LobattoWindow::rank_loss(int e) const
 {
-    constexpr double least_at_end = 1e-2, least_inside = 1e-4;
+    constexpr double least = 1e-2;   // docs/theory.md, "Singular positions"
     const int p = system_.rule().degree;
-    const Nodes& nodes = system_.nodes();
-    double largest = 0, inside = 1;
-    for (int a = 0; a <= p; ++a) {
-        raise_to(largest, nodes.pivot(e * p + a));
-        if (a > 0 && a < p) inside = std::min(inside, nodes.pivot(e * p + a));
-    }
-    if (nodes.pivot((e + 1) * p) < least_at_end * largest) return RankLoss::at_end;
-    return inside < least_inside * largest ? RankLoss::inside : RankLoss::none;
+    if (rank_left(e, p, p) < least) return RankLoss::at_end;
+    return rank_left(e, 1, p - 1) < least ? RankLoss::inside : RankLoss::none;
 }
 
 void LobattoWindow::describe(SolveReport& report) const
