@@ -308,9 +308,9 @@ void refuse_singular_start(const Model& model, const ClosedStart& closed)
     if (n > 2) help += "; or another";
     throw InputError({"start-singular", "joint[" + model.joints()[model.row_joint(m.row)].name + "]",
                       "the joints are in a singular position at the start" +
-                          std::string(!m.are_possible   ? ", and its velocities lead out of the joints"
+                          std::string(!m.are_possible   ? ", and velocities lead out of them in second order"
                                       : m.choose_branch ? ", from which no method starts"
-                                                        : ", and its velocities choose no motion"),
+                                                        : ", and the velocities choose no motion"),
                       what, "", "the joints hold less there than beside it, and several motions may meet",
                       help});
 }
