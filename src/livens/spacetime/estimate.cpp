@@ -65,6 +65,7 @@ bool Second::advance(int end)
     try {
         second = solve(model_, problem_, mesh, method_, options_);
     } catch (const InputError& error) {   // about a state that the last piece made, not one that was given
+        if (error.complaint().code != "start-singular") throw;
         second.report.status = SolveStatus::singular;
         second.report.message =
             error.complaint().message + " of a piece at t = " + to_text(mesh.start(), 6) + " s";

@@ -100,7 +100,8 @@ std::vector<double> growth(const Model& model, const Problem& problem, const Met
         Solution beside;
         try {
             beside = solve(model, {{neighbour}}, mesh, method, quiet);
-        } catch (const InputError&) {   // the motion has come to a singular position
+        } catch (const InputError& error) {   // the motion has come to a singular position
+            if (error.complaint().code != "start-singular") throw;
             return grown;
         }
         if (!beside.report.converged()) return grown;
