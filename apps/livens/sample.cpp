@@ -185,6 +185,7 @@ void joint_members(JsonWriter& json, const Query& q, double t)
     json.member("estimated_reaction_error", joint_error(q, t));
     json.member("source", source_of(q, s, t));
     json.member("unique", s.is_unique);
+    json.member("bounded", s.is_bounded);
 }
 
 /// One instant: its members stand at the top; several: a list `samples`.
@@ -226,6 +227,9 @@ std::string text_of(const Query& q, double t)
     std::string out = fmt::format("t = {} s\n", to_text(t));
     if (q.arguments.body.empty()) {
         const JointSample s = joint_at(q, t);
+        if (!s.is_bounded)
+            return out +
+                   "  (no force or torque: the joints lose rank here, and reactions grow without bound)\n";
         add_row(out, "force", "N", s.right.force);
         add_row(out, "torque", "N m", s.right.torque);
         if (!(s.left.force == s.right.force && s.left.torque == s.right.torque)) {

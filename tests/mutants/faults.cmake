@@ -131,6 +131,14 @@ livens_mutant(NAME turns_of_an_element
               TESTS_OF convergence
               MUST_FAIL Couplings.AnElementMayTurnByMoreThanAHalf)
 
+# Nodes in positions where the joints lose rank are taken as they come.
+livens_mutant(NAME nodes_in_singular_positions
+              FILE spacetime/lobatto/window_account.cpp
+              OLD [[constexpr double least = 1e-2;]]
+              NEW [[constexpr double least = 0;]]
+              TESTS_OF convergence
+              MUST_FAIL SingularPositions.NoElementEndsThere SingularPositions.NoInnerNodeLiesThere)
+
 # Reflections that lead with whichever entry comes next: directions across the plane mix with those in it.
 livens_mutant(NAME reflections_without_choice
               FILE solvers/dense.cpp

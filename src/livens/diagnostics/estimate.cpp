@@ -89,6 +89,7 @@ void ErrorMeter::compare_reactions(int end, const Motion& finer)
     const double t = motion_.mesh.ends[end];
     const std::vector<JointSample> a = sample_joints(model_, motion_, t), b = sample_joints(model_, finer, t);
     for (std::size_t j = 0; j < a.size(); ++j) {
+        if (!a[j].is_bounded || !b[j].is_bounded) continue;   // no number stands for it
         estimate_.reaction[static_cast<std::size_t>(end * estimate_.n_joints) + j] =
             factor_ * gap_between(a[j], b[j], estimate_.length);
         raise_to(estimate_.largest_reaction, size_of(a[j], estimate_.length));

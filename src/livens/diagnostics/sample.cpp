@@ -127,6 +127,31 @@ std::vector<BodySample> sample_bodies(const Model& model, const Motion& motion, 
     return samples;
 }
 
+namespace {
+
+constexpr Reaction unknown{{nan, nan, nan}, {nan, nan, nan}};
+
+/// Joints all of whose multipliers are numbers.
+std::vector<bool> bounded_joints(const Model& model, std::span<const double> left,
+                                 std::span<const double> right)
+{
+    std::vector<bool> is_bounded(model.joints().size(), true);
+    for (int r = 0; r < model.n_rows(); ++r)
+        if (std::isnan(left[r]) || std::isnan(right[r])) is_bounded[model.row_joint(r)] = false;
+    return is_bounded;
+}
+
+/// Without what is none, which would spread to all joints of a loop.
+std::vector<double> numbers_of(std::span<const double> multipliers)
+{
+    std::vector<double> numbers(multipliers.begin(), multipliers.end());
+    for (double& value : numbers)
+        if (std::isnan(value)) value = 0;
+    return numbers;
+}
+
+}   // namespace
+
 std::vector<JointSample> sample_joints(const Model& model, const Motion& motion, double t)
 {
     const State state = sample_state(motion, t);
@@ -148,17 +173,25 @@ std::vector<JointSample> sample_joints(const Model& model, const Motion& motion,
     std::optional<Model> frozen_now;
     if (model.has_drives()) frozen_now = frozen(model, {state.t});
     const Model& now = frozen_now ? *frozen_now : model;
-    UniqueReactions before{{left.begin(), left.end()}, {}, 0}, after{{right.begin(), right.end()}, {}, 0};
+    const std::vector<bool> is_bounded = bounded_joints(model, left, right);
+    UniqueReactions before{numbers_of(left), {}, 0}, after{numbers_of(right), {}, 0};
     if (!motion.redundant_rows.empty()) {
         std::vector<int> independent(static_cast<std::size_t>(motion.n_rows) - motion.redundant_rows.size());
-        before = least_reactions(now, state.X, left, independent);
-        after = left.data() == right.data() ? before : least_reactions(now, state.X, right, independent);
+        before = least_reactions(now, state.X, before.multipliers, independent);
+        after = left.data() == right.data() ? before
+                                            : least_reactions(now, state.X, after.multipliers, independent);
     }
     std::vector<JointSample> samples;
-    for (int j = 0; j < static_cast<int>(model.joints().size()); ++j)
-        samples.push_back({joint_reaction(now, j, state.X, before.multipliers),
-                           joint_reaction(now, j, state.X, after.multipliers), is_acceleration_level,
-                           after.joint_is_unique.empty() || after.joint_is_unique[j]});
+    for (int j = 0; j < static_cast<int>(model.joints().size()); ++j) {
+        JointSample& sample = samples.emplace_back();
+        sample.is_acceleration_level = is_acceleration_level;
+        sample.is_unique = after.joint_is_unique.empty() || after.joint_is_unique[j];
+        sample.is_bounded = is_bounded[j];
+        sample.left = sample.right = unknown;
+        if (!sample.is_bounded) continue;
+        sample.left = joint_reaction(now, j, state.X, before.multipliers);
+        sample.right = joint_reaction(now, j, state.X, after.multipliers);
+    }
     return samples;
 }
 

@@ -35,6 +35,7 @@ struct JointSample {
         false;   ///< from the end multipliers; else interpolated between the elements' nodes
     bool is_unique = true;   ///< false: other joints of a closed loop could carry part of it; then it is the
                              ///< least, see least_reactions()
+    bool is_bounded = true;   ///< false: the joints lose rank there; forces and torques are not numbers
 };
 
 /// `t`, or the element end that differs from it by no more than the rounding of decimal text and sums of

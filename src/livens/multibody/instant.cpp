@@ -219,6 +219,18 @@ void InstantSystem::particular(const InstantState& state, Side from, double* y) 
     basis.q.solve_R_transposed(y);
 }
 
+std::vector<int> InstantSystem::weak_rows(const InstantState& state) const
+{
+    std::vector<double> y(static_cast<std::size_t>(tables_.n_twists), 1.0);
+    state.basis.q.solve_R(y.data());
+    double largest = 0;
+    for (int c = 0; c < tables_.rank; ++c) largest = std::max(largest, std::abs(y[c]));
+    std::vector<int> rows;
+    for (int c = 0; c < tables_.rank; ++c)
+        if (std::abs(y[c]) > 1e-3 * largest) rows.push_back(state.basis.rows[c]);
+    return rows;
+}
+
 void InstantSystem::accelerate(InstantState& state, Side side)
 {
     const double* X = state.X.data();

@@ -54,6 +54,10 @@ public:
     /// Accelerations and multipliers on one side.
     void accelerate(InstantState& state, Side side);
 
+    /// Rows of the combination that is nearest to zero, by more than a thousandth of its largest part: where
+    /// the joints lose rank, what their multipliers hold grows without bound.
+    std::vector<int> weak_rows(const InstantState& state) const;
+
     /// X' and [0, w x (w x d_a)] of the last state that was accelerated, 12 numbers a body.
     const double* rates() const { return V_.data(); }
     const double* centripetal() const { return centripetal_.data(); }

@@ -32,6 +32,8 @@ struct SolveReport {
     int rescued = 0;                 ///< windows that converged only from another guess than the first
     int divided = 0;                 ///< elements that were too long and were divided into two
     double divided_at = 0;           ///< near end of the first of them, s
+    int shifted = 0;                 ///< element ends put elsewhere, off singular positions of the joints
+    double shifted_at = 0;           ///< where the first of them was to be, s
     int refused = 0;                 ///< elements that were solved again, shorter, for the accuracy asked for
     double accuracy = 0;             ///< that was asked for; 0: none
     int tries = 0;                   ///< motions until it was reached

@@ -3,6 +3,8 @@
 
 #include <utility>
 
+#include "livens/multibody/singular.h"
+
 namespace livens {
 
 namespace {
@@ -17,6 +19,7 @@ void close_end(const Model& model, State& state, Known known, StartPolicy policy
     const bool is_still = known == Known::positions && model.has_drives();
     ClosedStart closed =
         is_still ? close_start(frozen(model, {state.t}), state, policy) : close_start(model, state, policy);
+    if (known == Known::state) refuse_singular_start(model, closed);
     state = std::move(closed.start);
     if (known == Known::positions) state.V = guessed;
     ends.independent = std::move(closed.independent);

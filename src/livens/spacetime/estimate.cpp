@@ -5,7 +5,9 @@
 #include <cmath>
 #include <variant>
 
+#include "livens/base/error.h"
 #include "livens/base/largest.h"
+#include "livens/base/text.h"
 #include "livens/multibody/frequencies.h"
 #include "livens/spacetime/second.h"
 
@@ -57,11 +59,20 @@ bool Second::advance(int end)
 {
     const int first = std::min(at_, end), last = std::max(at_, end);
     TimeMesh mesh{{first_.mesh.ends.begin() + first, first_.mesh.ends.begin() + last + 1}};
+    mesh.required = mesh.ends;
     for (const double t : missed(mesh, model_.load_breaks()))   // what one solution missed, two would
         mesh.ends.insert(std::ranges::upper_bound(mesh.ends, t), t);
     if (!is_nodal(method_)) mesh = halved(mesh);
     const auto begin = std::chrono::steady_clock::now();
-    Solution second = solve(model_, problem_, mesh, method_, options_);
+    Solution second;
+    try {
+        second = solve(model_, problem_, mesh, method_, options_);
+    } catch (const InputError& error) {   // about a state that the last piece made, not one that was given
+        if (error.complaint().code != "start-singular") throw;
+        second.report.status = SolveStatus::singular;
+        second.report.message =
+            error.complaint().message + " of a piece at t = " + to_text(mesh.start(), 6) + " s";
+    }
     seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     report_ = std::move(second.report);
     evaluations_ += report_.evaluations;

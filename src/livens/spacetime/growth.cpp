@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "livens/base/error.h"
 #include "livens/base/largest.h"
 #include "livens/multibody/body.h"
 #include "livens/multibody/twist.h"
@@ -91,8 +92,15 @@ std::vector<double> growth_beside(State neighbour, const Model& model, const Met
     double so_far = 1;   // growth at the near end of the piece
     for (int first = 0, n = motion.n_elements(); first < n; first += piece) {
         const int last = std::min(first + piece, n);
-        const TimeMesh mesh{{motion.mesh.ends.begin() + first, motion.mesh.ends.begin() + last + 1}};
-        const Solution beside = solve(model, {{neighbour}}, mesh, method, quiet);
+        TimeMesh mesh{{motion.mesh.ends.begin() + first, motion.mesh.ends.begin() + last + 1}};
+        mesh.required = mesh.ends;
+        Solution beside;
+        try {
+            beside = solve(model, {{neighbour}}, mesh, method, quiet);
+        } catch (const InputError& error) {   // the motion has come to a singular position
+            if (error.complaint().code != "start-singular") throw;
+            return grown;
+        }
         if (!beside.report.converged()) return grown;
         const double begin = distance(model, motion.at_end(first), beside.motion.at_end(0));
         if (!(begin > 0)) return {};   // nothing can move

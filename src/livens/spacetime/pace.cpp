@@ -52,6 +52,8 @@ double Pace::next_end(double t) const
     return end < stop ? end : stop;
 }
 
+bool Pace::is_stop(double t) const { return std::binary_search(stops_.begin(), stops_.end(), t); }
+
 double Pace::suggestion(double length, double jump) const
 {
     const double error = local_error(points_, degree_, jump);

@@ -25,6 +25,9 @@ public:
     double largest_jump() const { return largest_jump_; }
     /// `is_slow`: Newton's iteration took many steps, so that nothing is gained by longer elements.
     void accepted(double length, double jump, bool is_slow);
+    /// The next element is as long as this, if no stop is nearer.
+    void shorten(double length) { length_ = length; }
+    bool is_stop(double t) const;
     /// Whether shorter elements may help; if not they vanish.
     bool refused(double length, double jump);
 

@@ -8,6 +8,7 @@
 
 #include "livens/base/error.h"
 #include "livens/base/text.h"
+#include "livens/multibody/singular.h"
 #include "livens/spacetime/accuracy.h"
 #include "livens/spacetime/guess.h"
 #include "livens/spacetime/lobatto/window.h"
@@ -100,7 +101,7 @@ WindowOptions window_options(const Model& model, const Ends& ends, const Method&
     } else {
         if (const auto* lobatto = std::get_if<Lobatto>(&method)) w.length = lobatto->window;
         w.may_divide = options.divide && ends.has_state();
-        if (w.may_divide) w.trust = {acceptable_velocity_jump, true};
+        if (w.may_divide) w.trust = {acceptable_velocity_jump, true, true};
     }
     if (!ends.has_state()) {
         w.length = 0;
@@ -154,6 +155,9 @@ Solution solve_by_windows(const Model& model, const Problem& problem, const Time
                           const Method& method, const SolveOptions& options)
 {
     TimeMesh mesh = given;
+    const std::vector<double> breaks = model.load_breaks();
+    mesh.required.insert(mesh.required.end(), breaks.begin(), breaks.end());
+    std::ranges::sort(mesh.required);
     const bool is_mixed = std::holds_alternative<Mixed>(method);
     const Ends ends = close_ends(model, problem.conditions, mesh.start(), mesh.end(), options.initial);
     const Tables tables(model, ends.independent, is_mixed);
@@ -193,6 +197,7 @@ Solution solve_by_steps(const Model& model, const Problem& problem, const TimeMe
                         const Method& method, const SolveOptions& options)
 {
     const ClosedStart start = close_start(model, problem.conditions.start, options.initial);
+    refuse_singular_start(model, start);
     const auto rule =
         std::holds_alternative<Midpoint>(method) ? SteppingRule::midpoint : SteppingRule::endpoint;
     SteppingResult result = march_stepping(model, start, mesh, rule,

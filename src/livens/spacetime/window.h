@@ -28,15 +28,21 @@ struct Place {
 struct Trust {
     double velocity_jump = std::numeric_limits<double>::infinity();   ///< see velocity_jump()
     bool turns = false;   ///< refuse also a body that turns by more than 90 degrees from node to node
+    bool full_rank = false;   ///< refuse also an element with a node too near to a singular position
 };
+
+/// Where an element is too near to an instant at which the joints lose rank (docs/theory.md, "Singular
+/// positions").
+enum class RankLoss { none, inside, at_end };
 
 /// How many elements of a window were closed, whether the next one was refused by Trust, and the velocity
 /// jump of the last one that was looked at (infinite where a body turned too far; 0 if Trust asks for
-/// nothing).
+/// nothing, or if its rank is why it was refused).
 struct Closed {
     int n_elements = 0;
     bool is_refused = false;
     double velocity_jump = 0;
+    RankLoss loss = RankLoss::none;
 };
 
 /// A family of elements on a mesh: it states the equations of any stretch of elements, a window, and keeps
@@ -65,7 +71,8 @@ public:
     virtual bool near_state(State& state) const = 0;
     /// Takes the solution at hand into the motion, and its far end as the near end of the next window:
     /// element by element from the near end, up to one that is not to be believed (a velocity jump or a turn
-    /// between nodes beyond `trust`), or whose end is no state to go on from (the report says why).
+    /// between nodes beyond `trust`), or whose end is no state to go on from (the report says why). What was
+    /// refused for its rank may be closed all the same, without asking for that.
     virtual Closed close(const Trust& trust, SolveReport& report) = 0;
     /// The mesh has one element more: `element`, which is not closed, was divided in two.
     virtual void divided(int) {}

@@ -7,19 +7,22 @@
 #include <string>
 
 #include "livens/base/text.h"
+#include "livens/spacetime/detail/window_notes.h"
 
 namespace livens {
 
 namespace {
-
-/// Below, a tolerance that rounding did not let be met deserves a word; the default is no promise of digits.
-constexpr double finest_tolerance = 1e-14;
 
 /// Of the model's length: beyond, a motion and its guess are two motions.
 constexpr double doubtful_distance = 0.05;
 
 /// Of the duration: what a divided element is not divided below.
 constexpr double shortest_element = 1e-9;
+
+/// Of an element by which its end is moved off a singular position, and where one is divided that has such a
+/// position at an inner node (nodes of halves might meet it again); and how often in succession.
+constexpr double shift = 0.1, uneven = 0.4;
+constexpr int most_shifts = 3;
 
 /// Iterations of an element that is about as long as it can be.
 constexpr int slow = 10;
@@ -45,7 +48,7 @@ public:
         time_ = options_.direction > 0 ? mesh_.start() : mesh_.end();
         options_.pace != nullptr ? run_at_pace(*options_.pace) : run_mesh();
         window_.describe(report_);
-        take_notes();
+        add_notes(report_, {options_.tolerance, rounded_, splits_});
     }
 
 private:
@@ -74,7 +77,14 @@ private:
             if (!window_.open(e, e + 1, report_)) return void(set_failed(e, e + 1));
             const NewtonReport outcome = attempt(e, e + 1);
             Closed closed{0, outcome.status != SolveStatus::converged, unseen};
-            if (!closed.is_refused) closed = window_.close({pace.largest_jump(), true}, report_);
+            if (!closed.is_refused)
+                closed = close({pace.largest_jump(), true, true}, !pace.is_stop(mesh_.ends.back()), true);
+            if (closed.loss != RankLoss::none) {
+                count_shift(mesh_.ends.back());
+                pace.shorten((1 - shift) * length);
+                mesh_.ends.pop_back();
+                continue;
+            }
             if (closed.n_elements > 0) {
                 pace.accepted(length, closed.velocity_jump, outcome.iterations > slow);
                 if (!take(e, e + 1, closed, outcome) || (options_.goes_on && !options_.goes_on())) return;
@@ -99,34 +109,13 @@ private:
                           "error in accuracy, or look for a load that jumps there";
     }
 
-    void take_notes()
-    {
-        if (rounded_ > 0 && options_.tolerance < finest_tolerance)
-            report_.notes.push_back("the tolerance " + to_text(options_.tolerance, 6) +
-                                    " is below rounding: " + count(rounded_, "window") + " of " +
-                                    std::to_string(report_.iterations.size()) +
-                                    " ended where rounding left nothing to gain");
-        if (splits_ > 0)
-            report_.notes.push_back(count(splits_, "window") +
-                                    " failed as a whole and were solved in halves");
-        if (report_.divided > 0)
-            report_.notes.push_back(
-                count(report_.divided, "element") +
-                " were too long for the motion and were divided into two, the first near t = " +
-                to_text(report_.divided_at, 6) + " s");
-        if (report_.rescued > 0)
-            report_.notes.push_back(
-                count(report_.rescued, "window") + " of " + std::to_string(report_.iterations.size()) +
-                " needed a guess from many small elements; more elements would be cheaper");
-    }
-
     /// Elements first..last - 1, split where they fail together.
     bool solve(int first, int last)
     {
         if (!window_.open(first, last, report_)) return set_failed(first, last);
         NewtonReport outcome = attempt(first, last);
         if (outcome.status == SolveStatus::converged) return accept(first, last, outcome);
-        if (may_divide(first, last, outcome)) return divide_element(first);
+        if (may_divide(first, last, outcome)) return divide_element(first, 0.5);
         const int middle = (first + last) / 2;
         const bool can_split = options_.may_split && outcome.status != SolveStatus::cancelled &&
                                middle - first >= options_.shortest && last - middle >= options_.shortest;
@@ -159,11 +148,14 @@ private:
         return outcome.status != SolveStatus::cancelled && !is_bad_load;
     }
 
-    bool divide_element(int element)
+    bool divide_element(int element, double share)
     {
         const double start = mesh_.ends[element], end = mesh_.ends[element + 1];
-        if (report_.divided++ == 0) report_.divided_at = options_.direction > 0 ? start : end;
-        mesh_.ends.insert(mesh_.ends.begin() + element + 1, start + (end - start) / 2);
+        if (share != 0.5)
+            count_shift(end);
+        else if (report_.divided++ == 0)
+            report_.divided_at = options_.direction > 0 ? start : end;
+        mesh_.ends.insert(mesh_.ends.begin() + element + 1, start + share * (end - start));
         window_.divided(element);
         return solve_parts(element, element + 1, element + 2);
     }
@@ -205,7 +197,39 @@ private:
     bool accept(int first, int last, const NewtonReport& outcome)
     {
         if (is_march_) compare(first, last);
-        return take(first, last, window_.close(options_.trust, report_), outcome);
+        const int end = options_.direction > 0 ? last : first;
+        const bool is_single = last - first == 1;
+        const Closed closed = close(options_.trust, !is_single || can_move(end),
+                                    !is_single || may_divide(first, last, outcome));
+        if (!is_single || closed.loss == RankLoss::none) return take(first, last, closed, outcome);
+        if (closed.loss == RankLoss::inside) return divide_element(first, uneven);
+        count_shift(mesh_.ends[end]);
+        mesh_.ends[end] -= options_.direction * shift * mesh_.length(first);
+        return solve(first, last);
+    }
+
+    /// Closes the open window up to a node too near to a singular position; beyond that where nothing can be
+    /// done about it, or where that did not help.
+    Closed close(Trust trust, bool end_may_move, bool may_divide)
+    {
+        const Closed closed = window_.close(trust, report_);
+        const bool can_help = closed.loss == RankLoss::at_end ? end_may_move : may_divide;
+        const bool is_wanted = can_help && avoided_ < most_shifts;
+        if (closed.loss == RankLoss::none || is_wanted || closed.n_elements > 0) return closed;
+        trust.full_rank = false;
+        return window_.close(trust, report_);
+    }
+
+    bool can_move(int end) const
+    {
+        return end > 0 && end < mesh_.n_elements() &&
+               !std::binary_search(mesh_.required.begin(), mesh_.required.end(), mesh_.ends[end]);
+    }
+
+    void count_shift(double t)
+    {
+        ++avoided_;
+        if (report_.shifted++ == 0) report_.shifted_at = t;
     }
 
     /// Counts what was closed of the elements first..last - 1.
@@ -216,6 +240,7 @@ private:
             report_.residual_norm = std::max(report_.residual_norm, outcome.residual);
             if (is_rescued_) ++report_.rescued;
             if (outcome.ended_by_rounding) ++rounded_;
+            avoided_ = 0;
         }
         (options_.direction > 0 ? first : last) += options_.direction * closed.n_elements;
         report_.n_elements += closed.n_elements;
@@ -253,7 +278,7 @@ private:
             return options_.direction > 0 ? solve_parts(first, first + 1, last)
                                           : solve_parts(first, last - 1, last);
         outcome.status = SolveStatus::not_converged;
-        if (may_divide(first, last, outcome)) return divide_element(first);
+        if (may_divide(first, last, outcome)) return divide_element(first, 0.5);
         set_failed(first, last);
         report_.status = SolveStatus::not_converged;
         report_.message =
@@ -324,10 +349,6 @@ private:
         return false;
     }
 
-    static std::string count(int n, const char* what)
-    {
-        return std::to_string(n) + " " + what + (n == 1 ? "" : "s");
-    }
     static std::string name(int first, int last)
     {
         if (last - first == 1) return "element " + std::to_string(first);
@@ -346,6 +367,7 @@ private:
     int rounded_ = 0;           // windows that ended by rounding, short of the tolerance
     int most_divisions_ = 0;   // beyond, something else is wrong
     int splits_ = 0;
+    int avoided_ = 0;   // nodes too near to a singular position, since an element was closed
     int done_ = 0;      // elements
     double time_ = 0;   // up to which they are solved
 };

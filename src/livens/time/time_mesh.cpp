@@ -100,7 +100,7 @@ TimeMesh make_time_mesh(double start, double end, int n_elements, std::span<cons
     check_interval(start, end, n_elements);
     const std::vector<double> fixed = fixed_ends(start, end, required);
 
-    TimeMesh mesh;
+    TimeMesh mesh{{}, fixed};
     mesh.ends.reserve(static_cast<std::size_t>(n_elements) + fixed.size());
     mesh.ends.push_back(start);
     for (std::size_t i = 1; i < fixed.size(); ++i) {

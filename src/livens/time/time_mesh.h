@@ -19,6 +19,8 @@ struct Instant {
 /// Element e spans [ends[e], ends[e + 1]]; ends ascend strictly.
 struct TimeMesh {
     std::vector<double> ends;
+    /// Of these, the ones that must stay where they are beside the first and the last; ascending.
+    std::vector<double> required{};
 
     int n_elements() const { return static_cast<int>(ends.size()) - 1; }
     double start() const { return ends.front(); }
@@ -53,7 +55,8 @@ std::vector<double> missed(const TimeMesh& mesh, std::span<const double> instant
 /// Required instants (jumps of loads, output times) outside the interval are left out. Between two of them
 /// lie max(1, ceil(length / h)) equal elements with h = (end - start) / n_elements, so a mesh whose required
 /// instants fall on its grid has n_elements. Instants closer than 1e-9 (end - start) are one: the first in
-/// `required` wins. `start` and `end` win over all. Required instants are element ends to the bit. Throws
+/// `required` wins. `start` and `end` win over all. Required instants are element ends to the bit, and those
+/// of the mesh that must stay. Throws
 /// InputError: end not after start, n_elements < 1 or > 1e8, not finite, elements shorter than the spacing of
 /// doubles.
 TimeMesh make_time_mesh(double start, double end, int n_elements, std::span<const double> required = {});

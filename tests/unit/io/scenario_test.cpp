@@ -416,6 +416,10 @@ std::vector<Case> cases_of_joints_and_loads()
          "\"world\""},
         change("load-value", "value = [0, 1, 0]\n", "", "[[load]]"),
         {"rod-length", joined(given_mass, "type = \"rod\""), "\"j\""},
+        {"start-singular",
+         joined(point_body, "type = \"rod\"\n[[joint]]\nname = \"k\"\ntype = \"rod\"\n"
+                            "between = [\"world\", \"b\"]\npoints = [[3, 0, 0], [0, 0, 0]]"),
+         "\"j\""},
         {"start-position", joined(given_mass, "type = \"spherical\"\npoints = [[1, 0, 0], [0, 0, 0]]"),
          "\"j\""},
         {"table-order", tabled("times = [0, 2, 1], values = [[0, 0, 0], [0, 0, 0], [0, 0, 0]]"), "{ times"},

@@ -39,10 +39,12 @@ public:
         return true;
     }
     bool near_state(State&) const override { return true; }
-    Closed close(const Trust&, SolveReport&) override
+    Closed close(const Trust& trust, SolveReport&) override
     {
         if (!can_close) return {};
         const auto [first, last] = opened.back();
+        if (trust.full_rank && first == singular && --singular_times >= 0)
+            return {0, true, 0, singular_inside ? RankLoss::inside : RankLoss::at_end};
         if (first <= refused && refused < last && last - first > 1) {
             if (refused > first) closed.push_back({first, refused});
             const int good = refused - first;
@@ -64,7 +66,8 @@ public:
     Motion take_motion() override { return {}; }
 
     int longest = 100, broken = -1, refuses = -1, refused = -1;
-    bool has_own_guess = true, can_close = true;
+    int singular = -1, singular_times = 1;
+    bool has_own_guess = true, can_close = true, singular_inside = false;
     std::vector<std::pair<int, int>> opened, closed;
     std::vector<int> divisions;
 
@@ -137,6 +140,76 @@ TEST(Windows, AreSplitWhereTheyFailAsAWhole)
     options.may_split = false;
     EXPECT_EQ(run(whole, options).status, SolveStatus::singular);
     EXPECT_TRUE(whole.closed.empty());
+}
+
+WindowOptions guarded(int direction)
+{
+    WindowOptions options;
+    options.direction = direction;
+    options.may_divide = true;
+    options.trust.full_rank = true;
+    return options;
+}
+
+TEST(Windows, EndsMoveOffSingularPositions)
+{
+    for (const int direction : {1, -1}) {
+        Counting window;
+        window.singular = 2;
+        TimeMesh mesh = make_time_mesh(0, 6, 6);
+        SolveReport report;
+        solve_windows(window, mesh, guarded(direction), report);
+        EXPECT_TRUE(report.converged()) << report.message;
+        const int end = direction > 0 ? 3 : 2;
+        EXPECT_EQ(mesh.ends[end], end - 0.1 * direction);
+        EXPECT_EQ(mesh.n_elements(), 6);
+        EXPECT_EQ(report.shifted, 1);
+        EXPECT_EQ(report.shifted_at, end);
+        EXPECT_EQ(report.divided, 0);
+        ASSERT_EQ(report.notes.size(), 1u);
+        EXPECT_NE(report.notes[0].find("singular position"), std::string::npos) << report.notes[0];
+    }
+}
+
+TEST(Windows, EndsThatMustStayDoAndNoneMovesForEver)
+{
+    for (const bool is_required : {true, false}) {
+        Counting window;
+        window.singular = 2;
+        window.singular_times = 100;
+        const std::vector<double> required{3};
+        TimeMesh mesh = is_required ? make_time_mesh(0, 6, 6, required) : make_time_mesh(0, 6, 6);
+        SolveReport report;
+        solve_windows(window, mesh, guarded(1), report);
+        EXPECT_TRUE(report.converged()) << report.message;
+        EXPECT_EQ(report.shifted, is_required ? 0 : 3);
+        EXPECT_NEAR(mesh.ends[3], is_required ? 3 : 2 + 0.9 * 0.9 * 0.9, 1e-14);
+        EXPECT_EQ(report.n_elements, 6);
+    }
+    Counting last;   // the end of time stays as well
+    last.singular = 5;
+    TimeMesh mesh = make_time_mesh(0, 6, 6);
+    SolveReport report;
+    solve_windows(last, mesh, guarded(1), report);
+    EXPECT_TRUE(report.converged());
+    EXPECT_EQ(mesh.end(), 6);
+}
+
+TEST(Windows, AnInnerNodeInASingularPositionDividesItsElementUnevenly)
+{
+    Counting window;
+    window.singular = 2;
+    window.singular_inside = true;
+    const std::vector<double> required{1, 2, 3, 4, 5};
+    TimeMesh mesh = make_time_mesh(0, 6, 6, required);
+    SolveReport report;
+    solve_windows(window, mesh, guarded(1), report);
+    EXPECT_TRUE(report.converged()) << report.message;
+    EXPECT_EQ(window.divisions, (std::vector<int>{2}));
+    EXPECT_EQ(mesh.ends[3], 2.4);
+    EXPECT_EQ(report.n_elements, 7);
+    EXPECT_EQ(report.shifted, 1);
+    EXPECT_EQ(report.divided, 0);
 }
 
 TEST(Windows, RefusedElementsAreSolvedAloneAndDivided)

@@ -208,7 +208,7 @@ private:
         if (samples.empty()) {   // this instant has no multipliers, others have
             const double nan = std::numeric_limits<double>::quiet_NaN();
             const Reaction none{{nan, nan, nan}, {nan, nan, nan}};
-            samples.assign(model_.joints().size(), {none, none, false, false});
+            samples.assign(model_.joints().size(), {none, none, false, false, false});
         }
         for (const JointSample& joint : samples) {
             append(joints_[0].values, joint.left.force);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // [start], [end] and [body.end]: what is known at the ends of time.
 #include "livens/io/scenario/builder.h"
+#include "livens/multibody/singular.h"
 
 namespace livens {
 
@@ -86,7 +87,8 @@ void check_ends(Builder& builder, const Conditions& boundary, StartPolicy policy
         if (given == Known::nothing) return;
         if (given == Known::positions)
             for (Matrix34& V : state.V) V = {};   // a guess, which need not fit
-        close_start(builder.model(), state, policy);
+        const ClosedStart closed = close_start(builder.model(), state, policy);
+        if (given == Known::state) refuse_singular_start(builder.model(), closed);
     };
     builder.guard("start", [&] { close(boundary.start, boundary.at_start); });
     builder.guard("end", [&] {

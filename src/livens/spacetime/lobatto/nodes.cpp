@@ -18,7 +18,7 @@ void Nodes::open(const Stretch& stretch)
 {
     const auto n = static_cast<std::size_t>(stretch.n_nodes());
     current_ = kept_ = 0;
-    smallest_pivot_ = 1;
+    pivots_.assign(n, 1.0);
     times_.resize(n);
     for (int A = 0; A < stretch.n_nodes(); ++A) times_[A] = stretch.time(rule_, A);
     if (known_.size() == n) {
@@ -50,7 +50,7 @@ void Nodes::fix(int A, const InstantState& state)
     }
     std::copy(state.maps.begin(), state.maps.end(), maps_.begin() + static_cast<std::ptrdiff_t>(place(A)));
     known_[A] = &state.basis;
-    smallest_pivot_ = std::min(smallest_pivot_, state.smallest_pivot);
+    pivots_[A] = state.smallest_pivot;
     double* values = phi_.values.data() + static_cast<std::size_t>(A * tables_.rank);
     for (int c = 0; c < tables_.rank; ++c)
         values[c] = tables_.value(state.basis.rows[c], at(A), X(A), state.basis.gradient(c));
@@ -157,7 +157,7 @@ bool Nodes::constrain_node(int e, int B, bool same_choices, double& sum)
     const std::vector<int>& rows = known_[0] != nullptr ? known_[0]->rows : tables_.independent;
     ConstraintBasis& own = bases_[A];
     tables_.map_twists(X(A), maps_.data() + place(A));
-    smallest_pivot_ = std::min(smallest_pivot_, own.build(tables_, at(A), X(A), maps(A), rows, same_choices));
+    pivots_[A] = own.build(tables_, at(A), X(A), maps(A), rows, same_choices);
     for (int c = 0; c < k; ++c) {
         const auto& table = tables_.rows[static_cast<std::size_t>(own.rows[c])];
         // from the element's first node, which keeps the digits of a small increment

@@ -61,7 +61,8 @@ public:
     /// much. Returns the largest move, in lengths and radians.
     double correct(const Stretch& stretch);
 
-    double smallest_pivot() const { return smallest_pivot_; }
+    /// Smallest scaled pivot of the constraints at node A; it falls to zero where they lose rank.
+    double pivot(int A) const { return pivots_[static_cast<std::size_t>(A)]; }
     /// Size of a twist: in lengths of the model and radians.
     double size_of(const double* twist) const;
 
@@ -93,7 +94,7 @@ private:
     Violations phi_;
     std::vector<double> work_;
     bool near_ = true;
-    double smallest_pivot_ = 1;
+    std::vector<double> pivots_;
 };
 
 }   // namespace livens

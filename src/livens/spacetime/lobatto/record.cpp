@@ -101,6 +101,14 @@ void Record::end(int place, const InstantState& state, const InstantSystem& syst
     }
 }
 
+void Record::forget_reactions(int place, std::span<const int> rows)
+{
+    for (int side = 0; side < 2; ++side)
+        for (const int row : rows)
+            motion_.end_multipliers[(2 * place + side) * motion_.n_rows + row] =
+                std::numeric_limits<double>::quiet_NaN();
+}
+
 /// Keeps entries first..last - 1 of `stride` values each.
 template <class T>
 void Record::cut(std::vector<T>& values, std::size_t first, std::size_t last, std::size_t stride) const

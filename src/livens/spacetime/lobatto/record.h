@@ -2,6 +2,7 @@
 // The motion of solved elements of lobatto(p) or radau(p), in whatever order they come.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "livens/multibody/instant.h"
@@ -21,6 +22,8 @@ public:
     /// Everything known at an element end; `system` has just made its accelerations. `two_sided`: they
     /// differ.
     void end(int place, const InstantState& state, const InstantSystem& system, bool two_sided);
+    /// Multipliers of these rows of the model are not known at the element end that was written last.
+    void forget_reactions(int place, std::span<const int> rows);
     /// Room for an element more beside `element`, which the mesh has divided; ends behind it move on by one.
     void divided(int element);
     void note_redundant(const std::vector<int>& rows) { redundant_ = rows; }

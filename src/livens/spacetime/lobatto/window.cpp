@@ -14,6 +14,10 @@ namespace livens {
 
 namespace {
 
+/// Of the largest pivot in an element: below, reactions at its end have no digit left (docs/theory.md,
+/// "Singular positions").
+constexpr double least_for_reactions = 1e-4;
+
 /// Re-orthonormalises directors that have drifted beyond rounding: one Newton step of the polar factor.
 void polish(double* X)
 {
@@ -217,12 +221,17 @@ Closed LobattoWindow::close(const Trust& trust, SolveReport& report)
     const bool is_watched = trust.turns || !std::isinf(trust.velocity_jump);
     Closed closed;
     for (int e = 0; e < stretch_.n_elements(); ++e) {
+        closed.loss = trust.full_rank ? rank_loss(e) : RankLoss::none;
+        closed.is_refused = closed.loss != RankLoss::none;
+        if (closed.is_refused) return closed;
         if (!end_element(e, report)) return closed;
         if (is_watched) closed.velocity_jump = velocity_jump(e, trust.turns);
         closed.is_refused = !(closed.velocity_jump <= trust.velocity_jump);
         if (closed.is_refused) return closed;
         close_element(e);
         ++closed.n_elements;
+        for (int A = e * system_.rule().degree; A <= (e + 1) * system_.rule().degree; ++A)
+            smallest_pivot_ = std::min(smallest_pivot_, system_.nodes().pivot(A));
     }
     front_.is_ready = true;
     return closed;
@@ -322,6 +331,8 @@ void LobattoWindow::close_element(int e)
         next.look_back(here, stretch_.h(e) > 0);
     front_.now = 1 - front_.now;
     record_.end(mesh_end(e + 1), front_.here(), instant_, is_jump(next.t));
+    if (rank_left(e, p, p) < least_for_reactions)
+        record_.forget_reactions(mesh_end(e + 1), instant_.weak_rows(front_.here()));
 }
 
 void LobattoWindow::record_element(int e)

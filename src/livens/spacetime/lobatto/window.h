@@ -63,6 +63,8 @@ private:
     void take_spin_of_polynomial(int e);
     bool end_element(int e, SolveReport& report);
     double velocity_jump(int e, bool refuse_turns) const;
+    double rank_left(int e, int first, int last) const;
+    RankLoss rank_loss(int e) const;
     void close_element(int e);
     void record_element(int e);
     bool rows_compatible(const InstantState& state, SolveReport& report) const;
@@ -80,6 +82,7 @@ private:
     int first_ = 0, last_ = 0;
     Work work_;
     std::vector<double> jumps_;
+    double smallest_pivot_ = 1;   // of all closed elements
 };
 
 }   // namespace livens

@@ -88,10 +88,31 @@ double LobattoWindow::velocity_jump(int e, bool refuse_turns) const
     return largest;
 }
 
+/// Pivots at local nodes first..last of an element: the smallest of them by the largest of all its nodes.
+double LobattoWindow::rank_left(int e, int first, int last) const
+{
+    const int p = system_.rule().degree;
+    double largest = 0, smallest = std::numeric_limits<double>::infinity();
+    for (int a = 0; a <= p; ++a) {
+        const double pivot = system_.nodes().pivot(e * p + a);
+        raise_to(largest, pivot);
+        if (a >= first && a <= last) smallest = std::min(smallest, pivot);
+    }
+    return smallest / largest;
+}
+
+RankLoss LobattoWindow::rank_loss(int e) const
+{
+    constexpr double least = 1e-2;   // docs/theory.md, "Singular positions"
+    const int p = system_.rule().degree;
+    if (rank_left(e, p, p) < least) return RankLoss::at_end;
+    return rank_left(e, 1, p - 1) < least ? RankLoss::inside : RankLoss::none;
+}
+
 void LobattoWindow::describe(SolveReport& report) const
 {
     report.unknowns = std::max(report.unknowns, static_cast<int>(system_.balances().reduced().size()));
-    report.smallest_pivot = std::min(report.smallest_pivot, system_.nodes().smallest_pivot());
+    report.smallest_pivot = std::min(report.smallest_pivot, smallest_pivot_);
     report.guess_factorisations = series_.factorisations();
     report.evaluations = system_.evaluations() + series_.evaluations();
     system_.elimination().describe(report);

@@ -1,0 +1,318 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "livens/multibody/singular.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <string>
+
+#include <Eigen/Dense>
+
+#include "livens/base/error.h"
+#include "livens/multibody/body.h"
+#include "livens/multibody/detail/wording.h"
+#include "livens/multibody/tables.h"
+#include "livens/multibody/twist.h"
+
+namespace livens {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double nothing = 1e-6;     // of the terms of a sum
+constexpr int most_directions = 8;   // in which branches are looked for
+
+/// The rows and their second derivatives at one configuration, for scaled twists y.
+class SecondOrder {
+public:
+    SecondOrder(const Model& model, const ClosedStart& closed)
+        : tables_(model, closed.independent), at_{closed.start.t}, maps_(12 * closed.start.X.size())
+    {
+        for (const Matrix34& X : closed.start.X) X_.insert(X_.end(), std::begin(X.a), std::end(X.a));
+        tables_.map_twists(X_.data(), maps_.data());
+        const int n = tables_.n_rows();
+        gradients_.assign(static_cast<std::size_t>(Tables::gradient_size * n), 0.0);
+        MatrixXd G(tables_.n_twists, n);
+        scale_.resize(n);
+        for (int r = 0; r < n; ++r) {
+            tables_.gradient(r, at_, X_.data(), gradient(r));
+            tables_.scaled_gradient(r, X_.data(), maps_.data(), gradient(r), G.col(r).data());
+            scale_[r] = G.col(r).norm();
+            if (scale_[r] > 0) G.col(r) /= scale_[r];
+        }
+        const Index rank = tables_.rank;
+        free_ = complement(G, rank);
+        redundant_ = complement(G.transpose(), rank);
+    }
+
+    const MatrixXd& free() const { return free_; }
+    Index n_redundant() const { return redundant_.cols(); }
+    int strongest_row(Index combination) const
+    {
+        Index row = 0;
+        redundant_.col(combination).cwiseAbs().maxCoeff(&row);
+        return static_cast<int>(row);
+    }
+
+    /// mu . d2 Phi/dt2 less G X'' of the redundant combinations; `size` is raised to the terms of the sums.
+    VectorXd of(const VectorXd& y, double& size)
+    {
+        const std::vector<double> V = rates(y);
+        std::vector<double> centripetal(V.size(), 0.0);
+        VectorXd xi(tables_.n_twists);
+        tables_.to_twist(maps_.data(), y.data(), xi.data());
+        for (int b = 0; b < tables_.n_bodies(); ++b) {
+            const auto& body = tables_.bodies[b];
+            if (body.dofs == 3) continue;
+            double spin[6] = {0, 0, 0, xi[body.first + 3], xi[body.first + 4], xi[body.first + 5]};
+            twist::columns(V.data() + 12 * b, spin, centripetal.data() + 12 * b);
+        }
+        VectorXd bend(tables_.n_rows());
+        for (int r = 0; r < tables_.n_rows(); ++r) {
+            const auto& table = tables_.rows[r];
+            double gamma = tables_.curvature(r, at_, X_.data(), V.data());
+            for (int side = 0; side < table.n_sides; ++side)
+                for (const int column : table.columns[side])
+                    for (int i = 0; i < 3; ++i)
+                        gamma += gradient(r)[12 * side + column + i] *
+                                 centripetal[12 * table.bodies[side] + column + i];
+            bend[r] = scale_[r] > 0 ? gamma / scale_[r] : 0;
+        }
+        size = std::max(size, bend.cwiseAbs().maxCoeff());
+        return redundant_.transpose() * bend;
+    }
+
+    /// X' of all bodies, 12 numbers each.
+    std::vector<double> rates(const VectorXd& y) const
+    {
+        VectorXd xi(tables_.n_twists);
+        tables_.to_twist(maps_.data(), y.data(), xi.data());
+        std::vector<double> V(X_.size());
+        tables_.rates_of(X_.data(), xi.data(), V.data());
+        return V;
+    }
+
+    /// Scaled twists of given rates: the inverse of the map, body by body.
+    VectorXd twists_of(const State& state) const
+    {
+        VectorXd y = VectorXd::Zero(tables_.n_twists);
+        MatrixXd D(tables_.n_twists, tables_.n_twists);
+        for (Index j = 0; j < D.cols(); ++j) {
+            const VectorXd unit = VectorXd::Unit(D.cols(), j);
+            tables_.to_twist(maps_.data(), unit.data(), D.col(j).data());
+        }
+        VectorXd xi = VectorXd::Zero(tables_.n_twists);
+        for (int b = 0; b < tables_.n_bodies(); ++b) {
+            const auto& body = tables_.bodies[b];
+            const Vector3 v = state.V[b].column(0);
+            const Vector3 w = body.dofs == 6 ? angular_velocity(state.X[b], state.V[b]) : Vector3{};
+            for (int i = 0; i < body.dofs; ++i) xi[body.first + i] = i < 3 ? v[i] : w[i - 3];
+        }
+        return D.partialPivLu().solve(xi);
+    }
+
+private:
+    double* gradient(int r) { return gradients_.data() + Tables::gradient_size * r; }
+    /// What is perpendicular to the columns of a matrix of known rank.
+    static MatrixXd complement(const MatrixXd& A, Index rank)
+    {
+        const Eigen::ColPivHouseholderQR<MatrixXd> qr(A);
+        MatrixXd Q = MatrixXd::Identity(A.rows(), A.rows()).rightCols(A.rows() - rank);
+        Q.applyOnTheLeft(qr.householderQ());
+        return Q;
+    }
+
+    Tables tables_;
+    Instant at_;
+    std::vector<double> X_, maps_, gradients_;
+    VectorXd scale_;
+    MatrixXd free_, redundant_;   // motions, and combinations of rows that are zero on all motions
+};
+
+/// Rank of a matrix whose entries are known to `level`, and the columns of an orthonormal basis of its rows.
+MatrixXd row_space(const MatrixXd& A, double level)
+{
+    const Eigen::ColPivHouseholderQR<MatrixXd> qr(A.transpose());
+    const VectorXd pivots = qr.matrixQR().diagonal().cwiseAbs();
+    const Index rank = (pivots.array() > level).count();
+    MatrixXd Q = MatrixXd::Identity(A.cols(), rank);
+    Q.applyOnTheLeft(qr.householderQ());
+    return Q;
+}
+
+/// Quadratic forms Q_k on the free motions, of which the conditions consist; `row` takes part in the largest.
+std::vector<MatrixXd> forms_of(SecondOrder& second, double& size, int& row)
+{
+    const MatrixXd& Z = second.free();
+    const Index f = Z.cols(), n = second.n_redundant();
+    std::vector<VectorXd> squares;
+    const VectorXd rest = second.of(VectorXd::Zero(Z.rows()), size);   // of drives
+    size = 0;
+    for (Index i = 0; i < f; ++i) squares.push_back(second.of(Z.col(i), size));
+    MatrixXd packed(n, f * (f + 1) / 2);
+    for (Index i = 0, at = 0; i < f; ++i)
+        for (Index j = i; j < f; ++j, ++at)
+            packed.col(at) = 0.5 * (second.of(Z.col(i) + Z.col(j), size) - squares[i] - squares[j] + rest);
+    Index largest = 0;
+    packed.rowwise().norm().maxCoeff(&largest);
+    row = second.strongest_row(largest);
+    // the span of the forms, with the metric of symmetric matrices left aside
+    const MatrixXd basis = row_space(packed, nothing * size);
+    std::vector<MatrixXd> forms;
+    for (Index k = 0; k < basis.cols(); ++k) {
+        MatrixXd Q(f, f);
+        for (Index i = 0, at = 0; i < f; ++i)
+            for (Index j = i; j < f; ++j, ++at) Q(i, j) = Q(j, i) = basis(at, k);
+        forms.push_back(Q);
+    }
+    return forms;
+}
+
+/// Whether one of the forms is definite, so that no motion fulfils it.
+bool is_locked(const std::vector<MatrixXd>& forms)
+{
+    return std::ranges::any_of(forms, [](const MatrixXd& Q) {
+        const VectorXd eigenvalues = Eigen::SelfAdjointEigenSolver<MatrixXd>(Q).eigenvalues();
+        return eigenvalues[0] > nothing || eigenvalues[Q.rows() - 1] < -nothing;
+    });
+}
+
+/// A root of the forms on the unit sphere near a start, by Newton's iteration; empty if it finds none where
+/// the conditions are independent.
+VectorXd root_near(const std::vector<MatrixXd>& forms, VectorXd x)
+{
+    const Index m = static_cast<Index>(forms.size()), f = x.size();
+    MatrixXd J(m + 1, f);
+    VectorXd r(m + 1);
+    for (int iteration = 0; iteration < 50; ++iteration) {
+        for (Index k = 0; k < m; ++k) {
+            J.row(k) = 2 * (forms[k] * x).transpose();
+            r[k] = x.dot(forms[k] * x);
+        }
+        J.row(m) = x.transpose();
+        r[m] = 0;
+        const Eigen::ColPivHouseholderQR<MatrixXd> qr(J);
+        if (std::abs(qr.matrixQR()(f - 1, f - 1)) < nothing) return {};
+        const VectorXd dx = qr.solve(-r);
+        x = (x + dx).normalized();
+        if (dx.norm() < 1e-13) return x;
+    }
+    return {};
+}
+
+/// All of them, up to their signs.
+std::vector<VectorXd> roots_of(const std::vector<MatrixXd>& forms, Index f)
+{
+    std::vector<VectorXd> roots;
+    std::uint64_t state = 0x9e3779b97f4a7c15u;
+    const auto noise = [&state] {
+        state ^= state << 13, state ^= state >> 7, state ^= state << 17;
+        return 2 * static_cast<double>(state >> 11) / 9007199254740992.0 - 1;
+    };
+    const int starts = 64 << f;   // of 2^(f - 1) roots at most
+    for (int i = 0; i < starts; ++i) {
+        VectorXd x(f);
+        for (double& entry : x) entry = noise();
+        const VectorXd root = root_near(forms, x.normalized());
+        if (root.size() == 0) continue;
+        const bool is_known = std::ranges::any_of(
+            roots, [&](const VectorXd& other) { return 1 - std::abs(root.dot(other)) < 1e-9; });
+        if (!is_known) roots.push_back(root);
+    }
+    return roots;
+}
+
+}   // namespace
+
+Mobility mobility(const Model& model, const ClosedStart& closed)
+{
+    Mobility result;
+    result.first_order = closed.degrees_of_freedom;
+    if (closed.redundant.empty() || closed.degrees_of_freedom == 0) return result;
+    SecondOrder second(model, closed);
+    double size = 0;
+    const std::vector<MatrixXd> forms = forms_of(second, size, result.row);
+    const MatrixXd& Z = second.free();
+    result.conditions = static_cast<int>(forms.size());
+    if (!result.is_singular()) return result;
+    result.is_locked = is_locked(forms);
+
+    const VectorXd y = second.twists_of(closed.start);
+    double speed_size = 0;
+    const VectorXd rest = second.of(y, speed_size);
+    result.are_possible = rest.cwiseAbs().maxCoeff() <= nothing * speed_size || speed_size == 0;
+    MatrixXd J(second.n_redundant(), Z.cols());
+    double unused = 0;
+    for (Index j = 0; j < Z.cols(); ++j)
+        J.col(j) = 0.5 * (second.of(y + Z.col(j), unused) - second.of(y - Z.col(j), unused));
+    const Index rank = y.norm() > 0 ? row_space(J, nothing * size * y.norm()).cols() : 0;
+    result.choose_branch = result.are_possible && rank == result.conditions;
+
+    if (result.conditions != result.first_order - 1 || result.first_order > most_directions) return result;
+    for (const VectorXd& root : roots_of(forms, Z.cols())) {
+        const std::vector<double> V = second.rates(Z * root);
+        const double fastest =
+            std::abs(*std::ranges::max_element(V, {}, [](double v) { return std::abs(v); }));
+        std::vector<Matrix34>& branch = result.branches.emplace_back(closed.start.X.size());
+        for (std::size_t i = 0; i < V.size(); ++i) branch[i / 12].a[i % 12] = V[i] / fastest;
+    }
+    return result;
+}
+
+namespace {
+
+/// How the bodies of a branch move: angular velocities, or velocities of points, of those that do.
+std::string words_of(const Model& model, const State& state, const std::vector<Matrix34>& branch)
+{
+    std::string words;
+    int told = 0;
+    for (int b = 0; b < model.n_bodies(); ++b) {
+        const bool is_point = model.bodies()[b].is_point;
+        const Vector3 turn = is_point ? Vector3{} : angular_velocity(state.X[b], branch[b]);
+        const bool turns = norm(turn) > nothing;
+        Vector3 v = turns ? turn : branch[b].column(0);
+        if (norm(v) <= nothing) continue;
+        if (++told > 4) return words + ", ...";
+        words += (told > 1 ? ", '" : "'") + model.body_name(b) + (turns ? "' turns by [" : "' moves by [");
+        for (int i = 0; i < 3; ++i)
+            words += (i > 0 ? ", " : "") + to_text(std::abs(v[i]) < nothing ? 0.0 : v[i], 3);
+        words += "]";
+    }
+    return words;
+}
+
+}   // namespace
+
+void refuse_singular_start(const Model& model, const ClosedStart& closed)
+{
+    const Mobility m = mobility(model, closed);
+    if (!m.is_singular()) return;
+    const std::size_t n = m.branches.size();
+    const auto count = [](std::size_t k, const std::string& what) {
+        return std::to_string(k) + " " + what + (k == 1 ? "" : "s");
+    };
+    std::string what = count(m.first_order, "motion") + " in first order under " +
+                       count(m.conditions, "condition") + " of second order";
+    if (m.is_locked)
+        what += ": nothing can move";
+    else if (n > 0)
+        what += ": " + std::to_string(n) + (n == 1 ? " branch" : " branches") + " of single motions";
+    std::string help = m.is_locked ? "move points or axes, so that the joints hold here as they do beside"
+                                   : "start beside this position";
+    if (n > 0) help += ", on the branch that is meant: ";
+    for (std::size_t i = 0; i < std::min<std::size_t>(n, 2); ++i)
+        help += (i > 0 ? "; or " : "") + words_of(model, closed.start, m.branches[i]);
+    if (n > 2) help += "; or another";
+    throw InputError({"start-singular", "joint[" + model.joints()[model.row_joint(m.row)].name + "]",
+                      "the joints are in a singular position at the start" +
+                          std::string(!m.are_possible   ? ", and velocities lead out of them in second order"
+                                      : m.choose_branch ? ", from which no method starts"
+                                                        : ", and the velocities choose no motion"),
+                      what, "", "the joints hold less there than beside it, and several motions may meet",
+                      help});
+}
+
+}   // namespace livens
