@@ -33,7 +33,7 @@ struct Balance {
     std::vector<double> energy_drift;   ///< |energy - start - work|
     std::vector<double> linear_momentum_drift;
     std::vector<double> angular_momentum_drift;
-    double largest_kinetic = 0;      ///< over the ends
+    double largest_kinetic = 0;      ///< over the ends and where loads are taken between them
     double largest_momentum = 0;     ///< over the ends, of the sum of the bodies' |p|
     double largest_moment = 0;       ///< largest sum over bodies and columns of |x| |P|
     double reference_energy = 0;     ///< J: largest sum of |F| (|x| + L), plus the largest |potential|
