@@ -4,7 +4,7 @@
     all.py [--short] [--livens PROGRAM] [--output FOLDER] [figNN ...]
     all.py --scans [--short] [--livens PROGRAM] [--output FOLDER] [NAME ...]
 
-An experiment is named by its folder or by the beginning of it: fig02, text; a scan by what stands behind scan_.
+An experiment is named by its folder or by the beginning of it: fig02, text; a scan by what is behind scan_.
 """
 import argparse
 import json
@@ -21,7 +21,7 @@ STATES = {0: "as expected", 1: "NOT AS EXPECTED"}
 
 
 def chosen(names, scans):
-    """Folders of the experiments, or of the scans, whose name begins with one of `names`; all without names."""
+    """Folders of the experiments, or scans, whose name begins with one of `names`; all without names."""
     folders = sorted(path.parent for path in HERE.glob("*/run") if (path.parent / "expected.json").exists()
                      and path.parent.name.startswith(SCAN) == scans)
     names = [SCAN * scans + name for name in names]

@@ -2,16 +2,16 @@
 """True motions of scenarios, by a formulation that shares nothing with livens.
 
 Newton's and Euler's equations of the bodies (centre of mass, quaternion, velocity, spin in body axes), joints
-as second derivatives of their conditions, in numbers of 64 bits of mantissa. Time is cut into pieces, on each of
-which the motion is a Chebyshev polynomial, found by Picard's iteration y <- y0 + int f(y) at all its nodes at
-once, so that any instant can be had from it without loss. A piece is halved until the iteration comes to rest
-and the last coefficients are rounding.
+as second derivatives of their conditions, in numbers of 64 bits of mantissa. Time is cut into pieces, on each
+of which the motion is a Chebyshev polynomial, found by Picard's iteration y <- y0 + int f(y) at all its nodes
+at once, so that any instant can be had from it without loss. A piece is halved until the iteration comes to
+rest and the last coefficients are rounding.
 
     motion = truth.of(scenario)            # text of a scenario, docs/scenario.md
     centres, triads = motion.at(times)     # (time, body, xyz) m; (time, body, xyz, director)
 
-What it reads of scenarios: boxes and points, or mass and inertia; revolute, universal, spherical joints and rods;
-forces, torques and springs without tables; nothing else, which it says.
+What it reads of scenarios: boxes and points, or mass and inertia; revolute, universal, spherical joints and
+rods; forces, torques and springs without tables; nothing else, which it says.
 """
 import hashlib
 import pathlib
@@ -33,7 +33,7 @@ def real(x):
 # ---------------------------------------------------------------- polynomials on Chebyshev points of [0, 1]
 
 def tables_of_pieces(n):
-    """Points, weights of their barycentric formula, coefficients from values, integrals from 0 from values."""
+    """Points, weights of the barycentric formula; from values: coefficients, and integrals from 0."""
     k = np.arange(n + 1)
     angles = k * (4 * np.arctan(REAL(1))) / n
     weights = (-REAL(1)) ** k
@@ -48,7 +48,8 @@ def tables_of_pieces(n):
         if j == 1:
             return c * c / 2
         return np.cos((j + 1) * a) / (2 * (j + 1)) - np.cos((j - 1) * a) / (2 * (j - 1))
-    integrals = np.stack([antiderivative(j, angles[:1]) - antiderivative(j, angles) for j in range(n + 1)], axis=1)
+    integrals = np.stack([antiderivative(j, angles[:1]) - antiderivative(j, angles) for j in range(n + 1)],
+                         axis=1)
     return (1 - np.cos(angles)) / 2, weights, coefficients, integrals @ coefficients / 2
 
 
@@ -140,8 +141,8 @@ class Body:
         spin = real(entry["angular_velocity_body"]) if "angular_velocity_body" in entry else \
             back(R, real(entry.get("angular_velocity", [0, 0, 0])))
         self.start = np.concatenate([self.place + times(R, self.centre), self.q,
-                                     real(entry.get("velocity", [0, 0, 0])) + times(R, cross(spin, self.centre)),
-                                     spin])
+                                     real(entry.get("velocity", [0, 0, 0])) +
+                                     times(R, cross(spin, self.centre)), spin])
 
     def seen_from(self, point):
         """A point of the world at the start, from the centre of mass in body axes."""
@@ -149,7 +150,7 @@ class Body:
 
 
 def solve(A, b):
-    """Solutions of many small systems by elimination without exchange: A is positive definite; (k, n, n), (k, n, m)."""
+    """Solutions of many small systems, (k, n, n) and (k, n, m); without exchange, A is positive definite."""
     A, b = A.copy(), b.copy()
     n = A.shape[1]
     for i in range(n):
@@ -186,7 +187,8 @@ class Mechanism:
 
     def points(self, entry, key="points"):
         given = entry.get(key, [[0, 0, 0]] * 2)
-        return [(self.index[name], real(point) - (self.bodies[self.index[name]].centre if name != "world" else 0))
+        return [(self.index[name],
+                 real(point) - (self.bodies[self.index[name]].centre if name != "world" else 0))
                 for name, point in zip(entry["between"], given)]
 
     def direction(self, name, axis):
@@ -228,7 +230,7 @@ class Mechanism:
         return load
 
     def of_point(self, at, y, R, is_direction=False):
-        """Value, rate, acceleration by spin alone, and d(acceleration)/d(spin rate) of a point or direction."""
+        """Value, rate, acceleration by spin alone of a point or direction, and its body's triad."""
         body, r = at
         if body < 0:
             zero = np.zeros((len(y), 3), REAL)
@@ -275,7 +277,7 @@ class Mechanism:
         return (G, c) if self.rows is None else (G[:, self.rows], c[:, self.rows])
 
     def accelerations(self, t, y):
-        """(k, body, 6): of the centres, and spin rates in body axes; t is any instant between the same breaks."""
+        """(k, body, 6): of centres, and spin rates in body axes; t: any instant between the same breaks."""
         R, w = rotation(y[..., 3:7]), y[..., 10:]
         force = np.zeros(w.shape, REAL) + self.mass[:, None] * self.gravity
         torque = -cross(w, times(self.inertia, w))
@@ -326,7 +328,7 @@ class Mechanism:
 
 
 def independent(G):
-    """Rows of G that span all, by elimination with exchange; of a closed loop in space some follow from others."""
+    """Rows of G that span all, by elimination; of a closed loop in space some follow from others."""
     G = np.array(G, float)
     G /= np.maximum(np.linalg.norm(G, axis=1), 1e-300)[:, None]
     chosen = []
@@ -358,7 +360,8 @@ class Motion:
         y = np.empty((len(t), *self.values.shape[2:]), REAL)
         for k in np.unique(piece):
             mine = piece == k
-            y[mine] = interpolate(self.values[k], (t[mine] - self.ends[k]) / (self.ends[k + 1] - self.ends[k]))
+            s = (t[mine] - self.ends[k]) / (self.ends[k + 1] - self.ends[k])
+            y[mine] = interpolate(self.values[k], s)
         q = y[..., 3:7] / np.sqrt(dot(y[..., 3:7], y[..., 3:7]))[..., None]
         return y[..., :3].astype(float), rotation(q).astype(float)
 
