@@ -2,8 +2,9 @@
 """Runs the experiments and prints one table of verdicts.
 
     all.py [--short] [--livens PROGRAM] [--output FOLDER] [figNN ...]
+    all.py --scans [--short] [--livens PROGRAM] [--output FOLDER] [NAME ...]
 
-An experiment is named by its folder or by the beginning of it: fig02, text.
+An experiment is named by its folder or by the beginning of it: fig02, text; a scan by what is behind scan_.
 """
 import argparse
 import json
@@ -15,12 +16,15 @@ import time
 import paper
 
 HERE = pathlib.Path(__file__).resolve().parent
+SCAN = "scan_"
 STATES = {0: "as expected", 1: "NOT AS EXPECTED"}
 
 
-def chosen(names):
-    """Folders of the experiments whose name begins with one of `names`; all without names."""
-    folders = sorted(path.parent for path in HERE.glob("*/run") if (path.parent / "expected.json").exists())
+def chosen(names, scans):
+    """Folders of the experiments, or scans, whose name begins with one of `names`; all without names."""
+    folders = sorted(path.parent for path in HERE.glob("*/run") if (path.parent / "expected.json").exists()
+                     and path.parent.name.startswith(SCAN) == scans)
+    names = [SCAN * scans + name for name in names]
     for name in names:
         if not any(folder.name.startswith(name) for folder in folders):
             known = ", ".join(folder.name for folder in folders)
@@ -32,14 +36,16 @@ def main():
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--short", action="store_true", help="fewer refinements, a few seconds each")
+    parser.add_argument("--scans", action="store_true", help="the scans instead of the paper's figures")
     parser.add_argument("--livens", default=paper.PROGRAM)
-    parser.add_argument("--output", type=pathlib.Path, default=paper.ROOT / "build" / "paper")
+    parser.add_argument("--output", type=pathlib.Path, help="default: build/paper or build/scan")
     parser.add_argument("names", nargs="*", metavar="figNN", help="which; default: all")
     arguments = parser.parse_args()
 
     lines, failed = [], False
-    for folder in chosen(arguments.names):
-        output = arguments.output / folder.name
+    place = arguments.output or paper.ROOT / "build" / ("scan" if arguments.scans else "paper")
+    for folder in chosen(arguments.names, arguments.scans):
+        output = place / folder.name
         verdict = output / "verdict.json"
         verdict.unlink(missing_ok=True)   # an old one must not speak for a run that breaks
         began = time.monotonic()

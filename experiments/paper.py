@@ -24,6 +24,7 @@ import json
 import math
 import os
 import pathlib
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -195,7 +196,7 @@ class Run:
         self.figures, self.code = figures, code
         self.file = netCDF4.Dataset(path)
         self.file.set_auto_mask(False)
-        self.n_elements = len(self["element_end"]) - 1
+        self.n_elements = len(self["element_end"]) - 1 if "element_end" in self.file.variables else 0
 
     def __getitem__(self, name):
         return np.asarray(self.file.variables[name][...])
@@ -449,14 +450,23 @@ class Experiment:
         Another exit code than those allowed breaks the experiment. Suspect runs are allowed because here the
         error itself is known; callers remark upon them.
         """
-        with concurrent.futures.ThreadPoolExecutor(os.cpu_count() or 1) as pool:
-            done = list(pool.map(self._launch, texts))
-        for text, (_, process) in zip(texts, done):
-            if process.returncode not in allow:
-                said = process.stderr + process.stdout
-                raise Broken(f"livens left with {process.returncode}:\n{said}\n{text}")
-        # The files are opened here: the NetCDF library is not made for threads.
-        return [Run(json.loads(process.stdout), process.returncode, path) for path, process in done]
+        return self.measure_all(texts, None, allow)
+
+    def measure_all(self, texts, measure, allow=(CONVERGED, SUSPECT)):
+        """What measure(run) says of each run, for so many that their files are not kept; None: the runs."""
+        found = []
+        with concurrent.futures.ThreadPoolExecutor(len(os.sched_getaffinity(0))) as pool:
+            for text, (path, process) in zip(texts, pool.map(self._launch, texts)):
+                if process.returncode not in allow:
+                    said = process.stderr + process.stdout
+                    raise Broken(f"livens left with {process.returncode}:\n{said}\n{text}")
+                # The files are opened here: the NetCDF library is not made for threads.
+                run = Run(json.loads(process.stdout), process.returncode, path)
+                found.append(measure(run) if measure else run)
+                if measure:
+                    run.file.close()
+                    shutil.rmtree(path.parent)
+        return found
 
     def solve(self, text, allow=(CONVERGED, SUSPECT)):
         """Run of one scenario text."""

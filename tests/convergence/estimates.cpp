@@ -75,6 +75,19 @@ TEST(Estimates, OfReactionsDoNotDependOnTheUnitOfLength)
     EXPECT_NEAR(estimate(1000), estimate(1), 1e-4 * estimate(1));
 }
 
+TEST(Estimates, DoNotTakeErrorsThatAreAlikeForNone)
+{
+    // errors of degrees 13 and 14 are 2.79e-8 and 2.64e-8, of 15 1.4e-9: elements too long for their degree
+    const Model model = cubes_on_rods(0.1);
+    const State exact = fine(model, 5, 200).end;
+    const Solution s = solved(model, 5, 19, Lobatto{13}), next = solved(model, 5, 19, Lobatto{14});
+    const double error = true_error(model, last(s), exact), of_next = true_error(model, last(next), exact);
+    EXPECT_GT(of_next, 0.9 * error);
+    EXPECT_LT(of_next, 1.1 * error);
+    EXPECT_GE(last_estimate(s), error / 3);
+    EXPECT_LE(last_estimate(s), 3 * error);
+}
+
 TEST(Estimates, OfAMarchInPiecesIsThatOfTheWhole)
 {
     // more elements than are kept of the second solution at once, from either end

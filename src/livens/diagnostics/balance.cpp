@@ -87,6 +87,7 @@ public:
             loads_.positions(element, k, X_);
             loads_.velocities(element, k, V_);
             for (std::size_t b = 0; b < X_.size(); ++b) now.add_force(X_[b], weights_of_bodies_[b], length_);
+            raise_to(largest_kinetic_, kinetic_energy(model_, X_, V_));
             add_loads(loads_.instant(element, k), now);
             sum.add(h * load_weights_[k], now);
             raise_to(largest_gross_moment_, now.gross_moment);
@@ -103,6 +104,7 @@ public:
     }
     /// Of all instants so far.
     double largest_gross_moment() const { return largest_gross_moment_; }
+    double largest_kinetic() const { return largest_kinetic_; }
 
 private:
     SupplyIntegral(const Model& model, const Motion& motion, Quadrature loads, Quadrature joints)
@@ -177,7 +179,7 @@ private:
     ElementSampler loads_, joints_;
     const Motion& motion_;
     double length_;
-    double largest_gross_moment_ = 0;
+    double largest_gross_moment_ = 0, largest_kinetic_ = 0;
     std::optional<FieldTable> multipliers_;   // a field of its own degree, at the joints' points
     std::vector<Matrix34> X_, V_;
     std::vector<double> lambda_;
@@ -225,6 +227,7 @@ public:
     {
         BalanceFigures figures = figures_;
         figures.reference_energy += supply_.largest_gross_moment();
+        raise_to(figures.largest_kinetic, supply_.largest_kinetic());   // where all ends are at rest
         figures.reference_impulse = total_.gross;
         figures.reference_moment = total_.gross_moment;
         return figures;

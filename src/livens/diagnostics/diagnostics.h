@@ -20,7 +20,7 @@ namespace [[gnu::visibility("default")]] livens {
 /// whose motion and drift are rounding both, and a slow one is not measured by what it could be (a rod of 3e9
 /// m is a slide as well).
 struct BalanceFigures {
-    double largest_kinetic = 0;     ///< over the ends
+    double largest_kinetic = 0;     ///< over the ends and where loads are taken between them
     double largest_momentum = 0;    ///< over the ends, of the sum of the bodies' |p|
     double largest_moment = 0;      ///< largest sum over bodies and columns of |x| |P|
     double reference_energy = 0;    ///< J: largest sum of |F| (|x| + L), plus the largest |potential|

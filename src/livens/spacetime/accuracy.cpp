@@ -22,7 +22,7 @@ constexpr double first_share = 0.03;   // of the accuracy: what the elements of 
 constexpr double target = 0.2;         // of the accuracy: what the next try aims at
 constexpr double hopeless = 30;        // times the accuracy: where a try is broken off
 constexpr int most_tries = 6;
-constexpr double finest = 1e-17;       // that an element can be asked to lose
+constexpr double finest = 1e-22;       // that an element can be asked to lose
 constexpr double blind_share = 0.01;   // of the tolerance, for the next try where the second solution failed
 constexpr int preferred_degree = 7, high_degree = 12, lowest_degree = 3;
 constexpr int preferred_radau = 5, high_radau = 8;

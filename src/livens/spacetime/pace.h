@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 #include "livens/time/basis.h"
@@ -45,6 +46,7 @@ private:
     Points points_;
     int degree_;
     double tolerance_, length_, largest_jump_;
+    double blind_length_ = std::numeric_limits<double>::infinity(), regained_ = 1;
     std::vector<double> stops_;
     double sum_of_scales_ = 0;   // of log(h J^(-1 / (p + 1))): lengths at which elements see nothing
     int n_accepted_ = 0;

@@ -30,8 +30,8 @@ struct SolveOptions {
     bool judge = true;   ///< false: the caller asks estimate() and judge() himself, or does without
     /// What tells the error of the motion, where it is judged.
     enum class Estimate {
-        second,   ///< a second solution, of degree + 1 or with half the steps, on the same mesh; mixed: its
-                  ///< witness
+        second,   ///< a second solution on the same mesh, of degree + 1 (lobatto from degree 4: + 2) or with
+                  ///< half the steps; mixed: its witness
         none
     } estimate = Estimate::second;
     /// Whether a neighbouring motion tells how perturbations grow, after the estimate (state at the start).

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
+#include <utility>
 #include <vector>
 
 #include "livens/diagnostics/diagnostics.h"
@@ -55,6 +57,37 @@ TEST(Pace, FindsTheLengthThatTheToleranceAllows)
         EXPECT_NEAR(pace.mean_length(7), 1.6 * std::pow(1e-8 / 0.04, 1.0 / 15), 1e-6);
         EXPECT_LE(refused, first > 2 ? 12 : 0);
     }
+}
+
+/// Elements that lose next to nothing up to a length at which they see nothing of the motion; how many there
+/// are, and how many were refused.
+std::pair<int, int> blind_beyond(double first, double then)
+{
+    Pace pace(Points::lobatto, 12, 1e-6, 0.5 * first, {0, 10, 100});
+    int accepted = 0, refused = 0;
+    for (double t = 0; t < pace.end();) {
+        const double end = pace.next_end(t), h = end - t;
+        if (h > (t < 10 ? first : then)) {
+            ++refused;
+            if (!pace.refused(h, std::numeric_limits<double>::infinity())) break;
+            continue;
+        }
+        pace.accepted(h, 1e-9, false);
+        ++accepted;
+        t = end;
+    }
+    return {accepted, refused};
+}
+
+TEST(Pace, DoesNotTryAgainAtOnceWhatSawNothing)
+{
+    const auto [accepted, refused] = blind_beyond(0.3, 0.3);
+    EXPECT_LT(refused, 0.3 * accepted) << accepted;
+    EXPECT_LT(accepted, 1.4 * 100 / 0.3) << "nor are elements much shorter than they may be";
+    // and what was seen once is not held against elements for ever
+    const auto [after_burst, refused_in_all] = blind_beyond(0.01, 30);
+    EXPECT_LT(after_burst, 1.4 * 10 / 0.01 + 40);
+    EXPECT_LT(refused_in_all, 0.3 * after_burst);
 }
 
 TEST(Pace, StopsAreElementEndsToTheBitAndShortWaysCostNoLength)

@@ -50,6 +50,21 @@ TEST(Verdict, OfAGoodRunHasFiguresAndNoReason)
     }
 }
 
+TEST(Verdict, OfASwingWhoseElementsEndAtRestHasNoReason)
+{
+    // from turning point to turning point of a pendulum let go from the horizontal: nothing moves at the ends
+    Model model({0, -9.81, 0});
+    model.add_body(point_mass("bob", 1, {-1, 0, 0}));
+    model.add_joint(rod("rod", world, 0, {}, 1));
+    const Solution s = solved(model, Lobatto{12}, 10 * 2.36784194757623745, 20);
+    EXPECT_TRUE(s.report.converged()) << s.report.message;
+    EXPECT_EQ(s.motion.n_elements(), 20);
+    EXPECT_LT(std::ranges::max(s.verdict.balance.kinetic), 1e-6) << "else it shows nothing";
+    EXPECT_GT(s.verdict.balance.largest_kinetic, 0.9 * 9.81) << "of which 9.81 J are reached in between";
+    EXPECT_LT(s.verdict.balance.largest_kinetic, 9.82);
+    EXPECT_LT(s.verdict.energy_drift, 1e-6);
+}
+
 TEST(Verdict, OfAMechanismAtRestHasNoReasonWithAnyMethod)
 {
     const Model model = pendulum(0);   // every scale of the motion itself is zero or rounding

@@ -79,7 +79,7 @@ constexpr Figure figures[] = {
     {"growth", "1", "largest of a perturbation of the start, in lengths and rad", &Verdict::growth, false, 2},
     {"horizon", "s", "where 1e-13 at the start has grown to 1e-2; not known also if after the end",
      &Verdict::horizon, false, 2},
-    {"largest_kinetic_energy", "J", "over the element ends", &BalanceFigures::largest_kinetic},
+    {"largest_kinetic_energy", "J", "over element ends and instants between", &BalanceFigures::largest_kinetic},
     {"largest_momentum", "kg m/s", "over the element ends, of the sum of abs(p)",
      &BalanceFigures::largest_momentum},
     {"largest_moment_of_momentum", "kg m2/s", "likewise of the sum over columns of abs(x) abs(P)",

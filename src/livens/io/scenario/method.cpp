@@ -234,8 +234,9 @@ Table method_table()
              .within({1, 1000}),
          Key{"estimate",
              types::choice,
-             "What tells the error of the motion: a second solution on the same elements (of degree + 1, or "
-             "with half the steps; mixed: lobatto of degree + 2), or nothing.",
+             "What tells the error of the motion: a second solution on the same elements (of degree + 1, "
+             "lobatto from degree 4 of degree + 2, or with half the steps; mixed: lobatto of degree + 2), or "
+             "nothing.",
              "",
              "second",
              false,

@@ -49,9 +49,9 @@ void balance_row(const ElementRule& rule, double* x, double value)
 
 void check_degree(Points points, int degree)
 {
-    const int most = points == Points::lobatto ? 17 : 9;
+    const int most = points == Points::lobatto ? 18 : 9;
     if (degree >= 1 && degree <= most) return;
-    const std::string last = std::to_string(most - 1);
+    const std::string last = std::to_string(points == Points::lobatto ? 16 : 8);
     throw InputError(
         {"degree-out-of-range", "method.degree",
          std::string(points == Points::lobatto ? "lobatto" : "radau") + " elements have degree 1 to " + last,

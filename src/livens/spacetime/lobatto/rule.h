@@ -27,8 +27,8 @@ struct ElementRule {
     int size() const { return degree + 1; }
 };
 
-/// Throws InputError unless 1 <= degree <= 17 (lobatto) or 9 (radau); the last is for the estimate of the
-/// error of the one before.
+/// Throws InputError unless 1 <= degree <= 18 (lobatto) or 9 (radau); 17, 18 and 9 are for the estimates of
+/// errors alone.
 ElementRule element_rule(Points points, int degree);
 /// Throws InputError for a degree out of range, and std::bad_variant_access for a method that is not nodal.
 ElementRule rule_of(const Method& method);

@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the scans share: scenarios without their mesh, true motions, errors as livens states them, counts.
+
+A scan solves many meshes, or to many accuracies, and counts how often what the program says of its own answer
+is untrue. Errors are those that `estimated_error` stands for (docs/program.md): the larger of the distance of
+centres of mass in lengths of the model and of the angle between orientations, over bodies and output times.
+"""
+import math
+import resource
+import sys
+
+import numpy as np
+
+import paper
+import truth
+
+RUNS = (paper.CONVERGED, paper.SUSPECT, paper.NOT_CONVERGED)   # exit codes that a scan counts
+
+
+def mechanism(name):
+    """Text of a scenario: an example of the program, or one of mechanisms/."""
+    for folder in ("examples", "experiments/mechanisms"):
+        path = paper.ROOT / folder / f"{name}.toml"
+        if path.exists():
+            return path.read_text(encoding="utf-8")
+    raise paper.Broken(f"no mechanism is called {name}")
+
+
+def scenario(name, time, method):
+    """That mechanism with another [time] and [method]."""
+    return mechanism(name).split("[time]")[0] + paper.table("[time]", time) + paper.table("[method]", method)
+
+
+def true_motion(name, end):
+    """Kept in build/truth, since it hangs on nothing but the mechanism."""
+    return truth.of(scenario(name, {"end": end}, {}), end, paper.ROOT / "build" / "truth")
+
+
+def length_of(e, name):
+    """What the program divides errors of positions by, m; it is told with estimates alone."""
+    short = scenario(name, {"end": 1e-3, "elements": 1}, paper.lobatto(4))
+    return e.measure_all([short], lambda run: run.attribute("model_length"))[0]
+
+
+def errors(run, motion, length):
+    """At each output time of a run, (time); one infinite number if it has none."""
+    if "time" not in run.file.variables:
+        return np.array([math.inf])
+    centres, triads = motion.at(np.minimum(run["time"], float(motion.ends[-1])))
+    far = np.linalg.norm(run["center_of_mass"] - centres, axis=2) / length
+    if "directors" in run.file.variables:
+        apart = np.linalg.norm(np.swapaxes(run["directors"], 2, 3) - triads, axis=(2, 3)) / math.sqrt(8)
+        turned = 2 * np.arcsin(np.minimum(apart, 1))
+        far = np.maximum(far, np.nan_to_num(turned))   # nan: a point has no triad
+    return far.max(axis=1)
+
+
+def so_far(e, text):
+    """A remark that is seen at once, with the work done until then."""
+    e.remark(f"{text}; {cpu_minutes():.1f} CPU minutes so far")
+    print("  " + e.remarks[-1], file=sys.stderr)
+
+
+def cpu_minutes():
+    """Of this process and all that it waited for."""
+    return sum(usage.ru_utime + usage.ru_stime for usage in
+               map(resource.getrusage, (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))) / 60
+
+
+def share(part, whole):
+    return len(part) / max(len(whole), 1)

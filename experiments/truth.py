@@ -1,0 +1,426 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""True motions of scenarios, by a formulation that shares nothing with livens.
+
+Newton's and Euler's equations of the bodies (centre of mass, quaternion, velocity, spin in body axes), joints
+as second derivatives of their conditions, in numbers of 64 bits of mantissa. Time is cut into pieces, on each
+of which the motion is a Chebyshev polynomial, found by Picard's iteration y <- y0 + int f(y) at all its nodes
+at once, so that any instant can be had from it without loss. A piece is halved until the iteration comes to
+rest and the last coefficients are rounding.
+
+    motion = truth.of(scenario)            # text of a scenario, docs/scenario.md
+    centres, triads = motion.at(times)     # (time, body, xyz) m; (time, body, xyz, director)
+
+What it reads of scenarios: boxes and points, or mass and inertia; revolute, universal, spherical joints and
+rods; forces, torques and springs without tables; nothing else, which it says.
+"""
+import hashlib
+import pathlib
+import tomllib
+
+import numpy as np
+
+REAL = np.longdouble
+N = 40                      # degree of a piece
+MOST_ITERATIONS = 60
+REST = REAL(4e-19)          # of the largest number: where the iteration has come to rest
+TAIL = REAL(2e-17)          # of the largest number: the last coefficients of a piece
+
+
+def real(x):
+    return np.array(x, dtype=REAL)
+
+
+# ---------------------------------------------------------------- polynomials on Chebyshev points of [0, 1]
+
+def tables_of_pieces(n):
+    """Points, weights of the barycentric formula; from values: coefficients, and integrals from 0."""
+    k = np.arange(n + 1)
+    angles = k * (4 * np.arctan(REAL(1))) / n
+    weights = (-REAL(1)) ** k
+    weights[[0, -1]] /= 2
+    share = np.where((k == 0) | (k == n), REAL(0.5), REAL(1))
+    coefficients = 2 / REAL(n) * share[:, None] * np.cos(np.outer(k, angles)) * share   # of T_k(-x)
+    # int T_k(cos a) sin a da, term by term; T_k as a polynomial in cos a at x = cos(angles) from 1 to -1
+    def antiderivative(j, a):
+        c = np.cos(a)
+        if j == 0:
+            return c
+        if j == 1:
+            return c * c / 2
+        return np.cos((j + 1) * a) / (2 * (j + 1)) - np.cos((j - 1) * a) / (2 * (j - 1))
+    integrals = np.stack([antiderivative(j, angles[:1]) - antiderivative(j, angles) for j in range(n + 1)],
+                         axis=1)
+    return (1 - np.cos(angles)) / 2, weights, coefficients, integrals @ coefficients / 2
+
+
+POINTS, WEIGHTS, COEFFICIENTS, INTEGRALS = tables_of_pieces(N)
+
+
+def interpolate(values, s):
+    """Polynomials through values (node, ...) at s of [0, 1]."""
+    apart = s[:, None] - POINTS
+    hit = apart == 0
+    share = np.where(hit.any(axis=1)[:, None], hit, WEIGHTS / np.where(hit, 1, apart))
+    return np.tensordot(share, values, 1) / share.sum(axis=1).reshape(-1, *[1] * (values.ndim - 1))
+
+
+# ---------------------------------------------------------------- rotations
+
+def rotation(q):
+    """Matrices whose columns are the directors, of quaternions (w, x, y, z)."""
+    w, x, y, z = np.moveaxis(q, -1, 0)
+    return np.stack([np.stack([1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)], -1),
+                     np.stack([2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)], -1),
+                     np.stack([2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)], -1)], -2)
+
+
+def quaternion(R):
+    """Of a rotation matrix; by the largest of its four parts."""
+    squares = real([1 + R[0, 0] + R[1, 1] + R[2, 2], 1 + R[0, 0] - R[1, 1] - R[2, 2],
+                    1 - R[0, 0] + R[1, 1] - R[2, 2], 1 - R[0, 0] - R[1, 1] + R[2, 2]])
+    pairs = [[R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1]],
+             [R[2, 1] - R[1, 2], R[0, 1] + R[1, 0], R[0, 2] + R[2, 0]],
+             [R[0, 2] - R[2, 0], R[0, 1] + R[1, 0], R[1, 2] + R[2, 1]],
+             [R[1, 0] - R[0, 1], R[0, 2] + R[2, 0], R[1, 2] + R[2, 1]]]
+    most = int(np.argmax(squares))
+    q = np.insert(real(pairs[most]), most, squares[most])
+    return q / np.sqrt((q * q).sum())
+
+
+def cross(a, b):
+    """Vector product along the last axis; numpy.cross is slow."""
+    (a0, a1, a2), (b0, b1, b2) = np.moveaxis(a, -1, 0), np.moveaxis(b, -1, 0)
+    return np.stack([a1 * b2 - a2 * b1, a2 * b0 - a0 * b2, a0 * b1 - a1 * b0], -1)
+
+
+def times(R, a):
+    return (R * a[..., None, :]).sum(-1)
+
+
+def back(R, a):
+    return (R * a[..., :, None]).sum(-2)
+
+
+def dot(a, b):
+    return (a * b).sum(-1)
+
+
+# ---------------------------------------------------------------- the mechanism
+
+class Body:
+    """Mass, inertia about the centre of mass in body axes, and the start."""
+
+    def __init__(self, entry):
+        known = {"name", "shape", "density", "mass", "center_of_mass", "inertia", "position", "directors",
+                 "rotation_vector", "velocity", "angular_velocity", "angular_velocity_body"}
+        assert set(entry) <= known, f"not read here: {set(entry) - known}"
+        shape = entry.get("shape", {})
+        assert set(shape) <= {"box", "point"}, f"not read here: {shape}"
+        self.is_point = "point" in shape
+        edges = real(shape.get("box", [0, 0, 0]))
+        self.mass = real(entry["mass"]) if "mass" in entry else real(entry["density"]) * edges.prod()
+        square = edges * edges
+        self.inertia = np.diag(self.mass * (square.sum() - square) / 12)
+        if "inertia" in entry:
+            given = real(entry["inertia"])
+            self.inertia = np.diag(given) if given.ndim == 1 else given
+        if self.is_point:
+            self.inertia = np.eye(3, dtype=REAL)   # of a body that nothing turns
+        self.inverse = solve(self.inertia[None], np.eye(3, dtype=REAL)[None])[0]
+        self.centre = real(entry.get("center_of_mass", [0, 0, 0]))
+        if "rotation_vector" in entry:
+            vector = real(entry["rotation_vector"])
+            angle = np.sqrt(dot(vector, vector))
+            self.q = np.concatenate([[np.cos(angle / 2)], vector / angle * np.sin(angle / 2)])
+        else:
+            R = real(entry.get("directors", np.eye(3))).T
+            assert np.abs(R.T @ R - np.eye(3)).max() < 1e-14, "directors are no rotation"
+            self.q = quaternion(R)
+        R = rotation(self.q)
+        self.place = real(entry.get("position", [0, 0, 0]))
+        spin = real(entry["angular_velocity_body"]) if "angular_velocity_body" in entry else \
+            back(R, real(entry.get("angular_velocity", [0, 0, 0])))
+        self.start = np.concatenate([self.place + times(R, self.centre), self.q,
+                                     real(entry.get("velocity", [0, 0, 0])) +
+                                     times(R, cross(spin, self.centre)), spin])
+
+    def seen_from(self, point):
+        """A point of the world at the start, from the centre of mass in body axes."""
+        return back(rotation(self.q), real(point) - self.start[:3])
+
+
+def solve(A, b):
+    """Solutions of many small systems, (k, n, n) and (k, n, m); without exchange, A is positive definite."""
+    A, b = A.copy(), b.copy()
+    n = A.shape[1]
+    for i in range(n):
+        share = A[:, i + 1:, i] / A[:, i, i, None]
+        A[:, i + 1:, i:] -= share[..., None] * A[:, i, None, i:]
+        b[:, i + 1:] -= share[..., None] * b[:, i, None]
+    for i in reversed(range(n)):
+        b[:, i] = (b[:, i] - (A[:, i, i + 1:, None] * b[:, i + 1:]).sum(1)) / A[:, i, i, None]
+    return b
+
+
+class Mechanism:
+    """f of y' = f(t, y), y = (centre 3, quaternion 4, velocity 3, spin 3) of each body."""
+
+    def __init__(self, scenario):
+        known = {"format", "title", "gravity", "body", "joint", "load", "time", "method"}
+        assert set(scenario) <= known, f"not read here: {set(scenario) - known}"
+        self.gravity = real(scenario.get("gravity", [0, 0, 0]))
+        self.bodies = [Body(entry) for entry in scenario["body"]]
+        self.index = {"world": -1} | {entry["name"]: i for i, entry in enumerate(scenario["body"])}
+        self.loads = [self.load(entry) for entry in scenario.get("load", [])]
+        self.joints = [self.joint(entry) for entry in scenario.get("joint", [])]
+        self.breaks = sorted({t for load in self.loads for t in (load.get("from"), load.get("until"))
+                              if t is not None})
+        self.mass = real([body.mass for body in self.bodies])
+        self.inertia = np.stack([body.inertia for body in self.bodies])
+        self.inverse = np.stack([body.inverse for body in self.bodies])
+        self.start = np.stack([body.start for body in self.bodies])
+        self.rows = None
+        G, _ = self.conditions(self.start[None])
+        self.rows = independent(G[0].reshape(-1, 6 * len(self.bodies)))
+
+    # a point or a direction of a body: (index, vector from the centre of mass in body axes)
+
+    def points(self, entry, key="points"):
+        given = entry.get(key, [[0, 0, 0]] * 2)
+        return [(self.index[name],
+                 real(point) - (self.bodies[self.index[name]].centre if name != "world" else 0))
+                for name, point in zip(entry["between"], given)]
+
+    def direction(self, name, axis):
+        axis = real(axis)
+        body = self.index[name]
+        axis = axis / np.sqrt(dot(axis, axis))
+        return body, axis if body < 0 else back(rotation(self.bodies[body].q), axis)
+
+    def joint(self, entry):
+        """(kind, two points, pairs of directions that stay perpendicular)."""
+        assert "points" not in entry or entry["type"] == "rod", "joints are placed by at"
+        if entry["type"] == "rod":
+            return "rod", self.points(entry), []
+        first, second = entry["between"]
+        at = [(self.index[name], real(entry["at"]) if name == "world" else
+               self.bodies[self.index[name]].seen_from(entry["at"])) for name in (first, second)]
+        if entry["type"] == "spherical":
+            return "point", at, []
+        if entry["type"] == "universal":
+            axes = entry["axes"]
+            return "point", at, [(self.direction(first, axes[0]), self.direction(second, axes[1]))]
+        assert entry["type"] == "revolute", f"not read here: {entry['type']}"
+        axis = real(entry["axis"])
+        across = cross(axis, np.eye(3, dtype=REAL)[np.argmin(np.abs(axis))])
+        return "point", at, [(self.direction(first, axis), self.direction(second, other))
+                             for other in (across, cross(axis, across))]
+
+    def load(self, entry):
+        known = {"name", "type", "body", "value", "point", "from", "until", "between", "points", "stiffness",
+                 "damping", "free_length", "frame"}
+        assert set(entry) <= known, f"not read here: {set(entry) - known}"
+        load = dict(entry)
+        if entry["type"] == "spring":
+            load["ends"] = self.points(entry)
+        else:
+            load["index"] = self.index[entry["body"]]
+            load["arm"] = real(entry.get("point", [0, 0, 0])) - self.bodies[load["index"]].centre
+            load["value"] = real(entry["value"])
+        return load
+
+    def of_point(self, at, y, R, is_direction=False):
+        """Value, rate, acceleration by spin alone of a point or direction, and its body's triad."""
+        body, r = at
+        if body < 0:
+            zero = np.zeros((len(y), 3), REAL)
+            return zero + r, zero, zero, None
+        Rb, w = R[:, body], y[:, body, 10:]
+        turned = cross(w, np.broadcast_to(r, w.shape))
+        value, rate = times(Rb, np.broadcast_to(r, w.shape)), times(Rb, turned)
+        if not is_direction:
+            value, rate = value + y[:, body, :3], rate + y[:, body, 7:10]
+        return value, rate, times(Rb, cross(w, turned)), Rb
+
+    def conditions(self, y):
+        """G (k, row, body, 6) and c with G (a, alpha) = c."""
+        R = rotation(y[..., 3:7])
+        G, c = [], []
+        zero = np.zeros((len(y), len(self.bodies), 6), REAL)
+
+        def row(sides, right):
+            g = zero.copy()
+            for (body, r), n, Rb, is_direction in sides:
+                if body < 0:
+                    continue
+                if not is_direction:
+                    g[:, body, :3] += n
+                g[:, body, 3:] += cross(np.broadcast_to(r, n.shape), back(Rb, n))   # n . R (alpha x r)
+            G.append(g)
+            c.append(right)
+
+        for kind, (p, q), pairs in self.joints:
+            (x, v, a, Rp), (xq, vq, aq, Rq) = self.of_point(p, y, R), self.of_point(q, y, R)
+            if kind == "rod":
+                d, rate = x - xq, v - vq
+                row([(p, d, Rp, False), (q, -d, Rq, False)], -dot(rate, rate) - dot(d, a - aq))
+            else:
+                for e in np.eye(3, dtype=REAL):
+                    n = np.broadcast_to(e, x.shape)
+                    row([(p, n, Rp, False), (q, -n, Rq, False)], -dot(n, a - aq))
+            for e, n in pairs:
+                (x, v, a, Re), (xn, vn, an, Rn) = self.of_point(e, y, R, True), self.of_point(n, y, R, True)
+                row([(e, xn, Re, True), (n, x, Rn, True)], -dot(a, xn) - dot(x, an) - 2 * dot(v, vn))
+        if not G:
+            return np.zeros((len(y), 0, len(self.bodies), 6), REAL), np.zeros((len(y), 0), REAL)
+        G, c = np.stack(G, 1), np.stack(c, 1)
+        return (G, c) if self.rows is None else (G[:, self.rows], c[:, self.rows])
+
+    def accelerations(self, t, y):
+        """(k, body, 6): of centres, and spin rates in body axes; t: any instant between the same breaks."""
+        R, w = rotation(y[..., 3:7]), y[..., 10:]
+        force = np.zeros(w.shape, REAL) + self.mass[:, None] * self.gravity
+        torque = -cross(w, times(self.inertia, w))
+
+        def push(body, arm, F):
+            if body >= 0:
+                force[:, body] += F
+                torque[:, body] += cross(np.broadcast_to(arm, F.shape), back(R[:, body], F))
+
+        for load in self.loads:
+            if not load.get("from", -np.inf) <= t <= load.get("until", np.inf):
+                continue
+            if load["type"] == "spring":
+                (x, v, _, _), (xq, vq, _, _) = (self.of_point(end, y, R) for end in load["ends"])
+                d = xq - x
+                length = np.sqrt(dot(d, d))
+                pull = load["stiffness"] * (length - REAL(load["free_length"])) + \
+                    REAL(load.get("damping", 0)) * dot(d, vq - v) / length
+                F = (pull / length)[:, None] * d
+                push(*load["ends"][0], F)
+                push(*load["ends"][1], -F)
+                continue
+            b = load["index"]
+            value = np.broadcast_to(load["value"], w[:, b].shape)
+            value = times(R[:, b], value) if load.get("frame") == "body" else value
+            if load["type"] == "force":
+                push(b, load["arm"], value)
+            else:
+                torque[:, b] += back(R[:, b], value)
+        free = np.concatenate([force / self.mass[:, None], times(self.inverse, torque)], -1)
+        G, c = self.conditions(y)
+        if G.shape[1] == 0:
+            return free
+        by_mass = np.concatenate([G[..., :3] / self.mass[:, None],
+                                  times(self.inverse, G[..., 3:])], -1).reshape(len(y), G.shape[1], -1)
+        flat = G.reshape(by_mass.shape)
+        A = np.einsum("kri,ksi->krs", flat, by_mass)
+        scale = np.sqrt(np.einsum("krr->kr", A))
+        right = (c - np.einsum("kri,ki->kr", flat, free.reshape(len(y), -1))) / scale
+        reactions = solve(A / scale[:, :, None] / scale[:, None], right[..., None])[..., 0] / scale
+        return free + np.einsum("kri,kr->ki", by_mass, reactions).reshape(free.shape)
+
+    def rate(self, t, y):
+        q, w = y[..., 3:7], y[..., 10:]
+        spin = np.concatenate([-dot(q[..., 1:], w)[..., None], q[..., :1] * w + cross(q[..., 1:], w)], -1) / 2
+        a = self.accelerations(t, y)
+        return np.concatenate([y[..., 7:10], spin, a], -1)
+
+
+def independent(G):
+    """Rows of G that span all, by elimination; of a closed loop in space some follow from others."""
+    G = np.array(G, float)
+    G /= np.maximum(np.linalg.norm(G, axis=1), 1e-300)[:, None]
+    chosen = []
+    left = G.copy()
+    while len(chosen) < len(G):
+        size = np.linalg.norm(left, axis=1)
+        best = int(np.argmax(size))
+        if size[best] < 1e-6:
+            break
+        chosen.append(best)
+        direction = left[best] / size[best]
+        left = left - np.outer(left @ direction, direction)
+    return sorted(chosen)
+
+
+# ---------------------------------------------------------------- its motion
+
+class Motion:
+    """Pieces of polynomials: ends (piece + 1), values (piece, node, body, 13)."""
+
+    def __init__(self, ends, values):
+        self.ends, self.values = ends, values
+
+    def at(self, t):
+        """Centres of mass (time, body, xyz) and triads (time, body, xyz, director) at instants t."""
+        t = np.atleast_1d(np.asarray(t, REAL))
+        assert self.ends[0] <= t.min() and t.max() <= self.ends[-1] + 1e-12, "outside the motion"
+        piece = np.clip(np.searchsorted(self.ends, t, side="left") - 1, 0, len(self.values) - 1)
+        y = np.empty((len(t), *self.values.shape[2:]), REAL)
+        for k in np.unique(piece):
+            mine = piece == k
+            s = (t[mine] - self.ends[k]) / (self.ends[k + 1] - self.ends[k])
+            y[mine] = interpolate(self.values[k], s)
+        q = y[..., 3:7] / np.sqrt(dot(y[..., 3:7], y[..., 3:7]))[..., None]
+        return y[..., :3].astype(float), rotation(q).astype(float)
+
+
+def piece_of(mechanism, t, h, y0):
+    """Values at the nodes and the iterations of one piece; None where it is too long."""
+    y = np.broadcast_to(y0, (N + 1, *y0.shape))
+    middle, scale, last = t + h / 2, np.abs(y0).max(), np.inf
+    for k in range(MOST_ITERATIONS):
+        with np.errstate(all="ignore"):   # a piece that is too long runs away
+            f = mechanism.rate(middle, y)
+        new = y0 + h * np.tensordot(INTEGRALS, f, 1)
+        change = np.abs(new - y).max()
+        y = new
+        scale = max(scale, np.abs(y).max())
+        if not np.isfinite(change) or change > 1e6 * scale:
+            return None, k
+        if change <= REST * scale or (k > 8 and change < 1e-17 * scale and change >= last):
+            break
+        last = change
+    else:
+        return None, k
+    tail = np.abs(np.tensordot(COEFFICIENTS[-4:], y, 1)).max()
+    return (y, k) if tail <= TAIL * scale else (None, k)
+
+
+def march(mechanism, end, first=0.1):
+    """The motion from 0 to `end`."""
+    stops = [t for t in mechanism.breaks if 0 < t < end] + [end]
+    ends, values, h, y = [REAL(0)], [], REAL(first), mechanism.start
+    for stop in map(REAL, stops):
+        while ends[-1] < stop:
+            left = stop - ends[-1]
+            step = left / np.ceil(left / h)
+            found, k = piece_of(mechanism, ends[-1], step, y)
+            if found is None:
+                h = step / 2
+                assert h > 1e-6, f"no motion behind {float(ends[-1])} s"
+                continue
+            values.append(found)
+            ends.append(stop if step == left else ends[-1] + step)
+            y = found[-1]
+            h = step * REAL(1.25 if k < 40 else 1)
+    return Motion(real(ends), np.stack(values))
+
+
+def of(scenario, end=None, kept_in=None):
+    """The motion of a scenario's text up to `end` (default: its own); kept in a folder, it is made once."""
+    content = tomllib.loads(scenario)
+    end = end or content["time"]["end"]
+    for key in ("time", "method", "title"):
+        content.pop(key, None)
+    if kept_in is None:
+        return march(Mechanism(content), end)
+    mine = hashlib.sha256((repr(content) + repr(end) + pathlib.Path(__file__).read_text("utf-8")).encode())
+    path = pathlib.Path(kept_in) / f"{mine.hexdigest()[:20]}.npz"
+    if not path.exists():
+        motion = march(Mechanism(content), end)
+        path.parent.mkdir(parents=True, exist_ok=True)
+        np.savez(path, ends=motion.ends, values=motion.values)
+    with np.load(path) as kept:
+        return Motion(kept["ends"], kept["values"])
