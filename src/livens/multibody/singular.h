@@ -7,7 +7,7 @@
 
 #include "livens/multibody/closing.h"
 
-namespace livens {
+namespace [[gnu::visibility("default")]] livens {
 
 /// Motions that the joints leave free at a configuration, to second order.
 ///

@@ -6,7 +6,7 @@
 #include <variant>
 
 #include "livens/base/error.h"
-#include "livens/base/largest.h"
+#include "livens/diagnostics/largest.h"
 #include "livens/base/text.h"
 #include "livens/multibody/frequencies.h"
 #include "livens/spacetime/second.h"

@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "livens/base/error.h"
-#include "livens/base/largest.h"
+#include "livens/diagnostics/largest.h"
 #include "livens/multibody/body.h"
 #include "livens/multibody/twist.h"
 #include "livens/spacetime/solve.h"
