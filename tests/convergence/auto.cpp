@@ -107,7 +107,7 @@ TEST(Auto, NeedsAnAccuracy)
 {
     const Model model = slug();
     EXPECT_THROW(solve(model, {model.start()}, make_time_mesh(0, 1, 10), Auto{}), InputError);
-    EXPECT_THROW(to_accuracy(model, 1, 1e-6, Auto{18}), InputError);
+    EXPECT_THROW(to_accuracy(model, 1, 1e-6, Auto{19}), InputError);
     const Solution s = to_accuracy(model, 1, 1e-6, Auto{12});   // more than radau has
     EXPECT_EQ(std::get<Radau>(s.method).degree, 8);
 }

@@ -60,7 +60,7 @@ TEST(Balance, OfAFreeFallIsExact)
     EXPECT_GT(norm(b.angular_impulse.back()), 1);
     EXPECT_EQ(b.work.back(), 0);
     EXPECT_EQ(b.kinetic[2] + b.potential[2], b.energy[2]);
-    EXPECT_EQ(b.largest_kinetic, largest(b.kinetic));
+    EXPECT_NEAR(b.largest_kinetic, largest(b.kinetic), 1e-12);   // between the ends it is less
 }
 
 TEST(Balance, InPiecesIsThatOfTheWhole)
@@ -496,11 +496,11 @@ TEST(Balance, IsRelativeToWhatMovesHoweverLongARodIs)
 
 TEST(Balance, OfEnergyIsRelativeToTheChangeOfPotential)
 {
-    // A stone is lifted by 3 m in no time and without work.
+    // A stone is lifted by 3 m without work, and slowly: 4.5 J move, 30 J are stored.
     Model model({0, 0, -10});
     model.add_body(point_mass("stone", 1, {0, 0, 1e3}));
     const Balance b = balance(model, motion(model, mesh(0, 1, 10), 3, [](double t) {
-                                  return state_of_point(t, {0, 0, t < 0.5 ? 1e3 : 1e3 + 3}, {1e-3, 0, 0});
+                                  return state_of_point(t, {0, 0, 1e3 + 3 * t}, {1e-3, 0, 0});
                               }));
     EXPECT_NEAR(b.relative_energy_drift(), 1, 1e-12);
 }

@@ -59,7 +59,7 @@ TEST(Verdict, OfASwingWhoseElementsEndAtRestHasNoReason)
     const Solution s = solved(model, Lobatto{12}, 10 * 2.36784194757623745, 20);
     EXPECT_TRUE(s.report.converged()) << s.report.message;
     EXPECT_EQ(s.motion.n_elements(), 20);
-    EXPECT_LT(std::ranges::max(s.verdict.balance.kinetic), 1e-6) << "else it shows nothing";
+    EXPECT_LT(std::ranges::max(balance(model, s.motion).kinetic), 1e-6) << "else it shows nothing";
     EXPECT_GT(s.verdict.balance.largest_kinetic, 0.9 * 9.81) << "of which 9.81 J are reached in between";
     EXPECT_LT(s.verdict.balance.largest_kinetic, 9.82);
     EXPECT_LT(s.verdict.energy_drift, 1e-6);
