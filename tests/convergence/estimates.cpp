@@ -88,6 +88,25 @@ TEST(Estimates, DoNotTakeErrorsThatAreAlikeForNone)
     EXPECT_LE(last_estimate(s), 3 * error);
 }
 
+TEST(Estimates, ThatTheSecondSolutionIsTooCoarseForAreSuspect)
+{
+    // below 1e-2, but with a jump of 0.2, or with more energy off than the error would make
+    Model pendulum({0, -9.81, 0});
+    pendulum.add_body(point_mass("bob", 1, {-1, 0, 0}));
+    pendulum.add_joint(rod("rod", world, 0, {}, 1));
+    const Solution long_elements = solve(pendulum, {pendulum.start()}, make_time_mesh(0, 23.6784194757623745, 9),
+                                         Lobatto{9});
+    const Model bricks = two_bricks();
+    const Solution lossy = solve(bricks, {bricks.start()}, make_time_mesh(0, 2, 12), Lobatto{7});
+    EXPECT_GT(long_elements.verdict.velocity_jump, 0.1);
+    EXPECT_GT(lossy.verdict.energy_drift, lossy.estimate.largest);
+    for (const Solution* s : {&long_elements, &lossy}) {
+        EXPECT_LT(s->estimate.largest, 1e-2);
+        EXPECT_EQ(s->report.status, SolveStatus::suspect);
+        EXPECT_NE(s->report.message.find("may be too small"), std::string::npos) << s->report.message;
+    }
+}
+
 TEST(Estimates, OfAMarchInPiecesIsThatOfTheWhole)
 {
     // more elements than are kept of the second solution at once, from either end
