@@ -94,8 +94,8 @@ TEST(Estimates, ThatTheSecondSolutionIsTooCoarseForAreSuspect)
     Model pendulum({0, -9.81, 0});
     pendulum.add_body(point_mass("bob", 1, {-1, 0, 0}));
     pendulum.add_joint(rod("rod", world, 0, {}, 1));
-    const Solution long_elements = solve(pendulum, {pendulum.start()}, make_time_mesh(0, 23.6784194757623745, 9),
-                                         Lobatto{9});
+    const Solution long_elements =
+        solve(pendulum, {pendulum.start()}, make_time_mesh(0, 23.6784194757623745, 9), Lobatto{9});
     const Model bricks = two_bricks();
     const Solution lossy = solve(bricks, {bricks.start()}, make_time_mesh(0, 2, 12), Lobatto{7});
     EXPECT_GT(long_elements.verdict.velocity_jump, 0.1);
