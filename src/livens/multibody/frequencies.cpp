@@ -171,16 +171,20 @@ public:
     }
 
     /// Of the positive eigenvalues, ascending. `columns`: X of each body by its scaled twist.
-    std::vector<Vibration> vibrations(const Terms& terms, const std::vector<Columns>& columns) const
+    std::vector<Vibration> vibrations(const Terms& terms, const Terms& dampers,
+                                      const std::vector<Columns>& columns) const
     {
         std::vector<Vibration> found;
         if (terms.empty() || z_.cols() == 0) return found;
         const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(on_free_motions(terms), mass_);
         if (solver.info() != Eigen::Success) return found;
+        const Eigen::MatrixXd damping = on_free_motions(dampers);
         for (int i = 0; i < solver.eigenvalues().size(); ++i) {
             if (!(solver.eigenvalues()(i) > 0)) continue;
             Vibration one{std::sqrt(solver.eigenvalues()(i))};
             const Eigen::VectorXd y = z_ * solver.eigenvectors().col(i);
+            const Eigen::VectorXd form = solver.eigenvectors().col(i);
+            one.decay = form.dot(damping * form);
             for (int b = 0; b < tables_.n_bodies(); ++b) {
                 const Eigen::VectorXd moved = columns[b].leftCols(tables_.bodies[b].dofs) * part(y, b);
                 one.shift = std::max(one.shift, moved.head(3).norm());
@@ -277,7 +281,7 @@ HighestFrequencies highest_frequencies(const Tables& tables, const InstantState&
     Terms restoring = springs;
     restoring.insert(restoring.end(), constraints.begin(), constraints.end());
     return {load(spring, std::sqrt(spring.value)), load(damper, damper.value), of_constraints,
-            spectrum.vibrations(restoring, forms.columns())};
+            spectrum.vibrations(restoring, dampers, forms.columns())};
 }
 
 HighestFrequencies highest_frequencies(const Model& model, const State& state, Side side)

@@ -28,6 +28,7 @@ struct Vibration {
     double rate = 0;    ///< rad/s
     double shift = 0;   ///< of the body that moves most, m
     double turn = 0;    ///< of the body that turns most, rad
+    double decay = 0;   ///< that dampers give to this form, 1/s
 };
 
 /// Of the motions that the joints leave free, in the mass metric: the largest eigenvalues of the symmetric

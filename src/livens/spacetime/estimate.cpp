@@ -95,7 +95,7 @@ void add_lost_vibrations(const Model& model, const Motion& motion, ErrorEstimate
     for (const int end : {0, motion.n_elements() / 2, motion.n_elements()}) {
         const HighestFrequencies at = highest_frequencies(model, motion.at_end(end));
         for (const Vibration& one : at.vibrations) {
-            if (one.rate * longest < motion.X.degree || one.rate < at.dampers.rate) continue;
+            if (one.rate * longest < motion.X.degree || one.rate < one.decay) continue;
             raise_to(shift, one.shift / one.rate);
             raise_to(turn, one.turn / one.rate);
             raise_to(speed, one.shift);
