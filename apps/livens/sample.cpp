@@ -2,6 +2,7 @@
 // livens sample: a body or a joint of a run at any instant.
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <span>
 
 #include <fmt/format.h>
@@ -114,6 +115,22 @@ BodyGap body_error(const Query& q, double t)
             error.velocity + gap.velocity};
 }
 
+/// Known where the growth of perturbations is.
+std::optional<bool> beyond_horizon(const Query& q, double t)
+{
+    if (std::isnan(q.run.verdict.growth)) return {};
+    return q.run.verdict.is_beyond_horizon(t);
+}
+
+void horizon_member(JsonWriter& json, const Query& q, double t)
+{
+    json.key("beyond_horizon");
+    if (const std::optional<bool> is_beyond = beyond_horizon(q, t))
+        json.value(*is_beyond);
+    else
+        json.null();
+}
+
 void body_members(JsonWriter& json, const Query& q, double t)
 {
     const BodySample s = body_at(q, t);
@@ -138,6 +155,7 @@ void body_members(JsonWriter& json, const Query& q, double t)
     json.member("estimated_position_error", error.position);
     json.member("estimated_orientation_error", error.orientation);
     json.member("estimated_velocity_error", error.velocity);
+    horizon_member(json, q, t);
     const bool is_end = element_end_at(q.run.motion.mesh, t) >= 0;
     json.member("source", is_end ? "element end" : q.arguments.exact ? "solved" : "polynomial");
 }
@@ -183,6 +201,7 @@ void joint_members(JsonWriter& json, const Query& q, double t)
     side("left", s.left);
     side("right", s.right);
     json.member("estimated_reaction_error", joint_error(q, t));
+    horizon_member(json, q, t);
     json.member("source", source_of(q, s, t));
     json.member("unique", s.is_unique);
     json.member("bounded", s.is_bounded);
@@ -225,6 +244,10 @@ void add_row(std::string& out, const char* name, const char* unit, const Matrix<
 std::string text_of(const Query& q, double t)
 {
     std::string out = fmt::format("t = {} s\n", to_text(t));
+    if (beyond_horizon(q, t).value_or(false))
+        out += fmt::format(
+            "  (beyond the horizon of {} s: one of many motions, rounding at the start chose it)\n",
+            to_text(q.run.verdict.horizon, 4));
     if (q.arguments.body.empty()) {
         const JointSample s = joint_at(q, t);
         if (!s.is_bounded)
@@ -275,8 +298,9 @@ std::string csv_of(const Query& q, const std::vector<double>& times)
     std::string out =
         is_body ? "t [s],x [m],y [m],z [m],qw,qx,qy,qz,vx [m/s],vy [m/s],vz [m/s],wx [rad/s],wy [rad/s],"
                   "wz [rad/s],estimated_position_error [1],estimated_orientation_error [rad],"
-                  "estimated_velocity_error [m/s]\r\n"
-                : "t [s],fx [N],fy [N],fz [N],mx [N m],my [N m],mz [N m],estimated_reaction_error [1]\r\n";
+                  "estimated_velocity_error [m/s],beyond_horizon\r\n"
+                : "t [s],fx [N],fy [N],fz [N],mx [N m],my [N m],mz [N m],estimated_reaction_error [1],"
+                  "beyond_horizon\r\n";
     for (const double t : times) {
         out += to_text(t);
         if (is_body) {
@@ -293,6 +317,8 @@ std::string csv_of(const Query& q, const std::vector<double>& times)
             add_cells(out, s.right.torque);
             add_cells(out, Matrix<1, 1>{joint_error(q, t)});
         }
+        const std::optional<bool> is_beyond = beyond_horizon(q, t);
+        out += !is_beyond ? "," : *is_beyond ? ",1" : ",0";
         out += "\r\n";
     }
     return out;

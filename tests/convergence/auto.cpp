@@ -17,11 +17,17 @@ Model elastic_pendulum(double k, double c, double stretch = 0)
     return model;
 }
 
+/// 1 kg with 1 m/s on a damper that takes it within 1 us.
+void add_slug(Model& model)
+{
+    const int slug = model.add_body(point_mass("slug", 1, {1, 0, 0}, {1, 0, 0}));
+    model.add_load(spring_damper("damper", world, {}, slug, {}, {0, 1e6, 1}));
+}
+
 Model slug()
 {
     Model model;
-    model.add_body(point_mass("slug", 1, {1, 0, 0}, {1, 0, 0}));
-    model.add_load(spring_damper("damper", world, {}, 0, {}, {0, 1e6, 1}));
+    add_slug(model);
     return model;
 }
 
@@ -101,6 +107,25 @@ TEST(RadauEstimate, TellsVibrationsThatEveryDegreeDamps)
     EXPECT_LT(apart, 0.1 * off) << "the next degree alone would tell";
     EXPECT_GE(s.estimate.largest, off);
     EXPECT_LE(s.estimate.largest, 5 * off);
+}
+
+/// Damping is that of each form by itself: what dies fast beside the bob says nothing of the bob.
+TEST(RadauEstimate, TellsAVibrationBesideAStrongDamper)
+{
+    Model model = elastic_pendulum(1e8, 0, 1e-6);
+    add_slug(model);
+    const Model alone = elastic_pendulum(1e8, 0, 1e-6);
+    const auto mesh = make_time_mesh(0, 0.1, 8);
+    const Solution s = solve(model, {model.start()}, mesh, Radau{5});
+    const Solution fine = solve(alone, {alone.start()}, make_time_mesh(0, 0.1, 2000), Lobatto{8});
+    ASSERT_TRUE(s.report.converged() && fine.report.converged());
+    double off = 0;
+    for (const double t : mesh.ends) off = std::max(off, gap(s.motion.at(t), fine.motion.at(t)));
+    EXPECT_GT(off, 2e-7);
+    const std::vector<double>& told = s.estimate.position;   // of bob and slug by turns
+    double of_bob = 0;
+    for (std::size_t i = 0; i < told.size(); i += 2) of_bob = std::max(of_bob, told[i]);
+    EXPECT_GE(of_bob * s.estimate.length, off);
 }
 
 TEST(Auto, NeedsAnAccuracy)

@@ -165,6 +165,14 @@ livens_mutant(NAME radau_jump_at_the_end
               TESTS_OF convergence
               MUST_FAIL Radau.TellsTheErrorOfAnElementByItsVelocityJump)
 
+# The fastest damper of all bodies taken for that of every vibration.
+livens_mutant(NAME damper_of_another_body
+              FILE spacetime/estimate.cpp
+              OLD [[one.rate < one.decay)]]
+              NEW [[one.rate < at.dampers.rate)]]
+              TESTS_OF convergence
+              MUST_FAIL RadauEstimate.TellsAVibrationBesideAStrongDamper)
+
 # The energy of a motion that damps not looked at at all.
 livens_mutant(NAME radau_blow_up_hidden
               FILE diagnostics/balance.cpp

@@ -400,6 +400,38 @@ class Reading(ProgramTest):
         self.assertIsNone(self.sample("--body", "brick", "--at", "0.2")["estimated_position_error"])
         self.assertIsNone(self.sample("--joint", "upper", "--at", "0.2")["estimated_reaction_error"])
 
+    def test_samples_beyond_the_horizon_are_flagged(self):
+        """A pendulum of 0.1 m on its head: perturbations grow by exp(sqrt(g / l) t), 1e11 by 2.6 s."""
+        upright = """format = 1
+gravity = [0, 0, -9.81]
+[[body]]
+name = "bob"
+shape = { point = true }
+mass = 1
+position = [0, 0, 0.1]
+[[joint]]
+name = "rod"
+type = "rod"
+between = ["world", "bob"]
+[time]
+end = 4
+elements = 80
+[method]
+degree = 6
+"""
+        run = self.solve(upright + "growth = true\n")
+        when = math.log(1e11) / math.sqrt(9.81 / 0.1)
+        self.assertLess(abs(run["horizon"] - when), 0.4)
+        for at, beyond in (("1", False), ("3.5", True)):
+            for of in ("--body", "bob"), ("--joint", "rod"):
+                self.assertIs(self.sample(*of, "--at", at)["beyond_horizon"], beyond)
+                text = self.expect(0, "sample", "run.nc", *of, "--at", at).out
+                self.assertEqual("beyond the horizon" in text, beyond)
+                header, row = self.expect(0, "sample", "run.nc", *of, "--at", at, "--csv").out.splitlines()
+                self.assertEqual(dict(zip(header.split(","), row.split(",")))["beyond_horizon"], "01"[beyond])
+        self.solve(upright)
+        self.assertIsNone(self.sample("--body", "bob", "--at", "3.5")["beyond_horizon"])
+
     def test_reactions_hold_the_weight(self):
         still = SMALL.replace("angular_velocity = [0, 0, 2]\n", "").replace("position = [1, 0, 0]", "position = [0, 0, -1]")
         still = still.replace("position = [1, 0, -1]", "position = [0, 0, -2]")

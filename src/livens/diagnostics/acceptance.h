@@ -40,6 +40,8 @@ struct Verdict {
     double good_until = unknown;             ///< likewise, s
     double growth = unknown;    ///< largest of a perturbation of the start, where it was measured
     double horizon = unknown;   ///< s, where 1e-13 has grown to 1e-2; unknown also if that is after the end
+    /// Rounding at the start decides by then which of many motions is shown.
+    bool is_beyond_horizon(double t) const { return t > horizon; }
     std::vector<std::string> reasons;    ///< why the motion is suspect, a line each; empty: it is not
     std::vector<std::string> remarks;    ///< what is worth a look and refuses nothing
     BalanceFigures balance;

@@ -37,6 +37,7 @@ struct Run {
     SolveReport report;
     Verdict verdict;   ///< from a file without reasons, remarks and violations
     ErrorEstimate estimate;
+    std::vector<double> growth;       ///< Solution::growth, nan where the neighbouring motion did not come
     std::vector<std::string> notes;   ///< of the report and of the verdict
     std::string version;   ///< of the livens that wrote it
 };

@@ -51,6 +51,8 @@ TEST_F(Results, RunComesBackToTheBit)
     EXPECT_EQ(back.motion.rigidity.degree, 1);
     EXPECT_EQ(back.motion.gauss_points, 3);
     EXPECT_EQ(back.motion.block_ends, run.motion.block_ends);
+    EXPECT_EQ(back.growth, run.growth);
+    EXPECT_EQ(back.verdict.horizon, 2);
     EXPECT_EQ(back.report.factor_entries, 123456789013);
     EXPECT_EQ(back.report.scaled_condition, 2e6);
     EXPECT_EQ(back.verdict.zigzag_momenta, 0.25);
@@ -100,6 +102,25 @@ TEST_F(Results, EstimatedErrorsStandBesideTheSamples)
     EXPECT_TRUE(read_run_from(source_of(image_of(model, run))).estimate.empty());
 }
 
+TEST_F(Results, SamplesBeyondTheHorizonAreFlagged)
+{
+    const Model model = sample_model();
+    RunFile run = sample_run(model);
+    run.output = {0.5, 2, 2.5, 4};
+    const auto flags = [](const Image& file) {
+        const ClassicVariable* v = file.reader().variable("beyond_horizon");
+        return v == nullptr ? std::string("none") : file.reader().bytes(*v);
+    };
+    EXPECT_EQ(flags(Image(image_of(model, run))), std::string("\0\0\1\1", 4));
+    run.verdict.horizon = std::numeric_limits<double>::quiet_NaN();   // after the end
+    EXPECT_EQ(flags(Image(image_of(model, run))), std::string(4, '\0'));
+    run.growth.pop_back();
+    EXPECT_THROW(image_of(model, run), IoError);
+    run.growth.clear();
+    EXPECT_EQ(flags(Image(image_of(model, run))), "none");
+    EXPECT_TRUE(read_run_from(source_of(image_of(model, run))).growth.empty());
+}
+
 TEST_F(Results, EveryFigureComesBackAndStandsInJson)
 {
     const Model model = sample_model();
@@ -127,8 +148,8 @@ TEST_F(Results, EveryFigureComesBackAndStandsInJson)
 /// As many members as the table of figures and the walk of layout.h know: who adds one adds it there.
 TEST_F(Results, EveryMemberOfARunIsInTheFile)
 {
-    [[maybe_unused]] const auto& [r1, r2, r3, r4, r5, r6, r7, r8, r9, r10, r11, r12, r13, r14, r15, r16] =
-        RunFile{};
+    [[maybe_unused]] const auto& [r1, r2, r3, r4, r5, r6, r7, r8, r9, r10, r11, r12, r13, r14, r15, r16,
+                                  r17] = RunFile{};
     [[maybe_unused]] const auto& [m1, m2, m3, m4, m5, m6, m7, m8, m9, m10, m11, m12, m13, m14, m15, m16, m17,
                                   m18] = Motion{};
     [[maybe_unused]] const auto& [f1, f2, f3, f4, f5, f6] = Field{};

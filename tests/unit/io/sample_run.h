@@ -225,6 +225,9 @@ inline RunFile sample_run(const Model& model, int n_elements = 8)
     v.linear_momentum_drift = 1e-11;
     v.balance.largest_kinetic = 12.5;
     v.balance.largest_moment = std::numeric_limits<double>::denorm_min();
+    v.growth = 1e12;
+    v.horizon = 2;
+    for (int i = 0; i <= n_elements; ++i) run.growth.push_back(std::pow(1e12, i / double(n_elements)));
     ErrorEstimate& e = run.estimate;
     e.n_bodies = 2;
     e.n_joints = 1;

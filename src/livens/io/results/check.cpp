@@ -94,6 +94,8 @@ void check_run(const Run& run)
     require(run.row_labels.size() == static_cast<std::size_t>(run.motion.n_rows),
             "the number of constraint rows");
     check_estimate(run.estimate, run.motion.mesh.ends.size());
+    require(run.growth.empty() || run.growth.size() == run.motion.mesh.ends.size(),
+            "the number of growths at element ends");
     for (std::size_t i = 0; i < run.output.size(); ++i) {
         require(std::isfinite(run.output[i]), "an output time is not finite");
         require(i == 0 || run.output[i] > run.output[i - 1], "output times do not ascend");

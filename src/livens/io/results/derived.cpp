@@ -118,6 +118,16 @@ public:
         const VariableInfo time{
             "time", {"time"}, "s", "none", "output times that the motion has reached", {{"axis", "T"}}};
         archive.view(time, NumberType::real, times_);
+        if (!run.growth.empty()) {
+            std::vector<bool> beyond;
+            for (const double t : times_) beyond.push_back(run.verdict.is_beyond_horizon(t));
+            archive.flags({"beyond_horizon",
+                           {"time"},
+                           "1",
+                           "none",
+                           "1: rounding at the start decides by then which of many motions is shown"},
+                          beyond);
+        }
         const std::size_t n = times_.size() * model.bodies().size();
         for (const BodyVariable& v : body_variables) {
             const std::size_t sizes[] = {3, 4, 9};   // of the alternatives of BodyPart

@@ -156,6 +156,12 @@ void visit_run(Archive& archive, AnyRun& run)
     visit_model(archive, run);
     visit_motion(archive, run.motion);
     visit_estimate(archive, run.estimate);
+    archive.list({"growth",
+                  {"element_end"},
+                  "1",
+                  "none",
+                  "of a small perturbation of the start until then, in lengths of the model and rad"},
+                 run.growth);
 }
 
 }   // namespace livens

@@ -135,6 +135,9 @@ Run make_run(const Model& model, Solution solution, const Method& method)
     run.report = std::move(solution.report);
     run.verdict = std::move(solution.verdict);
     run.estimate = std::move(solution.estimate);
+    run.growth = std::move(solution.growth);
+    if (!run.growth.empty())
+        run.growth.resize(run.motion.mesh.ends.size(), std::numeric_limits<double>::quiet_NaN());
     run.version = version;
     return run;
 }
