@@ -281,8 +281,9 @@ std::string text_of(const Query& q, double t)
     add_row(out, "angular momentum", "N m s", s.angular_momentum);
     const BodyGap error = body_error(q, t);
     if (std::isfinite(error.position))
-        out += fmt::format("  {:<22} {:.1e} m, {:.1e} rad, {:.1e} m/s\n", "estimated error",
-                           error.position * q.run.estimate.length, error.orientation, error.velocity);
+        out += fmt::format("  {:<22} {:.1e} m, {:.1e} rad{}\n", "estimated error",
+                           error.position * q.run.estimate.length, error.orientation,
+                           std::isfinite(error.velocity) ? fmt::format(", {:.1e} m/s", error.velocity) : "");
     return out;
 }
 

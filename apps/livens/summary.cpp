@@ -122,6 +122,13 @@ void add_verdict(Summary& summary, const Run& run, double end)
     if (!run.title.empty()) summary.figure("title", plain(run.title));
 }
 
+/// The resolved options are livens' own JSON.
+const char* witness_of(const Run& run)
+{
+    const bool is_local = run.resolved.find("\"estimate\": \"local\"") != std::string::npos;
+    return is_local ? "what the elements lose, and how that grows" : "a second solution";
+}
+
 void add_figures(Summary& summary, const Run& run, bool verbose)
 {
     const Verdict& s = run.verdict;
@@ -129,12 +136,12 @@ void add_figures(Summary& summary, const Run& run, bool verbose)
     const bool is_weak = s.max_weak_violation > 0;
     if (run.report.n_elements == 0) return;   // there is nothing to measure
     if (std::isfinite(s.estimated_error))
-        summary.figure(
-            "estimated error",
-            fmt::format(
-                "{} at most (of the model's length, or rad), at {:.6g} s; by a second solution{}",
-                number(s.estimated_error), s.estimated_error_time,
-                report.converged() || !(s.good_digits > 0) ? "" : "; " + until(s.good_digits, s.good_until)));
+        summary.figure("estimated error",
+                       fmt::format("{} at most (of the model's length, or rad), at {:.6g} s; by {}{}",
+                                   number(s.estimated_error), s.estimated_error_time, witness_of(run),
+                                   report.converged() || !(s.good_digits > 0)
+                                       ? ""
+                                       : "; " + until(s.good_digits, s.good_until)));
     summary.figure(
         "constraints",
         fmt::format("violated by {} at most{}, their rates by {} 1/s", number(s.max_constraint_violation),

@@ -3,6 +3,7 @@
 #include <numbers>
 
 #include "convergence/studies.h"
+#include "livens/base/error.h"
 
 namespace livens::tests {
 namespace {
@@ -131,6 +132,57 @@ TEST(Estimates, OfAMarchInPiecesIsThatOfTheWhole)
     ASSERT_FALSE(backwards.estimate.empty());
     EXPECT_LE(backwards.estimate.position.back(), 1e-14) << "the end is given";
     EXPECT_GT(backwards.estimate.position.front(), 1e-9);
+}
+
+/// Errors of elements alone say nothing once they grow: the estimate by them does.
+TEST(Estimates, OfElementsGrowAsTheMotionDoes)
+{
+    SolveOptions local;
+    local.estimate = SolveOptions::Estimate::local;
+    const Model chaotic = cubes_on_rods(0);
+    double apart = 0;
+    for (const auto& [end, n, method] : {std::tuple<double, int, Method>{2, 60, Lobatto{4}},
+                                         {20, 600, Lobatto{5}},
+                                         {2, 60, Radau{4}},
+                                         {12, 400, Radau{5}}}) {
+        const TimeMesh mesh = make_time_mesh(0, end, n);
+        const Solution s = solve(chaotic, {chaotic.start()}, mesh, method, local);
+        const Solution fine = solve(chaotic, {chaotic.start()}, mesh, Lobatto{10});
+        ASSERT_TRUE(s.report.converged() && fine.report.converged()) << s.report.message;
+        ErrorMeter meter(chaotic, s.motion);
+        meter.compare(fine.motion, 0, n);
+        const double truth = meter.so_far().largest;
+        EXPECT_GE(s.estimate.largest, truth / 5) << name_of(method) << ' ' << end;
+        EXPECT_LE(s.estimate.largest, truth * 20) << name_of(method) << ' ' << end;
+        EXPECT_TRUE(std::isnan(s.estimate.velocity.front()) && s.estimate.reaction.empty());
+        double sum = 0;   // a control: what is lost, without what it becomes
+        for (const double jump : velocity_jumps(chaotic, s.motion))
+            sum += local_error(s.motion.X.points, s.motion.X.degree, jump);
+        apart = std::max(apart, truth / sum);
+    }
+    EXPECT_GT(apart, 100);
+}
+
+TEST(Estimates, OfElementsAreForMarchesOfNodalElements)
+{
+    const Model model = cubes_on_rods(0);
+    SolveOptions local;
+    local.estimate = SolveOptions::Estimate::local;
+    const TimeMesh mesh = make_time_mesh(0, 0.1, 4);
+    const auto code_of = [&](const Problem& problem, const Time& time, const Method& method) {
+        try {
+            solve(model, problem, time, method, local);
+        } catch (const InputError& error) {
+            return error.complaint().code;
+        }
+        return std::string();
+    };
+    const Problem march{{model.start()}}, back{{model.start(), Known::nothing, model.start(), Known::state}};
+    for (const Method& method : {Method(Mixed{}), Method(Midpoint{}), Method(Endpoint{})})
+        EXPECT_EQ(code_of(march, mesh, method), "estimate-method");
+    EXPECT_EQ(code_of(back, mesh, Lobatto{4}), "estimate-method");
+    EXPECT_EQ(code_of(march, Span{0, 0.1, 1e-6}, Lobatto{4}), "accuracy-elements");
+    EXPECT_EQ(code_of(march, mesh, Lobatto{4}), "");
 }
 
 TEST(Estimates, AreNotSoldWhereThereIsNone)

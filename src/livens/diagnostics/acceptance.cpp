@@ -170,9 +170,8 @@ Verdict judge(const Model& model, const Motion& motion, const SolveReport& repor
     if (!estimate.empty()) reasons.error(estimate, model, std::max(acceptable_error, report.accuracy));
     if (report.accuracy == 0 && motion.constraints_hold == "element nodes")
         reasons.unsure(estimate.largest, v.velocity_jump, motion.damps() ? 0 : v.energy_drift);
-    if (!report.second_failed.empty())
-        v.reasons.push_back("nothing tells the error, since the second solution failed: " +
-                            report.second_failed);
+    if (!report.estimate_failed.empty())
+        v.reasons.push_back("nothing tells the error, since " + report.estimate_failed);
     const bool has_blocks = report.iterations.size() < static_cast<std::size_t>(motion.n_elements());
     reasons.distance(report.guess_distance, report.guess_distance_time);
     reasons.violation(v.max_constraint_violation,

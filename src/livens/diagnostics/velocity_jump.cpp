@@ -11,9 +11,9 @@
 
 namespace livens {
 
-VelocityJump velocity_jump(const Model& model, const Motion& motion)
+std::vector<double> velocity_jumps(const Model& model, const Motion& motion)
 {
-    VelocityJump jump;
+    std::vector<double> jumps(static_cast<std::size_t>(motion.n_elements()), 0.0);
     const double length = model.length();
     const bool at_start = motion.X.points == Points::radau;
     const ElementSampler ends(motion, {at_start ? 0.0 : 1.0});
@@ -27,12 +27,19 @@ VelocityJump velocity_jump(const Model& model, const Motion& motion)
         ends.velocities(e, 0, slopes);
         for (std::size_t b = 0; b < slopes.size(); ++b) {
             const Matrix34 gap = h * (V[b] - slopes[b]);
-            bool is_worse = raise_to(jump.largest, norm(gap * centres[b]) / length);
-            for (int a = 1; a < 4; ++a)
-                is_worse = raise_to(jump.largest, norm(gap.column(a)) / std::sqrt(2.0)) || is_worse;
-            if (is_worse) jump.time = motion.mesh.ends[e + 1];
+            raise_to(jumps[e], norm(gap * centres[b]) / length);
+            for (int a = 1; a < 4; ++a) raise_to(jumps[e], norm(gap.column(a)) / std::sqrt(2.0));
         }
     }
+    return jumps;
+}
+
+VelocityJump velocity_jump(const Model& model, const Motion& motion)
+{
+    VelocityJump jump;
+    const std::vector<double> jumps = velocity_jumps(model, motion);
+    for (int e = 0; e < motion.n_elements(); ++e)
+        if (raise_to(jump.largest, jumps[e])) jump.time = motion.mesh.ends[e + 1];
     return jump;
 }
 

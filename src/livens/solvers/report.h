@@ -44,7 +44,7 @@ struct SolveReport {
     double failed_at = 0;            ///< near end of the failed window, s; only if not converged
     std::vector<int> iterations;     ///< per window; stepping: per element
     std::vector<std::string> notes;   ///< redundant rows, projections, ...
-    std::string second_failed;        ///< why there is no second solution, which would tell the error
+    std::string estimate_failed;      ///< why nothing tells the error: "the second solution failed: ..."
     double condition_1 = 0;           ///< of the whole matrix in the 1-norm, if asked for
     double condition_2 = 0;           ///< and in the 2-norm
     double scaled_condition = 0;      ///< in the 1-norm, as it is factorised: rows and columns scaled

@@ -161,7 +161,7 @@ private:
             report.status = SolveStatus::cancelled;
             report.message = of_second.message;
         } else if (!of_second.converged()) {
-            report.second_failed = of_second.message;
+            report.estimate_failed = "the second solution failed: " + of_second.message;
         }
         if (second.reached() > 0) one.solution.estimate = second.take(n);
     }
@@ -194,8 +194,7 @@ private:
             report.message += "the error of body '" + model_.body_name(found.body) + "' is about " +
                               to_text(found.largest, 3) + " at " + to_text(found.time, 6) + " s";
         else
-            report.message +=
-                "behind, the second solution, which tells the error, failed: " + report.second_failed;
+            report.message += "behind, nothing tells the error, since " + report.estimate_failed;
         const bool is_rounding = tolerance_ <= finest;
         report.message += " (try " + std::to_string(report.tries) +
                           (is_rounding ? ", where rounding alone is left" : ", with ever shorter elements") +

@@ -92,7 +92,7 @@ void check_accuracy(const Conditions& given, const Span& span, const Method& met
         refuse("start.given", "they are found while marching from a state at the start");
     if (lobatto != nullptr && lobatto->window != 1)
         refuse("method.window", "they are found one by one, in windows of one element");
-    if (options.estimate == SolveOptions::Estimate::none)
+    if (options.estimate != SolveOptions::Estimate::second)
         refuse("method.estimate", "nothing tells the error without the second solution");
     if (options.condition)
         refuse("method.condition", "condition numbers belong to a mesh that is known before");
@@ -162,6 +162,14 @@ void check_method(const Model& model, const Problem& problem, const Time& time, 
         throw InputError({"max-iterations-out-of-range", "method.max_iterations",
                           "at least one iteration is needed", std::to_string(options.max_iterations), ">= 1",
                           "", ""});
+    if (options.estimate == SolveOptions::Estimate::local && mesh != nullptr &&
+        (!is_nodal(method) || problem.conditions.at_start != Known::state))
+        throw InputError({"estimate-method", "method.estimate",
+                          "the errors of elements do not tell that of the motion here", "local",
+                          "second or none",
+                          is_nodal(method) ? "how they grow is told by neighbours of a state at the start"
+                                           : "those of " + name_of(method) + " are not known one by one",
+                          "let a second solution tell it"});
     if (mesh == nullptr) return check_accuracy(problem.conditions, std::get<Span>(time), method, options);
     if (std::holds_alternative<Auto>(method))
         throw InputError({"accuracy-elements", "method.family",

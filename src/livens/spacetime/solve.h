@@ -32,6 +32,9 @@ struct SolveOptions {
     enum class Estimate {
         second,   ///< a second solution on the same mesh, of degree + 1 (lobatto from degree 4: + 2) or with
                   ///< half the steps; mixed: its witness
+        local,    ///< what every element loses by its velocity jump, grown as neighbouring motions part: one
+                  ///< number for all bodies, good to a factor of ten or so; nothing of velocities and
+                  ///< reactions (lobatto and radau on a mesh, state at the start)
         none
     } estimate = Estimate::second;
     /// Whether a neighbouring motion tells how perturbations grow, after the estimate (state at the start).

@@ -360,6 +360,8 @@ std::vector<test::Case> test::cases_of_mixed()
         {"boundary-method",
          replaced(one_body(at_the_end, state_at_end), "family = \"mixed\"", "family = \"midpoint\""),
          "\"nothing\""},
+        {"estimate-method", replaced(mixed(""), "[method]\n", "[method]\nestimate = \"local\"\n"),
+         "\"local\""},
         {"knots-decreasing", splines("[0, 0, 0, 0.6, 0.5, 1, 1, 1]"), "[0, 0, 0, 0.6"},
         {"knots-few", splines("[0, 0, 0, 1, 1]"), "[0, 0, 0, 1"},
         {"knots-mesh", splines("[0, 0, 0, 0.5, 2, 2, 2]"), "[0, 0, 0, 0.5"},

@@ -235,12 +235,14 @@ Table method_table()
          Key{"estimate",
              types::choice,
              "What tells the error of the motion: a second solution on the same elements (of degree + 1, "
-             "lobatto from degree 4 of degree + 2, or with half the steps; mixed: lobatto of degree + 2), or "
-             "nothing.",
+             "lobatto from degree 4 of degree + 2, or with half the steps; mixed: lobatto of degree + 2); "
+             "what its elements lose, grown as two neighbouring motions part (lobatto and radau with "
+             "`elements` and the state at the start; good to a factor of ten or so, nothing of velocities "
+             "and reactions); or nothing.",
              "",
              "second",
              false,
-             {"second", "none"}},
+             {"second", "local", "none"}},
          Key{"growth", types::truth,
              "Whether two neighbouring motions tell how perturbations of the start grow, and the horizon "
              "beyond which double precision says nothing; about twice as costly as the motion. Default: true "
@@ -297,7 +299,7 @@ MemoryNeed memory_needed(const Scenario& scenario)
     const double n_output = static_cast<double>(scenario.output.size());
     // for an accuracy at least one between output times is found
     const double n = mesh != nullptr ? mesh->n_elements() : std::max(n_output - 1, 1.0);
-    const bool is_estimated = scenario.options.estimate == SolveOptions::Estimate::second;
+    const bool is_estimated = scenario.options.estimate != SolveOptions::Estimate::none;
     const double estimates =
         is_estimated ? 3 * model.n_bodies() + static_cast<int>(model.joints().size()) : 0;
     MemoryNeed need;

@@ -91,7 +91,8 @@ std::string resolve(const Builder& builder, const Section& time, const Scenario&
     json.key("method").begin_object();
     write_method(json, scenario.method);
     json.member("tolerance", options.tolerance).member("max_iterations", options.max_iterations);
-    json.member("estimate", options.estimate == SolveOptions::Estimate::second ? "second" : "none");
+    constexpr const char* of_estimate[] = {"second", "local", "none"};
+    json.member("estimate", of_estimate[static_cast<int>(options.estimate)]);
     json.member("growth", options.growth).member("condition", options.condition).end_object();
     json.key("start").begin_object().member("given", word(scenario.conditions.at_start));
     json.member("initial", options.initial == StartPolicy::check ? "check" : "project").end_object();
