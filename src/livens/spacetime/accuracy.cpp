@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "livens/base/elementary.h"
@@ -51,8 +52,7 @@ struct Try {
     Solution solution;
     bool is_broken_off = false;   // the error became hopeless
     bool fits_badly = false;      // the degree is too high for the stops; nothing else counts then
-    double mean_length = 0;       // of elements, without stops
-    int better_degree = 0;        // where it fits badly
+    std::optional<Pace> pace{};   // what was learnt of lengths
 };
 
 class ToAccuracy {
@@ -70,6 +70,7 @@ public:
             degree_of(method_) = is_high ? high_radau : preferred_radau;
         else if (is_free_)
             degree_of(method_) = is_high ? high_degree : preferred_degree;
+        if (is_free_) highest_degree_ = degree_of(method_);
     }
 
     Solution run()
@@ -82,7 +83,7 @@ public:
             report.evaluations_in_all = evaluations += report.evaluations_in_all;
             one.solution.estimate_seconds = seconds += one.solution.estimate_seconds;
             if (one.fits_badly) {
-                degree_of(method_) = one.better_degree;
+                degree_of(method_) = fitting_degree(*one.pace);
                 is_free_ = false;
                 --tries;
                 continue;
@@ -96,7 +97,9 @@ public:
             const double over = found.largest / span_.accuracy * (one.is_broken_off ? 3 : 1);
             const double share = over > 0 ? power(target / over, 1 + 0.5 / degree_of(method_)) : blind_share;
             tolerance_ = std::max(finest, tolerance_ * std::min(0.3, share));
-            length_ = std::min(length_, one.mean_length);
+            // a degree that was too high for the stops may not be too high for shorter elements
+            if (!is_free_ && highest_degree_ > 0) degree_of(method_) = fitting_degree(*one.pace);
+            length_ = std::min(length_, one.pace->mean_length(degree_of(method_), tolerance_));
         }
     }
 
@@ -119,8 +122,7 @@ private:
         w.goes_on = [&] {
             const int n = mesh.n_elements();
             if (is_free_ && n == looked_at) {
-                one.fits_badly =
-                    degree_of(method_) > lowest_degree && pace.mean_length() > fit * pace.mean_stop();
+                one.fits_badly = fitting_degree(pace) < degree_of(method_);
                 if (one.fits_badly) return false;
             }
             const bool is_piece = n - second.reached() >= std::max(least_piece, second.reached() / 4);
@@ -137,8 +139,7 @@ private:
         };
         report.notes = ends_.notes;
         solve_windows(window, mesh, w, report);
-        if (one.fits_badly) one.better_degree = fitting_degree(pace);
-        one.mean_length = pace.mean_length();
+        one.pace = std::move(pace);
         finish(one, second, window.so_far()->n_elements());
         one.solution.motion = window.take_motion();
         one.solution.method = method_;
@@ -171,10 +172,12 @@ private:
         return !(second.so_far().largest <= hopeless * span_.accuracy);
     }
 
+    /// The highest whose elements are not much longer than the time between stops, by what was learnt.
     int fitting_degree(const Pace& pace) const
     {
-        int degree = degree_of(method_) - 1;
-        while (degree > lowest_degree && pace.mean_length(degree) > fit * pace.mean_stop()) --degree;
+        int degree = highest_degree_;
+        while (degree > lowest_degree && pace.mean_length(degree, tolerance_) > fit * pace.mean_stop())
+            --degree;
         return degree;
     }
 
@@ -211,7 +214,8 @@ private:
     Tables tables_;
     std::vector<double> stops_;
     Method method_;
-    bool is_free_;   // the degree
+    bool is_free_;             // the degree, which has not been lowered yet
+    int highest_degree_ = 0;   // that is tried where it is not stated
     double tolerance_, length_;
 };
 

@@ -90,11 +90,11 @@ bool Pace::refused(double length, double jump)
     return length_ > shortest * (stops_.back() - stops_.front());
 }
 
-double Pace::mean_length(int degree) const
+double Pace::mean_length(int degree, double tolerance) const
 {
     if (n_accepted_ == 0) return 0;
     const double scale = exponential(sum_of_scales_ / n_accepted_);
-    return safety * scale * power(velocity_jump_of(points_, degree, tolerance_), 1.0 / (degree + 1));
+    return safety * scale * power(velocity_jump_of(points_, degree, tolerance), 1.0 / (degree + 1));
 }
 
 double Pace::mean_stop() const

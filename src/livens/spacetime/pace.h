@@ -34,9 +34,9 @@ public:
 
     double end() const { return stops_.back(); }
     /// Length that the motion would have allowed up to here without any stops, and that of elements of
-    /// another degree (geometric means); 0: nothing was accepted yet.
-    double mean_length() const { return mean_length(degree_); }
-    double mean_length(int degree) const;
+    /// another degree and tolerance (geometric means); 0: nothing was accepted yet.
+    double mean_length() const { return mean_length(degree_, tolerance_); }
+    double mean_length(int degree, double tolerance) const;
     /// Of the time between stops.
     double mean_stop() const;
 

@@ -54,7 +54,7 @@ TEST(Pace, FindsTheLengthThatTheToleranceAllows)
         EXPECT_NEAR(ends[middle + 1] - ends[middle], expected, 1e-3 * expected) << first;
         EXPECT_NEAR(pace.mean_length(), expected, 1e-6 * expected);
         // and what elements of another degree would be allowed
-        EXPECT_NEAR(pace.mean_length(7), 1.6 * std::pow(1e-8 / 0.04, 1.0 / 15), 1e-6);
+        EXPECT_NEAR(pace.mean_length(7, 1e-8), 1.6 * std::pow(1e-8 / 0.04, 1.0 / 15), 1e-6);
         EXPECT_LE(refused, first > 2 ? 12 : 0);
     }
 }
