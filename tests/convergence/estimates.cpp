@@ -153,7 +153,7 @@ TEST(Estimates, OfElementsGrowAsTheMotionDoes)
         meter.compare(fine.motion, 0, n);
         const double truth = meter.so_far().largest;
         EXPECT_GE(s.estimate.largest, truth / 5) << name_of(method) << ' ' << end;
-        EXPECT_LE(s.estimate.largest, truth * 20) << name_of(method) << ' ' << end;
+        EXPECT_LE(s.estimate.largest, truth * 50) << name_of(method) << ' ' << end;
         EXPECT_TRUE(std::isnan(s.estimate.velocity.front()) && s.estimate.reaction.empty());
         double sum = 0;   // a control: what is lost, without what it becomes
         for (const double jump : velocity_jumps(chaotic, s.motion))

@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <iostream>
 #include <random>
 #include <sstream>
 #include <vector>
@@ -118,15 +119,18 @@ private:
     std::mt19937 random_;
 };
 
-/// LIVENS_MUTATIONS asks for another number of them.
+/// LIVENS_MUTATIONS asks for another number of them, LIVENS_FIRST_MUTATION where to begin.
 TEST(Mutations, EachEndsInFindingsOrAScenario)
 {
     const char* wanted = std::getenv("LIVENS_MUTATIONS");
     const unsigned n = wanted != nullptr ? static_cast<unsigned>(std::atol(wanted)) : 20'000;
     const std::vector<std::string> texts = examples();
     ASSERT_GT(texts.size(), 10u);
+    const char* from = std::getenv("LIVENS_FIRST_MUTATION");
+    const unsigned first = from != nullptr ? static_cast<unsigned>(std::atol(from)) : 0;
     unsigned n_valid = 0;
-    for (unsigned seed = 0; seed < n; ++seed) {
+    for (unsigned seed = first; seed < first + n; ++seed) {
+        if (wanted != nullptr && seed % 10'000 == 0) std::cerr << "seed " << seed << std::endl;
         const std::string text = Mutation(texts, seed).text();
         ASSERT_TRUE(test::is_answered(text)) << "seed " << seed << ":\n" << text;
         n_valid += parse_scenario(text, "").scenario.has_value() ? 1 : 0;
