@@ -112,8 +112,9 @@ void show(const Failure& f, const Common& common)
     const bool concerns_file =
         std::ranges::any_of(f.diagnostics, [](const Diagnostic& d) { return !d.file.empty(); });
     if (concerns_file || common.diagnostics != DiagnosticFormat::human) {
+        const Terminal terminal = terminal_of(STDERR_FILENO);
         std::string text =
-            render(f.diagnostics, f.source, common.diagnostics, terminal_of(STDERR_FILENO).colour);
+            render(f.diagnostics, f.source, common.diagnostics, terminal.colour, terminal.columns);
         if (!text.ends_with('\n')) text += '\n';
         if (common.diagnostics == DiagnosticFormat::human) text += "\n" + last_line(f.diagnostics) + "\n";
         say_raw(text);
@@ -191,8 +192,9 @@ Scenario load_scenario(const std::string& file, const Common& common, std::vecto
         throw Failure{code, status_of(code), std::move(result.diagnostics), std::move(result.text)};
     }
     if (!result.diagnostics.empty() && !common.quiet) {
+        const Terminal terminal = terminal_of(STDERR_FILENO);
         std::string text =
-            render(result.diagnostics, result.text, common.diagnostics, terminal_of(STDERR_FILENO).colour);
+            render(result.diagnostics, result.text, common.diagnostics, terminal.colour, terminal.columns);
         if (!text.ends_with('\n')) text += '\n';
         say_raw(text);
     }

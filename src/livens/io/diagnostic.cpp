@@ -12,8 +12,9 @@ namespace livens {
 
 namespace {
 
-constexpr int widest_line = 120;   // characters shown of a line; longer ones are cut around the place
-constexpr int lead = 40;           // characters before the place then
+constexpr int widest_line = 120;     // characters shown of a line; longer ones are cut around the place
+constexpr int narrowest_line = 20;   // likewise, on any terminal
+constexpr int marks = 8;             // "... " before and " ..." behind what is cut
 
 /// Of one character in UTF-8; U+FFFD for a byte that is none.
 std::uint32_t code_point(std::string_view character)
@@ -85,17 +86,20 @@ std::string_view find_line(std::string_view source, int line)
     return source;
 }
 
-/// At most widest_line characters of a line around the columns in question, and the underline below.
+/// At most `widest` characters of a line around the columns in question, and the underline below.
 struct Excerpt {
     std::string text;
     std::string underline;
 };
 
-Excerpt excerpt(std::string_view line, int column, int length)
+Excerpt excerpt(std::string_view line, int column, int length, int widest)
 {
+    const bool fits = width(line) <= widest + marks && column <= widest + marks;
+    const int lead = widest / 3;   // characters before the place, of a line that is cut
+    if (fits) widest += marks;
     int first = 1;   // column of the first character shown
     Excerpt e;
-    if (column > widest_line - lead) {
+    if (!fits && column > widest - lead) {
         std::string_view rest = line;
         int position = 1;
         for (; position < column - lead && !rest.empty(); ++position)
@@ -107,7 +111,7 @@ Excerpt excerpt(std::string_view line, int column, int length)
         }
     }
     int at = first;
-    for (; at < first + widest_line && !line.empty(); ++at) {
+    for (; at < first + widest && !line.empty(); ++at) {
         const std::string shown = visible(line.substr(0, character_length(line)));
         if (at == column) e.underline.assign(static_cast<std::size_t>(width(e.text)), ' ');
         if (at >= column && at - column < length)
@@ -141,7 +145,7 @@ std::string place(const Diagnostic& d, std::string_view separator)
     return text + std::to_string(d.column);
 }
 
-std::string render_human(const Diagnostic& d, std::string_view source, const Colours& c)
+std::string render_human(const Diagnostic& d, std::string_view source, const Colours& c, int columns)
 {
     const std::string number = d.line > 0 ? std::to_string(d.line) : "";
     const std::string margin(number.size(), ' ');
@@ -151,7 +155,10 @@ std::string render_human(const Diagnostic& d, std::string_view source, const Col
            escaped(d.message) + c.plain;
     out += "\n" + margin + c.frame + "--> " + c.plain + place(d, ":") + "\n";
     if (d.line > 0) {
-        const Excerpt e = excerpt(find_line(source, d.line), d.column, d.length);
+        const int gutter = static_cast<int>(number.size()) + 3;
+        const int room =
+            columns > 0 ? std::clamp(columns - gutter - marks, narrowest_line, widest_line) : widest_line;
+        const Excerpt e = excerpt(find_line(source, d.line), d.column, d.length, room);
         out += bar + "\n" + c.frame + number + " |" + c.plain + (e.text.empty() ? "" : " ") + e.text + "\n";
         out += bar + " " + (d.severity == Severity::error ? c.error : c.warning) + e.underline + c.plain +
                "\n";
@@ -210,7 +217,7 @@ std::string first_invisible(std::string_view text)
 }
 
 std::string render(const std::vector<Diagnostic>& diagnostics, std::string_view source,
-                   DiagnosticFormat format, bool colour)
+                   DiagnosticFormat format, bool colour, int columns)
 {
     if (format == DiagnosticFormat::json) return render_json(diagnostics);
     std::string out;
@@ -220,7 +227,7 @@ std::string render(const std::vector<Diagnostic>& diagnostics, std::string_view 
             continue;
         }
         if (!out.empty()) out += "\n";
-        out += render_human(d, source, colour ? ansi : Colours{});
+        out += render_human(d, source, colour ? ansi : Colours{}, columns);
     }
     return out;
 }

@@ -27,8 +27,9 @@ enum class DiagnosticFormat { human, json, gnu };
 
 /// All findings as text; `source` is the file's text and serves to show lines. Control characters and invalid
 /// UTF-8 from the file are escaped. json: one array; gnu: file:line:column: error: message [code].
+/// `columns`: lines of the file are cut to so many, 0: to 120.
 std::string render(const std::vector<Diagnostic>& diagnostics, std::string_view source,
-                   DiagnosticFormat format, bool colour = false);
+                   DiagnosticFormat format, bool colour = false, int columns = 0);
 
 /// The page of a code (`livens explain CODE`), and all codes; an empty page for an unknown one.
 std::string_view explain(std::string_view code);

@@ -7,6 +7,7 @@
 #include <array>
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 
 #include "livens/io/scenario/findings.h"
 
@@ -106,6 +107,26 @@ TEST(Diagnostics, LongLinesAreCutAroundThePlace)
     ASSERT_NE(mark, std::string::npos);
     ASSERT_NE(caret, std::string::npos);
     EXPECT_EQ(mark - text.rfind('\n', mark), caret - text.rfind('\n', caret)) << text;
+}
+
+TEST(Diagnostics, LinesAreNoWiderThanTheTerminal)
+{
+    const std::string line =
+        "name = \"" + std::string(60, 'a') + "\", shapee = { box = [1, 1, 1] }, " + std::string(60, 'b');
+    for (const int columns : {0, 40, 80, 120})
+        for (const int at : {1, 8, 40, 71, 110, 160}) {
+            const std::string text =
+                render({sample(1, at, 6)}, line, DiagnosticFormat::human, false, columns);
+            std::istringstream lines(text);
+            std::string message, place, bar, excerpt, marks;
+            for (std::string* one : {&message, &place, &bar, &excerpt, &marks}) std::getline(lines, *one);
+            const std::size_t most = columns == 0 ? 132 : static_cast<std::size_t>(columns);
+            EXPECT_LE(excerpt.size(), most) << text;
+            EXPECT_LE(marks.size(), most) << text;
+            if (at < 150) {
+                EXPECT_EQ(excerpt.substr(marks.find('^'), 1), line.substr(at - 1, 1)) << text;
+            }
+        }
 }
 
 TEST(Diagnostics, PlacesBeyondTheTextAreHarmless)
