@@ -86,6 +86,7 @@ Solved solve_scenario(const Scenario& scenario, const Common& common)
         ProgressLine line(error_is_terminal() && !common.quiet);
         SolveOptions options = scenario.options;
         options.judge = false;   // not part of what is timed, nor is the estimate
+        options.most_bytes = std::min(options.most_bytes, 0.5 * memory_left());
         options.progress = [&line](const Progress& progress) {
             line.show(progress);
             return InterruptWatch::signal() == 0;

@@ -222,6 +222,22 @@ TEST(Accuracy, SaysWhereItIsLost)
     EXPECT_LE(s.estimate.error(s.motion.mesh.element_at(s.report.failed_at)), 1e-6);
 }
 
+/// A vibration that nothing damps, to an accuracy that asks for all of it: no memory is large enough.
+TEST(Accuracy, EndsWhereTheMotionTakesTooMuchMemory)
+{
+    Model model;
+    const int bob = model.add_body(point_mass("bob", 1, {1.001, 0, 0}));
+    model.add_load(spring_damper("spring", world, {}, bob, {}, {1e10, 0, 1}));
+    SolveOptions options;
+    options.most_bytes = 5e6;
+    const Solution s = solve(model, {model.start()}, Span{0, 100, 1e-8}, Lobatto{4}, options);
+    EXPECT_EQ(s.report.status, SolveStatus::not_converged);
+    EXPECT_NE(s.report.message.find("more memory"), std::string::npos) << s.report.message;
+    EXPECT_GT(s.motion.n_elements(), 1000) << s.report.message;
+    EXPECT_LT(s.motion.n_bytes(), 12e6);   // arrays grow by doubling
+    EXPECT_EQ(s.report.failed_at, s.motion.end());
+}
+
 TEST(Accuracy, RefusesWhatItCannotDo)
 {
     const Model model = two_bricks();

@@ -94,6 +94,15 @@ void Field::make_rational(int element, std::span<double> M, std::span<double> de
         derivatives[a] = (W[a] * derivatives[a] - rate * M[a]) / sum;
 }
 
+std::size_t Motion::n_bytes() const
+{
+    std::size_t numbers = mesh.ends.capacity() + end_multipliers.capacity();
+    for (const Field* field : {&X, &P, &multipliers, &rigidity})
+        numbers += field->values.capacity() + field->denominators.capacity();
+    for (const auto* columns : {&momenta, &velocities, &accelerations}) numbers += 12 * columns->capacity();
+    return numbers * sizeof(double);
+}
+
 State Motion::at(double t) const
 {
     if (!(t >= start() && t <= end()))

@@ -83,6 +83,9 @@ struct Motion {
     /// The method takes energy by construction: what is lost is not held against the motion.
     bool damps() const { return X.points == Points::radau; }
 
+    /// What its arrays take in memory.
+    std::size_t n_bytes() const;
+
     /// X and V at any instant: at element ends the end values, else the polynomial and its derivative.
     State at(double t) const;
     State at_end(int end) const;

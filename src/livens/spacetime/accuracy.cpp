@@ -125,6 +125,8 @@ private:
                 one.fits_badly = fitting_degree(pace) < degree_of(method_);
                 if (one.fits_badly) return false;
             }
+            if (n % 256 == 0 && static_cast<double>(window.so_far()->n_bytes()) > options_.most_bytes)
+                return say_too_long(mesh, report);
             const bool is_piece = n - second.reached() >= std::max(least_piece, second.reached() / 4);
             if (!is_piece && n != looked_at) return true;
             window.describe(report);
@@ -165,6 +167,18 @@ private:
             report.estimate_failed = "the second solution failed: " + of_second.message;
         }
         if (second.reached() > 0) one.solution.estimate = second.take(n);
+    }
+
+    bool say_too_long(const TimeMesh& mesh, SolveReport& report) const
+    {
+        report.status = SolveStatus::not_converged;
+        report.failed_at = mesh.end();
+        report.message = "the motion takes more memory than it may (" +
+                         to_text(options_.most_bytes / 1e9, 3) + " GB) by t = " + to_text(mesh.end(), 6) +
+                         " s, with elements of " + to_text(mesh.length(mesh.n_elements() - 1), 3) +
+                         " s; try: an earlier end of time, a larger error in accuracy, or the family radau "
+                         "if a stiff spring or a light body vibrates";
+        return false;
     }
 
     bool is_hopeless(const Second& second) const

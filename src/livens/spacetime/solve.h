@@ -21,6 +21,9 @@ struct SolveOptions {
     StartPolicy initial = StartPolicy::check;
     ProgressCallback progress;
     int threads = 0;   ///< reserved
+    /// What the motion may take in memory before a march to an accuracy is given up: it says beforehand only
+    /// where it ends.
+    double most_bytes = 8.0 * (1u << 30);
     /// Condition numbers of the whole matrix, in the report: of the last block (mixed), of all elements
     /// together, reduced to the free motions (lobatto).
     bool condition = false;
