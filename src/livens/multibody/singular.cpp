@@ -139,6 +139,7 @@ MatrixXd row_space(const MatrixXd& A, double level)
     const VectorXd pivots = qr.matrixQR().diagonal().cwiseAbs();
     const Index rank = (pivots.array() > level).count();
     MatrixXd Q = MatrixXd::Identity(A.cols(), rank);
+    if (rank == 0) return Q;   // which has no memory: Eigen would step into it
     Q.applyOnTheLeft(qr.householderQ());
     return Q;
 }
