@@ -181,6 +181,18 @@ TEST(Lobatto, KeepsPlanarMotionsPlanarForTenSeconds)
     EXPECT_LE(out_of_plane(solve_evenly(hinged_links(), 10, 1000, 3).motion, 2), 1e-28);
 }
 
+TEST(Lobatto, KeepsPlanarMotionsPlanarByNewtonToo)
+{
+    SolveOptions options;
+    options.by_newton = true;
+    const auto solved = [&](const Model& model, int n) {
+        return solve(model, {model.start()}, make_time_mesh(0, 10, n), Lobatto{6}, options).motion;
+    };
+    EXPECT_LE(out_of_plane(solved(cubes_on_rods(0.1), 400), 1), 1e-28);
+    EXPECT_LE(out_of_plane(solved(cubes_on_rods(0), 200), 1), 1e-28);
+    EXPECT_LE(out_of_plane(solved(hinged_links(), 400), 2), 1e-28);
+}
+
 double largest_energy_error(const Balance& b, double from, double to)
 {
     double worst = 0;

@@ -10,6 +10,7 @@ Solution two_bricks_to_2(int degree, double h, double tolerance)
     const Model model = two_bricks();
     SolveOptions options;
     options.tolerance = tolerance;
+    options.by_newton = true;
     return solve(model, {model.start()}, make_time_mesh(0, 2, static_cast<int>(std::lround(2 / h))),
                  Lobatto{degree}, options);
 }
@@ -56,12 +57,14 @@ TEST(Newton, FactorisesOnceAnElementWhereErrorsAreSmall)
     for (const Case& c : cases) {
         const State reference = last(solve_evenly(c.model, c.end, 120, 12));
         int n_accurate = 0;
+        SolveOptions options;
+        options.by_newton = true;
         for (int degree : {1, 2, 3, 4, 6, 8, 12, 16}) {
             for (double h : {0.1, 0.05, 0.025, 0.01, 0.002}) {
                 const int n = static_cast<int>(std::lround(c.end / h));
                 if (n * degree > 1200) continue;   // nothing new there, but time
                 const Solution s =
-                    solve(c.model, {c.model.start()}, make_time_mesh(0, c.end, n), Lobatto{degree});
+                    solve(c.model, {c.model.start()}, make_time_mesh(0, c.end, n), Lobatto{degree}, options);
                 if (!s.report.converged() || s.report.divided > 0 ||
                     distance(last(s), reference).X > 1e-6)
                     continue;

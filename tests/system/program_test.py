@@ -116,7 +116,7 @@ class Solve(ProgramTest):
         self.assertEqual(result["method"], "lobatto(4)")
         self.assertEqual(result["elements"], 10)
         self.assertEqual(result["output"], "run.nc")
-        for key in ("unknowns", "newton_iterations", "factorisations"):
+        for key in ("unknowns", "newton_iterations", "evaluations"):
             self.assertIsInstance(result[key], int, key)
             self.assertGreater(result[key], 0, key)
         self.assertGreater(result["solve_seconds"], 0)

@@ -138,11 +138,12 @@ void settle_directors(const Model& model, StartPolicy policy, State& state, std:
 void note_moves(const Model& model, std::span<const Matrix34> before, std::span<const Matrix34> after,
                 std::vector<std::string>& notes)
 {
+    const double length = model.length();
     for (int b = 0; b < model.n_bodies(); ++b) {
         const double shift = norm(after[b].column(0) - before[b].column(0));
         double turn = 0;
         for (int i = 1; i < 4; ++i) turn = std::max(turn, norm(after[b].column(i) - before[b].column(i)));
-        if (shift <= start_tolerance * model.length() && turn <= start_tolerance) continue;
+        if (shift <= start_tolerance * length && turn <= start_tolerance) continue;
         notes.push_back("the start of body '" + model.body_name(b) + "' was moved by " + number(shift) +
                         " m and turned by " + number(2 * arc_sine(std::min(1.0, 0.5 * turn))) +
                         " rad to close the joints");
@@ -183,22 +184,24 @@ Vector3 center(const Model& model, int b) { return mass_properties(model.bodies(
 /// Of centres of mass, and of directors times the model's length.
 double largest_speed(const Model& model, const State& state)
 {
+    const double length = model.length();
     double speed = 0;
     for (int b = 0; b < model.n_bodies(); ++b) {
         const Matrix34& V = state.V[b];
         speed = std::max(speed, norm(V * point(center(model, b))));
-        for (int i = 1; i < 4; ++i) speed = std::max(speed, norm(V.column(i)) * model.length());
+        for (int i = 1; i < 4; ++i) speed = std::max(speed, norm(V.column(i)) * length);
     }
     return speed;
 }
 
 /// Largest |dPhi/dt| of a row that these speeds can make.
-double rate_bound(const Model& model, const State& state, std::span<const Wrench> row, double speed)
+double rate_bound(const Model& model, const State& state, std::span<const Wrench> row, double speed,
+                  double length)
 {
     double bound = 0;
     for (const Wrench& w : row) {
         const Vector3 moment = moment_about(w, state.X[w.body], center(model, w.body));
-        bound += norm(w.force) * speed + norm(moment) * speed / model.length();
+        bound += norm(w.force) * speed + norm(moment) * speed / length;
     }
     return bound;
 }
@@ -214,10 +217,11 @@ struct RateFault {
 RateFault worst_rate(const Model& model, const State& state, std::span<const double> drives, double speed)
 {
     RateFault fault;
+    const double length = model.length();
     for (int b = 0; b < model.n_bodies(); ++b) {
         if (model.bodies()[b].is_point) continue;
         const Worst worst = worst_product(directors(state.X[b]), directors(state.V[b]), 0);
-        const double relative = speed > 0 ? std::abs(worst.value) * model.length() / speed : 0;
+        const double relative = speed > 0 ? std::abs(worst.value) * length / speed : 0;
         if (relative <= fault.relative) continue;
         fault.relative = relative;
         const std::string name = model.body_name(b);
@@ -233,7 +237,7 @@ RateFault worst_rate(const Model& model, const State& state, std::span<const dou
     const std::vector<double> rates = joint_rates(model, state.X, state.V);
     const RowWrenches wrenches = row_wrenches(model, state.X);
     for (int r = 0; r < model.n_rows(); ++r) {
-        const double bound = rate_bound(model, state, wrenches[r], speed);
+        const double bound = rate_bound(model, state, wrenches[r], speed, length);
         const double rate = rates[r] + drives[r];
         const double relative = bound > 0 ? std::abs(rate) / bound : drives[r] != 0 ? 1 : 0;
         if (relative <= fault.relative) continue;

@@ -34,7 +34,7 @@ double ConstraintBasis::build(const Tables& tables, Instant at, const double* X,
 {
     rows = which;
     for (int c = 0; c < tables.rank; ++c) row_scale[c] = fill(tables, c, which[c], at, X, maps);
-    return q.factorise(tables.rank, keep_choices);
+    return smallest_pivot = q.factorise(tables.rank, keep_choices);
 }
 
 double ConstraintBasis::choose(const Tables& tables, Instant at, const double* X, const double* maps)
@@ -42,7 +42,7 @@ double ConstraintBasis::choose(const Tables& tables, Instant at, const double* X
     const int all = tables.n_rows();
     std::vector<int> order(static_cast<std::size_t>(all));
     for (int r = 0; r < all; ++r) row_scale[r] = fill(tables, r, r, at, X, maps);
-    const double smallest = q.factorise_pivoted(tables.rank, order);
+    smallest_pivot = q.factorise_pivoted(tables.rank, order);
     const std::vector<double> unsorted = gradients, scales = row_scale;
     for (int c = 0; c < tables.rank; ++c) {
         rows[c] = order[c];
@@ -50,7 +50,7 @@ double ConstraintBasis::choose(const Tables& tables, Instant at, const double* X
         std::copy_n(unsorted.begin() + Tables::gradient_size * order[c], Tables::gradient_size,
                     gradients.begin() + Tables::gradient_size * c);
     }
-    return smallest;
+    return smallest_pivot;
 }
 
 }   // namespace livens

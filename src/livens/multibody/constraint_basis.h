@@ -16,6 +16,8 @@ struct ConstraintBasis {
     std::vector<double> row_scale;   ///< 1 / s, in the same order
     std::vector<double> gradients;   ///< Tables::gradient_size numbers a row, in the same order
 
+    double smallest_pivot = 1;   ///< of the last build() or choose()
+
     const double* gradient(int column) const { return gradients.data() + Tables::gradient_size * column; }
     void resize(const Tables& tables, bool all_rows);
     /// The basis for given rows. Returns the smallest scaled pivot.

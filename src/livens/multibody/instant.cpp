@@ -9,6 +9,13 @@
 
 namespace livens {
 
+namespace {
+
+/// The smallest pivot where squares of what joints hold have digits enough.
+constexpr double well_held = 1e-3;
+
+}   // namespace
+
 void InstantState::resize(const Tables& tables)
 {
     const auto n = static_cast<std::size_t>(tables.n_twists);
@@ -24,7 +31,8 @@ void InstantState::resize(const Tables& tables)
     }
     jerk.assign(n, 0.0);
     snap.assign(n, 0.0);
-    basis.resize(tables, true);
+    rows = tables.independent;
+    has_basis = false;
 }
 
 void InstantState::look_back(const InstantState& earlier, bool forwards)
@@ -50,7 +58,7 @@ void InstantState::forget_past()
     std::fill(snap.begin(), snap.end(), 0.0);
 }
 
-InstantSystem::InstantSystem(const Tables& tables) : tables_(tables)
+InstantSystem::InstantSystem(const Tables& tables, bool sparse) : tables_(tables), is_sparse_(sparse)
 {
     const auto n = static_cast<std::size_t>(tables.n_twists);
     if (!tables.regular) {
@@ -58,24 +66,63 @@ InstantSystem::InstantSystem(const Tables& tables) : tables_(tables)
         z_.assign(n * static_cast<std::size_t>(tables.freedoms()), 0.0);
     }
     for (auto* v : {&a_, &b_}) v->assign(n, 0.0);
+    curvatures_.assign(static_cast<std::size_t>(tables.rank), 0.0);
     for (auto* v : {&V_, &centripetal_, &raw_}) v->assign(12 * tables.bodies.size(), 0.0);
 }
 
 bool InstantSystem::prepare(InstantState& state, const std::vector<int>& rows, ConstraintBasis* known)
 {
-    const double* X = state.X.data();
-    state.rows_chosen = false;
+    state.rows_chosen = state.has_basis = false;
     if (known != nullptr && tables_.rank == tables_.n_rows()) {
+        give_room(state.basis);
         std::swap(state.basis, *known);
-    } else {
-        tables_.map_twists(X, state.maps.data());
-        state.smallest_pivot = state.basis.build(tables_, {state.t}, X, state.maps.data(), rows, false);
-        if (tables_.rank < tables_.n_rows() && !rows_are_fit(state)) {
-            state.smallest_pivot = state.basis.choose(tables_, {state.t}, X, state.maps.data());
-            state.rows_chosen = true;
+        state.has_basis = true;
+        if (!is_sparse_) {
+            state.rows = rows;
+            return tables_.regular || prepare_singular(state);
         }
+    } else {
+        tables_.map_twists(state.X.data(), state.maps.data());
+    }
+    hold(state, rows);
+    if (tables_.rank < tables_.n_rows() && !rows_are_fit(state)) {
+        give_room(state.basis);
+        state.basis.choose(tables_, {state.t}, state.X.data(), state.maps.data());
+        hold(state, std::vector<int>(state.basis.rows));
+        state.rows_chosen = true;
     }
     return tables_.regular || prepare_singular(state);
+}
+
+/// A basis takes room that grows with the square of the bodies: where it is needed.
+void InstantSystem::give_room(ConstraintBasis& basis) const
+{
+    if (basis.gradients.empty()) basis.resize(tables_, true);
+}
+
+/// What these rows hold.
+void InstantSystem::hold(InstantState& state, const std::vector<int>& rows)
+{
+    state.rows = rows;
+    if (is_sparse_) {
+        if (pattern_ == nullptr || pattern_->chosen() != rows)
+            pattern_ = std::make_shared<const RowPattern>(tables_, rows);
+        state.joints.use(pattern_);
+        state.smallest_pivot = state.joints.prepare(tables_, state.X.data());
+        state.by_joints = state.smallest_pivot > well_held;
+        if (state.by_joints) return;
+    }
+    state.has_basis = false;
+    add_basis(state);
+    state.smallest_pivot = state.basis.smallest_pivot;
+}
+
+void InstantSystem::add_basis(InstantState& state) const
+{
+    if (state.has_basis) return;
+    give_room(state.basis);
+    state.basis.build(tables_, {state.t}, state.X.data(), state.maps.data(), state.rows, false);
+    state.has_basis = true;
 }
 
 bool InstantSystem::rows_are_fit(const InstantState& state) const
@@ -123,11 +170,17 @@ bool InstantSystem::prepare_singular(const InstantState& state)
     return reduced_.factorise();
 }
 
-/// lambda <- S R^-1 y / weight on the chosen rows.
-void InstantSystem::scatter(const InstantState& state, const double* y, double weight, double* lambda) const
+/// lambda <- S R^-1 y / weight on the chosen rows; by joints y is what joints.project() says.
+void InstantSystem::scatter(const InstantState& state, double* y, double weight, double* lambda) const
 {
-    const ConstraintBasis& basis = state.basis;
     std::fill(lambda, lambda + tables_.n_rows(), 0.0);
+    if (state.by_joints) {
+        const std::vector<int>& rows = state.joints.pattern()->rows();
+        for (int c = 0; c < tables_.rank; ++c) lambda[rows[c]] = y[c] / weight;
+        return;
+    }
+    const ConstraintBasis& basis = state.basis;
+    basis.q.solve_R(y);
     for (int c = 0; c < tables_.rank; ++c) lambda[basis.rows[c]] = y[c] * basis.row_scale[c] / weight;
 }
 
@@ -166,10 +219,19 @@ void InstantSystem::from_momentum(InstantState& state, const double* p, double w
 {
     double* y = a_.data();
     double* rest = b_.data();
+    if (state.by_joints) {
+        tables_.to_scaled_rows(state.maps.data(), p, y);
+        state.joints.project(y, nullptr, rest);
+        std::copy(p, p + tables_.n_twists, state.p.begin());
+        state.joints.add_wrenches(rest, -1, state.p.data());
+        scatter(state, rest, weight, lambda);
+        tables_.to_twist(state.maps.data(), y, state.velocity.data());
+        std::copy(y, y + tables_.n_twists, state.momentum.begin());
+        return;
+    }
     tables_.to_scaled_rows(state.maps.data(), p, rest);
     follow_drives(state, y);
     solve(state, rest, y);
-    state.basis.q.solve_R(rest);
     scatter(state, rest, weight, lambda);
     tables_.to_twist(state.maps.data(), y, state.velocity.data());
     // what the multipliers take off is taken off p itself: without joints p stays as it is, to the bit
@@ -219,8 +281,9 @@ void InstantSystem::particular(const InstantState& state, Side from, double* y) 
     basis.q.solve_R_transposed(y);
 }
 
-std::vector<int> InstantSystem::weak_rows(const InstantState& state) const
+std::vector<int> InstantSystem::weak_rows(InstantState& state) const
 {
+    add_basis(state);
     std::vector<double> y(static_cast<std::size_t>(tables_.n_twists), 1.0);
     state.basis.q.solve_R(y.data());
     double largest = 0;
@@ -250,10 +313,16 @@ void InstantSystem::accelerate(InstantState& state, Side side)
     double* forces = b_.data();
     tables_.twist_rows(X, state.maps.data(), raw_.data(), y);
     tables_.to_scaled_rows(state.maps.data(), y, forces);
-    particular(state, side, y);
-    solve(state, forces, y);
     const int s = side == Side::right ? 1 : 0;
-    state.basis.q.solve_R(forces);
+    if (state.by_joints) {
+        std::swap(y, forces);
+        state.joints.curvatures(tables_, V_.data(), centripetal_.data(), curvatures_.data());
+        for (double& value : curvatures_) value = -value;
+        state.joints.project(y, curvatures_.data(), forces);
+    } else {
+        particular(state, side, y);
+        solve(state, forces, y);
+    }
     scatter(state, forces, 1.0, state.multipliers[s].data());
     tables_.to_twist(state.maps.data(), y, state.acceleration[s].data());
 }

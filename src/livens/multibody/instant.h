@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "livens/multibody/constraint_basis.h"
+#include "livens/multibody/joint_factor.h"
 
 namespace livens {
 
@@ -23,7 +24,11 @@ struct InstantState {
     std::vector<double> jerk,
         snap;   ///< second and third derivative of the twist, extrapolated; zero without past
     bool has_past = false;
-    ConstraintBasis basis;   ///< rows chosen here serve the next element
+    std::vector<int> rows;   ///< independent ones, chosen here, which serve the next element
+    JointFactor joints;      ///< of these rows, where the system is sparse
+    ConstraintBasis basis;   ///< likewise, if has_basis
+    bool has_basis = false;
+    bool by_joints = false;   ///< what the joints hold is solved by elimination along them
     double smallest_pivot = 1;
     bool rows_chosen = false;   ///< others than before, see InstantSystem::prepare()
 
@@ -37,14 +42,18 @@ struct InstantState {
 /// Solves at one instant (docs/theory.md, "Element ends").
 class InstantSystem {
 public:
-    explicit InstantSystem(const Tables& tables);
+    /// `sparse`: by elimination along the joints where they hold well, JointFactor::serves() must be true;
+    /// else by orthogonal bases.
+    explicit InstantSystem(const Tables& tables, bool sparse = false);
 
-    /// Prepares maps and basis for state.t and state.X, with the given independent rows as long as they are
-    /// fit: the others hold to 1e-9 of their scale, and the smallest scaled pivot is above 1e-6; else rows
-    /// are chosen again among all (`rows_chosen`). False if a free motion carries no inertia. `known` is
-    /// exchanged with the state's basis where it serves: built for this X with all rows of the model, as are
-    /// then state.maps.
+    /// Prepares maps and what constraints hold at state.t and state.X, with the given independent rows as
+    /// long as they are fit: the others hold to 1e-9 of their scale, and the smallest scaled pivot is above
+    /// 1e-6; else rows are chosen again among all (`rows_chosen`). False if a free motion carries no inertia.
+    /// `known` is exchanged with the state's basis where it serves: built for this X with all rows of the
+    /// model, as are then state.maps.
     bool prepare(InstantState& state, const std::vector<int>& rows, ConstraintBasis* known = nullptr);
+    /// The basis of a prepared state, where there is none.
+    void add_basis(InstantState& state) const;
     /// velocity and momentum <- the parts of a given twist momentum N^T P that the constraints and their
     /// drives allow, Ghat velocity = -dPhi/dt (explicit). `lambda` <- the multipliers of the rest, W Ghat^T
     /// lambda = N^T P - Mr velocity; all rows of the model, zero for rows that are not chosen.
@@ -56,25 +65,29 @@ public:
 
     /// Rows of the combination that is nearest to zero, by more than a thousandth of its largest part: where
     /// the joints lose rank, what their multipliers hold grows without bound.
-    std::vector<int> weak_rows(const InstantState& state) const;
+    std::vector<int> weak_rows(InstantState& state) const;
 
     /// X' and [0, w x (w x d_a)] of the last state that was accelerated, 12 numbers a body.
     const double* rates() const { return V_.data(); }
     const double* centripetal() const { return centripetal_.data(); }
 
 private:
+    void give_room(ConstraintBasis& basis) const;
+    void hold(InstantState& state, const std::vector<int>& rows);
     bool rows_are_fit(const InstantState& state) const;
     bool prepare_singular(const InstantState& state);
     void apply_mass(const InstantState& state, const double* y, double* out);
     void solve(const InstantState& state, double* forces, double* y);
     void follow_drives(const InstantState& state, double* y) const;
     void particular(const InstantState& state, Side from, double* y) const;
-    void scatter(const InstantState& state, const double* y, double weight, double* lambda) const;
+    void scatter(const InstantState& state, double* y, double weight, double* lambda) const;
 
     const Tables& tables_;
     Cholesky reduced_;        // Z^T M Z, used only where an inertia is singular
     std::vector<double> z_;   // null space, n x f; likewise
-    std::vector<double> a_, b_, V_, centripetal_, raw_;
+    std::vector<double> a_, b_, V_, centripetal_, raw_, curvatures_;
+    bool is_sparse_;
+    std::shared_ptr<const RowPattern> pattern_;   // of the last rows
 };
 
 }   // namespace livens

@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <numeric>
 
 #include "livens/multibody/rank.h"
 #include "livens/multibody/rows.h"
+#include "livens/multibody/sparse_rows.h"
 #include "livens/multibody/twist.h"
 #include "livens/solvers/dense.h"
 
@@ -52,6 +54,9 @@ struct Inertia {
     Matrix3 spin{};   ///< L^-T: w_body = spin y_2; zero for a point mass
 };
 
+/// The smallest pivot at which elimination has digits enough.
+constexpr double well_held = 1e-3;
+
 struct Twist {
     Vector3 velocity{};   ///< of the centre of mass
     Vector3 spin{};       ///< world axes
@@ -67,18 +72,30 @@ public:
         : inertias_(inertias), X_(X), order_(rows.size()), size_(rows.size(), 1.0)
     {
         const int n = 6 * model.n_bodies(), rank = static_cast<int>(rows.size());
-        basis_.resize(n, rank);
         const RowWrenches wrenches = row_wrenches(model, X);
+        std::vector<SparseRows::Entry> entries;
         for (int k = 0; k < rank; ++k) {
-            double* y = basis_.column(k);
+            const std::size_t first = entries.size();
+            double square = 0;
             for (const Wrench& w : wrenches[rows[k]]) {
                 const Vector3 moment = moment_about(w, X[w.body], inertias[w.body].known.center_of_mass);
-                inertias[w.body].push(X[w.body], w.force, moment, y + 6 * w.body);
+                double y[6];
+                inertias[w.body].push(X[w.body], w.force, moment, y);
+                for (int i = 0; i < 6; ++i) entries.push_back({k, 6 * w.body + i, y[i]});
+                square += std::inner_product(y, y + 6, y, 0.0);
             }
-            const double square = std::inner_product(y, y + n, y, 0.0);
             if (square > 0) size_[k] = std::sqrt(square);
-            for (int i = 0; i < n; ++i) y[i] /= size_[k];
+            for (std::size_t i = first; i < entries.size(); ++i) entries[i].value /= size_[k];
         }
+        if (masses_are_alike()) by_elimination_ = std::make_unique<SparseRows>(rank, n, entries);
+        if (by_elimination_ && by_elimination_->smallest_pivot() > well_held) {
+            std::iota(order_.begin(), order_.end(), 0);
+            return;
+        }
+        by_elimination_.reset();
+        basis_.resize(n, rank);
+        for (int k = 0; k < rank; ++k) std::fill_n(basis_.column(k), n, 0.0);
+        for (const auto& entry : entries) basis_.column(entry.row)[entry.column] += entry.value;
         basis_.factorise_pivoted(rank, order_);
     }
 
@@ -95,10 +112,14 @@ public:
         }
         std::vector<double> held(wanted.size());
         for (std::size_t k = 0; k < held.size(); ++k) held[k] = wanted[order_[k]] / size_[order_[k]];
-        basis_.solve_R_transposed(held.data());
-        basis_.apply_transposed(y.data());
-        std::ranges::copy(held, y.begin());
-        basis_.apply(y.data());
+        if (by_elimination_) {
+            by_elimination_->project(y, held);
+        } else {
+            basis_.solve_R_transposed(held.data());
+            basis_.apply_transposed(y.data());
+            std::ranges::copy(held, y.begin());
+            basis_.apply(y.data());
+        }
         std::vector<Twist> twists;
         for (std::size_t b = 0; b < X_.size(); ++b) {
             const double *v = &y[6 * b], *w = v + 3, unit = 1 / inertias_[b].root_mass;
@@ -109,10 +130,19 @@ public:
     }
 
 private:
+    /// Else squares of the rows have no digits of what heavy bodies do.
+    bool masses_are_alike() const
+    {
+        const auto [lightest, heaviest] = std::ranges::minmax_element(
+            inertias_, {}, [](const Inertia& inertia) { return inertia.root_mass; });
+        return inertias_.empty() || heaviest->root_mass < 30 * lightest->root_mass;
+    }
+
     const std::vector<Inertia>& inertias_;
     std::span<const Matrix34> X_;
     std::vector<int> order_;
     std::vector<double> size_;   ///< norms of the rows before they were scaled to one
+    std::unique_ptr<SparseRows> by_elimination_;   // where that has digits enough, else the basis
     OrthogonalBasis basis_;
 };
 

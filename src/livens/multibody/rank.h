@@ -24,12 +24,13 @@ struct TwistRows {
 };
 TwistRows twist_rows(const Model& model, std::span<const Matrix34> X, std::span<const int> rows);
 
-/// The judge is a QR decomposition with column pivoting of the transposed twist rows, scaled to norm 1.
-/// Of equal rows the one that comes first is kept.
+/// The judge is a QR decomposition with column pivoting of the transposed twist rows, scaled to norm 1,
+/// unless elimination along the joints already finds all of them independent, by pivots above 1e-3. Of equal
+/// rows the one that comes first is kept.
 struct RowRank {
     std::vector<int> independent;   ///< rows of the model, ascending: |R_kk| > threshold |R_00|
     std::vector<int> dependent;     ///< the others, ascending
-    double smallest_pivot = 1;      ///< |R_kk| / |R_00| of the last independent row
+    double smallest_pivot = 1;      ///< |R_kk| / |R_00| of the last independent row; by elimination of any
 };
 /// The threshold is at least the doubt of the rows, or 1e-4 if that is more: 8 eps times the largest ratio of
 /// positions and joint points to arms, or to lengths of rods. So 1e-9 bears distances of 5e5 arms.

@@ -115,6 +115,7 @@ private:
         Pace pace(rule.points, rule.degree, tolerance_, length_, stops_);
         WindowOptions w;
         w.tolerance = options_.tolerance;
+        w.by_newton = options_.by_newton;
         w.max_iterations = options_.max_iterations;
         w.progress = options_.progress;
         w.length_of_model = model_.length();

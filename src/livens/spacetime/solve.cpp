@@ -88,6 +88,7 @@ WindowOptions window_options(const Model& model, const Ends& ends, const Method&
                              const SolveOptions& options)
 {
     WindowOptions w;
+    w.by_newton = options.by_newton;
     w.direction = ends.is_backwards() ? -1 : 1;
     w.tolerance = options.tolerance;
     w.max_iterations = options.max_iterations;

@@ -30,6 +30,9 @@ struct SolveOptions {
     /// Elements of lobatto that fail, or meet a root of their equations that is none, are divided into two
     /// (from a state).
     bool divide = true;
+    /// Every window by Newton's iteration with its tangent: the reference for quicker ways to the same
+    /// motion.
+    bool by_newton = false;
     bool judge = true;   ///< false: the caller asks estimate() and judge() himself, or does without
     /// What tells the error of the motion, where it is judged.
     enum class Estimate {

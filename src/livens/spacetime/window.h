@@ -61,6 +61,10 @@ public:
     /// Makes elements first..last - 1 current, with what the window closed last hands on (or with the
     /// conditions) at its near end. False: there is no state to go on from; the report says why.
     virtual bool open(int first, int last, SolveReport& report) = 0;
+    /// The family's own way to the solution of the open window, where it has one that is quicker than
+    /// Newton's iteration: the same equations, to the same digits. False: nothing was found, the window is as
+    /// before.
+    virtual bool solve(const NewtonOptions&, NewtonReport&) { return false; }
     /// The equations of the open window.
     virtual NewtonProblem& equations() = 0;
     /// The family's own guess, cheap and good for short windows. False: it has none here.

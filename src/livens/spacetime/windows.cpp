@@ -174,7 +174,10 @@ private:
             iterations += outcome.iterations;
             report_.factorisations += outcome.factorisations;
         };
-        if (window_.predict()) run();
+        if (!options_.by_newton && window_.solve(newton_options_, outcome))
+            iterations = outcome.iterations;
+        else if (window_.predict())
+            run();
         const auto goes_on = [&] {
             return outcome.status != SolveStatus::converged && outcome.status != SolveStatus::cancelled;
         };

@@ -19,6 +19,7 @@ struct WindowOptions {
     int direction = 1;          ///< -1: from the end of time
     double tolerance = 1e-12;   ///< see NewtonOptions
     int max_iterations = 30;
+    bool by_newton = false;       ///< whatever quicker way the window has
     bool may_split = true;        ///< a window that fails is solved in two halves
     bool may_divide = false;      ///< an element that fails or is refused is divided into two
     Trust trust{};

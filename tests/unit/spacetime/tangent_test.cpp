@@ -207,6 +207,7 @@ TEST(Newton, ConvergesQuadraticallyOnceClose)
     const Model model = two_bricks();
     SolveOptions options;
     options.tolerance = 1e-12;
+    options.by_newton = true;
     const Solution s = solve(model, {model.start()}, make_time_mesh(0, 1, 20), Lobatto{6}, options);
     ASSERT_TRUE(s.report.converged()) << s.report.message;
     EXPECT_LE(s.report.most_iterations, 5);
@@ -217,8 +218,10 @@ TEST(Newton, ConvergesQuadraticallyOnceClose)
 TEST(Newton, HighDegreesConvergeOnLongElements)
 {
     const Model model = two_bricks();
+    SolveOptions options;
+    options.by_newton = true;
     for (int degree : {8, 12, 16}) {
-        const Solution s = solve(model, {model.start()}, make_time_mesh(0, 2, 20), Lobatto{degree});
+        const Solution s = solve(model, {model.start()}, make_time_mesh(0, 2, 20), Lobatto{degree}, options);
         ASSERT_TRUE(s.report.converged()) << s.report.message;
         EXPECT_LE(s.report.most_iterations, 10) << "degree " << degree;
     }

@@ -37,8 +37,7 @@ void Nodes::open(const Stretch& stretch)
     phi_.scaled.assign(n * rank, 0.0);
     phi_.values.assign(n * rank, 0.0);
     known_.assign(n, nullptr);
-    bases_.resize(n);
-    for (ConstraintBasis& basis : bases_) basis.resize(tables_, false);
+    bases_.clear();
 }
 
 void Nodes::fix(int A, const InstantState& state)
@@ -49,11 +48,22 @@ void Nodes::fix(int A, const InstantState& state)
                   set.low.begin() + static_cast<std::ptrdiff_t>(place(A)));
     }
     std::copy(state.maps.begin(), state.maps.end(), maps_.begin() + static_cast<std::ptrdiff_t>(place(A)));
-    known_[A] = &state.basis;
+    known_[A] = &state;
     pivots_[A] = state.smallest_pivot;
-    double* values = phi_.values.data() + static_cast<std::size_t>(A * tables_.rank);
-    for (int c = 0; c < tables_.rank; ++c)
-        values[c] = tables_.value(state.basis.rows[c], at(A), X(A), state.basis.gradient(c));
+    phi_.has_start = false;
+}
+
+/// Bases take room that grows with the square of the bodies: only here.
+void Nodes::begin_constraining()
+{
+    if (bases_.empty()) {
+        bases_.resize(known_.size());
+        for (ConstraintBasis& basis : bases_) basis.resize(tables_, false);
+    }
+    if (phi_.has_start || known_[0] == nullptr) return;
+    phi_.has_start = true;
+    pivots_[0] = known_[0]->basis.smallest_pivot;
+    for (int c = 0; c < tables_.rank; ++c) phi_.values[c] = tables_.value(known_[0]->rows[c], at(0), X(0));
 }
 
 void Nodes::place_at(int A, const double* X)
@@ -86,6 +96,14 @@ inline void subtract_two_sums(const double* __restrict x, const double* __restri
 }
 
 }   // namespace
+
+void Nodes::place_solved(int B, const double* dX, double pivot)
+{
+    std::copy_n(dX, size_, work_.begin());
+    add(sets_[kept_], 0, sets_[kept_], B);
+    subtract_two_sums(X(B), low(B), X(0), low(0), dX_.data() + place(B), size_);
+    pivots_[B] = pivot;
+}
 
 /// Node A of `to` <- node A_from of `from`, both parts, + what is in work_.
 void Nodes::add(const Set& from, int A_from, Set& to, int A)
@@ -138,6 +156,7 @@ void Nodes::measure_element(int e)
 bool Nodes::constrain(const Stretch& stretch, bool same_choices)
 {
     near_ = true;
+    begin_constraining();
     double sum = 0;
     for (int e = 0; e < stretch.n_elements(); ++e) {
         measure_element(e);
@@ -154,10 +173,9 @@ bool Nodes::constrain_node(int e, int B, bool same_choices, double& sum)
     const int start = e * rule_.degree, A = start + B, k = tables_.rank;
     const ConstraintBasis& first = basis(start);
     const double *reference = phi_.values.data() + static_cast<std::size_t>(start * k), *step = dX(e, B);
-    const std::vector<int>& rows = known_[0] != nullptr ? known_[0]->rows : tables_.independent;
     ConstraintBasis& own = bases_[A];
     tables_.map_twists(X(A), maps_.data() + place(A));
-    pivots_[A] = own.build(tables_, at(A), X(A), maps(A), rows, same_choices);
+    pivots_[A] = own.build(tables_, at(A), X(A), maps(A), rows(), same_choices);
     for (int c = 0; c < k; ++c) {
         const auto& table = tables_.rows[static_cast<std::size_t>(own.rows[c])];
         // from the element's first node, which keeps the digits of a small increment

@@ -19,7 +19,8 @@ public:
     Nodes(const Tables& tables, const ElementRule& rule);
 
     void open(const Stretch& stretch);
-    /// Node A is a known state, whose basis and maps serve; node 0, or the last where X is given there.
+    /// Node A is a known state, whose basis and maps serve; node 0, or the last where X is given there. The
+    /// basis is not looked at before constrain().
     void fix(int A, const InstantState& state);
 
     Instant at(int A) const { return {times_[static_cast<std::size_t>(A)]}; }
@@ -28,10 +29,11 @@ public:
     /// X less that of the element's first node, B = 0..p.
     const double* dX(int e, int B) const { return dX_.data() + place(e * (rule_.degree + 1) + B); }
     const double* maps(int A) const { return maps_.data() + place(A); }
-    const ConstraintBasis& basis(int A) const
+    const ConstraintBasis& basis(int A) const { return known_[A] != nullptr ? known_[A]->basis : bases_[A]; }
+    /// The independent rows, alike at all nodes of a march.
+    const std::vector<int>& rows() const
     {
-        const ConstraintBasis* known = known_[A];
-        return known != nullptr ? *known : bases_[A];
+        return known_[0] != nullptr ? known_[0]->rows : tables_.independent;
     }
     /// For taking a node's own basis away.
     ConstraintBasis& own_basis(int A) { return bases_[A]; }
@@ -42,6 +44,9 @@ public:
     }
 
     void place_at(int A, const double* X);
+    /// Node B of the only element: the first node moved by dX, where the constraints have this pivot. It gets
+    /// no basis.
+    void place_solved(int B, const double* dX, double pivot);
     /// Node A: node `from` moved by a finite twist; by displacements and quaternions (s, v), 7 numbers a
     /// body.
     void place_from(int A, int from, const double* twist);
@@ -73,12 +78,14 @@ private:
 
     struct Violations {
         std::vector<double> scaled, values;   // times the scales of the bases, and as they are
+        bool has_start = false;               // those of the first node
     };
 
     std::size_t place(int A) const { return static_cast<std::size_t>(A) * size_; }
     void add(const Set& from, int A_from, Set& to, int A);
     void displace(const Set& from, int A_from, const double* twist, Set& to, int A);
     void measure_element(int e);
+    void begin_constraining();
     bool constrain_node(int e, int B, bool same_choices, double& sum);
     double followed(int e, int B, int c);
 
@@ -90,7 +97,7 @@ private:
     std::vector<double> times_;
     std::vector<double> dX_, maps_;
     std::vector<ConstraintBasis> bases_;
-    std::vector<const ConstraintBasis*> known_;
+    std::vector<const InstantState*> known_;
     Violations phi_;
     std::vector<double> work_;
     bool near_ = true;

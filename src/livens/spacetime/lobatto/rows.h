@@ -44,6 +44,8 @@ public:
     {
         return impulses_.data() + static_cast<std::size_t>(A * tables_.rank);
     }
+    /// For impulses that were found elsewhere.
+    double* own_impulses(int A) { return impulses_.data() + static_cast<std::size_t>(A * tables_.rank); }
     /// F_A of element e, local node A, without weight.
     const double* forces(int e, int A) const { return forces_.data() + place(e * rule_.size() + A); }
     /// The row before N^T and multipliers, at an active node.

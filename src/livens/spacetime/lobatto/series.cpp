@@ -53,14 +53,10 @@ double Series::error(const InstantState& start, double h) const
     return size;
 }
 
-/// Nodes from a Taylor series of the twist at the start. Where that bends by more than about a radian, or by
-/// half a length (a stiff spring that vibrates within the element), constant twist is the safer guess.
-void Series::predict(LobattoSystem& system, const InstantState& start) const
+TwistSeries::TwistSeries(const Tables& tables, const InstantState& start, double h)
+    : tables_(tables), start_(start), acceleration_(start.acceleration[side_of(h)].data())
 {
-    const ElementRule& rule = system.rule();
-    const double h = system.stretch().h(0);
-    const double *v = start.velocity.data(), *a = start.acceleration[side_of(h)].data();
-    const double *j = start.jerk.data(), *s = start.snap.data();
+    const double *a = acceleration_, *j = start.jerk.data(), *s = start.snap.data();
     double away = 0, turn = 0;   // by h^2 / 2 and h^2
     for (const auto& body : tables_.bodies) {
         for (int i = body.first; i < body.first + 3; ++i)
@@ -68,20 +64,34 @@ void Series::predict(LobattoSystem& system, const InstantState& start) const
                                       std::abs(h) / 3 * (std::abs(j[i]) + std::abs(h) / 4 * std::abs(s[i])));
         for (int i = 3; i < body.dofs; ++i) turn = std::max(turn, std::abs(a[body.first + i]));
     }
-    const double on = h * h * std::max(away / (2 * far * tables_.length), turn) < 1 ? 1 : 0;
-    double* __restrict move = system.scratch().data();
+    on_ = h * h * std::max(away / (2 * far * tables_.length), turn) < 1 ? 1 : 0;
+}
+
+void TwistSeries::at(double tau, double* __restrict twist) const
+{
+    const double *v = start_.velocity.data(), *a = acceleration_, *j = start_.jerk.data(),
+                 *s = start_.snap.data(), c = on_ * tau * tau * tau / 12;
+    for (int i = 0; i < tables_.n_twists; ++i)
+        twist[i] = tau * (v[i] + tau / 2 * on_ * (a[i] + tau / 3 * (j[i] + tau / 4 * s[i])));
+    for (const auto& body : tables_.bodies) {
+        if (body.dofs == 3) continue;
+        // turns do not commute: second term of the Magnus series
+        const int x = body.first + 3, y = x + 1, z = x + 2;
+        twist[x] += c * (a[y] * v[z] - a[z] * v[y]);
+        twist[y] += c * (a[z] * v[x] - a[x] * v[z]);
+        twist[z] += c * (a[x] * v[y] - a[y] * v[x]);
+    }
+}
+
+/// Nodes from the series of the twist at the start.
+void Series::predict(LobattoSystem& system, const InstantState& start) const
+{
+    const ElementRule& rule = system.rule();
+    const double h = system.stretch().h(0);
+    const TwistSeries series(tables_, start, h);
+    double* move = system.scratch().data();
     for (int B = 1; B <= rule.degree; ++B) {
-        const double tau = rule.nodes[B] * h, c = on * tau * tau * tau / 12;
-        for (int i = 0; i < tables_.n_twists; ++i)
-            move[i] = tau * (v[i] + tau / 2 * on * (a[i] + tau / 3 * (j[i] + tau / 4 * s[i])));
-        for (const auto& body : tables_.bodies) {
-            if (body.dofs == 3) continue;
-            // turns do not commute: second term of the Magnus series
-            const int x = body.first + 3, y = x + 1, z = x + 2;
-            move[x] += c * (a[y] * v[z] - a[z] * v[y]);
-            move[y] += c * (a[z] * v[x] - a[x] * v[z]);
-            move[z] += c * (a[x] * v[y] - a[y] * v[x]);
-        }
+        series.at(rule.nodes[B] * h, move);
         system.nodes().place_from(B, 0, move);
     }
 }

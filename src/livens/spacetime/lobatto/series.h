@@ -10,6 +10,21 @@
 
 namespace livens {
 
+/// Twists from the start by their Taylor series. Where that bends by more than about a radian within h, or by
+/// half a length (a stiff spring that vibrates within the element), constant twist is the safer guess.
+class TwistSeries {
+public:
+    TwistSeries(const Tables& tables, const InstantState& start, double h);
+    /// The finite twist from the start to tau after it.
+    void at(double tau, double* twist) const;
+
+private:
+    const Tables& tables_;
+    const InstantState& start_;
+    const double* acceleration_;
+    double on_;   // 0: constant twist
+};
+
 /// Guesses for a single element from the state at its start: a Taylor series of the twist, and where that
 /// ends too early, the solution of half the degree, which is guessed likewise.
 class Series {

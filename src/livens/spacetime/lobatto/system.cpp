@@ -16,16 +16,20 @@ LobattoSystem::LobattoSystem(const Tables& tables, const ElementRule& rule)
 
 void LobattoSystem::open(const Stretch& stretch, const InstantState* first, const InstantState* last)
 {
-    const bool is_alike = elimination_ != nullptr && stretch.n_nodes() == stretch_.n_nodes() &&
-                          stretch.X_first == stretch_.X_first && stretch.P_first == stretch_.P_first &&
-                          stretch.X_last == stretch_.X_last && stretch.P_last == stretch_.P_last;
+    const bool is_alike = stretch.n_nodes() == stretch_.n_nodes() && stretch.X_first == stretch_.X_first &&
+                          stretch.P_first == stretch_.P_first && stretch.X_last == stretch_.X_last &&
+                          stretch.P_last == stretch_.P_last;
     stretch_ = stretch;
     nodes_.open(stretch_);
     if (!is_alike) rows_.open(stretch_);
     if (first != nullptr) nodes_.fix(0, *first);
     if (last != nullptr) nodes_.fix(stretch_.n_nodes() - 1, *last);
     if (first != nullptr) rows_.start_with(*first);
-    if (is_alike) return;
+    if (!is_alike) elimination_.reset();
+}
+
+void LobattoSystem::choose_elimination()
+{
     if (rule_.degree == 1 && rule_.points == Points::lobatto && stretch_.n_elements() == 1 &&
         stretch_.is_march() && tables_.loads_with_tangent.empty())
         elimination_ = body_elimination(tables_);
@@ -36,6 +40,7 @@ void LobattoSystem::open(const Stretch& stretch, const InstantState* first, cons
 
 bool LobattoSystem::settle()
 {
+    if (elimination_ == nullptr) choose_elimination();
     in_use_ = pending_ = false;
     for (int round = 0; round < 6; ++round) {
         if (!nodes_.constrain(stretch_, false)) return false;

@@ -28,8 +28,8 @@ public:
     const Nodes& nodes() const { return nodes_; }
     livens::Rows& balances() { return rows_; }
     const livens::Rows& balances() const { return rows_; }
-    Elimination& elimination() { return *elimination_; }
-    const Elimination& elimination() const { return *elimination_; }
+    /// Null before settle().
+    const Elimination* elimination() const { return elimination_.get(); }
     /// Room for a twist of all bodies.
     std::vector<double>& scratch() { return work_; }
     /// Forms the tangent at the current point into another sink, for tests.
@@ -59,6 +59,7 @@ private:
         double impulse = 0;   // mass times motion over h, in scaled rows
     };
 
+    void choose_elimination();
     void measure();
 
     const Tables& tables_;

@@ -18,22 +18,12 @@ namespace {
 /// "Singular positions").
 constexpr double least_for_reactions = 1e-4;
 
-/// Re-orthonormalises directors that have drifted beyond rounding: one Newton step of the polar factor.
-void polish(double* X)
-{
-    Matrix3 d{};
-    std::copy_n(X + 3, 9, d.a);
-    const Matrix3 error = transpose(d) * d - identity<3>();
-    if (norm(error) < 2e-15) return;
-    d -= 0.5 * d * error;
-    std::copy_n(d.a, 9, X + 3);
-}
-
 }   // namespace
 
 LobattoWindow::LobattoWindow(const Tables& tables, const TimeMesh& mesh, const Ends& ends,
                              const ElementRule& rule)
-    : tables_(tables), ends_(ends), system_(tables, rule), series_(tables, system_.rule()), instant_(tables),
+    : tables_(tables), ends_(ends), system_(tables, rule), series_(tables, system_.rule()),
+      kernel_(tables, system_.rule()), instant_(tables, kernel_.serves() && ends.has_state()),
       record_(tables, mesh, system_.rule()), front_(tables)
 {
     record_.note_redundant(ends.redundant);
@@ -125,15 +115,36 @@ bool LobattoWindow::fail(SolveReport& report, const std::string& message) const
     return false;
 }
 
+bool LobattoWindow::solve(const NewtonOptions& options, NewtonReport& report)
+{
+    if (!kernel_.serves() || !stretch_.is_march() || stretch_.n_elements() > 1 ||
+        !kernel_.solve(stretch_, front_.here(), options, report))
+        return false;
+    for (int B = 0; B <= stretch_.degree; ++B) {
+        if (B < stretch_.degree) kernel_.impulses(B, system_.balances().own_impulses(B));
+        kernel_.increments(B, work_.raw.data());
+        system_.nodes().place_solved(B, work_.raw.data(), kernel_.pivot(B));
+    }
+    return true;
+}
+
+void LobattoWindow::begin_newton()
+{
+    kernel_.forget();
+    if (stretch_.X_first) instant_.add_basis(front_.here());
+}
+
 bool LobattoWindow::predict()
 {
     if (!stretch_.is_march() || stretch_.n_elements() > 1) return false;
+    begin_newton();
     series_.place(system_, front_.here());
     return system_.settle();
 }
 
 bool LobattoWindow::start_from(const Guess& guess)
 {
+    begin_newton();
     const ElementRule& rule = system_.rule();
     std::vector<double> X(12 * tables_.bodies.size());
     for (int A = 0; A < stretch_.n_nodes(); ++A) {
@@ -204,7 +215,7 @@ bool LobattoWindow::find_first_state(SolveReport& report)
     }
     instant_.from_momentum(here, p.data(), weight, work_.lambda.data());
     for (int c = 0; c < tables_.rank; ++c) {
-        const double taken = weight * work_.lambda[here.basis.rows[c]];
+        const double taken = weight * work_.lambda[here.rows[c]];
         work_.impulse[c] = (stretch_.P_first ? system_.balances().impulses(0)[c] : 0.0) - taken;
     }
     accelerate(here);
@@ -237,83 +248,6 @@ Closed LobattoWindow::close(const Trust& trust, SolveReport& report)
     return closed;
 }
 
-/// The momentum at the end of an element from the balance of all its rows, which with lobatto is its last row
-/// once the others are solved:
-///
-///     p = p_0 + sum_A f_A,      s = s_0 + sum_A tau_A
-///
-/// with wrenches (f_A, tau_A) of loads and multipliers about the centres of mass (docs/theory.md, "The
-/// element"). The last row itself would carry the rounding of k_AB / h, and what Newton's iteration left.
-void LobattoWindow::sum_momentum(int e)
-{
-    const Nodes& nodes = system_.nodes();
-    const Rows& rows = system_.balances();
-    const int p = system_.rule().degree;
-    const bool has_loads = !tables_.model->loads().empty();
-    std::vector<double>&sum = work_.momentum, &wrench = work_.wrench;
-    const int without = is_radau() ? 0 : p;   // the node that has no multiplier of its own
-    sum = front_.here().p;
-    for (const auto& body : tables_.bodies)   // the weight has no moment about the centre
-        for (int i = 0; i < 3; ++i) sum[body.first + i] += stretch_.h(e) * body.weight[i];
-    for (int a = 0; a <= p; ++a) {
-        const int A = e * p + a;
-        if (a == without && !has_loads) continue;
-        if (has_loads)
-            std::copy_n(rows.forces(e, a), work_.raw.size(), work_.raw.begin());
-        else
-            std::fill(work_.raw.begin(), work_.raw.end(), 0.0);
-        if (a != without)
-            rows.subtract(nodes.basis(A), a == 0 ? work_.impulse.data() : rows.impulses(A), work_.raw.data());
-        tables_.twist_rows(nodes.X(A), nodes.maps(A), work_.raw.data(), wrench.data());
-        for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += wrench[i];
-    }
-}
-
-/// The spin about the centres of mass at the end of an element of radau is that of the polynomial's own
-/// velocity, as its rows do not balance moments.
-void LobattoWindow::take_spin_of_polynomial(int e)
-{
-    const ElementRule& rule = system_.rule();
-    const Nodes& nodes = system_.nodes();
-    const int p = rule.degree, A = (e + 1) * p;
-    std::vector<double> V(work_.raw.size(), 0.0);
-    for (int B = 1; B <= p; ++B)
-        for (std::size_t i = 0; i < V.size(); ++i)
-            V[i] += rule.D[p * rule.size() + B] / stretch_.h(e) * nodes.dX(e, B)[i];
-    tables_.times_mass(V.data(), 1.0, work_.raw.data());
-    tables_.twist_rows(nodes.X(A), nodes.maps(A), work_.raw.data(), work_.wrench.data());
-    for (const auto& body : tables_.bodies)
-        for (int i = 3; i < body.dofs; ++i) work_.momentum[body.first + i] = work_.wrench[body.first + i];
-}
-
-/// The end state of a solved element.
-bool LobattoWindow::end_element(int e, SolveReport& report)
-{
-    const ElementRule& rule = system_.rule();
-    const Nodes& nodes = system_.nodes();
-    const int p = rule.degree, A = (e + 1) * p;
-    const bool is_last = e + 1 == stretch_.n_elements();
-    InstantState &here = front_.here(), &next = front_.next();
-    next.t = stretch_.times[e + 1];
-    sum_momentum(e);
-    if (is_radau()) take_spin_of_polynomial(e);
-    std::copy_n(nodes.X(A), next.X.size(), next.X.begin());
-    std::copy_n(nodes.low(A), next.X.size(), next.X_low.begin());
-    std::copy_n(nodes.maps(A), next.X.size(), next.maps.begin());
-    for (int b = 0; mesh_end(e) % 16 == 15 && b < tables_.n_bodies(); ++b)
-        if (tables_.bodies[b].dofs == 6) polish(next.X.data() + 12 * b);
-    // the node's own basis, where nothing asks for it any more
-    const bool is_free = is_last && !is_radau() && stretch_.is_unknown(A);
-    ConstraintBasis* known = is_free && system_.bases_fit() ? &system_.nodes().own_basis(A) : nullptr;
-    if (!instant_.prepare(next, here.basis.rows, known))
-        return fail(report, "the free motions carry no inertia at t = " + to_text(next.t, 6) + " s");
-    if (!rows_compatible(next, report)) return false;
-    const double weight = stretch_.h(e) * rule.weights[p];
-    instant_.from_momentum(next, work_.momentum.data(), weight, work_.end_lambda.data());
-    accelerate(next);
-    return true;
-}
-
 /// The nodes and multipliers of a believed element into the motion, its end as the start of the next.
 void LobattoWindow::close_element(int e)
 {
@@ -323,8 +257,8 @@ void LobattoWindow::close_element(int e)
     record_element(e);
     if (e + 1 < stretch_.n_elements())   // the shared node's other side
         for (int c = 0; c < tables_.rank; ++c)
-            work_.impulse[c] = system_.balances().impulses(A)[c] -
-                               weight * work_.end_lambda[system_.nodes().basis(A).rows[c]];
+            work_.impulse[c] =
+                system_.balances().impulses(A)[c] - weight * work_.end_lambda[system_.nodes().rows()[c]];
     if (is_jump(next.t))
         next.forget_past();
     else
@@ -351,7 +285,7 @@ void LobattoWindow::record_element(int e)
             continue;
         }
         const double* impulses = a == 0 ? work_.impulse.data() : system_.balances().impulses(A);
-        const std::vector<int>& rows = system_.nodes().basis(A).rows;
+        const std::vector<int>& rows = system_.nodes().rows();
         if (a == p)
             work_.lambda = work_.end_lambda;
         else if (tables_.rank < tables_.n_rows())
@@ -362,20 +296,6 @@ void LobattoWindow::record_element(int e)
         }
         record_.multipliers(element, place, work_.lambda.data());
     }
-}
-
-/// Rows that were left out as redundant must still hold.
-bool LobattoWindow::rows_compatible(const InstantState& state, SolveReport& report) const
-{
-    if (tables_.rank == tables_.n_rows()) return true;
-    for (int r = 0; r < tables_.n_rows(); ++r) {
-        const ConstraintRow& row = *tables_.rows[r].row;
-        if (std::abs(tables_.value(r, {state.t}, state.X.data())) / row.scale < 1e-8) continue;
-        return fail(report, tables_.model->row_name(r) +
-                                ": was redundant at the start and contradicts the other joints by t = " +
-                                to_text(state.t, 6) + " s");
-    }
-    return true;
 }
 
 std::vector<Matrix34> LobattoWindow::positions(int element_end) const

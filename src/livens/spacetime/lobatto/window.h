@@ -3,6 +3,7 @@
 #pragma once
 
 #include "livens/spacetime/ends.h"
+#include "livens/spacetime/lobatto/march_kernel.h"
 #include "livens/spacetime/lobatto/record.h"
 #include "livens/spacetime/lobatto/series.h"
 #include "livens/spacetime/window.h"
@@ -17,6 +18,7 @@ public:
     LobattoWindow(const Tables& tables, const TimeMesh& mesh, const Ends& ends, const ElementRule& rule);
 
     bool open(int first, int last, SolveReport& report) override;
+    bool solve(const NewtonOptions& options, NewtonReport& report) override;
     NewtonProblem& equations() override { return system_; }
     bool predict() override;
     bool start_from(const Guess& guess) override;
@@ -58,6 +60,7 @@ private:
     bool set_state(InstantState& state, const State& given, SolveReport& report);
     bool begin_front(SolveReport& report);
     bool find_first_state(SolveReport& report);
+    void begin_newton();
     void accelerate(InstantState& state);
     void sum_momentum(int e);
     void take_spin_of_polynomial(int e);
@@ -74,6 +77,7 @@ private:
     const Ends& ends_;
     LobattoSystem system_;
     Series series_;
+    MarchKernel kernel_;
     InstantSystem instant_;
     Record record_;
     Stretch stretch_;

@@ -20,7 +20,7 @@ Place LobattoWindow::worst() const
             const double v = std::abs(system_.nodes().violations(A)[c]);
             if (v <= worst) continue;   // nan is worst of all
             worst = v;
-            row = system_.nodes().basis(A).rows[c];
+            row = system_.nodes().rows()[c];
             place.t = stretch_.times[stretch_.first_element(A)];
         }
     }
@@ -114,8 +114,8 @@ void LobattoWindow::describe(SolveReport& report) const
     report.unknowns = std::max(report.unknowns, static_cast<int>(system_.balances().reduced().size()));
     report.smallest_pivot = std::min(report.smallest_pivot, smallest_pivot_);
     report.guess_factorisations = series_.factorisations();
-    report.evaluations = system_.evaluations() + series_.evaluations();
-    system_.elimination().describe(report);
+    report.evaluations = system_.evaluations() + series_.evaluations() + kernel_.evaluations();
+    if (system_.elimination() != nullptr) system_.elimination()->describe(report);
 }
 
 void LobattoWindow::measure_condition(SolveReport& report, const std::function<bool()>& goes_on)

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What constraints hold and leave free at one instant, by elimination along the joints: work and memory grow
+// with the bodies, not with their cube. The rows must be quadratic and the inertias definite.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "livens/multibody/row_pattern.h"
+
+namespace livens {
+
+/// Room for lanes::Values, aligned for every set of instructions.
+class LaneStore {
+public:
+    void resize(const RowPattern& pattern, int width);
+    const lanes::Values& values() const { return values_; }
+
+private:
+    struct alignas(64) Line {
+        double x[8];
+    };
+    std::vector<Line> lines_;
+    lanes::Values values_{};
+};
+
+/// The gradients G by scaled twists (Tables) and a Cholesky factor of G G^T.
+class JointFactor {
+public:
+    /// Whether the tables have what it asks for.
+    static bool serves(const Tables& tables);
+
+    JointFactor() = default;
+    JointFactor(const JointFactor&) = delete;
+    JointFactor& operator=(const JointFactor&) = delete;
+    JointFactor(JointFactor&&) = default;
+    JointFactor& operator=(JointFactor&&) = default;
+
+    void use(std::shared_ptr<const RowPattern> pattern);
+    const std::shared_ptr<const RowPattern>& pattern() const { return pattern_; }
+    /// Gradients and factor at X. Returns the smallest pivot, |R_kk| of a QR of the scaled rows in the order
+    /// of their elimination; nan if there is none.
+    double prepare(const Tables& tables, const double* X);
+    /// y <- the part of y that fits G y = rates (null: 0), and mu with y before = y + G^T mu, in the order of
+    /// the pattern. Projected twice: the second time what is left is small.
+    void project(double* y, const double* rates, double* mu);
+    /// q += factor times the twist rows of G^T mu.
+    void add_wrenches(const double* mu, double factor, double* q);
+    /// d2 Phi/dt2 where the columns have the rates V and the second derivatives A, 12 numbers a body.
+    void curvatures(const Tables& tables, const double* V, const double* A, double* out);
+    /// With one lane: numbers, gradients, violations and factor.
+    const lanes::Values& values() const { return store_.values(); }
+
+private:
+    std::shared_ptr<const RowPattern> pattern_;
+    LaneStore store_;
+    std::vector<double> work_;
+};
+
+}   // namespace livens

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The march kernel on registers of 8 doubles; compiled for AVX512 alone, see CMakeLists.txt.
+#ifdef LIVENS_X86_SETS
+#define LIVENS_REGISTER 8
+#include "livens/spacetime/lobatto/lane_kernel.h"
+
+namespace livens::lanes {
+
+const Functions* avx512(int n) { return functions_for(n); }
+
+}   // namespace livens::lanes
+#else
+#include "livens/spacetime/lobatto/kernel_functions.h"
+
+namespace livens::lanes {
+
+const Functions* avx512(int) { return nullptr; }
+
+}   // namespace livens::lanes
+#endif

@@ -1,0 +1,296 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "livens/spacetime/lobatto/march_kernel.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "livens/base/elementary.h"
+#include "livens/multibody/twist.h"
+#include "livens/spacetime/instructions.h"
+
+namespace livens {
+
+namespace {
+
+constexpr double slow_contraction = 0.3;
+constexpr int most_slow_steps = 2, most_steps = 10;
+constexpr double hopeless_step = 10;         // lengths or radians
+constexpr double smallest_step = 1e-18;      // likewise: nothing moves
+constexpr double least_pivot = 1e-5;         // of the rows' own size
+constexpr double share_of_tolerance = 0.1;   // left after the last step, as far as contraction foretells it
+constexpr double widest_tolerance =
+    1e-12;   // Newton's last step leaves less than it was allowed to, this all
+
+const lanes::Functions* functions_for(int n_lanes)
+{
+    switch (instructions()) {
+    case Instructions::avx512:
+        return lanes::avx512(n_lanes);
+    case Instructions::avx2:
+        return lanes::avx2(n_lanes);
+    case Instructions::sse2:
+        break;
+    }
+    return lanes::sse2(n_lanes);
+}
+
+/// How steps shrink, and whether what is left is small enough.
+struct Shrinking {
+    double tolerance;
+    int n_steps = 0, n_slow = 0;
+    double step = 0, contraction = 0;
+    bool has_contracted = false, is_done = false;
+
+    /// False: there is no hope.
+    bool take(const lanes::Sizes& sizes)
+    {
+        const double allowed = tolerance * std::clamp(sizes.motion, 1e-6, 1.0), before = step;
+        step = sizes.step;
+        contraction = before > 0 ? step / before : 0;
+        ++n_steps;
+        is_done = step <= smallest_step;
+        if (n_steps == 1 || is_done) return step < hopeless_step;
+        const bool is_slow = !(contraction <= slow_contraction);
+        // steps that were seen to shrink, and shrink no more, have met their rounding
+        is_done = is_slow ? has_contracted && step <= allowed
+                          : step * contraction / (1 - contraction) <= share_of_tolerance * allowed;
+        has_contracted = has_contracted || !is_slow;
+        n_slow += is_slow ? 1 : 0;
+        return is_done || n_slow < most_slow_steps;
+    }
+};
+
+/// The inverse of K_AB = k_AB with rows A = 0..p-1 and columns B = 1..p, row by row.
+std::vector<double> inverse_of_k(const ElementRule& rule)
+{
+    using Wide = long double;
+    const int p = rule.degree;
+    std::vector<Wide> a(static_cast<std::size_t>(2 * p * p), 0);   // [K 1] by rows
+    const auto at = [&](int i, int j) -> Wide& { return a[static_cast<std::size_t>(2 * p * i + j)]; };
+    for (int A = 0; A < p; ++A) {
+        for (int B = 0; B < p; ++B) at(A, B) = rule.k[static_cast<std::size_t>(A * rule.size() + B + 1)];
+        at(A, p + A) = 1;
+    }
+    for (int i = 0; i < p; ++i) {
+        int best = i;
+        for (int r = i; r < p; ++r)
+            if (std::abs(at(r, i)) > std::abs(at(best, i))) best = r;
+        for (int j = 0; j < 2 * p; ++j) std::swap(at(i, j), at(best, j));
+        const Wide pivot = at(i, i);
+        for (int j = 0; j < 2 * p; ++j) at(i, j) /= pivot;
+        for (int r = 0; r < p; ++r) {
+            const Wide factor = at(r, i);
+            for (int j = 0; r != i && j < 2 * p; ++j) at(r, j) -= factor * at(i, j);
+        }
+    }
+    std::vector<double> inverse(static_cast<std::size_t>(p * p));
+    for (int i = 0; i < p; ++i)
+        for (int j = 0; j < p; ++j)
+            inverse[static_cast<std::size_t>(p * i + j)] = static_cast<double>(at(i, p + j));
+    return inverse;
+}
+
+}   // namespace
+
+MarchKernel::MarchKernel(const Tables& tables, const ElementRule& rule) : tables_(tables), rule_(rule)
+{
+    if (rule.points != Points::lobatto || !JointFactor::serves(tables)) return;
+    functions_ = functions_for(rule.degree);
+    if (!serves()) return;
+    make_rule();
+    work_.twist.assign(static_cast<std::size_t>(tables.n_twists), 0.0);
+    for (auto* v : {&work_.X, &work_.V, &work_.raw}) v->assign(12 * tables.bodies.size(), 0.0);
+    work_.wrenches.assign(12 * tables.bodies.size(), 0.0);
+}
+
+/// Lanes of the tables of lanes::Rule for an element of length 1, and room for another length.
+void MarchKernel::make_rule()
+{
+    const int p = rule_.degree, W = functions_->width, n = rule_.size(), block = W * W;
+    scaled_.lines.assign(static_cast<std::size_t>(8 * block + 2 * W + 7) / 8 + 1, ScaledRule::Line{});
+    double* x = scaled_.lines.data()->x;
+    double *k = x, *inverse = k + block, *M = inverse + block, *dM = M + block, *M_rows = dM + block,
+           *scaled_k = M_rows + block, *scaled_inverse = scaled_k + block,
+           *scaled_dM = scaled_inverse + block, *weights = scaled_dM + block;
+    const std::vector<double> K = inverse_of_k(rule_);
+    for (int l = 0; l < p; ++l) {
+        for (int A = 0; A < p; ++A) {
+            k[l * W + A] = rule_.k[static_cast<std::size_t>(A * n + node_of(l))];
+            inverse[A * W + l] = -K[static_cast<std::size_t>((node_of(l) - 1) * p + A)];
+            M[l * W + A] = rule_.M[static_cast<std::size_t>(A * n + node_of(l))];   // here A is a load point
+            dM[l * W + A] = rule_.dM[static_cast<std::size_t>(A * n + node_of(l))];
+            M_rows[A * W + l] = rule_.M[static_cast<std::size_t>(A * n + l)];
+        }
+    }
+    scaled_.tables = {scaled_k, scaled_inverse, weights, M, scaled_dM, M_rows, nullptr, tables_.length};
+}
+
+void MarchKernel::scale_rule(const Stretch& stretch, const InstantState& start)
+{
+    scaled_.tables.momentum = start.momentum.data();
+    if (stretch.h(0) == scaled_.h) return;
+    scaled_.h = stretch.h(0);
+    const int W = functions_->width, block = W * W;
+    double *k = scaled_.lines.data()->x, *scaled = k + 5 * block, *weights = k + 8 * block;
+    for (int i = 0; i < block; ++i) {
+        scaled[i] = k[i] / scaled_.h;
+        scaled[block + i] = k[block + i] * scaled_.h;
+        scaled[2 * block + i] = k[3 * block + i] / scaled_.h;
+    }
+    for (int A = 0; A < rule_.degree; ++A) weights[A] = scaled_.h * rule_.weights[A];
+}
+
+void MarchKernel::use(const InstantState& start)
+{
+    start_ = &start.joints;
+    if (pattern_ == start_->pattern()) return;
+    pattern_ = start_->pattern();
+    nodes_.resize(*pattern_, functions_->width);
+    const std::vector<int>&chosen = pattern_->chosen(), &order = pattern_->rows();
+    std::vector<int> places(static_cast<std::size_t>(tables_.n_rows()));
+    for (std::size_t i = 0; i < order.size(); ++i) places[order[i]] = static_cast<int>(i);
+    place_.clear();
+    for (const int row : chosen) place_.push_back(places[row]);
+}
+
+/// Places of all nodes from the series at the start.
+void MarchKernel::guess(const Stretch& stretch, const InstantState& start)
+{
+    const TwistSeries series(tables_, start, stretch.h(0));
+    const int W = functions_->width;
+    for (int l = 0; l < rule_.degree; ++l) {
+        series.at(rule_.nodes[node_of(l)] * stretch.h(0), work_.twist.data());
+        for (int b = 0; b < tables_.n_bodies(); ++b) {
+            const Tables::BodyTable& body = tables_.bodies[b];
+            const double *t = work_.twist.data() + body.first, *w = t + 3, *d = start.X.data() + 12 * b + 3;
+            double *place = nodes_.values().place + 7 * b * W + l, dX[12];
+            for (int i = 0; i < 3; ++i) place[i * W] = t[i];
+            if (body.dofs == 3) continue;
+            const double angle = std::sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]);
+            const SineCosine half = sine_cosine(0.5 * angle);
+            const double factor = angle > 1e-8 ? half.sine / angle : 0.5;
+            place[3 * W] = half.cosine;
+            for (int a = 0; a < 3; ++a)
+                place[(4 + a) * W] = factor * (d[3 * a] * w[0] + d[3 * a + 1] * w[1] + d[3 * a + 2] * w[2]);
+            if (!body.offset) continue;
+            twist::displacement(t, d - 3, dX);
+            for (int i = 0; i < 3; ++i)
+                place[i * W] +=
+                    dX[3 + i] * body.center[0] + dX[6 + i] * body.center[1] + dX[9 + i] * body.center[2];
+        }
+    }
+}
+
+/// Loads at their points, and the sum of their wrenches about the centres of mass.
+void MarchKernel::evaluate_loads(const Stretch& stretch)
+{
+    if (tables_.model->loads().empty()) return;
+    const int W = functions_->width;
+    const lanes::Pattern& pattern = pattern_->view();
+    functions_->interpolate(pattern, start_->values(), nodes_.values(), scaled_.tables);
+    std::fill(work_.wrenches.begin(), work_.wrenches.end(), 0.0);
+    for (int c = 0; c < rule_.degree; ++c) {
+        for (int b = 0; b < tables_.n_bodies(); ++b) {
+            if (!pattern.bodies[b].loaded) continue;
+            const double* center = tables_.bodies[b].center;
+            double *X = work_.X.data() + 12 * b, *V = work_.V.data() + 12 * b;
+            for (int i = 0; i < 12; ++i) {
+                X[i] = nodes_.values().load_X[(12 * b + i) * W + c];
+                V[i] = nodes_.values().load_V[(12 * b + i) * W + c];
+            }
+            for (int i = 0; tables_.bodies[b].offset && i < 3; ++i)
+                for (int a = 0; a < 3; ++a) {
+                    X[i] -= center[a] * X[3 + 3 * a + i];
+                    V[i] -= center[a] * V[3 + 3 * a + i];
+                }
+        }
+        std::fill(work_.raw.begin(), work_.raw.end(), 0.0);
+        tables_.add_loads(stretch.load_point(rule_, 0, c), work_.X.data(), work_.V.data(),
+                          stretch.h(0) * rule_.loads.weights[c], work_.raw.data());
+        for (int b = 0; b < tables_.n_bodies(); ++b) {
+            if (!pattern.bodies[b].loaded) continue;
+            double *F = work_.raw.data() + 12 * b, wrench[6];
+            for (int a = 0; a < 3; ++a)
+                for (int i = 0; i < 3; ++i) F[3 + 3 * a + i] -= tables_.bodies[b].center[a] * F[i];
+            for (int i = 0; i < 12; ++i) nodes_.values().loads[(12 * b + i) * W + c] = F[i];
+            twist::rows(work_.X.data() + 12 * b, F, wrench);
+            for (int i = 0; i < tables_.bodies[b].dofs; ++i) work_.wrenches[6 * b + i] += wrench[i];
+        }
+    }
+}
+
+bool MarchKernel::solve(const Stretch& stretch, const InstantState& start, const NewtonOptions& options,
+                        NewtonReport& report)
+{
+    is_solved_ = false;
+    if (!start.by_joints) return false;
+    use(start);
+    scale_rule(stretch, start);
+    guess(stretch, start);
+    const lanes::Pattern& pattern = pattern_->view();
+    const lanes::Values &nodes = nodes_.values(), &from = start_->values();
+    lanes::Sizes sizes;
+    Shrinking progress{std::min(options.tolerance, widest_tolerance)};
+    for (int steps = 0;; ++steps) {
+        functions_->configure(pattern, from, nodes);
+        evaluate_loads(stretch);
+        functions_->balance(pattern, from, nodes, scaled_.tables, steps == 0, sizes);
+        evaluations_ += rule_.size();
+        if (!std::isfinite(sizes.finite)) return false;
+        if (progress.is_done) break;
+        if (steps == std::min(most_steps, options.max_iterations)) return false;
+        functions_->step(pattern, nodes, scaled_.tables, sizes);
+        if (!std::isfinite(sizes.finite) || !progress.take(sizes)) return false;
+    }
+    double terms = sizes.terms;
+    for (const double momentum : start.momentum) terms = std::max(terms, std::abs(momentum));
+    report = {};
+    report.iterations = progress.n_steps;
+    report.last_increment = progress.step;
+    report.contraction = progress.contraction;
+    report.residual = terms > 0 ? sizes.rows / terms : sizes.rows;
+    for (int A = 0; A <= rule_.degree; ++A)
+        if (!(pivot(A) > least_pivot)) return false;
+    is_solved_ = true;
+    return true;
+}
+
+void MarchKernel::increments(int B, double* dX) const
+{
+    const int W = functions_->width;
+    if (B == 0) return void(std::fill_n(dX, 12 * tables_.n_bodies(), 0.0));
+    const double* from = nodes_.values().increments + lane_of(B);
+    for (int i = 0; i < 12 * tables_.n_bodies(); ++i) dX[i] = from[i * W];
+    for (int b = 0; b < tables_.n_bodies(); ++b, dX += 12) {
+        const double* c = tables_.bodies[b].center;
+        for (int i = 0; tables_.bodies[b].offset && i < 3; ++i)
+            dX[i] -= dX[3 + i] * c[0] + dX[6 + i] * c[1] + dX[9 + i] * c[2];
+    }
+}
+
+void MarchKernel::impulses(int A, double* out) const
+{
+    for (std::size_t c = 0; c < place_.size(); ++c)
+        out[c] = nodes_.values().impulses[place_[c] * functions_->width + A];
+}
+
+double MarchKernel::pivot(int A) const
+{
+    return std::sqrt(A == 0 ? start_->values().pivots[0] : nodes_.values().pivots[lane_of(A)]);
+}
+
+void MarchKernel::momentum(const Stretch& stretch, const InstantState& start, double* p)
+{
+    double* taken = work_.wrenches.data() + 6 * tables_.n_bodies();
+    functions_->sum_impulses(pattern_->view(), start_->values(), nodes_.values(), taken);
+    for (int b = 0; b < tables_.n_bodies(); ++b) {
+        const Tables::BodyTable& body = tables_.bodies[b];
+        for (int i = 0; i < body.dofs; ++i) {
+            const double weight = i < 3 ? stretch.h(0) * body.weight[i] : 0;   // no moment about the centre
+            p[body.first + i] =
+                start.p[body.first + i] + weight + work_.wrenches[6 * b + i] + taken[6 * b + i];
+        }
+    }
+}
+
+}   // namespace livens

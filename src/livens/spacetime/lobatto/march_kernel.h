@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One element of a march, solved without a tangent: all nodes side by side, the joints by elimination.
+#pragma once
+
+#include <vector>
+
+#include "livens/solvers/newton.h"
+#include "livens/spacetime/lobatto/kernel_functions.h"
+#include "livens/spacetime/lobatto/series.h"
+
+namespace livens {
+
+/// The equations of LobattoSystem for one element from a known state, by
+///
+///     y_B <- P_B [ - h sum_A (K^-1)_BA P_A r_A ] - G_B^+ Phi_B,      P = 1 - G^T (G G^T)^-1 G
+///
+/// in mass-orthonormal twists (docs/theory.md, "Without a tangent"). What it does not know or does not solve
+/// soon is left to Newton's iteration.
+class MarchKernel {
+public:
+    /// References must outlive the kernel.
+    MarchKernel(const Tables& tables, const ElementRule& rule);
+
+    /// Whether there are lanes for the rule, and JointFactor serves.
+    bool serves() const { return functions_ != nullptr; }
+    /// The element of `stretch` from `start`. False: not converged within ten steps, steps that do not shrink
+    /// to 0.3 twice, a number that is not finite, or a pivot that is nearly zero.
+    bool solve(const Stretch& stretch, const InstantState& start, const NewtonOptions& options,
+               NewtonReport& report);
+    /// The last solve() was successful, and nothing else was tried since.
+    bool is_solved() const { return is_solved_; }
+    void forget() { is_solved_ = false; }
+    /// Evaluations of the equations at a node so far.
+    long long evaluations() const { return evaluations_; }
+
+    // Of the element solved last.
+
+    /// X at node B less X at the start, 12 numbers a body.
+    void increments(int B, double* dX) const;
+    /// W_A lambda_A, in the order of the start's rows.
+    void impulses(int A, double* out) const;
+    /// Smallest scaled pivot of the constraints at a node.
+    double pivot(int A) const;
+    /// Momentum and spin at the end, about the centres of mass.
+    void momentum(const Stretch& stretch, const InstantState& start, double* p);
+
+private:
+    struct ScaledRule {   // tables for an element of length 1, then for the one at hand, of length h
+        struct alignas(64) Line {
+            double x[8];
+        };
+        std::vector<Line> lines;
+        lanes::Rule tables{};
+        double h = 0;
+    };
+    struct Work {
+        std::vector<double> twist, X, V, raw;
+        std::vector<double> wrenches;   // six numbers a body: of loads, then of multipliers
+    };
+
+    void use(const InstantState& start);
+    void make_rule();
+    void scale_rule(const Stretch& stretch, const InstantState& start);
+    void guess(const Stretch& stretch, const InstantState& start);
+    void evaluate_loads(const Stretch& stretch);
+    int lane_of(int B) const { return B == rule_.degree ? 0 : B; }
+    int node_of(int lane) const { return lane == 0 ? rule_.degree : lane; }
+
+    const Tables& tables_;
+    const ElementRule& rule_;
+    const lanes::Functions* functions_ = nullptr;
+    std::shared_ptr<const RowPattern> pattern_;
+    std::vector<int> place_;   // of each row that was chosen among those of the pattern
+    const JointFactor* start_ = nullptr;
+    LaneStore nodes_;
+    ScaledRule scaled_;
+    Work work_;
+    long long evaluations_ = 0;
+    bool is_solved_ = false;
+};
+
+}   // namespace livens
