@@ -68,9 +68,11 @@ void factorise(const Pattern& p, const Values& v)
                 store(v.factor + t * W, s * load<W>(v.factor + entry.pivot * W));
                 continue;
             }
-            const Lanes<W> left = s / own;
-            for (int i = 0; i < left.count; ++i)
-                pivot.part[i] = left.part[i] >= pivot.part[i] ? pivot.part[i] : left.part[i];
+            Lanes<W> left = s / own;
+            for (int i = 0; i < left.count; ++i) {   // what is not positive, or no number, is no pivot
+                left.part[i] = s.part[i] > 0 ? left.part[i] : typename Lanes<W>::Part{};
+                pivot.part[i] = pivot.part[i] < left.part[i] ? pivot.part[i] : left.part[i];
+            }
             store(v.factor + t * W, 1 / root(s));
         }
     }

@@ -2,11 +2,13 @@
 #include <algorithm>
 #include <limits>
 #include <memory>
+#include <string>
 #include <variant>
 
 #include "livens/diagnostics/sample.h"
 #include "livens/io/json.h"
 #include "livens/io/results/writing.h"
+#include "livens/spacetime/instructions.h"
 
 namespace livens {
 
@@ -371,6 +373,7 @@ std::string manifest(const Run& run)
     json.member("livens_version", run.version);
     json.key("format").begin_array().value(format_major).value(format_minor).end_array();
     json.member("method", run.method);
+    json.member("instructions", std::string(to_string(instructions())));
     json.key("options").raw(run.resolved.starts_with('{') ? run.resolved : "null");
     json.key("convergence").begin_object();
     json.member("status", to_string(run.report.status)).member("blocks", run.report.iterations.size());
