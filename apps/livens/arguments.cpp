@@ -55,6 +55,8 @@ void add_scenario_commands(CLI::App& app, Arguments& a)
         .add_option("-o,--output", a.solve.output, "result file; default: the scenario's stem with .nc, here")
         ->type_name("RUN.nc");
     solve.add_option("--csv", a.solve.csv, "write the samples as CSV too")->type_name("FILE.csv");
+    add_choice(solve, "--simd", a.solve.simd, {"sse2", "avx2", "avx512"},
+               "instructions to solve with; default: the widest that the processor has");
     add_common(solve, a);
 }
 

@@ -23,6 +23,7 @@ struct SolveArguments {
     std::string scenario;
     std::string output;   ///< empty: the scenario's stem with .nc in the current folder
     std::string csv;      ///< empty: none
+    std::string simd;     ///< set of instructions; empty: what LIVENS_SIMD says, else the widest there is
 };
 int solve_command(const SolveArguments& arguments, const Common& common);
 

@@ -67,6 +67,10 @@ If it is set and not empty, there are no colours unless \fB\-\-color=always\fR a
 \fBCOLUMNS\fR
 Width that lines are wrapped to, instead of the terminal\(aqs own.
 .TP
+\fBLIVENS_SIMD\fR
+Instructions to solve with, \fBsse2\fR, \fBavx2\fR or \fBavx512\fR, where \fB\-\-simd\fR does not say.
+Equal sets give equal bytes.
+.TP
 \fBLC_ALL\fR, \fBLC_CTYPE\fR, \fBLANG\fR
 Signs beyond ASCII are shown on terminals if the first of these that is not empty names UTF\-8. Nothing else
 depends on the locale.

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // livens solve: a scenario in, a solved and checked motion out.
 #include <chrono>
+#include <cstdlib>
 #include <ctime>
 #include <filesystem>
 #include <memory>
 #include <new>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -14,6 +16,7 @@
 #include "interrupt.h"
 #include "livens/base/version.h"
 #include "livens/io/results.h"
+#include "livens/spacetime/instructions.h"
 #include "memory.h"
 #include "places.h"
 #include "progress.h"
@@ -221,12 +224,29 @@ void show(const Solved& solved, const Places& p, bool verbose)
     print(summary.text());
 }
 
+/// Equal instructions give equal bytes on any machine.
+void pin_instructions(const std::string& asked)
+{
+    const char* variable = std::getenv("LIVENS_SIMD");
+    const std::string word = !asked.empty() || variable == nullptr ? asked : variable;
+    if (word.empty()) return;
+    const std::string place = asked.empty() ? "LIVENS_SIMD" : "--simd";
+    const std::optional<Instructions> set = instructions_named(word);
+    if (!set)
+        throw failure(exit_usage,
+                      place + ": '" + word + "' is no set of instructions; sse2, avx2 and avx512 are");
+    if (!use_instructions(*set))
+        throw failure(exit_usage,
+                      place + ": this processor, or this livens, has no " + word + "; sse2 is everywhere");
+}
+
 }   // namespace
 
 int solve_command(const SolveArguments& arguments, const Common& common)
 {
     std::vector<Diagnostic> warnings;
     const Clock::time_point begin = Clock::now();
+    pin_instructions(arguments.simd);
     const Scenario scenario = load_scenario(arguments.scenario, common, &warnings);
     say_detail(fmt::format("read and checked the scenario in {:.3g} s", seconds_since(begin)));
     const Places p = places(arguments);

@@ -93,7 +93,8 @@ TEST(Accuracy, IsReachedAndItsEstimateIsRight)
             const double error = true_error(c, exact, s);
             EXPECT_LE(error, accuracy) << c.name;
             EXPECT_LE(s.verdict.estimated_error, accuracy) << c.name;
-            EXPECT_GE(5 * s.verdict.estimated_error + 1e-12, error) << c.name << ", " << accuracy;
+            // rounding moves the witness of two bricks by 8e-12 (60 steps against 90)
+            EXPECT_GE(5 * s.verdict.estimated_error + 1e-11, error) << c.name << ", " << accuracy;
             // it does not reach it by being as accurate as it can be
             EXPECT_GE(s.verdict.estimated_error, 1e-6 * accuracy) << c.name << ", " << accuracy;
             const int work = s.motion.n_elements() * std::get<Lobatto>(s.method).degree;

@@ -169,6 +169,23 @@ class Solve(ProgramTest):
         self.expect(0, "export", "all.nc", "--gltf", "less.glb", env=without)
         self.assertEqual((self.folder / "all.glb").read_bytes(), (self.folder / "less.glb").read_bytes())
 
+    def test_instructions_are_pinned_and_named(self):
+        self.write("small.toml", SMALL)
+        def bytes_of(*arguments, **variables):
+            done = self.run_program("solve", "small.toml", "-o", "run.nc", "-q", *arguments, env={**os.environ, **variables})
+            self.assertEqual(done.returncode, 0, done.err)
+            return (self.folder / "run.nc").read_bytes()
+        portable = bytes_of("--simd", "sse2")
+        self.assertIn(b'"sse2"', portable)
+        self.assertEqual(bytes_of(LIVENS_SIMD="sse2"), portable)
+        self.assertEqual(bytes_of("--simd", "sse2", LIVENS_SIMD="avx2"), portable)
+        if " avx2 " in pathlib.Path("/proc/cpuinfo").read_text() and b'"sse2"' not in bytes_of():
+            self.assertNotEqual(bytes_of("--simd", "avx2"), portable)
+        self.expect(2, "solve", "small.toml", "-o", "run.nc", "--simd", "mmx")
+        wrong = self.run_program("solve", "small.toml", "-o", "run.nc", env={**os.environ, "LIVENS_SIMD": "mmx"})
+        self.assertEqual(wrong.returncode, 2)
+        self.assertIn("LIVENS_SIMD", wrong.err)
+
     def test_record_beside_the_result(self):
         printed = self.solve()
         record = json.loads((self.folder / "run.nc.json").read_text())

@@ -123,12 +123,8 @@ public:
         if (!run.growth.empty()) {
             std::vector<bool> beyond;
             for (const double t : times_) beyond.push_back(run.verdict.is_beyond_horizon(t));
-            archive.flags({"beyond_horizon",
-                           {"time"},
-                           "1",
-                           "none",
-                           "1: rounding at the start decides by then which of many motions is shown"},
-                          beyond);
+            const char* const meaning = "1: rounding at the start decides which of many motions is shown";
+            archive.flags({"beyond_horizon", {"time"}, "1", "none", meaning}, beyond);
         }
         const std::size_t n = times_.size() * model.bodies().size();
         for (const BodyVariable& v : body_variables) {
