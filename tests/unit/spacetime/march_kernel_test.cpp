@@ -305,7 +305,8 @@ TEST(JointFactor, AgreesWithOrthogonalBases)
         state.resize(tables);
         for (int b = 0; b < tables.n_bodies(); ++b)
             std::copy_n(closed.start.X[b].a, 12, state.X.begin() + 12 * b);
-        for (std::size_t i = 0; i < state.velocity.size(); ++i) state.velocity[i] = std::sin(1.0 + i);
+        for (std::size_t i = 0; i < state.velocity.size(); ++i)
+            state.velocity[i] = std::sin(1.0 + static_cast<double>(i));
         ASSERT_TRUE(instant.prepare(state, tables.independent));
         EXPECT_EQ(state.by_joints, sparse);
         EXPECT_EQ(state.has_basis, !sparse);
