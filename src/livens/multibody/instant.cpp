@@ -9,13 +9,6 @@
 
 namespace livens {
 
-namespace {
-
-/// The smallest pivot where squares of what joints hold have digits enough.
-constexpr double well_held = 1e-3;
-
-}   // namespace
-
 void InstantState::resize(const Tables& tables)
 {
     const auto n = static_cast<std::size_t>(tables.n_twists);
@@ -109,7 +102,7 @@ void InstantSystem::hold(InstantState& state, const std::vector<int>& rows)
             pattern_ = std::make_shared<const RowPattern>(tables_, rows);
         state.joints.use(pattern_);
         state.smallest_pivot = state.joints.prepare(tables_, state.X.data());
-        state.by_joints = state.smallest_pivot > well_held;
+        state.by_joints = state.smallest_pivot > JointFactor::well_held;
         if (state.by_joints) return;
     }
     state.has_basis = false;

@@ -87,7 +87,9 @@ double JointFactor::prepare(const Tables& tables, const double* X)
         if (std::abs(v.violations[r]) < rounding * tables.rows[pattern_->rows()[r]].row->scale)
             v.violations[r] = 0;
     lanes::factorise<1>(p, v);
-    return std::sqrt(v.pivots[0]);
+    const double pivot = std::sqrt(v.pivots[0]);
+    n_passes_ = pivot > 1e-3 ? 2 : 4;
+    return pivot;
 }
 
 void JointFactor::project(double* y, const double* rates, double* mu)
@@ -96,7 +98,7 @@ void JointFactor::project(double* y, const double* rates, double* mu)
     const At<1, false> G{values().gradients, nullptr}, factor{values().factor, nullptr};
     double* more = values().work;
     std::fill_n(mu, p.n_rows, 0.0);
-    for (int pass = 0; pass < 2; ++pass) {
+    for (int pass = 0; pass < n_passes_; ++pass) {
         lanes::multiply(p, G, y, nullptr, more);
         for (int r = 0; rates != nullptr && r < p.n_rows; ++r) more[r] -= rates[r];
         lanes::solve(p, factor, more);

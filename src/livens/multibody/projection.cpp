@@ -54,9 +54,6 @@ struct Inertia {
     Matrix3 spin{};   ///< L^-T: w_body = spin y_2; zero for a point mass
 };
 
-/// The smallest pivot at which elimination has digits enough.
-constexpr double well_held = 1e-3;
-
 struct Twist {
     Vector3 velocity{};   ///< of the centre of mass
     Vector3 spin{};       ///< world axes
@@ -88,7 +85,7 @@ public:
             for (std::size_t i = first; i < entries.size(); ++i) entries[i].value /= size_[k];
         }
         if (masses_are_alike()) by_elimination_ = std::make_unique<SparseRows>(rank, n, entries);
-        if (by_elimination_ && by_elimination_->smallest_pivot() > well_held) {
+        if (by_elimination_ && by_elimination_->smallest_pivot() > SparseRows::well_held) {
             std::iota(order_.begin(), order_.end(), 0);
             return;
         }

@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include <Eigen/Dense>
 
+#include "livens/multibody/forest.h"
 #include "livens/multibody/rows.h"
 #include "livens/multibody/sparse_rows.h"
 
@@ -108,49 +110,127 @@ std::vector<Pole> poles_of(const Model& model, std::span<const Matrix34> X, cons
     return poles;
 }
 
+/// A row's parts and doubt.
+BodyRow touched_row(std::span<const Wrench> wrenches, std::span<const Matrix34> X,
+                    const std::vector<Pole>& poles, double& doubt)
+{
+    BodyRow row;
+    for (const Wrench& w : wrenches) {
+        auto part = std::ranges::find(row.parts, w.body, &BodyRow::Part::body);
+        if (part == row.parts.end()) part = row.parts.insert(row.parts.end(), {w.body, {}});
+        const Vector3 moment = moment_about(w, X[w.body], poles[w.body].point);
+        for (int i = 0; i < 3; ++i) {
+            part->entries[i] += w.force[i];
+            part->entries[3 + i] += moment[i] / poles[w.body].length;
+        }
+        doubt = std::max(doubt, w.doubt);
+    }
+    return row;
+}
+
+void scale_to_one(BodyRow& row)
+{
+    double largest = 0, square = 0;
+    for (const auto& part : row.parts)
+        for (const double x : part.entries) largest = std::max(largest, std::abs(x));
+    if (!(largest > 0)) return;
+    for (const auto& part : row.parts)
+        for (const double x : part.entries) square += (x / largest) * (x / largest);
+    row.size = largest * std::sqrt(square);
+    for (auto& part : row.parts)
+        for (double& x : part.entries) x /= row.size;
+}
+
 }   // namespace
 
 TwistRows twist_rows(const Model& model, std::span<const Matrix34> X, std::span<const int> rows)
 {
     const RowWrenches wrenches = row_wrenches(model, X);
-    const std::size_t n = rows.size();
-    TwistRows result{std::vector<double>(n * 6 * X.size()), 0};
     const std::vector<Pole> poles = poles_of(model, X, wrenches);
-    for (const Pole& pole : poles) result.doubt = std::max(result.doubt, 8 * eps * pole.reach / pole.length);
-    for (std::size_t k = 0; k < n; ++k) {
-        for (const Wrench& w : wrenches[rows[k]]) {
-            double* line = &result.columns[n * 6 * w.body + k];
-            const Vector3 moment = moment_about(w, X[w.body], poles[w.body].point);
-            for (int i = 0; i < 3; ++i) {
-                line[n * i] += w.force[i];
-                line[n * (3 + i)] += moment[i] / poles[w.body].length;
-            }
-            result.doubt = std::max(result.doubt, w.doubt);
-        }
+    TwistRows twists;
+    for (const Pole& pole : poles) twists.doubt = std::max(twists.doubt, 8 * eps * pole.reach / pole.length);
+    for (const int r : rows) {
+        twists.rows.push_back(touched_row(wrenches[r], X, poles, twists.doubt));
+        scale_to_one(twists.rows.back());
     }
-    return result;
+    return twists;
 }
 
 namespace {
 
-/// Rows that hold so well by elimination are independent by any judge.
+/// Rows that hold so well are independent by any judge.
 constexpr double well_held = 1e-3;
 
-/// Of the rows of twist_rows(); a number on which masses have no influence.
-double pivot_by_elimination(const Model& model, std::span<const Matrix34> X, std::span<const int> rows)
+/// Ties go to the row that comes first.
+double favour(Index row, Index n) { return 1 - 1e-3 * static_cast<double>(row) / static_cast<double>(n); }
+
+/// Of rows of norm 1 those that depend on others, ascending, if all others are clearly independent: joint by
+/// joint along trees, and where loops close by what they add to that. Else nothing.
+std::optional<std::vector<int>> clearly_dependent(const std::vector<BodyRow>& rows, int n_bodies,
+                                                  double threshold, double& smallest_pivot)
 {
-    const RowWrenches wrenches = row_wrenches(model, X);
-    const std::vector<Pole> poles = poles_of(model, X, wrenches);
-    std::vector<SparseRows::Entry> entries;
+    const Forest forest = spanning_forest(rows, n_bodies, well_held);
+    smallest_pivot = forest.smallest_pivot;
+    std::vector<int> dependent;
+    if (forest.closing.empty()) return dependent;
+    const Index n = 6 * n_bodies, n_closing = static_cast<Index>(forest.closing.size());
+    const SparseRows held(static_cast<int>(forest.rows.size()), 6 * n_bodies,
+                          entries_of(rows, forest.rows));
+    if (!(held.smallest_pivot() > SparseRows::well_held)) return {};
+    const std::vector<double> nothing(forest.rows.size(), 0.0);
+    MatrixXd added = MatrixXd::Zero(n, n_closing);
+    for (const auto& entry : entries_of(rows, forest.closing)) added(entry.column, entry.row) = entry.value;
+    for (Index k = 0; k < n_closing; ++k) {
+        held.project({added.col(k).data(), static_cast<std::size_t>(n)}, nothing);
+        added.col(k) *= favour(k, n_closing);
+    }
+    const Eigen::ColPivHouseholderQR<MatrixXd> qr(added);
+    for (Index k = 0; k < n_closing; ++k) {
+        const double pivot = std::abs(qr.matrixQR()(k, k));
+        if (pivot > well_held)
+            smallest_pivot = std::min(smallest_pivot, pivot);
+        else if (pivot <= threshold)
+            dependent.push_back(forest.closing[qr.colsPermutation().indices()[k]]);
+        else
+            return {};
+    }
+    std::ranges::sort(dependent);
+    return dependent;
+}
+
+}   // namespace
+
+namespace {
+
+/// The places of the dependent rows, by the clear judge if `fits` the answer, else by column pivoting, where
+/// is_independent(k, ratio) of the k-th pivot.
+std::vector<int> judge(const TwistRows& twists, int n_bodies, double threshold, double& smallest_pivot,
+                       const auto& fits, const auto& is_independent)
+{
+    const auto clear = clearly_dependent(twists.rows, n_bodies, threshold, smallest_pivot);
+    if (clear && fits(*clear)) return *clear;
+    smallest_pivot = 1;
+    MatrixXd G = MatrixXd::Zero(6 * n_bodies, static_cast<Index>(twists.rows.size()));
+    for (Index r = 0; r < G.cols(); ++r)
+        for (const auto& part : twists.rows[r].parts)
+            for (int i = 0; i < 6; ++i) G(6 * part.body + i, r) = favour(r, G.cols()) * part.entries[i];
+    const Eigen::ColPivHouseholderQR<MatrixXd> qr(G);
+    const VectorXd pivots = qr.matrixQR().diagonal().cwiseAbs();
+    Index k = 0;
+    while (k < pivots.size() && is_independent(k, pivots[k] / pivots[0])) ++k;
+    if (k > 0) smallest_pivot = pivots[k - 1] / pivots[0];
+    std::vector<int> dependent;
+    for (; k < G.cols(); ++k) dependent.push_back(qr.colsPermutation().indices()[k]);
+    std::ranges::sort(dependent);
+    return dependent;
+}
+
+void part(std::span<const int> rows, const std::vector<int>& dependent, RowRank& rank)
+{
     for (int k = 0; k < static_cast<int>(rows.size()); ++k)
-        for (const Wrench& w : wrenches[rows[k]]) {
-            const Vector3 moment = moment_about(w, X[w.body], poles[w.body].point);
-            for (int i = 0; i < 3; ++i) {
-                entries.push_back({k, 6 * w.body + i, w.force[i]});
-                entries.push_back({k, 6 * w.body + 3 + i, moment[i] / poles[w.body].length});
-            }
-        }
-    return SparseRows(static_cast<int>(rows.size()), 6 * model.n_bodies(), entries).smallest_pivot();
+        (std::ranges::binary_search(dependent, k) ? rank.dependent : rank.independent).push_back(rows[k]);
+    std::ranges::sort(rank.independent);
+    std::ranges::sort(rank.dependent);
 }
 
 }   // namespace
@@ -159,31 +239,55 @@ RowRank row_rank(const Model& model, std::span<const Matrix34> X, std::span<cons
 {
     RowRank rank;
     if (rows.empty()) return rank;
-    rank.smallest_pivot = pivot_by_elimination(model, X, rows);
-    if (rank.smallest_pivot > well_held) {
-        rank.independent.assign(rows.begin(), rows.end());
-        std::ranges::sort(rank.independent);
-        return rank;
-    }
-    rank.smallest_pivot = 1;
-    TwistRows lines = twist_rows(model, X, rows);
-    Eigen::Map<MatrixXd> G(lines.columns.data(), static_cast<Index>(rows.size()), 6 * model.n_bodies());
-    threshold = std::max(threshold, std::min(lines.doubt, 1e-4));
-    for (Index r = 0; r < G.rows(); ++r) {
-        G.row(r).stableNormalize();
-        // ties go to the row that comes first
-        G.row(r) *= 1 - 1e-3 * static_cast<double>(r) / static_cast<double>(G.rows());
-    }
-    const Eigen::ColPivHouseholderQR<MatrixXd> qr(G.transpose());
-    const VectorXd pivots = qr.matrixQR().diagonal().cwiseAbs();
-    Index k = 0;
-    while (k < pivots.size() && pivots[k] > threshold * pivots[0]) ++k;
-    if (k > 0) rank.smallest_pivot = pivots[k - 1] / pivots[0];
-    for (Index i = 0; i < G.rows(); ++i)
-        (i < k ? rank.independent : rank.dependent).push_back(rows[qr.colsPermutation().indices()[i]]);
-    std::ranges::sort(rank.independent);
-    std::ranges::sort(rank.dependent);
+    const TwistRows twists = twist_rows(model, X, rows);
+    threshold = std::max(threshold, std::min(twists.doubt, 1e-4));
+    part(rows,
+         judge(
+             twists, model.n_bodies(), threshold, rank.smallest_pivot,
+             [](const std::vector<int>&) { return true; },
+             [threshold](Index, double ratio) { return ratio > threshold; }),
+         rank);
     return rank;
+}
+
+Dependencies dependencies(const Model& model, std::span<const Matrix34> X, int n_independent)
+{
+    Dependencies result;
+    const std::vector<int> rows = all_rows(model);
+    const TwistRows twists = twist_rows(model, X, rows);
+    part(rows,
+         judge(
+             twists, model.n_bodies(), std::max(1e-9, std::min(twists.doubt, 1e-4)),
+             result.rank.smallest_pivot,
+             [&](const std::vector<int>& dependent) { return rows.size() - dependent.size() ==
+                                                             static_cast<std::size_t>(n_independent); },
+             [n_independent](Index k, double) { return k < n_independent; }),
+         result.rank);
+    const auto& [independent, dependent, pivot] = result.rank;
+    const int n_columns = 6 * model.n_bodies();
+    MatrixXd rest = MatrixXd::Zero(n_columns, static_cast<Index>(dependent.size()));
+    for (const auto& entry : entries_of(twists.rows, dependent)) rest(entry.column, entry.row) = entry.value;
+    const std::vector<SparseRows::Entry> entries = entries_of(twists.rows, independent);
+    const SparseRows held(n_independent, n_columns, entries);
+    result.factors.resize(dependent.size());
+    if (held.smallest_pivot() > SparseRows::well_held) {
+        const std::vector<double> nothing(independent.size(), 0.0);
+        for (std::size_t k = 0; k < dependent.size(); ++k)
+            result.factors[k] = held.project(
+                {rest.col(static_cast<Index>(k)).data(), static_cast<std::size_t>(n_columns)}, nothing);
+    } else {
+        MatrixXd G = MatrixXd::Zero(n_columns, n_independent);
+        for (const auto& entry : entries) G(entry.column, entry.row) = entry.value;
+        const MatrixXd factors = Eigen::HouseholderQR<MatrixXd>(G).solve(rest);
+        for (std::size_t k = 0; k < dependent.size(); ++k) {
+            const auto column = factors.col(static_cast<Index>(k));
+            result.factors[k].assign(column.begin(), column.end());
+        }
+    }
+    for (std::size_t k = 0; k < dependent.size(); ++k)   // of rows as they are, not scaled to one
+        for (std::size_t i = 0; i < independent.size(); ++i)
+            result.factors[k][i] *= twists.rows[dependent[k]].size / twists.rows[independent[i]].size;
+    return result;
 }
 
 std::optional<WeightlessSpin> weightless_spin(const Model& model, std::span<const Matrix34> X)

@@ -8,34 +8,44 @@
 #include <span>
 #include <vector>
 
+#include "livens/multibody/forest.h"
 #include "livens/multibody/model.h"
 
 namespace livens {
 
-/// The twist Jacobian without masses: one line for each of the given rows, six columns a body, [force,
-/// moment / length] about the mean of the body's joint points. Its length is sqrt(a A) with the arm a of the
-/// body, its largest distance of a joint point from that mean or |moment| / |force| of a row, and the largest
-/// arm A: rows of points want a; rows of axes, which compare the spins of two bodies, want one length.
-/// An arm counts if it is above 1e-13 of the distances that it is a difference of; else A stands for it, or
-/// Model::length() without any arm.
+/// The twist Jacobian without masses: of each given row six entries for every body that it touches, [force,
+/// moment / length] about the mean of the body's joint points, scaled to norm 1. The length is sqrt(a A) with the
+/// arm a of the body, its largest distance of a joint point from that mean or |moment| / |force| of a row, and
+/// the largest arm A: rows of points want a; rows of axes, which compare the spins of two bodies, want one
+/// length. An arm counts if it is above 1e-13 of the distances that it is a difference of; else A stands for
+/// it, or Model::length() without any arm.
 struct TwistRows {
-    std::vector<double> columns;   ///< one after the other
+    std::vector<BodyRow> rows;
     double doubt = 0;   ///< 8 eps times the largest of these distances over lengths, or that of the forces
 };
 TwistRows twist_rows(const Model& model, std::span<const Matrix34> X, std::span<const int> rows);
 
-/// The judge is a QR decomposition with column pivoting of the transposed twist rows, scaled to norm 1,
-/// unless elimination along the joints already finds all of them independent, by pivots above 1e-3. Of equal
-/// rows the one that comes first is kept.
+/// Clear cases are judged along the joints, at a cost that grows with the bodies: rows of a spanning forest by
+/// single joints, rows that close loops by what is new in them beside the forest; independent above 1e-3,
+/// dependent below the threshold. Else by a QR decomposition of all rows with column pivoting. Of equal rows the
+/// one that comes first is kept.
 struct RowRank {
-    std::vector<int> independent;   ///< rows of the model, ascending: |R_kk| > threshold |R_00|
+    std::vector<int> independent;   ///< rows of the model, ascending
     std::vector<int> dependent;     ///< the others, ascending
-    double smallest_pivot = 1;      ///< |R_kk| / |R_00| of the last independent row; by elimination of any
+    double smallest_pivot = 1;      ///< of the independent rows: of any, or the last |R_kk| / |R_00|
 };
 /// The threshold is at least the doubt of the rows, or 1e-4 if that is more: 8 eps times the largest ratio of
 /// positions and joint points to arms, or to lengths of rods. So 1e-9 bears distances of 5e5 arms.
 RowRank row_rank(const Model& model, std::span<const Matrix34> X, std::span<const int> rows,
                  double threshold = 1e-9);
+
+/// Of all rows of the model, where their rank is known.
+struct Dependencies {
+    RowRank rank;
+    /// [k][i]: row dependent[k] is the sum of these times rows independent[i], in twists.
+    std::vector<std::vector<double>> factors;
+};
+Dependencies dependencies(const Model& model, std::span<const Matrix34> X, int n_independent);
 
 /// A spin about an axis through the centre of mass, alone or together with such spins of other bodies, that
 /// no row holds and that carries no inertia.

@@ -17,20 +17,20 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// [f; t / L] of a joint for a multiplier of one in each of its rows.
-MatrixXd unit_reactions(const Model& model, int joint, std::span<const Matrix34> X)
+/// [f; t / L] of a joint for a multiplier of one in each of its rows. `zeros`: of all rows.
+MatrixXd unit_reactions(const Model& model, int joint, std::span<const Matrix34> X, double length,
+                        std::vector<double>& zeros)
 {
     const Index n = static_cast<Index>(model.joints()[joint].rows.size());
-    std::vector<double> multipliers(model.n_rows(), 0.0);
     MatrixXd A(6, n);
     for (Index k = 0; k < n; ++k) {
-        double& unit = multipliers[model.first_row(joint) + static_cast<int>(k)];
+        double& unit = zeros[model.first_row(joint) + static_cast<int>(k)];
         unit = 1;
-        const Reaction reaction = joint_reaction(model, joint, X, multipliers);
+        const Reaction reaction = joint_reaction(model, joint, X, zeros);
         unit = 0;
         for (int i = 0; i < 3; ++i) {
             A(i, k) = reaction.force[i];
-            A(3 + i, k) = reaction.torque[i] / model.length();
+            A(3 + i, k) = reaction.torque[i] / length;
         }
     }
     return A;
@@ -57,20 +57,29 @@ UniqueReactions least_reactions(const Model& model, std::span<const Matrix34> X,
     UniqueReactions result{{multipliers.begin(), multipliers.end()}, std::vector<bool>(n_joints, true), 0};
     if (n_null <= 0) return result;
 
-    const std::vector<double> columns = twist_rows(model, X, all_rows(model)).columns;
-    MatrixXd T = Eigen::Map<const MatrixXd>(columns.data(), n, 6 * model.n_bodies());
+    const Dependencies known = dependencies(model, X, static_cast<int>(independent.size()));
+    const TwistRows twists = twist_rows(model, X, all_rows(model));
+    MatrixXd null = MatrixXd::Zero(n, n_null);
+    for (Index k = 0; k < n_null; ++k) {
+        null(known.rank.dependent[k], k) = 1;
+        for (std::size_t i = 0; i < known.rank.independent.size(); ++i)
+            null(known.rank.independent[i], k) = -known.factors[k][i];
+    }
     VectorXd rho = Eigen::Map<const VectorXd>(multipliers.data(), n);
     std::vector<MatrixXd> A, R;
+    std::vector<double> zeros(static_cast<std::size_t>(n), 0.0);
+    const double length = model.length();
     for (int j = 0; j < n_joints; ++j) {
-        A.push_back(unit_reactions(model, j, X));
+        A.push_back(unit_reactions(model, j, X, length, zeros));
         const Index at = model.first_row(j), m = A[j].cols();
-        R.push_back(root_metric(A[j], T.middleRows(at, m).rowwise().norm()));
-        T.middleRows(at, m) = R[j].transpose().triangularView<Eigen::Lower>().solve(T.middleRows(at, m));
+        VectorXd sizes(m);
+        for (Index k = 0; k < m; ++k) sizes[k] = twists.rows[at + k].size;
+        R.push_back(root_metric(A[j], sizes));
+        null.middleRows(at, m) = R[j] * null.middleRows(at, m);
         rho.segment(at, m) = R[j] * rho.segment(at, m);
     }
-    const Eigen::ColPivHouseholderQR<MatrixXd> qr(T);
-    MatrixXd null = MatrixXd::Identity(n, n).rightCols(n_null);
-    null.applyOnTheLeft(qr.householderQ());
+    const Eigen::HouseholderQR<MatrixXd> qr(null);
+    null = qr.householderQ() * MatrixXd::Identity(n, n_null);
     rho -= null * (null.transpose() * rho);
     for (int j = 0; j < n_joints; ++j) {
         const Index at = model.first_row(j), m = A[j].cols();

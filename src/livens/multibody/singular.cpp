@@ -11,6 +11,7 @@
 #include "livens/base/error.h"
 #include "livens/multibody/body.h"
 #include "livens/multibody/detail/wording.h"
+#include "livens/multibody/sparse_rows.h"
 #include "livens/multibody/tables.h"
 #include "livens/multibody/twist.h"
 
@@ -26,39 +27,33 @@ constexpr double nothing = 1e-6;     // of the terms of a sum
 constexpr int most_directions = 8;   // in which branches are looked for
 
 /// The rows and their second derivatives at one configuration, for scaled twists y.
-class SecondOrder {
+class Curvatures {
 public:
-    SecondOrder(const Model& model, const ClosedStart& closed)
+    Curvatures(const Model& model, const ClosedStart& closed)
         : tables_(model, closed.independent), at_{closed.start.t}, maps_(12 * closed.start.X.size())
     {
         for (const Matrix34& X : closed.start.X) X_.insert(X_.end(), std::begin(X.a), std::end(X.a));
         tables_.map_twists(X_.data(), maps_.data());
         const int n = tables_.n_rows();
         gradients_.assign(static_cast<std::size_t>(Tables::gradient_size * n), 0.0);
-        MatrixXd G(tables_.n_twists, n);
         scale_.resize(n);
+        std::vector<double> row(static_cast<std::size_t>(tables_.n_twists));
         for (int r = 0; r < n; ++r) {
             tables_.gradient(r, at_, X_.data(), gradient(r));
-            tables_.scaled_gradient(r, X_.data(), maps_.data(), gradient(r), G.col(r).data());
-            scale_[r] = G.col(r).norm();
-            if (scale_[r] > 0) G.col(r) /= scale_[r];
+            tables_.scaled_gradient(r, X_.data(), maps_.data(), gradient(r), row.data());
+            const Eigen::Map<const VectorXd> g(row.data(), tables_.n_twists);
+            scale_[r] = g.norm();
+            for (Index i = 0; i < g.size(); ++i)
+                if (g[i] != 0) entries_.push_back({r, static_cast<int>(i), g[i] / scale_[r]});
         }
-        const Index rank = tables_.rank;
-        free_ = complement(G, rank);
-        redundant_ = complement(G.transpose(), rank);
     }
 
-    const MatrixXd& free() const { return free_; }
-    Index n_redundant() const { return redundant_.cols(); }
-    int strongest_row(Index combination) const
-    {
-        Index row = 0;
-        redundant_.col(combination).cwiseAbs().maxCoeff(&row);
-        return static_cast<int>(row);
-    }
+    const Tables& tables() const { return tables_; }
+    /// Of the rows' gradients, scaled to norm 1.
+    const std::vector<SparseRows::Entry>& entries() const { return entries_; }
 
-    /// mu . d2 Phi/dt2 less G X'' of the redundant combinations; `size` is raised to the terms of the sums.
-    VectorXd of(const VectorXd& y, double& size)
+    /// d2 Phi/dt2 less G X'' of all rows, over the norms of their gradients.
+    VectorXd of(const VectorXd& y) const
     {
         const std::vector<double> V = rates(y);
         std::vector<double> centripetal(V.size(), 0.0);
@@ -81,8 +76,7 @@ public:
                                  centripetal[12 * table.bodies[side] + column + i];
             bend[r] = scale_[r] > 0 ? gamma / scale_[r] : 0;
         }
-        size = std::max(size, bend.cwiseAbs().maxCoeff());
-        return redundant_.transpose() * bend;
+        return bend;
     }
 
     /// X' of all bodies, 12 numbers each.
@@ -116,6 +110,103 @@ public:
 
 private:
     double* gradient(int r) { return gradients_.data() + Tables::gradient_size * r; }
+    const double* gradient(int r) const { return gradients_.data() + Tables::gradient_size * r; }
+
+    Tables tables_;
+    Instant at_;
+    std::vector<double> X_, maps_, gradients_;
+    std::vector<SparseRows::Entry> entries_;
+    VectorXd scale_;
+};
+
+/// Numbers between -1 and 1, the same in each run.
+class Noise {
+public:
+    double next()
+    {
+        state_ ^= state_ << 13, state_ ^= state_ >> 7, state_ ^= state_ << 17;
+        return 2 * static_cast<double>(state_ >> 11) / 9007199254740992.0 - 1;
+    }
+    VectorXd vector(Index n)
+    {
+        VectorXd x(n);
+        for (double& entry : x) entry = next();
+        return x;
+    }
+
+private:
+    std::uint64_t state_ = 0x9e3779b97f4a7c15u;
+};
+
+/// Whether redundant combinations ask nothing of any motion, judged by some motions at random: a quadratic form
+/// that is zero there is zero. Cost and room grow with the bodies. False also where that cannot be told so.
+bool asks_nothing(const Curvatures& curvatures, const ClosedStart& closed)
+{
+    const int n_columns = curvatures.tables().n_twists;
+    const std::vector<int>&independent = closed.independent, &redundant = closed.redundant;
+    std::vector<SparseRows::Entry> held;
+    MatrixXd rest = MatrixXd::Zero(n_columns, static_cast<Index>(redundant.size()));
+    for (const auto& entry : curvatures.entries()) {
+        const auto at = std::ranges::lower_bound(independent, entry.row);
+        if (at != independent.end() && *at == entry.row)
+            held.push_back({static_cast<int>(at - independent.begin()), entry.column, entry.value});
+        else
+            rest(entry.column, std::ranges::lower_bound(redundant, entry.row) - redundant.begin()) = entry.value;
+    }
+    const SparseRows rows(static_cast<int>(independent.size()), n_columns, held);
+    if (!(rows.smallest_pivot() > SparseRows::well_held)) return false;
+    const std::vector<double> zero(independent.size(), 0.0);
+    const auto project = [&](VectorXd& y) {
+        return rows.project({y.data(), static_cast<std::size_t>(y.size())}, zero);
+    };
+    std::vector<VectorXd> bends;
+    Noise noise;
+    for (int motion = 0; motion < 3; ++motion) {
+        VectorXd y = noise.vector(n_columns);
+        project(y);
+        bends.push_back(curvatures.of(y));
+    }
+    for (std::size_t k = 0; k < redundant.size(); ++k) {
+        VectorXd g = rest.col(static_cast<Index>(k));
+        const std::vector<double> of_others = project(g);
+        for (const VectorXd& bend : bends) {
+            double sum = bend[redundant[k]];
+            for (std::size_t i = 0; i < independent.size(); ++i) sum -= of_others[i] * bend[independent[i]];
+            if (!(std::abs(sum) <= 1e-3 * nothing * bend.cwiseAbs().maxCoeff())) return false;
+        }
+    }
+    return true;
+}
+
+/// What redundant combinations ask of the free motions.
+class SecondOrder {
+public:
+    explicit SecondOrder(const Curvatures& curvatures) : curvatures_(curvatures)
+    {
+        const Tables& tables = curvatures.tables();
+        MatrixXd G = MatrixXd::Zero(tables.n_twists, tables.n_rows());
+        for (const auto& entry : curvatures.entries()) G(entry.column, entry.row) = entry.value;
+        free_ = complement(G, tables.rank);
+        redundant_ = complement(G.transpose(), tables.rank);
+    }
+
+    const MatrixXd& free() const { return free_; }
+    Index n_redundant() const { return redundant_.cols(); }
+    int strongest_row(Index combination) const
+    {
+        Index row = 0;
+        redundant_.col(combination).cwiseAbs().maxCoeff(&row);
+        return static_cast<int>(row);
+    }
+    /// mu . d2 Phi/dt2 less G X'' of the redundant combinations; `size` is raised to the terms of the sums.
+    VectorXd of(const VectorXd& y, double& size) const
+    {
+        const VectorXd bend = curvatures_.of(y);
+        size = std::max(size, bend.cwiseAbs().maxCoeff());
+        return redundant_.transpose() * bend;
+    }
+
+private:
     /// What is perpendicular to the columns of a matrix of known rank.
     static MatrixXd complement(const MatrixXd& A, Index rank)
     {
@@ -125,10 +216,7 @@ private:
         return Q;
     }
 
-    Tables tables_;
-    Instant at_;
-    std::vector<double> X_, maps_, gradients_;
-    VectorXd scale_;
+    const Curvatures& curvatures_;
     MatrixXd free_, redundant_;   // motions, and combinations of rows that are zero on all motions
 };
 
@@ -145,7 +233,7 @@ MatrixXd row_space(const MatrixXd& A, double level)
 }
 
 /// Quadratic forms Q_k on the free motions, of which the conditions consist; `row` takes part in the largest.
-std::vector<MatrixXd> forms_of(SecondOrder& second, double& size, int& row)
+std::vector<MatrixXd> forms_of(const SecondOrder& second, double& size, int& row)
 {
     const MatrixXd& Z = second.free();
     const Index f = Z.cols(), n = second.n_redundant();
@@ -208,16 +296,10 @@ VectorXd root_near(const std::vector<MatrixXd>& forms, VectorXd x)
 std::vector<VectorXd> roots_of(const std::vector<MatrixXd>& forms, Index f)
 {
     std::vector<VectorXd> roots;
-    std::uint64_t state = 0x9e3779b97f4a7c15u;
-    const auto noise = [&state] {
-        state ^= state << 13, state ^= state >> 7, state ^= state << 17;
-        return 2 * static_cast<double>(state >> 11) / 9007199254740992.0 - 1;
-    };
+    Noise noise;
     const int starts = 64 << f;   // of 2^(f - 1) roots at most
     for (int i = 0; i < starts; ++i) {
-        VectorXd x(f);
-        for (double& entry : x) entry = noise();
-        const VectorXd root = root_near(forms, x.normalized());
+        const VectorXd root = root_near(forms, noise.vector(f).normalized());
         if (root.size() == 0) continue;
         const bool is_known = std::ranges::any_of(
             roots, [&](const VectorXd& other) { return 1 - std::abs(root.dot(other)) < 1e-9; });
@@ -233,7 +315,9 @@ Mobility mobility(const Model& model, const ClosedStart& closed)
     Mobility result;
     result.first_order = closed.degrees_of_freedom;
     if (closed.redundant.empty() || closed.degrees_of_freedom == 0) return result;
-    SecondOrder second(model, closed);
+    const Curvatures curvatures(model, closed);
+    if (asks_nothing(curvatures, closed)) return result;
+    const SecondOrder second(curvatures);
     double size = 0;
     const std::vector<MatrixXd> forms = forms_of(second, size, result.row);
     const MatrixXd& Z = second.free();
@@ -241,7 +325,7 @@ Mobility mobility(const Model& model, const ClosedStart& closed)
     if (!result.is_singular()) return result;
     result.is_locked = is_locked(forms);
 
-    const VectorXd y = second.twists_of(closed.start);
+    const VectorXd y = curvatures.twists_of(closed.start);
     double speed_size = 0;
     const VectorXd rest = second.of(y, speed_size);
     result.are_possible = rest.cwiseAbs().maxCoeff() <= nothing * speed_size || speed_size == 0;
@@ -254,7 +338,7 @@ Mobility mobility(const Model& model, const ClosedStart& closed)
 
     if (result.conditions != result.first_order - 1 || result.first_order > most_directions) return result;
     for (const VectorXd& root : roots_of(forms, Z.cols())) {
-        const std::vector<double> V = second.rates(Z * root);
+        const std::vector<double> V = curvatures.rates(Z * root);
         const double fastest =
             std::abs(*std::ranges::max_element(V, {}, [](double v) { return std::abs(v); }));
         std::vector<Matrix34>& branch = result.branches.emplace_back(closed.start.X.size());

@@ -12,6 +12,9 @@ namespace livens {
 /// The rows of a sparse matrix G and a Cholesky factor of G G^T.
 class SparseRows {
 public:
+    /// The smallest pivot at which project() comes to rounding.
+    static constexpr double well_held = 1e-5;
+
     struct Entry {
         int row, column;
         double value;
@@ -25,8 +28,10 @@ public:
     /// The smallest ratio of a row, less what the rows eliminated before it hold, to the row; 0 where there
     /// is no factor. Half the digits of a double are lost at 1e-8: so much is not told from zero.
     double smallest_pivot() const { return smallest_pivot_; }
-    /// y <- the y nearest to it with G y = wanted. Needs a factor.
-    void project(std::span<double> y, std::span<const double> wanted) const;
+    /// y <- the y nearest to it with G y = wanted. Needs a factor. Each pass leaves rounding / pivot^2 of what
+    /// it was to take off.
+    /// Returns mu with y before = y + G^T mu.
+    std::vector<double> project(std::span<double> y, std::span<const double> wanted) const;
 
 private:
     struct Matrices;
