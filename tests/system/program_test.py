@@ -932,6 +932,15 @@ class Files(ProgramTest):
             self.assertRegex(error["message"], r"at least 3\.. GB of memory, and [\d.]+ [MG]B can be had; fewer elements")
 
 
+def wait_until_it_listens(program):
+    """Until the program catches Ctrl-C; how soon depends on the machine and on sanitizers."""
+    while program.poll() is None:
+        status = pathlib.Path(f"/proc/{program.pid}/status").read_text()
+        if int(re.search(r"^SigCgt:\s*(\w+)", status, re.M)[1], 16) & 1 << (signal.SIGINT - 1):
+            return
+        time.sleep(0.01)
+
+
 class Signals(ProgramTest):
     def start(self, *arguments):
         return subprocess.Popen([PROGRAM, *map(str, arguments)], cwd=self.folder, stdout=subprocess.PIPE,
@@ -942,6 +951,7 @@ class Signals(ProgramTest):
         for number in (signal.SIGINT, signal.SIGTERM):
             old = self.write("run.nc", "an older result")
             program = self.start("solve", "long.toml", "-o", "run.nc", "--json")
+            wait_until_it_listens(program)
             time.sleep(0.6)
             self.assertIsNone(program.poll(), "the run must be long enough to be interrupted")
             self.assertEqual(old.read_text(), "an older result")
@@ -978,6 +988,7 @@ class Signals(ProgramTest):
             program = subprocess.Popen([PROGRAM, "solve", "long.toml", *options], cwd=self.folder, stderr=stderr,
                                        stdout=subprocess.PIPE)
             os.close(stderr)
+            wait_until_it_listens(program)
             time.sleep(0.6)
             program.send_signal(signal.SIGINT)
             program.communicate(timeout=60)

@@ -156,11 +156,11 @@ class Looks(ProgramTest):
     def test_progress_never_wraps(self):
         self.write("long.toml", LONG)
         for columns in (20, 40, 70, 120):
-            text, code = on_terminal(self, columns, "solve", "long.toml", interrupt_after=4)
+            text, code = on_terminal(self, columns, "solve", "long.toml", interrupt_after=5)
             self.assertEqual(code, 130, text)
             lines = [part for part in text.split("\r\x1b[K") if " %" in part]
-            self.assertGreater(len(lines), 1)
-            for line in lines[:-1]:
+            self.assertGreater(len(lines), 3)
+            for line in lines[1:-1]:   # the first may come before any element is done
                 self.assertLess(len(line), columns)
                 self.assertNotIn("\n", line)
                 self.assertEqual("residual" in line, columns == 120, line)

@@ -43,8 +43,8 @@ std::vector<Edge> edges_of(const std::vector<BodyRow>& rows, int n_bodies, std::
     return edges;
 }
 
-/// Of the rows of one joint those that are independent on one body, in their order, by orthogonalisation, twice
-/// for what rounding leaves.
+/// Of the rows of one joint those that are independent on one body, in their order, by orthogonalisation,
+/// twice for what rounding leaves.
 class JointRows {
 public:
     /// The pivot of a row that is taken, else 0.

@@ -20,13 +20,13 @@ struct BodyRow {
 
 /// Rows along a spanning forest of the bodies, and the others.
 ///
-/// Joints are taken in the order of their first rows; one that joins bodies that hang together already closes a
-/// loop. Outwards from the world, or from any body of what floats, the rows of the forest are block triangular:
-/// independent if those of each joint are so on its outer body alone, however long a chain is.
+/// Joints are taken in the order of their first rows; one that joins bodies that hang together already closes
+/// a loop. Outwards from the world, or from any body of what floats, the rows of the forest are block
+/// triangular: independent if those of each joint are so on its outer body alone, however long a chain is.
 struct Forest {
     std::vector<int> rows;      ///< of the forest, ascending
     std::vector<int> closing;   ///< of loops, of more than two bodies, and what says nothing new in its joint
-    double smallest_pivot = 1;  ///< of the rows of the forest, joint by joint; above `least`
+    double smallest_pivot = 1;   ///< of the rows of the forest, joint by joint; above `least`
 };
 /// `rows`: of norm 1. A row whose pivot in its joint is at most `least` goes to `closing`.
 Forest spanning_forest(const std::vector<BodyRow>& rows, int n_bodies, double least);

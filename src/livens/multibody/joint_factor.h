@@ -46,7 +46,8 @@ public:
     /// of their elimination; nan if there is none.
     double prepare(const Tables& tables, const double* X);
     /// y <- the part of y that fits G y = rates (null: 0), and mu with y before = y + G^T mu, in the order of
-    /// the pattern. Projected twice, where the smallest pivot is below 1e-3 four times: what is left is small.
+    /// the pattern. Projected twice, where the smallest pivot is below 1e-3 four times: what is left is
+    /// small.
     void project(double* y, const double* rates, double* mu);
     /// q += factor times the twist rows of G^T mu.
     void add_wrenches(const double* mu, double factor, double* q);

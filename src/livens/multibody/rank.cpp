@@ -174,8 +174,7 @@ std::optional<std::vector<int>> clearly_dependent(const std::vector<BodyRow>& ro
     std::vector<int> dependent;
     if (forest.closing.empty()) return dependent;
     const Index n = 6 * n_bodies, n_closing = static_cast<Index>(forest.closing.size());
-    const SparseRows held(static_cast<int>(forest.rows.size()), 6 * n_bodies,
-                          entries_of(rows, forest.rows));
+    const SparseRows held(static_cast<int>(forest.rows.size()), 6 * n_bodies, entries_of(rows, forest.rows));
     if (!(held.smallest_pivot() > SparseRows::well_held)) return {};
     const std::vector<double> nothing(forest.rows.size(), 0.0);
     MatrixXd added = MatrixXd::Zero(n, n_closing);
@@ -259,8 +258,9 @@ Dependencies dependencies(const Model& model, std::span<const Matrix34> X, int n
          judge(
              twists, model.n_bodies(), std::max(1e-9, std::min(twists.doubt, 1e-4)),
              result.rank.smallest_pivot,
-             [&](const std::vector<int>& dependent) { return rows.size() - dependent.size() ==
-                                                             static_cast<std::size_t>(n_independent); },
+             [&](const std::vector<int>& dependent) {
+                 return rows.size() - dependent.size() == static_cast<std::size_t>(n_independent);
+             },
              [n_independent](Index k, double) { return k < n_independent; }),
          result.rank);
     const auto& [independent, dependent, pivot] = result.rank;

@@ -14,21 +14,21 @@
 namespace livens {
 
 /// The twist Jacobian without masses: of each given row six entries for every body that it touches, [force,
-/// moment / length] about the mean of the body's joint points, scaled to norm 1. The length is sqrt(a A) with the
-/// arm a of the body, its largest distance of a joint point from that mean or |moment| / |force| of a row, and
-/// the largest arm A: rows of points want a; rows of axes, which compare the spins of two bodies, want one
-/// length. An arm counts if it is above 1e-13 of the distances that it is a difference of; else A stands for
-/// it, or Model::length() without any arm.
+/// moment / length] about the mean of the body's joint points, scaled to norm 1. The length is sqrt(a A) with
+/// the arm a of the body, its largest distance of a joint point from that mean or |moment| / |force| of a
+/// row, and the largest arm A: rows of points want a; rows of axes, which compare the spins of two bodies,
+/// want one length. An arm counts if it is above 1e-13 of the distances that it is a difference of; else A
+/// stands for it, or Model::length() without any arm.
 struct TwistRows {
     std::vector<BodyRow> rows;
     double doubt = 0;   ///< 8 eps times the largest of these distances over lengths, or that of the forces
 };
 TwistRows twist_rows(const Model& model, std::span<const Matrix34> X, std::span<const int> rows);
 
-/// Clear cases are judged along the joints, at a cost that grows with the bodies: rows of a spanning forest by
-/// single joints, rows that close loops by what is new in them beside the forest; independent above 1e-3,
-/// dependent below the threshold. Else by a QR decomposition of all rows with column pivoting. Of equal rows the
-/// one that comes first is kept.
+/// Clear cases are judged along the joints, at a cost that grows with the bodies: rows of a spanning forest
+/// by single joints, rows that close loops by what is new in them beside the forest; independent above 1e-3,
+/// dependent below the threshold. Else by a QR decomposition of all rows with column pivoting. Of equal rows
+/// the one that comes first is kept.
 struct RowRank {
     std::vector<int> independent;   ///< rows of the model, ascending
     std::vector<int> dependent;     ///< the others, ascending

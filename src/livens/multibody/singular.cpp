@@ -4,13 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <string>
 
 #include <Eigen/Dense>
 
-#include "livens/base/error.h"
 #include "livens/multibody/body.h"
-#include "livens/multibody/detail/wording.h"
 #include "livens/multibody/sparse_rows.h"
 #include "livens/multibody/tables.h"
 #include "livens/multibody/twist.h"
@@ -138,8 +135,9 @@ private:
     std::uint64_t state_ = 0x9e3779b97f4a7c15u;
 };
 
-/// Whether redundant combinations ask nothing of any motion, judged by some motions at random: a quadratic form
-/// that is zero there is zero. Cost and room grow with the bodies. False also where that cannot be told so.
+/// Whether redundant combinations ask nothing of any motion, judged by some motions at random: a quadratic
+/// form that is zero there is zero. Cost and room grow with the bodies. False also where that cannot be told
+/// so.
 bool asks_nothing(const Curvatures& curvatures, const ClosedStart& closed)
 {
     const int n_columns = curvatures.tables().n_twists;
@@ -151,7 +149,8 @@ bool asks_nothing(const Curvatures& curvatures, const ClosedStart& closed)
         if (at != independent.end() && *at == entry.row)
             held.push_back({static_cast<int>(at - independent.begin()), entry.column, entry.value});
         else
-            rest(entry.column, std::ranges::lower_bound(redundant, entry.row) - redundant.begin()) = entry.value;
+            rest(entry.column, std::ranges::lower_bound(redundant, entry.row) - redundant.begin()) =
+                entry.value;
     }
     const SparseRows rows(static_cast<int>(independent.size()), n_columns, held);
     if (!(rows.smallest_pivot() > SparseRows::well_held)) return false;
@@ -345,59 +344,6 @@ Mobility mobility(const Model& model, const ClosedStart& closed)
         for (std::size_t i = 0; i < V.size(); ++i) branch[i / 12].a[i % 12] = V[i] / fastest;
     }
     return result;
-}
-
-namespace {
-
-/// How the bodies of a branch move: angular velocities, or velocities of points, of those that do.
-std::string words_of(const Model& model, const State& state, const std::vector<Matrix34>& branch)
-{
-    std::string words;
-    int told = 0;
-    for (int b = 0; b < model.n_bodies(); ++b) {
-        const bool is_point = model.bodies()[b].is_point;
-        const Vector3 turn = is_point ? Vector3{} : angular_velocity(state.X[b], branch[b]);
-        const bool turns = norm(turn) > nothing;
-        Vector3 v = turns ? turn : branch[b].column(0);
-        if (norm(v) <= nothing) continue;
-        if (++told > 4) return words + ", ...";
-        words += (told > 1 ? ", '" : "'") + model.body_name(b) + (turns ? "' turns by [" : "' moves by [");
-        for (int i = 0; i < 3; ++i)
-            words += (i > 0 ? ", " : "") + to_text(std::abs(v[i]) < nothing ? 0.0 : v[i], 3);
-        words += "]";
-    }
-    return words;
-}
-
-}   // namespace
-
-void refuse_singular_start(const Model& model, const ClosedStart& closed)
-{
-    const Mobility m = mobility(model, closed);
-    if (!m.is_singular()) return;
-    const std::size_t n = m.branches.size();
-    const auto count = [](std::size_t k, const std::string& what) {
-        return std::to_string(k) + " " + what + (k == 1 ? "" : "s");
-    };
-    std::string what = count(m.first_order, "motion") + " in first order under " +
-                       count(m.conditions, "condition") + " of second order";
-    if (m.is_locked)
-        what += ": nothing can move";
-    else if (n > 0)
-        what += ": " + std::to_string(n) + (n == 1 ? " branch" : " branches") + " of single motions";
-    std::string help = m.is_locked ? "move points or axes, so that the joints hold here as they do beside"
-                                   : "start beside this position";
-    if (n > 0) help += ", on the branch that is meant: ";
-    for (std::size_t i = 0; i < std::min<std::size_t>(n, 2); ++i)
-        help += (i > 0 ? "; or " : "") + words_of(model, closed.start, m.branches[i]);
-    if (n > 2) help += "; or another";
-    throw InputError({"start-singular", "joint[" + model.joints()[model.row_joint(m.row)].name + "]",
-                      "the joints are in a singular position at the start" +
-                          std::string(!m.are_possible   ? ", and velocities lead out of them in second order"
-                                      : m.choose_branch ? ", from which no method starts"
-                                                        : ", and the velocities choose no motion"),
-                      what, "", "the joints hold less there than beside it, and several motions may meet",
-                      help});
 }
 
 }   // namespace livens

@@ -28,9 +28,8 @@ public:
     /// The smallest ratio of a row, less what the rows eliminated before it hold, to the row; 0 where there
     /// is no factor. Half the digits of a double are lost at 1e-8: so much is not told from zero.
     double smallest_pivot() const { return smallest_pivot_; }
-    /// y <- the y nearest to it with G y = wanted. Needs a factor. Each pass leaves rounding / pivot^2 of what
-    /// it was to take off.
-    /// Returns mu with y before = y + G^T mu.
+    /// y <- the y nearest to it with G y = wanted. Needs a factor. Each pass leaves rounding / pivot^2 of
+    /// what it was to take off. Returns mu with y before = y + G^T mu.
     std::vector<double> project(std::span<double> y, std::span<const double> wanted) const;
 
 private:

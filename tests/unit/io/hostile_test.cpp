@@ -135,7 +135,7 @@ TEST(Hostile, CountsAreBounded)
     for (int i = 0; i < 2'100'000; ++i) numbers += "1,";
     EXPECT_NE(find(read(numbers + "]\n"), "resource-limit"), nullptr);
     std::string bodies = "format = 1\n";
-    for (int i = 0; i < 1001; ++i)
+    for (int i = 0; i < 10'001; ++i)
         bodies += "[[body]]\nname = \"" + std::to_string(i) + "\"\nshape = { point = true }\nmass = 1\n";
     EXPECT_NE(find(read(bodies + "[time]\nend = 1\nelements = 1\n"), "resource-limit"), nullptr);
     for (const char* time :

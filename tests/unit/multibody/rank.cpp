@@ -7,6 +7,7 @@
 
 #include "linkages.h"
 #include "livens/multibody/closing.h"
+#include "livens/multibody/singular.h"
 
 namespace livens {
 namespace {
@@ -94,6 +95,24 @@ TEST(Rank, BearsBodiesOfVeryDifferentSize)
         const ClosedStart a = close_start(l.model, l.model.start(), StartPolicy::check);
         EXPECT_EQ(static_cast<int>(a.independent.size()), 5 * n) << seed;
     }
+}
+
+// At the cost of dense matrices this takes minutes.
+TEST(Rank, OfLongChainsAndRingsIsFoundAlongTheJoints)
+{
+    const int n = 400;
+    const auto closed = [](const Model& model) {
+        return close_start(model, model.start(), StartPolicy::check);
+    };
+    const Model chain = open_chain(1, n, {});
+    EXPECT_EQ(closed(chain).redundant, std::vector<int>{});
+    const Model flat = ring(2, n, {}, true);
+    const ClosedStart start = closed(flat);
+    EXPECT_EQ(static_cast<int>(start.independent.size()), 5 * n + 2);
+    for (const int row : start.redundant)
+        EXPECT_EQ(flat.row_joint(row), n) << "the joint that closes the ring";
+    EXPECT_FALSE(mobility(flat, start).is_singular());
+    EXPECT_EQ(static_cast<int>(closed(ring(2, n, {}, false)).independent.size()), 5 * n + 5);
 }
 
 TEST(Rank, SeesWhatOneAxisOutOfParallelTakesAway)

@@ -162,6 +162,28 @@ TEST(LeastReactions, AreLeast)
     }
 }
 
+TEST(LeastReactions, OfALongRingAreLeast)
+{
+    const int n = 100;
+    const Model model = ring(1, n, {}, true);
+    const std::vector<double> given = random_multipliers(model, 2);
+    const std::vector<int> independent(static_cast<std::size_t>(5 * n + 2));
+    const std::vector<double> least = least_reactions(model, places(model), given, independent).multipliers;
+    const double push = std::ranges::max(pushes(model, given));
+    EXPECT_LT(largest_difference(pushes(model, given), pushes(model, least)), 1e-10 * push);
+    const double size = size_of(model, least);
+    for (const unsigned seed : {3u, 4u, 5u}) {   // any multipliers of no push lead away from them
+        const std::vector<double> other = random_multipliers(model, seed);
+        const std::vector<double> moved =
+            least_reactions(model, places(model), other, independent).multipliers;
+        for (const double step : {1e-2, -1e-2}) {
+            std::vector<double> beside = least;
+            for (std::size_t r = 0; r < beside.size(); ++r) beside[r] += step * (other[r] - moved[r]);
+            EXPECT_GT(size_of(model, beside), size);
+        }
+    }
+}
+
 TEST(LeastReactions, TurnWithTheModel)
 {
     const Model flat = four_bar(identity<3>());

@@ -119,7 +119,7 @@ struct Table {
 Key choice(std::string_view name, Words words, const std::string& doc);
 
 inline constexpr int max_elements = 10'000'000;
-inline constexpr int max_bodies = 1000;
+inline constexpr int max_bodies = 10000;
 
 // Made once, for root_table(), which holds all others.
 Table body_table();
