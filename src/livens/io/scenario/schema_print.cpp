@@ -227,8 +227,8 @@ codes are explained in [diagnostics.md](diagnostics.md). Nothing is ignored: unk
 
 Limits: 16 MiB, 2 000 000 values, nesting of 64, 10 000 bodies, joints and loads each, 10 000 000 time
 elements, a motion of 8 GiB, and with the family mixed 8 GiB for the system of one block, at 72 kB a rigid
-body and time node (where joints tie bodies together 36 kB times their number, if that is more): 100 000 linear
-elements of one body fit, and any number of them in blocks.
+body and time node (where joints tie bodies together 36 kB times their number, if that is more): 100 000
+linear elements of one body fit, and any number of them in blocks.
 )";
 
 }   // namespace
