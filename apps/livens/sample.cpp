@@ -11,6 +11,7 @@
 #include "console.h"
 #include "failure.h"
 #include "finite_number.h"
+#include "simd.h"
 #include "livens/base/error.h"
 #include "livens/diagnostics/sample.h"
 #include "livens/io/results.h"
@@ -331,6 +332,7 @@ int sample_command(const SampleArguments& arguments, const Common& common)
 {
     if (arguments.body.empty() == arguments.joint.empty())
         throw failure(exit_usage, "sample wants either --body NAME or --joint NAME");
+    if (arguments.exact) pin_instructions("");
     const Run run = read_run(arguments.run);
     const int index = arguments.joint.empty() ? index_of(run.body_names, arguments.body, "body")
                                               : index_of(run.joint_names, arguments.joint, "joint");

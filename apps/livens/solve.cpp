@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // livens solve: a scenario in, a solved and checked motion out.
 #include <chrono>
-#include <cstdlib>
 #include <ctime>
 #include <filesystem>
 #include <memory>
 #include <new>
-#include <optional>
 
 #include <fmt/format.h>
 
@@ -16,10 +14,10 @@
 #include "interrupt.h"
 #include "livens/base/version.h"
 #include "livens/io/results.h"
-#include "livens/spacetime/instructions.h"
 #include "memory.h"
 #include "places.h"
 #include "progress.h"
+#include "simd.h"
 #include "summary.h"
 
 namespace livens::program {
@@ -212,32 +210,18 @@ void show(const Solved& solved, const Places& p, bool verbose)
     summary.figure("solved", fmt::format("{:.6g} s to {:.6g} s of motion in {:.3g} s", run.motion.start(),
                                          run.motion.end(), solved.solve_seconds));
     const double mean = static_cast<double>(report.newton_iterations) / static_cast<double>(n_blocks);
-    summary.figure("iterations", fmt::format("{} by Newton{}, {} factorisations", report.newton_iterations,
-                                             n_blocks > 0 ? fmt::format(" ({:.1f} {})", mean,
-                                                                        is_blocked ? "a block" : "an element")
-                                                          : "",
-                                             report.factorisations));
+    summary.figure(
+        "iterations",
+        fmt::format("{}{}, {}", report.newton_iterations,
+                    n_blocks > 0 ? fmt::format(" ({:.1f} {})", mean, is_blocked ? "a block" : "an element")
+                                 : "",
+                    report.factorisations > 0 ? fmt::format("{} factorisations", report.factorisations)
+                                              : "without a tangent"));
     add_figures(summary, run, verbose);
     add_notes(summary, run);
     summary.figure("written", plain(p.output.string()) + (p.csv.empty() ? "" : ", " + plain(p.csv.string())));
     summary.aside(plain(next_step(run, p)));
     print(summary.text());
-}
-
-/// Equal instructions give equal bytes on any machine.
-void pin_instructions(const std::string& asked)
-{
-    const char* variable = std::getenv("LIVENS_SIMD");
-    const std::string word = !asked.empty() || variable == nullptr ? asked : variable;
-    if (word.empty()) return;
-    const std::string place = asked.empty() ? "LIVENS_SIMD" : "--simd";
-    const std::optional<Instructions> set = instructions_named(word);
-    if (!set)
-        throw failure(exit_usage,
-                      place + ": '" + word + "' is no set of instructions; sse2, avx2 and avx512 are");
-    if (!use_instructions(*set))
-        throw failure(exit_usage,
-                      place + ": this processor, or this livens, has no " + word + "; sse2 is everywhere");
 }
 
 }   // namespace

@@ -185,6 +185,9 @@ class Solve(ProgramTest):
         wrong = self.run_program("solve", "small.toml", "-o", "run.nc", env={**os.environ, "LIVENS_SIMD": "mmx"})
         self.assertEqual(wrong.returncode, 2)
         self.assertIn("LIVENS_SIMD", wrong.err)
+        wrong = self.run_program("sample", "run.nc", "--body", "bob", "--at", "0.15", "--exact",
+                                 env={**os.environ, "LIVENS_SIMD": "mmx"})
+        self.assertEqual(wrong.returncode, 2, wrong.out)
 
     def test_record_beside_the_result(self):
         printed = self.solve()

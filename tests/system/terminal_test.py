@@ -81,7 +81,8 @@ class Transcripts(ProgramTest):
         """
         text = re.sub(r"(\r\x1b\[K[^\r]*)*\r\x1b\[K", "", text)
         text = re.sub(r"motion in [0-9.e-]+(\s+)s", r"motion in #\1s", text)
-        text = re.sub(r"\d+ by Newton( \([0-9.]+)?", lambda m: re.sub(r"\d", "#", m[0]), text)
+        text = re.sub(r"(iterations\s*(?:\x1b\[0m)?\s*)(\d+(?: \([0-9.]+)?)",
+                      lambda m: m[1] + re.sub(r"\d", "#", m[2]), text)
         text = re.sub(r"\d+(\s+factorisations)", r"#\1", text)
         return re.sub(r"\d\.\de[-+]\d\d", "#.#e-##", text)
 

@@ -115,7 +115,10 @@ void measure(Verdict& v, const Model& model, const Motion& motion, bool holds_we
     v.max_velocity_violation = off.velocity_level;
     v.max_weak_violation = off.joints_weakly;   // 0 where they were not asked for
     raise_to(v.max_weak_violation, off.rigidity_weakly);
-    v.balance = balance(model, motion, 4096, [](Balance&) {});
+    constexpr int some = 4096;   // of longer motions they are made again where they are needed
+    v.balance = balance(model, motion, some, [&](Balance& piece) {
+        if (motion.n_elements() < some) v.balances = std::make_shared<const Balance>(std::move(piece));
+    });
     v.energy_drift = motion.damps() ? v.balance.relative_energy_rise() : v.balance.relative_energy_drift();
     v.linear_momentum_drift = v.balance.relative_linear_momentum_drift();
     v.angular_momentum_drift = v.balance.relative_angular_momentum_drift();

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <limits>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -45,6 +46,7 @@ struct Verdict {
     std::vector<std::string> reasons;    ///< why the motion is suspect, a line each; empty: it is not
     std::vector<std::string> remarks;    ///< what is worth a look and refuses nothing
     BalanceFigures balance;
+    std::shared_ptr<const Balance> balances;   ///< their series, of motions of up to 4095 elements
     /// At nodes, without their series; means only where constraints hold weakly, nothing in between.
     ViolationReport violations;
 };

@@ -13,6 +13,7 @@
 #include "livens/diagnostics/diagnostics.h"
 #include "livens/multibody/body.h"
 #include "livens/multibody/reactions.h"
+#include "livens/multibody/rows.h"
 
 namespace livens {
 
@@ -174,23 +175,29 @@ std::vector<JointSample> sample_joints(const Model& model, const Motion& motion,
     if (model.has_drives()) frozen_now = frozen(model, {state.t});
     const Model& now = frozen_now ? *frozen_now : model;
     const std::vector<bool> is_bounded = bounded_joints(model, left, right);
-    UniqueReactions before{numbers_of(left), {}, 0}, after{numbers_of(right), {}, 0};
+    std::vector<double> both = numbers_of(left);
+    for (const double value : numbers_of(right)) both.push_back(value);
+    std::vector<bool> is_unique(model.joints().size(), true);
     if (!motion.redundant_rows.empty()) {
-        std::vector<int> independent(static_cast<std::size_t>(motion.n_rows) - motion.redundant_rows.size());
-        before = least_reactions(now, state.X, before.multipliers, independent);
-        after = left.data() == right.data() ? before
-                                            : least_reactions(now, state.X, after.multipliers, independent);
+        std::vector<int> independent = all_rows(model);
+        std::erase_if(independent, [&](int row) {
+            return std::ranges::find(motion.redundant_rows, row) != motion.redundant_rows.end();
+        });
+        UniqueReactions least = least_reactions(now, state.X, both, independent);
+        both = std::move(least.multipliers);
+        is_unique = std::move(least.joint_is_unique);
     }
+    const std::span<const double> before(both.data(), left.size()), after(&both[left.size()], right.size());
     std::vector<JointSample> samples;
     for (int j = 0; j < static_cast<int>(model.joints().size()); ++j) {
         JointSample& sample = samples.emplace_back();
         sample.is_acceleration_level = is_acceleration_level;
-        sample.is_unique = after.joint_is_unique.empty() || after.joint_is_unique[j];
+        sample.is_unique = is_unique[j];
         sample.is_bounded = is_bounded[j];
         sample.left = sample.right = unknown;
         if (!sample.is_bounded) continue;
-        sample.left = joint_reaction(now, j, state.X, before.multipliers);
-        sample.right = joint_reaction(now, j, state.X, after.multipliers);
+        sample.left = joint_reaction(now, j, state.X, before);
+        sample.right = joint_reaction(now, j, state.X, after);
     }
     return samples;
 }

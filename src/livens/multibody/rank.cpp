@@ -3,7 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
+#include <memory>
+#include <numeric>
 #include <optional>
 
 #include <Eigen/Dense>
@@ -249,44 +252,60 @@ RowRank row_rank(const Model& model, std::span<const Matrix34> X, std::span<cons
     return rank;
 }
 
-Dependencies dependencies(const Model& model, std::span<const Matrix34> X, int n_independent)
+namespace {
+
+/// Chooses as many rows as `result` names, which does not hold well.
+void choose_again(const TwistRows& twists, int n_bodies, Dependencies& result)
 {
-    Dependencies result;
-    const std::vector<int> rows = all_rows(model);
-    const TwistRows twists = twist_rows(model, X, rows);
+    const Index n_independent = static_cast<Index>(result.independent.size());
+    std::vector<int> rows(twists.rows.size());
+    std::iota(rows.begin(), rows.end(), 0);
+    RowRank rank;
     part(rows,
          judge(
-             twists, model.n_bodies(), std::max(1e-9, std::min(twists.doubt, 1e-4)),
-             result.rank.smallest_pivot,
-             [&](const std::vector<int>& dependent) {
-                 return rows.size() - dependent.size() == static_cast<std::size_t>(n_independent);
-             },
+             twists, n_bodies, std::max(1e-9, std::min(twists.doubt, 1e-4)), rank.smallest_pivot,
+             [&](const std::vector<int>& dependent) { return dependent.size() == result.dependent.size(); },
              [n_independent](Index k, double) { return k < n_independent; }),
-         result.rank);
-    const auto& [independent, dependent, pivot] = result.rank;
-    const int n_columns = 6 * model.n_bodies();
-    MatrixXd rest = MatrixXd::Zero(n_columns, static_cast<Index>(dependent.size()));
-    for (const auto& entry : entries_of(twists.rows, dependent)) rest(entry.column, entry.row) = entry.value;
-    const std::vector<SparseRows::Entry> entries = entries_of(twists.rows, independent);
-    const SparseRows held(n_independent, n_columns, entries);
-    result.factors.resize(dependent.size());
-    if (held.smallest_pivot() > SparseRows::well_held) {
-        const std::vector<double> nothing(independent.size(), 0.0);
-        for (std::size_t k = 0; k < dependent.size(); ++k)
-            result.factors[k] = held.project(
-                {rest.col(static_cast<Index>(k)).data(), static_cast<std::size_t>(n_columns)}, nothing);
+         rank);
+    result.independent = std::move(rank.independent);
+    result.dependent = std::move(rank.dependent);
+}
+
+}   // namespace
+
+Dependencies dependencies(const Model& model, std::span<const Matrix34> X, std::span<const int> independent)
+{
+    const int n_columns = 6 * model.n_bodies(), n_independent = static_cast<int>(independent.size());
+    const TwistRows twists = twist_rows(model, X, all_rows(model));
+    Dependencies result{{independent.begin(), independent.end()}, {}, {}, {}};
+    for (const BodyRow& row : twists.rows) result.sizes.push_back(row.size);
+    std::ranges::sort(result.independent);
+    std::ranges::set_difference(all_rows(model), result.independent, std::back_inserter(result.dependent));
+    auto held =
+        std::make_unique<SparseRows>(n_independent, n_columns, entries_of(twists.rows, result.independent));
+    if (!(held->smallest_pivot() > well_held)) {
+        choose_again(twists, model.n_bodies(), result);
+        held = std::make_unique<SparseRows>(n_independent, n_columns,
+                                            entries_of(twists.rows, result.independent));
+    }
+    MatrixXd rest = MatrixXd::Zero(n_columns, static_cast<Index>(result.dependent.size()));
+    for (const auto& entry : entries_of(twists.rows, result.dependent))
+        rest(entry.column, entry.row) = entry.value;
+    if (held->smallest_pivot() > SparseRows::well_held) {
+        const std::vector<double> nothing(result.independent.size(), 0.0);
+        for (auto column : rest.colwise())
+            result.factors.push_back(
+                held->project({column.data(), static_cast<std::size_t>(n_columns)}, nothing));
     } else {
         MatrixXd G = MatrixXd::Zero(n_columns, n_independent);
-        for (const auto& entry : entries) G(entry.column, entry.row) = entry.value;
+        for (const auto& entry : entries_of(twists.rows, result.independent))
+            G(entry.column, entry.row) = entry.value;
         const MatrixXd factors = Eigen::HouseholderQR<MatrixXd>(G).solve(rest);
-        for (std::size_t k = 0; k < dependent.size(); ++k) {
-            const auto column = factors.col(static_cast<Index>(k));
-            result.factors[k].assign(column.begin(), column.end());
-        }
+        for (const auto column : factors.colwise()) result.factors.emplace_back(column.begin(), column.end());
     }
-    for (std::size_t k = 0; k < dependent.size(); ++k)   // of rows as they are, not scaled to one
-        for (std::size_t i = 0; i < independent.size(); ++i)
-            result.factors[k][i] *= twists.rows[dependent[k]].size / twists.rows[independent[i]].size;
+    for (std::size_t k = 0; k < result.dependent.size(); ++k)   // of rows as they are, not scaled to one
+        for (std::size_t i = 0; i < result.independent.size(); ++i)
+            result.factors[k][i] *= result.sizes[result.dependent[k]] / result.sizes[result.independent[i]];
     return result;
 }
 

@@ -39,13 +39,16 @@ struct RowRank {
 RowRank row_rank(const Model& model, std::span<const Matrix34> X, std::span<const int> rows,
                  double threshold = 1e-9);
 
-/// Of all rows of the model, where their rank is known.
+/// Of all rows of the model.
 struct Dependencies {
-    RowRank rank;
+    std::vector<int> independent, dependent;   ///< ascending
     /// [k][i]: row dependent[k] is the sum of these times rows independent[i], in twists.
     std::vector<std::vector<double>> factors;
+    std::vector<double> sizes;   ///< norms of the twist rows
 };
-Dependencies dependencies(const Model& model, std::span<const Matrix34> X, int n_independent);
+/// `independent`: as many as there are, and these where elimination holds them well (pivots above 1e-3); else
+/// others are chosen.
+Dependencies dependencies(const Model& model, std::span<const Matrix34> X, std::span<const int> independent);
 
 /// A spin about an axis through the centre of mass, alone or together with such spins of other bodies, that
 /// no row holds and that carries no inertia.

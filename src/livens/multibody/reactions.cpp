@@ -37,7 +37,7 @@ MatrixXd unit_reactions(const Model& model, int joint, std::span<const Matrix34>
 }
 
 /// R with |R lambda| = |A lambda|, kept regular by 1e-8 of the rows where some of them say the same.
-MatrixXd root_metric(const MatrixXd& A, const VectorXd& sizes)
+MatrixXd root_metric(const MatrixXd& A, const Eigen::Map<const VectorXd>& sizes)
 {
     MatrixXd tall = MatrixXd::Zero(A.rows() + A.cols(), A.cols());
     tall.topRows(A.rows()) = A;
@@ -57,26 +57,24 @@ UniqueReactions least_reactions(const Model& model, std::span<const Matrix34> X,
     UniqueReactions result{{multipliers.begin(), multipliers.end()}, std::vector<bool>(n_joints, true), 0};
     if (n_null <= 0) return result;
 
-    const Dependencies known = dependencies(model, X, static_cast<int>(independent.size()));
-    const TwistRows twists = twist_rows(model, X, all_rows(model));
+    const Dependencies known = dependencies(model, X, independent);
     MatrixXd null = MatrixXd::Zero(n, n_null);
     for (Index k = 0; k < n_null; ++k) {
-        null(known.rank.dependent[k], k) = 1;
-        for (std::size_t i = 0; i < known.rank.independent.size(); ++i)
-            null(known.rank.independent[i], k) = -known.factors[k][i];
+        null(known.dependent[k], k) = 1;
+        for (std::size_t i = 0; i < known.independent.size(); ++i)
+            null(known.independent[i], k) = -known.factors[k][i];
     }
-    VectorXd rho = Eigen::Map<const VectorXd>(multipliers.data(), n);
+    MatrixXd rho =
+        Eigen::Map<const MatrixXd>(multipliers.data(), n, static_cast<Index>(multipliers.size()) / n);
     std::vector<MatrixXd> A, R;
     std::vector<double> zeros(static_cast<std::size_t>(n), 0.0);
     const double length = model.length();
     for (int j = 0; j < n_joints; ++j) {
         A.push_back(unit_reactions(model, j, X, length, zeros));
         const Index at = model.first_row(j), m = A[j].cols();
-        VectorXd sizes(m);
-        for (Index k = 0; k < m; ++k) sizes[k] = twists.rows[at + k].size;
-        R.push_back(root_metric(A[j], sizes));
+        R.push_back(root_metric(A[j], Eigen::Map<const VectorXd>(known.sizes.data() + at, m)));
         null.middleRows(at, m) = R[j] * null.middleRows(at, m);
-        rho.segment(at, m) = R[j] * rho.segment(at, m);
+        rho.middleRows(at, m) = R[j] * rho.middleRows(at, m);
     }
     const Eigen::HouseholderQR<MatrixXd> qr(null);
     null = qr.householderQ() * MatrixXd::Identity(n, n_null);
@@ -89,8 +87,10 @@ UniqueReactions least_reactions(const Model& model, std::span<const Matrix34> X,
         result.largest_null = std::max(result.largest_null, part);
         if (part <= 1e-9) continue;
         result.joint_is_unique[j] = false;
-        const VectorXd lambda = solver.solve(rho.segment(at, m));
-        std::copy(lambda.begin(), lambda.end(), result.multipliers.begin() + at);
+        for (Index set = 0; set < rho.cols(); ++set) {
+            const VectorXd lambda = solver.solve(rho.col(set).segment(at, m));
+            std::copy(lambda.begin(), lambda.end(), result.multipliers.begin() + set * n + at);
+        }
     }
     return result;
 }

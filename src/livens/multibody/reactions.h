@@ -10,7 +10,7 @@
 namespace [[gnu::visibility("default")]] livens {
 
 struct UniqueReactions {
-    std::vector<double> multipliers;     ///< of all rows of the model
+    std::vector<double> multipliers;     ///< of all rows of the model, as many sets as were given
     std::vector<bool> joint_is_unique;   ///< no null vector has a part above 1e-9 in it
     double largest_null = 0;             ///< largest of these parts in any joint; 0 if no row is redundant
 };
@@ -18,11 +18,11 @@ struct UniqueReactions {
 /// Of all multipliers with the same G^T lambda in twists those with the least sum over joints of
 /// |f|^2 + |t|^2 / L^2, where f and t are joint_reaction() and L is Model::length().
 ///
-/// A model with drives wants to be frozen() first. Which rows were chosen as `independent` does not matter,
-/// only how many they are. Turning the model in space turns the reactions and does nothing else; masses do
-/// not enter. Null vectors of G^T and their parts are measured by the root of the same sum, which is one for
-/// all joints together. Multipliers of unique joints, and all if no row is redundant, are returned to the
-/// bit.
+/// `multipliers`: one set or several, one after the other. A model with drives wants to be frozen() first.
+/// Which rows were chosen as `independent` does not matter, only how many they are. Turning the model in
+/// space turns the reactions and does nothing else; masses do not enter. Null vectors of G^T and their parts
+/// are measured by the root of the same sum, which is one for all joints together. Multipliers of unique
+/// joints, and all if no row is redundant, are returned to the bit.
 UniqueReactions least_reactions(const Model& model, std::span<const Matrix34> X,
                                 std::span<const double> multipliers, std::span<const int> independent);
 

@@ -273,8 +273,9 @@ constexpr BalanceVariable balance_variables[] = {
      &Balance::angular_momentum_drift},
 };
 
-/// The series of the balance are a third of a motion of degree 1: they are made again while they are written.
-void write_balance(RunWriter& archive, const Model& model, const Motion& motion)
+/// The series of the balance are a third of a motion of degree 1: of long motions they are made again while
+/// they are written.
+void write_balance(RunWriter& archive, const Model& model, const Motion& motion, const Balance* known)
 {
     std::vector<int> variables;
     for (const BalanceVariable& v : balance_variables) {
@@ -284,12 +285,16 @@ void write_balance(RunWriter& archive, const Model& model, const Motion& motion)
         variables.push_back(
             archive.declare(info, NumberType::real, motion.mesh.ends.size() * (is_vector ? 3 : 1)));
     }
-    archive.later([&file = archive.file(), &model, &motion, variables] {
-        balance(model, motion, 1 << 12, [&](Balance& piece) {
+    archive.later([&file = archive.file(), &model, &motion, known, variables] {
+        const auto append = [&](const Balance& piece) {
             for (std::size_t i = 0; i < variables.size(); ++i)
                 std::visit([&](auto part) { file.append(variables[i], all_of(piece.*part)); },
                            balance_variables[i].part);
-        });
+        };
+        if (known != nullptr)
+            append(*known);
+        else
+            balance(model, motion, 1 << 12, append);
     });
 }
 
@@ -382,7 +387,7 @@ std::string manifest(const Run& run)
 void write_derived(RunWriter& archive, const Model& model, const Run& run)
 {
     const Motion& m = run.motion;
-    write_balance(archive, model, m);
+    write_balance(archive, model, m, run.verdict.balances.get());
     write_nodes(archive, "X_node", m.X, m.mesh);
     write_nodes(archive, "P_node", m.P, m.mesh);
     write_nodes(archive, "multiplier_node", m.multipliers, m.mesh);
