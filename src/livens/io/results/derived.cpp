@@ -273,8 +273,7 @@ constexpr BalanceVariable balance_variables[] = {
      &Balance::angular_momentum_drift},
 };
 
-/// The series of the balance are a third of a motion of degree 1: of long motions they are made again while
-/// they are written.
+/// A third of a motion of degree 1: what is not known is made while it is written.
 void write_balance(RunWriter& archive, const Model& model, const Motion& motion, const Balance* known)
 {
     std::vector<int> variables;
@@ -291,10 +290,8 @@ void write_balance(RunWriter& archive, const Model& model, const Motion& motion,
                 std::visit([&](auto part) { file.append(variables[i], all_of(piece.*part)); },
                            balance_variables[i].part);
         };
-        if (known != nullptr)
-            append(*known);
-        else
-            balance(model, motion, 1 << 12, append);
+        if (known != nullptr) return append(*known);
+        balance(model, motion, 1 << 12, append);
     });
 }
 
