@@ -32,6 +32,23 @@ TEST(Horizon, NoneOfAPendulumThatSwings)
     EXPECT_LT(s.verdict.growth, 1e4);   // it drifts in time: linearly
 }
 
+/// A nut that turns over passes its unstable spin six times in a minute, and comes back each time: neighbours
+/// part by a thousand or ten (by DOP853 on Euler's equations, four directions at random: 1.4e3, 2.2e3, 4.5e3,
+/// 1.3e4). What bends in a neighbour on one side would grow by as much at each passage, to 1e15.
+TEST(Horizon, BendsOfNeighboursDoNotGrow)
+{
+    Model model;
+    Placement spinning;
+    spinning.angular_velocity = {0.01, 5, 0.02};
+    model.add_body(rigid_body("nut", {1, {}, Matrix3{1, 0, 0, 0, 2, 0, 0, 0, 3}}, spinning));
+    for (const int n : {220, 430, 1000}) {
+        const Solution s = with_growth(model, 60, n, Lobatto{7});
+        EXPECT_GT(s.verdict.growth, 1e3) << n;
+        EXPECT_LT(s.verdict.growth, 2e4) << n;
+        EXPECT_TRUE(std::isnan(s.verdict.horizon));
+    }
+}
+
 /// On its head a pendulum leaves as exp(sqrt(g / l) t); the growth is that of any neighbour.
 TEST(Horizon, GrowthOnAnUnstableRestIsItsExponential)
 {

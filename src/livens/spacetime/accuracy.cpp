@@ -92,6 +92,7 @@ public:
             report.accuracy = span_.accuracy;
             if (!report.converged()) return std::move(one.solution);
             const ErrorEstimate& found = one.solution.estimate;
+            if (!one.is_broken_off && look_at_rounding(one.solution, tries)) return give_up(std::move(one));
             if (!one.is_broken_off && found.largest <= span_.accuracy) return std::move(one.solution);
             if (tries == most_tries || tolerance_ <= finest) return give_up(std::move(one));
             const double over = found.largest / span_.accuracy * (one.is_broken_off ? 3 : 1);
@@ -196,6 +197,17 @@ private:
         return degree;
     }
 
+    /// True if no mesh can be as accurate, because rounding grows to more. Asked where a try came to the end.
+    bool look_at_rounding(Solution& solution, int tries)
+    {
+        const bool is_good = solution.estimate.largest <= span_.accuracy;
+        if (!options_.growth || !(is_good || (tries > 1 && grown_ == 0))) return false;
+        solution.growth = growth(model_, problem_, solution.method, options_, solution.motion);
+        grown_ = grown_rounding(solution.growth);
+        count_rounding(model_, solution.growth, solution.motion.mesh, solution.estimate);
+        return grown_ > span_.accuracy;
+    }
+
     Solution give_up(Try&& last) const
     {
         const ErrorEstimate& found = last.solution.estimate;
@@ -213,10 +225,13 @@ private:
                               to_text(found.largest, 3) + " at " + to_text(found.time, 6) + " s";
         else
             report.message += "behind, nothing tells the error, since " + report.estimate_failed;
-        const bool is_rounding = tolerance_ <= finest;
-        report.message += " (try " + std::to_string(report.tries) +
-                          (is_rounding ? ", where rounding alone is left" : ", with ever shorter elements") +
-                          "); try: an earlier end of time, or a larger error in accuracy";
+        report.message += " (try " + std::to_string(report.tries);
+        if (grown_ > span_.accuracy)
+            report.message += "; the rounding of numbers at the start grows to " + to_text(grown_, 3);
+        else
+            report.message +=
+                tolerance_ <= finest ? ", where rounding alone is left" : ", with ever shorter elements";
+        report.message += "); try: an earlier end of time, or a larger error in accuracy";
         return std::move(last.solution);
     }
 
@@ -232,6 +247,7 @@ private:
     bool is_free_;             // the degree, which has not been lowered yet
     int highest_degree_ = 0;   // that is tried where it is not stated
     double tolerance_, length_;
+    double grown_ = 0;   // rounding, by the end; 0 as long as nobody asked
 };
 
 }   // namespace

@@ -110,6 +110,27 @@ void add_lost_vibrations(const Model& model, const Motion& motion, ErrorEstimate
     found.find_largest(motion.mesh);
 }
 
+double grown_rounding(std::span<const double> growth)
+{
+    constexpr double rounding = 0.5 * std::numeric_limits<double>::epsilon();
+    double largest = 0;
+    for (const double g : growth) raise_to(largest, g);
+    return rounding * largest;
+}
+
+void count_rounding(const Model& model, std::span<const double> growth, const TimeMesh& mesh,
+                    ErrorEstimate& found)
+{
+    const auto n = static_cast<std::size_t>(found.n_bodies);
+    double least = 0;
+    for (std::size_t i = 0; i < found.position.size() && i / n < growth.size(); ++i) {
+        raise_to(least, grown_rounding(growth.subspan(i / n, 1)));
+        raise_to(found.position[i], least);
+        if (!model.bodies()[i % n].is_point) raise_to(found.orientation[i], least);
+    }
+    found.find_largest(mesh);
+}
+
 namespace {
 
 void measure_error(const Model& model, const Problem& problem, const Method& method,
@@ -175,12 +196,15 @@ void estimate(const Model& model, const Problem& problem, const Method& method, 
         measure_error(model, problem, method, options, solution);
     if (!options.growth && !is_local) return;
     const auto begin = std::chrono::steady_clock::now();
-    solution.growth = growth(model, problem, solution.method, options, solution.motion);
+    if (solution.growth.empty())
+        solution.growth = growth(model, problem, solution.method, options, solution.motion);
     if (is_local) {
         solution.estimate = grown_errors(model, solution.motion, solution.growth);
         if (solution.estimate.empty())
             solution.report.estimate_failed = "no neighbouring motion tells to the end how errors grow";
     }
+    if (!solution.estimate.empty())
+        count_rounding(model, solution.growth, solution.motion.mesh, solution.estimate);
     solution.estimate_seconds +=
         std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }

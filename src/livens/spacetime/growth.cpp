@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <span>
 
 #include "livens/base/error.h"
 #include "livens/diagnostics/largest.h"
@@ -15,8 +16,8 @@ namespace livens {
 namespace {
 
 /// Of lengths of the model and rad: far above rounding, far below what bends.
-constexpr double small = 1e-6;
-/// Elements after which a neighbour is brought near again.
+constexpr double small = 1e-5;
+/// Elements after which neighbours are brought near again.
 constexpr int piece = 16;
 /// Start of the numbers that make a neighbour. One of them may happen to lie beside the direction that grows.
 constexpr std::uint64_t seeds[] = {0x9e3779b97f4a7c15u, 0xbf58476d1ce4e5b9u};
@@ -35,35 +36,50 @@ private:
     std::uint64_t state_;
 };
 
-double distance(const Model& model, const State& a, const State& b)
+/// The fastest rate that gravity and velocities make, 1/s: how velocities compare with positions.
+double fastest_rate(const Model& model, std::span<const Matrix34> velocities)
+{
+    double rate = std::sqrt(norm(model.gravity()) / model.length());
+    for (const Matrix34& V : velocities)
+        rate = std::max({rate, norm(V.column(0)) / model.length(), norm(directors(V)) / std::sqrt(2.0)});
+    return rate;
+}
+
+/// In lengths and rad.
+double size_of(const Model& model, std::span<const Matrix34> difference)
 {
     double largest = 0;
-    for (int i = 0; i < model.n_bodies(); ++i) {
-        const Matrix34 d = a.X[i] - b.X[i];
-        largest = std::max(
-            {largest, norm(d.column(0)) / model.length(), norm(directors(d)) / std::sqrt(2.0)});
-    }
+    for (const Matrix34& d : difference)
+        largest =
+            std::max({largest, norm(d.column(0)) / model.length(), norm(directors(d)) / std::sqrt(2.0)});
     return largest;
 }
 
-/// The state at t, a share of the way to the neighbour.
-State between(const State& state, const State& neighbour, double share)
-{
-    State s = state;
-    for (std::size_t b = 0; b < s.X.size(); ++b) {
-        s.X[b] += share * (neighbour.X[b] - state.X[b]);
-        s.V[b] += share * (neighbour.V[b] - state.V[b]);
+/// Half the difference of two states.
+struct Difference {
+    std::vector<Matrix34> X, V;
+
+    Difference(const State& a, const State& b)
+    {
+        for (std::size_t i = 0; i < a.X.size(); ++i) {
+            X.push_back(0.5 * (a.X[i] - b.X[i]));
+            V.push_back(0.5 * (a.V[i] - b.V[i]));
+        }
     }
-    return s;
-}
+    State beside(State s, double factor) const
+    {
+        for (std::size_t i = 0; i < X.size(); ++i) {
+            s.X[i] += factor * X[i];
+            s.V[i] += factor * V[i];
+        }
+        return s;
+    }
+};
 
 /// A state beside this one, off by about `small` in all that can move.
-State neighbour_of(const Model& model, const State& state, Noise noise)
+State neighbour_of(const Model& model, const State& state, double rate, Noise noise)
 {
     const double length = model.length();
-    double rate = std::sqrt(norm(model.gravity()) / length);
-    for (const Matrix34& V : state.V)
-        rate = std::max({rate, norm(V.column(0)) / length, norm(directors(V)) / std::sqrt(2.0)});
     const auto any = [&](double size) {
         const double x = noise(), y = noise(), z = noise();
         return size * Vector3{x, y, z};
@@ -84,34 +100,46 @@ State neighbour_of(const Model& model, const State& state, Noise noise)
     return s;
 }
 
-/// At element ends, as far as the neighbour's motion can be solved.
-std::vector<double> growth_beside(State neighbour, const Model& model, const Method& method,
-                                  const SolveOptions& quiet, const Motion& motion)
+/// At element ends, as far as the neighbours' motions can be solved. One on either side: what bends in their
+/// difference is of third order, and does not grow into directions that are not there.
+std::vector<double> growth_beside(const State& neighbour, double rate, const Model& model,
+                                  const Method& method, const SolveOptions& quiet, const Motion& motion)
 {
     std::vector<double> grown;
-    double so_far = 1;   // growth at the near end of the piece
+    const State start = motion.at_end(0);
+    State sides[2] = {neighbour, Difference(start, neighbour).beside(start, 2)};
+    double so_far = 1;   // of what was made smaller on the way
+    double begin = 0;
     for (int first = 0, n = motion.n_elements(); first < n; first += piece) {
         const int last = std::min(first + piece, n);
         TimeMesh mesh{{motion.mesh.ends.begin() + first, motion.mesh.ends.begin() + last + 1}};
         mesh.required = mesh.ends;
-        Solution beside;
-        try {
-            beside = solve(model, {{neighbour}}, mesh, method, quiet);
-        } catch (const InputError& error) {   // the motion has come to a singular position
-            if (error.complaint().code != "start-singular") throw;
-            return grown;
+        Solution beside[2];
+        for (int k = 0; k < 2; ++k) {
+            try {
+                beside[k] = solve(model, {{sides[k]}}, mesh, method, quiet);
+            } catch (const InputError& error) {   // the motion has come to a singular position
+                if (error.complaint().code != "start-singular") throw;
+                return grown;
+            }
+            if (!beside[k].report.converged()) return grown;
         }
-        if (!beside.report.converged()) return grown;
-        const double begin = distance(model, motion.at_end(first), beside.motion.at_end(0));
+        const auto apart_at = [&](double t) {
+            return Difference(beside[0].motion.at(t), beside[1].motion.at(t));
+        };
+        if (first == 0) begin = size_of(model, apart_at(mesh.start()).X);
         if (!(begin > 0)) return {};   // nothing can move
-        double end = 0;
-        for (int e = first == 0 ? 0 : first + 1; e <= last; ++e) {
-            end = distance(model, motion.at_end(e), beside.motion.at(motion.mesh.ends[e]));
-            grown.push_back(so_far * end / begin);
+        for (int e = first == 0 ? 0 : first + 1; e <= last; ++e)
+            grown.push_back(so_far * size_of(model, apart_at(motion.mesh.ends[e]).X) / begin);
+        // Near in positions alone is not near: where neighbours cross, their velocities differ most.
+        const Difference apart = apart_at(mesh.end());
+        const double share = small / std::max(size_of(model, apart.X), size_of(model, apart.V) / rate);
+        if (!std::isfinite(share)) return grown;
+        so_far /= share;
+        for (int k = 0; k < 2; ++k) {
+            sides[k] = apart.beside(motion.at_end(last), k == 0 ? share : -share);
+            sides[k].t = mesh.end();
         }
-        so_far *= end / begin;
-        neighbour = between(motion.at_end(last), beside.motion.at(mesh.end()), end > 0 ? small / end : 0);
-        neighbour.t = mesh.end();
     }
     return grown;
 }
@@ -126,9 +154,12 @@ std::vector<double> growth(const Model& model, const Problem& problem, const Met
     SolveOptions quiet = options;
     quiet.condition = quiet.judge = false;
     quiet.initial = StartPolicy::project;
+    const State start = motion.at_end(0);
+    const double at_start = fastest_rate(model, start.V), ever = fastest_rate(model, motion.velocities);
+    const double rate = ever > 0 ? ever : 1;
     for (const std::uint64_t seed : seeds) {
-        const State neighbour = neighbour_of(model, motion.at_end(0), Noise(seed));
-        const std::vector<double> one = growth_beside(neighbour, model, method, quiet, motion);
+        const State neighbour = neighbour_of(model, start, at_start, Noise(seed));
+        const std::vector<double> one = growth_beside(neighbour, rate, model, method, quiet, motion);
         grown.resize(std::max(grown.size(), one.size()), 0.0);
         for (std::size_t e = 0; e < one.size(); ++e) raise_to(grown[e], one[e]);
     }

@@ -44,4 +44,12 @@ private:
 /// for lobatto.  (docs/theory.md, "What radau takes")
 void add_lost_vibrations(const Model& model, const Motion& motion, ErrorEstimate& found);
 
+/// What the rounding of numbers at the start has grown to, in lengths of the model and rad; growth as of
+/// growth().
+double grown_rounding(std::span<const double> growth);
+/// Both solutions begin with the same rounded numbers, so that their distance does not tell what that costs:
+/// no estimate is below what rounding has grown to by then.
+void count_rounding(const Model& model, std::span<const double> growth, const TimeMesh& mesh,
+                    ErrorEstimate& found);
+
 }   // namespace livens

@@ -72,7 +72,7 @@ void estimate(const Model& model, const Problem& problem, const Method& method, 
               Solution& solution);
 
 /// By how much a small perturbation of all positions and velocities at the start (velocities by the fastest
-/// rate there is) has grown at element ends: a neighbouring motion on the same elements, brought near again
+/// rate there is) has grown at element ends: motions on either side, on the same elements, brought near again
 /// every 16 of them. Empty where nothing can move, or without a state at the start.
 std::vector<double> growth(const Model& model, const Problem& problem, const Method& method,
                            const SolveOptions& options, const Motion& motion);

@@ -244,10 +244,9 @@ Table method_table()
              false,
              {"second", "local", "none"}},
          Key{"growth", types::truth,
-             "Whether two neighbouring motions tell how perturbations of the start grow, and the horizon "
-             "beyond which double precision says nothing; about twice as costly as the motion. Default: true "
-             "with "
-             "`accuracy` of `[time]`, else false."},
+             "Whether two pairs of neighbouring motions tell how perturbations of the start grow, and the "
+             "horizon beyond which double precision says nothing; about four times as costly as the motion. "
+             "Default: true with `accuracy` of `[time]`, else false."},
          Key{"condition", types::truth,
              "Whether condition numbers are computed: of the whole matrix of the last block (mixed), of that "
              "of all elements, reduced to the free motions (lobatto), of that of the last element likewise "
