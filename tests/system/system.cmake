@@ -20,7 +20,7 @@ if(LIVENS_BUILD_PROGRAM)
             add_test(NAME system.${name} COMMAND ${livens_python} -B ${script} ${name})
             set_tests_properties(
                 system.${name}
-                PROPERTIES LABELS ${label} TIMEOUT 600
+                PROPERTIES LABELS ${label} TIMEOUT 600 COST 100   # first, since they are the longest
                 ENVIRONMENT "LIVENS_PROGRAM=$<TARGET_FILE:livens>;LIVENS_SOURCE_DIR=${PROJECT_SOURCE_DIR}")
         endforeach()
     endforeach()
