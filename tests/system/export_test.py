@@ -159,6 +159,7 @@ class Npz(ProgramTest):
         with zipfile.ZipFile(self.folder / "run.npz") as archive:
             self.assertIsNone(archive.testzip())
             self.assertIn("estimated_position_error.npy", archive.namelist())
+            self.assertTrue(all(entry.extract_version == 45 for entry in archive.infolist()), "4.5: 64 bits")
             for entry in archive.infolist():   # heads of arrays end at a multiple of 64
                 head = archive.read(entry)[:10]
                 self.assertEqual(head[:8], b"\x93NUMPY\x01\x00")

@@ -101,6 +101,21 @@ TEST(Mobility, SumsOfBranchesAreNone)
     EXPECT_GT(way_back(model, start.V, 1e-3), 1e-4);
 }
 
+TEST(Mobility, NamesARowOfTheLoopThatIsSingular)
+{
+    Model model({0, 0, -9.81});
+    model.add_body(point_mass("apart", 1, {0, 0, 5}));
+    model.add_joint(rod("of its own", world, 0, {}, 5));
+    model.add_body(point_mass("bead", 1, {1, 0, 0}));
+    JointFrame frame;
+    model.add_joint(rod("left", world, 1, frame, 1));
+    frame.point_first = {2.5, 0, 0};
+    model.add_joint(rod("right", world, 1, frame, 1.5));
+    const Mobility m = mobility_of(model);
+    EXPECT_TRUE(m.is_singular());
+    EXPECT_NE(model.row_joint(m.row), 0);
+}
+
 TEST(Mobility, KnowsWhatIsLocked)
 {
     Model model({0, 0, -9.81});

@@ -325,6 +325,20 @@ TEST(JointFactor, AgreesWithOrthogonalBases)
     EXPECT_GT(size_of(lambda[0]), 0.1);
 }
 
+// What is left cannot fall below a tolerance below rounding: steps that have shrunk, and stop, are done.
+TEST(MarchKernel, StepsThatMeetTheirRoundingAreDone)
+{
+    SolveOptions options;
+    options.judge = false;
+    options.tolerance = 1e-15;
+    Model pendulum({0, 0, -9.81});
+    pendulum.add_body(rigid_body("bar", with_center(box(50, {1, 0.2, 0.1}), {0.5, 0, 0})));
+    pendulum.add_joint(spherical("ball", world, 0, {}));
+    const Solution s = solve(pendulum, {pendulum.start()}, make_time_mesh(0, 5, 100), Lobatto{6}, options);
+    ASSERT_TRUE(s.report.converged()) << s.report.message;
+    EXPECT_EQ(s.report.factorisations, 0);
+}
+
 // Room and work grow with the bodies: dense bases of 300 would take gigabytes at the nodes alone.
 TEST(MarchKernel, SolvesLongChains)
 {

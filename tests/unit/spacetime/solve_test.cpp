@@ -44,6 +44,17 @@ TEST(Solve, NamesSmallNumbersToTheLastDigit)
     EXPECT_EQ(outside.value + " of " + outside.bound, "2e-07 of 0 to 1e-07");
 }
 
+TEST(Solve, ASampleIsNoProgressOfARun)
+{
+    const Model model = stone();
+    const Solution fall = solve(model, {model.start()}, make_time_mesh(0, 1, 2), Lobatto{1});
+    SolveOptions options;
+    int told = 0;
+    options.progress = [&](const Progress&) { return ++told < 0; };   // which would stop a run
+    EXPECT_TRUE(sample_exactly(model, fall.motion, Lobatto{1}, 0.3, options).report.converged());
+    EXPECT_EQ(told, 0);
+}
+
 TEST(Solve, NamesRadauAndRefusesWhatItCannotDo)
 {
     EXPECT_EQ(name_of(Radau{3}), "radau(3)");
