@@ -65,6 +65,8 @@ public:
     /// Newton's iteration: the same equations, to the same digits. False: nothing was found, the window is as
     /// before.
     virtual bool solve(const NewtonOptions&, NewtonReport&) { return false; }
+    /// Whether a tangent of the open window takes more than what it is worth, where solve() found nothing.
+    virtual bool is_too_large() const { return false; }
     /// The equations of the open window.
     virtual NewtonProblem& equations() = 0;
     /// The family's own guess, cheap and good for short windows. False: it has none here.

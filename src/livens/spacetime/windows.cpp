@@ -174,12 +174,17 @@ private:
             iterations += outcome.iterations;
             report_.factorisations += outcome.factorisations;
         };
-        if (!options_.by_newton && window_.solve(newton_options_, outcome))
+        const bool is_solved = !options_.by_newton && window_.solve(newton_options_, outcome);
+        if (!is_solved) outcome.status = SolveStatus::not_converged;
+        const bool is_too_large =   // shorter elements cost less than this tangent
+            !is_solved && !options_.by_newton && window_.is_too_large() && may_divide(first, last, outcome);
+        if (is_solved)
             iterations = outcome.iterations;
-        else if (window_.predict())
+        else if (!is_too_large && window_.predict())
             run();
         const auto goes_on = [&] {
-            return outcome.status != SolveStatus::converged && outcome.status != SolveStatus::cancelled;
+            return !is_too_large && outcome.status != SolveStatus::converged &&
+                   outcome.status != SolveStatus::cancelled;
         };
         for (int i = 0; goes_on() && options_.propose; ++i) {
             const WindowOptions::Proposal proposal = options_.propose(first, last, i);

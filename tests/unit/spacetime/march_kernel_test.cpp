@@ -339,6 +339,38 @@ TEST(MarchKernel, StepsThatMeetTheirRoundingAreDone)
     EXPECT_EQ(s.report.factorisations, 0);
 }
 
+// Elements so long that steps grow: those of many bodies are combined, and say what Newton's iteration says.
+TEST(MarchKernel, ManyBodiesOnLongElementsNeedNoTangent)
+{
+    Model chain({0, 0, -9.81});
+    for (int b = 0; b < 25; ++b) {
+        Placement placement;
+        placement.position = {static_cast<double>(b), 0, 0};
+        chain.add_body(
+            rigid_body(std::to_string(b), with_center(box(50, {1, 0.2, 0.1}), {0.5, 0, 0}), placement));
+        JointFrame frame;
+        frame.point_first = {b > 0 ? 1.0 : 0.0, 0, 0};
+        chain.add_joint(spherical(std::to_string(b), b - 1, b, frame));
+    }
+    SolveOptions options;
+    options.judge = false;
+    State ends[2];
+    for (const bool by_newton : {false, true}) {
+        options.by_newton = by_newton;
+        const Solution s = solve(chain, {chain.start()}, make_time_mesh(0, 1, 8), Lobatto{4}, options);
+        ASSERT_TRUE(s.report.converged()) << s.report.message;
+        EXPECT_EQ(s.report.factorisations > 0, by_newton);
+        EXPECT_EQ(s.motion.n_elements(), 8);
+        // beyond what single steps may take
+        EXPECT_GT(s.report.most_iterations, by_newton ? 1 : 10);
+        ends[by_newton ? 1 : 0] = s.motion.at_end(8);
+    }
+    for (int b = 0; b < chain.n_bodies(); ++b) {
+        EXPECT_LT(norm(ends[0].X[b] - ends[1].X[b]), 1e-11) << b;
+        EXPECT_LT(norm(ends[0].V[b] - ends[1].V[b]), 1e-9) << b;
+    }
+}
+
 // Room and work grow with the bodies: dense bases of 300 would take gigabytes at the nodes alone.
 TEST(MarchKernel, SolvesLongChains)
 {

@@ -36,8 +36,10 @@ struct Functions {
     /// Balances, less what multipliers take.
     void (*balance)(const Pattern&, const Values& start, const Values& nodes, const Rule&, bool first,
                     Sizes&);
-    /// A step onto the solution, and places moved by it.
-    void (*step)(const Pattern&, const Values& nodes, const Rule&, Sizes&);
+    /// A step onto the solution.
+    void (*propose)(const Pattern&, const Values& nodes, const Rule&);
+    /// Places moved by the step.
+    void (*move)(const Pattern&, const Values& nodes, const Rule&, Sizes&);
     /// Twist rows, about the centres, of what multipliers take at all nodes: 6 scalars a body.
     void (*sum_impulses)(const Pattern&, const Values& start, const Values& nodes, double* sum);
 };

@@ -204,14 +204,13 @@ void move(const Pattern& p, const Values& v, const Rule& rule, Sizes& sizes)
 }
 
 template <int W>
-void step(const Pattern& p, const Values& v, const Rule& rule, Sizes& sizes)
+void propose(const Pattern& p, const Values& v, const Rule& rule)
 {
     const At<W, false> G{v.gradients, nullptr}, factor{v.factor, nullptr};
     for (int i = 0; i < p.n_twists; ++i) store(v.step + i * W, times<W>(v.rows + i * W, rule.inverse));
     multiply(p, G, v.step, v.violations, v.work);
     solve(p, factor, v.work);
     take_off(p, G, v.work, v.step);
-    move<W>(p, v, rule, sizes);
 }
 
 template <int W>
@@ -237,7 +236,8 @@ void sum_impulses(const Pattern& p, const Values& start, const Values& v, double
 }
 
 template <int W>
-constexpr Functions functions_of{W, configure<W>, interpolate<W>, balance<W>, step<W>, sum_impulses<W>};
+constexpr Functions functions_of{W,          configure<W>, interpolate<W>, balance<W>,
+                                 propose<W>, move<W>,      sum_impulses<W>};
 
 /// For degrees up to 18, with as few lanes as registers have room for.
 template <int W = LIVENS_REGISTER>

@@ -14,6 +14,7 @@ namespace {
 
 constexpr double slow_contraction = 0.3;
 constexpr int most_slow_steps = 2, most_steps = 10;
+constexpr int many_twists = 100, most_combinations = 150, most_slow_combinations = 20;
 constexpr double hopeless_step = 10;         // lengths or radians
 constexpr double smallest_step = 1e-18;      // likewise: nothing moves
 constexpr double least_pivot = 1e-5;         // of the rows' own size
@@ -57,6 +58,17 @@ struct Shrinking {
         has_contracted = has_contracted || !is_slow;
         n_slow += is_slow ? 1 : 0;
         return is_done || n_slow < most_slow_steps;
+    }
+    /// The same of combined steps, which do not shrink one by one; `left` is what is proposed.
+    bool approach(double left, const lanes::Sizes& sizes)
+    {
+        const double allowed = tolerance * std::clamp(sizes.motion, 1e-6, 1.0);
+        const bool is_nearer = n_steps++ == 0 || left < step;
+        n_slow = is_nearer ? 0 : n_slow + 1;
+        if (is_nearer) step = left;   // the smallest so far
+        is_done = left <= std::max(smallest_step, share_of_tolerance * allowed) ||
+                  (left <= allowed && n_slow >= most_slow_steps);
+        return is_done || (left < hopeless_step && n_slow < most_slow_combinations);
     }
 };
 
@@ -219,18 +231,35 @@ void MarchKernel::evaluate_loads(const Stretch& stretch)
     }
 }
 
-bool MarchKernel::solve(const Stretch& stretch, const InstantState& start, const NewtonOptions& options,
-                        NewtonReport& report)
+/// In lengths and radians.
+double MarchKernel::size_of_proposal() const
 {
-    is_solved_ = false;
-    if (!start.by_joints) return false;
-    use(start);
-    scale_rule(stretch, start);
+    const int W = functions_->width;
+    double far = 0, wide = 0;
+    for (int b = 0; b < tables_.n_bodies(); ++b) {
+        const lanes::Body& body = pattern_->view().bodies[b];
+        for (int l = 0; l < rule_.degree; ++l) {
+            const double* y = nodes_.values().step + body.first * W + l;
+            for (int i = 0; i < 3; ++i) far = std::max(far, body.inverse_root_mass * std::abs(y[i * W]));
+            for (int i = 0; body.dofs == 6 && i < 3; ++i) {
+                const double* s = body.spin + i;   // w = L^-T y_2
+                wide = std::max(wide, std::abs(s[0] * y[3 * W] + s[3] * y[4 * W] + s[6] * y[5 * W]));
+            }
+        }
+    }
+    return std::max(far / scaled_.tables.length, wide);
+}
+
+bool MarchKernel::iterate(const Stretch& stretch, const InstantState& start, const NewtonOptions& options,
+                          bool is_accelerated, NewtonReport& report)
+{
     guess(stretch, start);
     const lanes::Pattern& pattern = pattern_->view();
     const lanes::Values &nodes = nodes_.values(), &from = start_->values();
+    const int most = is_accelerated ? most_combinations : std::min(most_steps, options.max_iterations);
     lanes::Sizes sizes;
     Shrinking progress{std::min(options.tolerance, widest_tolerance)};
+    if (is_accelerated) acceleration_.begin(static_cast<std::size_t>(pattern.n_twists * functions_->width));
     for (int steps = 0;; ++steps) {
         functions_->configure(pattern, from, nodes);
         evaluate_loads(stretch);
@@ -238,9 +267,13 @@ bool MarchKernel::solve(const Stretch& stretch, const InstantState& start, const
         evaluations_ += rule_.size();
         if (!std::isfinite(sizes.finite)) return false;
         if (progress.is_done) break;
-        if (steps == std::min(most_steps, options.max_iterations)) return false;
-        functions_->step(pattern, nodes, scaled_.tables, sizes);
-        if (!std::isfinite(sizes.finite) || !progress.take(sizes)) return false;
+        if (steps == most) return false;
+        functions_->propose(pattern, nodes, scaled_.tables);
+        const double left = is_accelerated ? size_of_proposal() : 0;
+        if (is_accelerated) acceleration_.apply(nodes.step);
+        functions_->move(pattern, nodes, scaled_.tables, sizes);
+        if (!std::isfinite(sizes.finite)) return false;
+        if (!(is_accelerated ? progress.approach(left, sizes) : progress.take(sizes))) return false;
     }
     double terms = sizes.terms;
     for (const double momentum : start.momentum) terms = std::max(terms, std::abs(momentum));
@@ -251,8 +284,23 @@ bool MarchKernel::solve(const Stretch& stretch, const InstantState& start, const
     report.residual = terms > 0 ? sizes.rows / terms : sizes.rows;
     for (int A = 0; A <= rule_.degree; ++A)
         if (!(pivot(A) > least_pivot)) return false;
-    is_solved_ = true;
     return true;
+}
+
+bool MarchKernel::solve(const Stretch& stretch, const InstantState& start, const NewtonOptions& options,
+                        NewtonReport& report)
+{
+    is_solved_ = false;
+    if (!start.by_joints) return false;
+    use(start);
+    scale_rule(stretch, start);
+    const bool is_large = tables_.n_twists >= many_twists && options.max_iterations >= most_steps;
+    if (!(is_large && was_slow_)) is_solved_ = iterate(stretch, start, options, false, report);
+    if (is_large && !is_solved_) {
+        is_solved_ = iterate(stretch, start, options, true, report);
+        was_slow_ = is_solved_ && report.iterations > most_steps;
+    }
+    return is_solved_;
 }
 
 void MarchKernel::increments(int B, double* dX) const

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "livens/solvers/newton.h"
+#include "livens/spacetime/lobatto/acceleration.h"
 #include "livens/spacetime/lobatto/kernel_functions.h"
 #include "livens/spacetime/lobatto/series.h"
 
@@ -24,7 +25,8 @@ public:
     /// Whether there are lanes for the rule, and JointFactor serves.
     bool serves() const { return functions_ != nullptr; }
     /// The element of `stretch` from `start`. False: not converged within ten steps, steps that do not shrink
-    /// to 0.3 twice, a number that is not finite, or a pivot that is nearly zero.
+    /// to 0.3 twice, a number that is not finite, or a pivot that is nearly zero. Steps of many bodies, of
+    /// which a tangent would be large, are then combined (Acceleration).
     bool solve(const Stretch& stretch, const InstantState& start, const NewtonOptions& options,
                NewtonReport& report);
     /// The last solve() was successful, and nothing else was tried since.
@@ -63,6 +65,9 @@ private:
     void scale_rule(const Stretch& stretch, const InstantState& start);
     void guess(const Stretch& stretch, const InstantState& start);
     void evaluate_loads(const Stretch& stretch);
+    bool iterate(const Stretch& stretch, const InstantState& start, const NewtonOptions& options,
+                 bool is_accelerated, NewtonReport& report);
+    double size_of_proposal() const;
     int lane_of(int B) const { return B == rule_.degree ? 0 : B; }
     int node_of(int lane) const { return lane == 0 ? rule_.degree : lane; }
 
@@ -75,6 +80,8 @@ private:
     LaneStore nodes_;
     ScaledRule scaled_;
     Work work_;
+    Acceleration acceleration_;
+    bool was_slow_ = false;   // the last element
     long long evaluations_ = 0;
     bool is_solved_ = false;
 };

@@ -128,6 +128,12 @@ bool LobattoWindow::solve(const NewtonOptions& options, NewtonReport& report)
     return true;
 }
 
+bool LobattoWindow::is_too_large() const
+{
+    constexpr int most_unknowns = 4000;   // 128 MB, and seconds for a factor
+    return kernel_.serves() && stretch_.is_march() && tables_.freedoms() * stretch_.degree > most_unknowns;
+}
+
 void LobattoWindow::begin_newton()
 {
     kernel_.forget();

@@ -19,6 +19,7 @@ public:
 
     bool open(int first, int last, SolveReport& report) override;
     bool solve(const NewtonOptions& options, NewtonReport& report) override;
+    bool is_too_large() const override;
     NewtonProblem& equations() override { return system_; }
     bool predict() override;
     bool start_from(const Guess& guess) override;
