@@ -115,7 +115,7 @@ double grown_rounding(std::span<const double> growth)
     constexpr double rounding = 0.5 * std::numeric_limits<double>::epsilon();
     double largest = 0;
     for (const double g : growth) raise_to(largest, g);
-    return rounding * largest;
+    return rounding * std::min(largest, growth_at_horizon);
 }
 
 void count_rounding(const Model& model, std::span<const double> growth, const TimeMesh& mesh,

@@ -44,8 +44,10 @@ private:
 /// for lobatto.  (docs/theory.md, "What radau takes")
 void add_lost_vibrations(const Model& model, const Motion& motion, ErrorEstimate& found);
 
-/// What the rounding of numbers at the start has grown to, in lengths of the model and rad; growth as of
-/// growth().
+/// Where it is more the motion is beyond its horizon, which the verdict tells.
+constexpr double growth_at_horizon = 1e11;
+/// What the rounding of numbers at the start has grown to, up to the horizon, in lengths of the model and
+/// rad; growth as of growth().
 double grown_rounding(std::span<const double> growth);
 /// Both solutions begin with the same rounded numbers, so that their distance does not tell what that costs:
 /// no estimate is below what rounding has grown to by then.
