@@ -462,6 +462,17 @@ degree = 6
             self.assertAlmostEqual(upper["force"][2], (mass + 0.5) * 9.81, delta=1e-9)
             self.assertAlmostEqual(lower["force"][2], 0.5 * 9.81, delta=1e-9)
             self.assertEqual(upper["source"], "acceleration level" if t == "0.1" else "interpolated multipliers")
+            text = self.expect(0, "sample", "run.nc", "--joint", "upper", "--at", t).out
+            self.assertNotIn("before", text, "where nothing jumps, one side says all")
+
+    def test_reactions_on_both_sides_of_a_jump(self):
+        kick = ('[[load]]\nname = "kick"\ntype = "force"\nbody = "bob"\npoint = [0, 0, 0]\nvalue = [0, 0, -3]\n'
+                "from = 0.25\n")
+        at = SMALL.index("[time]")
+        self.solve(SMALL[:at] + kick + SMALL[at:])
+        for t, is_there in (("0.25", True), ("0.3", False)):
+            text = self.expect(0, "sample", "run.nc", "--joint", "lower", "--at", t).out
+            self.assertEqual("force before" in text, is_there, text)
 
     def test_several_instants(self):
         self.solve()

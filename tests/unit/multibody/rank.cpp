@@ -117,6 +117,25 @@ TEST(Rank, OfLongChainsAndRingsIsFoundAlongTheJoints)
     EXPECT_EQ(static_cast<int>(closed(ring(2, n, {}, false)).independent.size()), 5 * n + 5);
 }
 
+// A ball holds a point: its forces have no moment about that point, on either body.
+TEST(Rows, WrenchesAreAboutTheJointPoints)
+{
+    Linkage l(7, {});
+    l.add_link({0, 0, 0});
+    l.add_link({2, 1, 0});
+    l.ball(0, 1, {0.7, -0.4, 0.9});
+    const std::vector<Matrix34> X = l.model.start().X;
+    const Joint& ball = l.model.joints()[0];
+    for (const auto& row : row_wrenches(l.model, X)) {
+        ASSERT_EQ(row.size(), 2u);
+        for (const Wrench& w : row) {
+            EXPECT_EQ(w.at, w.body == 0 ? ball.point_first : ball.point_second);
+            EXPECT_EQ(norm(w.moment), 0);
+            EXPECT_GT(norm(w.force), 0.1);
+        }
+    }
+}
+
 /// By elimination with complete pivoting; -1 where a pivot is neither large nor rounding.
 int rank_by_elimination(const Model& model, std::span<const Matrix34> X)
 {
