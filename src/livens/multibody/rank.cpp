@@ -188,7 +188,7 @@ std::optional<std::vector<int>> clearly_dependent(const std::vector<BodyRow>& ro
     }
     const Eigen::ColPivHouseholderQR<MatrixXd> qr(added);
     for (Index k = 0; k < n_closing; ++k) {
-        const double pivot = std::abs(qr.matrixQR()(k, k));
+        const double pivot = k < n ? std::abs(qr.matrixQR()(k, k)) : 0;   // n directions are all there are
         if (pivot > well_held)
             smallest_pivot = std::min(smallest_pivot, pivot);
         else if (pivot <= threshold)
