@@ -49,12 +49,20 @@ void add_scenario_commands(CLI::App& app, Arguments& a)
     CLI::App& check = add_command(app, a, "check", "Check a scenario without solving it");
     check.add_option("FILE", a.scenario, "scenario (TOML)")->required()->type_name("FILE.toml");
     add_common(check, a);
-    CLI::App& solve = add_command(app, a, "solve", "Solve a scenario and write the motion");
-    solve.add_option("FILE", a.solve.scenario, "scenario (TOML)")->required()->type_name("FILE.toml");
+    CLI::App& solve = add_command(app, a, "solve", "Solve scenarios and write their motions");
+    solve.add_option("FILE", a.solve.scenarios, "scenario (TOML), or several")
+        ->required()
+        ->type_name("FILE.toml");
     solve
-        .add_option("-o,--output", a.solve.output, "result file; default: the scenario's stem with .nc, here")
+        .add_option("-o,--output", a.solve.output,
+                    "result file, or a folder for several; default: the scenario's stem with .nc, here")
         ->type_name("RUN.nc");
     solve.add_option("--csv", a.solve.csv, "write the samples as CSV too")->type_name("FILE.csv");
+    solve
+        .add_option("-j,--jobs", a.solve.jobs,
+                    "scenarios that are solved at a time; default: one a processor")
+        ->check(CLI::Range(1, 1024))
+        ->type_name("N");
     add_choice(solve, "--simd", a.solve.simd, {"sse2", "avx2", "avx512"},
                "instructions to solve with; default: the widest that the processor has");
     add_common(solve, a);

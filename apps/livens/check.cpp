@@ -76,7 +76,7 @@ int check_command(const std::string& file, const Common& common)
     std::vector<Diagnostic> warnings;
     const Scenario scenario = load_scenario(file, common, &warnings);
     const ClosedStart assembly = assembly_of(scenario);
-    check_memory(scenario);
+    check_memory({&scenario});
     if (common.json) {
         print(json_of(scenario, assembly, warnings));
         return exit_ok;

@@ -31,7 +31,7 @@ const char* status_of(int exit_code)
     case exit_input_output:
         return "input or output failed";
     default:
-        return "internal error";
+        return exit_code > exit_signal ? "cancelled" : "internal error";
     }
 }
 
@@ -164,11 +164,11 @@ int finish(const Failure& f, const Common& common)
 
 Failure failure(int exit_code, const std::string& message)
 {
-    const std::string code = exit_code == exit_usage           ? "usage"
-                             : exit_code == exit_not_converged ? "not-converged"
-                             : exit_code == exit_input_output  ? "io"
-                             : exit_code == exit_resources     ? "resource-limit"
-                                                               : "internal";
+    const std::string code = exit_code == exit_usage                                      ? "usage"
+                             : exit_code == exit_not_converged || exit_code > exit_signal ? "not-converged"
+                             : exit_code == exit_input_output                             ? "io"
+                             : exit_code == exit_resources                                ? "resource-limit"
+                                                                                          : "internal";
     return {exit_code, status_of(exit_code), {plain_error(code, message)}};
 }
 

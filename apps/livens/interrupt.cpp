@@ -1,18 +1,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "interrupt.h"
 
+#include <atomic>
+
 #include <unistd.h>
 
 namespace livens::program {
 
 namespace {
 
-volatile std::sig_atomic_t caught = 0;
+std::atomic<int> caught{0}, pauses{0};   // without locks, so that a handler may use them
+std::atomic<bool> ends_now{false};
+static_assert(std::atomic<int>::is_always_lock_free && std::atomic<bool>::is_always_lock_free);
 
+/// A second signal ends the program; where another thread writes a file, as soon as that is done.
 void note(int number)
 {
-    if (caught != 0) ::_exit(128 + number);
-    caught = number;
+    if (caught.exchange(number) == 0) return;
+    ends_now = true;
+    if (pauses == 0) ::_exit(128 + number);
 }
 
 }   // namespace
@@ -42,9 +48,14 @@ SignalPause::SignalPause()
     sigemptyset(&set);
     for (const int number : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&set, number);
     ::pthread_sigmask(SIG_BLOCK, &set, &old_);
+    ++pauses;
 }
 
-SignalPause::~SignalPause() { ::pthread_sigmask(SIG_SETMASK, &old_, nullptr); }
+SignalPause::~SignalPause()
+{
+    if (--pauses == 0 && ends_now) ::_exit(128 + caught);
+    ::pthread_sigmask(SIG_SETMASK, &old_, nullptr);
+}
 
 void ignore_write_signals()
 {

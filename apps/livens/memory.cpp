@@ -71,17 +71,25 @@ std::string bytes_in_words(double bytes)
     return bytes < 1e9 ? fmt::format("{:.0f} MB", bytes / 1e6) : fmt::format("{:.1f} GB", bytes / 1e9);
 }
 
-void check_memory(const Scenario& scenario)
+void check_memory(const std::vector<const Scenario*>& scenarios, int at_a_time)
 {
-    const MemoryNeed need = memory_needed(scenario);
+    std::vector<MemoryNeed> needs;
+    for (const Scenario* scenario : scenarios) needs.push_back(memory_needed(*scenario));
+    std::ranges::sort(needs, std::ranges::greater{}, &MemoryNeed::most);
+    double all = 0;
+    for (int i = 0; i < at_a_time && i < static_cast<int>(needs.size()); ++i) all += needs[i].most();
     const double left = memory_left();
-    if (need.most() <= left) return;
-    const char* const advice = need.system > need.motion
+    if (all <= left) return;
+    const MemoryNeed& largest = needs.front();
+    const bool is_one = largest.most() > left;
+    const char* const advice = !is_one ? "fewer at a time ('--jobs') need less"
+                               : largest.system > largest.motion
                                    ? "fewer elements at once ('window' in [method]) need less"
                                    : "fewer elements need less; a higher degree makes up for it";
     throw failure(exit_resources,
-                  fmt::format("the run would take at least {} of memory, and {} can be had; {}",
-                              bytes_in_words(need.most()), bytes_in_words(left), advice));
+                  fmt::format("{} would take at least {} of memory, and {} can be had; {}",
+                              is_one ? "the run" : fmt::format("{} runs at a time", at_a_time),
+                              bytes_in_words(is_one ? largest.most() : all), bytes_in_words(left), advice));
 }
 
 }   // namespace livens::program

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "livens/io/scenario.h"
 
@@ -15,7 +16,8 @@ double memory_left();
 /// "284 MB", "1.2 GB".
 std::string bytes_in_words(double bytes);
 
-/// Throws what ends in exit code 5 if the run would need more, before anything is solved.
-void check_memory(const Scenario& scenario);
+/// Throws what ends in exit code 5 if a run, or the largest of those that are solved at a time, would need
+/// more, before anything is solved.
+void check_memory(const std::vector<const Scenario*>& scenarios, int at_a_time = 1);
 
 }   // namespace livens::program

@@ -30,9 +30,13 @@ std::string joined(const std::vector<Part>& parts)
 
 ProgressLine::ProgressLine(bool enabled) : enabled_(enabled) {}
 
-ProgressLine::~ProgressLine()
+ProgressLine::~ProgressLine() { clear(); }
+
+void ProgressLine::clear()
 {
-    if (visible_) say_raw("\r\x1b[K");
+    if (!visible_) return;
+    say_raw("\r\x1b[K");
+    visible_ = false;
 }
 
 void ProgressLine::show(const Progress& progress)

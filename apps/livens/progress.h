@@ -22,6 +22,7 @@ public:
     ProgressLine& operator=(const ProgressLine&) = delete;
 
     void show(const Progress& progress);
+    void clear();
 
 private:
     using Clock = std::chrono::steady_clock;

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// livens solve: a scenario in, a solved and checked motion out.
+// livens solve: scenarios in, solved and checked motions out.
+#include <algorithm>
 #include <chrono>
 #include <ctime>
+#include <exception>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <new>
 
@@ -14,6 +17,7 @@
 #include "interrupt.h"
 #include "livens/base/version.h"
 #include "livens/io/results.h"
+#include "livens/spacetime/ensemble.h"
 #include "memory.h"
 #include "places.h"
 #include "progress.h"
@@ -36,14 +40,21 @@ struct Places {
     fs::path scenario, output, record, csv;
 };
 
+/// A result's name: as it is given, or in the folder that is, or here.
+fs::path output_of(const fs::path& scenario, const SolveArguments& arguments)
+{
+    const fs::path name = scenario.stem().string() + ".nc";
+    if (arguments.output.empty()) return name;
+    return arguments.scenarios.size() > 1 ? arguments.output / name : fs::path(arguments.output);
+}
+
 /// Where everything goes; refuses what would destroy something or cannot be written, before anything is
 /// solved.
-Places places(const SolveArguments& arguments)
+Places places(const fs::path& scenario, const SolveArguments& arguments)
 {
     Places p;
-    p.scenario = arguments.scenario;
-    p.output =
-        arguments.output.empty() ? fs::path(p.scenario.stem().string() + ".nc") : fs::path(arguments.output);
+    p.scenario = scenario;
+    p.output = output_of(scenario, arguments);
     p.record = record_of(p.output);
     p.csv = arguments.csv;
     check_differs(p.output, p.scenario, "it is the scenario itself");
@@ -52,6 +63,17 @@ Places places(const SolveArguments& arguments)
     check_differs(p.csv, p.scenario, "it is the scenario itself");
     check_export_place(p.csv, export_formats().front(), p.output);
     return p;
+}
+
+void check_several(const SolveArguments& arguments)
+{
+    if (!arguments.csv.empty())
+        throw failure(exit_usage,
+                      "'--csv' takes the samples of one scenario; 'livens export' makes them of any result");
+    std::error_code unknown;   // what cannot be looked at is no folder to write to
+    if (!arguments.output.empty() && !fs::is_directory(arguments.output, unknown))
+        throw failure(exit_usage, "'--output' has to be a folder where several scenarios are solved; '" +
+                                      plain(arguments.output) + "' is none");
 }
 
 /// Memory that checks and writing will want, asked for before solving and given back behind it: a motion that
@@ -77,30 +99,49 @@ struct Solved {
     int signal = 0;   ///< that cancelled the solution
 };
 
-Solved solve_scenario(const Scenario& scenario, const Common& common)
+/// One scenario of those that are solved, and what there is to say when it is its turn.
+struct Job {
+    Scenario scenario;
+    Places places;
+    std::vector<Diagnostic> warnings{};
+    bool is_alone = true;   // on the main thread, which may speak at once
+    std::exception_ptr failure{};
+    std::vector<std::string> details{}, complaints{};
+    std::string text{}, error{};   // on standard output, and standard error
+    int exit_code = exit_ok;
+
+    void detail(const std::string& what)
+    {
+        if (is_alone)
+            say_detail(what);
+        else
+            details.push_back(what);
+    }
+};
+
+/// `share` of the memory, and perhaps a line of progress.
+Solved solve_scenario(Job& job, double share, ProgressLine& line)
 {
+    const Scenario& scenario = job.scenario;
     Solved solved;
     Solution solution;
     Reserve reserve(scenario);
-    const InterruptWatch watch;
-    {
-        ProgressLine line(error_is_terminal() && !common.quiet);
-        SolveOptions options = scenario.options;
-        options.judge = false;   // not part of what is timed, nor is the estimate
-        options.most_bytes = std::min(options.most_bytes, 0.5 * memory_left());
-        options.progress = [&line](const Progress& progress) {
-            line.show(progress);
-            return InterruptWatch::signal() == 0;
-        };
-        const Clock::time_point begin = Clock::now();
-        solution = solve(scenario.model, {scenario.conditions}, scenario.time, scenario.method, options);
-        solved.solve_seconds = seconds_since(begin) - solution.estimate_seconds;
-        estimate(scenario.model, {scenario.conditions}, scenario.method, options, solution);
-        solved.estimate_seconds = solution.estimate_seconds;
-    }
-    say_detail(fmt::format("solved in {:.3g} s", solved.solve_seconds));
+    SolveOptions options = scenario.options;
+    options.judge = false;   // not part of what is timed, nor is the estimate
+    options.most_bytes = std::min(options.most_bytes, 0.5 * share * memory_left());
+    options.progress = [&line](const Progress& progress) {
+        line.show(progress);
+        return InterruptWatch::signal() == 0;
+    };
+    Clock::time_point begin = Clock::now();
+    solution = solve(scenario.model, {scenario.conditions}, scenario.time, scenario.method, options);
+    solved.solve_seconds = seconds_since(begin) - solution.estimate_seconds;
+    estimate(scenario.model, {scenario.conditions}, scenario.method, options, solution);
+    solved.estimate_seconds = solution.estimate_seconds;
+    line.clear();
+    job.detail(fmt::format("solved in {:.3g} s", solved.solve_seconds));
 
-    const Clock::time_point begin = Clock::now();
+    begin = Clock::now();
     reserve.give_back();
     try {
         judge(scenario.model, solution);
@@ -114,7 +155,7 @@ Solved solve_scenario(const Scenario& scenario, const Common& common)
     solved.run.title = scenario.title;
     solved.run.resolved = scenario.resolved;
     solved.run.output = scenario.output.empty() ? solved.run.motion.mesh.ends : scenario.output;
-    say_detail(fmt::format("checked in {:.3g} s", seconds_since(begin)));
+    job.detail(fmt::format("checked in {:.3g} s", seconds_since(begin)));
     solved.signal = InterruptWatch::signal();   // also where it came too late to stop anything
     return solved;
 }
@@ -170,17 +211,18 @@ std::string now_utc()
 
 /// What would make the result differ from run to run lies beside it. Its loss is worth a word, not the
 /// result.
-void write_record(const Solved& solved, const Places& p, const std::vector<Diagnostic>& warnings)
+void write_record(const Solved& solved, Job& job)
 {
+    const Places& p = job.places;
     if (!may_record(p.record)) {
-        say_detail("'" + p.record.string() +
+        job.detail("'" + p.record.string() +
                    "' is left alone: it was not written by livens, or is standard output");
         return;
     }
     try {
-        replace_file(p.record, json_of(solved, p, warnings, now_utc()));
+        replace_file(p.record, json_of(solved, p, job.warnings, now_utc()));
     } catch (const IoError& error) {
-        say_warning(error.what());
+        job.complaints.push_back(error.what());
     }
 }
 
@@ -193,7 +235,7 @@ std::string next_step(const Run& run, const Places& p)
                        run.motion.end());
 }
 
-void show(const Solved& solved, const Places& p, bool verbose)
+std::string summary_of(const Solved& solved, const Places& p, bool verbose)
 {
     const Run& run = solved.run;
     const SolveReport& report = run.report;
@@ -221,42 +263,121 @@ void show(const Solved& solved, const Places& p, bool verbose)
     add_notes(summary, run);
     summary.figure("written", plain(p.output.string()) + (p.csv.empty() ? "" : ", " + plain(p.csv.string())));
     summary.aside(plain(next_step(run, p)));
-    print(summary.text());
+    return summary.text();
+}
+
+/// All of them are read, and all places looked at, before the first is solved.
+std::vector<Job> read_jobs(const SolveArguments& arguments, const Common& common)
+{
+    if (arguments.scenarios.size() > 1) check_several(arguments);
+    std::vector<Job> jobs;
+    for (const std::string& file : arguments.scenarios) {
+        const Clock::time_point begin = Clock::now();
+        std::vector<Diagnostic> warnings;
+        Scenario scenario = load_scenario(file, common, &warnings);
+        say_detail(fmt::format("read and checked the scenario in {:.3g} s", seconds_since(begin)));
+        Places p = places(file, arguments);
+        for (const Job& job : jobs)
+            if (same_file(job.places.output, p.output))
+                throw failure(exit_usage, "'" + plain(job.places.scenario.string()) + "' and '" +
+                                              plain(file) + "' would be written to one file, '" +
+                                              plain(p.output.string()) +
+                                              "'; solve them one by one, with '--output'");
+        jobs.push_back(
+            {std::move(scenario), std::move(p), std::move(warnings), arguments.scenarios.size() == 1});
+    }
+    return jobs;
+}
+
+/// Solves, writes, and keeps what there is to say.
+void do_job(Job& job, const Common& common, double share, ProgressLine& line)
+{
+    const Solved solved = solve_scenario(job, share, line);
+    const Places& p = job.places;
+    {
+        const SignalPause pause;
+        const Clock::time_point writing = Clock::now();
+        write_run(p.output, job.scenario.model, solved.run);
+        write_record(solved, job);
+        if (!p.csv.empty()) write_csv(p.csv, job.scenario.model, solved.run);
+        job.detail(fmt::format("written in {:.3g} s", seconds_since(writing)));
+    }
+    job.exit_code = exit_code_of(solved);
+    if (job.exit_code != exit_ok) {
+        const SolveReport& report = solved.run.report;
+        job.error =
+            report.message.empty() ? std::string("the run is ") + to_string(report.status) : report.message;
+    }
+    if (common.json)
+        job.text = json_of(solved, p, job.warnings, "");
+    else if (!common.quiet)
+        job.text = summary_of(solved, p, common.verbose);
+}
+
+/// Returns its exit code.
+int report_job(const Job& job, const Common& common)
+{
+    for (const std::string& detail : job.details) say_detail(detail);
+    for (const std::string& complaint : job.complaints) say_warning(complaint);
+    if (job.failure) std::rethrow_exception(job.failure);
+    const bool is_shown = !common.json && !common.quiet;
+    // A person who sees both streams in one place reads it in the summary.
+    if (!job.error.empty() && !(is_shown && output_is_terminal() && error_is_terminal()))
+        say_error(job.error);
+    if (!job.text.empty()) print(job.text);
+    return job.exit_code;
 }
 
 }   // namespace
 
 int solve_command(const SolveArguments& arguments, const Common& common)
 {
-    std::vector<Diagnostic> warnings;
-    const Clock::time_point begin = Clock::now();
     pin_instructions(arguments.simd);
-    const Scenario scenario = load_scenario(arguments.scenario, common, &warnings);
-    say_detail(fmt::format("read and checked the scenario in {:.3g} s", seconds_since(begin)));
-    const Places p = places(arguments);
-    check_memory(scenario);
-    const Solved solved = solve_scenario(scenario, common);
-    {
-        const SignalPause pause;
-        const Clock::time_point writing = Clock::now();
-        write_run(p.output, scenario.model, solved.run);
-        write_record(solved, p, warnings);
-        if (!p.csv.empty()) write_csv(p.csv, scenario.model, solved.run);
-        say_detail(fmt::format("written in {:.3g} s", seconds_since(writing)));
-    }
-    const int code = exit_code_of(solved);
-    const bool is_shown = !common.json && !common.quiet;
-    // A person who sees both streams in one place reads it in the summary.
-    if (code != exit_ok && !(is_shown && output_is_terminal() && error_is_terminal())) {
-        const SolveReport& report = solved.run.report;
-        say_error(report.message.empty() ? std::string("the run is ") + to_string(report.status)
-                                         : report.message);
-    }
-    if (common.json)
-        print(json_of(solved, p, warnings, ""));
-    else if (is_shown)
-        show(solved, p, common.verbose);
-    return code;
+    std::vector<Job> jobs = read_jobs(arguments, common);
+    const int n = static_cast<int>(jobs.size()), at_a_time = std::min(n, threads_for(arguments.jobs));
+    std::vector<const Scenario*> scenarios;
+    for (const Job& job : jobs) scenarios.push_back(&job.scenario);
+    check_memory(scenarios, at_a_time);
+    const InterruptWatch watch;
+    ProgressLine line(n == 1 && error_is_terminal() && !common.quiet);
+    int code = exit_ok;
+    const auto work = [&](int i) {
+        Job& job = jobs[i];
+        try {
+            if (n > 1 && InterruptWatch::signal() != 0) {
+                job.exit_code = exit_signal + InterruptWatch::signal();
+                job.failure = std::make_exception_ptr(failure(job.exit_code, "stopped before it was begun"));
+            } else {
+                do_job(job, common, 1.0 / at_a_time, line);
+            }
+        } catch (...) {
+            line.clear();
+            job.failure = std::current_exception();
+        }
+    };
+    const auto say = [&](const std::function<int()>& words) {
+        code = std::max(code, guarded(common, words));
+    };
+    const auto done = [&](int i) {   // a pipe that is closed ends none of the others
+        say([&] {
+            if (n > 1 && common.json) print(i == 0 ? "[\n" : ",\n");
+            if (n > 1 && !common.json && !common.quiet)
+                print((i == 0 ? "" : "\n") + plain(jobs[i].places.scenario.string()) + "\n");
+            const Job& job = jobs[i];
+            const bool is_unnamed = n > 1 && (common.json || common.quiet);
+            if (is_unnamed && (job.failure || !job.error.empty()))
+                say_error("'" + plain(job.places.scenario.string()) + "':");
+            return report_job(job, common);
+        });
+    };
+    run_in_order(n, at_a_time, work, done);
+    if (n > 1 && common.json)
+        say([] {
+            print("]\n");
+            return static_cast<int>(exit_ok);
+        });
+    const int signal = InterruptWatch::signal();   // also where it came when all was solved
+    return signal == 0 ? code : std::max(code, exit_signal + signal);
 }
 
 }   // namespace livens::program

@@ -108,8 +108,7 @@ private:
 void measure(Verdict& v, const Model& model, const Motion& motion, bool holds_weakly)
 {
     v.violations = violations(model, motion, 0, holds_weakly);
-    ViolationReport& off = v.violations;
-    off.joints = off.rigidity = {};   // as large as a part of the motion, and made again in a moment
+    const ViolationReport& off = v.violations;
     v.max_constraint_violation = off.joints_at_nodes;
     raise_to(v.max_constraint_violation, off.rigidity_at_nodes);
     v.max_velocity_violation = off.velocity_level;

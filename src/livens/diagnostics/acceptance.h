@@ -47,8 +47,7 @@ struct Verdict {
     std::vector<std::string> remarks;    ///< what is worth a look and refuses nothing
     BalanceFigures balance;
     std::shared_ptr<const Balance> balances;   ///< their series, of motions of up to 4095 elements
-    /// At nodes, without their series; means only where constraints hold weakly, nothing in between.
-    ViolationReport violations;
+    ViolationReport violations;   ///< means only where constraints hold weakly, nothing between nodes
 };
 
 /// Measures a motion and, if the report says that it converged, judges it. It has a reason to be suspect if

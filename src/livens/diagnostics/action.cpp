@@ -22,7 +22,7 @@ class Integrands {
 public:
     Integrands(const Model& model, const Motion& motion, const Quadrature& rule)
         : model_(model), sampler_(motion, rule.points), X_(static_cast<std::size_t>(motion.n_bodies)),
-          V_(X_.size()), P_(X_.size()), true_V_(X_.size())
+          V_(X_.size()), P_(X_.size())
     {
         if (!sampler_.has_momenta()) return;
         for (const Body& body : model.bodies()) inverse_.push_back(inverse_mass(body.mass, body.is_point));
@@ -32,13 +32,16 @@ public:
     {
         sampler_.positions(element, k, X_);
         sampler_.velocities(element, k, V_);
-        evaluate_momenta(element, k);
-        const double potential = potential_energy(model_, sampler_.instant(element, k), X_, V_);
         double kinetic = 0, legendre = 0;   // T*(P) = 1/2 tr(P m^-1 P^T) and tr(P X'^T)
+        if (sampler_.has_momenta()) sampler_.momenta(element, k, P_);
         for (std::size_t b = 0; b < X_.size(); ++b) {
-            kinetic += 0.5 * dot(P_[b], true_V_[b]);
-            legendre += dot(P_[b], V_[b]);
+            // Without a field of its own P is that of dX/dt, whose mass matrix may be singular.
+            if (!sampler_.has_momenta()) P_[b] = V_[b] * model_.bodies()[b].mass;
+            const double product = dot(P_[b], V_[b]);
+            legendre += product;
+            kinetic += 0.5 * (sampler_.has_momenta() ? dot(P_[b], P_[b] * inverse_[b]) : product);
         }
+        const double potential = potential_energy(model_, sampler_.instant(element, k), X_, V_);
         hamiltonian = kinetic + potential;
         lagrangian = legendre - kinetic - potential;
         moment = angular_momentum(X_, P_);
@@ -49,23 +52,10 @@ public:
     Vector3 moment{};
 
 private:
-    /// P and the velocity P m^-1 that goes with it: of the motion's own field, or both from dX/dt, whose mass
-    /// matrix may be singular.
-    void evaluate_momenta(int element, int k)
-    {
-        if (sampler_.has_momenta()) {
-            sampler_.momenta(element, k, P_);
-            for (std::size_t b = 0; b < X_.size(); ++b) true_V_[b] = P_[b] * inverse_[b];
-        } else {
-            for (std::size_t b = 0; b < X_.size(); ++b) P_[b] = V_[b] * model_.bodies()[b].mass;
-            true_V_ = V_;
-        }
-    }
-
     const Model& model_;
     ElementSampler sampler_;
     std::vector<Matrix4> inverse_;
-    std::vector<Matrix34> X_, V_, P_, true_V_;
+    std::vector<Matrix34> X_, V_, P_;
 };
 
 }   // namespace

@@ -8,6 +8,8 @@
 #include "livens/diagnostics/detail/sampler.h"
 #include "livens/diagnostics/diagnostics.h"
 #include "livens/diagnostics/largest.h"
+#include "livens/multibody/rows.h"
+#include "livens/multibody/tables.h"
 #include "livens/time/quadrature.h"
 
 namespace livens {
@@ -108,9 +110,10 @@ public:
 
 private:
     SupplyIntegral(const Model& model, const Motion& motion, Quadrature loads, Quadrature joints)
-        : model_(model), load_weights_(loads.weights), joint_weights_(joints.weights),
-          loads_(motion, loads.points), joints_(motion, joints.points), motion_(motion),
-          length_(model.length()), X_(static_cast<std::size_t>(motion.n_bodies)), V_(X_.size())
+        : model_(model), tables_(model, all_rows(model)), load_weights_(loads.weights),
+          joint_weights_(joints.weights), loads_(motion, loads.points), joints_(motion, joints.points),
+          motion_(motion), length_(model.length()), X_(static_cast<std::size_t>(motion.n_bodies)),
+          V_(X_.size())
     {
         if (!motion.multipliers.empty()) {
             multipliers_.emplace(motion.multipliers, joints_.points());
@@ -167,14 +170,21 @@ private:
         const Instant at = joints_.instant(element, k);
         for (int r = 0; r < model_.n_rows(); ++r) {
             if (lambda_[r] == 0) continue;
-            const ConstraintRow& row = model_.row(r);
-            const RowGradient g = constraint_gradient(row, at, X_);
-            for (const int body : g.bodies) now.add_force(X_[body], -lambda_[r] * g.of(body), length_);
-            now.work += lambda_[r] * constraint_rate(row, at, X_);
+            const Tables::RowTable& table = tables_.rows[r];
+            double g[Tables::gradient_size];
+            tables_.gradient(r, at, X_.data()->data(), g);
+            for (int side = 0; side < table.n_sides; ++side) {
+                Matrix34 force{};
+                for (const int column : table.columns[side])
+                    for (int i = column; i < column + 3; ++i) force.a[i] = -lambda_[r] * g[12 * side + i];
+                now.add_force(X_[table.bodies[side]], force, length_);
+            }
+            if (!table.is_quadratic) now.work += lambda_[r] * constraint_rate(*table.row, at, X_);
         }
     }
 
     const Model& model_;
+    const Tables tables_;
     std::vector<double> load_weights_, joint_weights_;
     ElementSampler loads_, joints_;
     const Motion& motion_;

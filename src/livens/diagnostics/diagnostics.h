@@ -165,11 +165,16 @@ struct ViolationReport {
     double velocity_level = 0;   ///< |dPhi/dt| / scale at element ends, 1/s
     int worst_row = -1;          ///< of the model, at nodes; -1: no row is violated at all
     double worst_time = 0;       ///< of that row
-    std::vector<double> joints;     ///< the largest at each node, in the order of X's coefficients
-    std::vector<double> rigidity;   ///< likewise
 };
 /// Without `means` nothing is integrated. Throws InputError for a negative number of samples.
 ViolationReport violations(const Model& model, const Motion& motion, int samples = 3, bool means = true);
+
+/// The largest at each node, in the order of X's coefficients.
+struct NodeViolations {
+    std::vector<double> joints;   ///< |Phi| / scale
+    std::vector<double> rigidity;
+};
+NodeViolations node_violations(const Model& model, const Motion& motion);
 
 /// The six rigidity multipliers of a body (11, 22, 33, 12, 13, 23) from X'', forces and joint multipliers at
 /// an instant: lambda_ab = (F - G^T lambda - X'' m)_a . d_b, N m; tension is positive. Zero for a point mass.

@@ -142,12 +142,13 @@ std::vector<bool> bounded_joints(const Model& model, std::span<const double> lef
     return is_bounded;
 }
 
-/// Without what is none, which would spread to all joints of a loop.
-std::vector<double> numbers_of(std::span<const double> multipliers)
+/// One after the other, without what is no number, which would spread to all joints of a loop.
+std::vector<double> numbers_of(std::span<const double> left, std::span<const double> right)
 {
-    std::vector<double> numbers(multipliers.begin(), multipliers.end());
-    for (double& value : numbers)
-        if (std::isnan(value)) value = 0;
+    std::vector<double> numbers;
+    numbers.reserve(left.size() + right.size());
+    for (const std::span<const double> side : {left, right})
+        for (const double value : side) numbers.push_back(std::isnan(value) ? 0 : value);
     return numbers;
 }
 
@@ -175,8 +176,7 @@ std::vector<JointSample> sample_joints(const Model& model, const Motion& motion,
     if (model.has_drives()) frozen_now = frozen(model, {state.t});
     const Model& now = frozen_now ? *frozen_now : model;
     const std::vector<bool> is_bounded = bounded_joints(model, left, right);
-    std::vector<double> both = numbers_of(left);
-    for (const double value : numbers_of(right)) both.push_back(value);
+    std::vector<double> both = numbers_of(left, right);
     std::vector<bool> is_unique(model.joints().size(), true);
     if (!motion.redundant_rows.empty()) {
         std::vector<int> independent = all_rows(model);
@@ -188,7 +188,9 @@ std::vector<JointSample> sample_joints(const Model& model, const Motion& motion,
         is_unique = std::move(least.joint_is_unique);
     }
     const std::span<const double> before(both.data(), left.size()), after(&both[left.size()], right.size());
+    const bool jumps = !std::ranges::equal(before, after);
     std::vector<JointSample> samples;
+    samples.reserve(model.joints().size());
     for (int j = 0; j < static_cast<int>(model.joints().size()); ++j) {
         JointSample& sample = samples.emplace_back();
         sample.is_acceleration_level = is_acceleration_level;
@@ -197,7 +199,7 @@ std::vector<JointSample> sample_joints(const Model& model, const Motion& motion,
         sample.left = sample.right = unknown;
         if (!sample.is_bounded) continue;
         sample.left = joint_reaction(now, j, state.X, before);
-        sample.right = joint_reaction(now, j, state.X, after);
+        sample.right = jumps ? joint_reaction(now, j, state.X, after) : sample.left;
     }
     return samples;
 }

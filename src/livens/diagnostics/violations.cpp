@@ -10,15 +10,17 @@
 #include "livens/diagnostics/diagnostics.h"
 #include "livens/diagnostics/largest.h"
 #include "livens/diagnostics/sample.h"
+#include "livens/multibody/rows.h"
+#include "livens/multibody/tables.h"
 #include "livens/time/quadrature.h"
 
 namespace livens {
 namespace {
 
 /// Phi / scale.
-double joint_violation(const ConstraintRow& row, double t, std::span<const Matrix34> X)
+double joint_violation(const Tables& tables, int row, double t, std::span<const Matrix34> X)
 {
-    return constraint_value(row, {t}, X) / row.scale;
+    return tables.value(row, {t}, X.data()->data()) / tables.rows[row].row->scale;
 }
 
 /// The six 1/2 (d_a . d_b - delta_ab) of a body (P4).
@@ -46,43 +48,53 @@ double rigidity_violation(const Model& model, std::span<const Matrix34> X)
 }
 
 /// |dPhi/dt| / scale.
-double velocity_violation(const ConstraintRow& row, double t, std::span<const Matrix34> X,
+double velocity_violation(const Tables& tables, int row, double t, std::span<const Matrix34> X,
                           std::span<const Matrix34> V)
 {
-    const RowGradient g = constraint_gradient(row, {t}, X);
-    double rate = constraint_rate(row, {t}, X);
-    for (const int body : g.bodies) rate += dot(g.of(body), V[body]);
-    return std::abs(rate) / row.scale;
+    const Tables::RowTable& table = tables.rows[row];
+    double g[Tables::gradient_size];
+    tables.gradient(row, {t}, X.data()->data(), g);
+    double rate = table.is_quadratic ? 0 : constraint_rate(*table.row, {t}, X);
+    for (int side = 0; side < table.n_sides; ++side)
+        for (const int column : table.columns[side])
+            for (int i = column; i < column + 3; ++i) rate += g[12 * side + i] * V[table.bodies[side]].a[i];
+    return std::abs(rate) / table.row->scale;
 }
 
 /// Largest |Phi| / scale of all rows.
-double worst_joint(const Model& model, double t, std::span<const Matrix34> X, int& row)
+double worst_joint(const Tables& tables, double t, std::span<const Matrix34> X, int& row)
 {
     double largest = 0;
-    for (int r = 0; r < model.n_rows(); ++r)
-        if (raise_to(largest, std::abs(joint_violation(model.row(r), t, X)))) row = r;
+    for (int r = 0; r < tables.n_rows(); ++r)
+        if (raise_to(largest, std::abs(joint_violation(tables, r, t, X)))) row = r;
     return largest;
 }
 
-void at_nodes(const Model& model, const Motion& motion, std::span<Matrix34> X, ViolationReport& report)
+/// visit(time, largest of the joints, its row, largest of rigidity), node after node.
+template <class Visit>
+void visit_nodes(const Tables& tables, const Motion& motion, const Visit& visit)
 {
-    std::size_t worst_node = 0;
-    const std::vector<double> times = node_times(motion.X, motion.mesh);
-    for (auto x = motion.X.values.begin(); x != motion.X.values.end();) {
+    std::vector<Matrix34> X(static_cast<std::size_t>(motion.n_bodies));
+    auto x = motion.X.values.begin();
+    for (const double t : node_times(motion.X, motion.mesh)) {
         for (Matrix34& body : X) {
             std::copy_n(x, 12, body.data());
             x += 12;
         }
         int row = -1;
-        const std::size_t node = report.joints.size();
-        report.joints.push_back(worst_joint(model, times[node], X, row));
-        report.rigidity.push_back(rigidity_violation(model, X));
-        raise_to(report.rigidity_at_nodes, report.rigidity.back());
-        if (!raise_to(report.joints_at_nodes, report.joints.back())) continue;
-        report.worst_row = row;
-        worst_node = node;
+        const double joints = worst_joint(tables, t, X, row);
+        visit(t, joints, row, rigidity_violation(*tables.model, X));
     }
-    if (report.worst_row >= 0) report.worst_time = times[worst_node];
+}
+
+void at_nodes(const Tables& tables, const Motion& motion, ViolationReport& report)
+{
+    visit_nodes(tables, motion, [&](double t, double joints, int row, double rigidity) {
+        raise_to(report.rigidity_at_nodes, rigidity);
+        if (!raise_to(report.joints_at_nodes, joints)) return;
+        report.worst_row = row;
+        report.worst_time = t;
+    });
 }
 
 std::vector<double> points_between(const std::vector<double>& nodes, int samples)
@@ -96,18 +108,18 @@ std::vector<double> points_between(const std::vector<double>& nodes, int samples
     return points;
 }
 
-void at_velocity_level(const Model& model, const Motion& motion, std::span<Matrix34> X,
+void at_velocity_level(const Tables& tables, const Motion& motion, std::span<Matrix34> X,
                        ViolationReport& report)
 {
     for (int end = 0; end <= motion.n_elements(); ++end) {
         positions_at_end(motion, end, X);
         const std::span<const Matrix34> V = velocities_at_end(motion, end);
-        for (int r = 0; r < model.n_rows(); ++r)
-            raise_to(report.velocity_level, velocity_violation(model.row(r), motion.mesh.ends[end], X, V));
+        for (int r = 0; r < tables.n_rows(); ++r)
+            raise_to(report.velocity_level, velocity_violation(tables, r, motion.mesh.ends[end], X, V));
     }
 }
 
-void between_nodes(const Model& model, const Motion& motion, int samples, std::span<Matrix34> X,
+void between_nodes(const Tables& tables, const Motion& motion, int samples, std::span<Matrix34> X,
                    ViolationReport& report)
 {
     const ElementSampler between(motion, points_between(motion.X.basis().nodes(), samples));
@@ -115,19 +127,19 @@ void between_nodes(const Model& model, const Motion& motion, int samples, std::s
         for (int k = 0; k < between.size(); ++k) {
             between.positions(e, k, X);
             int row = -1;
-            raise_to(report.joints_between, worst_joint(model, between.instant(e, k).t, X, row));
-            raise_to(report.rigidity_between, rigidity_violation(model, X));
+            raise_to(report.joints_between, worst_joint(tables, between.instant(e, k).t, X, row));
+            raise_to(report.rigidity_between, rigidity_violation(*tables.model, X));
         }
     }
 }
 
 /// Means of all rows over each element: Phi has twice the degree of X, which the rule integrates exactly
 /// (quotients of polynomials nearly).
-void as_integrals(const Model& model, const Motion& motion, std::span<Matrix34> X, ViolationReport& report)
+void as_integrals(const Tables& tables, const Motion& motion, std::span<Matrix34> X, ViolationReport& report)
 {
     const Quadrature rule = gauss(std::min(2 * motion.X.degree, 64));
     const ElementSampler sampler(motion, rule.points);
-    const std::size_t n_rows = static_cast<std::size_t>(model.n_rows());
+    const std::size_t n_rows = static_cast<std::size_t>(tables.n_rows());
     std::vector<double> joints(n_rows), rigidity(6 * X.size());
     for (int e = 0; e < motion.n_elements(); ++e) {
         std::ranges::fill(joints, 0.0);
@@ -136,10 +148,10 @@ void as_integrals(const Model& model, const Motion& motion, std::span<Matrix34> 
             sampler.positions(e, k, X);
             const double t = sampler.instant(e, k).t;
             for (std::size_t r = 0; r < n_rows; ++r) {
-                joints[r] += rule.weights[k] * joint_violation(model.row(static_cast<int>(r)), t, X);
+                joints[r] += rule.weights[k] * joint_violation(tables, static_cast<int>(r), t, X);
             }
             for (std::size_t b = 0; b < X.size(); ++b) {
-                if (model.bodies()[b].is_point) continue;
+                if (tables.model->bodies()[b].is_point) continue;
                 const std::array<double, 6> now = rigidity_violations(X[b]);
                 for (std::size_t i = 0; i < 6; ++i) rigidity[6 * b + i] += rule.weights[k] * now[i];
             }
@@ -161,11 +173,23 @@ ViolationReport violations(const Model& model, const Motion& motion, int samples
     ViolationReport report;
     if (motion.mesh.ends.empty()) return report;
     std::vector<Matrix34> X(static_cast<std::size_t>(motion.n_bodies));
-    at_nodes(model, motion, X, report);
-    at_velocity_level(model, motion, X, report);
-    if (samples > 0) between_nodes(model, motion, samples, X, report);
-    if (means) as_integrals(model, motion, X, report);
+    const Tables tables(model, all_rows(model));
+    at_nodes(tables, motion, report);
+    at_velocity_level(tables, motion, X, report);
+    if (samples > 0) between_nodes(tables, motion, samples, X, report);
+    if (means) as_integrals(tables, motion, X, report);
     return report;
+}
+
+NodeViolations node_violations(const Model& model, const Motion& motion)
+{
+    NodeViolations series;
+    if (motion.X.empty()) return series;
+    visit_nodes(Tables(model, all_rows(model)), motion, [&](double, double joints, int, double rigidity) {
+        series.joints.push_back(joints);
+        series.rigidity.push_back(rigidity);
+    });
+    return series;
 }
 
 }   // namespace livens

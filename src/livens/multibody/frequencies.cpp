@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 #include <vector>
 
 #include <Eigen/Dense>
@@ -157,12 +158,16 @@ struct Mode {
     int body = -1, source = -1;
 };
 
-/// Terms on the free motions.
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// Terms on the free motions: by a basis of these, or by what projects onto them.
 class Spectrum {
 public:
-    Spectrum(const Tables& tables, const InstantState& state, const Terms& mass)
-        : tables_(tables), z_(tables.n_twists, tables.freedoms())
+    Spectrum(const Tables& tables, InstantState& state, const Terms& mass) : tables_(tables), state_(state)
     {
+        if (state.by_joints) return;
+        z_.resize(tables.n_twists, tables.freedoms());
         std::vector<double> z(static_cast<std::size_t>(z_.size()));
         state.basis.q.null_space(z.data());
         for (int i = 0; i < z_.rows(); ++i)
@@ -176,17 +181,15 @@ public:
     {
         std::vector<Vibration> found;
         if (terms.empty() || z_.cols() == 0) return found;
-        const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(on_free_motions(terms), mass_);
+        const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> solver(on_free_motions(terms), mass_);
         if (solver.info() != Eigen::Success) return found;
-        const Eigen::MatrixXd damping = on_free_motions(dampers);
         for (int i = 0; i < solver.eigenvalues().size(); ++i) {
             if (!(solver.eigenvalues()(i) > 0)) continue;
             Vibration one{std::sqrt(solver.eigenvalues()(i))};
-            const Eigen::VectorXd y = z_ * solver.eigenvectors().col(i);
-            const Eigen::VectorXd form = solver.eigenvectors().col(i);
-            one.decay = form.dot(damping * form);
+            const VectorXd y = z_ * solver.eigenvectors().col(i);
+            one.decay = y.dot(times(dampers, y));
             for (int b = 0; b < tables_.n_bodies(); ++b) {
-                const Eigen::VectorXd moved = columns[b].leftCols(tables_.bodies[b].dofs) * part(y, b);
+                const VectorXd moved = columns[b].leftCols(tables_.bodies[b].dofs) * part(y, b);
                 one.shift = std::max(one.shift, moved.head(3).norm());
                 one.turn = std::max(one.turn, moved.tail(9).norm() / std::sqrt(2.0));
             }
@@ -199,11 +202,10 @@ public:
     Mode highest(const Terms& terms) const
     {
         Mode mode;
-        if (terms.empty() || z_.cols() == 0) return mode;
-        const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(on_free_motions(terms), mass_);
-        if (solver.info() != Eigen::Success || !(solver.eigenvalues().tail(1)(0) > 0)) return mode;
-        mode.value = solver.eigenvalues().tail(1)(0);
-        const Eigen::VectorXd y = z_ * solver.eigenvectors().rightCols(1);
+        if (terms.empty() || tables_.freedoms() == 0) return mode;
+        const auto [value, y] = state_.by_joints ? by_lanczos(terms) : by_basis(terms);
+        if (!(value > 0)) return mode;
+        mode.value = value;
         double most = 0;
         for (int b = 0; b < tables_.n_bodies(); ++b) {
             if (part(y, b).squaredNorm() <= most) continue;
@@ -215,23 +217,87 @@ public:
     }
 
 private:
-    Eigen::VectorXd part(const Eigen::VectorXd& y, int body) const
+    struct Pair {
+        double value = 0;
+        VectorXd y{};
+    };
+
+    Pair by_basis(const Terms& terms) const
+    {
+        const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> solver(on_free_motions(terms), mass_);
+        if (solver.info() != Eigen::Success) return {};
+        return {solver.eigenvalues().tail(1)(0), z_ * solver.eigenvectors().rightCols(1)};
+    }
+
+    /// Lanczos' iteration on P K P, each vector orthogonal to all before it; the mass is the identity there.
+    Pair by_lanczos(const Terms& terms) const
+    {
+        constexpr int most_vectors = 120;    // what is found then is a lower bound, and good to a few digits
+        constexpr double tolerance = 1e-6;   // of the residual; the eigenvalue has its square
+        const int most = std::min(most_vectors, tables_.freedoms());
+        MatrixXd V(tables_.n_twists, most);
+        VectorXd alpha(most), beta(most);
+        VectorXd w(tables_.n_twists);
+        std::minstd_rand random(1);
+        for (double& x : w) x = static_cast<double>(random()) / static_cast<double>(random.max()) - 0.5;
+        project(w);
+        for (int k = 0;; ++k) {
+            V.col(k) = w / w.norm();
+            w = times(terms, V.col(k));
+            project(w);
+            alpha(k) = w.dot(V.col(k));
+            for (int pass = 0; pass < 2; ++pass)
+                w -= (V.leftCols(k + 1) * (V.leftCols(k + 1).transpose() * w)).eval();
+            beta(k) = w.norm();
+            const double size = alpha.head(k + 1).cwiseAbs().maxCoeff();
+            const bool is_last = k + 1 == most || !(beta(k) > 1e-13 * size);
+            if (!is_last && k % 10 != 9) continue;
+            Eigen::SelfAdjointEigenSolver<MatrixXd> small;
+            small.computeFromTridiagonal(alpha.head(k + 1), beta.head(k));
+            if (small.info() != Eigen::Success) return {};
+            const double left = beta(k) * std::abs(small.eigenvectors()(k, k)),
+                         value = small.eigenvalues()(k);
+            if (is_last || left <= tolerance * std::abs(value))
+                return {value, V.leftCols(k + 1) * small.eigenvectors().col(k)};
+        }
+    }
+
+    void project(VectorXd& y) const
+    {
+        std::vector<double> mu(state_.rows.size());
+        state_.joints.project(y.data(), nullptr, mu.data());
+    }
+
+    /// The symmetric part of K y.
+    VectorXd times(const Terms& terms, const VectorXd& y) const
+    {
+        VectorXd out = VectorXd::Zero(y.size());
+        for (const Term& t : terms) {
+            const auto &i = tables_.bodies[t.i], &j = tables_.bodies[t.j];
+            const auto K = t.K.topLeftCorner(i.dofs, j.dofs);
+            out.segment(i.first, i.dofs) += 0.5 * (K * y.segment(j.first, j.dofs));
+            out.segment(j.first, j.dofs) += 0.5 * (K.transpose() * y.segment(i.first, i.dofs));
+        }
+        return out;
+    }
+
+    VectorXd part(const VectorXd& y, int body) const
     {
         return y.segment(tables_.bodies[body].first, tables_.bodies[body].dofs);
     }
 
-    Eigen::MatrixXd on_free_motions(const Terms& terms) const
+    MatrixXd on_free_motions(const Terms& terms) const
     {
-        Eigen::MatrixXd K = Eigen::MatrixXd::Zero(z_.rows(), z_.rows());
+        MatrixXd K = MatrixXd::Zero(z_.rows(), z_.rows());
         for (const Term& t : terms) {
             const int m = tables_.bodies[t.i].dofs, n = tables_.bodies[t.j].dofs;
             K.block(tables_.bodies[t.i].first, tables_.bodies[t.j].first, m, n) += t.K.topLeftCorner(m, n);
         }
-        const Eigen::MatrixXd reduced = z_.transpose() * K * z_;
+        const MatrixXd reduced = z_.transpose() * K * z_;
         return 0.5 * (reduced + reduced.transpose());
     }
 
-    int most_active(const Terms& terms, const Eigen::VectorXd& y) const
+    int most_active(const Terms& terms, const VectorXd& y) const
     {
         int most = -1;
         double largest = 0, work = 0;
@@ -249,7 +315,41 @@ private:
     }
 
     const Tables& tables_;
-    Eigen::MatrixXd z_, mass_;
+    InstantState& state_;
+    MatrixXd z_, mass_;
+};
+
+constexpr int many_freedoms = 60;   // from here on a basis of them costs more than it gives
+
+/// A state, closed, with accelerations and multipliers on one side.
+struct Prepared {
+    Tables tables;
+    mutable InstantState state;   // which projects in room of its own
+    bool is_fit;                  // else close_start() has refused it
+
+    /// `by_basis`: with a basis of what is free, however much that is.
+    Prepared(const Model& model, const State& given, Side side, bool by_basis)
+        : Prepared(model, close_start(model, given, StartPolicy::project), side, by_basis)
+    {}
+
+private:
+    Prepared(const Model& model, const ClosedStart& closed, Side side, bool by_basis)
+        : tables(model, closed.independent)
+    {
+        const bool is_sparse = !by_basis && tables.freedoms() > many_freedoms && JointFactor::serves(tables);
+        InstantSystem instant(tables, is_sparse);
+        state.resize(tables);
+        state.t = closed.start.t;
+        for (int b = 0; b < tables.n_bodies(); ++b) {
+            const Matrix34 &X = closed.start.X[b], &V = closed.start.V[b];
+            std::copy_n(X.a, 12, state.X.begin() + 12 * b);
+            const auto& body = tables.bodies[b];
+            const Vector3 w = body.dofs == 6 ? angular_velocity(X, V) : Vector3{};
+            for (int i = 0; i < body.dofs; ++i) state.velocity[body.first + i] = i < 3 ? V(i, 0) : w[i - 3];
+        }
+        is_fit = instant.prepare(state, tables.independent);
+        if (is_fit) instant.accelerate(state, side);
+    }
 };
 
 }   // namespace
@@ -260,15 +360,16 @@ std::string Frequency::where(const Model& model) const
     return "body '" + model.body_name(body) + "'" + (name.empty() ? ", which bears a preload" : ", " + name);
 }
 
-HighestFrequencies highest_frequencies(const Tables& tables, const InstantState& state, Side side)
+HighestFrequencies highest_frequencies(const Model& model, const State& state, Side side)
 {
-    const Forms forms(tables, state, side);
+    const Prepared at(model, state, side, false);
+    if (!at.is_fit) return {};
+    const Forms forms(at.tables, at.state, side);
     Terms springs, dampers, constraints, mass;
     forms.add_loads(springs, dampers);
     forms.add_constraints(constraints);
     forms.add_mass(mass);
-    const Spectrum spectrum(tables, state, mass);
-    const Model& model = *tables.model;
+    const Spectrum spectrum(at.tables, at.state, mass);
     const auto load = [&](const Mode& mode, double rate) {
         return Frequency{rate, mode.body,
                          mode.source < 0 ? "" : "load '" + model.loads()[mode.source].name + "'"};
@@ -278,30 +379,19 @@ HighestFrequencies highest_frequencies(const Tables& tables, const InstantState&
     const Frequency of_constraints{
         std::sqrt(bearing.value), bearing.body,
         bearing.source < 0 ? "" : "joint '" + model.joints()[bearing.source].name + "'"};
-    Terms restoring = springs;
-    restoring.insert(restoring.end(), constraints.begin(), constraints.end());
-    return {load(spring, std::sqrt(spring.value)), load(damper, damper.value), of_constraints,
-            spectrum.vibrations(restoring, dampers, forms.columns())};
+    return {load(spring, std::sqrt(spring.value)), load(damper, damper.value), of_constraints};
 }
 
-HighestFrequencies highest_frequencies(const Model& model, const State& state, Side side)
+std::vector<Vibration> vibrations(const Model& model, const State& state, Side side)
 {
-    const ClosedStart closed = close_start(model, state, StartPolicy::project);
-    const Tables tables(model, closed.independent);
-    InstantSystem instant(tables);
-    InstantState here;
-    here.resize(tables);
-    here.t = state.t;
-    for (int b = 0; b < tables.n_bodies(); ++b) {
-        const Matrix34 &X = closed.start.X[b], &V = closed.start.V[b];
-        std::copy_n(X.a, 12, here.X.begin() + 12 * b);
-        const auto& body = tables.bodies[b];
-        const Vector3 w = body.dofs == 6 ? angular_velocity(X, V) : Vector3{};
-        for (int i = 0; i < body.dofs; ++i) here.velocity[body.first + i] = i < 3 ? V(i, 0) : w[i - 3];
-    }
-    if (!instant.prepare(here, tables.independent)) return {};   // close_start() has refused it
-    instant.accelerate(here, side);
-    return highest_frequencies(tables, here, side);
+    const Prepared at(model, state, side, true);
+    if (!at.is_fit) return {};
+    const Forms forms(at.tables, at.state, side);
+    Terms restoring, dampers, mass;
+    forms.add_loads(restoring, dampers);
+    forms.add_constraints(restoring);
+    forms.add_mass(mass);
+    return Spectrum(at.tables, at.state, mass).vibrations(restoring, dampers, forms.columns());
 }
 
 }   // namespace livens

@@ -9,9 +9,6 @@
 
 namespace [[gnu::visibility("default")]] livens {
 
-struct InstantState;
-struct Tables;
-
 /// A rate, and who makes it.
 struct Frequency {
     double rate = 0;         ///< 0: there is none
@@ -39,7 +36,6 @@ struct HighestFrequencies {
     Frequency springs;       ///< the root of that of - dF/dX
     Frequency dampers;       ///< that of - dF/dX'
     Frequency constraints;   ///< the root of that of sum lambda K of joints, and of what bears rigidity
-    std::vector<Vibration> vibrations{};   ///< of springs and constraints together, ascending rates
 
     const Frequency& fastest_vibration() const
     {
@@ -47,11 +43,13 @@ struct HighestFrequencies {
     }
 };
 
-/// At a state with accelerations and multipliers on that side.
-HighestFrequencies highest_frequencies(const Tables& tables, const InstantState& state,
-                                       Side side = Side::right);
-
-/// At a state of a model, closed as by StartPolicy::project; throws InputError, see close_start().
+/// At a state of a model, closed as by StartPolicy::project; throws InputError, see close_start(). Work grows
+/// with the bodies, but with their cube where rows are no quadratic forms, inertias singular or joints badly
+/// held.
 HighestFrequencies highest_frequencies(const Model& model, const State& state, Side side = Side::right);
+
+/// Of springs and constraints together, ascending rates; work grows with the cube of the freedoms. Throws
+/// likewise.
+std::vector<Vibration> vibrations(const Model& model, const State& state, Side side = Side::right);
 
 }   // namespace livens

@@ -51,7 +51,7 @@ void LaneStore::resize(const RowPattern& pattern, int width)
     lines_.assign(n, Line{});
     n = 0;
     for (const auto& [array, size] : arrays) {
-        *array = lines_.data()->x + 8 * n;
+        *array = reinterpret_cast<double*>(lines_.data()) + 8 * n;
         n += n_lines(size);
     }
     for (int b = 0; b < p.n_bodies; ++b)

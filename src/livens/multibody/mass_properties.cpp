@@ -4,6 +4,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cassert>
+#include <limits>
 #include <numbers>
 
 #include "livens/base/error.h"
@@ -91,7 +92,11 @@ bool is_singular(const Matrix4& mass_matrix, bool is_point)
     const Eigen::Vector4d s = unit_scaling(m);
     const Eigen::Matrix4d scaled = s.asDiagonal() * m * s.asDiagonal();
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> solver(scaled, Eigen::EigenvaluesOnly);
-    return !(solver.eigenvalues()[0] > 1e-12);
+    // Scaled, the rounding of the matrix itself is as large as this where a lamina lies almost across an
+    // axis.
+    const double rounding =
+        8 * std::numeric_limits<double>::epsilon() * trace_E / diagonal.tail<3>().minCoeff();
+    return !(solver.eigenvalues()[0] > std::max(1e-12, rounding));
 }
 
 Matrix4 inverse_mass(const Matrix4& mass_matrix, bool is_point)

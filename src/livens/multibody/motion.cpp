@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <mutex>
+#include <optional>
 
 #include "livens/base/error.h"
 #include "livens/multibody/detail/wording.h"
@@ -15,17 +17,18 @@ namespace {
 
 constexpr int max_degree = 32;
 
-/// Lagrange bases, built once, all at the first call.
+/// Lagrange bases, each built at its first use: all of them would cost more than a short motion.
 const LagrangeBasis& known_basis(Points points, int degree)
 {
-    static const std::vector<LagrangeBasis> bases = [] {
-        std::vector<LagrangeBasis> all;
-        for (const Points any : {Points::lobatto, Points::radau})
-            for (int p = 1; p <= max_degree; ++p) all.push_back(basis_on(any, p));
-        return all;
-    }();
+    struct Known {
+        std::once_flag once;
+        std::optional<LagrangeBasis> basis;
+    };
+    static std::array<Known, 2 * max_degree> all;
     assert(degree >= 1 && degree <= max_degree);
-    return bases[(points == Points::lobatto ? 0 : max_degree) + degree - 1];
+    Known& known = all[static_cast<std::size_t>((points == Points::lobatto ? 0 : max_degree) + degree - 1)];
+    std::call_once(known.once, [&] { known.basis = basis_on(points, degree); });
+    return *known.basis;
 }
 
 Matrix34 body_of(std::span<const double> stacked, int body)

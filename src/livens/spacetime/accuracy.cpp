@@ -39,6 +39,16 @@ const int& degree_of(const Method& method)
 }
 int& degree_of(Method& method) { return const_cast<int&>(degree_of(std::as_const(method))); }
 
+/// What the iteration leaves in an element grows like rounding does, and would be the larger of the two;
+/// elements of the high degree are few.
+SolveOptions with_tolerance_for(double accuracy, SolveOptions options)
+{
+    constexpr double fine = 1e-8, all_digits = 1e-15;
+    if (accuracy < fine && accuracy >= high_accuracy)
+        options.tolerance = std::min(options.tolerance, all_digits);
+    return options;
+}
+
 /// What becomes an element end: start, end, output times, jumps of loads and drives.
 std::vector<double> stops_of(const Model& model, const Span& span)
 {
@@ -59,8 +69,8 @@ class ToAccuracy {
 public:
     ToAccuracy(const Model& model, const Problem& problem, const Span& span, const Method& method,
                const SolveOptions& options, const Doubt& doubt)
-        : model_(model), problem_(problem), span_(span), options_(options), doubt_(doubt),
-          ends_(close_ends(model, problem.conditions, span.start, span.end, options.initial)),
+        : model_(model), problem_(problem), span_(span), options_(with_tolerance_for(span.accuracy, options)),
+          doubt_(doubt), ends_(close_ends(model, problem.conditions, span.start, span.end, options.initial)),
           tables_(model, ends_.independent), stops_(stops_of(model, span)), method_(method),
           is_free_(degree_of(method) == 0), tolerance_(first_share * span.accuracy),
           length_(std::min(0.01 * (span.end - span.start), time_of_motion(model, ends_.start)))
@@ -238,7 +248,7 @@ private:
     const Model& model_;
     const Problem& problem_;
     const Span& span_;
-    const SolveOptions& options_;
+    const SolveOptions options_;
     const Doubt& doubt_;
     Ends ends_;
     Tables tables_;

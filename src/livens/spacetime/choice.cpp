@@ -52,7 +52,7 @@ private:
     {
         const int n = look.motion.n_elements();
         const double length = std::min(look.mean_length, span_.end - span_.start);
-        if (decays(highest_frequencies(model_, look.motion.at_end(n)), length)) return true;
+        if (has_dampers() && decays(highest_frequencies(model_, look.motion.at_end(n)), length)) return true;
         const Frequency& vibration = at_start_.fastest_vibration();
         if (is_tried_ || n < tried_after || vibration.rate * length_ < fast_vibration) return false;
         is_tried_ = true;
@@ -67,6 +67,11 @@ private:
         say(vibration, "vibrates at " + to_text(vibration.rate, 3) +
                            " rad/s with less than the accuracy, which would rule the elements of lobatto");
         return true;
+    }
+
+    bool has_dampers() const
+    {
+        return std::ranges::any_of(model_.loads(), [](const Load& load) { return load.depends_on_V; });
     }
 
     bool decays(const HighestFrequencies& at, double length)

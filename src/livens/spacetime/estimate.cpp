@@ -93,8 +93,7 @@ void add_lost_vibrations(const Model& model, const Motion& motion, ErrorEstimate
     for (int e = 0; e < motion.n_elements(); ++e) raise_to(longest, motion.mesh.length(e));
     double shift = 0, turn = 0, speed = 0;   // by the root of twice the energy
     for (const int end : {0, motion.n_elements() / 2, motion.n_elements()}) {
-        const HighestFrequencies at = highest_frequencies(model, motion.at_end(end));
-        for (const Vibration& one : at.vibrations) {
+        for (const Vibration& one : vibrations(model, motion.at_end(end))) {
             if (one.rate * longest < motion.X.degree || one.rate < one.decay) continue;
             raise_to(shift, one.shift / one.rate);
             raise_to(turn, one.turn / one.rate);

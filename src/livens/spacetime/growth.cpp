@@ -39,20 +39,22 @@ private:
 /// The fastest rate that gravity and velocities make, 1/s: how velocities compare with positions.
 double fastest_rate(const Model& model, std::span<const Matrix34> velocities)
 {
-    double rate = std::sqrt(norm(model.gravity()) / model.length());
+    const double length = model.length();
+    double rate = std::sqrt(norm(model.gravity()) / length);
     for (const Matrix34& V : velocities)
-        rate = std::max({rate, norm(V.column(0)) / model.length(), norm(directors(V)) / std::sqrt(2.0)});
+        rate = std::max({rate, norm(V.column(0)) / length, norm(directors(V)) / std::sqrt(2.0)});
     return rate;
 }
 
 /// In lengths and rad.
 double size_of(const Model& model, std::span<const Matrix34> difference)
 {
-    double largest = 0;
-    for (const Matrix34& d : difference)
-        largest =
-            std::max({largest, norm(d.column(0)) / model.length(), norm(directors(d)) / std::sqrt(2.0)});
-    return largest;
+    double farthest = 0, widest = 0;
+    for (const Matrix34& d : difference) {
+        farthest = std::max(farthest, norm(d.column(0)));
+        widest = std::max(widest, norm(directors(d)) / std::sqrt(2.0));
+    }
+    return std::max(farthest / model.length(), widest);
 }
 
 /// Half the difference of two states.

@@ -7,8 +7,9 @@ namespace livens {
 
 namespace {
 
-/// Below, a tolerance that rounding did not let be met deserves a word; the default is no promise of digits.
-constexpr double finest_tolerance = 1e-14;
+/// Below, a tolerance that rounding did not let be met deserves a word; down to here it asks for all digits
+/// that there are, as an accuracy of many digits does.
+constexpr double finest_tolerance = 1e-15;
 
 }   // namespace
 

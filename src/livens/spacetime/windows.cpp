@@ -176,12 +176,12 @@ private:
         };
         const bool is_solved = !options_.by_newton && window_.solve(newton_options_, outcome);
         if (!is_solved) outcome.status = SolveStatus::not_converged;
-        const bool is_too_large =   // shorter elements cost less than this tangent
-            !is_solved && !options_.by_newton && window_.is_too_large() && may_divide(first, last, outcome);
-        if (is_solved)
-            iterations = outcome.iterations;
-        else if (!is_too_large && window_.predict())
-            run();
+        const bool is_divisible =   // else Newton says why
+            options_.pace ? mesh_.length(first) > 1e-6 * options_.pace->end()
+                          : may_divide(first, last, outcome);
+        const bool is_too_large = !is_solved && !options_.by_newton && window_.is_too_large() && is_divisible;
+        if (is_solved) iterations = outcome.iterations;   // too large: shorter ones cost less than a tangent
+        if (!is_solved && !is_too_large && window_.predict()) run();
         const auto goes_on = [&] {
             return !is_too_large && outcome.status != SolveStatus::converged &&
                    outcome.status != SolveStatus::cancelled;

@@ -4,12 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <cstring>
 
 namespace livens {
 namespace {
-
-constexpr std::size_t most_nodes = 33;   // of a field: degree 32, the largest of basis_on
-using Row = std::array<double, most_nodes>;
 
 void unstack(std::span<const double> stacked, std::span<Matrix34> bodies)
 {
@@ -17,16 +15,38 @@ void unstack(std::span<const double> stacked, std::span<Matrix34> bodies)
     for (std::size_t b = 0; b < bodies.size(); ++b) std::copy_n(stacked.data() + 12 * b, 12, bodies[b].a);
 }
 
-/// out += sum over A of row_A (x_A - x_0), for entries first, first + 1, .. of the coefficients. In
-/// differences from the first node, as the basis adds up to one: rounding is that of the change.
-void add_changes(const Field& field, int element, std::span<const double> row, std::size_t first,
-                 std::span<double> out)
+/// Two doubles in one register; the compiler does not find them by itself here.
+typedef double Pair __attribute__((vector_size(16)));
+
+/// out = factor x_0 + sum over A of row_A (x_A - x_0), for n `Number`s of coefficients that are `stride`
+/// doubles apart. In differences from the first node, as the basis adds up to one: rounding is that of the
+/// change.
+template <class Number, int n>
+void combine(const double* x, std::size_t stride, std::span<const double> row, double factor, double* out)
 {
-    const double* start = field.coefficient(element, 0).data() + first;
-    for (int A = 1; A <= field.degree; ++A) {
-        const double* x = field.coefficient(element, A).data() + first;
-        for (std::size_t i = 0; i < out.size(); ++i) out[i] += row[A] * (x[i] - start[i]);
+    const auto at = [](const double* place, int i) {   // coefficients are aligned as doubles are
+        Number value;
+        std::memcpy(&value, reinterpret_cast<const char*>(place) + i * sizeof value, sizeof value);
+        return value;
+    };
+    Number sum[n], start[n];
+    for (int i = 0; i < n; ++i) sum[i] = factor * (start[i] = at(x, i));
+    for (std::size_t A = 1; A < row.size(); ++A) {
+        x += stride;
+        for (int i = 0; i < n; ++i) sum[i] += row[A] * (at(x, i) - start[i]);
     }
+    for (int i = 0; i < n; ++i)
+        std::memcpy(reinterpret_cast<char*>(out) + i * sizeof sum[i], &sum[i], sizeof sum[i]);
+}
+
+void combine_bodies(const Field& field, int element, std::span<const double> row, double factor,
+                    std::span<Matrix34> bodies)
+{
+    const std::size_t stride = 12 * bodies.size();
+    assert(static_cast<std::size_t>(field.n_values) == stride);
+    const double* x = field.coefficient(element, 0).data();
+    for (std::size_t b = 0; b < bodies.size(); ++b)
+        combine<Pair, 6>(x + 12 * b, stride, row, factor, bodies[b].a);
 }
 
 }   // namespace
@@ -35,7 +55,7 @@ FieldTable::FieldTable(const Field& field, std::span<const double> points) : fie
 {
     const LagrangeBasis basis = field.basis();
     const std::size_t n = static_cast<std::size_t>(basis.size());
-    assert(n <= most_nodes);
+    assert(n <= std::tuple_size_v<Row>);
     values_.resize(points.size() * n);
     derivatives_.resize(points.size() * n);
     for (std::size_t k = 0; k < points.size(); ++k) {
@@ -46,50 +66,48 @@ FieldTable::FieldTable(const Field& field, std::span<const double> points) : fie
     }
 }
 
-void FieldTable::fill_row(int element, int k, int derivative, std::span<double> row) const
+std::span<const double> FieldTable::row(int element, int k, int derivative, Row& scratch) const
 {
     const std::size_t n = static_cast<std::size_t>(field_->degree) + 1, at = static_cast<std::size_t>(k) * n;
     const std::span<const double> M(values_.data() + at, n), D(derivatives_.data() + at, n);
-    std::ranges::copy(derivative == 0 ? M : D, row.begin());
-    if (field_->denominators.empty()) return;
-    if (derivative == 0) {
-        field_->make_rational(element, row.first(n), {});
-    } else {
-        Row scratch;
-        std::ranges::copy(M, scratch.begin());
-        field_->make_rational(element, std::span(scratch).first(n), row.first(n));
-    }
+    if (field_->denominators.empty()) return derivative == 0 ? M : D;
+    Row values;
+    std::ranges::copy(M, values.begin());
+    std::ranges::copy(D, scratch.begin());
+    field_->make_rational(element, std::span(values).first(n), std::span(scratch).first(n));
+    if (derivative == 0) scratch = values;
+    return std::span(scratch).first(n);
 }
 
 void FieldTable::values(int element, int k, std::span<double> out) const
 {
-    assert(static_cast<int>(out.size()) == field_->n_values);
-    std::ranges::copy(field_->coefficient(element, std::max(nodes_[k], 0)), out.begin());
-    if (nodes_[k] >= 0) return;
-    Row row;
-    fill_row(element, k, 0, row);
-    add_changes(*field_, element, row, 0, out);
+    const std::size_t n = static_cast<std::size_t>(field_->n_values);
+    assert(out.size() == n);
+    if (nodes_[k] >= 0) {
+        std::ranges::copy(field_->coefficient(element, nodes_[k]), out.begin());
+        return;
+    }
+    Row scratch;
+    const std::span<const double> M = row(element, k, 0, scratch);
+    const double* x = field_->coefficient(element, 0).data();
+    std::size_t i = 0;
+    for (; i + 4 <= n; i += 4) combine<Pair, 2>(x + i, n, M, 1, &out[i]);
+    for (; i < n; ++i) combine<double, 1>(x + i, n, M, 1, &out[i]);
 }
 
 void FieldTable::values(int element, int k, std::span<Matrix34> bodies) const
 {
-    unstack(field_->coefficient(element, std::max(nodes_[k], 0)), bodies);
-    if (nodes_[k] >= 0) return;
-    Row row;
-    fill_row(element, k, 0, row);
-    for (std::size_t b = 0; b < bodies.size(); ++b) add_changes(*field_, element, row, 12 * b, bodies[b].a);
+    if (nodes_[k] >= 0) return unstack(field_->coefficient(element, nodes_[k]), bodies);
+    Row scratch;
+    combine_bodies(*field_, element, row(element, k, 0, scratch), 1, bodies);
 }
 
 void FieldTable::derivatives(int element, int k, double factor, std::span<Matrix34> bodies) const
 {
-    assert(static_cast<std::size_t>(field_->n_values) == 12 * bodies.size());
-    Row row;
-    fill_row(element, k, 1, row);
-    for (int A = 1; A <= field_->degree; ++A) row[A] *= factor;
-    for (std::size_t b = 0; b < bodies.size(); ++b) {
-        bodies[b] = {};
-        add_changes(*field_, element, row, 12 * b, bodies[b].a);
-    }
+    Row scratch;
+    const std::span<const double> D = row(element, k, 1, scratch);
+    std::ranges::transform(D, scratch.begin(), [&](double d) { return factor * d; });
+    combine_bodies(*field_, element, std::span<const double>(scratch).first(D.size()), 0, bodies);
 }
 
 ElementSampler::ElementSampler(const Motion& motion, std::vector<double> points)

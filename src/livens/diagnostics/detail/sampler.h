@@ -2,6 +2,7 @@
 // The fields of a motion at fixed places of every element.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <span>
 #include <vector>
@@ -27,8 +28,10 @@ public:
     void derivatives(int element, int k, double factor, std::span<Matrix34> bodies) const;
 
 private:
-    /// Makes `row` what coefficients are multiplied with.
-    void fill_row(int element, int k, int derivative, std::span<double> row) const;
+    using Row = std::array<double, 33>;   // up to degree 32, the largest of basis_on
+
+    /// What coefficients are multiplied with: of the table, or made in `scratch`.
+    std::span<const double> row(int element, int k, int derivative, Row& scratch) const;
 
     const Field* field_;
     std::vector<int> nodes_;            // the node that a point is, or -1

@@ -21,13 +21,16 @@ void put(std::string& out, Word x)
 void Checksum::add(std::string_view bytes)
 {
     // A round of FNV-1a on a word instead of a byte, and its high half folded down.
-    for (std::size_t i = 0; i < bytes.size(); i += 8) {
+    const auto round = [this](const char* place, std::size_t n) {
         std::uint64_t word = 0;
-        std::memcpy(&word, bytes.data() + i, std::min<std::size_t>(8, bytes.size() - i));
+        std::memcpy(&word, place, n);
         if constexpr (std::endian::native == std::endian::big) word = __builtin_bswap64(word);
         state_ = (state_ ^ word) * 0x100000001b3u;
         state_ ^= state_ >> 29;
-    }
+    };
+    const std::size_t whole = bytes.size() & ~std::size_t{7};
+    for (std::size_t i = 0; i < whole; i += 8) round(bytes.data() + i, 8);
+    if (whole < bytes.size()) round(bytes.data() + whole, bytes.size() - whole);
 }
 
 std::string Checksum::text() const

@@ -152,14 +152,12 @@ void ClassicReader::read_variable(Header& header)
     v.name = header.name();
     const std::uint64_t rank = header.count();
     v.n_values = 1;
-    bool is_recorded = false;
     for (std::uint64_t i = 0; i < rank; ++i) {
         const std::uint64_t id = header.count();
         if (id >= dimensions_.size())
             damaged("variable '" + v.name + "' has a dimension that does not exist");
         const std::uint64_t length = dimensions_[id].length;
         v.dimensions.push_back(dimensions_[id].name);
-        is_recorded = is_recorded || length == 0;
         if (length != 0 && v.n_values > std::numeric_limits<std::uint64_t>::max() / 16 / length)
             damaged("variable '" + v.name + "' is larger than any file");
         v.n_values *= length;
@@ -170,7 +168,8 @@ void ClassicReader::read_variable(Header& header)
     v.n_bytes = padded(v.n_values * size_of(type));
     header.count();   // the size, which follows from the rest, where it fits into this field at all
     v.begin = header.offset();
-    if (!is_recorded && (v.n_bytes > source_.size || v.begin > source_.size - v.n_bytes))
+    // also where there is nothing to read, as of records that other programs write
+    if (v.n_bytes > source_.size || v.begin > source_.size - v.n_bytes)
         throw IoError("the file ends within variable '" + v.name + "': it was cut off", "io-truncated");
     variables_.push_back(std::move(v));
 }

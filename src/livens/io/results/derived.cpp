@@ -335,7 +335,7 @@ void write_violations(RunWriter& archive, const Model& model, const Motion& moti
     const int rigidity = declare(!std::ranges::all_of(model.bodies(), &Body::is_point), "rigidity_violation",
                                  "largest |Phi| of the bodies' rigidity");
     archive.later([&, joints, rigidity] {
-        const ViolationReport at = violations(model, motion, 0, false);
+        const NodeViolations at = node_violations(model, motion);
         if (joints >= 0) file.append(joints, std::span(at.joints));
         if (rigidity >= 0) file.append(rigidity, std::span(at.rigidity));
     });

@@ -13,14 +13,15 @@ namespace livens {
 namespace {
 
 constexpr double slow_contraction = 0.3;
-constexpr int most_slow_steps = 2, most_steps = 10;
+constexpr int most_slow_steps = 2, most_steps = 14;
 constexpr int many_twists = 100, most_combinations = 150, most_slow_combinations = 20;
 constexpr double hopeless_step = 10;         // lengths or radians
 constexpr double smallest_step = 1e-18;      // likewise: nothing moves
+constexpr double rounding = 1e-14;           // of the motion: what steps that shrink no more may be
 constexpr double least_pivot = 1e-5;         // of the rows' own size
 constexpr double share_of_tolerance = 0.1;   // left after the last step, as far as contraction foretells it
 constexpr double widest_tolerance =
-    1e-12;   // Newton's last step leaves less than it was allowed to, this all
+    1e-10;   // Newton's last step leaves less than it was allowed to, this all
 
 const lanes::Functions* functions_for(int n_lanes)
 {
@@ -40,12 +41,13 @@ struct Shrinking {
     double tolerance;
     int n_steps = 0, n_slow = 0;
     double step = 0, contraction = 0;
-    bool has_contracted = false, is_done = false;
+    bool has_contracted = false, is_done = false, is_rounded = false;
 
     /// False: there is no hope.
     bool take(const lanes::Sizes& sizes)
     {
-        const double allowed = tolerance * std::clamp(sizes.motion, 1e-6, 1.0), before = step;
+        const double motion = std::clamp(sizes.motion, 1e-6, 1.0), allowed = tolerance * motion,
+                     before = step;
         step = sizes.step;
         contraction = before > 0 ? step / before : 0;
         ++n_steps;
@@ -53,8 +55,9 @@ struct Shrinking {
         if (n_steps == 1 || is_done) return step < hopeless_step;
         const bool is_slow = !(contraction <= slow_contraction);
         // steps that were seen to shrink, and shrink no more, have met their rounding
-        is_done = is_slow ? has_contracted && step <= allowed
+        is_done = is_slow ? has_contracted && step <= std::max(allowed, rounding * motion)
                           : step * contraction / (1 - contraction) <= share_of_tolerance * allowed;
+        is_rounded = is_done && is_slow && step > allowed;
         has_contracted = has_contracted || !is_slow;
         n_slow += is_slow ? 1 : 0;
         return is_done || n_slow < most_slow_steps;
@@ -113,6 +116,9 @@ MarchKernel::MarchKernel(const Tables& tables, const ElementRule& rule) : tables
     work_.twist.assign(static_cast<std::size_t>(tables.n_twists), 0.0);
     for (auto* v : {&work_.X, &work_.V, &work_.raw}) v->assign(12 * tables.bodies.size(), 0.0);
     work_.wrenches.assign(12 * tables.bodies.size(), 0.0);
+    guess_.polynomial = Extrapolation(rule, functions_->width);
+    for (Guess::End* end : {&guess_.by_series, &guess_.by_polynomial})
+        end->place.assign(7 * tables.bodies.size(), 0.0);
 }
 
 /// Lanes of the tables of lanes::Rule for an element of length 1, and room for another length.
@@ -165,32 +171,75 @@ void MarchKernel::use(const InstantState& start)
     for (const int row : chosen) place_.push_back(places[row]);
 }
 
-/// Places of all nodes from the series at the start.
+/// Places of a node, tau after the start, from the series there; 7 numbers a body, `stride` apart.
+void MarchKernel::place_series(const TwistSeries& series, double tau, const InstantState& start, int stride,
+                               double* place)
+{
+    series.at(tau, work_.twist.data());
+    for (int b = 0; b < tables_.n_bodies(); ++b, place += 7 * stride) {
+        const Tables::BodyTable& body = tables_.bodies[b];
+        const double *t = work_.twist.data() + body.first, *w = t + 3, *d = start.X.data() + 12 * b + 3;
+        double dX[12];
+        for (int i = 0; i < 3; ++i) place[i * stride] = t[i];
+        if (body.dofs == 3) continue;
+        const double angle = std::sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]);
+        const SineCosine half = sine_cosine(0.5 * angle);
+        const double factor = angle > 1e-8 ? half.sine / angle : 0.5;
+        place[3 * stride] = half.cosine;
+        for (int a = 0; a < 3; ++a)
+            place[(4 + a) * stride] = factor * (d[3 * a] * w[0] + d[3 * a + 1] * w[1] + d[3 * a + 2] * w[2]);
+        if (!body.offset) continue;
+        twist::displacement(t, d - 3, dX);
+        for (int i = 0; i < 3; ++i)
+            place[i * stride] +=
+                dX[3 + i] * body.center[0] + dX[6 + i] * body.center[1] + dX[9 + i] * body.center[2];
+    }
+}
+
+/// Places of all nodes: from the series at the start, or by the polynomial of the element before, whichever
+/// was nearer to the end of the last element.
 void MarchKernel::guess(const Stretch& stretch, const InstantState& start)
 {
-    const TwistSeries series(tables_, start, stretch.h(0));
+    const double h = stretch.h(0);
+    const TwistSeries series(tables_, start, h);
+    double* place = nodes_.values().place;
     const int W = functions_->width;
-    for (int l = 0; l < rule_.degree; ++l) {
-        series.at(rule_.nodes[node_of(l)] * stretch.h(0), work_.twist.data());
-        for (int b = 0; b < tables_.n_bodies(); ++b) {
-            const Tables::BodyTable& body = tables_.bodies[b];
-            const double *t = work_.twist.data() + body.first, *w = t + 3, *d = start.X.data() + 12 * b + 3;
-            double *place = nodes_.values().place + 7 * b * W + l, dX[12];
-            for (int i = 0; i < 3; ++i) place[i * W] = t[i];
-            if (body.dofs == 3) continue;
-            const double angle = std::sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]);
-            const SineCosine half = sine_cosine(0.5 * angle);
-            const double factor = angle > 1e-8 ? half.sine / angle : 0.5;
-            place[3 * W] = half.cosine;
-            for (int a = 0; a < 3; ++a)
-                place[(4 + a) * W] = factor * (d[3 * a] * w[0] + d[3 * a + 1] * w[1] + d[3 * a + 2] * w[2]);
-            if (!body.offset) continue;
-            twist::displacement(t, d - 3, dX);
-            for (int i = 0; i < 3; ++i)
-                place[i * W] +=
-                    dX[3 + i] * body.center[0] + dX[6 + i] * body.center[1] + dX[9 + i] * body.center[2];
-        }
+    const std::size_t n = guess_.by_series.place.size();
+    const auto keep_end = [&](Guess::End& end) {
+        for (std::size_t i = 0; i < n; ++i) end.place[i] = place[i * W];
+    };
+    guess_.by_polynomial.is_known = start.has_past && guess_.polynomial.follows(stretch.times.front(), h);
+    guess_.by_series.is_known = guess_.by_polynomial.is_known;   // else there is nothing to compare
+    if (guess_.by_polynomial.is_known && guess_.is_polynomial) {
+        place_series(series, h, start, 1, guess_.by_series.place.data());
+        guess_.polynomial.place(h, rule_.degree, place);
+        return keep_end(guess_.by_polynomial);
     }
+    if (guess_.by_polynomial.is_known) {
+        guess_.polynomial.place(h, 1, place);
+        keep_end(guess_.by_polynomial);
+    }
+    for (int l = 0; l < rule_.degree; ++l)
+        place_series(series, rule_.nodes[node_of(l)] * h, start, W, place + l);
+    if (guess_.by_series.is_known) keep_end(guess_.by_series);
+}
+
+/// Where the element has ended now.
+void MarchKernel::compare_guesses()
+{
+    if (!guess_.by_polynomial.is_known) return;
+    const int W = functions_->width;
+    const double* place = nodes_.values().place;
+    const auto distance = [&](const Guess::End& end) {
+        double far = 0, wide = 0;
+        for (int b = 0; b < tables_.n_bodies(); ++b)
+            for (int i = 0; i < (tables_.bodies[b].dofs == 6 ? 7 : 3); ++i) {
+                double& largest = i < 3 ? far : wide;
+                largest = std::max(largest, std::abs(end.place[7 * b + i] - place[(7 * b + i) * W]));
+            }
+        return std::max(far / tables_.length, 2 * wide);
+    };
+    guess_.is_polynomial = distance(guess_.by_polynomial) < distance(guess_.by_series);
 }
 
 /// Loads at their points, and the sum of their wrenches about the centres of mass.
@@ -281,6 +330,7 @@ bool MarchKernel::iterate(const Stretch& stretch, const InstantState& start, con
     report.iterations = progress.n_steps;
     report.last_increment = progress.step;
     report.contraction = progress.contraction;
+    report.ended_by_rounding = progress.is_rounded;
     report.residual = terms > 0 ? sizes.rows / terms : sizes.rows;
     for (int A = 0; A <= rule_.degree; ++A)
         if (!(pivot(A) > least_pivot)) return false;
@@ -299,6 +349,11 @@ bool MarchKernel::solve(const Stretch& stretch, const InstantState& start, const
     if (is_large && !is_solved_) {
         is_solved_ = iterate(stretch, start, options, true, report);
         was_slow_ = is_solved_ && report.iterations > most_steps;
+    }
+    if (is_solved_ && guess_.polynomial.serves()) {
+        compare_guesses();
+        guess_.polynomial.remember(nodes_.values().place, tables_.n_bodies(), stretch.times.front(),
+                                   stretch.times.back());
     }
     return is_solved_;
 }

@@ -6,6 +6,7 @@
 
 #include "livens/solvers/newton.h"
 #include "livens/spacetime/lobatto/acceleration.h"
+#include "livens/spacetime/lobatto/extrapolation.h"
 #include "livens/spacetime/lobatto/kernel_functions.h"
 #include "livens/spacetime/lobatto/series.h"
 
@@ -24,14 +25,18 @@ public:
 
     /// Whether there are lanes for the rule, and JointFactor serves.
     bool serves() const { return functions_ != nullptr; }
-    /// The element of `stretch` from `start`. False: not converged within ten steps, steps that do not shrink
+    /// The element of `stretch` from `start`. False: not converged within 14 steps, steps that do not shrink
     /// to 0.3 twice, a number that is not finite, or a pivot that is nearly zero. Steps of many bodies, of
     /// which a tangent would be large, are then combined (Acceleration).
     bool solve(const Stretch& stretch, const InstantState& start, const NewtonOptions& options,
                NewtonReport& report);
     /// The last solve() was successful, and nothing else was tried since.
     bool is_solved() const { return is_solved_; }
-    void forget() { is_solved_ = false; }
+    void forget()
+    {
+        is_solved_ = guess_.is_polynomial = false;
+        guess_.polynomial.forget();
+    }
     /// Evaluations of the equations at a node so far.
     long long evaluations() const { return evaluations_; }
 
@@ -60,10 +65,22 @@ private:
         std::vector<double> wrenches;   // six numbers a body: of loads, then of multipliers
     };
 
+    struct Guess {
+        struct End {
+            std::vector<double> place;   // 7 numbers a body
+            bool is_known = false;
+        } by_series, by_polynomial;
+        Extrapolation polynomial;
+        bool is_polynomial = false;   // as that was nearer to the end of the last element
+    };
+
     void use(const InstantState& start);
     void make_rule();
     void scale_rule(const Stretch& stretch, const InstantState& start);
     void guess(const Stretch& stretch, const InstantState& start);
+    void place_series(const TwistSeries& series, double tau, const InstantState& start, int stride,
+                      double* place);
+    void compare_guesses();
     void evaluate_loads(const Stretch& stretch);
     bool iterate(const Stretch& stretch, const InstantState& start, const NewtonOptions& options,
                  bool is_accelerated, NewtonReport& report);
@@ -80,6 +97,7 @@ private:
     LaneStore nodes_;
     ScaledRule scaled_;
     Work work_;
+    Guess guess_;
     Acceleration acceleration_;
     bool was_slow_ = false;   // the last element
     long long evaluations_ = 0;

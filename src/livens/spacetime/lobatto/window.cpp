@@ -131,7 +131,8 @@ bool LobattoWindow::solve(const NewtonOptions& options, NewtonReport& report)
 bool LobattoWindow::is_too_large() const
 {
     constexpr int most_unknowns = 4000;   // 128 MB, and seconds for a factor
-    return kernel_.serves() && stretch_.is_march() && tables_.freedoms() * stretch_.degree > most_unknowns;
+    return kernel_.serves() && stretch_.is_march() && front_.here().by_joints &&
+           tables_.freedoms() * stretch_.degree > most_unknowns;
 }
 
 void LobattoWindow::begin_newton()
