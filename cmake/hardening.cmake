@@ -9,7 +9,7 @@ check_pie_supported(LANGUAGES CXX)
 # livens_harden(TARGET [STACKS]): STACKS for what reads files and arguments. The engine sees checked numbers only, and
 # its small functions would pay for a guard in each.
 function(livens_harden target)
-    if(NOT LIVENS_HARDENING OR CMAKE_CXX_FLAGS MATCHES "-fsanitize" OR LIVENS_FUZZ)
+    if(NOT LIVENS_HARDENING OR CMAKE_CXX_FLAGS MATCHES "-fsanitize")
         return()
     endif()
     set(flags -fstack-clash-protection -fcf-protection)

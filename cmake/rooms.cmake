@@ -11,6 +11,10 @@ target_compile_options(livens_flags INTERFACE -Wall -Wextra -Wpedantic -Wshadow 
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
     target_compile_options(livens_flags INTERFACE -Wno-restrict)
 endif()
+# Problems are stated without the braces of their conditions: solve(model, {model.start()}, ..).
+if(CMAKE_CXX_COMPILER_ID MATCHES "Clang")
+    target_compile_options(livens_flags INTERFACE -Wno-missing-braces)
+endif()
 
 # livens_room(NAME [EIGEN] [STACKS] [LIBRARIES lib...]): LIBRARIES are linked by whatever the room is linked into. STACKS:
 # see livens_harden(). EIGEN rooms use Eigen inside their sources, never in a header. Eigen is given another namespace
@@ -85,6 +89,9 @@ function(livens_test name)
     endforeach()
     target_link_libraries(${name} PRIVATE livens_flags ${arg_LIBRARIES} GTest::gtest GTest::gtest_main Threads::Threads)
     target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
+    if(CMAKE_CXX_FLAGS MATCHES "-fsanitize")   # half of the time to compile; what takes time to run is in the rooms
+        target_compile_options(${name} PRIVATE -O0)
+    endif()
     # To those alone that ask for it: a compiler's cache serves all others in any folder.
     foreach(source ${arg_SOURCES})
         file(STRINGS ${source} asks REGEX "LIVENS_SOURCE_DIR|shipped\\.h|kit\\.h")

@@ -160,6 +160,53 @@ TEST(SingularPositions, FiveLoopsStayParallel)
     }
 }
 
+/// Every family that has its state at the start, within its estimate.
+TEST(SingularPositions, ChainsStayParallelByEveryFamily)
+{
+    const Parallelograms p{2};
+    const Model model = p.model();
+    struct Run {
+        Method method;
+        double end;
+        int n_elements;
+        double allowed;
+    };
+    for (const Run& run : {Run{Radau{3}, 10, 400, 1e-3}, Run{Radau{5}, 10, 150, 1e-5},
+                           Run{Radau{5}, 10, 137, 1e-5}, Run{Mixed{}, 1, 40, 1e-3}}) {
+        SCOPED_TRACE(testing::Message() << run.method.index() << ", " << run.n_elements << " elements");
+        const Solution s =
+            solve(model, {model.start()}, make_time_mesh(0, run.end, run.n_elements), run.method);
+        ASSERT_TRUE(s.report.converged()) << s.report.message;
+        EXPECT_TRUE(s.verdict.reasons.empty()) << s.verdict.reasons.front();
+        const double error = distance(p, s.motion, exact(p, run.end));
+        EXPECT_LT(error, 3 * s.estimate.largest + 1e-9);
+        EXPECT_LT(error, run.allowed);
+    }
+}
+
+/// From the state at the end, which looks like a start with the opposite rate: X(-t) has the opposite angle.
+TEST(SingularPositions, ChainsStayParallelBackward)
+{
+    for (const Parallelograms& p : {Parallelograms{2}, Parallelograms{3}, Parallelograms{2, 0, 1, 9.81, 4}}) {
+        const Model model = p.model();
+        Turn back = exact(p, 10);
+        back.angle = -back.angle;
+        for (const int n : {60, 137}) {
+            SCOPED_TRACE(testing::Message() << p.n << " loops, " << n << " elements");
+            const Conditions from_end{model.start(), Known::nothing, model.start(), Known::state};
+            const Solution s = solve(model, {from_end}, make_time_mesh(0, 10, n), Lobatto{6});
+            ASSERT_TRUE(s.report.converged()) << s.report.message;
+            const State start = s.motion.at_end(0);
+            double worst = 0;
+            for (int i = 0; i <= p.n; ++i)
+                worst = std::max(worst, norm(start.X[i] * point({1, 0, 0}) -
+                                             Vector3{i + std::sin(back.angle), std::cos(back.angle), 0}));
+            EXPECT_LT(worst, 10 * s.estimate.largest + 1e-9);
+            EXPECT_LT(worst, 1e-6);
+        }
+    }
+}
+
 TEST(SingularPositions, AreNoHindranceToAnAccuracy)
 {
     for (const Parallelograms& p : {Parallelograms{1}, Parallelograms{2}, Parallelograms{2, 0, 1, 9.81, 4}}) {

@@ -54,7 +54,7 @@ if(LIVENS_BUILD_PROGRAM AND LIVENS_HARDENING AND CMAKE_BUILD_TYPE MATCHES "^Rel"
 endif()
 
 # Shared libraries, from a build of their own.
-if(LIVENS_SLOW_TESTS AND LIVENS_BUILD_PROGRAM AND NOT LIVENS_FUZZ)
+if(LIVENS_SLOW_TESTS AND LIVENS_BUILD_PROGRAM)
     set(shared ${CMAKE_CURRENT_BINARY_DIR}/install/shared_libraries)   # not the folder of a test below
     add_test(NAME install.shared_libraries
              COMMAND ${CMAKE_COMMAND} -DSOURCE=${PROJECT_SOURCE_DIR} -DBUILD=${shared}/build -DPREFIX=${shared}/prefix

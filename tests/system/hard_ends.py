@@ -18,7 +18,7 @@ import sys
 import time
 import unittest
 
-from program_test import IO, PROGRAM, RESOURCES, SMALL, ProgramTest
+from program_test import IO, PROGRAM, RESOURCES, SANITIZED, SMALL, ProgramTest
 
 LONG_FORM = "--long" in sys.argv
 MIB = 1 << 20
@@ -160,7 +160,7 @@ class Limits(HardTest):
         say(f"file size limits from 0 to {len(self.new)} bytes: exits {counts(seen)}")
 
     def test_memory(self):
-        if "asan" in PROGRAM:
+        if SANITIZED:
             self.skipTest("the sanitizer needs address space of its own")
         needed, seen = self.least_memory(), collections.Counter()
         n = 150 if LONG_FORM else 15
@@ -181,7 +181,7 @@ class Limits(HardTest):
 
     def test_a_solved_motion_is_not_lost(self):
         """A motion of 192 MB under 400 MB; and from too little memory to enough: refused at once, or written."""
-        if "asan" in PROGRAM:
+        if SANITIZED:
             self.skipTest("the sanitizer needs address space of its own")
         n = 390_000 if LONG_FORM else 39_000
         self.write("new.toml", one_body(n))
@@ -201,7 +201,7 @@ class Limits(HardTest):
             f"exits {counts(seen)}")
 
     def test_the_peak_is_little_more_than_the_motion(self):
-        if "asan" in PROGRAM:
+        if SANITIZED:
             self.skipTest("the sanitizer needs memory of its own")
         n = 1_000_000 if LONG_FORM else 200_000
         motion = MOTION_BYTES * n

@@ -24,6 +24,7 @@ import unittest
 PROGRAM = os.environ.get("LIVENS_PROGRAM", "build/release/livens")
 SOURCE = pathlib.Path(os.environ.get("LIVENS_SOURCE_DIR", pathlib.Path(__file__).resolve().parents[2]))
 DATA = SOURCE / "tests" / "system" / "data"
+SANITIZED = b"__asan_init" in pathlib.Path(PROGRAM).read_bytes()   # which wants address space without limits
 
 USAGE, SCENARIO, NOT_CONVERGED, RESOURCES, IO, SUSPECT = 2, 3, 4, 5, 6, 7
 
@@ -133,6 +134,53 @@ class Solve(ProgramTest):
         self.assertIn("small.nc", done.out)
         self.assertIn("Converged", done.out)
         self.assertEqual(done.err, "")
+
+    def test_several_scenarios_at_a_time(self):
+        names = []
+        for i in range(5):
+            names.append(f"s{i}.toml")
+            self.write(names[-1], SMALL.replace("elements = 10", f"elements = {10 + 5 * i}"))
+            self.expect(0, "solve", names[-1], "-q", "-o", f"alone{i}.nc")
+        alone = [(self.folder / f"alone{i}.nc").read_bytes() for i in range(5)]
+        self.assertEqual(len(set(alone)), 5)
+        for jobs in ([], ["-j", "1"], ["-j", "3"], ["--jobs", "64"]):
+            done = self.expect(0, "solve", *names, *jobs)
+            self.assertEqual([(self.folder / f"s{i}.nc").read_bytes() for i in range(5)], alone, jobs)
+            shown = [line for line in done.out.splitlines() if line.endswith(".toml")]
+            self.assertEqual(shown, names, "in their order")
+            self.assertEqual(done.out.count("Converged"), 5)
+        folder = self.folder / "results"
+        folder.mkdir()
+        printed = json.loads(self.expect(0, "solve", *names, "-o", "results", "--json").out)
+        self.assertEqual([run["elements"] for run in printed], [10, 15, 20, 25, 30])
+        self.assertEqual(len(list(folder.glob("*.nc"))), 5)
+        self.assert_no_temporaries()
+
+    def test_the_worst_of_several_is_the_exit_code(self):
+        self.write("good.toml", SMALL)
+        poor = SMALL.replace("end = 0.5\nelements = 10\noutput = 0.1", "end = 50\nelements = 1")
+        self.write("poor.toml", poor.replace('family = "lobatto"\ndegree = 4', 'family = "midpoint"\nmax_iterations = 1'))
+        alone = self.run_program("solve", "poor.toml", "--json")
+        self.assertNotEqual(alone.returncode, 0)
+        done = self.expect(alone.returncode, "solve", "poor.toml", "good.toml", "--json")
+        printed = json.loads(done.out)
+        self.assertEqual([run["exit_code"] for run in printed], [alone.returncode, 0])
+        self.assertIn(json.loads(alone.out)["message"], done.err)
+
+    def test_several_scenarios_lose_nothing(self):
+        self.write("small.toml", SMALL)
+        other = self.folder / "other"
+        other.mkdir()
+        shutil.copy(self.folder / "small.toml", other)
+        for arguments, words in ((["small.toml", "other/small.toml"], "one file, 'small.nc'"),
+                                 (["small.toml", "none.toml"], "none.toml"),
+                                 (["small.toml", "other/small.toml", "-o", "x.nc"], "folder"),
+                                 (["small.toml", "other/small.toml", "--csv", "x.csv"], "--csv"),
+                                 (["small.toml", "-j", "0"], "--jobs")):
+            done = self.run_program("solve", *arguments)
+            self.assertNotEqual(done.returncode, 0)
+            self.assertIn(words, done.err)
+            self.assertEqual(self.files(), ["other", "small.toml"], "nothing was solved")
 
     def test_quiet_says_nothing(self):
         self.write("small.toml", SMALL)
@@ -494,7 +542,7 @@ degree = 6
             ("sample", "run.nc", "--body", "bob"),
             *(("sample", "run.nc", "--body", "bob", "--at=" + t)
               for t in ("-1", "0.6", "nan", "inf", "1e400", "0,1", "0x1", "", "0.1s")),
-            (), ("frobnicate",), ("solve",), ("solve", "small.toml", "--nope"), ("solve", "small.toml", "more"),
+            (), ("frobnicate",), ("solve",), ("solve", "small.toml", "--nope"), ("check", "small.toml", "more"),
             ("solve", "small.toml", "--diagnostics", "xml"), ("export", "run.nc"), ("explain", "no-such-code"),
             ("schema", "--json", "--md"),
         ):
@@ -921,7 +969,7 @@ class Files(ProgramTest):
     def test_memory_limit(self):
         many = SMALL.replace("elements = 10", "elements = 3000000").replace("output = 0.1\n", "")
         self.write("many.toml", many.replace("degree = 4", "degree = 1"))
-        if "asan" in PROGRAM:
+        if SANITIZED:
             self.skipTest("the sanitizer needs address space of its own")
         done = self.expect(RESOURCES, "solve", "many.toml", "-o", "run.nc", "--json", preexec_fn=lambda:
                            resource.setrlimit(resource.RLIMIT_AS, (300 << 20, 300 << 20)))
@@ -936,7 +984,7 @@ class Files(ProgramTest):
         need = json.loads(self.expect(0, "check", "many.toml", "--json").out)["memory_bytes"]
         self.assertGreater(need, 3e6 * 8 * 2 * 60)   # X, P, V and X'' on both sides, of two bodies
         self.assertIn("GB of memory at least", self.expect(0, "check", "many.toml").out)
-        if "asan" in PROGRAM:
+        if SANITIZED:
             self.skipTest("the sanitizer needs address space of its own")
         for command in (("check", "many.toml"), ("solve", "many.toml", "-o", "run.nc")):
             done = self.expect(RESOURCES, *command, "--json", timeout=20, preexec_fn=lambda:

@@ -235,7 +235,7 @@ class Meant(ProgramTest):
             (("--versoin",), "did you mean '--version'?"),
             (("--json", "info", "run.nc"), "goes behind the command 'info'"),
             (("frobnicate",), "no command 'frobnicate'; 'livens --help' lists them"),
-            (("solve", "a.toml", "b.toml"), "cannot use 'b.toml'"),
+            (("check", "a.toml", "b.toml"), "cannot use 'b.toml'"),
             (("explain", "unknown-kye"), "did you mean 'unknown-key'?"),
         ):
             self.assertIn(proposal, self.expect(USAGE, *arguments).err, arguments)
@@ -418,6 +418,22 @@ class HardEnds(ProgramTest):
         self.assertIn("the motion is complete", result["message"])
         self.assertEqual((result["status"], result["end"], result["condition_1"]), ("cancelled", 50, None))
         self.expect(0, "info", "run.nc")
+
+    def test_ctrl_c_ends_all_of_several(self):
+        text = SMALL.replace("end = 0.5\nelements = 10\noutput = 0.1", "end = 1000\nelements = 600000")
+        for name in ("one.toml", "two.toml"):
+            self.write(name, text)
+        program = subprocess.Popen([PROGRAM, "solve", "one.toml", "two.toml", "-j", "1", "--json", "-v"], cwd=self.folder,
+                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        time.sleep(2)
+        program.send_signal(signal.SIGINT)
+        out, _ = program.communicate(timeout=100)
+        self.assertEqual(program.returncode, 130)
+        one, two = json.loads(out)
+        self.assertEqual((one["status"], two["status"]), ("cancelled", "cancelled"))
+        self.assertIn("before it was begun", two["errors"][0]["message"])
+        self.assertTrue((self.folder / "one.nc").exists())
+        self.assertFalse((self.folder / "two.nc").exists())
 
     def test_signals_after_solving_change_the_exit_code_alone(self):
         self.write("long.toml", SMALL.replace("end = 0.5\nelements = 10\noutput = 0.1", "end = 50\nelements = 30000")

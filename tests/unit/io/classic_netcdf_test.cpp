@@ -190,6 +190,9 @@ TEST(ClassicNetcdf, SizesThatLieAreRefusedBeforeMemoryIsAskedFor)
     const std::size_t place = image.find("text") - 12;   // of `real`
     EXPECT_EQ(with(image, place, std::string(8, '\0')), "io-damaged") << "it begins within the header";
     EXPECT_EQ(with(image, place, std::string(8, '\xff')), "io-truncated");
+    std::string empty = image;   // a length of zero, as that of records
+    empty.replace(image.find("xy") + 4, 4, std::string(4, '\0'));
+    EXPECT_EQ(with(empty, place, std::string(8, '\x7f')), "io-truncated") << "nothing, beyond the end";
     const std::string huge("\x7f\xff\xff\xff\xff\xff\xff\xff", 8);
     EXPECT_EQ(with(wide, wide.find("xy") - 16, huge), "io-damaged") << "t x xy overflows";
     EXPECT_EQ(with(wide, 16, huge), "io-damaged");

@@ -497,7 +497,7 @@ TEST_F(Results, SeriesAreThoseOfTheMotion)
         make_run(model, solve(model, {model.start()}, make_time_mesh(0, 1, 5000), Lobatto{2}), Lobatto{2});
     run.motion.X.values[12 * 3] += 0.125;
     const Image file(image_of(model, run));
-    const ViolationReport off = violations(model, run.motion, 0, false);
+    const NodeViolations off = node_violations(model, run.motion);
     EXPECT_GT(off.joints[3], 0.01);
     EXPECT_EQ(file.doubles("joint_violation", {"X_node"}), off.joints);
     EXPECT_EQ(file.doubles("rigidity_violation", {"X_node"}), off.rigidity);

@@ -126,5 +126,40 @@ TEST(Frequencies, OfAMechanismThatCannotMoveAreNone)
     EXPECT_EQ(of(model).springs.rate, 0);
 }
 
+/// Bricks on ball joints, each a little heavier than the one before and with a spring to the world.
+Model chain(int n, double gravity, double stiffness)
+{
+    Model model({0, 0, -gravity});
+    for (int i = 0; i < n; ++i) {
+        const Matrix34 X = configuration({i + 0.5, 0, 0}, identity<3>());
+        const Matrix34 before = i == 0 ? world_configuration : model.bodies()[i - 1].X;
+        const int body = model.add_body(
+            rigid_body("brick" + std::to_string(i), box(1 + 0.1 * i, {1, 0.2, 0.4}), {X.column(0)}));
+        model.add_joint(spherical("ball" + std::to_string(i), body - 1, body,
+                                  joint_frame(before, X, {1.0 * i, 0, 0}, {0, 1, 0})));
+        model.add_load(spring_damper("spring" + std::to_string(i), world, {i + 0.5, 0, 3}, body, {},
+                                     {stiffness * (1 + i % 7), i == 3 ? 2.0 : 0.0, 3}));
+    }
+    return model;
+}
+
+/// Lanczos' iteration, which many bodies are given to, against a dense solver: with gravity alone the fastest
+/// vibration is that of the constraints, without it and at rest that of the springs.
+TEST(Frequencies, OfManyBodiesAreThoseOfADenseSolver)
+{
+    for (const int n : {18, 30, 60}) {   // 54 freedoms are given to a dense solver anyway
+        const Model hanging = chain(n, 9.81, 0), sprung = chain(n, 0, 40);
+        const HighestFrequencies of_weight = of(hanging), of_springs = of(sprung);
+        const double weight = vibrations(hanging, hanging.start()).back().rate;
+        EXPECT_NEAR(of_weight.constraints.rate, weight, 1e-9 * weight) << n;
+        EXPECT_EQ(of_weight.springs.rate, 0);
+        const double spring = vibrations(sprung, sprung.start()).back().rate;
+        EXPECT_NEAR(of_springs.springs.rate, spring, 1e-9 * spring) << n;
+        EXPECT_NEAR(of_springs.constraints.rate, 0, 1e-6);
+        EXPECT_GT(of_springs.dampers.rate, 0.1);
+        EXPECT_EQ(of_springs.dampers.name, "load 'spring3'");
+    }
+}
+
 }   // namespace
 }   // namespace livens

@@ -46,7 +46,6 @@ TEST(Verdict, OfAGoodRunHasFiguresAndNoReason)
         EXPECT_LT(s.verdict.energy_drift, is_coarse ? 0.05 : 0.01);
         EXPECT_LT(s.verdict.zigzag_positions, 0.01);
         EXPECT_GT(s.verdict.balance.largest_kinetic, 0);
-        EXPECT_TRUE(s.verdict.violations.joints.empty()) << "a verdict keeps nothing as long as the motion";
     }
 }
 
