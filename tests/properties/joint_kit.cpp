@@ -287,6 +287,7 @@ Failures check_joint_world(const JointCase& joint)
 
 Failures check_joint_order(const JointCase& joint)
 {
+    if (!joint.is_symmetric) return {};
     Random random(7);
     Failures failures;
     for (int n = 0; n < repetitions; ++n) {

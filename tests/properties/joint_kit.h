@@ -24,6 +24,7 @@ struct JointCase {
     std::function<Joint(int first, int second, const JointFrame&, const Matrix34& X_first,
                         const Matrix34& X_second)>
         make;
+    bool is_symmetric = true;   ///< the bodies may be exchanged: none has the line or plane alone
 };
 
 /// Every joint of the library.

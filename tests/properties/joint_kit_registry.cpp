@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Every joint of the library, one entry a joint: the kit runs over this list.
+#include <cmath>
+
 #include "properties/joint_kit.h"
 
 namespace livens {
@@ -18,6 +20,26 @@ JointFrame with_perpendicular_axes(Random& random, const Matrix34& X_first, cons
     across *= 1 / norm(across);
     JointFrame frame = joint_frame(X_first, X_second, at, axis);
     frame.axis_second = joint_frame(X_first, X_second, at, across).axis_second;
+    return frame;
+}
+
+/// Bent at random, at a common point.
+JointFrame with_two_axes(Random& random, const Matrix34& X_first, const Matrix34& X_second)
+{
+    JointFrame frame = joint_frame(X_first, X_second, random.vector());
+    frame.axis_first = random.unit();
+    frame.axis_second = random.unit();
+    return frame;
+}
+
+/// The second point beyond the first along the axis, or across it.
+template <bool is_across>
+JointFrame slid(Random& random, const Matrix34& X_first, const Matrix34& X_second)
+{
+    const Vector3 at = random.vector(), axis = random.unit();
+    JointFrame frame = joint_frame(X_first, X_second, at, axis);
+    const Vector3 there = at + (is_across ? cross(axis, random.vector()) : random.number() * axis);
+    frame.point_second = joint_frame(X_first, X_second, there).point_second;
     return frame;
 }
 
@@ -41,6 +63,50 @@ const std::vector<JointCase>& joint_cases()
         {"universal", 4, with_perpendicular_axes,
          [](int first, int second, const JointFrame& frame, const Matrix34&, const Matrix34&) {
              return universal("j", first, second, frame);
+         }},
+        {"prismatic", 5, slid<false>,
+         [](int first, int second, const JointFrame& frame, const Matrix34& X_first,
+            const Matrix34& X_second) { return prismatic("j", first, second, frame, X_first, X_second); }},
+        {"cylindrical", 4, slid<false>,
+         [](int first, int second, const JointFrame& frame, const Matrix34&, const Matrix34&) {
+             return cylindrical("j", first, second, frame);
+         }},
+        {"screw", 5, anywhere,
+         [](int first, int second, const JointFrame& frame, const Matrix34& X_first,
+            const Matrix34& X_second) { return screw("j", first, second, frame, X_first, X_second, 2); }},
+        {"planar", 3, slid<true>,
+         [](int first, int second, const JointFrame& frame, const Matrix34&, const Matrix34&) {
+             return planar("j", first, second, frame);
+         }},
+        {"constant_velocity", 4, with_two_axes,
+         [](int first, int second, const JointFrame& frame, const Matrix34& X_first,
+            const Matrix34& X_second) {
+             return constant_velocity("j", first, second, frame, X_first, X_second);
+         }},
+        {"point_on_line", 2, slid<false>,
+         [](int first, int second, const JointFrame& frame, const Matrix34&, const Matrix34&) {
+             return point_on_line("j", first, second, frame);
+         },
+         false},
+        {"point_in_plane", 1, slid<true>,
+         [](int first, int second, const JointFrame& frame, const Matrix34&, const Matrix34&) {
+             return point_in_plane("j", first, second, frame);
+         },
+         false},
+        {"parallel_axes", 2, anywhere,
+         [](int first, int second, const JointFrame& frame, const Matrix34&, const Matrix34&) {
+             return parallel_axes("j", first, second, frame);
+         }},
+        {"perpendicular_axes", 1, with_perpendicular_axes,
+         [](int first, int second, const JointFrame& frame, const Matrix34&, const Matrix34&) {
+             return perpendicular_axes("j", first, second, frame);
+         }},
+        {"constant_angle", 1, with_two_axes,
+         [](int first, int second, const JointFrame& frame, const Matrix34& X_first,
+            const Matrix34& X_second) {
+             const double cosine =
+                 dot(X_first * direction(frame.axis_first), X_second * direction(frame.axis_second));
+             return constant_angle("j", first, second, frame, std::acos(cosine));
          }},
         {"spherical", 3, anywhere,
          [](int first, int second, const JointFrame& frame, const Matrix34&, const Matrix34&) {

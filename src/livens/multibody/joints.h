@@ -3,12 +3,22 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "livens/base/linear.h"
 #include "livens/multibody/constraint.h"
+#include "livens/multibody/joint_coordinates.h"
 
 namespace [[gnu::visibility("default")]] livens {
+
+/// A coordinate of a joint: how far its second body is from its first, as the maker of the joint was told
+/// them, right-handed about the axis. Turns are counted from the start of a motion.
+struct NamedCoordinate {
+    std::string name;   ///< "angle" (rad) or "displacement" (m)
+    JointCoordinate coordinate;
+    double at_start = 0;   ///< what it is said to be there
+};
 
 /// A joint between `first` (a body or the world) and `second` (a body). A new kind of joint is a new function
 /// that fills in rows; nothing else in livens asks for the kind.
@@ -29,6 +39,7 @@ struct Joint {
     Vector3 axis_second{};
     /// Functions that must be positive at assembly, where rows alone would admit another branch.
     std::vector<ConstraintRow> branches{};
+    std::vector<NamedCoordinate> coordinates{};
 };
 
 /// Where a joint sits, in coordinates of each body. For the world they are world coordinates.
@@ -37,6 +48,10 @@ struct JointFrame {
     Vector3 point_second{};
     Vector3 axis_first{0, 0, 1};   ///< normalised by the makers; not zero
     Vector3 axis_second{0, 0, 1};
+    /// Directions across the axes that point the same way where the joint's angle is zero. Where one is zero,
+    /// the maker chooses both: as the bodies stand, if it is told how.
+    Vector3 across_first{};
+    Vector3 across_second{};
 };
 
 /// The frame of a joint at one world point and axis in the given configuration of the two bodies.
@@ -47,16 +62,65 @@ JointFrame joint_frame(const Matrix34& X_first, const Matrix34& X_second, const 
 // the world, the roles are exchanged: Joint::second is always a body, and reactions are those on it. X_first
 // and X_second are the configurations at assembly; `scale` is a length that violations are measured by.
 
-/// Everything held: coincident points and three pairs of axes that are perpendicular now. 6 rows.
+/// Everything held: coincident points, and three pairs of axes that are perpendicular now, or where the
+/// across directions of the frame point the same way. 6 rows.
 Joint weld(const std::string& name, int first, int second, const JointFrame& frame, const Matrix34& X_first,
            const Matrix34& X_second, double scale = 1);
-/// Rotation about one common axis. 5 rows.
+/// Rotation about one common axis. 5 rows. Coordinate: angle.
 Joint revolute(const std::string& name, int first, int second, const JointFrame& frame, double scale = 1);
+/// Slides along one common axis and turns as little as a weld. 5 rows. Coordinate: displacement.
+Joint prismatic(const std::string& name, int first, int second, const JointFrame& frame,
+                const Matrix34& X_first, const Matrix34& X_second, double scale = 1);
+/// Slides along and turns about one common axis. 4 rows. Coordinates: angle, displacement.
+Joint cylindrical(const std::string& name, int first, int second, const JointFrame& frame, double scale = 1);
+/// Slides along and turns about one common axis by `pitch` (m, not zero) a turn, positive for a right-handed
+/// thread, from where it stands. 5 rows. Coordinates: angle, displacement. Throws InputError `joint-pitch`.
+Joint screw(const std::string& name, int first, int second, const JointFrame& frame, const Matrix34& X_first,
+            const Matrix34& X_second, double pitch, double scale = 1);
+/// Two planes that stay in one, their common normal the axis. 3 rows. Coordinate: angle.
+Joint planar(const std::string& name, int first, int second, const JointFrame& frame, double scale = 1);
 /// Two perpendicular axes, one fixed in each body, and a common point. 4 rows.
 Joint universal(const std::string& name, int first, int second, const JointFrame& frame, double scale = 1);
+/// Two shafts, along the axes, that meet in a point and turn equally, however they are bent. The triads are as
+/// one bend of the second shaft leaves them where they stand. 4 rows. Throws InputError `joint-bend` for shafts
+/// that are bent by half a turn.
+Joint constant_velocity(const std::string& name, int first, int second, const JointFrame& frame,
+                        const Matrix34& X_first, const Matrix34& X_second, double scale = 1);
 /// A common point. 3 rows.
 Joint spherical(const std::string& name, int first, int second, const JointFrame& frame, double scale = 1);
+/// A point of the second body on a line of the first, which the first's axis is. 2 rows. Coordinate:
+/// displacement.
+Joint point_on_line(const std::string& name, int first, int second, const JointFrame& frame,
+                    double scale = 1);
+/// A point of the second body in a plane of the first, whose axis is the normal. 1 row.
+Joint point_in_plane(const std::string& name, int first, int second, const JointFrame& frame,
+                     double scale = 1);
+/// An axis of each body that stay parallel. 2 rows. Coordinate: angle.
+Joint parallel_axes(const std::string& name, int first, int second, const JointFrame& frame,
+                    double scale = 1);
+/// An axis of each body that stay perpendicular. 1 row.
+Joint perpendicular_axes(const std::string& name, int first, int second, const JointFrame& frame,
+                         double scale = 1);
+/// An axis of each body at a constant angle (rad). 1 row. Throws InputError `joint-angle` unless
+/// 0 < angle < pi.
+Joint constant_angle(const std::string& name, int first, int second, const JointFrame& frame, double angle,
+                     double scale = 1);
 /// A massless rod of the given length between the two points. 1 row. Throws InputError if length <= 0.
 Joint rod(const std::string& name, int first, int second, const JointFrame& frame, double length);
+
+/// The coordinate of that name, or null.
+const NamedCoordinate* find_coordinate(const Joint& joint, std::string_view name);
+
+// Joints between the coordinates of two others, which stay as they are in the configuration X of all bodies.
+// 1 row; the reaction is that on the second joint's second body. Throw InputError: `joint-coordinate` where a
+// joint lacks the coordinate, `joint-factor` for zero, `joint-self` for two joints of the same bodies, and what
+// coupling_row() throws.
+
+/// The angle of the second changes by `ratio` times that of the first: negative where wheels mesh outside.
+Joint gear(const std::string& name, const Joint& first, const Joint& second, double ratio,
+           const Configurations& X);
+/// The displacement of the rack changes by `radius` (m, of either sign) times the angle of the pinion.
+Joint rack_and_pinion(const std::string& name, const Joint& pinion, const Joint& rack, double radius,
+                      const Configurations& X, double scale = 1);
 
 }   // namespace livens

@@ -142,13 +142,12 @@ const std::vector<Shape>& shapes()
 /// Keys of the start and of the end alike.
 std::vector<Key> pose_keys()
 {
-    return {{"position", types::vector3, "Of the reference point, in the world.", "m", "[0, 0, 0]"},
-            {"directors", types::triple, "Body axes: [d1, d2, d3], each in world axes."},
-            {"quaternion", types::vector4, "Orientation (w, x, y, z), body to world, of norm 1."},
-            {"rotation_vector", types::vector3, "Orientation: axis times angle.", "rad"},
-            {"velocity", types::vector3, "Of the reference point, world axes.", "m/s", "[0, 0, 0]"},
-            {"angular_velocity", types::vector3, "World axes.", "rad/s"},
-            {"angular_velocity_body", types::vector3, "Body axes.", "rad/s"}};
+    std::vector<Key> keys{{"position", types::vector3, "Of the reference point, in the world.", "m", "[0, 0, 0]"}};
+    for (const Key& key : orientation_keys()) keys.push_back(key);
+    keys.push_back({"velocity", types::vector3, "Of the reference point, world axes.", "m/s", "[0, 0, 0]"});
+    keys.push_back({"angular_velocity", types::vector3, "World axes.", "rad/s"});
+    keys.push_back({"angular_velocity_body", types::vector3, "Body axes.", "rad/s"});
+    return keys;
 }
 
 bool is_point_mass(const Section& body)
@@ -262,15 +261,6 @@ MassProperties read_mass(const Section& body)
     return properties;
 }
 
-Matrix3 read_orientation(const Section& body)
-{
-    if (body.has("directors")) return body.columns("directors");
-    if (const Value* q = body.find("quaternion"))
-        return directors_from_quaternion({q->numbers[0], q->numbers[1], q->numbers[2], q->numbers[3]});
-    if (body.has("rotation_vector")) return directors_from_rotation_vector(body.vector("rotation_vector"));
-    return identity<3>();
-}
-
 Body build_body(const Section& section, const std::string& name)
 {
     const Placement placement = read_placement(section);
@@ -318,13 +308,35 @@ Table body_table()
     return body;
 }
 
+std::vector<Key> orientation_keys()
+{
+    return {{"directors", types::triple, "Axes of the body or frame, [d1, d2, d3], each in those of the world or "
+                                         "body."},
+            {"quaternion", types::vector4, "Orientation (w, x, y, z) in the world or body, of norm 1."},
+            {"rotation_vector", types::vector3, "Orientation: axis times angle.", "rad"}};
+}
+
+bool check_orientation(const Section& section)
+{
+    const bool is_one =
+        section.at_most_one({"directors", "quaternion", "rotation_vector"}, "orientation-conflict");
+    return check_quaternion(section) && is_one;
+}
+
+Matrix3 read_orientation(const Section& body)
+{
+    if (body.has("directors")) return body.columns("directors");
+    if (const Value* q = body.find("quaternion"))
+        return directors_from_quaternion({q->numbers[0], q->numbers[1], q->numbers[2], q->numbers[3]});
+    if (body.has("rotation_vector")) return directors_from_rotation_vector(body.vector("rotation_vector"));
+    return identity<3>();
+}
+
 bool check_pose(const Section& body)
 {
-    const bool is_one_orientation =
-        body.at_most_one({"directors", "quaternion", "rotation_vector"}, "orientation-conflict");
     const bool is_one_spin = body.at_most_one({"angular_velocity", "angular_velocity_body", "director_rates"},
                                               "rates-conflict");
-    return check_quaternion(body) && is_one_orientation && is_one_spin;
+    return check_orientation(body) && is_one_spin;
 }
 
 Placement read_placement(const Section& body)

@@ -175,7 +175,7 @@ bool check_name(const Section& section)
 
 std::string default_name(const Section& section)
 {
-    const Value* between = section.find("between");
+    const Value* between = section.find(section.takes("joints") ? "joints" : "between");
     const std::string type = section.text("type");
     if (between == nullptr) return type + " on " + section.text("body");
     return type + " " + between->texts[0] + "-" + between->texts[1];

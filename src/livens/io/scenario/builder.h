@@ -87,6 +87,11 @@ std::string default_name(const Section& section);
 bool claim_name(const Section& section, const std::string& kind, const std::string& name,
                 std::unordered_set<std::string>& taken, const Advice& advice);
 
+/// `directors`, `quaternion`, `rotation_vector`: of a body or a joint's frame.
+std::vector<Key> orientation_keys();
+bool check_orientation(const Section& section);
+Matrix3 read_orientation(const Section& section);
+
 // Position, orientation and velocities of a body, at the start ([[body]]) or at the end ([body.end]).
 bool check_pose(const Section& body);
 /// Throws InputError. Of `director_rates` it knows nothing.

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// [[joint]]: one table of kinds, from which the schema, the reader and the documentation follow.
+// [[joint]]: where it sits, and what may be wrong with that.
 #include <cmath>
 
 #include "livens/io/scenario/builder.h"
+#include "livens/io/scenario/joint_kinds.h"
 
 namespace livens {
 
@@ -11,86 +12,74 @@ namespace {
 constexpr double perpendicular_slack = 1e-9;   // |a . b| of unit axes: what the check of the start allows
 constexpr double coincidence_slack = 1e-9;     // of the model's length, likewise
 
-/// All that a joint can be made of.
-struct Parts {
-    const Section& section;
-    std::string name;
-    int first, second;
-    JointFrame frame;
-    const Matrix34 &X_first, &X_second;   ///< at the start
-    double scale;
-
-    double distance() const
-    {
-        return norm(X_second * point(frame.point_second) - X_first * point(frame.point_first));
-    }
-};
-
-struct JointKind : Kind {
-    Joint (*make)(const Parts&);
-};
-
-const Key at{"at", types::vector3, "The joint's point at the start, in the world.", "m"};
-const Key axis{"axis", types::vector3, "With `at`: the axis at the start, world axes, of any length."};
-const Key points{"points", types::pair,
-                 "The joint's point on each body, in its coordinates. A rod's default: the reference points, "
-                 "for the world its origin.", "m"};
-const Key axes{"axes", types::pair,
-               "One direction for each body, of any length: the common axis (revolute, with `points`) or the "
-               "two perpendicular axes (universal)."};
-
-/// A kind that takes `axis` has one common axis, one that takes `axes` alone has two that are perpendicular;
-/// one without `at` is placed by `points` or by nothing.
-const std::vector<JointKind>& kinds()
+Location location_of(const Section& joint)
 {
-    static const std::vector<JointKind> all{
-        {{"weld", "nothing moves (6 rows)", {at, points}},
-         [](const Parts& p) {
-             return weld(p.name, p.first, p.second, p.frame, p.X_first, p.X_second, p.scale);
-         }},
-        {{"revolute", "turns about one axis (5)", {at, axis, points, axes}},
-         [](const Parts& p) { return revolute(p.name, p.first, p.second, p.frame, p.scale); }},
-        {{"universal", "turns about two perpendicular axes (4)", {at, points, axes}},
-         [](const Parts& p) { return universal(p.name, p.first, p.second, p.frame, p.scale); }},
-        {{"spherical", "one common point (3)", {at, points}},
-         [](const Parts& p) { return spherical(p.name, p.first, p.second, p.frame, p.scale); }},
-        {{"rod", "fixed distance (1)",
-          {points, Key{"length", types::number, "Default: the distance of its points at the start.", "m"}
-                       .within(positive)}},
-         [](const Parts& p) {
-             const double length = p.section.has("length") ? p.section.number("length") : p.distance();
-             return rod(p.name, p.first, p.second, p.frame, length);
-         }}};
-    return all;
+    return joint_kinds()[static_cast<std::size_t>(joint.kind())].location;
 }
 
-bool has_two_axes(const Section& joint) { return joint.takes("axes") && !joint.takes("axis"); }
+/// What a joint needs to be placed: one of these sets of keys, the first of which says which set.
+struct Way {
+    Location location;
+    std::vector<std::string_view> keys;
+    std::string_view help;
+};
+
+const std::vector<Way>& ways()
+{
+    using enum Location;
+    static constexpr std::string_view one_axis = "with 'at' goes 'axis', one direction in the world",
+                                      on_bodies =
+                                          "with 'points' goes 'axes', one direction for each body in its "
+                                          "coordinates",
+                                      two = "give two axes, the first body's and the second's",
+                                      a_line =
+                                          "give 'axis', the direction of the line or the normal of the plane";
+    static const std::vector<Way> all{{at_point, {"at"}, {}},
+                                      {at_point, {"points"}, {}},
+                                      {on_axis, {"at", "axis"}, one_axis},
+                                      {on_axis, {"points", "axes"}, on_bodies},
+                                      {on_two_axes, {"at", "axes"}, two},
+                                      {on_two_axes, {"points", "axes"}, two},
+                                      {on_line, {"at", "axis"}, a_line},
+                                      {on_line, {"points", "axis"}, a_line},
+                                      {along_axis, {"axis"}, {}},
+                                      {along_axis, {"axes"}, {}},
+                                      {along_two_axes, {"at", "axes"}, two},
+                                      {along_two_axes, {"axes"}, {}}};
+    return all;
+}
 
 /// The whole of what a joint of this kind needs to be placed, and nothing that contradicts it.
 bool check_placement(const Section& joint)
 {
-    const auto complain = [&](std::string_view key, const std::string& message, const std::string& help) {
-        return joint.error(key, "joint-placement", message, {"", help});
+    const Location location = location_of(joint);
+    if (location == Location::at_points || location == Location::of_joints) return true;
+    const auto complain = [&](std::string_view key, const std::string& message, std::string_view help) {
+        return joint.error(key, "joint-placement", message, {"", std::string(help)});
     };
-    if (!joint.takes("at")) return true;
+    if (joint.has("frames"))
+        return joint.refuse({"at", "axis", "points", "axes"}, "joint-placement", "'frames' says it all");
     if (!joint.at_most_one({"at", "points"}, "joint-placement")) return false;
-    if (!joint.has("at") && !joint.has("points"))
-        return complain(
-            "", joint.label() + " lacks its place",
-            "give 'at', the joint's point in the world at the start, or 'points', its point on each body");
-    if (has_two_axes(joint) && !joint.has("axes"))
-        return complain("", joint.label() + " lacks 'axes'",
-                        "give two perpendicular axes, the first body's and the second's");
-    if (!joint.takes("axis")) return true;
-    const std::string wanted = joint.has("at") ? "axis" : "axes";
-    const std::string other = joint.has("at") ? "axes" : "axis";
-    const std::string help =
-        joint.has("at") ? "with 'at' goes 'axis', one direction in the world"
-                        : "with 'points' goes 'axes', one direction for each body in its coordinates";
-    if (joint.has(other))
-        return complain(other, "'" + other + "' of " + joint.label() + " does not fit to how it is placed",
-                        help);
-    return joint.has(wanted) || complain("", joint.label() + " lacks '" + wanted + "'", help);
+    if (location == Location::along_axis && !joint.at_most_one({"axis", "axes"}, "joint-placement"))
+        return false;
+    for (const Way& way : ways()) {
+        if (way.location != location || !joint.has(way.keys[0])) continue;
+        if (way.keys.size() == 1) return true;
+        const std::string_view other = way.keys[1] == "axis" ? "axes" : "axis";
+        if (joint.has(other))
+            return complain(other,
+                            "'" + std::string(other) + "' of " + joint.label() +
+                                " does not fit to how it is placed",
+                            way.help);
+        return joint.has(way.keys[1]) ||
+               complain("", joint.label() + " lacks '" + std::string(way.keys[1]) + "'", way.help);
+    }
+    if (location == Location::along_axis || location == Location::along_two_axes)
+        return complain("", joint.label() + " lacks its axes",
+                        "give 'axes', one direction for each body in its coordinates");
+    return complain(
+        "", joint.label() + " lacks its place",
+        "give 'at', the joint's point in the world at the start, or 'points', its point on each body");
 }
 
 bool check_axes(const Section& joint, Findings& findings)
@@ -104,12 +93,34 @@ bool check_axes(const Section& joint, Findings& findings)
         if (norm(i == 0 ? a : b) == 0)
             return findings.error(given->node->items()[i].place, "axis-zero",
                                   "an axis of " + joint.label() + " is zero");
-    if (has_two_axes(joint) && joint.has("at") &&
+    const std::string_view word = joint_kinds()[static_cast<std::size_t>(joint.kind())].word;
+    if ((word == "universal" || word == "perpendicular_axes") && joint.has("at") &&
         std::abs(dot(a, b)) > perpendicular_slack * norm(a) * norm(b))
         return joint.error("axes", "axes-not-perpendicular",
                            "the axes of " + joint.label() + " are not perpendicular",
-                           {"a universal joint holds its two axes perpendicular", ""});
+                           {"such a joint holds its two axes perpendicular", ""});
     return true;
+}
+
+bool check_frames(const Section& joint)
+{
+    const Value* given = joint.find("frames");
+    if (given == nullptr) return true;
+    if (given->sections.size() != 2)
+        return joint.error("frames", "joint-frames",
+                           joint.label() + " has " + std::to_string(given->sections.size()) + " frames",
+                           {"", "give two, the first body's and the second's"});
+    bool is_good = true;
+    for (const Section& frame : given->sections) {
+        is_good = check_orientation(frame) && is_good;
+        if (frame.find("directors") == nullptr) continue;
+        const Matrix3 D = frame.columns("directors");
+        if (norm(transpose(D) * D - identity<3>()) > perpendicular_slack || determinant(D) < 0)
+            is_good = frame.error("directors", "joint-frames",
+                                  "the axes of " + frame.label() +
+                                      " are not a right-handed set of perpendicular unit vectors");
+    }
+    return is_good;
 }
 
 /// A point mass can be held at its own point only, which `at` must be.
@@ -130,11 +141,25 @@ bool check_point_masses(const Builder& builder, const Section& joint, int first,
 JointFrame read_frame(const Section& joint, const Matrix34& X_first, const Matrix34& X_second)
 {
     JointFrame frame;
+    const std::span<const Section> frames = joint.sections("frames");
+    if (frames.size() == 2) {
+        const Matrix3 a = read_orientation(frames[0]), b = read_orientation(frames[1]);
+        return {frames[0].vector("point"),
+                frames[1].vector("point"),
+                a.column(2),
+                b.column(2),
+                a.column(0),
+                b.column(0)};
+    }
     const Vector3 place = joint.vector("at");
-    if (joint.has("axis")) return joint_frame(X_first, X_second, place, joint.vector("axis"));
-    if (joint.has("at")) frame = joint_frame(X_first, X_second, place);
-    else {
-        frame.point_first = joint.row("points", 0);   // zero without points: a rod between reference points
+    const bool is_in_world = joint.has("at") || location_of(joint) == Location::along_axis;
+    if (joint.has("axis") && is_in_world)
+        frame = joint_frame(X_first, X_second, place, joint.vector("axis"));
+    else if (joint.has("at"))
+        frame = joint_frame(X_first, X_second, place);
+    if (joint.has("axis") && !is_in_world) frame.axis_first = joint.vector("axis");
+    if (!joint.has("at")) {
+        frame.point_first = joint.row("points", 0);   // zero without points: the reference points
         frame.point_second = joint.row("points", 1);
     }
     if (!joint.has("axes")) return frame;
@@ -152,18 +177,65 @@ Joint make_joint(const Builder& builder, const Section& joint, const std::string
     const Matrix34 &X_first = builder.start_configuration(first),
                    &X_second = builder.start_configuration(second);
     const JointFrame frame = read_frame(joint, X_first, X_second);
-    return kinds()[static_cast<std::size_t>(joint.kind())].make(
+    Joint made = joint_kinds()[static_cast<std::size_t>(joint.kind())].make(
         {joint, name, first, second, frame, X_first, X_second, builder.length()});
+    if (joint.has("coordinate")) made.coordinates.front().at_start = joint.number("coordinate");
+    return made;
+}
+
+/// The joint of a name in a list of them; an unknown one is reported.
+const Joint* find_joint(Builder& builder, const Section& section, std::size_t i)
+{
+    const Value& names = *section.find("joints");
+    std::vector<std::string_view> known;
+    for (const Joint& joint : builder.model().joints()) {
+        if (joint.name == names.texts[i]) return &joint;
+        known.push_back(joint.name);
+    }
+    bool is_stated = false;   // but wrong: told already
+    for (const Section& other : builder.top().sections("joint"))
+        is_stated =
+            is_stated || (&other != &section && other.has("name") && other.text("name") == names.texts[i]);
+    if (!is_stated || builder.findings().n_errors() == 0)
+        builder.findings().error(names.node->items()[i].place, "joint-unknown",
+                                 section.label() + " refers to '" + names.texts[i] +
+                                     "', but there is no such joint",
+                                 {is_stated ? "couplings can be coupled to other joints only" : "",
+                                  suggest(names.texts[i], known)});
+    return nullptr;
+}
+
+void read_coupling(Builder& builder, const Section& section, const std::string& name, const std::string& path)
+{
+    if (section.find("joints") == nullptr) return;
+    const Joint *first = find_joint(builder, section, 0), *second = find_joint(builder, section, 1);
+    if (first == nullptr || second == nullptr || !section.is_valid()) return;
+    std::vector<Matrix34> X;
+    for (const Body& body : builder.model().bodies()) X.push_back(body.X);
+    builder.guard(path, [&] {
+        builder.model().add_joint(
+            joint_kinds()[static_cast<std::size_t>(section.kind())].make({section,
+                                                                          name,
+                                                                          world,
+                                                                          world,
+                                                                          {},
+                                                                          world_configuration,
+                                                                          world_configuration,
+                                                                          builder.length(),
+                                                                          first,
+                                                                          second,
+                                                                          X}));
+    });
 }
 
 std::string claim_joint_name(const Section& joint, std::unordered_set<std::string>& taken)
 {
-    if (!joint.has("name") && (joint.find("between") == nullptr || joint.kind() == any_kind)) return {};
+    const bool has_ends = joint.find("between") != nullptr || joint.find("joints") != nullptr;
+    if (!joint.has("name") && (!has_ends || joint.kind() == any_kind)) return {};
     const std::string name = joint.has("name") ? joint.text("name") : default_name(joint);
-    const Advice advice = joint.has("name")
-                              ? Advice{"results refer to joints by name", "rename one of them"}
-                              : Advice{"a joint without name is called by its type and bodies",
-                                       "give it a 'name'"};
+    const Advice advice = joint.has("name") ? Advice{"results refer to joints by name", "rename one of them"}
+                                            : Advice{"a joint without name is called by its type and bodies",
+                                                     "give it a 'name'"};
     if (!name.empty()) claim_name(joint, "joint", name, taken, advice);
     return name;
 }
@@ -172,43 +244,64 @@ std::string claim_joint_name(const Section& joint, std::unordered_set<std::strin
 
 Table joint_table()
 {
+    std::vector<Kind> all{joint_kinds().begin(), joint_kinds().end()};
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        std::vector<Key>& keys = all[i].keys;
+        if (joint_kinds()[i].location == Location::of_joints)
+            keys[0].required = true;
+        else
+            keys.insert(keys.begin(), Key{"between", types::names, "Two different bodies, or one and `\"world\"`."}.needed());
+    }
     return Table{
         "[[joint]]",
-        "A joint is placed in one of two ways. With `at`, by one point in the world, where the bodies are at "
+        "A joint is placed in one of three ways. With `at`, by one point in the world, where the bodies are "
+        "at "
         "the start; `axis` or `axes` are then directions in the world, too. Or with `points`, one point for "
         "each body in that body's coordinates (world coordinates for the world); `axes` are then one "
-        "direction for each body in the same coordinates. Only the second way can describe a start that does "
-        "not fit. Reactions are what the joint exerts on the second body of `between`, or on the only one of "
-        "a joint to the world.",
+        "direction for each body in the same coordinates. Or with `frames`, one for each body. Only the last "
+        "two "
+        "can describe a start that does not fit. Reactions are what the joint exerts on the second body of "
+        "`between`, or on the only one of a joint to the world. Coordinates are those of the second body "
+        "against "
+        "the first, right-handed about the axis, zero at the start unless `coordinate` says more; turns are "
+        "counted.",
         {Key{"name", types::text,
              "Default: type and bodies, as in `rod world-upper`, where no other joint is called that."},
-         Key{"type", types::choice, ""}.needed(),
-         Key{"between", types::names, "Two different bodies, or one and `\"world\"`."}.needed()}}
-        .with_kinds("type", {kinds().begin(), kinds().end()});
+         Key{"type", types::choice, ""}.needed()}}
+        .with_kinds("type", std::move(all));
 }
 
 void read_joints(Builder& builder)
 {
     Findings& findings = builder.findings();
     std::unordered_set<std::string> taken;
-    for (const Section& section : builder.top().sections("joint")) {
-        const int before = findings.n_errors();
-        const std::string name = claim_joint_name(section, taken);
-        check_name(section);
-        if (section.kind() != any_kind) {
-            check_placement(section);
-            check_axes(section, findings);
+    // Couplings follow the joints that they couple, wherever they stand in the file.
+    for (const bool is_coupling : {false, true})
+        for (const Section& section : builder.top().sections("joint")) {
+            if (is_coupling != (section.kind() != any_kind && location_of(section) == Location::of_joints))
+                continue;
+            const int before = findings.n_errors();
+            const std::string name = claim_joint_name(section, taken);
+            check_name(section);
+            if (section.kind() != any_kind) {
+                check_placement(section);
+                check_axes(section, findings);
+                check_frames(section);
+            }
+            const std::string path = "joint[" + name + "]";
+            builder.remember(path, section);
+            if (is_coupling) {
+                if (findings.n_errors() == before) read_coupling(builder, section, name, path);
+                continue;
+            }
+            BodyReference first, second;
+            const bool has_bodies = builder.find_pair(section, "joint-self", first, second);
+            if (!has_bodies || !section.is_valid() || findings.n_errors() > before) continue;
+            if (!check_point_masses(builder, section, first.index, second.index)) continue;
+            builder.guard(path, [&] {
+                builder.model().add_joint(make_joint(builder, section, name, first.index, second.index));
+            });
         }
-        BodyReference first, second;
-        const bool has_bodies = builder.find_pair(section, "joint-self", first, second);
-        const std::string path = "joint[" + name + "]";
-        builder.remember(path, section);
-        if (!has_bodies || !section.is_valid() || findings.n_errors() > before) continue;
-        if (!check_point_masses(builder, section, first.index, second.index)) continue;
-        builder.guard(path, [&] {
-            builder.model().add_joint(make_joint(builder, section, name, first.index, second.index));
-        });
-    }
 }
 
 }   // namespace livens

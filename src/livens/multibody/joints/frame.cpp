@@ -51,6 +51,9 @@ Joint start_joint(const std::string& name, const char* type, int first, int seco
         std::swap(first, second);
         std::swap(frame.point_first, frame.point_second);
         std::swap(frame.axis_first, frame.axis_second);
+        std::swap(frame.across_first, frame.across_second);
+        frame.axis_first *= -1;
+        frame.axis_second *= -1;
     }
     Joint joint;
     joint.name = name;
@@ -66,9 +69,41 @@ void normalise_axes(const Joint& joint, JointFrame& frame)
 {
     frame.axis_first = unit_axis(frame.axis_first, "joint[" + joint.name + "]");
     frame.axis_second = unit_axis(frame.axis_second, "joint[" + joint.name + "]");
+    const bool is_given =
+        dot(frame.across_first, frame.across_first) > 0 && dot(frame.across_second, frame.across_second) > 0;
+    const auto across = [&](const Vector3& given, const Vector3& axis) {
+        return is_given ? unit_axis(given - dot(given, axis) * axis, "joint[" + joint.name + "]")
+                        : across_axis(axis).u;
+    };
+    frame.across_first = across(frame.across_first, frame.axis_first);
+    frame.across_second = across(frame.across_second, frame.axis_second);
 }
 
-AxisPair perpendicular_axes(const Vector3& axis)
+void fix_across(JointFrame& frame, int first, int second, const Matrix34& X_first, const Matrix34& X_second,
+                const std::string& name)
+{
+    if (dot(frame.across_first, frame.across_first) > 0 && dot(frame.across_second, frame.across_second) > 0)
+        return;
+    const std::string path = "joint[" + name + "]";
+    const Vector3 axis_first = unit_axis(frame.axis_first, path),
+                  axis_second = unit_axis(frame.axis_second, path);
+    const Matrix34 &X = first == world ? world_configuration : X_first,
+                   &Y = second == world ? world_configuration : X_second;
+    const Vector3 a = X * direction(axis_first), b = Y * direction(axis_second);
+    constexpr double opposite = 1e-6;
+    if (1 + dot(a, b) < opposite)
+        throw InputError({"joint-bend", path + ".axes",
+                          "the axes of joint '" + name + "' point in opposite directions", "", "",
+                          "there is no shortest turn from one to the other",
+                          "reverse one of the two axes, or turn one of the bodies"});
+    frame.across_first = across_axis(axis_first).u;
+    // The turn about a x b that takes a to b, of the direction across a.
+    const Vector3 u = X * direction(frame.across_first), sum = a + b;
+    const Vector3 turned = u - (dot(sum, u) / (1 + dot(a, b))) * sum + 2 * dot(a, u) * b;
+    frame.across_second = transpose(directors(Y)) * turned;
+}
+
+AxisPair across_axis(const Vector3& axis)
 {
     int smallest = 0;
     for (int i = 1; i < 3; ++i)
@@ -91,6 +126,58 @@ void hold_perpendicular(Joint& joint, const Vector3& a, const Vector3& b, const 
 {
     joint.rows.push_back(inner_product_row(joint.first, direction(a), joint.second, direction(b), 0, 1));
     joint.rows.back().label = label;
+}
+
+void hold_axis(Joint& joint, const JointFrame& frame)
+{
+    joint.axis_first = frame.axis_first;
+    joint.axis_second = frame.axis_second;
+    const AxisPair across = across_axis(frame.axis_first);
+    hold_perpendicular(joint, across.u, frame.axis_second, "axis 1");
+    hold_perpendicular(joint, across.v, frame.axis_second, "axis 2");
+}
+
+void hold_spin(Joint& joint, const JointFrame& frame)
+{
+    const Vector3 v = cross(frame.axis_second, frame.across_second);
+    hold_perpendicular(joint, frame.across_first, v, "turn");
+    joint.branches.push_back(inner_product_row(joint.first, direction(frame.across_first), joint.second,
+                                               direction(frame.across_second), 0, 1));
+    joint.branches.back().label = "turn";
+}
+
+Slide slide_of(const Joint& joint, const JointFrame& frame, bool exchanged)
+{
+    if (exchanged)
+        return {joint.second, joint.point_second, -frame.axis_second, joint.first, joint.point_first};
+    return {joint.first, joint.point_first, frame.axis_first, joint.second, joint.point_second};
+}
+
+void hold_in_plane(Joint& joint, const Slide& slide, const Vector3& n, const char* label, double scale)
+{
+    joint.rows.push_back(plane_row(slide.body, direction(n), point(slide.point), slide.other,
+                                   point(slide.other_point), 0, scale));
+    joint.rows.back().label = label;
+}
+
+void hold_on_line(Joint& joint, const Slide& slide, double scale)
+{
+    const AxisPair across = across_axis(slide.axis);
+    hold_in_plane(joint, slide, across.u, "across 1", scale);
+    hold_in_plane(joint, slide, across.v, "across 2", scale);
+}
+
+NamedCoordinate angle_coordinate(const Joint& joint, const JointFrame& frame)
+{
+    const Vector3 u = frame.across_first, v = cross(frame.axis_first, u);
+    return {"angle", angle_between(joint.first, direction(u), direction(v), joint.second,
+                                   direction(frame.across_second))};
+}
+
+NamedCoordinate displacement_coordinate(const Slide& slide)
+{
+    return {"displacement", displacement_along(slide.body, direction(slide.axis), point(slide.point),
+                                               slide.other, point(slide.other_point))};
 }
 
 }   // namespace livens

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "livens/multibody/detail/joint_frame.h"
+
+namespace livens {
+
+Joint point_on_line(const std::string& name, int first, int second, const JointFrame& frame, double scale)
+{
+    JointFrame f = frame;
+    Joint joint = start_joint(name, "point_on_line", first, second, f, scale);
+    normalise_axes(joint, f);
+    const Slide slide = slide_of(joint, f, joint.second != second);
+    hold_on_line(joint, slide, scale);
+    joint.coordinates = {displacement_coordinate(slide)};
+    return joint;
+}
+
+}   // namespace livens
