@@ -11,11 +11,12 @@
 #include "console.h"
 #include "failure.h"
 #include "finite_number.h"
-#include "simd.h"
 #include "livens/base/error.h"
+#include "livens/diagnostics/coordinates.h"
 #include "livens/diagnostics/sample.h"
 #include "livens/io/results.h"
 #include "livens/spacetime/solve.h"
+#include "simd.h"
 
 namespace livens::program {
 
@@ -60,7 +61,8 @@ struct Query {
     const SampleArguments& arguments;
     const Run& run;
     const Scenario& scenario;
-    int index;   ///< of the body or joint
+    int index;                                     ///< of the body or joint
+    std::optional<JointCoordinates> coordinates;   ///< of a joint
 };
 
 /// Not converged: it cannot be had.
@@ -187,6 +189,25 @@ const char* source_of(const Query& q, const JointSample& s, double t)
     return s.is_acceleration_level ? "acceleration level" : "interpolated multipliers";
 }
 
+struct CoordinateAt {
+    std::string name;
+    const JointCoordinate* of;
+    CoordinateValue value;
+};
+
+/// Those of the joint that is asked for.
+std::vector<CoordinateAt> coordinates_at(const Query& q, double t)
+{
+    std::vector<CoordinateAt> all;
+    const std::vector<CoordinateValue> values = q.coordinates->at(t);
+    for (std::size_t i = 0; i < values.size(); ++i)
+        if (q.coordinates->places()[i].joint == q.index) {
+            const NamedCoordinate& of = q.coordinates->coordinate(static_cast<int>(i));
+            all.push_back({of.name, &of.coordinate, values[i]});
+        }
+    return all;
+}
+
 void joint_members(JsonWriter& json, const Query& q, double t)
 {
     const JointSample s = joint_at(q, t);
@@ -206,6 +227,10 @@ void joint_members(JsonWriter& json, const Query& q, double t)
     json.member("source", source_of(q, s, t));
     json.member("unique", s.is_unique);
     json.member("bounded", s.is_bounded);
+    for (const auto& [name, of, value] : coordinates_at(q, t)) {
+        json.member(name, value.value);
+        json.member(name + "_rate", value.rate);
+    }
 }
 
 /// One instant: its members stand at the top; several: a list `samples`.
@@ -254,6 +279,12 @@ std::string text_of(const Query& q, double t)
         if (!s.is_bounded)
             return out +
                    "  (no force or torque: the joints lose rank here, and reactions grow without bound)\n";
+        for (const auto& [name, of, value] : coordinates_at(q, t)) {
+            const char* const unit = of->is_angle() ? "rad" : "m";
+            add_row(out, name.c_str(), unit, Matrix<1, 1>{value.value});
+            add_row(out, (name + " rate").c_str(), (std::string(unit) + "/s").c_str(),
+                    Matrix<1, 1>{value.rate});
+        }
         add_row(out, "force", "N", s.right.force);
         add_row(out, "torque", "N m", s.right.torque);
         if (!(s.left.force == s.right.force && s.left.torque == s.right.torque)) {
@@ -300,9 +331,13 @@ std::string csv_of(const Query& q, const std::vector<double>& times)
     std::string out =
         is_body ? "t [s],x [m],y [m],z [m],qw,qx,qy,qz,vx [m/s],vy [m/s],vz [m/s],wx [rad/s],wy [rad/s],"
                   "wz [rad/s],estimated_position_error [1],estimated_orientation_error [rad],"
-                  "estimated_velocity_error [m/s],beyond_horizon\r\n"
+                  "estimated_velocity_error [m/s],beyond_horizon"
                 : "t [s],fx [N],fy [N],fz [N],mx [N m],my [N m],mz [N m],estimated_reaction_error [1],"
-                  "beyond_horizon\r\n";
+                  "beyond_horizon";
+    if (!is_body)
+        for (const auto& [name, of, value] : coordinates_at(q, times.front()))
+            out += fmt::format(",{0} [{1}],{0}_rate [{1}/s]", name, of->is_angle() ? "rad" : "m");
+    out += "\r\n";
     for (const double t : times) {
         out += to_text(t);
         if (is_body) {
@@ -321,6 +356,9 @@ std::string csv_of(const Query& q, const std::vector<double>& times)
         }
         const std::optional<bool> is_beyond = beyond_horizon(q, t);
         out += !is_beyond ? "," : *is_beyond ? ",1" : ",0";
+        if (!is_body)
+            for (const auto& [name, of, value] : coordinates_at(q, t))
+                out += "," + to_text(value.value) + "," + to_text(value.rate);
         out += "\r\n";
     }
     return out;
@@ -339,7 +377,8 @@ int sample_command(const SampleArguments& arguments, const Common& common)
     std::vector<double> times;
     for (const std::string& text : arguments.at) times.push_back(instant_inside(text, run.motion));
     const Scenario scenario = scenario_of_run(run, arguments.run);
-    const Query query{arguments, run, scenario, index};
+    Query query{arguments, run, scenario, index, {}};
+    if (!arguments.joint.empty()) query.coordinates.emplace(scenario.model, run.motion);
     if (!run.report.converged())
         say_warning(std::string("the run is not converged: ") + to_string(run.report.status));
     if (common.json) {

@@ -81,9 +81,9 @@ Joint screw(const std::string& name, int first, int second, const JointFrame& fr
 Joint planar(const std::string& name, int first, int second, const JointFrame& frame, double scale = 1);
 /// Two perpendicular axes, one fixed in each body, and a common point. 4 rows.
 Joint universal(const std::string& name, int first, int second, const JointFrame& frame, double scale = 1);
-/// Two shafts, along the axes, that meet in a point and turn equally, however they are bent. The triads are as
-/// one bend of the second shaft leaves them where they stand. 4 rows. Throws InputError `joint-bend` for shafts
-/// that are bent by half a turn.
+/// Two shafts, along the axes, that meet in a point and turn equally, however they are bent. Where they
+/// stand now, one bend of the second takes it there. 4 rows. Throws InputError `joint-bend` for shafts that
+/// are bent by half a turn.
 Joint constant_velocity(const std::string& name, int first, int second, const JointFrame& frame,
                         const Matrix34& X_first, const Matrix34& X_second, double scale = 1);
 /// A common point. 3 rows.
@@ -111,15 +111,15 @@ Joint rod(const std::string& name, int first, int second, const JointFrame& fram
 /// The coordinate of that name, or null.
 const NamedCoordinate* find_coordinate(const Joint& joint, std::string_view name);
 
-// Joints between the coordinates of two others, which stay as they are in the configuration X of all bodies.
-// 1 row; the reaction is that on the second joint's second body. Throw InputError: `joint-coordinate` where a
-// joint lacks the coordinate, `joint-factor` for zero, `joint-self` for two joints of the same bodies, and what
-// coupling_row() throws.
+// Joints between the coordinates of two others, which stay as they are in the configuration X of all
+// bodies. 1 row; the reaction is that on the second joint's second body. Throw InputError: `joint-coordinate`
+// where a joint lacks the coordinate, `joint-factor` for zero, `joint-self` for two joints of the same bodies,
+// and what coupling_row() throws.
 
 /// The angle of the second changes by `ratio` times that of the first: negative where wheels mesh outside.
 Joint gear(const std::string& name, const Joint& first, const Joint& second, double ratio,
            const Configurations& X);
-/// The displacement of the rack changes by `radius` (m, of either sign) times the angle of the pinion.
+/// The displacement of the rack changes by `radius` (m, either sign) times the angle of the pinion.
 Joint rack_and_pinion(const std::string& name, const Joint& pinion, const Joint& rack, double radius,
                       const Configurations& X, double scale = 1);
 

@@ -29,6 +29,7 @@ std::string file_text(const std::string& name)
 const std::vector<std::string> documents{file_text("tests/fuzz/corpus/every_key_of_bodies.toml"),
                                          file_text("tests/fuzz/corpus/accuracy.toml"),
                                          file_text("tests/fuzz/corpus/every_key_of_joints_and_loads.toml"),
+                                         file_text("tests/fuzz/corpus/every_key_of_mechanisms.toml"),
                                          file_text("tests/fuzz/corpus/every_key_of_mixed_two_ends.toml")};
 
 std::vector<std::string> lines_of(const std::string& text)
@@ -71,6 +72,8 @@ const Table& table_of(const std::string& header, const std::string& type)
 {
     std::string heading = header.empty() ? "top of the file" : header;
     if (header == "[load.table]") heading = "table of a " + type;
+    if (header.starts_with("[drive.")) heading = header.substr(7, header.size() - 8) + " of a drive";
+    if (header == "[[joint.frames]]") heading = "frame of a joint";
     if (header == "[body.shape]") heading = "shape of [[body]]";
     if (header.starts_with("[body.shape.")) heading = header.substr(12, header.size() - 13) + " of shape";
     for (const Table* table : schema_tables())

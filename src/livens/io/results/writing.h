@@ -70,5 +70,7 @@ private:
 /// What is in the file for readers other than livens, made from model and run while it is written: samples at
 /// the output times, times of nodes, masses, integrals over elements.
 void write_derived(RunWriter& archive, const Model& model, const Run& run);
+/// The samples among them.
+void write_samples(RunWriter& archive, const Model& model, const Run& run);
 
 }   // namespace livens

@@ -142,7 +142,8 @@ const std::vector<Shape>& shapes()
 /// Keys of the start and of the end alike.
 std::vector<Key> pose_keys()
 {
-    std::vector<Key> keys{{"position", types::vector3, "Of the reference point, in the world.", "m", "[0, 0, 0]"}};
+    std::vector<Key> keys{
+        {"position", types::vector3, "Of the reference point, in the world.", "m", "[0, 0, 0]"}};
     for (const Key& key : orientation_keys()) keys.push_back(key);
     keys.push_back({"velocity", types::vector3, "Of the reference point, world axes.", "m/s", "[0, 0, 0]"});
     keys.push_back({"angular_velocity", types::vector3, "World axes.", "rad/s"});
@@ -299,10 +300,12 @@ Table body_table()
              "In body coordinates. With a shape: where its centre of mass lies.", "m", "[0, 0, 0]"},
          Key{"inertia", types::principal_or_full,
              "About the centre of mass, in body axes: three principal moments or the matrix. Without a shape "
-             "only.", "kg m^2"},
+             "only.",
+             "kg m^2"},
          Key{"director_rates", types::triple,
              "Time derivatives of the directors, [d1', d2', d3'], as they are. Rates that deform the triad "
-             "need `initial = \"project\"`.", "1/s"},
+             "need `initial = \"project\"`.",
+             "1/s"},
          Key{"end", types::table, "The body at the end of time."}.holding(end)}};
     body.keys.insert(body.keys.begin() + 6, end.keys.begin(), end.keys.end());
     return body;
@@ -310,8 +313,9 @@ Table body_table()
 
 std::vector<Key> orientation_keys()
 {
-    return {{"directors", types::triple, "Axes of the body or frame, [d1, d2, d3], each in those of the world or "
-                                         "body."},
+    return {{"directors", types::triple,
+             "Axes of the body or frame, [d1, d2, d3], each in those of the world or "
+             "body."},
             {"quaternion", types::vector4, "Orientation (w, x, y, z) in the world or body, of norm 1."},
             {"rotation_vector", types::vector3, "Orientation: axis times angle.", "rad"}};
 }

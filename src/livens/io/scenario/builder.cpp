@@ -80,7 +80,7 @@ void Builder::remember(const std::string& path, const Section& section)
 /// the path that is known counts.
 Place Builder::find_place(std::string path, const std::string& context) const
 {
-    for (const std::string_view kind : {"body.", "joint.", "load."})
+    for (const std::string_view kind : {"body.", "joint.", "drive.", "load."})
         if (path.substr(0, kind.size()) == kind) path = context + path.substr(kind.size() - 1);
     while (!path.empty()) {
         const auto found = places_.find(path);

@@ -100,6 +100,7 @@ Placement read_placement(const Section& body);
 // The parts of the reader. Each reports all it finds.
 void read_bodies(Builder& builder);
 void read_joints(Builder& builder);
+void read_drives(Builder& builder);   ///< after the joints
 void read_loads(Builder& builder);
 /// What is given at both ends, and the state at the end. The state at the start is the model's.
 void read_boundary(Builder& builder, Conditions& boundary);

@@ -29,8 +29,9 @@ const Key joints{"joints", types::names, "Two joints by name: the driving one an
 const Key displacement{"coordinate", types::number, "What the joint's displacement is called at the start.",
                        "m", "0"};
 
-Key frames_key()
+const Key& frames_key()
 {
+    static const Key frames = [] {
     std::vector<Key> keys{{"point", types::vector3, "The joint's point.", "m", "[0, 0, 0]"}};
     for (const Key& key : orientation_keys()) keys.push_back(key);
     return Key{
@@ -39,6 +40,8 @@ Key frames_key()
         "and the first axes point the same way where the joint's angle is zero (weld, prismatic, screw and "
         "constant_velocity hold that)."}
         .holding({"frame of a joint", "Point and axes.", keys});
+    }();
+    return frames;
 }
 
 /// A kind of the library with a maker that takes a frame.
@@ -71,12 +74,11 @@ Joint make_rod(const JointParts& p)
     return rod(p.name, p.first, p.second, p.frame, length);
 }
 
-}   // namespace
-
-const std::vector<JointKind>& joint_kinds()
+/// What turns about one axis, slides along it, or neither.
+std::vector<JointKind> kinds_of_one_axis()
 {
-    static const Key frames = frames_key();
-    static const std::vector<JointKind> all{
+    const Key& frames = frames_key();
+    return {
         {{"weld", "nothing moves (6 rows)", {at, points, frames}}, Location::at_point, as_it_stands<weld>},
         {{"revolute", "turns about one axis (5)", {at, axis, points, axes, frames, angle}},
          Location::on_axis,
@@ -97,44 +99,56 @@ const std::vector<JointKind>& joint_kinds()
           "slides in a plane, whose normal is the axis, and turns in it (3)",
           {at, axis, points, axes, frames, angle}},
          Location::on_axis,
-         by_frame<planar>},
-        {{"universal", "turns about two perpendicular axes (4)", {at, points, axes, frames}},
-         Location::on_two_axes,
-         by_frame<universal>},
-        {{"constant_velocity",
-          "two shafts that turn equally, however they are bent (4)",
-          {at, points, axes, frames}},
-         Location::on_two_axes,
-         as_it_stands<constant_velocity>},
-        {{"spherical", "one common point (3)", {at, points}}, Location::at_point, by_frame<spherical>},
-        {{"point_on_line",
-          "a point of the second body on a line of the first (2)",
-          {at, line, points, frames, displacement}},
-         Location::on_line,
-         by_frame<point_on_line>},
-        {{"point_in_plane",
-          "a point of the second body in a plane of the first (1)",
-          {at, line, points, frames}},
-         Location::on_line,
-         by_frame<point_in_plane>},
-        {{"parallel_axes", "an axis of each that stay parallel (2)", {free_axis, axes, frames, angle}},
-         Location::along_axis,
-         by_frame<parallel_axes>},
-        {{"perpendicular_axes", "an axis of each that stay perpendicular (1)", {at, axes, frames}},
-         Location::along_two_axes,
-         by_frame<perpendicular_axes>},
-        {{"constant_angle",
-          "an axis of each at a constant angle (1)",
-          {at, axes, frames,
-           Key{"angle", types::number, "Between the axes. Default: what it is at the start.", "rad"}}},
-         Location::along_two_axes,
-         make_constant_angle},
-        {{"rod",
-          "fixed distance (1)",
-          {points, Key{"length", types::number, "Default: the distance of its points at the start.", "m"}
-                       .within(positive)}},
-         Location::at_points,
-         make_rod},
+         by_frame<planar>}};
+}
+
+/// What holds points, or the directions of two axes.
+std::vector<JointKind> kinds_of_points_and_axes()
+{
+    static const Key frames = frames_key();
+    return {{{"universal", "turns about two perpendicular axes (4)", {at, points, axes, frames}},
+             Location::on_two_axes,
+             by_frame<universal>},
+            {{"constant_velocity",
+              "two shafts that turn equally, however they are bent (4)",
+              {at, points, axes, frames}},
+             Location::on_two_axes,
+             as_it_stands<constant_velocity>},
+            {{"spherical", "one common point (3)", {at, points}}, Location::at_point, by_frame<spherical>},
+            {{"point_on_line",
+              "a point of the second body on a line of the first (2)",
+              {at, line, points, frames, displacement}},
+             Location::on_line,
+             by_frame<point_on_line>},
+            {{"point_in_plane",
+              "a point of the second body in a plane of the first (1)",
+              {at, line, points, frames}},
+             Location::on_line,
+             by_frame<point_in_plane>},
+            {{"parallel_axes", "an axis of each that stay parallel (2)", {free_axis, axes, frames, angle}},
+             Location::along_axis,
+             by_frame<parallel_axes>},
+            {{"perpendicular_axes", "an axis of each that stay perpendicular (1)", {at, axes, frames}},
+             Location::along_two_axes,
+             by_frame<perpendicular_axes>},
+            {{"constant_angle",
+              "an axis of each at a constant angle (1)",
+              {at, axes, frames,
+               Key{"angle", types::number, "Between the axes. Default: what it is at the start.", "rad"}}},
+             Location::along_two_axes,
+             make_constant_angle},
+            {{"rod",
+              "fixed distance (1)",
+              {points, Key{"length", types::number, "Default: the distance of its points at the start.", "m"}
+                           .within(positive)}},
+             Location::at_points,
+             make_rod}};
+}
+
+/// What couples the coordinates of others.
+std::vector<JointKind> kinds_of_coordinates()
+{
+    return {
         {{"gear",
           "the angle of one joint follows that of another (1)",
           {joints, Key{"ratio", types::number,
@@ -154,6 +168,18 @@ const std::vector<JointKind>& joint_kinds()
          [](const JointParts& p) {
              return rack_and_pinion(p.name, *p.one, *p.other, p.section.number("radius"), p.X, p.scale);
          }}};
+}
+
+}   // namespace
+
+const std::vector<JointKind>& joint_kinds()
+{
+    static const std::vector<JointKind> all = [] {
+        std::vector<JointKind> kinds = kinds_of_one_axis();
+        for (const std::vector<JointKind>& more : {kinds_of_points_and_axes(), kinds_of_coordinates()})
+            kinds.insert(kinds.end(), more.begin(), more.end());
+        return kinds;
+    }();
     return all;
 }
 

@@ -250,7 +250,9 @@ Table joint_table()
         if (joint_kinds()[i].location == Location::of_joints)
             keys[0].required = true;
         else
-            keys.insert(keys.begin(), Key{"between", types::names, "Two different bodies, or one and `\"world\"`."}.needed());
+            keys.insert(
+                keys.begin(),
+                Key{"between", types::names, "Two different bodies, or one and `\"world\"`."}.needed());
     }
     return Table{
         "[[joint]]",

@@ -49,6 +49,7 @@ void build(const Node& root, Scenario& scenario, Findings& findings)
     Builder builder(top, findings);
     read_bodies(builder);
     read_joints(builder);
+    read_drives(builder);
     read_loads(builder);
     read_run(builder, scenario);
     if (findings.n_errors() > 0) return;

@@ -67,6 +67,7 @@ Table end_table()
 
 void collect(const Table& table, std::vector<const Table*>& all)
 {
+    if (std::ranges::find(all, &table) != all.end()) return;   // kinds share tables
     all.push_back(&table);
     for (const Key* key : table.keys_of(any_kind))
         if (key->child != nullptr) collect(*key->child, all);
@@ -84,12 +85,15 @@ Key Key::holding(Table t) && { return child = std::make_shared<const Table>(std:
 const Table& root_table()
 {
     static const Table table{
-        "top of the file", "Stands before the first table header; `format` comes first.",
+        "top of the file",
+        "Stands before the first table header; `format` comes first.",
         {Key{"format", types::integer, "Version of this file format."}.needed().within({1, 1}),
          Key{"title", types::text, "One line for people; copied to results."},
          Key{"gravity", types::vector3, "Acceleration of free fall, world axes.", "m/s^2", "[0, 0, 0]"},
          Key{"body", types::tables, "Bodies, at least one."}.needed().holding(body_table()),
          Key{"joint", types::tables, "Joints."}.holding(joint_table()),
+         Key{"drive", types::tables, "Coordinates, distances and points that follow time."}.holding(
+             drive_table()),
          Key{"load", types::tables, "Forces, torques and springs."}.holding(load_table()),
          Key{"time", types::table, "Interval, elements and output."}.needed().holding(time_table()),
          Key{"method", types::table, "Discretisation and its tolerances."}.holding(method_table()),

@@ -124,6 +124,7 @@ inline constexpr int max_bodies = 10000;
 // Made once, for root_table(), which holds all others.
 Table body_table();
 Table joint_table();
+Table drive_table();
 Table load_table();
 Table method_table();
 const Table& root_table();

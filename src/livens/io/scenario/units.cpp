@@ -28,6 +28,7 @@ constexpr std::array symbols{
     Symbol{"J", {1, 1, 0, {2, 1, -2, 0}}},
     Symbol{"W", {1, 1, 0, {2, 1, -3, 0}}},
     Symbol{"Pa", {1, 1, 0, {-1, 1, -2, 0}}},
+    Symbol{"Hz", {1, 1, 0, {0, 0, -1, 0}}},
     Symbol{"rad", {1, 1, 0, {0, 0, 0, 1}}},
     Symbol{"t", {1, 1, 3, {0, 1, 0, 0}}, false},
     Symbol{"min", {60, 1, 0, {0, 0, 1, 0}}, false},
@@ -46,7 +47,7 @@ constexpr std::array prefixes{
     Prefix{"c", -2}, Prefix{"d", -1}, Prefix{"k", 3},         Prefix{"M", 6},         Prefix{"G", 9}};
 constexpr int largest_exponent = 9;
 constexpr std::string_view known_units =
-    "units are m, g, s, N, J, W, Pa, rad with the prefixes n u m c d k M G, and t, "
+    "units are m, g, s, N, J, W, Pa, Hz, rad with the prefixes n u m c d k M G, and t, "
     "min, h, deg, rev, rpm";
 
 std::optional<Unit> find_symbol(std::string_view name)

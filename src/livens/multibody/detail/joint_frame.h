@@ -37,8 +37,8 @@ void hold_perpendicular(Joint& joint, const Vector3& a, const Vector3& b, const 
 
 // Of frames with normalised axes:
 
-/// Adds two rows: the second's axis stays parallel to the first's, which close_start() does not take the wrong
-/// way round.
+/// Adds two rows: the second's axis stays parallel to the first's, which close_start() does not take the
+/// wrong way round.
 void hold_axis(Joint& joint, const JointFrame& frame);
 /// Adds the row of the turn about an axis that is held already.
 void hold_spin(Joint& joint, const JointFrame& frame);

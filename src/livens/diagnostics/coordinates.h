@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Coordinates of joints along a motion: angles with their turns, displacements, and their rates.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "livens/multibody/model.h"
+#include "livens/multibody/motion.h"
+
+namespace [[gnu::visibility("default")]] livens {
+
+struct CoordinateValue {
+    double value = 0;   ///< rad or m
+    double rate = 0;    ///< its rate, per s
+};
+
+/// All NamedCoordinates of a model's joints. An angle is followed from node to node of the motion, between
+/// which no accepted motion turns by half a turn. At element ends values and rates are of the method's full
+/// order, between them of the motion's dense orders.
+class JointCoordinates {
+public:
+    /// Where a coordinate stands: its joint, and its place in Joint::coordinates.
+    struct Place {
+        int joint = 0;
+        int coordinate = 0;
+    };
+
+    JointCoordinates(const Model& model, const Motion& motion);
+
+    const std::vector<Place>& places() const { return places_; }
+    const NamedCoordinate& coordinate(int i) const
+    {
+        return model_.joints()[places_[i].joint].coordinates[places_[i].coordinate];
+    }
+    /// Of all places at t, after snap_to_element_end().
+    std::vector<CoordinateValue> at(double t) const;
+
+private:
+    std::vector<double> turned(std::span<const Matrix34> X, std::span<const double> near) const;
+
+    const Model& model_;
+    const Motion& motion_;
+    std::vector<Place> places_;
+    std::vector<Matrix34> start_;
+    std::vector<double> at_ends_;   ///< less the values at the start, end * places + place
+};
+
+/// A coordinate in one configuration: an angle from -pi to pi, with no turns.
+double coordinate_value(const JointCoordinate& coordinate, std::span<const Matrix34> X);
+double coordinate_rate(const JointCoordinate& coordinate, std::span<const Matrix34> X,
+                       std::span<const Matrix34> V);
+
+}   // namespace livens

@@ -1,0 +1,297 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Bodies, joints and estimated errors at the output times.
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <memory>
+#include <string>
+#include <variant>
+
+#include "livens/diagnostics/coordinates.h"
+#include "livens/diagnostics/sample.h"
+#include "livens/io/results/writing.h"
+
+namespace livens {
+
+namespace {
+
+constexpr std::size_t chunk = 1u << 15;   // numbers of samples that are held at a time
+
+template <class Values>
+void append(std::vector<double>& out, const Values& values)
+{
+    out.insert(out.end(), values.data(), values.data() + Values::rows * Values::cols);
+}
+
+/// A variable that is filled piece by piece.
+struct Column {
+    int variable;
+    std::vector<double> values{};
+};
+
+using BodyPart = std::variant<Vector3 BodySample::*, Vector4 BodySample::*, Matrix3 BodySample::*>;
+
+struct BodyVariable {
+    const char* name;
+    const char* units;
+    const char* frame;
+    const char* long_name;
+    BodyPart part;
+};
+
+constexpr BodyVariable body_variables[] = {
+    {"position", "m", "inertial", "position of the reference point", &BodySample::position},
+    {"center_of_mass", "m", "inertial", "position of the centre of mass", &BodySample::center_of_mass},
+    {"directors", "1", "inertial", "directors [d1, d2, d3], projected to the nearest orthonormal triad",
+     &BodySample::directors},
+    {"directors_raw", "1", "inertial",
+     "directors [d1, d2, d3] of the motion, with their violation of rigidity", &BodySample::directors_raw},
+    {"quaternion", "1", "inertial", "orientation, body to world; sign continuous in time",
+     &BodySample::quaternion},
+    {"velocity", "m s-1", "inertial", "velocity of the reference point", &BodySample::velocity},
+    {"angular_velocity", "rad s-1", "inertial", "angular velocity in inertial axes",
+     &BodySample::angular_velocity},
+    {"angular_velocity_body", "rad s-1", "body-fixed", "angular velocity in body axes",
+     &BodySample::angular_velocity_body},
+    {"linear_momentum", "kg m s-1", "inertial", "linear momentum", &BodySample::linear_momentum},
+    {"angular_momentum", "kg m2 s-1", "inertial", "angular momentum about the world's origin",
+     &BodySample::angular_momentum},
+};
+
+VariableInfo info_of(const BodyVariable& v)
+{
+    VariableInfo info{v.name, {"time", "body", "xyz"}, v.units, v.frame, v.long_name};
+    if (v.part.index() == 2) info.dimensions = {"time", "body", "director", "xyz"};
+    if (v.part.index() == 1) {
+        info.dimensions = {"time", "body", "quaternion_part"};
+        info.attributes = {{"order", "w, x, y, z"}};
+    }
+    return info;
+}
+
+struct ErrorVariable {
+    VariableInfo info;
+    std::vector<double> ErrorEstimate::*errors;
+};
+
+/// Beside what they judge.
+const std::vector<ErrorVariable>& error_variables()
+{
+    static const std::vector<ErrorVariable> all{
+        {{"estimated_position_error",
+          {"time", "body"},
+          "1",
+          "none",
+          "estimated error of the centre of mass, in lengths of the model (model_length)"},
+         &ErrorEstimate::position},
+        {{"estimated_orientation_error",
+          {"time", "body"},
+          "rad",
+          "none",
+          "estimated error of the orientation; 0 for point masses"},
+         &ErrorEstimate::orientation},
+        {{"estimated_velocity_error",
+          {"time", "body"},
+          "m s-1",
+          "none",
+          "estimated error of the velocity of the centre of mass"},
+         &ErrorEstimate::velocity},
+        {{"estimated_reaction_error",
+          {"time", "joint"},
+          "1",
+          "none",
+          "estimated error of force, or torque by model_length, relative to largest_reaction"},
+         &ErrorEstimate::reaction}};
+    return all;
+}
+
+struct CoordinateVariable {
+    std::string name;   ///< of a NamedCoordinate
+    std::string dimension;
+    const char *units, *meaning, *rate_units, *rate_meaning;
+};
+
+const std::array<CoordinateVariable, 2> coordinate_variables{
+    {{"angle", "angle", "rad", "angle of the joint since the start, turns counted", "rad s-1",
+      "rate of the joint's angle"},
+     {"displacement", "displacement", "m", "displacement of the joint since the start", "m s-1",
+      "rate of the joint's displacement"}}};
+
+/// Samples at the output times that the motion has reached, some instants at a time.
+class Samples {
+public:
+    Samples(RunWriter& archive, const Model& model, const Run& run)
+        : file_(archive.file()), model_(model), motion_(run.motion), estimate_(run.estimate),
+          of_joints_(model, run.motion)
+    {
+        const auto first = std::ranges::lower_bound(run.output, motion_.start());
+        const auto last = std::ranges::upper_bound(run.output, motion_.end());
+        times_ = {first, last};
+        if (times_.empty()) return;
+        const VariableInfo time{
+            "time", {"time"}, "s", "none", "output times that the motion has reached", {{"axis", "T"}}};
+        archive.view(time, NumberType::real, times_);
+        if (!run.growth.empty()) {
+            std::vector<bool> beyond;
+            for (const double t : times_) beyond.push_back(run.verdict.is_beyond_horizon(t));
+            const char* const meaning = "1: rounding at the start decides which of many motions is shown";
+            archive.flags({"beyond_horizon", {"time"}, "1", "none", meaning}, beyond);
+        }
+        const std::size_t n = times_.size() * model.bodies().size();
+        for (const BodyVariable& v : body_variables) {
+            const std::size_t sizes[] = {3, 4, 9};   // of the alternatives of BodyPart
+            if (n > 0)
+                bodies_.push_back({archive.declare(info_of(v), NumberType::real, n * sizes[v.part.index()])});
+        }
+        previous_.resize(model.bodies().size(), Vector4{1, 0, 0, 0});
+        declare_errors(archive);
+        declare_coordinates(archive);
+        const bool has_multipliers = !motion_.end_multipliers.empty() || !motion_.multipliers.empty();
+        if (model.joints().empty() || !has_multipliers) return;
+        const std::vector<std::string> sides{"time", "joint", "side", "xyz"};
+        const std::size_t n_joint = times_.size() * model.joints().size() * 6;
+        const auto joint = [&](const char* name, const char* units, const char* long_name) {
+            joints_.push_back(
+                {archive.declare({name, sides, units, "inertial", long_name}, NumberType::real, n_joint)});
+        };
+        joint("reaction_force", "N", "force of the joint on its second body, from both sides");
+        joint("reaction_torque", "N m",
+              "torque of the joint on its second body about its joint point, from both sides");
+    }
+
+    void write()
+    {
+        std::size_t held = 0;
+        for (const double t : times_) {
+            if (!bodies_.empty()) add_bodies(t);
+            if (!joints_.empty()) add_joints(t);
+            add_errors(t);
+            if (!coordinates_.empty()) add_coordinates(t);
+            held += 62 * model_.bodies().size() + 12 * model_.joints().size();
+            if (held < chunk) continue;
+            flush();
+            held = 0;
+        }
+        flush();
+    }
+
+private:
+    void declare_errors(RunWriter& archive)
+    {
+        const std::size_t n_ends = motion_.mesh.ends.size();
+        for (const ErrorVariable& v : error_variables()) {
+            const std::vector<double>& errors = estimate_.*v.errors;
+            if (errors.empty()) continue;
+            const std::size_t n = times_.size() * (errors.size() / n_ends);
+            errors_.push_back({archive.declare(v.info, NumberType::real, n)});
+            errors_at_ends_.push_back(&errors);
+        }
+    }
+
+    /// Output times are element ends; at another instant nothing is known of the polynomial's error.
+    void add_errors(double t)
+    {
+        const int end = element_end_at(motion_.mesh, snap_to_element_end(motion_.mesh, t));
+        for (std::size_t i = 0; i < errors_.size(); ++i) {
+            const std::size_t n = errors_at_ends_[i]->size() / motion_.mesh.ends.size();
+            const auto first = errors_at_ends_[i]->begin() + static_cast<std::ptrdiff_t>(n) * end;
+            std::vector<double>& values = errors_[i].values;
+            if (end >= 0)
+                values.insert(values.end(), first, first + static_cast<std::ptrdiff_t>(n));
+            else
+                values.insert(values.end(), n, std::numeric_limits<double>::quiet_NaN());
+        }
+    }
+
+    /// Angles and displacements each in a variable of their own, with names of the joints that have them.
+    void declare_coordinates(RunWriter& archive)
+    {
+        for (std::size_t kind = 0; kind < coordinate_variables.size(); ++kind) {
+            const CoordinateVariable& v = coordinate_variables[kind];
+            std::vector<std::string> names;
+            for (std::size_t i = 0; i < of_joints_.places().size(); ++i)
+                if (of_joints_.coordinate(static_cast<int>(i)).name == v.name)
+                    names.push_back(model_.joints()[of_joints_.places()[i].joint].name);
+            if (names.empty()) continue;
+            archive.names(v.dimension, "joints that have one", names);
+            const std::size_t n = times_.size() * names.size();
+            for (const bool is_rate : {false, true}) {
+                const VariableInfo info{"joint_" + v.name + (is_rate ? "_rate" : ""),
+                                        {"time", v.dimension},
+                                        is_rate ? v.rate_units : v.units,
+                                        "none",
+                                        is_rate ? v.rate_meaning : v.meaning};
+                coordinates_.push_back({archive.declare(info, NumberType::real, n)});
+            }
+            kinds_.push_back(v.name);
+        }
+    }
+
+    void add_coordinates(double t)
+    {
+        const std::vector<CoordinateValue> values = of_joints_.at(t);
+        for (std::size_t i = 0; i < values.size(); ++i) {
+            const auto kind = std::ranges::find(kinds_, of_joints_.coordinate(static_cast<int>(i)).name);
+            const std::size_t column = 2 * static_cast<std::size_t>(kind - kinds_.begin());
+            coordinates_[column].values.push_back(values[i].value);
+            coordinates_[column + 1].values.push_back(values[i].rate);
+        }
+    }
+
+    void flush()
+    {
+        for (auto* columns : {&bodies_, &joints_, &errors_, &coordinates_})
+            for (Column& column : *columns) {
+                file_.append(column.variable, std::span<const double>(column.values));
+                column.values.clear();
+            }
+    }
+
+    void add_bodies(double t)
+    {
+        std::vector<BodySample> samples = sample_bodies(model_, motion_, t);
+        for (std::size_t b = 0; b < samples.size(); ++b) {
+            previous_[b] = samples[b].quaternion = continued(previous_[b], samples[b].quaternion);
+            for (std::size_t i = 0; i < bodies_.size(); ++i)
+                std::visit([&](auto part) { append(bodies_[i].values, samples[b].*part); },
+                           body_variables[i].part);
+        }
+    }
+
+    void add_joints(double t)
+    {
+        std::vector<JointSample> samples = sample_joints(model_, motion_, t);
+        if (samples.empty()) {   // this instant has no multipliers, others have
+            const double nan = std::numeric_limits<double>::quiet_NaN();
+            const Reaction none{{nan, nan, nan}, {nan, nan, nan}};
+            samples.assign(model_.joints().size(), {none, none, false, false, false});
+        }
+        for (const JointSample& joint : samples) {
+            append(joints_[0].values, joint.left.force);
+            append(joints_[0].values, joint.right.force);
+            append(joints_[1].values, joint.left.torque);
+            append(joints_[1].values, joint.right.torque);
+        }
+    }
+
+    ClassicWriter& file_;
+    const Model& model_;
+    const Motion& motion_;
+    const ErrorEstimate& estimate_;
+    std::span<const double> times_;
+    JointCoordinates of_joints_;
+    std::vector<Column> bodies_, joints_, errors_, coordinates_;
+    std::vector<std::string> kinds_;   // of coordinates_, in pairs of value and rate
+    std::vector<const std::vector<double>*> errors_at_ends_;
+    std::vector<Vector4> previous_;
+};
+
+}   // namespace
+
+void write_samples(RunWriter& archive, const Model& model, const Run& run)
+{
+    const auto samples = std::make_shared<Samples>(archive, model, run);
+    archive.later([samples] { samples->write(); });
+}
+
+}   // namespace livens

@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// [[drive]]: one table of kinds, and of laws over time.
+#include <algorithm>
+#include <array>
+
+#include "livens/io/scenario/builder.h"
+#include "livens/multibody/drives.h"
+#include "livens/time/time_laws.h"
+
+namespace livens {
+
+namespace {
+
+const std::vector<Kind>& kinds()
+{
+    static const std::vector<Kind> all{
+        {"joint",
+         "a coordinate of a joint",
+         {Key{"joint", types::text, "The joint whose coordinate follows the law."}.needed(),
+          choice("coordinate", {"angle", "displacement"},
+                 "Which, for a joint that has both; default: the one that it has.")}},
+        {"distance",
+         "the distance of two points",
+         {Key{"between", types::names, "Two different bodies, or one and `\"world\"`."}.needed(),
+          Key{"points", types::pair,
+              "One on each body, in its coordinates. Default: the reference points, for the world its "
+              "origin.",
+              "m"}}},
+        {"point",
+         "a point of a body, from where it stands, in world axes",
+         {Key{"body", types::text, "The body."}.needed(),
+          Key{"point", types::vector3, "In body coordinates.", "m", "[0, 0, 0]"}}},
+        {"body",
+         "a point of a body, which does not turn",
+         {Key{"body", types::text, "The body."}.needed(),
+          Key{"point", types::vector3, "In body coordinates.", "m", "[0, 0, 0]"}}}};
+    return all;
+}
+
+bool is_path(const Section& drive)
+{
+    return kinds()[static_cast<std::size_t>(drive.kind())].keys[0].name == "body";
+}
+
+constexpr std::array<std::string_view, 6> laws{"value", "rate", "harmonic", "step", "polynomial", "table"};
+
+/// Exactly one law.
+bool check_law(const Section& drive)
+{
+    std::vector<std::string_view> given;
+    for (const std::string_view law : laws)
+        if (drive.has(law)) given.push_back(law);
+    if (given.empty())
+        return drive.error("", "drive-law", drive.label() + " has no law",
+                           {"", "give one of value, rate, harmonic, step, polynomial, table"});
+    if (given.size() > 1) return drive.at_most_one({given[0], given[1]}, "drive-law");
+    return true;
+}
+
+/// A path needs three numbers where others have one.
+bool check_sizes(const Section& drive)
+{
+    const std::size_t n = is_path(drive) ? 3 : 1;
+    const auto check = [&](const Section& section, std::string_view key) {
+        const Value* v = section.find(key);
+        if (v == nullptr || v->numbers.size() == n) return true;
+        return section.error(key, "drive-size",
+                             "'" + std::string(key) + "' of " + section.label() + " has " +
+                                 std::to_string(v->numbers.size()) + " numbers, not " + std::to_string(n),
+                             {"", n == 3 ? "the path of a point has three components" : "give one number"});
+    };
+    bool is_good = check(drive, "value") && check(drive, "rate");
+    if (const Section* one = only_section(drive, "harmonic")) is_good = check(*one, "amplitude") && is_good;
+    if (const Section* one = only_section(drive, "step")) is_good = check(*one, "rise") && is_good;
+    const auto is_multiple = [&](const Section& section, std::string_view key, std::size_t of) {
+        const Value* v = section.find(key);
+        if (v == nullptr || (v->numbers.size() % n == 0 && (of == 0 || v->numbers.size() == n * of)))
+            return true;
+        return section.error(key, "drive-size",
+                             "'" + std::string(key) + "' of " + section.label() + " has " +
+                                 std::to_string(v->numbers.size()) + " numbers",
+                             {"", of == 0 ? "three for each power of t, one component after the other"
+                                          : "one for each time; for a path three, x, y, z of each time"});
+    };
+    is_good = is_multiple(drive, "polynomial", 0) && is_good;
+    if (const Section* one = only_section(drive, "table"))
+        if (const Value* times = one->find("times"))
+            is_good = is_multiple(*one, "values", times->numbers.size()) && is_good;
+    return is_good;
+}
+
+double component(const Section& section, std::string_view key, std::size_t c)
+{
+    const Value* v = section.find(key);
+    return v == nullptr || c >= v->numbers.size() ? 0 : v->numbers[c];
+}
+
+/// Component c of the law; `now` is the value at the start, where a rate begins.
+TimeFunction read_law(const Section& drive, std::size_t c, std::size_t n, double now, double start)
+{
+    if (drive.has("value")) return component(drive, "value", c);
+    if (drive.has("rate")) return ramp(now, component(drive, "rate", c), start);
+    if (const Section* one = only_section(drive, "harmonic"))
+        return harmonic(component(*one, "amplitude", c), one->number("frequency"), one->number("phase"));
+    if (const Section* one = only_section(drive, "step"))
+        return shifted(smooth_step(one->number("from"), one->number("until"), component(*one, "rise", c)),
+                       now);
+    const bool is_table = drive.has("table");
+    const Section* table = only_section(drive, "table");
+    const std::vector<double>& all = (is_table ? table->find("values") : drive.find("polynomial"))->numbers;
+    std::vector<double> own;
+    for (std::size_t i = c; i < all.size(); i += n) own.push_back(all[i]);
+    return is_table ? spline_table(table->find("times")->numbers, std::move(own))
+                    : polynomial(std::move(own));
+}
+
+std::array<TimeFunction, 3> read_path(const Section& drive, double start)
+{
+    return {read_law(drive, 0, 3, 0, start), read_law(drive, 1, 3, 0, start),
+            read_law(drive, 2, 3, 0, start)};
+}
+
+Joint make_on_joint(Builder& builder, const Section& drive, const std::string& name, double start,
+                    const Configurations& X)
+{
+    const std::string wanted = drive.text("joint");
+    const std::vector<Joint>& joints = builder.model().joints();
+    const auto joint = std::ranges::find(joints, wanted, &Joint::name);
+    if (joint == joints.end())
+        throw InputError({"joint-unknown", "drive[" + name + "].joint", "there is no joint '" + wanted + "'",
+                          "", "", "", "name a joint of this file"});
+    const NamedCoordinate* coordinate = joint->coordinates.empty() ? nullptr : &joint->coordinates.front();
+    if (drive.has("coordinate"))
+        coordinate = find_coordinate(*joint, drive.text("coordinate"));
+    else if (joint->coordinates.size() > 1)
+        throw InputError({"joint-coordinate", "drive[" + name + "].joint",
+                          "joint '" + wanted + "' has more than one coordinate", "", "", "",
+                          "say which by 'coordinate'"});
+    if (coordinate == nullptr)
+        throw InputError(
+            {"joint-coordinate", "drive[" + name + "].joint",
+             "joint '" + wanted + "' (" + joint->type + ") has no " +
+                 (drive.has("coordinate") ? drive.text("coordinate") : "coordinate"),
+             "", "", "",
+             "revolute, cylindrical, planar, screw and parallel_axes joints have an angle; prismatic, "
+             "cylindrical, screw and point_on_line joints a displacement"});
+    const TimeFunction law = read_law(drive, 0, 1, coordinate->at_start, start);
+    return driven_coordinate(name, *joint, *coordinate, law, X);
+}
+
+Joint make_drive(Builder& builder, const Section& drive, const std::string& name, const BodyReference& first,
+                 const BodyReference& second)
+{
+    const Section* time = only_section(builder.top(), "time");
+    const double start = time == nullptr ? 0 : time->number("start");
+    std::vector<Matrix34> all;
+    for (const Body& body : builder.model().bodies()) all.push_back(body.X);
+    const Configurations X(all);
+    const std::string type = drive.text("type");
+    if (type == "joint") return make_on_joint(builder, drive, name, start, X);
+    if (type == "distance") {
+        const Vector3 a = drive.row("points", 0), b = drive.row("points", 1);
+        const double now = norm(X[second.index] * point(b) - X[first.index] * point(a));
+        return driven_distance(name, first.index, a, second.index, b, read_law(drive, 0, 1, now, start), X);
+    }
+    const Vector3 at = drive.vector("point");
+    const auto make = type == "point" ? driven_point : driven_body;
+    return make(name, first.index, at, read_path(drive, start), X, builder.length());
+}
+
+std::string drive_name(const Section& drive)
+{
+    if (drive.has("name")) return drive.text("name");
+    if (drive.find("joint") != nullptr) return "drive of " + drive.text("joint");
+    if (drive.find("body") != nullptr) return "drive of " + drive.text("body");
+    const Value* between = drive.find("between");
+    return between == nullptr ? "" : "drive " + between->texts[0] + "-" + between->texts[1];
+}
+
+void read_drive(Builder& builder, const Section& drive, std::unordered_set<std::string>& taken)
+{
+    Findings& findings = builder.findings();
+    const int before = findings.n_errors();
+    const std::string name = drive_name(drive), path = "drive[" + name + "]";
+    check_name(drive);
+    if (!name.empty())
+        claim_name(drive, "joint or drive", name, taken,
+                   {"results refer to drives as to joints", "give it another 'name'"});
+    builder.remember(path, drive);
+    builder.remember("joint[" + name + "]", drive);
+    if (drive.kind() == any_kind) return;
+    check_law(drive);
+    check_sizes(drive);
+    BodyReference first, second;
+    if (drive.takes("between")) {
+        if (!builder.find_pair(drive, "drive-self", first, second)) return;
+    } else if (const Value* named = drive.find("body")) {
+        first = builder.find_body(named->text, named->node->place, drive);
+        if (named->text == "world")
+            drive.error("body", "drive-self", drive.label() + " drives the world, which does not move");
+    }
+    if (findings.n_errors() > before || !drive.is_valid()) return;
+    builder.guard(path, [&] { builder.model().add_joint(make_drive(builder, drive, name, first, second)); });
+}
+
+}   // namespace
+
+Table drive_table()
+{
+    const KeyType numbers = types::number_or_list;
+    const Key table =
+        Key{"table", types::table, "A cubic spline through values over time, constant before and after."}
+            .holding({"table of a drive",
+                      "Two continuous derivatives: a drive cannot jump or kink.",
+                      {Key{"times", types::list, "Ascending, two or more.", "s"}.needed(),
+                       Key{"values", types::list,
+                           "One for each time; for a path x, y, z of each, one after the other."}
+                           .needed()}});
+    const Key wave = Key{"harmonic", types::table, "amplitude sin(2 pi frequency t + phase)."}.holding(
+        {"harmonic of a drive",
+         "A sine over time.",
+         {Key{"amplitude", numbers, "rad or m."}.needed(), Key{"frequency", types::number, "", "Hz"}.needed(),
+          Key{"phase", types::number, "", "rad", "0"}}});
+    const Key step = Key{"step", types::table, "A smooth change, with two continuous derivatives."}.holding(
+        {"step of a drive",
+         "The rest of the time nothing changes.",
+         {Key{"from", types::number, "Begins.", "s"}.needed(),
+          Key{"until", types::number, "Ends.", "s"}.needed(), Key{"rise", numbers, "rad or m."}.needed()}});
+    return Table{
+        "[[drive]]",
+        "What follows a function of time: angles in rad and displacements in m as joints count them, "
+        "distances in m, paths as displacements from where the point stands, in m and world axes, with three "
+        "numbers for each one below. Exactly one law is given. What holds the bodies is the drive's "
+        "reaction, on the second body; its power is in the balance of energy. Velocities of the bodies at "
+        "the start must fit, or `[start]` says `initial = \"project\"`.",
+        {Key{"name", types::text, "Results refer to drives as to joints. Default: `drive of` joint or body."},
+         Key{"type", types::choice, ""}.needed(), Key{"value", numbers, "Constant."},
+         Key{"rate", numbers, "Constant rate, from what the coordinate is at the start; rad/s or m/s."}, wave,
+         step, Key{"polynomial", types::list, "Coefficients of 1, t, t^2, ..; of a path x, y, z of each."},
+         table}}
+        .with_kinds("type", kinds());
+}
+
+void read_drives(Builder& builder)
+{
+    std::unordered_set<std::string> taken;
+    for (const Joint& joint : builder.model().joints()) taken.insert(joint.name);
+    for (const Section& drive : builder.top().sections("drive")) read_drive(builder, drive, taken);
+}
+
+}   // namespace livens

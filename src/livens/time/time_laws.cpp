@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "livens/time/time_laws.h"
+
+#include <cmath>
+#include <initializer_list>
+#include <numbers>
+#include <utility>
+
+#include "livens/base/elementary.h"
+#include "livens/base/error.h"
+#include "livens/base/text.h"
+
+namespace livens {
+
+namespace {
+
+void require_finite(std::initializer_list<double> numbers)
+{
+    for (const double x : numbers)
+        if (!std::isfinite(x))
+            throw InputError({"not-finite", "drive", "a law of motion needs finite numbers", to_text(x),
+                              "finite numbers", "", ""});
+}
+
+}   // namespace
+
+TimeFunction ramp(double value, double rate, double from)
+{
+    require_finite({value, rate, from});
+    return {[=](Instant at) { return TimeValue{value + rate * (at.t - from), rate, 0}; }, {}};
+}
+
+TimeFunction harmonic(double amplitude, double frequency, double phase)
+{
+    require_finite({amplitude, frequency, phase});
+    const double w = 2 * std::numbers::pi * frequency;
+    return {[=](Instant at) {
+                const auto [s, c] = sine_cosine(w * at.t + phase);
+                return TimeValue{amplitude * s, amplitude * w * c, -amplitude * w * w * s};
+            },
+            {}};
+}
+
+TimeFunction smooth_step(double from, double until, double rise)
+{
+    require_finite({from, until, rise});
+    const double length = until - from;
+    if (!(length > 0))
+        throw InputError({"law-order", "drive.step", "a step must end later than it begins", to_text(until),
+                          "> " + to_text(from), "", ""});
+    return {[=](Instant at) -> TimeValue {
+                const double u = (at.t - from) / length;
+                if (u <= 0) return {};
+                if (u >= 1) return {rise, 0, 0};
+                const double v = 1 - u;
+                return {rise * u * u * u * (10 + u * (6 * u - 15)), 30 * rise * u * u * v * v / length,
+                        60 * rise * u * v * (v - u) / (length * length)};
+            },
+            {from, until}};
+}
+
+TimeFunction polynomial(std::vector<double> coefficients)
+{
+    for (const double c : coefficients) require_finite({c});
+    return {[c = std::move(coefficients)](Instant at) {
+                TimeValue p;
+                for (auto k = c.rbegin(); k != c.rend(); ++k)
+                    p = {p.value * at.t + *k, p.first * at.t + p.value, p.second * at.t + 2 * p.first};
+                return p;
+            },
+            {}};
+}
+
+TimeFunction shifted(const TimeFunction& law, double value)
+{
+    require_finite({value});
+    return {[=](Instant at) {
+                TimeValue p = law(at);
+                p.value += value;
+                return p;
+            },
+            law.breaks()};
+}
+
+}   // namespace livens
