@@ -112,9 +112,9 @@ Joint rod(const std::string& name, int first, int second, const JointFrame& fram
 const NamedCoordinate* find_coordinate(const Joint& joint, std::string_view name);
 
 // Joints between the coordinates of two others, which stay as they are in the configuration X of all
-// bodies. 1 row; the reaction is that on the second joint's second body. Throw InputError: `joint-coordinate`
-// where a joint lacks the coordinate, `joint-factor` for zero, `joint-self` for two joints of the same bodies,
-// and what coupling_row() throws.
+// bodies. 1 row; the reaction is that on the second joint's second body. Throw InputError:
+// `joint-coordinate` where a joint lacks the coordinate, `joint-factor` for zero, `joint-self` for two joints
+// of the same bodies, and what coupling_row() throws.
 
 /// The angle of the second changes by `ratio` times that of the first: negative where wheels mesh outside.
 Joint gear(const std::string& name, const Joint& first, const Joint& second, double ratio,

@@ -429,63 +429,11 @@ std::vector<Case> cases_of_joints_and_loads()
     };
 }
 
-/// What couples and leads joints.
-std::vector<Case> cases_of_mechanisms()
-{
-    const std::string turn = "type = \"revolute\"\nat = [0, 0, 0]\naxis = [0, 0, 1]\n";
-    const auto driven = [&](const std::string& lines) {
-        return joined(given_mass, turn + "[[drive]]\nname = \"d\"\n" + lines);
-    };
-    const std::string on_joint = "type = \"joint\"\njoint = \"j\"\n";
-    const auto other = [&](const std::string& lines) {
-        return joined(given_mass, turn + "[[joint]]\nname = \"k\"\n" + lines);
-    };
-    return {
-        {"joint-angle",
-         joined(given_mass, "type = \"constant_angle\"\naxes = [[1, 0, 0], [1, 0, 0]]\nangle = 0"), "0\n[time]"},
-        {"joint-bend",
-         joined(given_mass, "type = \"constant_velocity\"\nat = [0, 0, 0]\naxes = [[1, 0, 0], [-1, 0, 0]]"),
-         "[[1, 0, 0], [-1"},
-        {"joint-coordinate", driven(on_joint + "coordinate = \"displacement\"\nvalue = 0"), "\"j\"\ncoord"},
-        {"joint-factor", other("type = \"gear\"\njoints = [\"j\", \"j\"]\nratio = 0"), "0\n[time]"},
-        {"joint-self", other("type = \"gear\"\njoints = [\"j\", \"j\"]\nratio = 2"), "[\"j\", \"j\"]"},
-        {"joint-frames", joined(given_mass, "type = \"revolute\"\nframes = [{ point = [0, 0, 0] }]"),
-         "[{ point"},
-        {"joint-frames",
-         joined(given_mass,
-                "type = \"revolute\"\nframes = [{ directors = [[1, 0, 0], [0, 1, 0], [0, 0, -1]] }, {}]"),
-         "[[1, 0, 0], [0, 1, 0], [0, 0, -1]]"},
-        {"joint-pitch", joined(given_mass, "type = \"screw\"\nat = [0, 0, 0]\naxis = [1, 0, 0]\npitch = 0"),
-         "0\n[time]"},
-        {"joint-unknown", driven("type = \"joint\"\njoint = \"jj\"\nvalue = 0"), "\"jj\""},
-        {"joint-unknown", other("type = \"gear\"\njoints = [\"j\", \"jj\"]\nratio = 2"), "\"jj\""},
-        {"gear-ratio",
-         other("type = \"gear\"\njoints = [\"j\", \"l\"]\nratio = 3.14159265358979\n"
-               "[[joint]]\nname = \"l\"\ntype = \"revolute\"\nbetween = [\"world\", \"b\"]\n"
-               "at = [0, 0, 0]\naxis = [0, 0, 1]"),
-         "\"k\""},
-        {"drive-law", driven(on_joint), "[[drive]]"},
-        {"drive-law", driven(on_joint + "value = 0\nrate = 1"), "1\n[time]"},
-        {"drive-size", driven(on_joint + "value = [0, 1]"), "[0, 1]"},
-        {"drive-size", driven("type = \"point\"\nbody = \"b\"\nvalue = 0"), "0\n[time]"},
-        {"drive-self", driven("type = \"point\"\nbody = \"world\"\nvalue = [0, 0, 0]"), "\"world\"\nvalue"},
-        {"drive-distance",
-         driven("type = \"distance\"\nbetween = [\"world\", \"b\"]\npoints = [[0, 0, 0], [0, 0, 0]]\n"
-                "rate = 1"),
-         "\"d\""},
-        {"law-order", driven(on_joint + "step = { from = 1, until = 0, rise = 1 }"), "{ from"},
-        {"name-duplicate",
-         driven("type = \"joint\"\njoint = \"j\"\nvalue = 0\n[[drive]]\nname = \"j\"\n" + on_joint +
-                "value = 0"),
-         "\"j\"\ntype = \"joint\""},
-    };
-}
-
 std::vector<Case> cases()
 {
     std::vector<Case> all = cases_of_files();
-    for (const std::vector<Case>& more :
-         {cases_of_bodies(), cases_of_joints_and_loads(), cases_of_mechanisms(), test::cases_of_mixed()})
+    for (const std::vector<Case>& more : {cases_of_bodies(), cases_of_joints_and_loads(),
+                                          test::cases_of_mechanisms(), test::cases_of_mixed()})
         all.insert(all.end(), more.begin(), more.end());
     return all;
 }

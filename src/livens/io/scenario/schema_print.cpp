@@ -214,8 +214,8 @@ A plain number is in SI units: m, kg, s, rad, N and products of them. Wherever t
 a text with a number and a unit may stand instead, and its dimension is checked: `"30 deg"`, `"5 mm"`,
 `"2 rpm"`, `"7850 kg/m^3"`, `"2 kN/m"`, `"3 N m"`.
 
-- Units: m, g, s, N, J, W, Pa, Hz, rad with the prefixes n, u (or µ), m, c, d, k, M, G; and without prefixes t,
-  min, h, deg, rev, rpm.
+- Units: m, g, s, N, J, W, Pa, Hz, rad with the prefixes n, u (or µ), m, c, d, k, M, G; and without
+  prefixes t, min, h, deg, rev, rpm.
 - Products are written with a blank, `*` or `·`, powers with `^`. Behind a slash stands one factor or a
   parenthesis: `kg/(m s)`; `J/kg m` could mean two things and is refused.
 - Every number must be finite.

@@ -6,6 +6,7 @@ namespace livens {
 Joint point_in_plane(const std::string& name, int first, int second, const JointFrame& frame, double scale)
 {
     JointFrame f = frame;
+    f.axis_second = {0, 0, 1};   // may be a point mass, which has none
     Joint joint = start_joint(name, "point_in_plane", first, second, f, scale);
     normalise_axes(joint, f);
     const Slide slide = slide_of(joint, f, joint.second != second);

@@ -1,0 +1,362 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Slides, screws, gears, shafts and drives against closed forms, as scenarios say them.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "livens/base/text.h"
+#include "livens/diagnostics/coordinates.h"
+#include "livens/diagnostics/sample.h"
+#include "livens/io/scenario.h"
+#include "livens/spacetime/solve.h"
+
+namespace livens::tests {
+namespace {
+
+using std::numbers::pi;
+
+struct Solved {
+    Model model;
+    Solution solution;
+
+    int joint(const std::string& name) const
+    {
+        for (int j = 0; j < static_cast<int>(model.joints().size()); ++j)
+            if (model.joints()[j].name == name) return j;
+        ADD_FAILURE() << "no joint " << name;
+        return 0;
+    }
+    CoordinateValue coordinate(const std::string& name, const std::string& which, double t) const
+    {
+        const JointCoordinates all(model, solution.motion);
+        const std::vector<CoordinateValue> values = all.at(t);
+        for (std::size_t i = 0; i < values.size(); ++i)
+            if (all.places()[i].joint == joint(name) && all.coordinate(static_cast<int>(i)).name == which)
+                return values[i];
+        ADD_FAILURE() << name << " has no " << which;
+        return {};
+    }
+    Reaction reaction(const std::string& name, double t) const
+    {
+        return sample_joints(model, solution.motion, t)[static_cast<std::size_t>(joint(name))].right;
+    }
+};
+
+Solved solved(const std::string& text)
+{
+    const ScenarioResult read = parse_scenario("format = 1\n" + text, "test.toml");
+    for (const Diagnostic& d : read.diagnostics) EXPECT_EQ(d.message, "");
+    const Scenario& s = read.scenario.value();
+    Solution solution = solve(s.model, {s.model.start()}, s.time, s.method, s.options);
+    EXPECT_TRUE(solution.report.converged()) << solution.report.message;
+    EXPECT_TRUE(solution.verdict.reasons.empty()) << solution.verdict.reasons.front();
+    return {s.model, std::move(solution)};
+}
+
+/// A number with two derivatives by time.
+struct Jet {
+    double x, v, a;
+};
+Jet operator+(Jet l, Jet r) { return {l.x + r.x, l.v + r.v, l.a + r.a}; }
+Jet operator*(double f, Jet r) { return {f * r.x, f * r.v, f * r.a}; }
+Jet chain(Jet u, double f, double df, double ddf) { return {f, df * u.v, ddf * u.v * u.v + df * u.a}; }
+Jet sine(Jet u) { return chain(u, std::sin(u.x), std::cos(u.x), -std::sin(u.x)); }
+Jet cosine(Jet u) { return chain(u, std::cos(u.x), -std::sin(u.x), -std::cos(u.x)); }
+Jet arc_sine(Jet u)
+{
+    const double r = std::sqrt(1 - u.x * u.x);
+    return chain(u, std::asin(u.x), 1 / r, u.x / (r * r * r));
+}
+
+const std::string slider_crank = R"(
+[[body]]
+name = "crank"
+mass = 1
+inertia = [0.01, 0.1, 0.1]
+position = [0.5, 0, 0]
+[[body]]
+name = "rod"
+mass = 2
+inertia = [0.02, 1.5, 1.5]
+position = [2.5, 0, 0]
+[[body]]
+name = "slider"
+mass = 3
+inertia = [1, 1, 1]
+position = [4, 0, 0]
+[[joint]]
+name = "main"
+type = "revolute"
+between = ["world", "crank"]
+at = [0, 0, 0]
+axis = [0, 0, 1]
+[[joint]]
+name = "pin"
+type = "revolute"
+between = ["crank", "rod"]
+at = [1, 0, 0]
+axis = [0, 0, 1]
+[[joint]]
+name = "wrist"
+type = "revolute"
+between = ["rod", "slider"]
+at = [4, 0, 0]
+axis = [0, 0, 1]
+[[joint]]
+name = "guide"
+type = "prismatic"
+between = ["world", "slider"]
+at = [4, 0, 0]
+axis = [1, 0, 0]
+[[drive]]
+name = "motor"
+type = "joint"
+joint = "main"
+rate = 10
+[[load]]
+type = "force"
+body = "slider"
+table = { times = [0, 0.5, 1, 2], values = [[0, 0, 0], [-300, 0, 0], [100, 0, 0], [50, 0, 0]] }
+[start]
+initial = "project"
+)";
+
+TEST(Mechanisms, ACrankAtConstantRateTakesTheTorqueOfVirtualWork)
+{
+    const Solved run = solved(slider_crank + "[time]\nend = 2\naccuracy = 1e-11\noutput = 0.1\n");
+    const auto force = [](double t) {
+        if (t < 0.5) return -600 * t;
+        return t < 1 ? -300 + 800 * (t - 0.5) : 100 - 50 * (t - 1);
+    };
+    for (const double t : {0.1, 0.3, 0.7, 1.3, 1.9, 2.0}) {
+        const Jet crank{10 * t, 10, 0}, rod = -1.0 * arc_sine((1.0 / 3) * sine(crank));
+        const Jet tip = cosine(crank) + 3 * cosine(rod);
+        const Jet x = cosine(crank) + 1.5 * cosine(rod), y = sine(crank) + 1.5 * sine(rod);
+        const double power = 2 * (x.v * x.a + y.v * y.a) + 1.5 * rod.v * rod.a + 3 * tip.v * tip.a;
+        const double torque = (power - force(t) * tip.v) / 10;
+        EXPECT_NEAR(run.reaction("motor", t).torque[2], torque, 1e-9 * 1000) << t;
+        EXPECT_NEAR(run.coordinate("guide", "displacement", t).value, tip.x - 4, 1e-13) << t;
+        EXPECT_NEAR(run.coordinate("guide", "displacement", t).rate, tip.v, 1e-11) << t;
+        EXPECT_NEAR(run.coordinate("main", "angle", t).value, 10 * t, 1e-13) << t;
+        EXPECT_NEAR(run.coordinate("wrist", "angle", t).value, -rod.x, 1e-13) << t;
+    }
+    EXPECT_LT(run.solution.verdict.energy_drift, 1e-11) << "with the power of the drive";
+}
+
+TEST(Mechanisms, ANutOnAScrewFallsAndTurnsForAHundredTurns)
+{
+    const Solved run = solved(R"(
+gravity = [0, 0, -9.81]
+[[body]]
+name = "nut"
+mass = 2
+inertia = [0.03, 0.04, 0.05]
+[[joint]]
+name = "thread"
+type = "screw"
+between = ["world", "nut"]
+at = [0, 0, 0]
+axis = [0, 0, 1]
+pitch = 0.5
+[time]
+end = 10
+accuracy = 1e-10
+output = 0.25
+)");
+    const double k = 2 * pi / 0.5, fall = 9.81 / (1 + 0.05 * k * k / 2);
+    for (const double t : {0.25, 5.0, 10.0}) {
+        const CoordinateValue z = run.coordinate("thread", "displacement", t);
+        EXPECT_NEAR(z.value, -0.5 * fall * t * t, 1e-9) << t;
+        EXPECT_NEAR(z.rate, -fall * t, 1e-9) << t;
+        const CoordinateValue turn = run.coordinate("thread", "angle", t);
+        EXPECT_NEAR(turn.value, -0.5 * k * fall * t * t, 1e-8) << t;
+        EXPECT_NEAR(turn.rate, -k * fall * t, 1e-8) << t;
+    }
+    EXPECT_GT(std::abs(run.coordinate("thread", "angle", 10).value), 100 * 2 * pi);
+}
+
+TEST(Mechanisms, AGearPairIsOneInertiaForAHundredTurns)
+{
+    const Solved run = solved(R"(
+[[body]]
+name = "pinion"
+mass = 1
+inertia = [0.1, 0.1, 0.02]
+[[body]]
+name = "wheel"
+mass = 4
+inertia = [0.5, 0.5, 0.9]
+position = [0.3, 0, 0]
+[[body]]
+name = "rack"
+mass = 5
+inertia = [1, 1, 1]
+position = [0, 0.1, 0]
+[[joint]]
+name = "mesh"
+type = "gear"
+joints = ["of pinion", "of wheel"]
+ratio = -0.5
+[[joint]]
+name = "of pinion"
+type = "revolute"
+between = ["world", "pinion"]
+at = [0, 0, 0]
+axis = [0, 0, 1]
+[[joint]]
+name = "of wheel"
+type = "revolute"
+between = ["wheel", "world"]
+at = [0.3, 0, 0]
+axis = [0, 0, -1]
+coordinate = "90 deg"
+[[joint]]
+name = "slide"
+type = "prismatic"
+between = ["world", "rack"]
+at = [0, 0.1, 0]
+axis = [1, 0, 0]
+[[joint]]
+type = "rack_and_pinion"
+joints = ["of pinion", "slide"]
+radius = -0.1
+[[load]]
+type = "torque"
+body = "wheel"
+value = [0, 0, -8]
+[time]
+end = 10
+accuracy = 1e-10
+output = 0.25
+)");
+    // Coordinates of the wheel are of the world against it about -z: again its own about z.
+    const double inertia = 0.02 + 0.9 / 4 + 5 * 0.01, rate = 4 / inertia;
+    for (const double t : {0.25, 5.0, 10.0}) {
+        const double turned = 0.5 * rate * t * t;
+        EXPECT_NEAR(run.coordinate("of pinion", "angle", t).value, turned, 1e-8) << t;
+        EXPECT_NEAR(run.coordinate("of wheel", "angle", t).value, pi / 2 - 0.5 * turned, 1e-8) << t;
+        EXPECT_NEAR(run.coordinate("slide", "displacement", t).value, -0.1 * turned, 1e-9) << t;
+        EXPECT_NEAR(run.coordinate("of pinion", "angle", t).rate, rate * t, 1e-8) << t;
+        // what the teeth hand to the wheel: its own acceleration less the load
+        EXPECT_NEAR(run.reaction("mesh", t).torque[2], -0.9 * 0.5 * rate + 8, 1e-8) << t;
+    }
+    EXPECT_GT(run.coordinate("of pinion", "angle", 10).value, 100 * 2 * pi);
+}
+
+/// Two shafts in bearings that meet at an angle, the first of which is driven.
+std::string shafts(const std::string& joint, double bend)
+{
+    const std::string c = to_text(std::cos(bend)), s = to_text(std::sin(bend));
+    const std::string direction = "[" + c + ", " + s + ", 0]";
+    return R"(
+[[body]]
+name = "in"
+mass = 1
+inertia = [0.1, 0.2, 0.2]
+position = [-1, 0, 0]
+[[body]]
+name = "out"
+mass = 1
+inertia = [0.1, 0.1, 0.1]
+position = )" +
+           direction + R"(
+[[joint]]
+name = "bearing in"
+type = "revolute"
+between = ["world", "in"]
+at = [-1, 0, 0]
+axis = [1, 0, 0]
+[[joint]]
+name = "bearing out"
+type = "revolute"
+between = ["world", "out"]
+at = )" + direction +
+           "\naxis = " + direction + R"(
+[[joint]]
+name = "joint"
+between = ["in", "out"]
+at = [0, 0, 0]
+)" + joint +
+           R"(
+[[drive]]
+type = "joint"
+joint = "bearing in"
+rate = 5
+[start]
+initial = "project"
+[time]
+end = 3
+accuracy = 1e-11
+output = 0.1
+)";
+}
+
+TEST(Mechanisms, AUniversalJointTurnsByHookesFormula)
+{
+    // The axis of the cross in the input is across the plane of the shafts at the start, z turned by `in`;
+    // that in the output lies in the plane, turned by `out`. Perpendicular: tan(out) = cos(bend) tan(in).
+    const double bend = 0.5;
+    const std::string s = to_text(-std::sin(bend)), c = to_text(std::cos(bend));
+    const Solved run =
+        solved(shafts("type = \"universal\"\naxes = [[0, 0, 1], [" + s + ", " + c + ", 0]]", bend));
+    for (const double t : {0.1, 0.2, 1.0, 2.0, 3.0}) {
+        const double in = 5 * t, cosine = std::stod(c);
+        const double out = std::atan2(std::sin(in) * cosine, std::cos(in));
+        const CoordinateValue angle = run.coordinate("bearing out", "angle", t);
+        EXPECT_NEAR(std::remainder(angle.value - out, 2 * pi), 0, 1e-10) << t;
+        EXPECT_NEAR(angle.value, in, 0.2) << "turns are counted";
+        EXPECT_NEAR(angle.rate, 5 * cosine / (1 - std::pow(std::sin(bend) * std::sin(in), 2)), 1e-9) << t;
+    }
+}
+
+TEST(Mechanisms, AConstantVelocityJointTurnsBothShaftsEqually)
+{
+    const double bend = 0.5;
+    const std::string out = "[" + to_text(std::cos(bend)) + ", " + to_text(std::sin(bend)) + ", 0]";
+    const Solved run = solved(shafts("type = \"constant_velocity\"\naxes = [[1, 0, 0], " + out + "]", bend));
+    for (const double t : {0.1, 0.7, 1.3, 3.0}) {
+        EXPECT_NEAR(run.coordinate("bearing out", "angle", t).value, 5 * t, 1e-13) << t;
+        EXPECT_NEAR(run.coordinate("bearing out", "angle", t).rate, 5, 1e-12) << t;
+    }
+}
+
+TEST(Mechanisms, APointOnALineOfABodyOrOfTheWorld)
+{
+    // The same wire, once carried by a body that is held, once with the bodies named the other way round.
+    const auto text = [](const std::string& between) {
+        return R"(
+gravity = [0, 0, -9.81]
+[[body]]
+name = "bead"
+shape = { point = true }
+mass = 1
+position = [1, 0, 0]
+[[body]]
+name = "wire"
+mass = 1
+inertia = [1, 1, 1]
+[[joint]]
+name = "fixed"
+type = "weld"
+between = ["world", "wire"]
+at = [0, 0, 0]
+[[joint]]
+name = "on"
+type = "point_on_line"
+at = [1, 0, 0]
+axis = [3, 0, -4]
+between = )" + between +
+               "\n[time]\nend = 1\naccuracy = 1e-10\noutput = 0.5\n";
+    };
+    for (const char* between : {R"(["wire", "bead"])", R"(["world", "bead"])"}) {
+        const Solved run = solved(text(between));
+        for (const double t : {0.5, 1.0}) {
+            EXPECT_NEAR(run.coordinate("on", "displacement", t).value, 0.5 * 9.81 * 0.8 * t * t, 1e-12);
+            EXPECT_NEAR(run.reaction("on", t).force[2], 9.81 * 0.36, 1e-10);
+        }
+    }
+}
+
+}   // namespace
+}   // namespace livens::tests

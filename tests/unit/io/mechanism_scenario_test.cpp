@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Joints by every placement, couplings and drives: what arrives, and what is told where.
+#include <cmath>
+
+#include "livens/multibody/joints.h"
+#include "unit/io/scenario_text.h"
+
+namespace livens {
+
+namespace {
+
+using test::expect_error;
+using test::find;
+using test::read;
+using test::shown;
+
+/// One body on a joint `j` to the world.
+std::string joined(const std::string& joint)
+{
+    return "format = 1\n[[body]]\nname = \"b\"\nmass = 2\ninertia = [1, 2, 2]\n"
+           "[[joint]]\nname = \"j\"\nbetween = [\"world\", \"b\"]\n" +
+           joint + "\n[time]\nend = 1\nelements = 4\n";
+}
+
+Joint joint_of(const std::string& lines)
+{
+    const ScenarioResult result = read(joined(lines));
+    EXPECT_TRUE(result.scenario.has_value()) << shown(result);
+    return result.scenario ? result.scenario->model.joints()[0] : Joint();
+}
+
+TEST(MechanismScenario, FramesArePointsAndAxes)
+{
+    const std::string by_frames =
+        "frames = [{ point = [1, 2, 3], rotation_vector = [0, \"90 deg\", 0] }, "
+        "{ directors = [[0, 0, -1], [0, 1, 0], [1, 0, 0]] }]\n[start]\ninitial = \"project\"";
+    const std::string by_axes = "points = [[1, 2, 3], [0, 0, 0]]\naxes = [[1, 0, 0], [1, 0, 0]]\n"
+                                "[start]\ninitial = \"project\"";
+    for (const std::string type : {"revolute", "cylindrical", "planar"}) {
+        const Joint a = joint_of("type = \"" + type + "\"\n" + by_frames),
+                    b = joint_of("type = \"" + type + "\"\n" + by_axes);
+        ASSERT_EQ(a.rows.size(), b.rows.size()) << type;
+        for (std::size_t i = 0; i < a.rows.size(); ++i) EXPECT_LT(norm(a.rows[i].b_j - b.rows[i].b_j), 1e-14);
+    }
+    // A weld by frames holds them, not what stands: here a quarter of a turn apart.
+    const Joint held = joint_of("type = \"weld\"\nframes = [{ rotation_vector = [0, 0, 1.5] }, {}]\n"
+                                "[start]\ninitial = \"project\"");
+    const std::vector<Matrix34> there{configuration({}, directors_from_rotation_vector({0, 0, 1.5}))};
+    for (const ConstraintRow& row : held.rows) EXPECT_NEAR(constraint_value(row, there), 0, 1e-15);
+    EXPECT_GT(std::abs(constraint_value(held.rows[3], std::vector<Matrix34>{world_configuration})), 0.5);
+}
+
+TEST(MechanismScenario, CoordinatesAreNamedAndBeginWhereTheyAreSaid)
+{
+    EXPECT_EQ(joint_of("type = \"revolute\"\nat = [0, 0, 0]\naxis = [0, 0, 1]\ncoordinate = \"90 deg\"")
+                  .coordinates.front()
+                  .at_start,
+              std::acos(-1.0) / 2);
+    const Joint pipe = joint_of("type = \"cylindrical\"\nat = [0, 0, 0]\naxis = [0, 0, 1]");
+    ASSERT_EQ(pipe.coordinates.size(), 2u);
+    EXPECT_NE(find_coordinate(pipe, "angle"), nullptr);
+    EXPECT_NE(find_coordinate(pipe, "displacement"), nullptr);
+    EXPECT_EQ(find_coordinate(pipe, "pitch"), nullptr);
+    EXPECT_TRUE(joint_of("type = \"spherical\"\nat = [0, 0, 0]").coordinates.empty());
+}
+
+TEST(MechanismScenario, AConstantAngleIsTheOneThatStandsUnlessSaid)
+{
+    const auto value = [](const std::string& more) {
+        const Joint joint = joint_of("type = \"constant_angle\"\naxes = [[1, 0, 0], [3, 4, 0]]\n" + more);
+        return constraint_value(joint.rows[0], std::vector<Matrix34>{world_configuration});
+    };
+    EXPECT_NEAR(value(""), 0, 1e-15);
+    EXPECT_NEAR(value("angle = \"60 deg\"\n[start]\ninitial = \"project\""), 0.6 - 0.5, 1e-15);
+}
+
+TEST(MechanismScenario, EveryWrongPlacementIsTold)
+{
+    for (const auto& [lines, where] :
+         {std::pair{"type = \"prismatic\"\nat = [0, 0, 0]", "[[joint]]"},
+          std::pair{"type = \"prismatic\"\naxis = [0, 0, 1]", "[[joint]]"},
+          std::pair{"type = \"point_on_line\"\npoints = [[0, 0, 0], [0, 0, 0]]", "[[joint]]"},
+          std::pair{"type = \"parallel_axes\"", "[[joint]]"},
+          std::pair{"type = \"perpendicular_axes\"\nat = [0, 0, 0]", "[[joint]]"},
+          std::pair{"type = \"parallel_axes\"\naxis = [1, 0, 0]\naxes = [[1, 0, 0], [1, 0, 0]]", "[[1, 0"},
+          std::pair{"type = \"planar\"\nframes = [{}, {}]\nat = [1, 1, 1]", "[1, 1, 1]"}})
+        expect_error(joined(lines), "joint-placement", where);
+}
+
+}   // namespace
+
+std::vector<test::Case> test::cases_of_mechanisms()
+{
+    const std::string turn = "type = \"revolute\"\nat = [0, 0, 0]\naxis = [0, 0, 1]\n";
+    const auto driven = [&](const std::string& lines) {
+        return joined(turn + "[[drive]]\nname = \"d\"\n" + lines);
+    };
+    const std::string on_joint = "type = \"joint\"\njoint = \"j\"\n";
+    const auto other = [&](const std::string& lines) {
+        return joined(turn + "[[joint]]\nname = \"k\"\n" + lines);
+    };
+    return {
+        {"joint-angle", joined("type = \"constant_angle\"\naxes = [[1, 0, 0], [1, 0, 0]]\nangle = 0"),
+         "0\n[time]"},
+        {"joint-bend", joined("type = \"constant_velocity\"\nat = [0, 0, 0]\naxes = [[1, 0, 0], [-1, 0, 0]]"),
+         "[[1, 0, 0], [-1"},
+        {"joint-coordinate", driven(on_joint + "coordinate = \"displacement\"\nvalue = 0"), "\"j\"\ncoord"},
+        {"joint-factor", other("type = \"gear\"\njoints = [\"j\", \"j\"]\nratio = 0"), "0\n[time]"},
+        {"joint-self", other("type = \"gear\"\njoints = [\"j\", \"j\"]\nratio = 2"), "[\"j\", \"j\"]"},
+        {"joint-frames", joined("type = \"revolute\"\nframes = [{ point = [0, 0, 0] }]"), "[{ point"},
+        {"joint-frames",
+         joined("type = \"revolute\"\nframes = [{ directors = [[1, 0, 0], [0, 1, 0], [0, 0, -1]] }, {}]"),
+         "[[1, 0, 0], [0, 1, 0], [0, 0, -1]]"},
+        {"joint-pitch", joined("type = \"screw\"\nat = [0, 0, 0]\naxis = [1, 0, 0]\npitch = 0"), "0\n[time]"},
+        {"joint-unknown", driven("type = \"joint\"\njoint = \"jj\"\nvalue = 0"), "\"jj\""},
+        {"joint-unknown", other("type = \"gear\"\njoints = [\"j\", \"jj\"]\nratio = 2"), "\"jj\""},
+        {"gear-ratio",
+         other("type = \"gear\"\njoints = [\"j\", \"l\"]\nratio = 3.14159265358979\n"
+               "[[joint]]\nname = \"l\"\ntype = \"revolute\"\nbetween = [\"world\", \"b\"]\n"
+               "at = [0, 0, 0]\naxis = [0, 0, 1]"),
+         "\"k\""},
+        {"drive-law", driven(on_joint), "[[drive]]"},
+        {"drive-law", driven(on_joint + "value = 0\nrate = 1"), "1\n[time]"},
+        {"drive-size", driven(on_joint + "value = [0, 1]"), "[0, 1]"},
+        {"drive-size", driven("type = \"point\"\nbody = \"b\"\nvalue = 0"), "0\n[time]"},
+        {"drive-self", driven("type = \"point\"\nbody = \"world\"\nvalue = [0, 0, 0]"), "\"world\"\nvalue"},
+        {"drive-distance",
+         driven("type = \"distance\"\nbetween = [\"world\", \"b\"]\npoints = [[0, 0, 0], [0, 0, 0]]\n"
+                "rate = 1"),
+         "\"d\""},
+        {"law-order", driven(on_joint + "step = { from = 1, until = 0, rise = 1 }"), "{ from"},
+        {"name-duplicate",
+         driven("type = \"joint\"\njoint = \"j\"\nvalue = 0\n[[drive]]\nname = \"j\"\n" + on_joint +
+                "value = 0"),
+         "\"j\"\ntype = \"joint\""},
+    };
+}
+
+}   // namespace livens

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "livens/time/time_laws.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "livens/base/error.h"
+
+namespace livens {
+namespace {
+
+/// Rates are central differences of values, and accelerations of rates.
+void expect_rates(const TimeFunction& law, double t)
+{
+    constexpr double h = 1e-5;
+    const TimeValue here = law({t}), before = law({t - h}), after = law({t + h});
+    EXPECT_NEAR(here.first, (after.value - before.value) / (2 * h), 1e-7) << t;
+    EXPECT_NEAR(here.second, (after.first - before.first) / (2 * h), 1e-6) << t;
+}
+
+TEST(TimeLaws, HaveTheRatesOfTheirValues)
+{
+    for (const TimeFunction& law : {ramp(1, 3, 0.5), harmonic(2, 0.7, 0.3), smooth_step(0.2, 1.7, 3),
+                                    polynomial({1, -2, 0.5, 3}), shifted(smooth_step(0, 1, 1), 4)})
+        for (const double t : {-0.4, 0.21, 0.7, 1.2, 1.69, 2.5}) expect_rates(law, t);
+}
+
+TEST(TimeLaws, BeginAndEndWhereTheySay)
+{
+    EXPECT_EQ(ramp(1, 3, 0.5)({0.5}).value, 1);
+    EXPECT_EQ(ramp(1, 3, 0.5)({2.5}).value, 7);
+    EXPECT_NEAR(harmonic(2, 0.25, 0)({1}).value, 2, 1e-15);
+    EXPECT_EQ(polynomial({1, -2, 0.5})({2}).value, -1);
+    EXPECT_EQ(polynomial({})({2}).value, 0);
+    const TimeFunction step = smooth_step(1, 3, 5);
+    for (const double t : {0.0, 1.0}) EXPECT_EQ(step({t}).value, 0);
+    EXPECT_EQ(step({2}).value, 2.5);
+    for (const double t : {3.0, 9.0}) {
+        EXPECT_EQ(step({t}).value, 5);
+        EXPECT_EQ(step({t}).first, 0);
+    }
+    EXPECT_EQ(step.breaks(), (std::vector<double>{1, 3}));
+    EXPECT_NEAR(step({1 + 1e-6, Side::left}).second, 0, 1e-4) << "two continuous derivatives";
+    EXPECT_EQ(shifted(step, 1)({9}).value, 6);
+}
+
+TEST(TimeLaws, RefuseWhatIsNoLaw)
+{
+    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_THROW(ramp(nan, 0, 0), InputError);
+    EXPECT_THROW(harmonic(1, nan, 0), InputError);
+    EXPECT_THROW(polynomial({0, nan}), InputError);
+    EXPECT_THROW(smooth_step(1, 1, 2), InputError);
+    EXPECT_THROW(shifted(ramp(0, 1, 0), nan), InputError);
+}
+
+}   // namespace
+}   // namespace livens
