@@ -16,7 +16,7 @@ LoadForces forces(const Load& load, const LoadArguments& at)
 }
 
 /// Skew and moving bodies, some way apart so that no two points meet.
-LoadArguments random_state(Random& random, const Load& load)
+LoadArguments random_state(Random& random, const Load& load, const LoadCase& load_case)
 {
     LoadArguments at;
     at.at.t = random.number();
@@ -25,7 +25,10 @@ LoadArguments random_state(Random& random, const Load& load)
         at.X[b] = random.skew();
         at.V[b] = random.matrix<3, 4>();
     }
-    at.X[0](0, 0) += 4;
+    if (load_case.place)
+        at.X = load_case.place(random);
+    else
+        at.X[0](0, 0) += 4;
     return at;
 }
 
@@ -95,7 +98,7 @@ Failures check_load_tangent(const LoadCase& load_case)
     Failures failures;
     for (int n = 0; n < 1000 && failures.size() < 10; ++n) {
         const Load load = load_case.make(random);
-        const LoadArguments at = random_state(random, load);
+        const LoadArguments at = random_state(random, load, load_case);
         LoadTangent tangent;
         if (load.depends_on_X || load.depends_on_V) load.tangent(at, tangent);
         for (const bool of_V : {false, true}) {
@@ -117,7 +120,7 @@ Failures check_load_energy(const LoadCase& load_case)
     Failures failures;
     for (int n = 0; n < 200; ++n) {
         const Load load = load_case.make(random);
-        const LoadArguments at = random_state(random, load);
+        const LoadArguments at = random_state(random, load, load_case);
         const double gain = derivative(
             [&](double h) {
                 LoadArguments moved = at;
@@ -139,7 +142,7 @@ Failures check_load_potential(const LoadCase& load_case)
     for (int n = 0; n < 200; ++n) {
         const Load load = load_case.make(random);
         if (!load.potential) continue;
-        LoadArguments at = random_state(random, load);
+        LoadArguments at = random_state(random, load, load_case);
         at.V = {};
         const LoadForces F = forces(load, at);
         for (int i = 0; i < 24; ++i) {
@@ -163,7 +166,7 @@ Failures check_load_breaks(const LoadCase& load_case)
 {
     Random random(4);
     const Load load = load_case.make(random);
-    const LoadArguments state = random_state(random, load);
+    const LoadArguments state = random_state(random, load, load_case);
     const auto force_at = [&](double t, Side side) {
         LoadArguments at = state;
         at.at = {t, side};
@@ -196,7 +199,7 @@ Failures check_load_directors(const LoadCase& load_case)
     Failures failures;
     for (int n = 0; n < 20; ++n) {
         const Load load = load_case.make(random);
-        const LoadForces F = forces(load, random_state(random, load));
+        const LoadForces F = forces(load, random_state(random, load, load_case));
         for (int b = 0; b < 2; ++b) {
             if (load.bodies[b] == world || load.needs_directors[b]) continue;
             if (std::any_of(F[b].a + 3, F[b].a + 12, [](double entry) { return entry != 0; }))

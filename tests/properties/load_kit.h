@@ -16,6 +16,8 @@ struct LoadCase {
     std::string type;   ///< Load::type, and the name of its file in src/livens/multibody/loads
     std::string what;   ///< for messages
     std::function<Load(Random&)> make;   ///< on bodies 0 and 1, or on 0 alone
+    /// Where the bodies are, for a load that is no number everywhere; else anywhere.
+    std::function<std::array<Matrix34, 2>(Random&)> place{};
 };
 
 /// Every load of the library, in every variant.

@@ -45,6 +45,61 @@ LoadCase spring_case(const std::string& what, int second, void (*change)(SpringD
             }};
 }
 
+/// A pipe between two bodies that stand anywhere, or between one and the world.
+struct Pipe {
+    std::array<Matrix34, 2> X;
+    Vector3 at, axis;
+    Joint joint;
+
+    explicit Pipe(int first)
+    {
+        Random random(5);
+        X = {random.rigid(), first == world ? world_configuration : random.rigid()};
+        at = random.vector();
+        axis = random.unit();
+        joint = cylindrical("pipe", first, 0, joint_frame(X[1], X[0], at, axis));
+    }
+};
+
+using MakeAlong = Load (*)(Random&, const Joint&, const NamedCoordinate&, const Configurations&);
+
+/// Bodies turned by up to 2 rad, beyond which differences would meet half a turn, and a little deformed.
+LoadCase along_case(const std::string& type, const std::string& what, int first, const char* coordinate,
+                    MakeAlong make)
+{
+    const Pipe pipe(first);
+    return {type, what,
+            [=](Random& random) {
+                return make(random, pipe.joint, *find_coordinate(pipe.joint, coordinate),
+                            std::vector(pipe.X.begin(), pipe.X.end()));
+            },
+            [=](Random& random) {
+                std::array<Matrix34, 2> X = pipe.X;
+                const Matrix3 R = directors_from_rotation_vector(2 * random.number() * pipe.axis);
+                X[0] = configuration(pipe.at + R * (X[0].column(0) - pipe.at), R * directors(X[0]));
+                X[0] += 0.1 * random.matrix<3, 4>();
+                if (first != world) X[1] += 0.1 * random.matrix<3, 4>();
+                return X;
+            }};
+}
+
+Load any_joint_spring(Random& random, const Joint& joint, const NamedCoordinate& coordinate,
+                      const Configurations& X)
+{
+    return joint_spring("l", joint, coordinate,
+                        {5 + 4 * random.number(), 2 + random.number(), random.number(), random.number()}, X);
+}
+Load any_joint_damper(Random& random, const Joint& joint, const NamedCoordinate& coordinate,
+                      const Configurations& X)
+{
+    return joint_spring("l", joint, coordinate, {0, 2 + random.number(), 0, random.number()}, X);
+}
+Load any_actuator(Random& random, const Joint& joint, const NamedCoordinate& coordinate,
+                  const Configurations& X)
+{
+    return actuator("l", joint, coordinate, varying(random)[0], X);
+}
+
 }   // namespace
 
 const std::vector<LoadCase>& load_cases()
@@ -64,6 +119,14 @@ const std::vector<LoadCase>& load_cases()
         spring_case("spring without free length", 1,
                     [](SpringDamper& law) { law.damping = law.free_length = 0; }),
         spring_case("damper", 1, [](SpringDamper& law) { law.stiffness = 0; }),
+        along_case("joint_spring", "spring along a slide", 1, "displacement", any_joint_spring),
+        along_case("joint_spring", "spring along a slide of the world", world, "displacement",
+                   any_joint_spring),
+        along_case("joint_spring", "spring about an axis", 1, "angle", any_joint_spring),
+        along_case("joint_spring", "damper about an axis", 1, "angle", any_joint_damper),
+        along_case("actuator", "motor", 1, "angle", any_actuator),
+        along_case("actuator", "motor on the world", world, "angle", any_actuator),
+        along_case("actuator", "cylinder", 1, "displacement", any_actuator),
         spring_case("nothing", 1, [](SpringDamper& law) { law = {}; }),
     };
     return cases;

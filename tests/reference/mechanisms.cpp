@@ -142,6 +142,8 @@ TEST(Mechanisms, ACrankAtConstantRateTakesTheTorqueOfVirtualWork)
         EXPECT_NEAR(run.coordinate("wrist", "angle", t).value, -rod.x, 1e-13) << t;
     }
     EXPECT_LT(run.solution.verdict.energy_drift, 1e-11) << "with the power of the drive";
+    for (const double error : run.solution.estimate.reaction)
+        EXPECT_LT(error, 1e-6) << "of redundant joints, too";
 }
 
 TEST(Mechanisms, ANutOnAScrewFallsAndTurnsForAHundredTurns)
@@ -319,6 +321,74 @@ TEST(Mechanisms, AConstantVelocityJointTurnsBothShaftsEqually)
         EXPECT_NEAR(run.coordinate("bearing out", "angle", t).value, 5 * t, 1e-13) << t;
         EXPECT_NEAR(run.coordinate("bearing out", "angle", t).rate, 5, 1e-12) << t;
     }
+}
+
+TEST(Mechanisms, ATorsionSpringSwingsAndAMotorLifts)
+{
+    const std::string fan = R"(
+[[body]]
+name = "fan"
+mass = 1
+inertia = [0.1, 0.1, 0.02]
+[[joint]]
+name = "hub"
+type = "revolute"
+between = ["fan", "world"]
+at = [0, 0, 0]
+axis = [0, 0, -1]
+coordinate = "30 deg"
+[[load]]
+type = "spring"
+joint = "hub"
+)";
+    const std::string time = "[time]\nend = 3\naccuracy = 1e-11\noutput = 0.25\n";
+    const Solved swings =
+        solved(fan + "stiffness = \"3 N m/rad\"\ndamping = 0.01\nrest = \"-30 deg\"\n" + time);
+    const double decay = 0.25, w = std::sqrt(3 / 0.02 - decay * decay);   // c / (2 J) = 0.25 1/s
+    for (const double t : {0.25, 1.0, 3.0}) {
+        const double wave = std::cos(w * t) + decay / w * std::sin(w * t);
+        EXPECT_NEAR(swings.coordinate("hub", "angle", t).value,
+                    -pi / 6 + pi / 3 * std::exp(-decay * t) * wave, 1e-10);
+    }
+    // Preload and motor at odds: a constant torque, over many turns, since nothing asks for the angle.
+    const Solved turns = solved(fan +
+                                "stiffness = 0\npreload = 1\n[[load]]\ntype = \"actuator\"\njoint = \"hub\"\n"
+                                "value = 1.5\n" +
+                                time);
+    EXPECT_NEAR(turns.coordinate("hub", "angle", 3).value, pi / 6 + 0.5 * (0.5 / 0.02) * 9, 1e-9);
+    EXPECT_LT(turns.solution.verdict.energy_drift, 1e-12);
+}
+
+TEST(Mechanisms, ATorsionSpringThatWouldLoseItsTurnsIsRefusedByName)
+{
+    const ScenarioResult read = parse_scenario(R"(format = 1
+[[body]]
+name = "fan"
+mass = 1
+inertia = [0.1, 0.1, 0.02]
+angular_velocity = [0, 0, 50]
+[[joint]]
+name = "hub"
+type = "revolute"
+between = ["world", "fan"]
+at = [0, 0, 0]
+axis = [0, 0, 1]
+[[load]]
+name = "coil"
+type = "spring"
+joint = "hub"
+stiffness = 0.01
+[time]
+end = 1
+)",
+                                               "test.toml");
+    ASSERT_TRUE(read.scenario.has_value());
+    const Scenario& s = *read.scenario;
+    const Solution solution = solve(s.model, {s.model.start()}, s.time, s.method, s.options);
+    EXPECT_FALSE(solution.report.converged());
+    EXPECT_NE(solution.report.message.find("'coil'"), std::string::npos) << solution.report.message;
+    EXPECT_NE(solution.report.message.find("175 degrees"), std::string::npos) << solution.report.message;
+    EXPECT_LT(solution.motion.end(), 3.05 / 49) << "it ends before the angle is lost";
 }
 
 TEST(Mechanisms, APointOnALineOfABodyOrOfTheWorld)

@@ -50,6 +50,11 @@ void set_load_value(Load& load, const TimeVector& value)
     load.breaks.erase(repeated, load.breaks.end());
 }
 
+std::string not_finite(const Load& load)
+{
+    return "the load '" + load.name + "' is not finite" + (load.domain.empty() ? "" : " (" + load.domain + ")");
+}
+
 TimeVector window(const TimeVector& value, double from, double until)
 {
     return {window(value[0], from, until), window(value[1], from, until), window(value[2], from, until)};

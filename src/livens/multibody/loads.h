@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "livens/base/linear.h"
-#include "livens/multibody/constraint.h"
+#include "livens/multibody/joints.h"
 #include "livens/time/time_function.h"
 
 namespace [[gnu::visibility("default")]] livens {
@@ -42,6 +42,7 @@ struct Load {
     std::array<bool, 2>
         needs_directors{};        ///< F is not zero outside the first column: refused on a point mass
     std::vector<double> breaks;   ///< instants where F jumps or bends; they become element ends
+    std::string domain;           ///< where F is a number, for the message if it is not; empty: everywhere
 
     /// F; required. Forces arrive as zero.
     std::function<void(const LoadArguments&, LoadForces&)> forces;
@@ -78,6 +79,27 @@ struct SpringDamper {
 /// coincide: the force is zero for free_length 0 and along no direction (zero) otherwise.
 Load spring_damper(const std::string& name, int first, const Vector3& point_first, int second,
                    const Vector3& point_second, const SpringDamper& spring);
+
+struct JointSpring {
+    double stiffness = 0;   ///< N/m or N m/rad
+    double damping = 0;     ///< N s/m or N m s/rad
+    double rest = 0;        ///< m or rad: the coordinate without force but the preload
+    double preload = 0;     ///< N or N m, against the coordinate, wherever it is
+};
+
+// Loads along a coordinate of a joint: a force that does the work Q dq, between its two bodies. X is the
+// configuration of all bodies at the start.
+
+/// Q = -stiffness (q - rest) - damping dq/dt - preload. An angle is known up to 3.05 rad from where it is in
+/// X: beyond that a spring is not a number, and the motion ends there by name.
+Load joint_spring(const std::string& name, const Joint& joint, const NamedCoordinate& coordinate,
+                  const JointSpring& spring, const Configurations& X);
+/// Q = value(t), N or N m.
+Load actuator(const std::string& name, const Joint& joint, const NamedCoordinate& coordinate,
+              const TimeFunction& value, const Configurations& X);
+
+/// What is told of a load whose force is not finite.
+std::string not_finite(const Load& load);
 
 /// What a load is asked with, from X and V of all bodies.
 LoadArguments load_arguments(const Load& load, Instant at, std::span<const Matrix34> X,

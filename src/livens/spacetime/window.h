@@ -20,7 +20,7 @@ using Guess = std::function<State(double t)>;
 struct Place {
     std::string name;       ///< "joint 'elbow' (row 'x'), body 'upper'"; empty: nowhere in particular
     double t = 0;           ///< s
-    std::string bad_load;   ///< a load that is not finite, by name
+    std::string bad_load;   ///< what is told of a load that is not finite
 };
 
 /// Beyond these an element has not seen the motion, or has met a root of its equations that is none

@@ -346,8 +346,7 @@ private:
                 advice =
                     "the mechanism may pass a singular position; shift the element ends or use more elements";
         } else if (outcome.status == SolveStatus::not_finite) {
-            what = worst.bad_load.empty() ? "a number became infinite or undefined"
-                                          : "the load '" + worst.bad_load + "' is not finite";
+            what = worst.bad_load.empty() ? "a number became infinite or undefined" : worst.bad_load;
             if (options_.advice.empty()) advice = "look at the loads near that time; use more elements";
         }
         report_.message = what + where;

@@ -96,6 +96,7 @@ std::vector<test::Case> test::cases_of_mechanisms()
         return joined(turn + "[[drive]]\nname = \"d\"\n" + lines);
     };
     const std::string on_joint = "type = \"joint\"\njoint = \"j\"\n";
+    const auto other_load = [&](const std::string& lines) { return joined(turn + "[[load]]\n" + lines); };
     const auto other = [&](const std::string& lines) {
         return joined(turn + "[[joint]]\nname = \"k\"\n" + lines);
     };
@@ -129,6 +130,17 @@ std::vector<test::Case> test::cases_of_mechanisms()
                 "rate = 1"),
          "\"d\""},
         {"law-order", driven(on_joint + "step = { from = 1, until = 0, rise = 1 }"), "{ from"},
+        {"spring-place", other_load("type = \"spring\"\nstiffness = 1"), "[[load]]"},
+        {"spring-place", other_load("type = \"spring\"\nstiffness = 1\nbetween = [\"world\", \"b\"]"),
+         "[[load]]"},
+        {"spring-place", other_load("type = \"spring\"\nstiffness = 1\njoint = \"j\"\nfree_length = 2"),
+         "2\n[time]"},
+        {"spring-place",
+         other_load(
+             "type = \"spring\"\nstiffness = 1\nfree_length = 1\nbetween = [\"world\", \"b\"]\nrest = 3"),
+         "3\n[time]"},
+        {"joint-unknown", other_load("type = \"actuator\"\njoint = \"jj\"\nvalue = 1"), "\"jj\""},
+        {"load-value", other_load("type = \"actuator\"\njoint = \"j\""), "[[load]]"},
         {"name-duplicate",
          driven("type = \"joint\"\njoint = \"j\"\nvalue = 0\n[[drive]]\nname = \"j\"\n" + on_joint +
                 "value = 0"),

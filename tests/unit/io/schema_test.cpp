@@ -71,7 +71,7 @@ struct Occurrence {
 const Table& table_of(const std::string& header, const std::string& type)
 {
     std::string heading = header.empty() ? "top of the file" : header;
-    if (header == "[load.table]") heading = "table of a " + type;
+    if (header == "[load.table]") heading = (type == "actuator" ? "table of an " : "table of a ") + type;
     if (header.starts_with("[drive.")) heading = header.substr(7, header.size() - 8) + " of a drive";
     if (header == "[[joint.frames]]") heading = "frame of a joint";
     if (header == "[body.shape]") heading = "shape of [[body]]";

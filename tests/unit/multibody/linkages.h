@@ -63,10 +63,10 @@ public:
     {
         model.add_joint(spherical(name(), first, second, frame(first, second, at, {0, 0, 1}), how_.unit));
     }
-    /// One of the five kinds at a random place between two bodies that are near the origin; twice if wanted.
+    /// One of nine kinds at a random place between two bodies that are near the origin; twice if wanted.
     void any_joint(int first, int second, bool twice)
     {
-        const int kind = static_cast<int>(std::floor(2.5 * (random.number() + 1)));
+        const int kind = static_cast<int>(std::floor(4.5 * (random.number() + 1)));
         const Vector3 at = random.vector(), axis = random.unit(), far = at + random.unit();
         JointFrame f = frame(first, second, at, axis);
         for (int copy = 0; copy < (twice ? 2 : 1); ++copy) {
@@ -78,6 +78,11 @@ public:
                 model.add_joint(universal(name(), first, second, f, how_.unit));
             }
             if (kind == 3) model.add_joint(weld(name(), first, second, f, X(first), X(second), how_.unit));
+            if (kind == 5)
+                model.add_joint(prismatic(name(), first, second, f, X(first), X(second), how_.unit));
+            if (kind == 6) model.add_joint(cylindrical(name(), first, second, f, how_.unit));
+            if (kind == 7) model.add_joint(planar(name(), first, second, f, how_.unit));
+            if (kind == 8) model.add_joint(point_on_line(name(), first, second, f, how_.unit));
             if (kind == 4) {
                 JointFrame g = f;
                 g.point_first = frame(first, second, far, axis).point_first;

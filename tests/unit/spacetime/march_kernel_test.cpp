@@ -178,13 +178,26 @@ Joint any_joint(Random& random, const Model& model, int first, int second, const
     const auto X = [&](int b) { return b == world ? world_configuration : model.bodies()[b].X; };
     const bool has_point =
         (first != world && model.bodies()[first].is_point) || model.bodies()[second].is_point;
-    const int kind = has_point ? 4 : static_cast<int>(2.5 * (1 + random.number()));
+    const int kind = has_point ? 4 : static_cast<int>(6.5 * (1 + random.number()));
     const Vector3 at = 0.5 * (X(first).column(0) + X(second).column(0)) + 0.3 * random.vector();
     const Vector3 axis = random.unit();
     JointFrame frame = joint_frame(X(first), X(second), at, axis);
     if (kind == 0) return weld(name, first, second, frame, X(first), X(second));
     if (kind == 1) return revolute(name, first, second, frame);
     if (kind == 3) return spherical(name, first, second, frame);
+    if (kind == 5) return prismatic(name, first, second, frame, X(first), X(second));
+    if (kind == 6) return cylindrical(name, first, second, frame);
+    if (kind == 7) return planar(name, first, second, frame);
+    if (kind == 8) return constant_velocity(name, first, second, frame, X(first), X(second));
+    if (kind == 9) return point_on_line(name, first, second, frame);
+    if (kind == 10) return point_in_plane(name, first, second, frame);
+    if (kind == 11) return parallel_axes(name, first, second, frame);
+    if (kind == 12) {
+        frame.axis_second = joint_frame(X(first), X(second), at, random.unit()).axis_second;
+        return constant_angle(
+            name, first, second, frame,
+            std::acos(dot(X(first) * direction(frame.axis_first), X(second) * direction(frame.axis_second))));
+    }
     if (kind == 2) {
         Vector3 across = cross(axis, random.unit());
         frame.axis_second = joint_frame(X(first), X(second), at, 1 / norm(across) * across).axis_second;

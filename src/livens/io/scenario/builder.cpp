@@ -175,10 +175,12 @@ bool check_name(const Section& section)
 
 std::string default_name(const Section& section)
 {
-    const Value* between = section.find(section.takes("joints") ? "joints" : "between");
     const std::string type = section.text("type");
-    if (between == nullptr) return type + " on " + section.text("body");
-    return type + " " + between->texts[0] + "-" + between->texts[1];
+    for (const char* key : {"between", "joints"})
+        if (const Value* two = section.find(key)) return type + " " + two->texts[0] + "-" + two->texts[1];
+    for (const char* key : {"body", "joint"})
+        if (section.has(key)) return type + " on " + section.text(key);
+    return type;
 }
 
 bool claim_name(const Section& section, const std::string& kind, const std::string& name,

@@ -27,6 +27,7 @@ public:
     const Section& top() const { return top_; }
     Findings& findings() { return findings_; }
     Model& model() { return model_; }
+    const Model& model() const { return model_; }
     std::vector<Outline>& outlines() { return outlines_; }   ///< of the bodies so far
     /// Call once all bodies are there: computes length().
     void close_bodies();
@@ -86,6 +87,16 @@ std::string default_name(const Section& section);
 /// Reports a name (at the key, or at the table without one) that another of its kind has.
 bool claim_name(const Section& section, const std::string& kind, const std::string& name,
                 std::unordered_set<std::string>& taken, const Advice& advice);
+
+/// `coordinate`: which of a joint's, for drives and loads.
+Key coordinate_key();
+/// What `joint` and `coordinate` of a section refer to; valid until a joint is added.
+struct JointReference {
+    const Joint* joint;
+    const NamedCoordinate* coordinate;
+};
+/// Throws InputError (`joint-unknown`, `joint-coordinate`) at path.joint.
+JointReference find_coordinate(const Builder& builder, const Section& section, const std::string& path);
 
 /// `directors`, `quaternion`, `rotation_vector`: of a body or a joint's frame.
 std::vector<Key> orientation_keys();

@@ -17,8 +17,7 @@ const std::vector<Kind>& kinds()
         {"joint",
          "a coordinate of a joint",
          {Key{"joint", types::text, "The joint whose coordinate follows the law."}.needed(),
-          choice("coordinate", {"angle", "displacement"},
-                 "Which, for a joint that has both; default: the one that it has.")}},
+          coordinate_key()}},
         {"distance",
          "the distance of two points",
          {Key{"between", types::names, "Two different bodies, or one and `\"world\"`."}.needed(),
@@ -120,32 +119,12 @@ std::array<TimeFunction, 3> read_path(const Section& drive, double start)
             read_law(drive, 2, 3, 0, start)};
 }
 
-Joint make_on_joint(Builder& builder, const Section& drive, const std::string& name, double start,
+Joint make_on_joint(const Builder& builder, const Section& drive, const std::string& name, double start,
                     const Configurations& X)
 {
-    const std::string wanted = drive.text("joint");
-    const std::vector<Joint>& joints = builder.model().joints();
-    const auto joint = std::ranges::find(joints, wanted, &Joint::name);
-    if (joint == joints.end())
-        throw InputError({"joint-unknown", "drive[" + name + "].joint", "there is no joint '" + wanted + "'",
-                          "", "", "", "name a joint of this file"});
-    const NamedCoordinate* coordinate = joint->coordinates.empty() ? nullptr : &joint->coordinates.front();
-    if (drive.has("coordinate"))
-        coordinate = find_coordinate(*joint, drive.text("coordinate"));
-    else if (joint->coordinates.size() > 1)
-        throw InputError({"joint-coordinate", "drive[" + name + "].joint",
-                          "joint '" + wanted + "' has more than one coordinate", "", "", "",
-                          "say which by 'coordinate'"});
-    if (coordinate == nullptr)
-        throw InputError(
-            {"joint-coordinate", "drive[" + name + "].joint",
-             "joint '" + wanted + "' (" + joint->type + ") has no " +
-                 (drive.has("coordinate") ? drive.text("coordinate") : "coordinate"),
-             "", "", "",
-             "revolute, cylindrical, planar, screw and parallel_axes joints have an angle; prismatic, "
-             "cylindrical, screw and point_on_line joints a displacement"});
-    const TimeFunction law = read_law(drive, 0, 1, coordinate->at_start, start);
-    return driven_coordinate(name, *joint, *coordinate, law, X);
+    const JointReference of = find_coordinate(builder, drive, "drive[" + name + "]");
+    const TimeFunction law = read_law(drive, 0, 1, of.coordinate->at_start, start);
+    return driven_coordinate(name, *of.joint, *of.coordinate, law, X);
 }
 
 Joint make_drive(Builder& builder, const Section& drive, const std::string& name, const BodyReference& first,

@@ -242,6 +242,43 @@ std::string claim_joint_name(const Section& joint, std::unordered_set<std::strin
 
 }   // namespace
 
+Key coordinate_key()
+{
+    return choice("coordinate", {"angle", "displacement"},
+                  "Which, for a joint that has both; default: the one that it has.");
+}
+
+JointReference find_coordinate(const Builder& builder, const Section& section, const std::string& path)
+{
+    const std::string wanted = section.text("joint");
+    std::vector<std::string_view> known;
+    const Joint* joint = nullptr;
+    for (const Joint& one : builder.model().joints()) {
+        if (one.name == wanted) joint = &one;
+        known.push_back(one.name);
+    }
+    if (joint == nullptr)
+        throw InputError({"joint-unknown", path + ".joint", "there is no joint '" + wanted + "'", "", "", "",
+                          suggest(wanted, known)});
+    const bool is_said = section.has("coordinate");
+    if (!is_said && joint->coordinates.size() > 1)
+        throw InputError({"joint-coordinate", path + ".joint",
+                          "joint '" + wanted + "' has more than one coordinate", "", "", "",
+                          "say which by 'coordinate'"});
+    const NamedCoordinate* of = is_said ? find_coordinate(*joint, section.text("coordinate"))
+                                : joint->coordinates.empty() ? nullptr
+                                                             : &joint->coordinates.front();
+    if (of == nullptr)
+        throw InputError(
+            {"joint-coordinate", path + ".joint",
+             "joint '" + wanted + "' (" + joint->type + ") has no " +
+                 (is_said ? section.text("coordinate") : "coordinate"),
+             "", "", "",
+             "revolute, cylindrical, planar, screw and parallel_axes joints have an angle; prismatic, "
+             "cylindrical, screw and point_on_line joints a displacement"});
+    return {joint, of};
+}
+
 Table joint_table()
 {
     std::vector<Kind> all{joint_kinds().begin(), joint_kinds().end()};

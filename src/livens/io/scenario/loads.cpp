@@ -44,6 +44,21 @@ bool check_value(const Section& load)
                       {"", "give 'value' for a constant, 'table' for a function of time"});
 }
 
+/// Between two points, or on a joint.
+bool check_spring(const Section& load)
+{
+    if (!load.at_most_one({"between", "joint"}, "spring-place")) return false;
+    if (load.has("joint"))
+        return load.refuse({"points", "free_length"}, "spring-place", "it acts on a joint: give 'rest'");
+    if (!load.has("between"))
+        return load.error(
+            "", "spring-place", load.label() + " has neither 'between' nor 'joint'",
+            {"", "give 'between', the two bodies it connects, or 'joint', the joint it acts on"});
+    return load.refuse({"rest", "preload", "coordinate"}, "spring-place", "it acts between two points") &&
+           (load.has("free_length") || load.error("", "spring-place", load.label() + " lacks 'free_length'",
+                                                  {"", "give the length at which it has no force"}));
+}
+
 TimeVector read_table(const Section& table)
 {
     const std::vector<double>& times = table.find("times")->numbers;
@@ -73,6 +88,7 @@ struct Parts {
     const Section& section;
     std::string name;
     int first, second;
+    const Builder& builder;
 };
 
 struct LoadKind : Kind {
@@ -90,8 +106,40 @@ Load make_torque(const Parts& p)
     return torque(p.name, p.first, read_value(p.section), p.section.pick<Frame>("frame"));
 }
 
+/// What acts along a coordinate of a joint.
+template <class Make>
+Load on_joint(const Parts& p, const Make& make)
+{
+    std::vector<Matrix34> X;
+    for (const Body& body : p.builder.model().bodies()) X.push_back(body.X);
+    const JointReference of = find_coordinate(p.builder, p.section, "load[" + p.name + "]");
+    return make(*of.joint, *of.coordinate, X);
+}
+
+Load make_actuator(const Parts& p)
+{
+    return on_joint(p, [&](const Joint& joint, const NamedCoordinate& coordinate, const Configurations& X) {
+        const Section* table = only_section(p.section, "table");
+        TimeFunction value = p.section.number("value");
+        if (table != nullptr) {
+            const auto make = table->text("interpolation") == "spline" ? spline_table : linear_table;
+            value = make(table->find("times")->numbers, table->find("values")->numbers);
+        }
+        const Interval acts = read_interval(p.section);
+        if (p.section.has("from") || p.section.has("until")) value = window(value, acts.from, acts.until);
+        return actuator(p.name, joint, coordinate, value, X);
+    });
+}
+
 Load make_spring(const Parts& p)
 {
+    if (p.section.has("joint"))
+        return on_joint(p,
+                        [&](const Joint& joint, const NamedCoordinate& coordinate, const Configurations& X) {
+                            const JointSpring law{p.section.number("stiffness"), p.section.number("damping"),
+                                                  p.section.number("rest"), p.section.number("preload")};
+                            return joint_spring(p.name, joint, coordinate, law, X);
+                        });
     const SpringDamper law{p.section.number("stiffness"), p.section.number("damping"),
                            p.section.number("free_length")};
     const Vector3 a = p.section.row("points", 0), b = p.section.row("points", 1);
@@ -129,17 +177,47 @@ const std::vector<LoadKind>& kinds()
                        {{"point", types::vector3, "Where it acts, in body coordinates.", "m", "[0, 0, 0]"}})},
          make_force},
         {{"torque", "on a body", keys_on_body("torque", "N m", {})}, make_torque},
-        {{"spring", "with a damper, along the line between two points",
-          {Key{"between", types::names, "The two bodies it connects; one may be `\"world\"`."}.needed(),
+        {{"spring",
+          "with a damper, along the line between two points or on a joint",
+          {Key{"between", types::names, "The two bodies it connects; one may be `\"world\"`."},
+           Key{"joint", types::text, "Instead of `between`: the joint along whose coordinate it acts."},
+           coordinate_key(),
            Key{"points", types::pair,
                "Its ends on each body, in the body's coordinates. Default: the reference points, for the "
-               "world its origin.", "m"},
-           Key{"stiffness", types::number, "Force for each metre of elongation.", "N/m"}
-               .needed().within(not_negative),
-           Key{"damping", types::number, "Force for each m/s of elongation.", "N s/m", "0"}
+               "world its origin.",
+               "m"},
+           Key{"stiffness", types::number, "Force for each metre of elongation, or torque for each radian.",
+               "N/m"}
+               .or_in("N m/rad")
+               .needed()
                .within(not_negative),
-           Key{"free_length", types::number, "Length without force.", "m"}.needed().within(not_negative)}},
-         make_spring}};
+           Key{"damping", types::number, "Force for each m/s of elongation, or torque for each rad/s.",
+               "N s/m", "0"}
+               .or_in("N m s/rad")
+               .within(not_negative),
+           Key{"free_length", types::number, "With `between`, and needed there: length without force.", "m"}
+               .within(not_negative),
+           Key{"rest", types::number, "With `joint`: the coordinate without force.", "m", "0"}.or_in("rad"),
+           Key{"preload", types::number, "With `joint`: a constant force or torque against the coordinate.",
+               "N", "0"}
+               .or_in("N m")}},
+         make_spring},
+        {{"actuator",
+          "a force or torque along a coordinate of a joint, between its bodies",
+          {Key{"joint", types::text, "The joint."}.needed(), coordinate_key(),
+           Key{"value", types::number, "Constant; instead of `table`.", "N"}.or_in("N m"),
+           Key{"table", types::table, "As a function of time."}.holding(
+               {"table of an actuator",
+                "Values between the times; constant before and after.",
+                {Key{"times", types::list, "Ascending, two or more; two equal ones are a jump (linear only).",
+                     "s"}
+                     .needed(),
+                 Key{"values", types::list, "One for each time.", "N"}.or_in("N m").needed(),
+                 choice("interpolation", {"linear", "spline"},
+                        "Straight lines, or a cubic spline with two continuous derivatives.")}}),
+           Key{"from", types::number, "Acts from then on; default: always.", "s"},
+           Key{"until", types::number, "Acts until then; default: for ever.", "s"}}},
+         make_actuator}};
     return all;
 }
 
@@ -161,6 +239,7 @@ std::string claim_load_name(const Section& load, std::unordered_set<std::string>
 /// The bodies that it names by `between` or `body`; false unless they can be used.
 bool find_bodies(Builder& builder, const Section& load, BodyReference& first, BodyReference& second)
 {
+    if (load.has("joint")) return load.find("joint") != nullptr;
     if (load.has("between")) return builder.find_pair(load, "load-self", first, second);
     const Value* named = load.find("body");
     if (named == nullptr) return false;
@@ -177,11 +256,14 @@ void read_load(Builder& builder, const Section& load, const std::string& name, b
     if (load.kind() == any_kind) return;
     bool is_good = load.is_valid() && has_good_name;
     if (load.takes("value")) is_good = check_value(load) && is_good;
+    if (load.takes("preload")) is_good = check_spring(load) && is_good;
     if (load.takes("from")) is_good = check_interval(builder, load, builder.findings()) && is_good;
     BodyReference first, second;
     if (!find_bodies(builder, load, first, second) || !is_good) return;
     const auto make = kinds()[static_cast<std::size_t>(load.kind())].make;
-    builder.guard(path, [&] { builder.model().add_load(make({load, name, first.index, second.index})); });
+    builder.guard(path, [&] {
+        builder.model().add_load(make({load, name, first.index, second.index, builder}));
+    });
 }
 
 }   // namespace

@@ -87,10 +87,12 @@ struct Key {
     bool required = false;
     Words choices = {};   ///< where an enum says the same, in its order: see Section::pick()
     Range range = {};     ///< for every number of the value
+    std::string_view other_unit = {};   ///< SI; what texts may have instead, along angles
     std::shared_ptr<const Table> child = {};   ///< of a table, or tables
 
     // One property each, so that an entry of a table reads as a sentence.
     Key needed() && { return required = true, std::move(*this); }
+    Key or_in(std::string_view u) && { return other_unit = u, std::move(*this); }
     Key within(const Range& r) && { return range = r, std::move(*this); }
     Key holding(Table t) &&;
 };

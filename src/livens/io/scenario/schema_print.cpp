@@ -115,7 +115,10 @@ void write_required(JsonWriter& json, const std::vector<Key>& keys)
 void write_property(JsonWriter& json, const Key& key, const std::vector<Row>& rows)
 {
     std::string text = key.doc;
-    if (!key.unit.empty()) text += " In " + std::string(key.unit) + ", or a text with a unit.";
+    if (!key.unit.empty())
+        text += " In " + std::string(key.unit) +
+                (key.other_unit.empty() ? "" : " or " + std::string(key.other_unit)) +
+                ", or a text with a unit.";
     if (!key.fallback.empty()) text += " Default: " + std::string(key.fallback) + ".";
     json.key(key.name).begin_object().member("description", text).key("anyOf").begin_array();
     for (const Row& row : rows)

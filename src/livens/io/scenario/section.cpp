@@ -99,6 +99,8 @@ private:
                                    subject() + " must be finite, not " + to_text(node.number));
         }
         if (node.kind != NodeKind::text || key_.unit.empty()) return wrong_type(node);
+        const Quantity other = parse_quantity(node.text(), key_.other_unit);
+        if (!key_.other_unit.empty() && other.error.empty()) return accept(node, other.value);
         const Quantity quantity = parse_quantity(node.text(), key_.unit);
         if (quantity.error.empty()) return accept(node, quantity.value);
         return findings_.error(node.place, "unit",

@@ -126,7 +126,6 @@ const Motion& Record::so_far()
 Motion Record::take()
 {
     Motion& m = motion_;
-    m.redundant_rows = redundant_;
     const auto first = static_cast<std::size_t>(first_), last = static_cast<std::size_t>(last_);
     const auto p = static_cast<std::size_t>(degree_), bodies = static_cast<std::size_t>(m.n_bodies);
     const auto rows = static_cast<std::size_t>(m.n_rows);

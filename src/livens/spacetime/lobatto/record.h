@@ -26,7 +26,7 @@ public:
     void forget_reactions(int place, std::span<const int> rows);
     /// Room for an element more beside `element`, which the mesh has divided; ends behind it move on by one.
     void divided(int element);
-    void note_redundant(const std::vector<int>& rows) { redundant_ = rows; }
+    void note_redundant(const std::vector<int>& rows) { motion_.redundant_rows = rows; }
     const TimeMesh& mesh() const { return mesh_; }
 
     /// What is written of a march forwards, in arrays that may be longer.
@@ -46,7 +46,6 @@ private:
     int first_, last_;   // element ends from..to that were written
     int reached_ = -1;   // there is room up to this element end
     Motion motion_;
-    std::vector<int> redundant_;
     std::vector<double> work_;
 };
 

@@ -196,7 +196,7 @@ std::string Rows::bad_load(const Stretch& stretch, const Nodes& nodes) const
             interpolate(stretch, nodes, e, static_cast<int>(c), X.data(), V.data());
             const Instant at = stretch.load_point(rule_, e, static_cast<int>(c));
             const int load = tables_.bad_load(at, X.data(), V.data());
-            if (load >= 0) return tables_.model->loads()[load].name;
+            if (load >= 0) return not_finite(tables_.model->loads()[load]);
         }
     return "";
 }

@@ -22,7 +22,6 @@ void combine(const std::vector<double>& table, int first, int n, std::span<const
     }
 }
 
-const std::string none;
 
 }   // namespace
 
@@ -147,11 +146,11 @@ void Equations::sample(const Fields& fields, int e, int g)
     m.spread(sample_.v.data(), sample_.V.data());
 }
 
-const std::string& Equations::residual(const Fields& fields, std::vector<double>& r)
+std::string Equations::residual(const Fields& fields, std::vector<double>& r)
 {
     const Coordinates& m = *setup_.coordinates;
     const std::size_t n = static_cast<std::size_t>(m.size);
-    const std::string* bad = &none;
+    std::string bad;
     const std::vector<Load>& loads = m.tables.model->loads();
     raw_.dP.assign(n * setup_.space.size(), 0.0);
     raw_.dX.assign(n * setup_.space.size(), 0.0);
@@ -165,7 +164,7 @@ const std::string& Equations::residual(const Fields& fields, std::vector<double>
             if (!std::isfinite(sum)) {
                 const int load =
                     m.tables.bad_load({time(e, g), Side::middle}, sample_.X.data(), sample_.V.data());
-                if (load >= 0) bad = &loads[load].name;
+                if (load >= 0) bad = not_finite(loads[load]);
             }
             add_rows(e, g);
         }
@@ -180,7 +179,7 @@ const std::string& Equations::residual(const Fields& fields, std::vector<double>
     for (int A = 0; A < setup_.multipliers.size(); ++A)
         take(numbering_.row_dlambda(A), raw_.dlambda, A, m.n_rows());
     add_boundary(fields, r);
-    return *bad;
+    return bad;
 }
 
 /// What one Gauss point adds to all rows.

@@ -68,7 +68,7 @@ public:
 
     /// Rows at `fields`; the solved ones are returned, all are kept for end_momentum(). Names a load that is
     /// not finite, empty if all are.
-    const std::string& residual(const Fields& fields, std::vector<double>& r);
+    std::string residual(const Fields& fields, std::vector<double>& r);
     /// Matrix d(residual)/d(unknowns) at `fields`. Returns whether its pattern differs from the last one.
     bool tangent(const Fields& fields, SparseMatrix& J);
     /// fields + factor * increment of the unknowns.
