@@ -86,13 +86,14 @@ LoadCase along_case(const std::string& type, const std::string& what, int first,
 Load any_joint_spring(Random& random, const Joint& joint, const NamedCoordinate& coordinate,
                       const Configurations& X)
 {
+    const double preload = coordinate.coordinate.is_angle() ? 0 : random.number();   // else a power
     return joint_spring("l", joint, coordinate,
-                        {5 + 4 * random.number(), 2 + random.number(), random.number(), random.number()}, X);
+                        {5 + 4 * random.number(), 2 + random.number(), random.number(), preload}, X);
 }
 Load any_joint_damper(Random& random, const Joint& joint, const NamedCoordinate& coordinate,
                       const Configurations& X)
 {
-    return joint_spring("l", joint, coordinate, {0, 2 + random.number(), 0, random.number()}, X);
+    return joint_spring("l", joint, coordinate, {0, 2 + random.number(), 0, 0}, X);
 }
 Load any_actuator(Random& random, const Joint& joint, const NamedCoordinate& coordinate,
                   const Configurations& X)

@@ -10,6 +10,7 @@
 #include "livens/diagnostics/sample.h"
 #include "livens/io/scenario.h"
 #include "livens/spacetime/solve.h"
+#include "reference/shipped.h"
 
 namespace livens::tests {
 namespace {
@@ -144,6 +145,37 @@ TEST(Mechanisms, ACrankAtConstantRateTakesTheTorqueOfVirtualWork)
     EXPECT_LT(run.solution.verdict.energy_drift, 1e-11) << "with the power of the drive";
     for (const double error : run.solution.estimate.reaction)
         EXPECT_LT(error, 1e-6) << "of redundant joints, too";
+}
+
+TEST(Mechanisms, TheSliderCrankAsShippedMeetsVirtualWork)
+{
+    const Shipped shipped = solve_example("slider_crank");
+    EXPECT_TRUE(shipped.solution.verdict.reasons.empty());
+    EXPECT_TRUE(shipped.solution.motion.redundant_rows.empty());
+    const Solved run{shipped.model, shipped.solution};
+    const Load& gas = run.model.loads()[0];
+    for (int i = 1; i <= 60; ++i) {
+        const double t = 0.001 * i, length = 0.15, spin = 0.3 * (0.15 * 0.15 + 0.02 * 0.02) / 12;
+        const Jet crank{200 * t, 200, 0}, rod = -1.0 * arc_sine((0.05 / length) * sine(crank));
+        const Jet pin = 0.05 * cosine(crank) + length * cosine(rod);
+        const Jet x = 0.05 * cosine(crank) + 0.5 * length * cosine(rod),
+                  y = 0.05 * sine(crank) + 0.5 * length * sine(rod);
+        LoadForces F{};
+        gas.forces({{t}, {}, {}}, F);
+        const double power = 0.3 * (x.v * x.a + y.v * y.a) + spin * rod.v * rod.a + 0.5 * pin.v * pin.a;
+        EXPECT_NEAR(run.reaction("speed", t).torque[2], (power - F[0](0, 0) * pin.v) / 200, 1e-9 * 100) << t;
+        EXPECT_NEAR(run.coordinate("bore", "displacement", t).value, pin.x - 0.2, 1e-14) << t;
+        // The bore carries what the rod pushes aside, and all weights but those on shaft and pins.
+        const double along = 0.5 * pin.a - F[0](0, 0);
+        const double turning = spin * rod.a, side = 0.3 * y.a;   // of the rod, about its centre
+        const double c = std::cos(rod.x), s = std::sin(rod.x), half = 0.5 * length;
+        const double at_crank_x = -along - 0.3 * x.a;   // rod: forces of the crank pin and piston pin on it
+        // turning = r1 x f1 + r2 x f2 with r = -+half (c, s), f2 = (-along, f2y), f1 = -at_crank_x.., f1y =
+        // side - f2y
+        const double f1x = -at_crank_x, f2x = -along;
+        const double f2y = (turning + half * (c * side - s * f1x) + half * s * f2x) / (2 * half * c);
+        EXPECT_NEAR(run.reaction("bore", t).force[1], f2y, 1e-9 * 1000) << t;
+    }
 }
 
 TEST(Mechanisms, ANutOnAScrewFallsAndTurnsForAHundredTurns)

@@ -52,7 +52,8 @@ void set_load_value(Load& load, const TimeVector& value)
 
 std::string not_finite(const Load& load)
 {
-    return "the load '" + load.name + "' is not finite" + (load.domain.empty() ? "" : " (" + load.domain + ")");
+    return "the load '" + load.name + "' is not finite" +
+           (load.domain.empty() ? "" : " (" + load.domain + ")");
 }
 
 TimeVector window(const TimeVector& value, double from, double until)

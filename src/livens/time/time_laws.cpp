@@ -82,4 +82,17 @@ TimeFunction shifted(const TimeFunction& law, double value)
             law.breaks()};
 }
 
+TimeFunction straight_on(const TimeFunction& law, double first, double last)
+{
+    const TimeValue begin = law({first, Side::right}), end = law({last, Side::left});
+    return {[=](Instant at) -> TimeValue {
+                if (at.t < first || (at.t == first && at.side == Side::left))
+                    return {begin.value + begin.first * (at.t - first), begin.first, 0};
+                if (at.t > last || (at.t == last && at.side != Side::left))
+                    return {end.value + end.first * (at.t - last), end.first, 0};
+                return law(at);
+            },
+            law.breaks()};
+}
+
 }   // namespace livens

@@ -23,4 +23,7 @@ TimeFunction polynomial(std::vector<double> coefficients);
 /// value + law.
 TimeFunction shifted(const TimeFunction& law, double value);
 
+/// `law` from `first` to `last`, and straight on with its slopes there before and after.
+TimeFunction straight_on(const TimeFunction& law, double first, double last);
+
 }   // namespace livens

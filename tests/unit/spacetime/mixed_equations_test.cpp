@@ -236,7 +236,7 @@ TEST(MixedEquationsResidual, NamesTheLoadThatIsNotFinite)
     Block block(model, {"", Mixed::Start::natural, Mixed::Multipliers::equal, {}},
                 TimeSpace::lagrange({0, 0.1}, 1));
     std::vector<double> r;
-    EXPECT_EQ(block.equations.residual(block.fields, r), "broken");
+    EXPECT_EQ(block.equations.residual(block.fields, r), "the load 'broken' is not finite");
 }
 
 TEST(MixedCoordinates, RefusesASingularMassByTheBodysName)

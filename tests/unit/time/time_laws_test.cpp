@@ -47,6 +47,20 @@ TEST(TimeLaws, BeginAndEndWhereTheySay)
     EXPECT_EQ(shifted(step, 1)({9}).value, 6);
 }
 
+TEST(TimeLaws, GoStraightOnBeforeAndAfterATable)
+{
+    const TimeFunction table = spline_table({0, 1, 2, 3}, {0, 1, 8, 27}), law = straight_on(table, 0, 3);
+    EXPECT_NEAR(law({1.5}).value, table({1.5}).value, 0);
+    for (const double t : {-1.0, -1e-9, 0.0}) EXPECT_NEAR(law({t}).value, 0, 1e-12) << "its slope is 0 there";
+    EXPECT_NEAR(law({4}).value, 27 + 27, 1e-12);
+    for (const double t : {0.0, 3.0}) {
+        const TimeValue before = law({t, Side::left}), after = law({t, Side::right});
+        EXPECT_NEAR(before.value, after.value, 1e-14);
+        EXPECT_NEAR(before.first, after.first, 1e-13);
+    }
+    EXPECT_EQ(law({4}).second, 0);
+}
+
 TEST(TimeLaws, RefuseWhatIsNoLaw)
 {
     constexpr double nan = std::numeric_limits<double>::quiet_NaN();

@@ -109,8 +109,9 @@ TimeFunction read_law(const Section& drive, std::size_t c, std::size_t n, double
     const std::vector<double>& all = (is_table ? table->find("values") : drive.find("polynomial"))->numbers;
     std::vector<double> own;
     for (std::size_t i = c; i < all.size(); i += n) own.push_back(all[i]);
-    return is_table ? spline_table(table->find("times")->numbers, std::move(own))
-                    : polynomial(std::move(own));
+    if (!is_table) return polynomial(std::move(own));
+    const std::vector<double>& times = table->find("times")->numbers;
+    return straight_on(spline_table(times, std::move(own)), times.front(), times.back());
 }
 
 std::array<TimeFunction, 3> read_path(const Section& drive, double start)
@@ -188,7 +189,7 @@ Table drive_table()
 {
     const KeyType numbers = types::number_or_list;
     const Key table =
-        Key{"table", types::table, "A cubic spline through values over time, constant before and after."}
+        Key{"table", types::table, "A cubic spline through values over time, straight on before and after."}
             .holding({"table of a drive",
                       "Two continuous derivatives: a drive cannot jump or kink.",
                       {Key{"times", types::list, "Ascending, two or more.", "s"}.needed(),

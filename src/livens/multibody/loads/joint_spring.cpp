@@ -18,6 +18,9 @@ struct JointSpringLaw {
     JointSpring spring;
     double middle;   ///< of the angles that are known; nan: all are
 
+    /// A preload about an axis does work in every turn, of which positions do not tell: a power.
+    bool knows_turns() const { return std::isnan(middle); }
+
     LawValue law(const LawArguments& q) const
     {
         if (spring.stiffness != 0 && std::abs(q.value - middle) > widest_angle)
@@ -28,7 +31,7 @@ struct JointSpringLaw {
     double potential(const LawArguments& q) const
     {
         const double stretch = q.value - spring.rest;
-        return 0.5 * spring.stiffness * stretch * stretch;
+        return 0.5 * spring.stiffness * stretch * stretch + (knows_turns() ? spring.preload * stretch : 0);
     }
 };
 
@@ -60,7 +63,7 @@ Load joint_spring(const std::string& name, const Joint& joint, const NamedCoordi
     };
     load.power = [law](const LoadArguments& arguments) {
         const double rate = law.along.look(arguments).rate;
-        return -(law.spring.damping * rate + law.spring.preload) * rate;   // turns have no end: a power
+        return -(law.spring.damping * rate + (law.knows_turns() ? 0 : law.spring.preload)) * rate;
     };
     return load;
 }
