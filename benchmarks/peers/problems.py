@@ -40,7 +40,8 @@ class Mechanism:
         def words(*parts):
             flat = [w for p in parts for w in (p if isinstance(p, (tuple, list)) else (p,))]
             return " ".join(w if isinstance(w, str) else repr(w) for w in flat)
-        lines = ["mechanism", words("name", self.name), words("end", self.end), words("gravity", self.gravity)]
+        lines = ["mechanism", *([words("name", self.name)] if self.name else []), words("end", self.end),
+                 words("gravity", self.gravity)]
         lines += [words("body", *dataclasses.astuple(body)) for body in self.bodies]
         lines += [words(*joint) for joint in self.joints]
         lines += [words("point", *point) for point in self.points]
