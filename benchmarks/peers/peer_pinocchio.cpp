@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Pinocchio's articulated-body algorithm and DOP853. Settings: "local:TOLERANCE" or "world:TOLERANCE", the
-// frames that the algorithm works in. Quaternions are integrated as they are and made unit in each
-// evaluation.
+// Pinocchio and DOP853. Settings: "local:TOLERANCE" or "world:TOLERANCE", the frames that its
+// articulated-body algorithm works in; with closed loops its constrained dynamics take over, and there is one
+// way. Quaternions are integrated as they are and made unit in each evaluation.
 #include <pinocchio/multibody.hpp>
 
 #include <pinocchio/algorithm/aba.hpp>
+#include <pinocchio/algorithm/constrained-dynamics.hpp>
 #include <pinocchio/algorithm/joint-configuration.hpp>
 #include <pinocchio/algorithm/kinematics.hpp>
 
@@ -50,6 +51,9 @@ public:
         }
         q_ = start_.head(model_.nq);
         torque_ = VectorXd::Zero(model_.nv);
+        for (int j = 0; j < static_cast<int>(m.joints.size()); ++j)
+            if (m.closes_loop(j)) close(m.joints[j]);
+        if (!loops_.empty()) pin::initConstraintDynamics(model_, data_, loops_, loop_datas_);
     }
 
     peers::Points solve(pin::Convention convention, double tolerance)
@@ -81,9 +85,19 @@ private:
             const Eigen::Matrix3d J = vec(b.inertia).asDiagonal();
             model.appendBodyToJoint(joint, pin::Inertia(b.mass, vec(b.center), J));
         }
-        for (int j = 0; j < static_cast<int>(m.joints.size()); ++j)
-            if (m.closes_loop(j)) throw std::runtime_error("its articulated-body algorithm closes no loops");
         return model;
+    }
+
+    /// Points that coincide: in a plane loop the rows across it are redundant, which its proximal steps
+    /// stand.
+    void close(const peers::Joint& j)
+    {
+        const auto place = [](const peers::Vec& at) {
+            return pin::SE3(Eigen::Matrix3d::Identity(), vec(at));
+        };
+        loops_.emplace_back(pin::CONTACT_3D, model_, j.first + 1, place(j.point_first), j.second + 1,
+                            place(j.point_second), pin::LOCAL);
+        loop_datas_.emplace_back(loops_.back());
     }
 
     void take(const double* y)
@@ -103,8 +117,12 @@ private:
         } else {
             Eigen::Map<VectorXd>(rates, model_.nq) = v;
         }
-        Eigen::Map<VectorXd>(rates + model_.nq, model_.nv) =
-            pin::aba(model_, data_, q_, v, torque_, convention);
+        Eigen::Map<VectorXd> accelerations(rates + model_.nq, model_.nv);
+        if (loops_.empty())
+            accelerations = pin::aba(model_, data_, q_, v, torque_, convention);
+        else
+            accelerations =
+                pin::constraintDynamics(model_, data_, q_, v, torque_, loops_, loop_datas_, proximal_);
     }
 
     /// Quaternions are x, y, z, w, angular velocities along the body's axes.
@@ -119,6 +137,9 @@ private:
     const Mechanism& mechanism_;
     pin::Model model_;
     pin::Data data_;
+    std::vector<pin::RigidConstraintModel> loops_;
+    std::vector<pin::RigidConstraintData> loop_datas_;
+    pin::ProximalSettings proximal_{1e-12, 1e-10, 5};
     bool balls_ = false;
     VectorXd start_, q_, torque_;
 };

@@ -140,6 +140,7 @@ class Problem:
     steps: int = 400           # of the reference
     digits: tuple = ()         # published: where the last of the points is at the end
     quick: bool = False        # part of --quick
+    chain: tuple = ()          # kind of joint, bodies
 
 
 def table():
@@ -156,8 +157,8 @@ def table():
     }
     for kind, word in (("ball", "ball joints"), ("hinge", "hinges, whirling")):
         for n in lengths:
-            problems[f"{kind}s{n}"] = Problem(f"Chain of {n} bricks on {word}, to 1 s", {"": chain(n, kind, 1)},
-                                              100, quick=n == 10 and kind == "ball")
+            problems[f"{kind}s{n}"] = Problem(f"Chain of {n} bricks on {word}, to 1 s", {"": chain(n, kind, 1)}, 60,
+                                              quick=n == 10 and kind == "ball", chain=(kind, n))
     for name, problem in problems.items():
         for mechanism in problem.ways.values():
             mechanism.name = name

@@ -13,6 +13,7 @@ import math
 import os
 import pathlib
 import platform
+import re
 import select
 import subprocess
 import sys
@@ -22,6 +23,7 @@ import problems
 import sizes
 
 FLOOR = 4e-13        # m; a sweep needs no better
+PLATEAU = 1e-3       # m; above, more work need not mean a smaller error
 PATIENCE = 60        # s for one answer; then the engine is ended
 DIGITS = 5e-12       # to which published digits are met
 ROUNDS = 3           # of the last timing
@@ -98,18 +100,18 @@ class Sweep:
         """[(setting, error, seconds)] up to where it is good enough, too slow or no better any more."""
         found, best, idle, failure = [], math.inf, 0, ""
         for setting in settings:
-            answer = process.ask(mechanism, setting, 3)
+            answer = process.ask(mechanism, setting, 2)
             error = error_of(answer, reference)
             if not error < 10:
                 failure = answer.get("failed", failure)
                 idle += 1
-                if idle > 2 and not found or idle > 5 or failure == "no answer":
+                if idle > 8 or failure == "no answer":
                     break
                 continue
             found.append((setting, error, answer["seconds"]))
-            idle = 0 if error < 0.8 * best else idle + 1
+            idle = 0 if error < 0.8 * best or best > PLATEAU else idle + 1
             best = min(best, error)
-            if error < FLOOR or answer["seconds"] > cap or idle > 5:
+            if error < FLOOR or answer["seconds"] > cap or idle > 8:
                 break
         return found, failure
 
@@ -120,10 +122,10 @@ class Sweep:
             return self.kept[key]
         engine, rows, failure = self.engines[name], [], ""
         reference = self.reference(problem_name, problem)
-        for way, mechanism in problem.ways.items():
+        for way, mechanism in list(problem.ways.items())[:1 if engine.by_name else None]:
             n = len(mechanism.bodies)
             families = engine.families(n)
-            if engine.like:
+            if engine.like in self.engines:
                 near = self.engine(engine.like, problem_name, problem)["rows"]
                 families = [[row[1]] for row in near_best(near) if row[0] == way]
             for settings in families:
@@ -173,11 +175,8 @@ def timed(sweep, chosen, names):
 
 
 def machine():
-    info = pathlib.Path("/proc/cpuinfo").read_text()
-    words = {line.split(":")[0].strip(): line.split(":")[1].strip() for line in info.splitlines() if ":" in line}
-    flags = words.get("flags", "").split()
-    widest = "AVX-512" if "avx512f" in flags else "AVX2" if "avx2" in flags else "SSE2"
-    return {"processor": words.get("model name", platform.processor()), "cores": os.cpu_count(), "widest": widest,
+    model = re.search(r"^model name\s*:\s*(.*)$", pathlib.Path("/proc/cpuinfo").read_text(), re.M)
+    return {"processor": model.group(1) if model else platform.processor(), "cores": os.cpu_count(),
             "date": datetime.date.today().isoformat(), "load": os.getloadavg()[0]}
 
 
@@ -215,7 +214,7 @@ def main():
         for engine in sweep.engines:
             found = sweep.engine(engine, name, table[name])
             print(f"{name}: {engine}, {len(found['rows'])} settings {found['failed']}", flush=True)
-    results = {"machine": before, "versions": versions(), "timed": timed(sweep, table, names),
+    results = {"machine": before, "versions": versions(), "rounds": ROUNDS, "timed": timed(sweep, table, names),
                "swept": {n: {e: sweep.engine(e, n, table[n]) for e in sweep.engines} for n in names}}
     sweep.end()
     if not options.no_sizes:
