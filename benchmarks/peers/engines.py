@@ -25,6 +25,7 @@ class Engine:
     families: typing.Callable      # of the number of bodies
     note: str = ""
     variables: dict = dataclasses.field(default_factory=dict)
+    refine: typing.Callable = None # what else is tried of a good setting
     like: str = ""                 # an engine whose good settings are the only ones to be tried
     needs: str = ""                # of the processor, as /proc/cpuinfo has it
     by_name: bool = False          # knows a problem by its name: the ways to put it are one
@@ -58,16 +59,19 @@ def prefixed(names, values):
 
 
 def lobatto(n_bodies):
-    """Also with its iteration stopped earlier than by default, 1e-14."""
     degrees = (2, 3, 4, 5, 6, 8, 10, 12) if n_bodies < 10 else (2, 3, 4, 6, 8) if n_bodies < 50 else (3, 4, 6, 8)
     ratio, fewest = (1.15, 60) if n_bodies < 10 else (1.3, 4)
-    return [[f"{p}:{n}{tolerance}" for n in counts(max(4, fewest // p), 20000, ratio)]
-            for p in degrees for tolerance in ("", ":1e-10", ":1e-6")]
+    return [[f"{p}:{n}" for n in counts(max(4, fewest // p), 20000, ratio)] for p in degrees]
+
+
+def stopped_early(setting):
+    """The iteration stops at 1e-14 by default."""
+    return [f"{setting}:{tolerance}" for tolerance in ("1e-11", "1e-8", "1e-5")]
 
 
 def livens(title, word, needs="", like=""):
     return Engine(f"livens, {title}", "peer_livens", lobatto, "lobatto: degree, elements, tolerance",
-                  {"LIVENS_SIMD": word}, like, needs)
+                  {"LIVENS_SIMD": word}, stopped_early, like, needs)
 
 
 COARSE = (3.2, 1)
@@ -95,10 +99,10 @@ ENGINES = {
                                                                                   counts(40, 3e6, 4)),
                      "integrator, steps", modules=("mujoco",)),
     "exudyn": Engine("Exudyn", "peer_exudyn.py",
-                     lambda n: prefixed(["RK67"], counts(20, 2e6, 1.5)) + prefixed(["DOPRI5"],
-                                                                                   tolerances(2, 13, COARSE)) +
-                     prefixed(["alpha", "trapezoid"], counts(100, 2e6, 2)), "solver, steps or tolerance",
-                     modules=("exudyn",)),
+                     lambda n: prefixed(["RK67"], counts(20, 2e6, 1.5)) +
+                     prefixed(["DOPRI5"], tolerances(2, 13, COARSE)) +
+                     (prefixed(["alpha", "trapezoid"], counts(100, 2e6, 2)) if n < 10 else []),
+                     "solver, steps or tolerance", modules=("exudyn",)),
     "scipy": Engine("by hand, SciPy", "peer_scipy.py",
                     lambda n: prefixed(["DOP853", "LSODA"], tolerances(2, 14, COARSE)),
                     "the same coordinates in Python (solver, tolerance)", modules=("scipy",), by_name=True),

@@ -83,7 +83,7 @@ def bricks(m):
 
 
 PROBLEMS = {"rods": lambda m: links(True), "links": lambda m: links(False),
-            "parallelograms": lambda m: parallelograms(), "bricks": bricks, "balls2": bricks, "balls5": bricks}
+            "parallelograms": lambda m: parallelograms(), "bricks": bricks, "balls2": bricks}
 
 
 def prepare(m, setting):

@@ -15,6 +15,7 @@ import pathlib
 import platform
 import re
 import select
+import signal
 import subprocess
 import sys
 
@@ -62,7 +63,7 @@ class Process:
         if not select.select([self.child.stdout], [], [], patience)[0]:
             return {"failed": "no answer"}
         line = self.child.stdout.readline()
-        return json.loads(line.replace("nan", "NaN").replace("-NaN", "NaN")) if line else {"failed": "it died"}
+        return json.loads(line) if line else {"failed": "it died"}
 
     def end(self):
         if self.child:
@@ -111,7 +112,8 @@ class Sweep:
             found.append((setting, error, answer["seconds"]))
             idle = 0 if error < 0.8 * best or best > PLATEAU else idle + 1
             best = min(best, error)
-            if error < FLOOR or answer["seconds"] > cap or idle > 8:
+            slower = len(found) > 1 and answer["seconds"] > found[-2][2]   # coarse elements can be slow, too
+            if error < FLOOR or answer["seconds"] > cap and slower or idle > 8:
                 break
         return found, failure
 
@@ -133,6 +135,11 @@ class Sweep:
                                            0.3 if n < 10 else 1 if n < 50 else 5)
                 rows += [(way, *row) for row in found]
                 failure = words or failure
+        if engine.refine and not engine.like:
+            for way, setting, *_ in near_best(rows):
+                for finer in engine.refine(setting):
+                    found, _ = self.family(self.processes[name], problem.ways[way], reference, [finer], 0)
+                    rows += [(way, *row) for row in found]
         self.kept[key] = {"rows": rows, "failed": "" if rows else failure}
         self.store.write_text(json.dumps(self.kept))
         return self.kept[key]
@@ -177,7 +184,8 @@ def timed(sweep, chosen, names):
 def machine():
     model = re.search(r"^model name\s*:\s*(.*)$", pathlib.Path("/proc/cpuinfo").read_text(), re.M)
     return {"processor": model.group(1) if model else platform.processor(), "cores": os.cpu_count(),
-            "date": datetime.date.today().isoformat(), "load": os.getloadavg()[0]}
+            "date": datetime.date.today().isoformat(),
+            "load": max(0, os.getloadavg()[0] - 1)}   # of others, once the sweeps are over
 
 
 def versions():
@@ -209,14 +217,16 @@ def main():
         parser.error(f"no problem {', '.join(sorted(unknown))}; there are {', '.join(table)}")
     engines.PEERS.mkdir(parents=True, exist_ok=True)
     sweep = Sweep(engines.PEERS / "sweep.json", [e for e in options.engines.split(",") if e], options.fresh)
-    before = machine()
-    for name in names:
-        for engine in sweep.engines:
-            found = sweep.engine(engine, name, table[name])
-            print(f"{name}: {engine}, {len(found['rows'])} settings {found['failed']}", flush=True)
-    results = {"machine": before, "versions": versions(), "rounds": ROUNDS, "timed": timed(sweep, table, names),
-               "swept": {n: {e: sweep.engine(e, n, table[n]) for e in sweep.engines} for n in names}}
-    sweep.end()
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))
+    try:
+        for name in names:
+            for engine in sweep.engines:
+                found = sweep.engine(engine, name, table[name])
+                print(f"{name}: {engine}, {len(found['rows'])} settings {found['failed']}", flush=True)
+        results = {"machine": machine(), "versions": versions(), "rounds": ROUNDS, "timed": timed(sweep, table, names),
+                   "swept": {n: {e: sweep.engine(e, n, table[n]) for e in sweep.engines} for n in names}}
+    finally:
+        sweep.end()   # some would work on for long
     if not options.no_sizes:
         results["sizes"] = sizes.measured()
     (engines.PEERS / "results.json").write_text(json.dumps(results, indent=1))

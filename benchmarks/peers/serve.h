@@ -6,6 +6,7 @@
 #include <time.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <exception>
 #include <iostream>
@@ -78,6 +79,7 @@ int serve(const Prepare& prepare)
         std::string order, setting;
         int repeats = 1;
         words >> order >> setting >> repeats;
+        if (order.empty()) continue;
         try {
             if (order == "mechanism") {
                 mechanism = std::make_shared<Mechanism>(read_mechanism(std::cin));
@@ -86,6 +88,8 @@ int serve(const Prepare& prepare)
             Points points;
             const auto solve = prepare(std::as_const(*mechanism), parts_of(setting));
             const double least = least_of(repeats, solve, points);
+            for (const Vec& p : points)
+                if (!std::isfinite(dot(p, p))) throw std::runtime_error("not finite");
             answer(least, points);
         } catch (const std::exception& failure) {
             answer(failure);

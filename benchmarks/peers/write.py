@@ -29,13 +29,16 @@ scripts/peers --quick      # P16 and one chain, into build/peers/
 {engines}
 **Settings.** Every engine is swept through its integrators, degrees, tolerances or numbers of steps, and where a problem can be
 put in several ways, through these. The cheapest that meet an error (three for each engine and column) are timed again, engines
-taking turns, {rounds} rounds; the least of all repeats counts. A cell has milliseconds of processor time and the setting. Only the
-solution is timed: models are made before, and livens, too, does without its estimate of the error, but for the row that says otherwise.
+taking turns, {rounds} rounds; the least of all repeats counts. A sweep ends where one solution takes 0.3 s (1 s from 10 bodies
+on, 5 s from 50), or where the error gets no smaller; "best" is how far an engine came. A cell has milliseconds of processor
+time and the setting. Only the solution is timed: models are made before, and livens, too, does without its estimate of the
+error, but for the row that says otherwise.
 
 **Errors.** The largest distance (m) of the compared points at the end from the reference: minimal coordinates derived on paper
 ([peer_hand.cpp](../benchmarks/peers/peer_hand.cpp), [chain_by_hand.h](../benchmarks/peers/chain_by_hand.h)), integrated by
-extrapolation of order 18 with 64 bits of mantissa. It shares no code with livens, changes by less than 1e-13 with more steps, and
-has the published digits where there are some. An error at one instant can be small by luck; the pictures show what else was tried.
+extrapolation of order 18 with 64 bits of mantissa. It shares no code with livens, changes by less than 1e-13 with more steps,
+and has the published digits where there are some. An error at one instant can be small by luck; the pictures show what no other
+setting of an engine beat.
 
 Problems and engines are data: [problems.py](../benchmarks/peers/problems.py), [engines.py](../benchmarks/peers/engines.py).
 """
@@ -177,7 +180,7 @@ def machine(results):
             f"instructions: {', '.join(sets)}; unless `--simd` says otherwise it takes the first. Pinocchio is compiled with AVX2, "
             "what is\nderived by hand for this machine, others as their packages are.")
     if m["load"] > 0.5:
-        text += (f"\n\n**Other work was running** (load {m['load']:.1f} at the start): these figures are provisional, "
+        text += (f"\n\n**Other work was running** (load {m['load']:.1f}): these figures are provisional, "
                  "ratios good to a fifth.")
     return text
 
