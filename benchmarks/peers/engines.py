@@ -60,8 +60,8 @@ def prefixed(names, values):
 
 def lobatto(n_bodies):
     degrees = (2, 3, 4, 5, 6, 8, 10, 12) if n_bodies < 10 else (2, 3, 4, 6, 8) if n_bodies < 50 else (3, 4, 6, 8)
-    ratio, fewest = (1.15, 60) if n_bodies < 10 else (1.3, 4)
-    return [[f"{p}:{n}" for n in counts(max(4, fewest // p), 20000, ratio)] for p in degrees]
+    ratio, nodes, fewest = (1.15, 60, 4) if n_bodies < 10 else (1.3, 0, 5 if n_bodies < 50 else 10)
+    return [[f"{p}:{n}" for n in counts(max(fewest, nodes // p), 20000, ratio)] for p in degrees]
 
 
 def stopped_early(setting):

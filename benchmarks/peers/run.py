@@ -28,6 +28,7 @@ PLATEAU = 1e-3       # m; above, more work need not mean a smaller error
 PATIENCE = 60        # s for one answer; then the engine is ended
 DIGITS = 5e-12       # to which published digits are met
 ROUNDS = 3           # of the last timing
+SLOW = 0.02          # s; what takes longer is timed less often
 
 
 def variables(extra):
@@ -101,7 +102,7 @@ class Sweep:
         """[(setting, error, seconds)] up to where it is good enough, too slow or no better any more."""
         found, best, idle, failure = [], math.inf, 0, ""
         for setting in settings:
-            answer = process.ask(mechanism, setting, 2)
+            answer = process.ask(mechanism, setting, 2 if not found or found[-1][2] < SLOW else 1)
             error = error_of(answer, reference)
             if not error < 10:
                 failure = answer.get("failed", failure)
@@ -132,7 +133,7 @@ class Sweep:
                 families = [[row[1]] for row in near_best(near) if row[0] == way]
             for settings in families:
                 found, words = self.family(self.processes[name], mechanism, reference, settings,
-                                           0.3 if n < 10 else 1 if n < 50 else 5)
+                                           0.3 if n < 10 else 0.5 if n < 50 else 1.5)
                 rows += [(way, *row) for row in found]
                 failure = words or failure
         if engine.refine and not engine.like:
@@ -169,11 +170,12 @@ def timed(sweep, chosen, names):
             for engine, process in sweep.processes.items():
                 table = again[name].setdefault(engine, {})
                 rows = sweep.engine(engine, name, chosen[name])["rows"]
-                few = {tuple(row) for level in engines.LEVELS for row in best_at(rows, level, 3)}
+                few = {tuple(row) for level in engines.LEVELS for row in best_at(rows, level, 3)
+                       if row[3] < SLOW or row == best_at(rows, level, 1)[0]}
                 for way, setting, error, seconds in sorted(few):
-                    if seconds > 0.3 and (way, setting) in table:
+                    if seconds > 10 * SLOW and (way, setting) in table:
                         continue
-                    answer = process.ask(chosen[name].ways[way], setting, 15 if seconds < 0.02 else 3)
+                    answer = process.ask(chosen[name].ways[way], setting, 15 if seconds < SLOW else 2)
                     if "seconds" in answer:
                         least = min(answer["seconds"], table.get((way, setting), (0, math.inf))[1])
                         table[way, setting] = (error_of(answer, reference), least)
