@@ -28,7 +28,7 @@ public:
         for (bool refused = false; t < end;) {
             const bool last = t + h >= end * (1 - 1e-15);
             if (last) h = end - t;
-            if (!(t + h > t)) throw std::runtime_error("steps vanish");
+            if (!(t + h > t)) throw std::runtime_error("the steps of DOP853 vanish");
             stages(f, y.data(), h, std::make_index_sequence<11>{});
             sum<12>(dop853::B, y.data(), h);
             const double error = estimate(y, h);

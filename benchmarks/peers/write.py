@@ -7,7 +7,7 @@ import math
 import matplotlib
 
 matplotlib.use("Agg")
-matplotlib.rcParams.update({"svg.hashsalt": "livens", "font.size": 8, "axes.titlesize": 9})
+matplotlib.rcParams.update({"svg.hashsalt": "livens", "svg.fonttype": "none", "font.size": 8, "axes.titlesize": 9})
 import matplotlib.pyplot as plt  # noqa: E402  (the backend is chosen first)
 
 import engines  # noqa: E402
