@@ -64,7 +64,7 @@ void add_scenario_commands(CLI::App& app, Arguments& a)
         ->check(CLI::Range(1, 1024))
         ->type_name("N");
     add_choice(solve, "--simd", a.solve.simd, {"sse2", "avx2", "avx512"},
-               "instructions to solve with; default: the widest that the processor has");
+               "instructions to solve with; default: avx2 where the processor has it");
     add_common(solve, a);
 }
 

@@ -24,7 +24,7 @@ struct SolveArguments {
     std::string output;   ///< empty: the scenario's stem with .nc in the current folder; a folder for several
     std::string csv;      ///< empty: none
     int jobs = 0;         ///< scenarios at a time; 0: one for each processor
-    std::string simd;     ///< set of instructions; empty: what LIVENS_SIMD says, else the widest there is
+    std::string simd;     ///< set of instructions; empty: what LIVENS_SIMD says, else AVX2 if it is there
 };
 int solve_command(const SolveArguments& arguments, const Common& common);
 

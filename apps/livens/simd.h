@@ -7,8 +7,8 @@
 namespace livens::program {
 
 /// Equal instructions give equal bytes on any machine. `asked`: on the command line; empty: what the
-/// environment variable LIVENS_SIMD says, or the widest there is. A word that is none, or a set that is not
-/// to be had, is a usage error.
+/// environment variable LIVENS_SIMD says, or AVX2 where the processor has it. A word that is none, or a set
+/// that is not to be had, is a usage error.
 void pin_instructions(const std::string& asked);
 
 }   // namespace livens::program

@@ -178,7 +178,7 @@ def machine(results):
     sets = [engines.ENGINES[n].title.partition(", ")[2] for n in engines.ANY
             if n in next(iter(results["swept"].values()))]
     text = (f"**Machine.** {m['processor']}, {m['cores']} cores seen, on {m['date']}. livens is there with each of its sets of\n"
-            f"instructions: {', '.join(sets)}; unless `--simd` says otherwise it takes the first. Pinocchio is compiled with AVX2, "
+            f"instructions: {', '.join(sets)}; unless `--simd` says otherwise it takes AVX2. Pinocchio is compiled with AVX2, "
             "what is\nderived by hand for this machine, others as their packages are.")
     if m["load"] > 0.5:
         text += (f"\n\n**Other work was running** (load {m['load']:.1f}): these figures are provisional, "

@@ -18,7 +18,7 @@ std::optional<Instructions> instructions_named(std::string_view word);
 bool has(Instructions set);
 
 /// What kernels are made for from now on: at first what the environment variable LIVENS_SIMD names, if that
-/// is there, else the widest set.
+/// is there, else AVX2 where the processor has it, else SSE2.
 Instructions instructions();
 /// False: they are not there, and nothing changes.
 bool use_instructions(Instructions set);

@@ -66,8 +66,8 @@ public:
     void tie(Fields& fields) const;
     Fields zero_fields() const;
 
-    /// Rows at `fields`; the solved ones are returned, all are kept for end_momentum(). Tells of a load that is
-    /// not finite, empty if all are.
+    /// Rows at `fields`; the solved ones are returned, all are kept for end_momentum(). Tells of a load that
+    /// is not finite, empty if all are.
     std::string residual(const Fields& fields, std::vector<double>& r);
     /// Matrix d(residual)/d(unknowns) at `fields`. Returns whether its pattern differs from the last one.
     bool tangent(const Fields& fields, SparseMatrix& J);
