@@ -94,7 +94,7 @@ function(livens_test name)
     endif()
     # To those alone that ask for it: a compiler's cache serves all others in any folder.
     foreach(source ${arg_SOURCES})
-        file(STRINGS ${source} asks REGEX "LIVENS_SOURCE_DIR|shipped\\.h|kit\\.h")
+        file(STRINGS ${source} asks REGEX "LIVENS_SOURCE_DIR|shipped\\.h|published\\.h|kit\\.h")
         if(asks)
             set_property(SOURCE ${source} APPEND PROPERTY COMPILE_DEFINITIONS LIVENS_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
         endif()

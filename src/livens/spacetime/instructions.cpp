@@ -16,7 +16,7 @@ Instructions first_choice()
     const char* word = std::getenv("LIVENS_SIMD");
     const auto named = word != nullptr ? instructions_named(word) : std::nullopt;
     if (named && has(*named)) return *named;
-    // Not AVX-512, also where it is there: what its width gains where eight nodes fill a register it loses where
+    // Not AVX-512, also where it is there: what it gains where eight nodes fill a register it loses where
     // they do not (docs/performance.md), and so the same bits come from almost every processor of today.
     return has(Instructions::avx2) ? Instructions::avx2 : Instructions::sse2;
 }

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// examples/benchmarks as they stand, against the digits that were published: the figures of
+// docs/validation.md.
+#include <cstdio>
+
+#include "reference/published.h"
+
+namespace livens::tests {
+namespace {
+
+/// Largest error over all instants of the table, of places in lengths of the model and of turns in rad.
+double error_of(const Published& p)
+{
+    const Scenario& s = p.scenario;
+    const Solution solution = solve(s.model, {s.model.start()}, s.time, s.method, s.options);
+    EXPECT_TRUE(solution.report.converged()) << p.name << ": " << solution.report.message;
+    EXPECT_TRUE(solution.verdict.reasons.empty()) << p.name << ": " << solution.verdict.reasons.front();
+    double worst = 0;
+    for (std::size_t i = 0; i < p.times.size(); ++i)
+        worst = std::max(worst, p.error(s.model, solution.motion.at(p.times[i]), i));
+    return worst;
+}
+
+TEST(Benchmarks, MeetThePublishedDigits)
+{
+    std::vector<Published> problems = published_problems();
+    problems.pop_back();   // 81 bodies: with the slow tests, which take it to every accuracy
+    for (const Published& problem : problems) {
+        const double error = error_of(problem);
+        std::printf("%-8s %.1e\n", problem.name, error);
+        EXPECT_LT(error, problem.reached) << problem.name;
+    }
+}
+
+TEST(Benchmarks, AnotherProblemDoesNotMeetThem)
+{
+    Published problem = published_problems()[4];
+    Scenario& s = problem.scenario;
+    Model heavier({0, 0, -9.82});
+    for (const Body& body : s.model.bodies()) heavier.add_body(body);
+    s.model = heavier;
+    EXPECT_GT(error_of(problem), 1e-3);
+}
+
+}   // namespace
+}   // namespace livens::tests
