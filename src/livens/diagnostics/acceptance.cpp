@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "livens/base/text.h"
+#include "livens/diagnostics/coordinates.h"
 #include "livens/diagnostics/largest.h"
 
 namespace livens {
@@ -101,6 +102,12 @@ public:
                            "may help");
     }
 
+    void turn(const Load& load, double t)
+    {
+        reasons_.push_back("the load '" + load.name + "' has lost its turns at t = " + to_text(t, 6) +
+                           " s: " + load.domain + ", so that its force is another one from there on");
+    }
+
 private:
     std::vector<std::string>& reasons_;
 };
@@ -169,6 +176,8 @@ Verdict judge(const Model& model, const Motion& motion, const SolveReport& repor
                             " s: behind, double precision says nothing of this motion");
     if (!report.converged()) return v;
     Reasons reasons(v.reasons);
+    const LostTurn turned = find_lost_turn(model, motion);
+    if (turned.load >= 0) reasons.turn(model.loads()[turned.load], turned.t);
     if (!estimate.empty()) reasons.error(estimate, model, std::max(acceptable_error, report.accuracy));
     if (report.accuracy == 0 && motion.constraints_hold == "element nodes")
         reasons.unsure(estimate.largest, v.velocity_jump, motion.damps() ? 0 : v.energy_drift);

@@ -66,8 +66,9 @@ JointCoordinates::JointCoordinates(const Model& model, const Motion& motion) : m
         for (int k = 0; k < static_cast<int>(model.joints()[j].coordinates.size()); ++k)
             places_.push_back({j, k});
     if (places_.empty()) return;
-    start_ = sample_state(motion, motion.start()).X;
-    std::vector<double> now(places_.size(), 0.0);
+    for (const Body& body : model.bodies()) stated_.push_back(body.X);
+    std::vector<double> now =
+        turned(sample_state(motion, motion.start()).X, std::vector<double>(places_.size(), 0.0));
     at_ends_ = now;
     for (int e = 0; e < motion.n_elements(); ++e) {
         for (int node = 1; node <= motion.X.degree; ++node)
@@ -76,14 +77,14 @@ JointCoordinates::JointCoordinates(const Model& model, const Motion& motion) : m
     }
 }
 
-/// Coordinates less those at the start: turns are whole, so that rounding does not gather.
+/// Coordinates less those of the bodies as stated: turns are whole, so that rounding does not gather.
 std::vector<double> JointCoordinates::turned(std::span<const Matrix34> X, std::span<const double> near) const
 {
     constexpr double turn = 2 * std::numbers::pi;
     std::vector<double> all;
     for (int i = 0; i < static_cast<int>(places_.size()); ++i) {
         const JointCoordinate& q = coordinate(i).coordinate;
-        const double value = change_of(q, start_, X);
+        const double value = change_of(q, stated_, X);
         all.push_back(q.is_angle() ? value + turn * std::round((near[i] - value) / turn) : value);
     }
     return all;
@@ -112,9 +113,32 @@ std::vector<CoordinateValue> JointCoordinates::at(double t) const
         values = turned(state.X, values);
     }
     for (int i = 0; i < static_cast<int>(n); ++i)
-        all[i] = {coordinate(i).at_start + values[i],
+        all[i] = {coordinate(i).at_stated + values[i],
                   coordinate_rate(coordinate(i).coordinate, state.X, state.V)};
     return all;
+}
+
+LostTurn find_lost_turn(const Model& model, const Motion& motion)
+{
+    LostTurn found;
+    for (int l = 0; l < static_cast<int>(model.loads().size()); ++l) {
+        const JointCoordinate& q = model.loads()[l].bounded_angle;
+        if (q.forms.empty()) continue;
+        std::vector<Matrix34> X = sample_state(motion, motion.start()).X;
+        double turned = coordinate_value(q, X);
+        const std::vector<double> nodes = motion.X.basis().nodes();
+        for (int e = 0; e < motion.n_elements() && (found.load < 0 || motion.mesh.ends[e] < found.t); ++e)
+            for (int node = 1; node <= motion.X.degree; ++node) {
+                const std::vector<Matrix34> next = configurations(motion, e, node);
+                turned += change_of(q, X, next);
+                X = next;
+                if (std::abs(turned) < std::numbers::pi) continue;
+                const double t = motion.mesh.ends[e] + nodes[node] * motion.mesh.length(e);
+                if (found.load < 0 || t < found.t) found = {l, t};
+                break;
+            }
+    }
+    return found;
 }
 
 }   // namespace livens

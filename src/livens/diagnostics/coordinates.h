@@ -16,8 +16,9 @@ struct CoordinateValue {
 };
 
 /// All NamedCoordinates of a model's joints. An angle is followed from node to node of the motion, between
-/// which no accepted motion turns by half a turn. At element ends values and rates are of the method's full
-/// order, between them of the motion's dense orders.
+/// which no accepted motion turns by half a turn, from where the bodies are stated: there every coordinate is
+/// what NamedCoordinate::at_stated says, and drives and loads count from there as well. At element ends
+/// values and rates are of the method's full order, between them of the motion's dense orders.
 class JointCoordinates {
 public:
     /// Where a coordinate stands: its joint, and its place in Joint::coordinates.
@@ -42,13 +43,20 @@ private:
     const Model& model_;
     const Motion& motion_;
     std::vector<Place> places_;
-    std::vector<Matrix34> start_;
-    std::vector<double> at_ends_;   ///< less the values at the start, end * places + place
+    std::vector<Matrix34> stated_;   ///< where the model has its bodies
+    std::vector<double> at_ends_;    ///< less the values there, end * places + place
 };
 
 /// A coordinate in one configuration: an angle from -pi to pi, with no turns.
 double coordinate_value(const JointCoordinate& coordinate, std::span<const Matrix34> X);
 double coordinate_rate(const JointCoordinate& coordinate, std::span<const Matrix34> X,
                        std::span<const Matrix34> V);
+
+/// A load whose angle has left the half turn on either side in which it is known (Load::bounded_angle).
+struct LostTurn {
+    int load = -1;   ///< -1: there is none
+    double t = 0;    ///< s, of the first node beyond
+};
+LostTurn find_lost_turn(const Model& model, const Motion& motion);
 
 }   // namespace livens

@@ -50,9 +50,10 @@ bool turns(const PairForm& form, bool by_j)
 }   // namespace
 
 CoordinateLoad::CoordinateLoad(const Joint& joint, const NamedCoordinate& coordinate, const Configurations& X)
-    : at_start_(coordinate.at_start)
+    : at_start_(coordinate.at_stated)
 {
     std::vector<PairForm> forms = from(coordinate.coordinate.forms, X);
+    coordinate_ = {forms};
     bodies_ = {forms[0].body_j, forms[0].body_i};
     n_ = forms[0].body_i == world ? 1 : 2;
     for (PairForm& form : forms) {

@@ -44,7 +44,8 @@ Joint coupled(const std::string& name, const char* type, const Joint& first, con
     joint.point_first = has_one_body ? first.point_first : first.point_second;
     joint.second = second.second;
     joint.point_second = second.point_second;
-    if (&first == &second || joint.first == joint.second)
+    const auto joins = [](const Joint& of, int a, int b) { return of.first == a && of.second == b; };
+    if (joins(first, second.first, second.second) || joins(first, second.second, second.first))
         throw InputError({"joint-self", "joint[" + name + "].joints",
                           "the joints '" + first.name + "' and '" + second.name + "' join the same bodies",
                           "", "", "", "a coupling needs two joints that move different bodies"});

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "livens/multibody/drives.h"
 
+#include <limits>
 #include <utility>
 
 #include "livens/base/elementary.h"
@@ -37,7 +38,7 @@ Joint driven_coordinate(const std::string& name, const Joint& joint, const Named
     row.body_j = forms[0].body_j;
     row.label = "driven " + coordinate.name;
     if (!coordinate.coordinate.is_angle()) {
-        const TimeFunction raw = shifted(law, value_of(forms[0], X) - coordinate.at_start);
+        const TimeFunction raw = shifted(law, value_of(forms[0], X) - coordinate.at_stated);
         static_cast<PairForm&>(row) = forms[0];
         QuadraticForm one;
         one.c = -1;
@@ -46,7 +47,7 @@ Joint driven_coordinate(const std::string& name, const Joint& joint, const Named
         return driven;
     }
     const double now = arc_tangent(value_of(forms[1], X), value_of(forms[0], X));
-    const TimeFunction angle = shifted(law, now - coordinate.at_start);
+    const TimeFunction angle = shifted(law, now - coordinate.at_stated);
     const auto sine = [=](Instant at) {
         const TimeValue f = angle(at);
         const auto [s, c] = sine_cosine(f.value);
@@ -79,8 +80,12 @@ Joint driven_distance(const std::string& name, int first, const Vector3& point_f
         throw InputError({"drive-distance", "drive[" + name + "]", "the points of a driven distance coincide",
                           to_text(now), "> 0", "they have no direction to be held along",
                           "drive a point, or a joint's displacement"});
+    const auto positive = [length](Instant at) {   // a row of squares would take the other sign as well
+        const TimeValue l = length(at);
+        return l.value > 0 ? l : TimeValue{std::numeric_limits<double>::quiet_NaN(), 0, 0};
+    };
     joint.rows = {driven_distance_row(joint.first, point(joint.point_first), joint.second,
-                                      point(joint.point_second), length, now)};
+                                      point(joint.point_second), {positive, length.breaks()}, now)};
     return joint;
 }
 

@@ -17,7 +17,7 @@ namespace [[gnu::visibility("default")]] livens {
 /// reactions are those on the joint's second body.
 Joint driven_coordinate(const std::string& name, const Joint& joint, const NamedCoordinate& coordinate,
                         const TimeFunction& law, const Configurations& X);
-/// The distance of two points follows length(t), which is positive. 1 row.
+/// The distance of two points follows length(t); where that is not positive the row is no number. 1 row.
 Joint driven_distance(const std::string& name, int first, const Vector3& point_first, int second,
                       const Vector3& point_second, const TimeFunction& length, const Configurations& X);
 /// A point of a body is led along a path in world axes, from where it stands by path(t). 3 rows.

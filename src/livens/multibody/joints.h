@@ -13,11 +13,12 @@
 namespace [[gnu::visibility("default")]] livens {
 
 /// A coordinate of a joint: how far its second body is from its first, as the maker of the joint was told
-/// them, right-handed about the axis. Turns are counted from the start of a motion.
+/// them, right-handed about the axis. Turns are counted from where the
+/// model has its bodies.
 struct NamedCoordinate {
     std::string name;   ///< "angle" (rad) or "displacement" (m)
     JointCoordinate coordinate;
-    double at_start = 0;   ///< what it is said to be there
+    double at_stated = 0;   ///< what it is said to be where the model has its bodies
 };
 
 /// A joint between `first` (a body or the world) and `second` (a body). A new kind of joint is a new function

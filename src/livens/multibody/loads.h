@@ -43,6 +43,9 @@ struct Load {
         needs_directors{};        ///< F is not zero outside the first column: refused on a point mass
     std::vector<double> breaks;   ///< instants where F jumps or bends; they become element ends
     std::string domain;           ///< where F is a number, for the message if it is not; empty: everywhere
+    /// An angle whose turns F does not see: a motion on which it passes half a turn has another F than it
+    /// should have from there on. No forms: there is none.
+    JointCoordinate bounded_angle{};
 
     /// F; required. Forces arrive as zero.
     std::function<void(const LoadArguments&, LoadForces&)> forces;

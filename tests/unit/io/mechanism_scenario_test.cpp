@@ -54,7 +54,7 @@ TEST(MechanismScenario, CoordinatesAreNamedAndBeginWhereTheyAreSaid)
 {
     EXPECT_EQ(joint_of("type = \"revolute\"\nat = [0, 0, 0]\naxis = [0, 0, 1]\ncoordinate = \"90 deg\"")
                   .coordinates.front()
-                  .at_start,
+                  .at_stated,
               std::acos(-1.0) / 2);
     const Joint pipe = joint_of("type = \"cylindrical\"\nat = [0, 0, 0]\naxis = [0, 0, 1]");
     ASSERT_EQ(pipe.coordinates.size(), 2u);
@@ -87,19 +87,16 @@ TEST(MechanismScenario, EveryWrongPlacementIsTold)
         expect_error(joined(lines), "joint-placement", where);
 }
 
-}   // namespace
+const std::string turn = "type = \"revolute\"\nat = [0, 0, 0]\naxis = [0, 0, 1]\n";
+const std::string on_joint = "type = \"joint\"\njoint = \"j\"\n";
 
-std::vector<test::Case> test::cases_of_mechanisms()
+/// With a drive `d`, another joint `k`, or a load.
+std::string driven(const std::string& lines) { return joined(turn + "[[drive]]\nname = \"d\"\n" + lines); }
+std::string other(const std::string& lines) { return joined(turn + "[[joint]]\nname = \"k\"\n" + lines); }
+std::string other_load(const std::string& lines) { return joined(turn + "[[load]]\n" + lines); }
+
+std::vector<test::Case> cases_of_joints()
 {
-    const std::string turn = "type = \"revolute\"\nat = [0, 0, 0]\naxis = [0, 0, 1]\n";
-    const auto driven = [&](const std::string& lines) {
-        return joined(turn + "[[drive]]\nname = \"d\"\n" + lines);
-    };
-    const std::string on_joint = "type = \"joint\"\njoint = \"j\"\n";
-    const auto other_load = [&](const std::string& lines) { return joined(turn + "[[load]]\n" + lines); };
-    const auto other = [&](const std::string& lines) {
-        return joined(turn + "[[joint]]\nname = \"k\"\n" + lines);
-    };
     return {
         {"joint-angle", joined("type = \"constant_angle\"\naxes = [[1, 0, 0], [1, 0, 0]]\nangle = 0"),
          "0\n[time]"},
@@ -117,9 +114,15 @@ std::vector<test::Case> test::cases_of_mechanisms()
         {"joint-unknown", other("type = \"gear\"\njoints = [\"j\", \"jj\"]\nratio = 2"), "\"jj\""},
         {"gear-ratio",
          other("type = \"gear\"\njoints = [\"j\", \"l\"]\nratio = 3.14159265358979\n"
-               "[[joint]]\nname = \"l\"\ntype = \"revolute\"\nbetween = [\"world\", \"b\"]\n"
+               "[[body]]\nname = \"c\"\nmass = 1\ninertia = [1, 1, 1]\n"
+               "[[joint]]\nname = \"l\"\ntype = \"revolute\"\nbetween = [\"world\", \"c\"]\n"
                "at = [0, 0, 0]\naxis = [0, 0, 1]"),
-         "\"k\""},
+         "\"k\""}};
+}
+
+std::vector<test::Case> cases_along_joints()
+{
+    return {
         {"drive-law", driven(on_joint), "[[drive]]"},
         {"drive-law", driven(on_joint + "value = 0\nrate = 1"), "1\n[time]"},
         {"drive-size", driven(on_joint + "value = [0, 1]"), "[0, 1]"},
@@ -130,6 +133,21 @@ std::vector<test::Case> test::cases_of_mechanisms()
                 "rate = 1"),
          "\"d\""},
         {"law-order", driven(on_joint + "step = { from = 1, until = 0, rise = 1 }"), "{ from"},
+        {"drive-distance",
+         driven("type = \"distance\"\nbetween = [\"world\", \"b\"]\npoints = [[0, 0, 0], [1, 0, 0]]\n"
+                "polynomial = [1, -2]"),
+         "\"d\""},
+        {"joint-self",
+         other("type = \"parallel_axes\"\nbetween = [\"world\", \"b\"]\naxis = [0, 0, 1]\n[[joint]]\nname = "
+               "\"l\"\n"
+               "type = \"gear\"\njoints = [\"j\", \"k\"]\nratio = 2"),
+         "[\"j\", \"k\"]"},
+        {"unit", other_load("type = \"spring\"\njoint = \"j\"\nstiffness = \"5 N/m\""), "\"5 N/m\""},
+        {"unit", other_load("type = \"actuator\"\njoint = \"j\"\nvalue = \"5 N\""), "\"5 N\""},
+        {"unit",
+         other_load(
+             "type = \"spring\"\nbetween = [\"world\", \"b\"]\nfree_length = 1\nstiffness = \"5 N m/rad\""),
+         "\"5 N m"},
         {"spring-place", other_load("type = \"spring\"\nstiffness = 1"), "[[load]]"},
         {"spring-place", other_load("type = \"spring\"\nstiffness = 1\nbetween = [\"world\", \"b\"]"),
          "[[load]]"},
@@ -146,6 +164,15 @@ std::vector<test::Case> test::cases_of_mechanisms()
                 "value = 0"),
          "\"j\"\ntype = \"joint\""},
     };
+}
+
+}   // namespace
+
+std::vector<test::Case> test::cases_of_mechanisms()
+{
+    std::vector<Case> all = cases_of_joints();
+    for (const Case& more : cases_along_joints()) all.push_back(more);
+    return all;
 }
 
 }   // namespace livens

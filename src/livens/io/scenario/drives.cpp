@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "livens/base/text.h"
 #include "livens/io/scenario/builder.h"
 #include "livens/multibody/drives.h"
 #include "livens/time/time_laws.h"
@@ -101,9 +102,11 @@ TimeFunction read_law(const Section& drive, std::size_t c, std::size_t n, double
     if (drive.has("rate")) return ramp(now, component(drive, "rate", c), start);
     if (const Section* one = only_section(drive, "harmonic"))
         return harmonic(component(*one, "amplitude", c), one->number("frequency"), one->number("phase"));
-    if (const Section* one = only_section(drive, "step"))
-        return shifted(smooth_step(one->number("from"), one->number("until"), component(*one, "rise", c)),
-                       now);
+    if (const Section* one = only_section(drive, "step")) {
+        const TimeFunction step =
+            smooth_step(one->number("from"), one->number("until"), component(*one, "rise", c));
+        return shifted(step, now - step({start}).value);
+    }
     const bool is_table = drive.has("table");
     const Section* table = only_section(drive, "table");
     const std::vector<double>& all = (is_table ? table->find("values") : drive.find("polynomial"))->numbers;
@@ -124,7 +127,7 @@ Joint make_on_joint(const Builder& builder, const Section& drive, const std::str
                     const Configurations& X)
 {
     const JointReference of = find_coordinate(builder, drive, "drive[" + name + "]");
-    const TimeFunction law = read_law(drive, 0, 1, of.coordinate->at_start, start);
+    const TimeFunction law = read_law(drive, 0, 1, of.coordinate->at_stated, start);
     return driven_coordinate(name, *of.joint, *of.coordinate, law, X);
 }
 
@@ -141,7 +144,18 @@ Joint make_drive(Builder& builder, const Section& drive, const std::string& name
     if (type == "distance") {
         const Vector3 a = drive.row("points", 0), b = drive.row("points", 1);
         const double now = norm(X[second.index] * point(b) - X[first.index] * point(a));
-        return driven_distance(name, first.index, a, second.index, b, read_law(drive, 0, 1, now, start), X);
+        const TimeFunction length = read_law(drive, 0, 1, now, start);
+        const double end = time == nullptr ? start : time->number("end");
+        constexpr int n_looks = 1000;   // what passes between them is no number, see driven_distance()
+        for (int i = 0; i <= n_looks; ++i) {
+            const double t = start + (end - start) * i / n_looks, l = length({t}).value;
+            if (l > 0) continue;
+            throw InputError({"drive-distance", "drive[" + name + "]", "a driven distance is not positive",
+                              to_text(l) + " at t = " + to_text(t, 6) + " s", "> 0",
+                              "points that coincide have no direction to be held along",
+                              "drive a point, or a joint's displacement"});
+        }
+        return driven_distance(name, first.index, a, second.index, b, length, X);
     }
     const Vector3 at = drive.vector("point");
     const auto make = type == "point" ? driven_point : driven_body;

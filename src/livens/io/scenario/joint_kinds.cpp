@@ -32,14 +32,15 @@ const Key displacement{"coordinate", types::number, "What the joint's displaceme
 const Key& frames_key()
 {
     static const Key frames = [] {
-    std::vector<Key> keys{{"point", types::vector3, "The joint's point.", "m", "[0, 0, 0]"}};
-    for (const Key& key : orientation_keys()) keys.push_back(key);
-    return Key{
-        "frames", types::tables,
-        "Instead of all others: one frame for each body, in its coordinates. The third axis is the joint's, "
-        "and the first axes point the same way where the joint's angle is zero (weld, prismatic, screw and "
-        "constant_velocity hold that)."}
-        .holding({"frame of a joint", "Point and axes.", keys});
+        std::vector<Key> keys{{"point", types::vector3, "The joint's point.", "m", "[0, 0, 0]"}};
+        for (const Key& key : orientation_keys()) keys.push_back(key);
+        return Key{"frames", types::tables,
+                   "Instead of all others: one frame for each body, in its coordinates. The third axis is "
+                   "the joint's. "
+                   "The first axes are held the same way by weld, prismatic and constant_velocity, and by a "
+                   "screw where "
+                   "its displacement is zero; others do not look at them."}
+            .holding({"frame of a joint", "Point and axes.", keys});
     }();
     return frames;
 }

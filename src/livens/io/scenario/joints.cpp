@@ -179,7 +179,7 @@ Joint make_joint(const Builder& builder, const Section& joint, const std::string
     const JointFrame frame = read_frame(joint, X_first, X_second);
     Joint made = joint_kinds()[static_cast<std::size_t>(joint.kind())].make(
         {joint, name, first, second, frame, X_first, X_second, builder.length()});
-    if (joint.has("coordinate")) made.coordinates.front().at_start = joint.number("coordinate");
+    if (joint.has("coordinate")) made.coordinates.front().at_stated = joint.number("coordinate");
     return made;
 }
 
@@ -244,8 +244,13 @@ std::string claim_joint_name(const Section& joint, std::unordered_set<std::strin
 
 Key coordinate_key()
 {
-    return choice("coordinate", {"angle", "displacement"},
-                  "Which, for a joint that has both; default: the one that it has.");
+    return {"coordinate",
+            types::choice,
+            "Which of the joint's: needed where it has both, else the one that it has.",
+            "",
+            "",
+            false,
+            {"angle", "displacement"}};
 }
 
 JointReference find_coordinate(const Builder& builder, const Section& section, const std::string& path)
@@ -302,7 +307,8 @@ Table joint_table()
         "can describe a start that does not fit. Reactions are what the joint exerts on the second body of "
         "`between`, or on the only one of a joint to the world. Coordinates are those of the second body "
         "against "
-        "the first, right-handed about the axis, zero at the start unless `coordinate` says more; turns are "
+        "the first, right-handed about the axis, zero where the bodies are stated unless `coordinate` says "
+        "more; turns are "
         "counted.",
         {Key{"name", types::text,
              "Default: type and bodies, as in `rod world-upper`, where no other joint is called that."},

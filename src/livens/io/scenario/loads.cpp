@@ -106,13 +106,31 @@ Load make_torque(const Parts& p)
     return torque(p.name, p.first, read_value(p.section), p.section.pick<Frame>("frame"));
 }
 
+/// Texts with units must have those of the coordinate: of an angle the key's other one.
+void check_units(const Section& section, bool is_angle, const std::string& path)
+{
+    for (const Value& v : section.values()) {
+        if (v.key == nullptr || v.key->other_unit.empty() || !(is_angle ? v.has_unit : v.has_other_unit))
+            continue;
+        throw InputError({"unit", path + "." + std::string(v.key->name),
+                          "'" + std::string(v.key->name) + "' of " + section.label() + " is along " +
+                              (is_angle ? "an angle" : "a length"),
+                          "", "", "",
+                          "give it in " + std::string(is_angle ? v.key->other_unit : v.key->unit)});
+    }
+    if (const Section* table = section.takes("table") ? only_section(section, "table") : nullptr)
+        check_units(*table, is_angle, path + ".table");
+}
+
 /// What acts along a coordinate of a joint.
 template <class Make>
 Load on_joint(const Parts& p, const Make& make)
 {
     std::vector<Matrix34> X;
     for (const Body& body : p.builder.model().bodies()) X.push_back(body.X);
-    const JointReference of = find_coordinate(p.builder, p.section, "load[" + p.name + "]");
+    const std::string path = "load[" + p.name + "]";
+    const JointReference of = find_coordinate(p.builder, p.section, path);
+    check_units(p.section, of.coordinate->coordinate.is_angle(), path);
     return make(*of.joint, *of.coordinate, X);
 }
 
@@ -140,6 +158,7 @@ Load make_spring(const Parts& p)
                                                   p.section.number("rest"), p.section.number("preload")};
                             return joint_spring(p.name, joint, coordinate, law, X);
                         });
+    check_units(p.section, false, "load[" + p.name + "]");
     const SpringDamper law{p.section.number("stiffness"), p.section.number("damping"),
                            p.section.number("free_length")};
     const Vector3 a = p.section.row("points", 0), b = p.section.row("points", 1);

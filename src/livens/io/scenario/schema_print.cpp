@@ -23,7 +23,8 @@ std::vector<Row> rows_of(const Table& table)
     for (const Kind& kind : table.kinds)
         for (const Key& key : kind.keys) {
             const auto same = std::find_if(rows.begin(), rows.end(), [&](const Row& row) {
-                return row.key->name == key.name && row.key->doc == key.doc && row.key->unit == key.unit;
+                return row.key->name == key.name && row.key->doc == key.doc && row.key->unit == key.unit &&
+                       row.key->type == key.type;
             });
             if (same == rows.end()) rows.push_back({&key, {kind.word}});
             else same->kinds.push_back(kind.word);

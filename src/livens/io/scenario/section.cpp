@@ -100,9 +100,15 @@ private:
         }
         if (node.kind != NodeKind::text || key_.unit.empty()) return wrong_type(node);
         const Quantity other = parse_quantity(node.text(), key_.other_unit);
-        if (!key_.other_unit.empty() && other.error.empty()) return accept(node, other.value);
+        if (!key_.other_unit.empty() && other.error.empty()) {
+            value_.has_other_unit = true;
+            return accept(node, other.value);
+        }
         const Quantity quantity = parse_quantity(node.text(), key_.unit);
-        if (quantity.error.empty()) return accept(node, quantity.value);
+        if (quantity.error.empty()) {
+            value_.has_unit = true;
+            return accept(node, quantity.value);
+        }
         return findings_.error(node.place, "unit",
                                subject() + " cannot be \"" + node.text() + "\": " + quantity.error,
                                {"", quantity.help});

@@ -24,6 +24,8 @@ struct Value {
     bool is_valid = false;
     std::vector<double> numbers;      ///< SI; rows one after the other; truth: 0 or 1
     int n_rows = 0;                   ///< 0: a plain number
+    bool has_unit = false;            ///< it was a text with the key's unit
+    bool has_other_unit = false;      ///< it was one with the key's other unit
     std::string text;                 ///< text, choice
     std::vector<std::string> texts;   ///< names
     std::vector<Section> sections;    ///< table, tables, number_or_table

@@ -30,6 +30,8 @@ public:
     CoordinateLoad(const Joint& joint, const NamedCoordinate& coordinate, const Configurations& X);
 
     std::array<int, 2> bodies() const { return bodies_; }
+    /// The coordinate in the bodies of the model, an angle from where it is in X.
+    const JointCoordinate& coordinate() const { return coordinate_; }
     /// Where forces are not in the first column alone.
     std::array<bool, 2> needs_directors() const { return needs_directors_; }
     /// q and its rate; the bodies are those of the load.
@@ -39,6 +41,7 @@ public:
     void tangent(const LoadArguments& arguments, const LawValue& Q, LoadTangent& tangent) const;
 
 private:
+    JointCoordinate coordinate_;
     std::array<int, 2> bodies_{world, world};
     std::array<bool, 2> needs_directors_{};
     ConstraintRow row_;   ///< of q, with the places of the bodies for bodies

@@ -9,8 +9,8 @@ namespace livens {
 
 namespace {
 
-/// Positions do not tell whole turns: nearer than this to half a turn the spring is not a number, so that no
-/// motion passes there unseen.
+/// Positions do not tell whole turns: nearer than this to half a turn the spring is not a number. What steps
+/// over that is found by Load::bounded_angle.
 constexpr double widest_angle = 3.05;
 
 struct JointSpringLaw {
@@ -42,7 +42,7 @@ Load joint_spring(const std::string& name, const Joint& joint, const NamedCoordi
 {
     const bool is_angle = coordinate.coordinate.is_angle();
     const JointSpringLaw law{CoordinateLoad(joint, coordinate, X), spring,
-                             is_angle ? coordinate.at_start : std::numeric_limits<double>::quiet_NaN()};
+                             is_angle ? coordinate.at_stated : std::numeric_limits<double>::quiet_NaN()};
     Load load = start_load(name, "joint_spring", law.along.bodies());
     check_not_negative(load, spring.stiffness, "stiffness");
     check_not_negative(load, spring.damping, "damping");
@@ -50,8 +50,10 @@ Load joint_spring(const std::string& name, const Joint& joint, const NamedCoordi
     load.depends_on_X = true;
     load.depends_on_V = spring.damping > 0;
     load.needs_directors = law.along.needs_directors();
-    if (is_angle && spring.stiffness > 0)
+    if (is_angle && spring.stiffness > 0) {
+        load.bounded_angle = law.along.coordinate();
         load.domain = "it knows its angle up to 175 degrees from where the joint stands at the start";
+    }
     load.forces = [law](const LoadArguments& arguments, LoadForces& F) {
         law.along.forces(arguments, law.law(law.along.look(arguments)).force, F);
     };
