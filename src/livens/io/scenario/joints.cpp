@@ -84,13 +84,13 @@ bool check_placement(const Section& joint)
 
 bool check_axes(const Section& joint, Findings& findings)
 {
-    if (joint.find("axis") != nullptr && norm(joint.vector("axis")) == 0)
+    if (joint.find("axis") != nullptr && joint.vector("axis") == Vector3{})
         return joint.error("axis", "axis-zero", "the axis of " + joint.label() + " is zero");
     const Value* given = joint.find("axes");
     if (given == nullptr) return true;
     const Vector3 a = joint.row("axes", 0), b = joint.row("axes", 1);
     for (std::size_t i = 0; i < 2; ++i)
-        if (norm(i == 0 ? a : b) == 0)
+        if ((i == 0 ? a : b) == Vector3{})
             return findings.error(given->node->items()[i].place, "axis-zero",
                                   "an axis of " + joint.label() + " is zero");
     const std::string_view word = joint_kinds()[static_cast<std::size_t>(joint.kind())].word;
@@ -108,7 +108,8 @@ bool check_frames(const Section& joint)
     if (given == nullptr) return true;
     if (given->sections.size() != 2)
         return joint.error("frames", "joint-frames",
-                           joint.label() + " has " + std::to_string(given->sections.size()) + " frames",
+                           joint.label() + " has not two frames but " +
+                               std::to_string(given->sections.size()),
                            {"", "give two, the first body's and the second's"});
     bool is_good = true;
     for (const Section& frame : given->sections) {

@@ -174,6 +174,7 @@ std::string describe_type(const Key& key)
 {
     std::string text(key.type.words);
     if (!key.unit.empty()) text += " in " + std::string(key.unit);
+    if (!key.other_unit.empty()) text += " or " + std::string(key.other_unit);
     const bool is_one = key.type.form == Form::number || key.type.form == Form::integer;
     if (key.range.is_limited())
         text += (is_one && key.type.other != Form::table ? ", " : ", each ") + key.range.text();
