@@ -34,6 +34,7 @@ TimeFunction harmonic(double amplitude, double frequency, double phase)
 {
     require_finite({amplitude, frequency, phase});
     const double w = 2 * std::numbers::pi * frequency;
+    require_finite({amplitude * w * w});   // its acceleration
     return {[=](Instant at) {
                 const auto [s, c] = sine_cosine(w * at.t + phase);
                 return TimeValue{amplitude * s, amplitude * w * c, -amplitude * w * w * s};

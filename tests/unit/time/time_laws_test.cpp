@@ -66,6 +66,7 @@ TEST(TimeLaws, RefuseWhatIsNoLaw)
     constexpr double nan = std::numeric_limits<double>::quiet_NaN();
     EXPECT_THROW(ramp(nan, 0, 0), InputError);
     EXPECT_THROW(harmonic(1, nan, 0), InputError);
+    EXPECT_THROW(harmonic(1e308, 1e308, 0), InputError) << "no number can be its acceleration";
     EXPECT_THROW(polynomial({0, nan}), InputError);
     EXPECT_THROW(smooth_step(1, 1, 2), InputError);
     EXPECT_THROW(shifted(ramp(0, 1, 0), nan), InputError);
