@@ -73,12 +73,17 @@ void add_run_commands(CLI::App& app, Arguments& a)
     CLI::App& info = add_command(app, a, "info", "Say what a result file holds");
     info.add_option("RUN", a.run, "result file")->required()->type_name("RUN.nc");
     add_common(info, a);
-    CLI::App& sample = add_command(app, a, "sample", "A body or a joint of a run at given instants");
+    CLI::App& sample =
+        add_command(app, a, "sample", "A body, a joint or a sensor of a run at given instants");
     sample.add_option("RUN", a.sample.run, "result file")->required()->type_name("RUN.nc");
     auto* body = sample.add_option("--body", a.sample.body, "pose, velocity and momentum of this body")
                      ->type_name("BODY");
     auto* joint = sample.add_option("--joint", a.sample.joint, "reactions of this joint")->type_name("JOINT");
     joint->excludes(body);
+    sample.add_option("--sensor", a.sample.sensor, "what this sensor reads")
+        ->type_name("SENSOR")
+        ->excludes(body)
+        ->excludes(joint);
     sample.add_option("--at", a.sample.at, "instant in seconds; may be repeated")->required()->type_name("T");
     sample.add_flag("--exact", a.sample.exact,
                     "between element ends solve a shortened element: full order anywhere");
@@ -115,6 +120,7 @@ void add_other_commands(CLI::App& app, Arguments& a)
     add_choice(completion, "SHELL", a.completion.shell, shells, "to be read by this shell");
     completion.add_option("--bodies", a.completion.bodies)->group("");   // for the scripts
     completion.add_option("--joints", a.completion.joints)->group("");
+    completion.add_option("--sensors", a.completion.sensors)->group("");
     add_command(app, a, "man", "Print the manual page, for man -l or groff");
     CLI::App& about = add_command(app, a, "version", "Print the version");
     about.add_flag("--json", a.common.json, "as one JSON object");

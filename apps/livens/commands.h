@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "livens/io/diagnostic.h"
+#include "livens/io/results.h"
+#include "livens/io/scenario.h"
 
 namespace livens::program {
 
@@ -34,13 +36,17 @@ int info_command(const std::string& run, const Common& common);
 
 struct SampleArguments {
     std::string run;
-    std::string body;   ///< one of body and joint is given
+    std::string body;   ///< one of body, joint and sensor is given
     std::string joint;
+    std::string sensor;
     std::vector<std::string> at;   ///< instants as typed, s
     bool exact = false;
     bool csv = false;
 };
 int sample_command(const SampleArguments& arguments, const Common& common);
+/// What is printed of a sensor.
+std::string sample_sensor(const SampleArguments& arguments, const Common& common, const Run& run,
+                          const Scenario& scenario, const std::vector<double>& times);
 
 struct ExportArguments {
     std::string run;
@@ -66,6 +72,7 @@ struct CompletionArguments {
     std::string shell;
     std::string bodies;   ///< a result file: its bodies, one a line, for the scripts
     std::string joints;   ///< likewise
+    std::string sensors;
 };
 int completion_command(const CompletionArguments& arguments, const std::vector<CommandInfo>& commands);
 int man_command(const std::vector<CommandInfo>& commands);

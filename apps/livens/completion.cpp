@@ -46,6 +46,7 @@ std::string bash_value(const OptionInfo& option)
     if (!end.empty()) return end == "*" ? "_livens_files '*'" : "_livens_files '*" + end + "'";
     if (option.value == "BODY") return "_livens_names bodies";
     if (option.value == "JOINT") return "_livens_names joints";
+    if (option.value == "SENSOR") return "_livens_names sensors";
     if (option.value == "CODE") return "_livens_words $(\"$program\" explain 2> /dev/null)";
     return "";
 }
@@ -60,7 +61,7 @@ _livens_files() {
     compopt -o filenames 2> /dev/null
     mapfile -t COMPREPLY < <(compgen -d -- "$cur"; compgen -f -X "!$1" -- "$cur")
 }
-_livens_names() {   # bodies or joints of the run on the line; names may hold spaces
+_livens_names() {   # names of the run on the line; names may hold spaces
     local name
     while IFS= read -r name; do
         [[ $name == "$cur"* ]] && COMPREPLY+=("$(printf %q "$name")")
@@ -121,6 +122,7 @@ std::string zsh_action(const OptionInfo& option)
     if (!end.empty()) return end == "*" ? "_files" : "_files -g \"*" + end + "\"";
     if (option.value == "BODY") return " _livens_names bodies";
     if (option.value == "JOINT") return " _livens_names joints";
+    if (option.value == "SENSOR") return " _livens_names sensors";
     if (option.value == "CODE") return " _livens_codes";
     return " ";
 }
@@ -138,7 +140,7 @@ std::string zsh_specification(const OptionInfo& option)
 
 constexpr const char* zsh_begin = R"zsh(#compdef livens
 # zsh completion of livens: as _livens in a folder of $fpath, or source <(livens completion zsh)
-_livens_names() {   # bodies or joints of the run on the line
+_livens_names() {   # names of the run on the line
     local run=${words[(r)*.nc]}
     local -a names
     [[ -n $run ]] && names=("${(@f)$($livens completion --$1 $run 2> /dev/null)}")
@@ -188,6 +190,7 @@ std::string fish_value(const OptionInfo& option)
     if (!end.empty()) return " -x -a '(__fish_complete_suffix " + end + ")'";
     if (option.value == "BODY") return " -x -a '(__livens_names bodies)'";
     if (option.value == "JOINT") return " -x -a '(__livens_names joints)'";
+    if (option.value == "SENSOR") return " -x -a '(__livens_names sensors)'";
     if (option.value == "CODE") return " -x -a '(livens explain)'";
     return " -x";
 }
@@ -204,7 +207,7 @@ std::string fish_option(const OptionInfo& option, const std::string& condition)
 }
 
 constexpr const char* fish_begin = R"fish(# fish completion of livens: livens completion fish | source
-function __livens_names   # bodies or joints of the run on the line
+function __livens_names   # names of the run on the line
     for word in (commandline -opc)
         if string match -q -- '*.nc' $word
             livens completion --$argv[1] $word 2> /dev/null
@@ -247,6 +250,12 @@ int completion_command(const CompletionArguments& arguments, const std::vector<C
 {
     if (!arguments.bodies.empty()) return print_names(read_run(arguments.bodies).body_names);
     if (!arguments.joints.empty()) return print_names(read_run(arguments.joints).joint_names);
+    if (!arguments.sensors.empty()) {
+        const Scenario scenario = scenario_of_run(read_run(arguments.sensors), arguments.sensors);
+        std::vector<std::string> names;
+        for (const Sensor& sensor : scenario.model.sensors()) names.push_back(sensor.name);
+        return print_names(names);
+    }
     if (arguments.shell.empty())
         throw failure(exit_usage, "a shell is missing: livens completion bash, zsh or fish");
     const std::string& shell = arguments.shell;

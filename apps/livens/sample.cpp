@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// livens sample: a body or a joint of a run at any instant.
+// livens sample: a body, a joint or a sensor of a run at any instant.
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -368,12 +368,14 @@ std::string csv_of(const Query& q, const std::vector<double>& times)
 
 int sample_command(const SampleArguments& arguments, const Common& common)
 {
-    if (arguments.body.empty() == arguments.joint.empty())
-        throw failure(exit_usage, "sample wants either --body NAME or --joint NAME");
+    const bool is_of_sensor = !arguments.sensor.empty();
+    if (is_of_sensor + !arguments.body.empty() + !arguments.joint.empty() != 1)
+        throw failure(exit_usage, "sample wants one of --body NAME, --joint NAME and --sensor NAME");
     if (arguments.exact) pin_instructions("");
     const Run run = read_run(arguments.run);
-    const int index = arguments.joint.empty() ? index_of(run.body_names, arguments.body, "body")
-                                              : index_of(run.joint_names, arguments.joint, "joint");
+    const int index = is_of_sensor              ? 0
+                      : arguments.joint.empty() ? index_of(run.body_names, arguments.body, "body")
+                                                : index_of(run.joint_names, arguments.joint, "joint");
     std::vector<double> times;
     for (const std::string& text : arguments.at) times.push_back(instant_inside(text, run.motion));
     const Scenario scenario = scenario_of_run(run, arguments.run);
@@ -381,7 +383,9 @@ int sample_command(const SampleArguments& arguments, const Common& common)
     if (!arguments.joint.empty()) query.coordinates.emplace(scenario.model, run.motion);
     if (!run.report.converged())
         say_warning(std::string("the run is not converged: ") + to_string(run.report.status));
-    if (common.json) {
+    if (is_of_sensor) {
+        print(sample_sensor(arguments, common, run, scenario, times));
+    } else if (common.json) {
         print(json_of(query, times));
     } else if (arguments.csv) {
         print(csv_of(query, times));

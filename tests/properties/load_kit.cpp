@@ -18,17 +18,19 @@ LoadForces forces(const Load& load, const LoadArguments& at)
 /// Skew and moving bodies, some way apart so that no two points meet.
 LoadArguments random_state(Random& random, const Load& load, const LoadCase& load_case)
 {
-    LoadArguments at;
+    LoadArguments at(load.bodies.size());
     at.at.t = random.number();
-    for (int b = 0; b < 2; ++b) {
+    for (std::size_t b = 0; b < load.bodies.size(); ++b) {
         if (load.bodies[b] == world) continue;
         at.X[b] = random.skew();
         at.V[b] = random.matrix<3, 4>();
     }
-    if (load_case.place)
-        at.X = load_case.place(random);
-    else
+    if (load_case.place) {
+        const std::array<Matrix34, 2> X = load_case.place(random);
+        for (std::size_t b = 0; b < 2; ++b) at.X[b] = X[b];
+    } else {
         at.X[0](0, 0) += 4;
+    }
     return at;
 }
 
@@ -53,8 +55,8 @@ Matrix<24, 1> stacked(const LoadForces& F)
 std::string decades(double error) { return "10^" + std::to_string(std::log10(std::abs(error) + 1e-300)); }
 
 /// Compares the tangent by one variable of body c with differences; `of_V`: the variable is one of V.
-void compare_column(const Load& load, const LoadArguments& at, const LoadTangent& tangent, bool of_V, int c,
-                    int variable, Failures& failures)
+void compare_column(const Load& load, const LoadArguments& at, const LoadTangent& tangent, bool of_V,
+                    std::size_t c, int variable, Failures& failures)
 {
     const Matrix<24, 1> expected = derivative(
         [&](double h) {
@@ -79,7 +81,7 @@ void compare_column(const Load& load, const LoadArguments& at, const LoadTangent
 void compare_flag(const Load& load, const LoadArguments& at, bool of_V, Random& random, Failures& failures)
 {
     LoadArguments moved = at;
-    for (int b = 0; b < 2; ++b)
+    for (std::size_t b = 0; b < load.bodies.size(); ++b)
         if (load.bodies[b] != world) (of_V ? moved.V : moved.X)[b] += 0.1 * random.matrix<3, 4>();
     if (stacked(forces(load, moved)) != stacked(forces(load, at)))
         failures.push_back(std::string("it depends on ") + (of_V ? "V" : "X") + " and says that it does not");
@@ -99,14 +101,14 @@ Failures check_load_tangent(const LoadCase& load_case)
     for (int n = 0; n < 1000 && failures.size() < 10; ++n) {
         const Load load = load_case.make(random);
         const LoadArguments at = random_state(random, load, load_case);
-        LoadTangent tangent;
+        LoadTangent tangent(load.bodies.size());
         if (load.depends_on_X || load.depends_on_V) load.tangent(at, tangent);
         for (const bool of_V : {false, true}) {
             if (!(of_V ? load.depends_on_V : load.depends_on_X)) {
                 compare_flag(load, at, of_V, random, failures);
                 continue;
             }
-            for (int c = 0; c < 2; ++c)
+            for (std::size_t c = 0; c < load.bodies.size(); ++c)
                 for (int variable = 0; load.bodies[c] != world && variable < 12; ++variable)
                     compare_column(load, at, tangent, of_V, c, variable, failures);
         }
@@ -124,7 +126,7 @@ Failures check_load_energy(const LoadCase& load_case)
         const double gain = derivative(
             [&](double h) {
                 LoadArguments moved = at;
-                for (int b = 0; b < 2; ++b) moved.X[b] += h * at.V[b];
+                for (std::size_t b = 0; b < load.bodies.size(); ++b) moved.X[b] += h * at.V[b];
                 return potential(load, moved);
             },
             2e-3);
@@ -143,7 +145,7 @@ Failures check_load_potential(const LoadCase& load_case)
         const Load load = load_case.make(random);
         if (!load.potential) continue;
         LoadArguments at = random_state(random, load, load_case);
-        at.V = {};
+        at.V = PerBody<Matrix34>(at.V.size());
         const LoadForces F = forces(load, at);
         for (int i = 0; i < 24; ++i) {
             if (load.bodies[i / 12] == world) continue;

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Every load of the library in every variant, one entry each: the kit runs over this list.
+#include "livens/multibody/load_laws.h"
+#include "livens/time/expression.h"
 #include "properties/load_kit.h"
 
 namespace livens {
@@ -83,22 +85,125 @@ LoadCase along_case(const std::string& type, const std::string& what, int first,
             }};
 }
 
-Load any_joint_spring(Random& random, const Joint& joint, const NamedCoordinate& coordinate,
+Load any_joint_spring(Random& random, const Joint&, const NamedCoordinate& coordinate,
                       const Configurations& X)
 {
     const double preload = coordinate.coordinate.is_angle() ? 0 : random.number();   // else a power
-    return joint_spring("l", joint, coordinate,
+    return joint_spring("l", coordinate,
                         {5 + 4 * random.number(), 2 + random.number(), random.number(), preload}, X);
 }
-Load any_joint_damper(Random& random, const Joint& joint, const NamedCoordinate& coordinate,
+Load any_joint_damper(Random& random, const Joint&, const NamedCoordinate& coordinate,
                       const Configurations& X)
 {
-    return joint_spring("l", joint, coordinate, {0, 2 + random.number(), 0, 0}, X);
+    return joint_spring("l", coordinate, {0, 2 + random.number(), 0, 0}, X);
 }
-Load any_actuator(Random& random, const Joint& joint, const NamedCoordinate& coordinate,
-                  const Configurations& X)
+Load any_actuator(Random& random, const Joint&, const NamedCoordinate& coordinate, const Configurations& X)
 {
-    return actuator("l", joint, coordinate, varying(random)[0], X);
+    return actuator("l", coordinate, varying(random)[0], X);
+}
+
+// Knots of tables stand outside of where bodies are: differences across one are not smooth.
+
+/// By a formula that looks at the pipe's angle and slide, and their rates.
+Load any_formula(Random& random, const Joint& joint, const NamedCoordinate& coordinate,
+                 const Configurations& X)
+{
+    const double gain = random.number();
+    LoadParts parts;
+    parts.units = {unit_along("l", coordinate.coordinate, X)};
+    for (const char* name : {"angle", "displacement"}) {
+        const NamedCoordinate& q = *find_coordinate(joint, name);
+        parts.coordinates.push_back({q.coordinate, q.at_stated});
+    }
+    const Expression of("sin(a)*b - gain*v^2 + w*cos(a - t)", {"a", "b", "w", "v", "gain"});
+    parts.law = [=](const LawArguments& at, std::span<double> factors, std::span<double> slopes) {
+        const std::array<double, 5> x{at.values[0], at.values[1], at.rates[0], at.rates[1], gain};
+        std::array<double, 5> by{};
+        factors[0] = of(at.at.t, x, by);
+        std::copy_n(by.begin(), slopes.size(), slopes.begin());
+    };
+    parts.depends_on_rates = true;
+    return modulated("l", "actuator", parts, X);
+}
+
+/// A force by how far a third body is.
+Load formula_of_a_third(Random& random)
+{
+    LoadParts parts;
+    parts.units = {point_force("l", 0, random.vector(), {1.0, 0.5, 2.0}, Frame::body_fixed)};
+    const std::vector<ConstraintRow> rows =
+        coincidence_rows(2, point(random.vector()), 0, point({0, 1, 0}), 1);
+    parts.coordinates = {{{{rows[1]}}, 0.3}};
+    parts.law = [](const LawArguments& at, std::span<double> factors, std::span<double> slopes) {
+        const double q = at.values[0], v = at.rates[0];
+        factors[0] = q * q + q * v;
+        if (slopes.empty()) return;
+        slopes[0] = 2 * q + v;
+        slopes[1] = q;
+    };
+    parts.depends_on_rates = true;
+    const std::vector<Matrix34> X{world_configuration, world_configuration, world_configuration};
+    return modulated("l", "force", parts, X);
+}
+
+Load bent_joint_spring(Random& random, const Joint&, const NamedCoordinate& coordinate,
+                       const Configurations& X)
+{
+    JointSpring law{0, 2 + random.number(), random.number(), 0,
+                    progressive_spring(1 + random.number() / 2, 2 + random.number())};
+    if (random.number() > 0)
+        law.law = tabulated_spring({-9, -5, 5, 9}, {-4, -1, 2 + random.number(), 20}, true);
+    return joint_spring("l", coordinate, law, X);
+}
+
+Matrix<6, 6> positive_matrix(Random& random)
+{
+    const Matrix<6, 6> A = random.matrix<6, 6>();
+    return A * transpose(A);
+}
+
+/// Turned by up to 1.5 rad, where both stand at about the same place, and a little deformed.
+LoadCase bushing_case(const std::string& what, int second, double size)
+{
+    const std::array<Matrix34, 2> X{world_configuration, world_configuration};
+    return {"bushing", what,
+            [=](Random& random) {
+                const auto frame = [&] { return BodyFrame{random.vector(), directors(random.rigid())}; };
+                Bushing law{positive_matrix(random), positive_matrix(random), random.matrix<6, 1>()};
+                BodyFrame first = frame(), second_frame = frame();
+                second_frame.axes = first.axes;
+                return bushing("l", 0, first, second, second_frame, law, std::vector(X.begin(), X.end()));
+            },
+            [=](Random& random) {
+                std::array<Matrix34, 2> place = X;
+                for (int b = 0; b < (second == world ? 1 : 2); ++b) {
+                    const Matrix3 R = directors_from_rotation_vector(size / 2 * random.unit());
+                    place[b] = configuration(random.vector(), R) + (0.05 * size) * random.matrix<3, 4>();
+                }
+                return place;
+            }};
+}
+
+LoadCase attraction_case(const std::string& what, bool has_gradient)
+{
+    return {
+        "attraction", what,
+        [=](Random& random) {
+            const Body body = rigid_body(
+                "b", {2 + random.number(), random.vector(), {1.2, 0.1, 0, 0.1, 1.5, 0.2, 0, 0.2, 1.1}});
+            const std::vector<Matrix34> X{world_configuration};
+            return attraction("l", 0, body, {{9, 0, 1}, 3 + random.number(), has_gradient}, X);
+        },
+        [](Random& random) {
+            return std::array<Matrix34, 2>{random.rigid() + 0.1 * random.matrix<3, 4>(), world_configuration};
+        }};
+}
+
+Load any_drag(Random& random)
+{
+    const std::vector<Matrix34> X{world_configuration};
+    return drag("l", 0, random.vector(), {2 + random.number(), 1.5 + random.number(), 3 * random.vector()},
+                X);
 }
 
 }   // namespace
@@ -128,6 +233,25 @@ const std::vector<LoadCase>& load_cases()
         along_case("actuator", "motor", 1, "angle", any_actuator),
         along_case("actuator", "motor on the world", world, "angle", any_actuator),
         along_case("actuator", "cylinder", 1, "displacement", any_actuator),
+        along_case("actuator", "formula about an axis", 1, "angle", any_formula),
+        along_case("actuator", "formula along an axis of the world", world, "displacement", any_formula),
+        along_case("joint_spring", "progressive or tabulated spring", 1, "angle", bent_joint_spring),
+        spring_case("progressive spring and preload", 1,
+                    [](SpringDamper& law) {
+                        law.law = progressive_spring(law.stiffness, 2);
+                        law.preload = -0.7;
+                    }),
+        spring_case("tabulated spring", world,
+                    [](SpringDamper& law) {
+                        law.law = tabulated_spring({-9, -4, 12, 20}, {-4, -1, 2, 20}, true);
+                    }),
+        bushing_case("bushing", 1, 1.5),
+        bushing_case("bushing on the world", world, 2.5),
+        bushing_case("bushing that hardly turns", 1, 0.02),
+        {"drag", "drag", any_drag},
+        {"force", "force by a third body", formula_of_a_third},
+        attraction_case("attraction", false),
+        attraction_case("attraction with a gradient", true),
         spring_case("nothing", 1, [](SpringDamper& law) { law = {}; }),
     };
     return cases;

@@ -6,54 +6,13 @@
 #include <numbers>
 
 #include "livens/base/text.h"
-#include "livens/diagnostics/coordinates.h"
-#include "livens/diagnostics/sample.h"
-#include "livens/io/scenario.h"
-#include "livens/spacetime/solve.h"
 #include "reference/shipped.h"
+#include "reference/solved.h"
 
 namespace livens::tests {
 namespace {
 
 using std::numbers::pi;
-
-struct Solved {
-    Model model;
-    Solution solution;
-
-    int joint(const std::string& name) const
-    {
-        for (int j = 0; j < static_cast<int>(model.joints().size()); ++j)
-            if (model.joints()[j].name == name) return j;
-        ADD_FAILURE() << "no joint " << name;
-        return 0;
-    }
-    CoordinateValue coordinate(const std::string& name, const std::string& which, double t) const
-    {
-        const JointCoordinates all(model, solution.motion);
-        const std::vector<CoordinateValue> values = all.at(t);
-        for (std::size_t i = 0; i < values.size(); ++i)
-            if (all.places()[i].joint == joint(name) && all.coordinate(static_cast<int>(i)).name == which)
-                return values[i];
-        ADD_FAILURE() << name << " has no " << which;
-        return {};
-    }
-    Reaction reaction(const std::string& name, double t) const
-    {
-        return sample_joints(model, solution.motion, t)[static_cast<std::size_t>(joint(name))].right;
-    }
-};
-
-Solved solved(const std::string& text)
-{
-    const ScenarioResult read = parse_scenario("format = 1\n" + text, "test.toml");
-    for (const Diagnostic& d : read.diagnostics) EXPECT_EQ(d.message, "");
-    const Scenario& s = read.scenario.value();
-    Solution solution = solve(s.model, {s.model.start()}, s.time, s.method, s.options);
-    EXPECT_TRUE(solution.report.converged()) << solution.report.message;
-    EXPECT_TRUE(solution.verdict.reasons.empty()) << solution.verdict.reasons.front();
-    return {s.model, std::move(solution)};
-}
 
 /// A number with two derivatives by time.
 struct Jet {
@@ -161,7 +120,9 @@ TEST(Mechanisms, TheSliderCrankAsShippedMeetsVirtualWork)
         const Jet x = 0.05 * cosine(crank) + 0.5 * length * cosine(rod),
                   y = 0.05 * sine(crank) + 0.5 * length * sine(rod);
         LoadForces F{};
-        gas.forces({{t}, {}, {}}, F);
+        LoadArguments at;
+        at.at.t = t;
+        gas.forces(at, F);
         const double power = 0.3 * (x.v * x.a + y.v * y.a) + spin * rod.v * rod.a + 0.5 * pin.v * pin.a;
         EXPECT_NEAR(run.reaction("speed", t).torque[2], (power - F[0](0, 0) * pin.v) / 200, 1e-9 * 100) << t;
         EXPECT_NEAR(run.coordinate("bore", "displacement", t).value, pin.x - 0.2, 1e-14) << t;

@@ -50,6 +50,8 @@ inline double logarithm(double x) { return static_cast<double>(std::log(Wide{x})
 
 inline double exponential(double x) { return static_cast<double>(std::exp(Wide{x})); }
 
+inline double hyperbolic_tangent(double x) { return static_cast<double>(std::tanh(Wide{x})); }
+
 inline double power(double x, double n) { return static_cast<double>(std::pow(Wide{x}, Wide{n})); }
 
 }   // namespace livens

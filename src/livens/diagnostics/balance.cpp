@@ -132,11 +132,11 @@ private:
         for (const Load& load : model_.loads()) {
             if (!load.depends_on_X && !load.depends_on_V) continue;
             const LoadArguments arguments = load_arguments(load, loads_.instant(element, 0), X_, V_);
-            LoadTangent tangent{};
+            LoadTangent tangent(load.bodies.size());
             load.tangent(arguments, tangent);
             for (int b = 0; b < 2; ++b) {
                 Matrix34 dF{};
-                for (int c = 0; c < 2; ++c)
+                for (std::size_t c = 0; c < load.bodies.size(); ++c)
                     for (int j = 0; j < 12; ++j) {
                         const double size = norm(arguments.X[c].column(j / 3)) + (j < 3 ? length_ : 0);
                         for (int i = 0; i < 12; ++i)

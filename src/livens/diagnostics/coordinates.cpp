@@ -3,39 +3,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
+#include <utility>
 
-#include "livens/base/elementary.h"
 #include "livens/diagnostics/sample.h"
 
 namespace livens {
 
 namespace {
-
-double value_of(const PairForm& form, std::span<const Matrix34> X)
-{
-    return form_value(form, form.body_i, form.body_j, X);
-}
-
-double rate_of(const PairForm& form, std::span<const Matrix34> X, std::span<const Matrix34> V)
-{
-    ConstraintRow row;
-    static_cast<PairForm&>(row) = form;
-    const RowGradient gradient = constraint_gradient(row, X);
-    double rate = 0;
-    for (int side = 0; side < gradient.bodies.size; ++side)
-        rate += dot(gradient.by[side], V[gradient.bodies.bodies[side]]);
-    return rate;
-}
-
-/// The shorter way from one configuration to another.
-double change_of(const JointCoordinate& q, std::span<const Matrix34> from, std::span<const Matrix34> to)
-{
-    if (!q.is_angle()) return value_of(q.forms[0], to) - value_of(q.forms[0], from);
-    const double c0 = value_of(q.forms[0], from), s0 = value_of(q.forms[1], from);
-    const double c = value_of(q.forms[0], to), s = value_of(q.forms[1], to);
-    return arc_tangent(c0 * s - s0 * c, c0 * c + s0 * s);
-}
 
 std::vector<Matrix34> configurations(const Motion& motion, int element, int node)
 {
@@ -47,28 +23,14 @@ std::vector<Matrix34> configurations(const Motion& motion, int element, int node
 
 }   // namespace
 
-double coordinate_value(const JointCoordinate& q, std::span<const Matrix34> X)
+FollowedCoordinates::FollowedCoordinates(const Model& model, const Motion& motion,
+                                         std::vector<NamedCoordinate> coordinates)
+    : motion_(motion), coordinates_(std::move(coordinates))
 {
-    return q.is_angle() ? arc_tangent(value_of(q.forms[1], X), value_of(q.forms[0], X))
-                        : value_of(q.forms[0], X);
-}
-
-double coordinate_rate(const JointCoordinate& q, std::span<const Matrix34> X, std::span<const Matrix34> V)
-{
-    if (!q.is_angle()) return rate_of(q.forms[0], X, V);
-    const double c = value_of(q.forms[0], X), s = value_of(q.forms[1], X);
-    return (c * rate_of(q.forms[1], X, V) - s * rate_of(q.forms[0], X, V)) / (c * c + s * s);
-}
-
-JointCoordinates::JointCoordinates(const Model& model, const Motion& motion) : model_(model), motion_(motion)
-{
-    for (int j = 0; j < static_cast<int>(model.joints().size()); ++j)
-        for (int k = 0; k < static_cast<int>(model.joints()[j].coordinates.size()); ++k)
-            places_.push_back({j, k});
-    if (places_.empty()) return;
+    if (coordinates_.empty()) return;
     for (const Body& body : model.bodies()) stated_.push_back(body.X);
     std::vector<double> now =
-        turned(sample_state(motion, motion.start()).X, std::vector<double>(places_.size(), 0.0));
+        turned(sample_state(motion, motion.start()).X, std::vector<double>(coordinates_.size(), 0.0));
     at_ends_ = now;
     for (int e = 0; e < motion.n_elements(); ++e) {
         for (int node = 1; node <= motion.X.degree; ++node)
@@ -78,25 +40,25 @@ JointCoordinates::JointCoordinates(const Model& model, const Motion& motion) : m
 }
 
 /// Coordinates less those of the bodies as stated: turns are whole, so that rounding does not gather.
-std::vector<double> JointCoordinates::turned(std::span<const Matrix34> X, std::span<const double> near) const
+std::vector<double> FollowedCoordinates::turned(std::span<const Matrix34> X,
+                                                std::span<const double> near) const
 {
     constexpr double turn = 2 * std::numbers::pi;
     std::vector<double> all;
-    for (int i = 0; i < static_cast<int>(places_.size()); ++i) {
-        const JointCoordinate& q = coordinate(i).coordinate;
-        const double value = change_of(q, stated_, X);
+    for (std::size_t i = 0; i < coordinates_.size(); ++i) {
+        const JointCoordinate& q = coordinates_[i].coordinate;
+        const double value = coordinate_change(q, stated_, X);
         all.push_back(q.is_angle() ? value + turn * std::round((near[i] - value) / turn) : value);
     }
     return all;
 }
 
-std::vector<CoordinateValue> JointCoordinates::at(double t) const
+std::vector<CoordinateValue> FollowedCoordinates::at(const State& state) const
 {
-    std::vector<CoordinateValue> all(places_.size());
-    if (places_.empty()) return all;
-    const State state = sample_state(motion_, t);
+    const std::size_t n = coordinates_.size();
+    std::vector<CoordinateValue> all(n);
+    if (n == 0) return all;
     const int end = element_end_at(motion_.mesh, state.t);
-    const std::size_t n = places_.size();
     std::span<const double> ends(at_ends_);
     std::vector<double> values;
     if (end >= 0) {
@@ -112,31 +74,123 @@ std::vector<CoordinateValue> JointCoordinates::at(double t) const
             values = turned(configurations(motion_, element, node), values);
         values = turned(state.X, values);
     }
-    for (int i = 0; i < static_cast<int>(n); ++i)
-        all[i] = {coordinate(i).at_stated + values[i],
-                  coordinate_rate(coordinate(i).coordinate, state.X, state.V)};
+    for (std::size_t i = 0; i < n; ++i)
+        all[i] = {coordinates_[i].at_stated + values[i],
+                  coordinate_rate(coordinates_[i].coordinate, state.X, state.V)};
     return all;
 }
+
+namespace {
+
+std::vector<JointCoordinates::Place> places_of(const Model& model)
+{
+    std::vector<JointCoordinates::Place> places;
+    for (int j = 0; j < static_cast<int>(model.joints().size()); ++j)
+        for (int k = 0; k < static_cast<int>(model.joints()[j].coordinates.size()); ++k)
+            places.push_back({j, k});
+    return places;
+}
+
+std::vector<NamedCoordinate> all_coordinates(const Model& model)
+{
+    std::vector<NamedCoordinate> all;
+    for (const Joint& joint : model.joints())
+        all.insert(all.end(), joint.coordinates.begin(), joint.coordinates.end());
+    return all;
+}
+
+}   // namespace
+
+JointCoordinates::JointCoordinates(const Model& model, const Motion& motion)
+    : model_(model), motion_(motion), places_(places_of(model)),
+      followed_(model, motion, all_coordinates(model))
+{}
+
+std::vector<CoordinateValue> JointCoordinates::at(double t) const
+{
+    return places_.empty() ? std::vector<CoordinateValue>() : followed_.at(sample_state(motion_, t));
+}
+
+namespace {
+
+std::vector<NamedCoordinate> sensed_coordinates(const Model& model)
+{
+    std::vector<NamedCoordinate> all;
+    for (const Sensor& sensor : model.sensors())
+        for (const SensorComponent& component : sensor.components)
+            if (!component.coordinate.coordinate.forms.empty()) all.push_back(component.coordinate);
+    return all;
+}
+
+void append_load(const Load& load, const State& state, std::vector<double>& values)
+{
+    const LoadArguments arguments = load_arguments(load, {state.t, Side::right}, state.X, state.V);
+    for (const LoadReading& reading : load.readings) values.push_back(reading.value(arguments));
+    values.push_back(load_power(load, arguments));
+}
+
+void append_energy(const Model& model, int b, const State& state, std::vector<double>& values)
+{
+    const Body& body = model.bodies()[b];
+    values.push_back(0.5 * dot(state.V[b] * body.mass, state.V[b]));
+    values.push_back(-dot(weight(body, model.gravity()), state.X[b]));
+}
+
+}   // namespace
+
+SensorReadings::SensorReadings(const Model& model, const Motion& motion)
+    : model_(model), motion_(motion), followed_(model, motion, sensed_coordinates(model))
+{}
+
+std::vector<double> SensorReadings::at(double t) const
+{
+    const State state = sample_state(motion_, t);
+    const std::vector<CoordinateValue> coordinates = followed_.at(state);
+    std::vector<double> all;
+    std::size_t next = 0;
+    for (const Sensor& sensor : model_.sensors()) {
+        if (sensor.load >= 0)
+            append_load(model_.loads()[sensor.load], state, all);
+        else if (sensor.body >= 0)
+            append_energy(model_, sensor.body, state, all);
+        else
+            for (const SensorComponent& component : sensor.components) {
+                const CoordinateValue& q = coordinates[next++];
+                all.push_back(component.is_rate ? q.rate : q.value);
+            }
+    }
+    return all;
+}
+
+namespace {
+
+/// The first node beyond half a turn; infinite: none is.
+double first_half_turn(const JointCoordinate& q, const Motion& motion)
+{
+    std::vector<Matrix34> X = sample_state(motion, motion.start()).X;
+    double turned = coordinate_value(q, X);
+    const std::vector<double> nodes = motion.X.basis().nodes();
+    for (int e = 0; e < motion.n_elements(); ++e)
+        for (int node = 1; node <= motion.X.degree; ++node) {
+            const std::vector<Matrix34> next = configurations(motion, e, node);
+            turned += coordinate_change(q, X, next);
+            X = next;
+            if (std::abs(turned) >= std::numbers::pi)
+                return motion.mesh.ends[e] + nodes[node] * motion.mesh.length(e);
+        }
+    return std::numeric_limits<double>::infinity();
+}
+
+}   // namespace
 
 LostTurn find_lost_turn(const Model& model, const Motion& motion)
 {
     LostTurn found;
     for (int l = 0; l < static_cast<int>(model.loads().size()); ++l) {
-        const JointCoordinate& q = model.loads()[l].bounded_angle;
-        if (q.forms.empty()) continue;
-        std::vector<Matrix34> X = sample_state(motion, motion.start()).X;
-        double turned = coordinate_value(q, X);
-        const std::vector<double> nodes = motion.X.basis().nodes();
-        for (int e = 0; e < motion.n_elements() && (found.load < 0 || motion.mesh.ends[e] < found.t); ++e)
-            for (int node = 1; node <= motion.X.degree; ++node) {
-                const std::vector<Matrix34> next = configurations(motion, e, node);
-                turned += change_of(q, X, next);
-                X = next;
-                if (std::abs(turned) < std::numbers::pi) continue;
-                const double t = motion.mesh.ends[e] + nodes[node] * motion.mesh.length(e);
-                if (found.load < 0 || t < found.t) found = {l, t};
-                break;
-            }
+        for (const JointCoordinate& q : model.loads()[l].bounded_angles) {
+            const double t = first_half_turn(q, motion);
+            if (std::isfinite(t) && (found.load < 0 || t < found.t)) found = {l, t};
+        }
     }
     return found;
 }

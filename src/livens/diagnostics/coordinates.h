@@ -15,10 +15,27 @@ struct CoordinateValue {
     double rate = 0;    ///< its rate, per s
 };
 
-/// All NamedCoordinates of a model's joints. An angle is followed from node to node of the motion, between
+/// Coordinates along a motion. An angle is followed from node to node, between
 /// which no accepted motion turns by half a turn, from where the bodies are stated: there every coordinate is
 /// what NamedCoordinate::at_stated says, and drives and loads count from there as well. At element ends
 /// values and rates are of the method's full order, between them of the motion's dense orders.
+class FollowedCoordinates {
+public:
+    FollowedCoordinates(const Model& model, const Motion& motion, std::vector<NamedCoordinate> coordinates);
+
+    /// In a state of the motion: X and V at an instant of it.
+    std::vector<CoordinateValue> at(const State& state) const;
+
+private:
+    std::vector<double> turned(std::span<const Matrix34> X, std::span<const double> near) const;
+
+    const Motion& motion_;
+    std::vector<NamedCoordinate> coordinates_;
+    std::vector<Matrix34> stated_;   ///< where the model has its bodies
+    std::vector<double> at_ends_;    ///< less the values there, end * coordinates + coordinate
+};
+
+/// All NamedCoordinates of a model's joints.
 class JointCoordinates {
 public:
     /// Where a coordinate stands: its joint, and its place in Joint::coordinates.
@@ -38,19 +55,26 @@ public:
     std::vector<CoordinateValue> at(double t) const;
 
 private:
-    std::vector<double> turned(std::span<const Matrix34> X, std::span<const double> near) const;
-
     const Model& model_;
     const Motion& motion_;
     std::vector<Place> places_;
-    std::vector<Matrix34> stated_;   ///< where the model has its bodies
-    std::vector<double> at_ends_;    ///< less the values there, end * places + place
+    FollowedCoordinates followed_;
 };
 
-/// A coordinate in one configuration: an angle from -pi to pi, with no turns.
-double coordinate_value(const JointCoordinate& coordinate, std::span<const Matrix34> X);
-double coordinate_rate(const JointCoordinate& coordinate, std::span<const Matrix34> X,
-                       std::span<const Matrix34> V);
+/// What all sensors of a model read along a motion.
+class SensorReadings {
+public:
+    SensorReadings(const Model& model, const Motion& motion);
+
+    /// Of all components of all sensors at t, one after the other, after snap_to_element_end(). Where a load
+    /// jumps, what is there afterwards.
+    std::vector<double> at(double t) const;
+
+private:
+    const Model& model_;
+    const Motion& motion_;
+    FollowedCoordinates followed_;   ///< of components that have a coordinate, in their order
+};
 
 /// A load whose angle has left the half turn on either side in which it is known (Load::bounded_angle).
 struct LostTurn {

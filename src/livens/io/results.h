@@ -19,7 +19,7 @@ namespace [[gnu::visibility("default")]] livens {
 class JsonWriter;
 
 inline constexpr int format_major = 2;   ///< an unknown one is refused
-inline constexpr int format_minor = 3;   ///< additions only
+inline constexpr int format_minor = 4;   ///< additions only
 
 /// A run as it stands in the file: everything but the model, which is made again from the scenario text.
 struct Run {

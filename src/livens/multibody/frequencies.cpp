@@ -62,10 +62,10 @@ public:
         tables_.rates_of(state_.X.data(), state_.velocity.data(), V.data());
         for (const int l : tables_.loads_with_tangent) {
             const Load& load = tables_.model->loads()[l];
-            LoadTangent tangent{};
+            LoadTangent tangent(load.bodies.size());
             load.tangent(Tables::arguments(load, at_, state_.X.data(), V.data()), tangent);
-            for (int r = 0; r < 2; ++r)
-                for (int s = 0; s < 2; ++s) {
+            for (std::size_t r = 0; r < 2; ++r)
+                for (std::size_t s = 0; s < load.bodies.size(); ++s) {
                     const int i = load.bodies[r], j = load.bodies[s];
                     if (i == world || j == world) continue;
                     springs.push_back({l, i, j, reduced(tangent.X[r][s], -1, i, j)});

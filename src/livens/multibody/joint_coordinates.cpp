@@ -180,6 +180,22 @@ Value across_curve(const SampledCurve& curve, std::size_t normal, const Vector3&
     return value;
 }
 
+double value_of(const PairForm& form, std::span<const Matrix34> X)
+{
+    return form_value(form, form.body_i, form.body_j, X);
+}
+
+double rate_of(const PairForm& form, std::span<const Matrix34> X, std::span<const Matrix34> V)
+{
+    ConstraintRow row;
+    static_cast<PairForm&>(row) = form;
+    const RowGradient gradient = constraint_gradient(row, X);
+    double rate = 0;
+    for (int side = 0; side < gradient.bodies.size; ++side)
+        rate += dot(gradient.by[side], V[gradient.bodies.bodies[side]]);
+    return rate;
+}
+
 }   // namespace
 
 JointCoordinate displacement_along(int body_i, const Vector4& n, const Vector4& a, int body_j,
@@ -250,6 +266,28 @@ std::vector<ConstraintRow> curve_rows(const Curve& curve, int body_i, int body_j
         rows.push_back(row_of(place, {at, change}, scale, k == 0 ? "curve, normal 1" : "curve, normal 2"));
     }
     return rows;
+}
+
+double coordinate_change(const JointCoordinate& q, std::span<const Matrix34> from,
+                         std::span<const Matrix34> to)
+{
+    if (!q.is_angle()) return value_of(q.forms[0], to) - value_of(q.forms[0], from);
+    const double c0 = value_of(q.forms[0], from), s0 = value_of(q.forms[1], from);
+    const double c = value_of(q.forms[0], to), s = value_of(q.forms[1], to);
+    return arc_tangent(c0 * s - s0 * c, c0 * c + s0 * s);
+}
+
+double coordinate_value(const JointCoordinate& q, std::span<const Matrix34> X)
+{
+    return q.is_angle() ? arc_tangent(value_of(q.forms[1], X), value_of(q.forms[0], X))
+                        : value_of(q.forms[0], X);
+}
+
+double coordinate_rate(const JointCoordinate& q, std::span<const Matrix34> X, std::span<const Matrix34> V)
+{
+    if (!q.is_angle()) return rate_of(q.forms[0], X, V);
+    const double c = value_of(q.forms[0], X), s = value_of(q.forms[1], X);
+    return (c * rate_of(q.forms[1], X, V) - s * rate_of(q.forms[0], X, V)) / (c * c + s * s);
 }
 
 }   // namespace livens

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,14 @@ JointCoordinate displacement_along(int body_i, const Vector4& n, const Vector4& 
 /// How far the direction b of body j is turned from the direction a1 of body i towards its direction a2, in
 /// rad; right-handed about a1 x a2 where these are perpendicular unit vectors.
 JointCoordinate angle_between(int body_i, const Vector4& a1, const Vector4& a2, int body_j, const Vector4& b);
+
+/// A coordinate in one configuration: an angle from -pi to pi, with no turns.
+double coordinate_value(const JointCoordinate& coordinate, std::span<const Matrix34> X);
+double coordinate_rate(const JointCoordinate& coordinate, std::span<const Matrix34> X,
+                       std::span<const Matrix34> V);
+/// From one configuration to another; of an angle the shorter way.
+double coordinate_change(const JointCoordinate& coordinate, std::span<const Matrix34> from,
+                         std::span<const Matrix34> to);
 
 /// A coordinate and what it is multiplied by.
 struct CoupledCoordinate {

@@ -19,7 +19,7 @@ Load start_load(const std::string& name, const char* type, const std::array<int,
     Load load;
     load.name = name;
     load.type = type;
-    load.bodies = bodies;
+    load.bodies = {bodies[0], bodies[1]};
     return load;
 }
 
@@ -50,6 +50,14 @@ void set_load_value(Load& load, const TimeVector& value)
     load.breaks.erase(repeated, load.breaks.end());
 }
 
+void report_load_value(Load& load, const TimeVector& value, const char* unit)
+{
+    for (std::size_t k = 0; k < 3; ++k)
+        load.readings.push_back(
+            {std::string(1, "xyz"[k]), unit,
+             [component = value[k]](const LoadArguments& at) { return component(at.at).value; }});
+}
+
 std::string not_finite(const Load& load)
 {
     return "the load '" + load.name + "' is not finite" +
@@ -64,9 +72,9 @@ TimeVector window(const TimeVector& value, double from, double until)
 LoadArguments load_arguments(const Load& load, Instant at, std::span<const Matrix34> X,
                              std::span<const Matrix34> V)
 {
-    LoadArguments arguments;
+    LoadArguments arguments(load.bodies.size());
     arguments.at = at;
-    for (int b = 0; b < 2; ++b) {
+    for (std::size_t b = 0; b < load.bodies.size(); ++b) {
         if (load.bodies[b] == world) continue;
         arguments.X[b] = X[load.bodies[b]];
         arguments.V[b] = V[load.bodies[b]];

@@ -15,37 +15,79 @@
 
 namespace [[gnu::visibility("default")]] livens {
 
-/// What a load may look at: the instant, and X and dX/dt of its one or two bodies (the world's where there is
-/// none).
-struct LoadArguments {
-    Instant at;
-    std::array<Matrix34, 2> X{world_configuration, world_configuration};
-    std::array<Matrix34, 2> V{};
+/// One value for each body of a load; two are held in place.
+template <class T>
+class PerBody {
+public:
+    explicit PerBody(std::size_t n = 2, const T& value = {}) : n_(n)
+    {
+        if (n > 2)
+            many_.assign(n, value);
+        else
+            pair_.fill(value);
+    }
+
+    std::size_t size() const { return n_; }
+    T& operator[](std::size_t i) { return n_ > 2 ? many_[i] : pair_[i]; }
+    const T& operator[](std::size_t i) const { return n_ > 2 ? many_[i] : pair_[i]; }
+    const T* data() const { return n_ > 2 ? many_.data() : pair_.data(); }
+    T* begin() { return n_ > 2 ? many_.data() : pair_.data(); }
+    T* end() { return begin() + n_; }
+
+private:
+    std::size_t n_;
+    std::array<T, 2> pair_{};
+    std::vector<T> many_;
 };
 
-/// F_b for each body b, by virtual work tr(F_b^T dX_b); N in the first column, N m in the others.
+/// What a load may look at: the instant, and X and dX/dt of its bodies (the world's where there is none).
+struct LoadArguments {
+    explicit LoadArguments(std::size_t n_bodies = 2) : X(n_bodies, world_configuration), V(n_bodies) {}
+
+    Instant at;
+    PerBody<Matrix34> X;
+    PerBody<Matrix34> V;
+};
+
+/// F_b for the one or two bodies that a load acts on, by virtual work tr(F_b^T dX_b); N in the first column,
+/// N m in the others.
 using LoadForces = std::array<Matrix34, 2>;
 
-/// Derivatives of the stacked columns of F_b by the stacked columns of X_c and of V_c: X[b][c] is 12 x 12.
+/// Derivatives of the stacked columns of F_b by the stacked columns of X_c and of V_c: X[b][c] is 12 x 12,
+/// for the two b that it acts on and all c of Load::bodies.
 struct LoadTangent {
-    std::array<std::array<Matrix<12, 12>, 2>, 2> X{};
-    std::array<std::array<Matrix<12, 12>, 2>, 2> V{};
+    explicit LoadTangent(std::size_t n_bodies = 2)
+    {
+        X.fill(PerBody<Matrix<12, 12>>(n_bodies));
+        V = X;
+    }
+
+    std::array<PerBody<Matrix<12, 12>>, 2> X;
+    std::array<PerBody<Matrix<12, 12>>, 2> V;
+};
+
+/// A number that a load reports of itself.
+struct LoadReading {
+    std::string name;   ///< "force", "length"
+    std::string unit;   ///< "N"
+    std::function<double(const LoadArguments&)> value;
 };
 
 /// A load is data and functions; a new one is a new maker.
 struct Load {
     std::string name;
     std::string type;
-    std::array<int, 2> bodies{world, world};   ///< the second is the world for a load on one body
+    /// Two that it acts on, the second the world for a load on one body; then those that it only looks at.
+    std::vector<int> bodies{world, world};
     bool depends_on_X = false;                 ///< dF/dX may differ from zero
     bool depends_on_V = false;                 ///< dF/dV may differ from zero
     std::array<bool, 2>
         needs_directors{};        ///< F is not zero outside the first column: refused on a point mass
     std::vector<double> breaks;   ///< instants where F jumps or bends; they become element ends
     std::string domain;           ///< where F is a number, for the message if it is not; empty: everywhere
-    /// An angle whose turns F does not see: a motion on which it passes half a turn has another F than it
-    /// should have from there on. No forms: there is none.
-    JointCoordinate bounded_angle{};
+    /// Angles whose turns F does not see: a motion on which one passes half a turn has another F than it
+    /// should have from there on.
+    std::vector<JointCoordinate> bounded_angles{};
 
     /// F; required. Forces arrive as zero.
     std::function<void(const LoadArguments&, LoadForces&)> forces;
@@ -55,6 +97,8 @@ struct Load {
     std::function<double(const LoadArguments&)> potential;
     /// Power in W of the part without potential. If empty: tr(F^T V) for a load without potential, else 0.
     std::function<double(const LoadArguments&)> power;
+    /// For sensors and people.
+    std::vector<LoadReading> readings;
 };
 
 enum class Frame { inertial, body_fixed };
@@ -71,15 +115,33 @@ Load point_force(const std::string& name, int body, const Vector3& point, const 
 /// Torque (N m) on a body, F_i = 1/2 mu x d^i with contravariant directors  (P21); the metric is inverted.
 Load torque(const std::string& name, int body, const TimeVector& value, Frame frame);
 
+/// What a spring does at an elongation e: its force, and the slope and the integral of that.
+struct SpringValue {
+    double force = 0;       ///< N, or N m for e in rad; positive where it pulls back
+    double stiffness = 0;   ///< by m or rad
+    double energy = 0;      ///< J, 0 for e = 0
+};
+/// Forces of springs that are not linear; continuous, but stiffness may jump.
+using SpringLaw = std::function<SpringValue(double e)>;
+
+/// stiffness e + cubic e^3. Throws InputError (`load-negative`).
+SpringLaw progressive_spring(double stiffness, double cubic);
+/// Through forces at ascending elongations: straight lines, or a cubic spline; straight on outside. Throws
+/// InputError as linear_table() does.
+SpringLaw tabulated_spring(const std::vector<double>& elongations, const std::vector<double>& forces,
+                           bool is_spline);
+
 struct SpringDamper {
-    double stiffness = 0;     ///< N/m
-    double damping = 0;       ///< N s/m
-    double free_length = 0;   ///< m
+    double stiffness = 0;      ///< N/m
+    double damping = 0;        ///< N s/m
+    double free_length = 0;    ///< m
+    double preload = 0;        ///< N, pulls wherever the ends are
+    SpringLaw law = nullptr;   ///< instead of `stiffness`, of length - free_length
 };
 
 /// Spring and damper between a point of one body and a point of another or of the world; the force acts along
 /// the line between the points. Throws InputError for negative stiffness, damping or free length. Points that
-/// coincide: the force is zero for free_length 0 and along no direction (zero) otherwise.
+/// coincide: the force is zero for a linear spring of free_length 0 and along no direction (zero) otherwise.
 Load spring_damper(const std::string& name, int first, const Vector3& point_first, int second,
                    const Vector3& point_second, const SpringDamper& spring);
 
@@ -88,6 +150,7 @@ struct JointSpring {
     double damping = 0;     ///< N s/m or N m s/rad
     double rest = 0;        ///< m or rad: the coordinate without force but the preload
     double preload = 0;     ///< N or N m, against the coordinate, wherever it is
+    SpringLaw law = nullptr;   ///< instead of `stiffness`, of q - rest
 };
 
 // Loads along a coordinate of a joint: a force that does the work Q dq, between its two bodies. X is the
@@ -95,11 +158,11 @@ struct JointSpring {
 
 /// Q = -stiffness (q - rest) - damping dq/dt - preload. An angle is known up to 3.05 rad from where it is in
 /// X: beyond that a spring is not a number, and the motion ends there by name.
-Load joint_spring(const std::string& name, const Joint& joint, const NamedCoordinate& coordinate,
-                  const JointSpring& spring, const Configurations& X);
+Load joint_spring(const std::string& name, const NamedCoordinate& coordinate, const JointSpring& spring,
+                  const Configurations& X);
 /// Q = value(t), N or N m.
-Load actuator(const std::string& name, const Joint& joint, const NamedCoordinate& coordinate,
-              const TimeFunction& value, const Configurations& X);
+Load actuator(const std::string& name, const NamedCoordinate& coordinate, const TimeFunction& value,
+              const Configurations& X);
 
 /// What is told of a load whose force is not finite.
 std::string not_finite(const Load& load);

@@ -233,6 +233,7 @@ int Model::add_load(Load load)
 {
     check_name(loads_, load.name, "load");
     const std::string path = "load[" + load.name + "]";
+    if (load.bodies.size() < 2) refuse("load-empty", path, "a load acts on one body or between two");
     for (const int body : load.bodies) check_body_index(body, n_bodies(), path);
     if (load.bodies[0] == load.bodies[1])
         refuse("load-self", path,
@@ -250,6 +251,23 @@ int Model::add_load(Load load)
                    "a point mass takes forces in world axes at its own point");
     loads_.push_back(std::move(load));
     return static_cast<int>(loads_.size()) - 1;
+}
+
+int Model::add_sensor(Sensor sensor)
+{
+    check_name(sensors_, sensor.name, "sensor");
+    const std::string path = "sensor[" + sensor.name + "]";
+    const int n_loads = static_cast<int>(loads_.size());
+    if (sensor.components.empty() || sensor.load < -1 || sensor.load >= n_loads)
+        refuse("sensor-empty", path, "a sensor needs something to read");
+    if (sensor.body != -1) check_body_index(sensor.body, n_bodies(), path);
+    for (const SensorComponent& component : sensor.components)
+        for (const PairForm& form : component.coordinate.coordinate.forms) {
+            check_body_index(form.body_i, n_bodies(), path);
+            check_body_index(form.body_j, n_bodies(), path);
+        }
+    sensors_.push_back(std::move(sensor));
+    return static_cast<int>(sensors_.size()) - 1;
 }
 
 int Model::find_body(const std::string& name) const

@@ -9,6 +9,7 @@
 #include "livens/multibody/body.h"
 #include "livens/multibody/joints.h"
 #include "livens/multibody/loads.h"
+#include "livens/multibody/sensors.h"
 
 namespace [[gnu::visibility("default")]] livens {
 
@@ -19,7 +20,7 @@ struct State {
     std::vector<Matrix34> V;
 };
 
-/// A mechanism is built by the three add_ functions and constant from then on; all others take it const.
+/// A mechanism is built by the add_ functions and constant from then on; all others take it const.
 class Model {
 public:
     explicit Model(const Vector3& gravity = {0, 0, 0}) : gravity_(gravity) {}
@@ -31,11 +32,13 @@ public:
     int add_body(Body body);
     int add_joint(Joint joint);
     int add_load(Load load);
+    int add_sensor(Sensor sensor);
 
     const Vector3& gravity() const { return gravity_; }   ///< m/s^2
     const std::vector<Body>& bodies() const { return bodies_; }
     const std::vector<Joint>& joints() const { return joints_; }
     const std::vector<Load>& loads() const { return loads_; }
+    const std::vector<Sensor>& sensors() const { return sensors_; }
 
     int n_bodies() const { return static_cast<int>(bodies_.size()); }
     int n_rows() const { return static_cast<int>(rows_.size()); }   ///< of all joints, in their order
@@ -77,6 +80,7 @@ private:
     std::vector<Body> bodies_;
     std::vector<Joint> joints_;
     std::vector<Load> loads_;
+    std::vector<Sensor> sensors_;
     std::vector<RowPlace> rows_;
     std::vector<int> first_rows_;
     bool has_drives_ = false;

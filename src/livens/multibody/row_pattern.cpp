@@ -98,7 +98,7 @@ void RowPattern::add_body(const Tables& tables, int b)
     body.dofs = table.dofs;
     body.principal = table.principal;
     for (const Load& load : tables.model->loads())
-        body.loaded = body.loaded || load.bodies[0] == b || load.bodies[1] == b;
+        body.loaded = body.loaded || std::ranges::find(load.bodies, b) != load.bodies.end();
     body.inverse_root_mass = table.inverse_root_mass;
     body.root_mass = 1 / table.inverse_root_mass;
     for (int i = 0; i < 3; ++i) body.weight[i] = table.inverse_root_mass * table.weight[i];

@@ -232,9 +232,9 @@ void Tables::add_weight(double factor, double* raw) const
 
 LoadArguments Tables::arguments(const Load& load, Instant instant, const double* X, const double* V)
 {
-    LoadArguments arguments;
+    LoadArguments arguments(load.bodies.size());
     arguments.at = instant;
-    for (int side = 0; side < 2; ++side) {
+    for (std::size_t side = 0; side < load.bodies.size(); ++side) {
         const int body = load.bodies[side];
         if (body == world) continue;
         arguments.X[side] = at(X, body);

@@ -109,7 +109,7 @@ void StepEquations::add_loads(const StepStart& start, const std::vector<Matrix34
     for (const Load& load : model_.loads()) {
         const LoadArguments arguments = load_arguments(load, at, X_a, V_a);
         LoadForces F{};
-        LoadTangent T;
+        LoadTangent T(load.bodies.size());
         load.forces(arguments, F);
         if (load.depends_on_X || load.depends_on_V) load.tangent(arguments, T);
         for (int s = 0; s < 2; ++s) {
@@ -117,7 +117,7 @@ void StepEquations::add_loads(const StepStart& start, const std::vector<Matrix34
             if (body == world) continue;
             if (!finite(F[s])) system.not_finite = load.name;
             add_force(body, factor, F[s], system);
-            for (int w = 0; w < 2; ++w) {
+            for (std::size_t w = 0; w < load.bodies.size(); ++w) {
                 const int by = load.bodies[w];
                 if (by == world) continue;
                 const Matrix<12, 12> d = a_ * T.X[s][w] + (1 / start.h) * T.V[s][w];

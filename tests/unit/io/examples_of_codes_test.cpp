@@ -109,6 +109,8 @@ TEST(ExamplesOfCodes, StandWhereverAScenarioLeads)
         "sample-exact-method",
         "samples",
         "size-not-positive",
+        "sensor-empty",
+        "attraction-mu",
         "start-size",
         "time-elements",
         "time-out-of-range",

@@ -208,7 +208,9 @@ TEST(Scenario, LoadsActAsTheySay)
     const auto forces = [](const std::string& lines, double t) {
         const Scenario s = good(one_body(given_mass + "rotation_vector = [0, 0, \"90 deg\"]",
                                          "[[load]]\nbody = \"b\"\n" + lines));
-        LoadArguments at{{t, Side::right}, {s.model.bodies()[0].X, world_configuration}, {}};
+        LoadArguments at;
+        at.at = {t, Side::right};
+        at.X[0] = s.model.bodies()[0].X;
         LoadForces F{};
         s.model.loads()[0].forces(at, F);
         return F[0];
@@ -240,7 +242,9 @@ TEST(Scenario, SpringsTakeTheWorldOnEitherSide)
         const Load& spring = s.model.loads()[0];
         EXPECT_EQ(spring.bodies[0], 0);
         LoadForces F{};
-        spring.forces({{0, Side::middle}, {s.model.bodies()[0].X, world_configuration}, {}}, F);
+        LoadArguments at;
+        at.X[0] = s.model.bodies()[0].X;
+        spring.forces(at, F);
         EXPECT_EQ(F[0].column(0), (Vector3{4, 0, 0}))
             << "stretched from 1 to 3 m, it pulls towards the world's point";
     }
@@ -432,8 +436,9 @@ std::vector<Case> cases_of_joints_and_loads()
 std::vector<Case> cases()
 {
     std::vector<Case> all = cases_of_files();
-    for (const std::vector<Case>& more : {cases_of_bodies(), cases_of_joints_and_loads(),
-                                          test::cases_of_mechanisms(), test::cases_of_mixed()})
+    for (const std::vector<Case>& more :
+         {cases_of_bodies(), cases_of_joints_and_loads(), test::cases_of_mechanisms(), test::cases_of_laws(),
+          test::cases_of_mixed()})
         all.insert(all.end(), more.begin(), more.end());
     return all;
 }
@@ -498,6 +503,8 @@ TEST(ScenarioCodes, AllAreProvokedByTheseTests)
                                       "sample-exact-method",
                                       "samples",
                                       "size-not-positive",
+                                      "sensor-empty",
+                                      "attraction-mu",
                                       "start-size",
                                       "time-elements",
                                       "time-out-of-range",

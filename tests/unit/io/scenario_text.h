@@ -24,6 +24,7 @@ struct Case {
 /// Of the family mixed and of conditions at the end; mixed_scenario_test.cpp.
 std::vector<Case> cases_of_mixed();
 std::vector<Case> cases_of_mechanisms();
+std::vector<Case> cases_of_laws();
 
 inline const std::string valid_scenario = R"(format = 1
 gravity = [0, 0, -9.81]

@@ -59,8 +59,8 @@ TEST(PointForce, InWorldAxesDependsOnNothing)
     const Load load = point_force("f", 0, {1, 2, 3}, constant({1, 0, 0}), Frame::inertial);
     EXPECT_FALSE(load.depends_on_X);
     EXPECT_FALSE(load.depends_on_V);
-    EXPECT_EQ(forces(load, {})[0], (Matrix34{1, 0, 0, 1, 0, 0, 2, 0, 0, 3, 0, 0}));
-    EXPECT_EQ(forces(load, {})[1], Matrix34{});
+    EXPECT_EQ(forces(load, LoadArguments())[0], (Matrix34{1, 0, 0, 1, 0, 0, 2, 0, 0, 3, 0, 0}));
+    EXPECT_EQ(forces(load, LoadArguments())[1], Matrix34{});
 }
 
 TEST(Torque, HasItsMomentForEveryTriadThatIsNotFlat)
@@ -159,7 +159,7 @@ TEST(SpringDamper, IsDefinedForPointsThatNearlyCoincide)
 TEST(SpringDamper, PutsTheBodyBeforeTheWorld)
 {
     const Load load = spring_damper("s", world, {1, 0, 0}, 2, {0, 0.5, 0}, {10, 1, 0});
-    EXPECT_EQ(load.bodies, (std::array<int, 2>{2, world}));
+    EXPECT_EQ(load.bodies, (std::vector<int>{2, world}));
     LoadArguments at;
     const LoadForces F = forces(load, at);
     EXPECT_DOUBLE_EQ(F[0](0, 0), 10);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Bodies, joints and estimated errors at the output times.
+// Bodies, joints, sensors and estimated errors at the output times.
 #include <algorithm>
 #include <array>
 #include <limits>
@@ -122,7 +122,7 @@ class Samples {
 public:
     Samples(RunWriter& archive, const Model& model, const Run& run)
         : file_(archive.file()), model_(model), motion_(run.motion), estimate_(run.estimate),
-          of_joints_(model, run.motion)
+          of_joints_(model, run.motion), sensors_(model, run.motion)
     {
         const auto first = std::ranges::lower_bound(run.output, motion_.start());
         const auto last = std::ranges::upper_bound(run.output, motion_.end());
@@ -146,6 +146,7 @@ public:
         previous_.resize(model.bodies().size(), Vector4{1, 0, 0, 0});
         declare_errors(archive);
         declare_coordinates(archive);
+        declare_sensors(archive);
         const bool has_multipliers = !motion_.end_multipliers.empty() || !motion_.multipliers.empty();
         if (model.joints().empty() || !has_multipliers) return;
         const std::vector<std::string> sides{"time", "joint", "side", "xyz"};
@@ -167,7 +168,8 @@ public:
             if (!joints_.empty()) add_joints(t);
             add_errors(t);
             if (!coordinates_.empty()) add_coordinates(t);
-            held += 62 * model_.bodies().size() + 12 * model_.joints().size();
+            if (!readings_.empty()) append_all(readings_[0], sensors_.at(t));
+            held += 62 * model_.bodies().size() + 12 * model_.joints().size() + 6 * model_.sensors().size();
             if (held < chunk) continue;
             flush();
             held = 0;
@@ -227,6 +229,28 @@ private:
         }
     }
 
+    /// One variable for all, whose units differ.
+    void declare_sensors(RunWriter& archive)
+    {
+        std::vector<std::string> names, units;
+        for (const Sensor& sensor : model_.sensors())
+            for (const SensorComponent& component : sensor.components) {
+                names.push_back(sensor.name + "." + component.name);
+                units.push_back(component.unit);
+            }
+        if (names.empty()) return;
+        archive.names("reading", "what a sensor reads", names);
+        archive.names("reading_unit", "its unit", units, "reading");
+        const VariableInfo info{
+            "sensor_value", {"time", "reading"}, "1", "none", "what sensors read, in units of reading_unit"};
+        readings_.push_back({archive.declare(info, NumberType::real, times_.size() * names.size())});
+    }
+
+    static void append_all(Column& column, const std::vector<double>& values)
+    {
+        column.values.insert(column.values.end(), values.begin(), values.end());
+    }
+
     void add_coordinates(double t)
     {
         const std::vector<CoordinateValue> values = of_joints_.at(t);
@@ -240,7 +264,7 @@ private:
 
     void flush()
     {
-        for (auto* columns : {&bodies_, &joints_, &errors_, &coordinates_})
+        for (auto* columns : {&bodies_, &joints_, &errors_, &coordinates_, &readings_})
             for (Column& column : *columns) {
                 file_.append(column.variable, std::span<const double>(column.values));
                 column.values.clear();
@@ -280,7 +304,8 @@ private:
     const ErrorEstimate& estimate_;
     std::span<const double> times_;
     JointCoordinates of_joints_;
-    std::vector<Column> bodies_, joints_, errors_, coordinates_;
+    SensorReadings sensors_;
+    std::vector<Column> bodies_, joints_, errors_, coordinates_, readings_;
     std::vector<std::string> kinds_;   // of coordinates_, in pairs of value and rate
     std::vector<const std::vector<double>*> errors_at_ends_;
     std::vector<Vector4> previous_;

@@ -90,7 +90,8 @@ void RunWriter::text(const std::string& name, const char* meaning, const std::st
 }
 
 /// One row of characters each, filled up with zeros.
-void RunWriter::names(const std::string& name, const char* meaning, const std::vector<std::string>& values)
+void RunWriter::names(const std::string& name, const char* meaning, const std::vector<std::string>& values,
+                      const std::string& dimension)
 {
     if (values.empty()) return;
     std::size_t width = 1;
@@ -98,7 +99,8 @@ void RunWriter::names(const std::string& name, const char* meaning, const std::v
     file_.dimension(text_dimension(name), width);
     std::string rows(width * values.size(), '\0');
     for (std::size_t i = 0; i < values.size(); ++i) values[i].copy(rows.data() + i * width, width);
-    VariableInfo info{name, {name, text_dimension(name)}, "1", "none", meaning, {{"_Encoding", "utf-8"}}};
+    const std::string& along = dimension.empty() ? name : dimension;
+    VariableInfo info{name, {along, text_dimension(name)}, "1", "none", meaning, {{"_Encoding", "utf-8"}}};
     bytes(info, NumberType::text, std::move(rows));
 }
 

@@ -29,7 +29,9 @@ public:
     void status(SolveStatus status);
     void word(const std::string& name, const std::string& value) { file_.attribute(name, value); }
     void text(const std::string& name, const char* meaning, const std::string& value);
-    void names(const std::string& name, const char* meaning, const std::vector<std::string>& values);
+    /// A name for each place along a dimension, by default one of that name.
+    void names(const std::string& name, const char* meaning, const std::vector<std::string>& values,
+               const std::string& dimension = "");
     void flags(const VariableInfo& info, const std::vector<bool>& values);
     void field(VariableInfo info, const Field& field);
 

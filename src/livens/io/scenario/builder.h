@@ -9,8 +9,10 @@
 #include <vector>
 
 #include "livens/base/error.h"
-#include "livens/io/scenario/section.h"
 #include "livens/io/scenario.h"
+#include "livens/io/scenario/section.h"
+#include "livens/multibody/load_laws.h"
+#include "livens/time/expression.h"
 
 namespace livens {
 
@@ -98,9 +100,33 @@ struct JointReference {
 /// Throws InputError (`joint-unknown`, `joint-coordinate`) at path.joint.
 JointReference find_coordinate(const Builder& builder, const Section& section, const std::string& path);
 
+// Expressions.
+
+/// `expression` for one number, or for three, and `inputs`.
+std::vector<Key> expression_keys(bool is_vector);
+/// What expressions of a section read: of symbol k the number reads[k].
+struct Inputs {
+    struct Read {
+        std::size_t coordinate;
+        bool is_rate;
+    };
+    std::vector<std::string> symbols;
+    std::vector<LawCoordinate> coordinates;
+    std::vector<Read> reads;
+};
+/// Throw InputError at path.inputs, path.expression.
+Inputs read_inputs(const Builder& builder, const Section& section, const std::string& path);
+std::vector<Expression> read_expressions(const Section& section, const Inputs& inputs,
+                                         const std::string& path);
+/// One factor for each expression.
+LoadLaw law_of(const std::vector<Expression>& expressions, const Inputs& inputs);
+
 /// `directors`, `quaternion`, `rotation_vector`: of a body or a joint's frame.
 std::vector<Key> orientation_keys();
 bool check_orientation(const Section& section);
+/// `frames`: one for each of two bodies.
+Key frames_key(const std::string& heading, const std::string& doc);
+bool check_frames(const Section& section);
 Matrix3 read_orientation(const Section& section);
 
 // Position, orientation and velocities of a body, at the start ([[body]]) or at the end ([body.end]).
@@ -112,6 +138,8 @@ Placement read_placement(const Section& body);
 void read_bodies(Builder& builder);
 void read_joints(Builder& builder);
 void read_drives(Builder& builder);   ///< after the joints
+/// Those of loads follow the loads, whose expressions may read the others.
+void read_sensors(Builder& builder, bool of_loads);
 void read_loads(Builder& builder);
 /// What is given at both ends, and the state at the end. The state at the start is the model's.
 void read_boundary(Builder& builder, Conditions& boundary);

@@ -42,7 +42,8 @@ bool is_path(const Section& drive)
     return kinds()[static_cast<std::size_t>(drive.kind())].keys[0].name == "body";
 }
 
-constexpr std::array<std::string_view, 6> laws{"value", "rate", "harmonic", "step", "polynomial", "table"};
+constexpr std::array<std::string_view, 7> laws{"value",      "rate",  "harmonic",  "step",
+                                               "polynomial", "table", "expression"};
 
 /// Exactly one law.
 bool check_law(const Section& drive)
@@ -52,7 +53,7 @@ bool check_law(const Section& drive)
         if (drive.has(law)) given.push_back(law);
     if (given.empty())
         return drive.error("", "drive-law", drive.label() + " has no law",
-                           {"", "give one of value, rate, harmonic, step, polynomial, table"});
+                           {"", "give one of value, rate, harmonic, step, polynomial, table, expression"});
     if (given.size() > 1) return drive.at_most_one({given[0], given[1]}, "drive-law");
     return true;
 }
@@ -83,6 +84,13 @@ bool check_sizes(const Section& drive)
                                           : "one for each time; for a path three, x, y, z of each time"});
     };
     is_good = is_multiple(drive, "polynomial", 0) && is_good;
+    if (const Value* v = drive.find("expression");
+        v != nullptr && (v->texts.empty() ? 1 : v->texts.size()) != n)
+        is_good =
+            drive.error("expression", "drive-size",
+                        "'expression' of " + drive.label() + " is " +
+                            (v->texts.empty() ? "one text" : std::to_string(v->texts.size()) + " texts"),
+                        {"", n == 3 ? "the path of a point has three components" : "give one text"});
     if (const Section* one = only_section(drive, "table"))
         if (const Value* times = one->find("times"))
             is_good = is_multiple(*one, "values", times->numbers.size()) && is_good;
@@ -95,6 +103,15 @@ double component(const Section& section, std::string_view key, std::size_t c)
     return v == nullptr || c >= v->numbers.size() ? 0 : v->numbers[c];
 }
 
+std::string drive_name(const Section& drive)
+{
+    if (drive.has("name")) return drive.text("name");
+    if (drive.find("joint") != nullptr) return "drive of " + drive.text("joint");
+    if (drive.find("body") != nullptr) return "drive of " + drive.text("body");
+    const Value* between = drive.find("between");
+    return between == nullptr ? "" : "drive " + between->texts[0] + "-" + between->texts[1];
+}
+
 /// Component c of the law; `now` is the value at the start, where a rate begins.
 TimeFunction read_law(const Section& drive, std::size_t c, std::size_t n, double now, double start)
 {
@@ -102,6 +119,8 @@ TimeFunction read_law(const Section& drive, std::size_t c, std::size_t n, double
     if (drive.has("rate")) return ramp(now, component(drive, "rate", c), start);
     if (const Section* one = only_section(drive, "harmonic"))
         return harmonic(component(*one, "amplitude", c), one->number("frequency"), one->number("phase"));
+    if (drive.has("expression"))
+        return expression_of_time(read_expressions(drive, {}, "drive[" + drive_name(drive) + "]")[c]);
     if (const Section* one = only_section(drive, "step")) {
         const TimeFunction step =
             smooth_step(one->number("from"), one->number("until"), component(*one, "rise", c));
@@ -160,15 +179,6 @@ Joint make_drive(Builder& builder, const Section& drive, const std::string& name
     const Vector3 at = drive.vector("point");
     const auto make = type == "point" ? driven_point : driven_body;
     return make(name, first.index, at, read_path(drive, start), X, builder.length());
-}
-
-std::string drive_name(const Section& drive)
-{
-    if (drive.has("name")) return drive.text("name");
-    if (drive.find("joint") != nullptr) return "drive of " + drive.text("joint");
-    if (drive.find("body") != nullptr) return "drive of " + drive.text("body");
-    const Value* between = drive.find("between");
-    return between == nullptr ? "" : "drive " + between->texts[0] + "-" + between->texts[1];
 }
 
 void read_drive(Builder& builder, const Section& drive, std::unordered_set<std::string>& taken)
@@ -230,8 +240,10 @@ Table drive_table()
         {Key{"name", types::text, "Results refer to drives as to joints. Default: `drive of` joint or body."},
          Key{"type", types::choice, ""}.needed(), Key{"value", numbers, "Constant."},
          Key{"rate", numbers, "Constant rate, from what the coordinate is at the start; rad/s or m/s."}, wave,
-         step, Key{"polynomial", types::list, "Coefficients of 1, t, t^2, ..; of a path x, y, z of each."},
-         table}}
+         step,
+         Key{"expression", types::text_or_list,
+             "A formula of t, in rad or m: `0.1*sin(2*pi*t)`; without kinks."},
+         Key{"polynomial", types::list, "Coefficients of 1, t, t^2, ..; of a path x, y, z of each."}, table}}
         .with_kinds("type", kinds());
 }
 

@@ -29,20 +29,13 @@ const Key joints{"joints", types::names, "Two joints by name: the driving one an
 const Key displacement{"coordinate", types::number, "What the joint's displacement is called at the start.",
                        "m", "0"};
 
-const Key& frames_key()
+Key frames_of_joint()
 {
-    static const Key frames = [] {
-        std::vector<Key> keys{{"point", types::vector3, "The joint's point.", "m", "[0, 0, 0]"}};
-        for (const Key& key : orientation_keys()) keys.push_back(key);
-        return Key{"frames", types::tables,
-                   "Instead of all others: one frame for each body, in its coordinates. The third axis is "
-                   "the joint's. "
-                   "The first axes are held the same way by weld, prismatic and constant_velocity, and by a "
-                   "screw where "
-                   "its displacement is zero; others do not look at them."}
-            .holding({"frame of a joint", "Point and axes.", keys});
-    }();
-    return frames;
+    return frames_key("frame of a joint",
+                      "Instead of all others: one frame for each body, in its coordinates. The third axis is "
+                      "the joint's. The first axes are held the same way by weld, prismatic and "
+                      "constant_velocity, and by a screw where its displacement is zero; others do not look "
+                      "at them.");
 }
 
 /// A kind of the library with a maker that takes a frame.
@@ -78,7 +71,7 @@ Joint make_rod(const JointParts& p)
 /// What turns about one axis, slides along it, or neither.
 std::vector<JointKind> kinds_of_one_axis()
 {
-    const Key& frames = frames_key();
+    const Key frames = frames_of_joint();
     return {
         {{"weld", "nothing moves (6 rows)", {at, points, frames}}, Location::at_point, as_it_stands<weld>},
         {{"revolute", "turns about one axis (5)", {at, axis, points, axes, frames, angle}},
@@ -106,7 +99,7 @@ std::vector<JointKind> kinds_of_one_axis()
 /// What holds points, or the directions of two axes.
 std::vector<JointKind> kinds_of_points_and_axes()
 {
-    static const Key frames = frames_key();
+    static const Key frames = frames_of_joint();
     return {{{"universal", "turns about two perpendicular axes (4)", {at, points, axes, frames}},
              Location::on_two_axes,
              by_frame<universal>},
@@ -182,6 +175,13 @@ const std::vector<JointKind>& joint_kinds()
         return kinds;
     }();
     return all;
+}
+
+Key frames_key(const std::string& heading, const std::string& doc)
+{
+    std::vector<Key> keys{{"point", types::vector3, "In coordinates of the body.", "m", "[0, 0, 0]"}};
+    for (const Key& key : orientation_keys()) keys.push_back(key);
+    return Key{"frames", types::tables, doc}.holding({heading, "Point and axes.", keys});
 }
 
 }   // namespace livens

@@ -102,28 +102,6 @@ bool check_axes(const Section& joint, Findings& findings)
     return true;
 }
 
-bool check_frames(const Section& joint)
-{
-    const Value* given = joint.find("frames");
-    if (given == nullptr) return true;
-    if (given->sections.size() != 2)
-        return joint.error("frames", "joint-frames",
-                           joint.label() + " has not two frames but " +
-                               std::to_string(given->sections.size()),
-                           {"", "give two, the first body's and the second's"});
-    bool is_good = true;
-    for (const Section& frame : given->sections) {
-        is_good = check_orientation(frame) && is_good;
-        if (frame.find("directors") == nullptr) continue;
-        const Matrix3 D = frame.columns("directors");
-        if (norm(transpose(D) * D - identity<3>()) > perpendicular_slack || determinant(D) < 0)
-            is_good = frame.error("directors", "joint-frames",
-                                  "the axes of " + frame.label() +
-                                      " are not a right-handed set of perpendicular unit vectors");
-    }
-    return is_good;
-}
-
 /// A point mass can be held at its own point only, which `at` must be.
 bool check_point_masses(const Builder& builder, const Section& joint, int first, int second)
 {
@@ -242,6 +220,28 @@ std::string claim_joint_name(const Section& joint, std::unordered_set<std::strin
 }
 
 }   // namespace
+
+bool check_frames(const Section& joint)
+{
+    const Value* given = joint.find("frames");
+    if (given == nullptr) return true;
+    if (given->sections.size() != 2)
+        return joint.error("frames", "joint-frames",
+                           joint.label() + " has not two frames but " +
+                               std::to_string(given->sections.size()),
+                           {"", "give two, the first body's and the second's"});
+    bool is_good = true;
+    for (const Section& frame : given->sections) {
+        is_good = check_orientation(frame) && is_good;
+        if (frame.find("directors") == nullptr) continue;
+        const Matrix3 D = frame.columns("directors");
+        if (norm(transpose(D) * D - identity<3>()) > perpendicular_slack || determinant(D) < 0)
+            is_good = frame.error("directors", "joint-frames",
+                                  "the axes of " + frame.label() +
+                                      " are not a right-handed set of perpendicular unit vectors");
+    }
+    return is_good;
+}
 
 Key coordinate_key()
 {

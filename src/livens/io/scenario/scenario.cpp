@@ -50,7 +50,9 @@ void build(const Node& root, Scenario& scenario, Findings& findings)
     read_bodies(builder);
     read_joints(builder);
     read_drives(builder);
+    read_sensors(builder, false);
     read_loads(builder);
+    read_sensors(builder, true);
     read_run(builder, scenario);
     if (findings.n_errors() > 0) return;
     scenario.conditions.start = builder.model().start();

@@ -95,6 +95,7 @@ const Table& root_table()
          Key{"drive", types::tables, "Coordinates, distances and points that follow time."}.holding(
              drive_table()),
          Key{"load", types::tables, "Forces, torques and springs."}.holding(load_table()),
+         Key{"sensor", types::tables, "What is read of the motion."}.holding(sensor_table()),
          Key{"time", types::table, "Interval, elements and output."}.needed().holding(time_table()),
          Key{"method", types::table, "Discretisation and its tolerances."}.holding(method_table()),
          Key{"start", types::table, "Conditions at the start."}.holding(start_table()),

@@ -20,10 +20,11 @@ enum class Form : std::uint8_t {
     integer,
     number,   ///< or a text with a unit, where the key has one
     text,
-    choice,   ///< one of the key's words
-    names,    ///< `count` texts
-    row,      ///< `count` numbers
-    rows,     ///< `count` rows of 3 numbers
+    choice,        ///< one of the key's words
+    names,         ///< `count` texts
+    named_texts,   ///< a table of texts under names of the user's choice
+    row,           ///< `count` numbers
+    rows,          ///< `count` rows of 3 numbers
     table,
     tables   ///< array of tables
 };
@@ -52,6 +53,8 @@ inline constexpr KeyType principal_or_full{"three numbers or three rows of three
 inline constexpr KeyType triple{"three rows of three numbers", Form::rows, 3};
 inline constexpr KeyType pair{"two rows of three numbers", Form::rows, 2};
 inline constexpr KeyType names{"two texts", Form::names, 2};
+inline constexpr KeyType text_or_list{"a text or a list of texts", Form::text, 0, Form::names};
+inline constexpr KeyType named_texts{"a table of texts", Form::named_texts};
 inline constexpr KeyType list{"a list of numbers", Form::row};
 inline constexpr KeyType rows{"rows of three numbers", Form::rows};
 inline constexpr KeyType number_or_list{"a number or a list of numbers", Form::number, 0, Form::row};
@@ -128,6 +131,7 @@ Table body_table();
 Table joint_table();
 Table drive_table();
 Table load_table();
+Table sensor_table();
 Table method_table();
 const Table& root_table();
 /// All, from the root on, each before those inside it.

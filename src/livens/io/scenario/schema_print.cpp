@@ -85,6 +85,11 @@ void write_form(JsonWriter& json, const Key& key, Form form, int count)
         json.end_array().end_object();
         break;
     case Form::names: write_list(json, key, Form::text, count); break;
+    case Form::named_texts:
+        json.begin_object().member("type", "object").key("additionalProperties");
+        write_form(json, key, Form::text, 0);
+        json.end_object();
+        break;
     case Form::row: write_list(json, key, Form::number, count); break;
     case Form::rows: write_list(json, key, Form::row, count); break;
     case Form::table: write_table(json, *key.child); break;

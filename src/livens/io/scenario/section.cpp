@@ -34,7 +34,9 @@ private:
     {
         switch (key_.type.other) {
         case Form::choice: return node.kind == NodeKind::text && index_of(key_.choices, node.text()) >= 0;
-        case Form::row: return node.kind == NodeKind::array;
+        case Form::row:
+        case Form::names:
+            return node.kind == NodeKind::array;
         case Form::rows:
             return node.kind == NodeKind::array && !node.items().empty() &&
                    node.items().front().kind == NodeKind::array;
@@ -54,9 +56,10 @@ private:
         case Form::text: return read_text(node, value_.text);
         case Form::choice: return read_choice(node);
         case Form::names:
-            return read_each(node, 2, [&](const Node& item) {
-                return read_text(item, value_.texts.emplace_back());
-            });
+            return read_each(node, key_.type.count,
+                             [&](const Node& item) { return read_text(item, value_.texts.emplace_back()); });
+        case Form::named_texts:
+            return read_named_texts(node);
         case Form::row: return read_row(node, key_.type.count);
         case Form::rows:
             return read_each(node, key_.type.count, [&](const Node& item) { return read_row(item, 3); });
@@ -150,6 +153,14 @@ private:
             return findings_.error(node.place, "wrong-type",
                                    demand() + "; here are " + std::to_string(items.size()));
         return std::all_of(items.begin(), items.end(), read_item);
+    }
+
+    bool read_named_texts(const Node& node)
+    {
+        if (node.kind != NodeKind::table) return wrong_type(node);
+        return std::ranges::all_of(node.entries(), [&](const Entry& entry) {
+            return read_text(entry.value, value_.texts.emplace_back());
+        });
     }
 
     bool read_row(const Node& node, int count)

@@ -18,6 +18,9 @@ void check_not_negative(const Load& load, double value, const std::string& key);
 /// Checks what can be checked of a time vector and takes over its breaks.
 void set_load_value(Load& load, const TimeVector& value);
 
+/// Reports its components.
+void report_load_value(Load& load, const TimeVector& value, const char* unit);
+
 inline Vector3 load_value(const TimeVector& value, Instant at)
 {
     return {value[0](at).value, value[1](at).value, value[2](at).value};
@@ -28,6 +31,13 @@ inline void add_block(Matrix<12, 12>& tangent, int i, int j, const Matrix3& bloc
 {
     for (int col = 0; col < 3; ++col)
         for (int row = 0; row < 3; ++row) tangent(3 * i + row, 3 * j + col) += block(row, col);
+}
+
+/// Adds the derivative of stacked columns a s by a number s with the slopes b.
+inline void add_outer(Matrix<12, 12>& tangent, const Matrix34& a, const Matrix34& b)
+{
+    for (int j = 0; j < 12; ++j)
+        for (int i = 0; i < 12; ++i) tangent(i, j) += a.a[i] * b.a[j];
 }
 
 }   // namespace livens

@@ -1,23 +1,27 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "livens/multibody/detail/coordinate_load.h"
 #include "livens/multibody/detail/load_values.h"
+#include "livens/multibody/load_laws.h"
 
 namespace livens {
 
-Load actuator(const std::string& name, const Joint& joint, const NamedCoordinate& coordinate,
-              const TimeFunction& value, const Configurations& X)
+Load actuator(const std::string& name, const NamedCoordinate& coordinate, const TimeFunction& value,
+              const Configurations& X)
 {
-    const CoordinateLoad along(joint, coordinate, X);
-    Load load = start_load(name, "actuator", along.bodies());
+    Load load = unit_along(name, coordinate.coordinate, X);
+    load.type = "actuator";
     set_load_value(load, {value, 0.0, 0.0});
-    load.depends_on_X = true;
-    load.needs_directors = along.needs_directors();
-    load.forces = [along, value](const LoadArguments& arguments, LoadForces& F) {
-        along.forces(arguments, value(arguments.at).value, F);
+    const Load unit = load;
+    load.forces = [unit, value](const LoadArguments& arguments, LoadForces& F) {
+        unit.forces(arguments, F);
+        for (Matrix34& of_body : F) of_body *= value(arguments.at).value;
     };
-    load.tangent = [along, value](const LoadArguments& arguments, LoadTangent& tangent) {
-        along.tangent(arguments, {value(arguments.at).value, 0, 0}, tangent);
+    load.tangent = [unit, value](const LoadArguments& arguments, LoadTangent& tangent) {
+        unit.tangent(arguments, tangent);
+        for (auto& of_body : tangent.X)
+            for (std::size_t c = 0; c < 2; ++c) of_body[c] *= value(arguments.at).value;
     };
+    load.readings = {{"force", coordinate.coordinate.is_angle() ? "N m" : "N",
+                      [value](const LoadArguments& arguments) { return value(arguments.at).value; }}};
     return load;
 }
 

@@ -11,6 +11,7 @@ Load point_force(const std::string& name, int body, const Vector3& point, const 
     Load load = start_load(name, "force", {body, world});
     check_load_vector(load, point, "the point");
     set_load_value(load, value);
+    report_load_value(load, value, "N");
     load.depends_on_X = body_fixed;
     load.needs_directors[0] = body_fixed || dot(point, point) > 0;
     const Vector4 place = livens::point(point);

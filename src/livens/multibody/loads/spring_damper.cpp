@@ -33,20 +33,34 @@ struct Spring {
         return line;
     }
 
-    /// What pulls the first point towards the second. The spring's part is written k r - k l0 u: without free
-    /// length it is smooth where the points meet, and with u = 0 there is no force where they coincide.
-    Vector3 pull(const Line& line) const
+    /// The force is stiffness r + tension u: without free length a linear spring is smooth where the points
+    /// meet, and with u = 0 there is no force where they coincide. The tension's slope is by l.
+    struct Parts {
+        double stiffness, tension, slope;
+    };
+    Parts parts(const Line& line) const
     {
-        return law.stiffness * line.r + (law.damping * line.rate - law.stiffness * law.free_length) * line.u;
+        const double more = law.preload + law.damping * line.rate;
+        if (!law.law) return {law.stiffness, more - law.stiffness * law.free_length, 0};
+        const SpringValue spring = law.law(line.l - law.free_length);
+        return {0, more + spring.force, spring.stiffness};
     }
 
-    /// d pull / dr. At coinciding points: k I without free length, else none.
+    /// What pulls the first point towards the second.
+    Vector3 pull(const Line& line) const
+    {
+        const Parts p = parts(line);
+        return p.stiffness * line.r + p.tension * line.u;
+    }
+
+    /// d pull / dr. At coinciding points: k I without tension, else none.
     Matrix3 pull_by_r(const Line& line) const
     {
         const Matrix3 I = identity<3>();
-        if (line.l == 0) return law.free_length == 0 ? law.stiffness * I : Matrix3{};
-        const Matrix3 turn = (1 / line.l) * (I - outer(line.u, line.u));   // du/dr
-        return law.stiffness * I + (law.damping * line.rate - law.stiffness * law.free_length) * turn +
+        const Parts p = parts(line);
+        if (line.l == 0) return p.tension == 0 ? p.stiffness * I : Matrix3{};
+        const Matrix3 along = outer(line.u, line.u), turn = (1 / line.l) * (I - along);   // du/dr
+        return p.stiffness * I + p.tension * turn + p.slope * along +
                law.damping * outer(line.u, turn * line.w);
     }
 
@@ -79,7 +93,8 @@ struct Spring {
     double potential(const LoadArguments& arguments) const
     {
         const double stretch = line(arguments).l - law.free_length;
-        return 0.5 * law.stiffness * stretch * stretch;
+        return law.preload * stretch +
+               (law.law ? law.law(stretch).energy : 0.5 * law.stiffness * stretch * stretch);
     }
 
     double damper_power(const LoadArguments& arguments) const
@@ -105,7 +120,8 @@ Load spring_damper(const std::string& name, int first, const Vector3& point_firs
     check_not_negative(load, spring.stiffness, "stiffness");
     check_not_negative(load, spring.damping, "damping");
     check_not_negative(load, spring.free_length, "free_length");
-    load.depends_on_X = spring.stiffness > 0 || spring.damping > 0;
+    check_load_vector(load, {spring.preload, 0, 0}, "the preload");
+    load.depends_on_X = spring.stiffness > 0 || spring.damping > 0 || spring.preload != 0 || spring.law;
     load.depends_on_V = spring.damping > 0;
     for (int b = 0; b < 2; ++b)
         load.needs_directors[b] = law.points[b] != point({}) && load.bodies[b] != world;
@@ -115,6 +131,13 @@ Load spring_damper(const std::string& name, int first, const Vector3& point_firs
     };
     load.potential = [law](const LoadArguments& arguments) { return law.potential(arguments); };
     load.power = [law](const LoadArguments& arguments) { return law.damper_power(arguments); };
+    load.readings = {
+        {"force", "N",
+         [law](const LoadArguments& arguments) {
+             const Line line = law.line(arguments);
+             return dot(law.pull(line), line.u);
+         }},
+        {"length", "m", [law](const LoadArguments& arguments) { return law.line(arguments).l; }}};
     return load;
 }
 

@@ -21,6 +21,7 @@ Load torque(const std::string& name, int body, const TimeVector& value, Frame fr
 {
     Load load = start_load(name, "torque", {body, world});
     set_load_value(load, value);
+    report_load_value(load, value, "N m");
     load.depends_on_X = true;
     load.needs_directors[0] = true;
     load.forces = [value, frame](const LoadArguments& arguments, LoadForces& F) {

@@ -157,7 +157,7 @@ double Tangent::rounding_of(const Load& load, const LoadArguments& at, const Loa
         for (const double l : body.spin) root = std::max(root, std::abs(l));
         for (int i = 0; i < 12; ++i) {
             double term = 0;
-            for (int c = 0; c < 2; ++c)
+            for (std::size_t c = 0; c < load.bodies.size(); ++c)
                 for (int k = 0; k < 12; ++k)
                     term += std::abs(tangent.X[r][c](i, k) * at.X[c].a[k]) +
                             std::abs(tangent.V[r][c](i, k) * at.V[c].a[k]);
@@ -171,7 +171,7 @@ double Tangent::rounding_of(const Load& load, const LoadArguments& at, const Loa
 void Tangent::evaluate_loads(const Stretch& stretch, const Nodes& nodes, const Rows& rows, int e)
 {
     const std::size_t n = tables_.loads_with_tangent.size();
-    load_tangents_.assign(n * rule_.loads.points.size(), {});
+    load_tangents_.resize(n * rule_.loads.points.size());
     for (int c = 0; c < rule_.degree; ++c) {
         rows.interpolate(stretch, nodes, e, c, X_.data(), V_.data());
         for (std::size_t l = 0; l < n; ++l) {
@@ -179,6 +179,7 @@ void Tangent::evaluate_loads(const Stretch& stretch, const Nodes& nodes, const R
             const Instant at = stretch.load_point(rule_, e, c);
             const LoadArguments arguments = Tables::arguments(load, at, X_.data(), V_.data());
             LoadTangent& tangent = load_tangents_[c * n + l];
+            tangent = LoadTangent(load.bodies.size());
             load.tangent(arguments, tangent);
             const double size = std::abs(stretch.h(e)) * rounding_of(load, arguments, tangent);
             load_rounding_ = std::max(load_rounding_, size);
@@ -194,8 +195,8 @@ void Tangent::add_loads(const Stretch& stretch, const Nodes& nodes, int e, int a
     double block[36], scaled[36];
     for (std::size_t l = 0; l < n; ++l) {
         const Load& load = tables_.model->loads()[tables_.loads_with_tangent[l]];
-        for (int r = 0; r < 2; ++r) {
-            for (int s = 0; s < 2; ++s) {
+        for (std::size_t r = 0; r < 2; ++r) {
+            for (std::size_t s = 0; s < load.bodies.size(); ++s) {
                 const int i = load.bodies[r], j = load.bodies[s];
                 if (i == world || j == world) continue;
                 Matrix<12, 12> K{};

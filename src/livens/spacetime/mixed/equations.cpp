@@ -35,7 +35,7 @@ Equations::Equations(Setup setup, const Numbering& numbering)
         const Load& load = m.tables.model->loads()[l];
         if (!load.depends_on_X && !load.depends_on_V) continue;
         for (int by = 0; by < 2; ++by)
-            for (int of = 0; of < 2; ++of) {
+            for (int of = 0; of < static_cast<int>(load.bodies.size()); ++of) {
                 if (load.bodies[by] == world || load.bodies[of] == world) continue;
                 load_blocks_.push_back({l, by, of, {}, {}});
             }

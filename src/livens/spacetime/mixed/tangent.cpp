@@ -132,7 +132,7 @@ void Equations::sum_loads(int e, int g)
         LoadBlock& block = load_blocks_[l];
         const Load& load = m.tables.model->loads()[block.load];
         if (block.load != of_load) {
-            tangent = {};
+            tangent = LoadTangent(load.bodies.size());
             load.tangent(
                 m.tables.arguments(load, {time(e, g), Side::middle}, sample_.X.data(), sample_.V.data()),
                 tangent);

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Expressions in scenarios: what their symbols stand for.
+#include <algorithm>
+
+#include "livens/io/scenario/builder.h"
+
+namespace livens {
+
+namespace {
+
+/// "pivot.angle_rate": a name, which may have points and blanks, and what is read of it.
+struct Reference {
+    std::string name, what;
+};
+
+Reference split(const std::string& text)
+{
+    const std::size_t point = text.rfind('.');
+    return point == std::string::npos ? Reference{text, ""}
+                                      : Reference{text.substr(0, point), text.substr(point + 1)};
+}
+
+constexpr std::string_view rate_suffix = "_rate";
+
+[[noreturn]] void refuse_input(const std::string& code, const std::string& path, const std::string& symbol,
+                               const std::string& text, const std::string& message, const std::string& help)
+{
+    throw InputError(
+        {code, path + ".inputs", "input '" + symbol + "': " + message, "'" + text + "'", "", "", help});
+}
+
+void add_input(const Builder& builder, Inputs& inputs, const std::string& symbol, const std::string& text,
+               const std::string& path)
+{
+    const Reference reference = split(text);
+    const bool is_rate = reference.what.ends_with(rate_suffix);
+    const std::string what =
+        is_rate ? reference.what.substr(0, reference.what.size() - rate_suffix.size()) : reference.what;
+    std::vector<std::string_view> known;
+    for (const Joint& joint : builder.model().joints()) {
+        known.push_back(joint.name);
+        if (joint.name != reference.name) continue;
+        const NamedCoordinate* coordinate = find_coordinate(joint, what);
+        if (coordinate == nullptr) {
+            std::string has;
+            for (const NamedCoordinate& one : joint.coordinates)
+                has += (has.empty() ? "it has " : ", ") + one.name + ", " + one.name + "_rate";
+            refuse_input("joint-coordinate", path, symbol, text,
+                         "joint '" + joint.name + "' (" + joint.type + ") has no " +
+                             (what.empty() ? "such number" : what),
+                         has.empty() ? "such a joint has no coordinates" : has);
+        }
+        inputs.symbols.push_back(symbol);
+        inputs.reads.push_back({inputs.coordinates.size(), is_rate});
+        inputs.coordinates.push_back({coordinate->coordinate, coordinate->at_stated, !is_rate});
+        return;
+    }
+    for (const Sensor& sensor : builder.model().sensors()) {
+        known.push_back(sensor.name);
+        if (sensor.name != reference.name && sensor.name != text) continue;
+        std::string has;
+        for (const SensorComponent& component : sensor.components) {
+            has += (has.empty() ? "it has " : ", ") + component.name;
+            const NamedCoordinate& q = component.coordinate;
+            if (component.name != reference.what || q.coordinate.forms.empty()) continue;
+            inputs.symbols.push_back(symbol);
+            inputs.reads.push_back({inputs.coordinates.size(), component.is_rate});
+            inputs.coordinates.push_back({q.coordinate, q.at_stated, !component.is_rate});
+            return;
+        }
+        const bool is_readable = !sensor.components[0].coordinate.coordinate.forms.empty();
+        refuse_input(is_readable ? "input-unknown" : "input-algebraic", path, symbol, text,
+                     is_readable
+                         ? "sensor '" + sensor.name + "' has no such number"
+                         : "a load cannot follow " + std::string(sensor.load >= 0 ? "a load" : "an energy"),
+                     is_readable ? has + ", as in \"" + sensor.name + "." + sensor.components[0].name + "\""
+                                 : "give an expression of coordinates and their rates");
+    }
+    refuse_input("input-unknown", path, symbol, text, "there is nothing of this name",
+                 suggest(reference.name, known).empty()
+                     ? "give a joint and its coordinate, as in \"pivot.angle\" or \"pivot.angle_rate\""
+                     : suggest(reference.name, known));
+}
+
+}   // namespace
+
+std::vector<Key> expression_keys(bool is_vector)
+{
+    static constexpr KeyType three{"three texts", Form::names, 3};
+    return {Key{"expression", is_vector ? three : types::text,
+                is_vector ? "Instead of `value`: a formula for each component, see below."
+                          : "Instead of `value`: a formula, see below."},
+            Key{"inputs", types::named_texts,
+                "What the symbols of `expression` stand for: coordinates of joints and their rates, and what "
+                "sensors read, as in `{ phi = \"pivot.angle\", w = \"pivot.angle_rate\", x = \"tip.x\" }`, "
+                "in rad, m "
+                "and s."},
+            Key{"breaks", types::list, "Instants at which `expression` jumps or bends; elements end there.",
+                "s"}};
+}
+
+Inputs read_inputs(const Builder& builder, const Section& section, const std::string& path)
+{
+    Inputs inputs;
+    const Value* given = section.find("inputs");
+    if (given == nullptr) return inputs;
+    const std::vector<Entry>& entries = given->node->entries();
+    for (std::size_t i = 0; i < entries.size(); ++i)
+        add_input(builder, inputs, entries[i].key, given->texts[i], path);
+    return inputs;
+}
+
+std::vector<Expression> read_expressions(const Section& section, const Inputs& inputs,
+                                         const std::string& path)
+{
+    const Value& given = *section.find("expression");
+    std::vector<std::string> texts = given.texts;
+    if (texts.empty()) texts = {given.text};
+    std::vector<Expression> all;
+    for (const std::string& text : texts) {
+        try {
+            all.emplace_back(text, inputs.symbols);
+        } catch (const InputError& error) {
+            Complaint complaint = error.complaint();
+            complaint.path = path + ".expression";
+            throw InputError(complaint);
+        }
+    }
+    for (std::size_t k = 0; k < inputs.symbols.size(); ++k)
+        if (std::ranges::none_of(all, [&](const Expression& one) { return one.depends_on(k); }))
+            refuse_input("input-unused", path, inputs.symbols[k], "", "no expression has it", "leave it out");
+    return all;
+}
+
+LoadLaw law_of(const std::vector<Expression>& expressions, const Inputs& inputs)
+{
+    return [expressions, inputs](const LawArguments& at, std::span<double> factors,
+                                 std::span<double> slopes) {
+        const std::size_t m = inputs.coordinates.size(), n = inputs.reads.size();
+        std::vector<double> numbers(n), by(slopes.empty() ? 0 : n);
+        for (std::size_t k = 0; k < n; ++k)
+            numbers[k] = (inputs.reads[k].is_rate ? at.rates : at.values)[inputs.reads[k].coordinate];
+        std::ranges::fill(slopes, 0.0);
+        for (std::size_t i = 0; i < expressions.size(); ++i) {
+            factors[i] = expressions[i](at.at.t, numbers, by);
+            for (std::size_t k = 0; k < by.size(); ++k)
+                slopes[2 * m * i + (inputs.reads[k].is_rate ? m : 0) + inputs.reads[k].coordinate] += by[k];
+        }
+    };
+}
+
+}   // namespace livens

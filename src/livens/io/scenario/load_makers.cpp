@@ -1,0 +1,295 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "livens/io/scenario/load_makers.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace livens {
+
+namespace {
+
+/// Values over time of one component.
+TimeFunction read_table(const Section& table, std::size_t component, std::size_t n)
+{
+    const std::vector<double>& rows = table.find("values")->numbers;
+    const auto make = table.text("interpolation") == "spline" ? spline_table : linear_table;
+    std::vector<double> column;
+    for (std::size_t i = component; i < rows.size(); i += n) column.push_back(rows[i]);
+    return make(table.find("times")->numbers, std::move(column));
+}
+
+TimeFunction while_it_acts(const Section& load, TimeFunction value)
+{
+    const Interval acts = read_interval(load);
+    return load.has("from") || load.has("until") ? window(std::move(value), acts.from, acts.until) : value;
+}
+
+/// A law over time alone: n components.
+std::vector<TimeFunction> read_values(const LoadSources& p, std::size_t n)
+{
+    std::vector<TimeFunction> values;
+    const Section* table = only_section(p.section, "table");
+    const bool is_formula = p.section.has("expression");
+    const std::vector<Expression> expressions =
+        is_formula ? read_expressions(p.section, {}, p.path()) : std::vector<Expression>();
+    const Value *constant = p.section.find("value"), *breaks = p.section.find("breaks");
+    for (std::size_t c = 0; c < n; ++c) {
+        TimeFunction value;
+        if (table != nullptr)
+            value = read_table(*table, c, n);
+        else if (is_formula)
+            value = expression_of_time(expressions[c],
+                                       breaks == nullptr ? std::vector<double>() : breaks->numbers);
+        else if (constant != nullptr)
+            value = constant->numbers[c];
+        values.push_back(while_it_acts(p.section, std::move(value)));
+    }
+    return values;
+}
+
+std::vector<Matrix34> places(const Builder& builder)
+{
+    std::vector<Matrix34> X;
+    for (const Body& body : builder.model().bodies()) X.push_back(body.X);
+    return X;
+}
+
+/// By formulas that look at the motion: what units are multiplied by.
+Load by_formula(const LoadSources& p, const std::string& type, const std::string& unit,
+                std::vector<Load> units, const Inputs& inputs)
+{
+    const std::vector<Expression> expressions = read_expressions(p.section, inputs, p.path());
+    LoadParts parts;
+    parts.units = std::move(units);
+    parts.coordinates = inputs.coordinates;
+    const LoadLaw law = law_of(expressions, inputs);
+    const TimeFunction acts = while_it_acts(p.section, 1.0);
+    parts.law = [law, acts](const LawArguments& at, std::span<double> factors, std::span<double> slopes) {
+        law(at, factors, slopes);
+        if (acts(at.at).value == 1) return;
+        std::ranges::fill(factors, 0.0);
+        std::ranges::fill(slopes, 0.0);
+    };
+    for (const Inputs::Read& read : inputs.reads) parts.depends_on_rates |= read.is_rate;
+    parts.breaks = acts.breaks();
+    for (std::size_t k = 0; k < parts.units.size(); ++k) {
+        const std::string name = parts.units.size() == 1 ? "force" : std::string(1, "xyz"[k]);
+        parts.readings.push_back(factor_reading(name, unit, parts.law, k, parts.units.size()));
+    }
+    if (const Value* breaks = p.section.find("breaks"))
+        parts.breaks.insert(parts.breaks.end(), breaks->numbers.begin(), breaks->numbers.end());
+    parts.domain =
+        "its expression has no value there, or reads an angle more than 175 degrees from its start";
+    return modulated(p.name, type, parts, places(p.builder));
+}
+
+/// A force or torque: by time alone, or by a formula over units along the axes.
+template <class Make>
+Load on_body(const LoadSources& p, const Make& make)
+{
+    const Inputs inputs = read_inputs(p.builder, p.section, p.path());
+    if (inputs.reads.empty()) {
+        const std::vector<TimeFunction> value = read_values(p, 3);
+        return make(TimeVector{value[0], value[1], value[2]});
+    }
+    std::vector<Load> units;
+    for (std::size_t k = 0; k < 3; ++k) {
+        TimeVector unit{0.0, 0.0, 0.0};
+        unit[k] = 1.0;
+        units.push_back(make(unit));
+    }
+    const std::string type = units[0].type, unit = units[0].readings[0].unit;
+    return by_formula(p, type, unit, std::move(units), inputs);
+}
+
+/// Texts with units must have those of the coordinate: of an angle the key's other one.
+void check_units(const Section& section, bool is_angle, const std::string& path)
+{
+    for (const Value& v : section.values()) {
+        if (v.key == nullptr || v.key->other_unit.empty() || !(is_angle ? v.has_unit : v.has_other_unit))
+            continue;
+        throw InputError({"unit", path + "." + std::string(v.key->name),
+                          "'" + std::string(v.key->name) + "' of " + section.label() + " is along " +
+                              (is_angle ? "an angle" : "a length"),
+                          "", "", "",
+                          "give it in " + std::string(is_angle ? v.key->other_unit : v.key->unit)});
+    }
+    if (const Section* table = section.takes("table") ? only_section(section, "table") : nullptr)
+        check_units(*table, is_angle, path + ".table");
+}
+
+const NamedCoordinate& coordinate_of(const LoadSources& p)
+{
+    const NamedCoordinate& coordinate = *find_coordinate(p.builder, p.section, p.path()).coordinate;
+    check_units(p.section, coordinate.coordinate.is_angle(), p.path());
+    return coordinate;
+}
+
+SpringLaw read_law(const Section& load)
+{
+    const std::string law = load.text("law");
+    if (law == "progressive") return progressive_spring(load.number("stiffness"), load.number("cubic"));
+    if (law == "linear") return nullptr;
+    const Section& table = *only_section(load, "table");
+    return tabulated_spring(table.find("elongations")->numbers, table.find("forces")->numbers,
+                            table.text("interpolation") == "spline");
+}
+
+Matrix<6, 6> read_matrix(const Section& load, std::string_view key)
+{
+    Matrix<6, 6> matrix{};
+    const Value* v = load.find(key);
+    for (int i = 0; v != nullptr && i < 6; ++i)
+        for (int j = 0; j < 6; ++j)
+            if (v->numbers.size() == 36)
+                matrix(i, j) = v->numbers[6 * i + j];
+            else if (i == j)
+                matrix(i, j) = v->numbers[i];
+    return matrix;
+}
+
+/// At a point of the world with its axes, or by frames.
+BodyFrame read_bushing_frame(const LoadSources& p, std::size_t i)
+{
+    const std::span<const Section> frames = p.section.sections("frames");
+    if (frames.size() == 2) return {frames[i].vector("point"), read_orientation(frames[i])};
+    const Matrix34& X = p.builder.start_configuration(i == 0 ? p.first : p.second);
+    return {transpose(directors(X)) * (p.section.vector("at") - X.column(0)), transpose(directors(X))};
+}
+
+}   // namespace
+
+Interval read_interval(const Section& load)
+{
+    Interval interval;
+    if (load.has("from")) interval.from = load.number("from");
+    if (load.has("until")) interval.until = load.number("until");
+    return interval;
+}
+
+/// One of several keys that say how large a load is.
+bool check_value(const Section& load)
+{
+    if (!load.at_most_one({"value", "table", "expression"}, "load-value")) return false;
+    if (!load.has("expression"))
+        return load.refuse({"inputs", "breaks"}, "load-value", "there is no 'expression'") &&
+               (load.has("value") || load.has("table") ||
+                load.error("", "load-value",
+                           load.label() + " has neither 'value' nor 'table' nor 'expression'",
+                           {"", "give 'value' for a constant, 'table' for a function of time, 'expression' "
+                                "for a formula"}));
+    return true;
+}
+
+/// Between two points, or on a joint; linear, or by a law.
+bool check_spring(const Section& load)
+{
+    if (!load.at_most_one({"between", "joint"}, "spring-place")) return false;
+    if (!load.has("joint") && !load.has("between"))
+        return load.error(
+            "", "spring-place", load.label() + " has neither 'between' nor 'joint'",
+            {"", "give 'between', the two bodies it connects, or 'joint', the joint it acts on"});
+    const bool is_placed =
+        load.has("joint")
+            ? load.refuse({"points", "free_length"}, "spring-place", "it acts on a joint: give 'rest'")
+            : load.refuse({"rest", "coordinate"}, "spring-place", "it acts between two points") &&
+                  (load.has("free_length") ||
+                   load.error("", "spring-place", load.label() + " lacks 'free_length'",
+                              {"", "give the length at which it has no force"}));
+    if (!is_placed) return false;
+    const std::string law = load.text("law");
+    const auto needs = [&](std::string_view key) {
+        return load.has(key) ||
+               load.error("", "spring-law", load.label() + " lacks '" + std::string(key) + "'",
+                          {"", "its law is " + law});
+    };
+    if (law == "table")
+        return needs("table") && load.refuse({"stiffness", "cubic"}, "spring-law", "its law is a table");
+    return needs("stiffness") && load.refuse({"table"}, "spring-law", "its law is " + law) &&
+           (law == "progressive" ? needs("cubic")
+                                 : load.refuse({"cubic"}, "spring-law", "its law is linear"));
+}
+
+bool check_bushing(const Section& load)
+{
+    if (!load.at_most_one({"at", "frames"}, "joint-placement")) return false;
+    if (!load.has("at") && !load.has("frames"))
+        return load.error("", "joint-placement", load.label() + " lacks its place",
+                          {"", "give 'at', its point in the world at the start, or 'frames'"});
+    bool is_good = check_frames(load);
+    for (const std::string_view key : {"stiffness", "damping", "preload"}) {
+        const Value* v = load.find(key);
+        const std::size_t n = v == nullptr ? 6 : v->numbers.size();
+        if (n == 6 || (n == 36 && key != "preload")) continue;
+        is_good = load.error(key, "bushing-matrix",
+                             "'" + std::string(key) + "' of " + load.label() + " has " + std::to_string(n) +
+                                 " numbers",
+                             {"", key == "preload" ? "give six: forces, then torques"
+                                                   : "give six, of a diagonal matrix, or 36, row by row"});
+    }
+    return is_good;
+}
+
+Load make_force(const LoadSources& p)
+{
+    return on_body(p, [&](const TimeVector& value) {
+        return point_force(p.name, p.first, p.section.vector("point"), value, p.section.pick<Frame>("frame"));
+    });
+}
+
+Load make_torque(const LoadSources& p)
+{
+    return on_body(p, [&](const TimeVector& value) {
+        return torque(p.name, p.first, value, p.section.pick<Frame>("frame"));
+    });
+}
+
+Load make_actuator(const LoadSources& p)
+{
+    const NamedCoordinate& coordinate = coordinate_of(p);
+    const Inputs inputs = read_inputs(p.builder, p.section, p.path());
+    const std::vector<Matrix34> X = places(p.builder);
+    if (inputs.reads.empty()) return actuator(p.name, coordinate, read_values(p, 1)[0], X);
+    return by_formula(p, "actuator", coordinate.coordinate.is_angle() ? "N m" : "N",
+                      {unit_along(p.name, coordinate.coordinate, X)}, inputs);
+}
+
+Load make_spring(const LoadSources& p)
+{
+    const Section& s = p.section;
+    if (s.has("joint")) {
+        const NamedCoordinate& coordinate = coordinate_of(p);
+        const JointSpring law{s.number("stiffness"), s.number("damping"), s.number("rest"),
+                              s.number("preload"), read_law(s)};
+        return joint_spring(p.name, coordinate, law, places(p.builder));
+    }
+    check_units(s, false, p.path());
+    const SpringDamper law{s.number("stiffness"), s.number("damping"), s.number("free_length"),
+                           s.number("preload"), read_law(s)};
+    return spring_damper(p.name, p.first, s.row("points", 0), p.second, s.row("points", 1), law);
+}
+
+Load make_bushing(const LoadSources& p)
+{
+    Bushing law{read_matrix(p.section, "stiffness"), read_matrix(p.section, "damping"), {}};
+    if (const Value* v = p.section.find("preload"))
+        for (int i = 0; i < 6; ++i) law.preload[i] = v->numbers[i];
+    return bushing(p.name, p.first, read_bushing_frame(p, 0), p.second, read_bushing_frame(p, 1), law,
+                   places(p.builder));
+}
+
+Load make_drag(const LoadSources& p)
+{
+    const Section& s = p.section;
+    return drag(p.name, p.first, s.vector("point"),
+                {s.number("linear"), s.number("quadratic"), s.vector("medium")}, places(p.builder));
+}
+
+Load make_attraction(const LoadSources& p)
+{
+    return attraction(p.name, p.first, p.builder.model().bodies()[p.first],
+                      {p.section.vector("point"), p.section.number("mu"), p.section.truth("gradient")},
+                      places(p.builder));
+}
+
+}   // namespace livens

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// [[sensor]]: one table of kinds.
+#include <algorithm>
+
+#include "livens/io/scenario/builder.h"
+
+namespace livens {
+
+namespace {
+
+/// All that a sensor can be made of.
+struct SensorSources {
+    const Section& section;
+    std::string name;
+    int first, second;
+    const Builder& builder;
+    const Configurations& X;
+};
+
+struct SensorKind : Kind {
+    Sensor (*make)(const SensorSources&);
+};
+
+Sensor make_point(const SensorSources& s)
+{
+    return point_sensor(s.name, s.first, s.section.vector("point"), s.X);
+}
+
+Sensor make_relative(const SensorSources& s)
+{
+    return relative_sensor(s.name, s.first, s.section.row("points", 0), s.second, s.section.row("points", 1),
+                           s.X);
+}
+
+/// An item of a list by the name that a key says. Throws InputError.
+template <class Item>
+std::size_t find_named(const std::vector<Item>& items, const SensorSources& s, const char* key)
+{
+    const std::string wanted = s.section.text(key);
+    std::vector<std::string_view> known;
+    for (const Item& item : items) known.push_back(item.name);
+    const auto found = std::ranges::find(known, wanted);
+    if (found != known.end()) return static_cast<std::size_t>(found - known.begin());
+    throw InputError({std::string(key) + "-unknown", "sensor[" + s.name + "]." + key,
+                      "there is no " + std::string(key) + " '" + wanted + "'", "", "", "",
+                      suggest(wanted, known)});
+}
+
+Sensor make_joint_sensor(const SensorSources& s)
+{
+    const std::vector<Joint>& joints = s.builder.model().joints();
+    return joint_sensor(s.name, joints[find_named(joints, s, "joint")]);
+}
+
+Sensor make_load_sensor(const SensorSources& s)
+{
+    const std::vector<Load>& loads = s.builder.model().loads();
+    const std::size_t load = find_named(loads, s, "load");
+    return load_sensor(s.name, static_cast<int>(load), loads[load]);
+}
+
+Sensor make_energy(const SensorSources& s) { return energy_sensor(s.name, s.first); }
+
+const std::vector<SensorKind>& kinds()
+{
+    const Key body = Key{"body", types::text, "The body."}.needed();
+    static const std::vector<SensorKind> all{
+        {{"point",
+          "a point of a body: x, y, z in m and vx, vy, vz in m/s, world axes",
+          {body, Key{"point", types::vector3, "In body coordinates.", "m", "[0, 0, 0]"}}},
+         make_point},
+        {{"joint",
+          "the coordinates of a joint, and their rates: angle, angle_rate, displacement, displacement_rate",
+          {Key{"joint", types::text, "The joint."}.needed()}},
+         make_joint_sensor},
+        {{"relative",
+          "a point of the second body from one of the first: x, y, z and their rates vx, vy, vz in axes of "
+          "the "
+          "first",
+          {Key{"between", types::names, "Two different bodies, or one and `\"world\"`."}.needed(),
+           Key{"points", types::pair,
+               "One on each body, in its coordinates. Default: the reference points, for the world its "
+               "origin.",
+               "m"}}},
+         make_relative},
+        {{"load",
+          "what a load does: force of a spring (positive where it pulls) and its length, force of an "
+          "actuator, x, "
+          "y, z of a force or torque in its axes, and the power on the bodies in W",
+          {Key{"load", types::text, "The load."}.needed()}},
+         make_load_sensor},
+        {{"energy", "kinetic and potential energy of a body in J, the latter of its weight", {body}},
+         make_energy}};
+    return all;
+}
+
+bool reads_load(const Section& sensor) { return sensor.takes("load"); }
+
+void read_sensor(Builder& builder, const Section& section, std::unordered_set<std::string>& taken)
+{
+    Findings& findings = builder.findings();
+    const int before = findings.n_errors();
+    const std::string name = section.text("name"), path = "sensor[" + name + "]";
+    check_name(section);
+    if (!name.empty())
+        claim_name(section, "sensor or joint", name, taken,
+                   {"expressions refer to sensors as to joints", "give it another 'name'"});
+    builder.remember(path, section);
+    if (section.kind() == any_kind) return;
+    BodyReference first, second;
+    if (section.takes("between")) {
+        if (!builder.find_pair(section, "sensor-self", first, second)) return;
+    } else if (const Value* named = section.find("body")) {
+        first = builder.find_body(named->text, named->node->place, section);
+        if (named->text == "world")
+            section.error("body", "sensor-self", section.label() + " reads the world, which does not move");
+        if (!first.is_usable) return;
+    }
+    if (findings.n_errors() > before || !section.is_valid()) return;
+    std::vector<Matrix34> X;
+    for (const Body& body : builder.model().bodies()) X.push_back(body.X);
+    const auto make = kinds()[static_cast<std::size_t>(section.kind())].make;
+    builder.guard(path, [&] {
+        builder.model().add_sensor(make({section, name, first.index, second.index, builder, X}));
+    });
+}
+
+}   // namespace
+
+Table sensor_table()
+{
+    return Table{"[[sensor]]",
+                 "What is read of a motion: in the file as `sensor_value`, by `livens sample --sensor`, and "
+                 "all but those of loads and energies as inputs of expressions, as in `\"tip.x\"`.",
+                 {Key{"name", types::text, "Results and expressions refer to sensors by name."}.needed(),
+                  Key{"type", types::choice, ""}.needed()}}
+        .with_kinds("type", {kinds().begin(), kinds().end()});
+}
+
+void read_sensors(Builder& builder, bool of_loads)
+{
+    std::unordered_set<std::string> taken;
+    for (const Joint& joint : builder.model().joints()) taken.insert(joint.name);
+    for (const Sensor& sensor : builder.model().sensors()) taken.insert(sensor.name);
+    for (const Section& section : builder.top().sections("sensor"))
+        if (reads_load(section) == of_loads) read_sensor(builder, section, taken);
+}
+
+}   // namespace livens

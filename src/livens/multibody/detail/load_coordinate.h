@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Coordinates as loads look at them, and loads along them.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "livens/multibody/joints.h"
+#include "livens/multibody/loads.h"
+
+namespace livens {
+
+/// A generalised force Q, N or N m, and its slopes.
+struct LawValue {
+    double force = 0;
+    double by_value = 0;
+    double by_rate = 0;
+};
+
+/// A coordinate and its rate.
+struct CoordinateState {
+    double value = 0, rate = 0;
+};
+
+/// A coordinate of the bodies of a load, and F_b = Q dq/dX_b on those, by virtual work Q dq. An angle is
+/// counted from where it stands in X at the start, from -pi to pi there.
+class LoadCoordinate {
+public:
+    /// Of bodies of the model; `at_stated` is what the coordinate is at the start.
+    LoadCoordinate(const JointCoordinate& coordinate, double at_stated, const Configurations& X);
+
+    /// Of the model: one, or two; the first is never the world.
+    std::array<int, 2> bodies() const { return bodies_; }
+    /// As the model has it, an angle from where it is in X.
+    const JointCoordinate& coordinate() const { return coordinate_; }
+    /// Whose orientation it needs.
+    std::array<bool, 2> needs_directors() const { return needs_directors_; }
+    /// What it is at the start: the middle of the angles that it knows.
+    double at_start() const { return at_start_; }
+
+    /// Its bodies as places in a load's list, which has them all. Required before what follows.
+    void place(const std::vector<int>& load_bodies);
+    CoordinateState look(const LoadArguments& arguments) const;
+
+    void add_forces(const LoadArguments& arguments, double Q, LoadForces& F) const;
+    /// Of Q(q, q').
+    void add_tangent(const LoadArguments& arguments, const LawValue& Q, LoadTangent& tangent) const;
+    /// by_X += by_value dq/dX + by_rate dq'/dX and by_V += by_rate dq'/dX', for all bodies of the load.
+    void add_slopes(const LoadArguments& arguments, double by_value, double by_rate, PerBody<Matrix34>& by_X,
+                    PerBody<Matrix34>& by_V) const;
+
+private:
+    JointCoordinate coordinate_;
+    std::array<int, 2> bodies_{world, world};
+    std::array<bool, 2> needs_directors_{};
+    ConstraintRow row_;   ///< of q, with places for bodies
+    double at_start_ = 0, offset_ = 0;
+    std::array<int, 2> places_{};
+    std::size_t n_ = 1;   ///< of bodies
+};
+
+}   // namespace livens

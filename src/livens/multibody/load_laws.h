@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Loads whose size is a law of coordinates and their rates, also of bodies on which they do not act.
+#pragma once
+
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "livens/multibody/body.h"
+#include "livens/multibody/loads.h"
+
+namespace [[gnu::visibility("default")]] livens {
+
+/// What a law looks at: a displacement, or an angle, and its rate.
+struct LawCoordinate {
+    JointCoordinate coordinate;
+    double at_stated = 0;    ///< what it is called where the bodies are at the start
+    bool is_needed = true;   ///< false: the law looks at the rate alone, so that turns need not be known
+};
+
+struct LawArguments {
+    Instant at;
+    std::span<const double> values;   ///< of the coordinates; rad or m
+    std::span<const double> rates;    ///< per s
+};
+
+/// What units are multiplied by: one number for each into `factors`. Unless `slopes` is empty also their
+/// derivatives: for each unit those by all values, then those by all rates.
+using LoadLaw = std::function<void(const LawArguments&, std::span<double> factors, std::span<double> slopes)>;
+/// A number made of these: J, W.
+using LawEnergy = std::function<double(const LawArguments&)>;
+
+/// What a load reports of itself.
+struct LawReading {
+    std::string name, unit;   ///< "x", "N"
+    LawEnergy value;
+};
+
+struct LoadParts {
+    std::vector<Load> units;   ///< of size one, on the same bodies: along coordinates, forces, torques
+    std::vector<LawCoordinate> coordinates;
+    LoadLaw law;
+    bool depends_on_rates = false;
+    LawEnergy potential = nullptr;   ///< empty: it has none
+    LawEnergy power = nullptr;       ///< of the rest; see Load::power
+    std::vector<double> breaks{};
+    std::string domain{};
+    std::vector<LawReading> readings{};
+};
+
+/// Reports factor k of a law.
+LawReading factor_reading(const std::string& name, const std::string& unit, const LoadLaw& law, std::size_t k,
+                          std::size_t n_factors);
+
+/// F = sum_k f_k(t, q, q') F_k with units F_k. X is the configuration of all bodies at the start.
+/// Throws InputError (`load-empty`) for units that are none, or on different bodies.
+Load modulated(const std::string& name, const std::string& type, const LoadParts& parts,
+               const Configurations& X);
+
+/// A generalised force of one (N or N m) along a coordinate: a unit.
+Load unit_along(const std::string& name, const JointCoordinate& coordinate, const Configurations& X);
+
+/// A place and axes on a body, in its coordinates; orthonormal and right-handed.
+struct BodyFrame {
+    Vector3 point{};
+    Matrix3 axes = identity<3>();
+};
+
+/// By u: three displacements in m, three components of a rotation in rad.
+struct Bushing {
+    Matrix<6, 6> stiffness{};   ///< N/m, N m/rad and mixed; symmetric and not negative
+    Matrix<6, 6> damping{};     ///< the same by u'
+    Matrix<6, 1> preload{};     ///< N, N m: against u, wherever it is
+};
+
+/// An elastic bearing between two frames: u holds the displacement of the second frame's point in axes of the
+/// first, and the rotation vector from the first frame to the second in these axes. It does the work
+/// -(K u + C u' + preload) . du, so that K and preload have a potential however far it turns, up to 175
+/// degrees. Throws InputError (`bushing-matrix`) for matrices that are not symmetric or negative.
+Load bushing(const std::string& name, int first, const BodyFrame& frame_first, int second,
+             const BodyFrame& frame_second, const Bushing& law, const Configurations& X);
+
+struct Drag {
+    double linear = 0;      ///< N s/m
+    double quadratic = 0;   ///< N s^2/m^2
+    Vector3 medium{};       ///< its velocity, m/s, world axes
+};
+
+/// -(linear + quadratic |v|) v at a point of a body, v its velocity against the medium.
+Load drag(const std::string& name, int body, const Vector3& point, const Drag& law, const Configurations& X);
+
+struct Attraction {
+    Vector3 point{};             ///< m, world
+    double mu = 0;               ///< m^3/s^2, positive
+    bool has_gradient = false;   ///< also what the body's extent does, to second order [MacCullagh]
+};
+
+/// Gravity toward a point of the world: -mu m r / |r|^3 at the centre of mass, and with the gradient the
+/// potential -mu (m / r + (tr J - 3 n . J n) / (2 r^3)), n = r / |r|, J about the centre of mass, which turns
+/// the body. Throws InputError (`attraction-mu`) unless mu > 0.
+Load attraction(const std::string& name, int body, const Body& properties, const Attraction& law,
+                const Configurations& X);
+
+}   // namespace livens

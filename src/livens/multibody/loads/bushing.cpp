@@ -1,0 +1,282 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <array>
+#include <cmath>
+
+#include "livens/base/elementary.h"
+#include "livens/base/error.h"
+#include "livens/base/text.h"
+#include "livens/multibody/detail/load_coordinate.h"
+#include "livens/multibody/detail/load_values.h"
+#include "livens/multibody/load_laws.h"
+
+namespace livens {
+
+namespace {
+
+// The rotation vector is r = psi s with s = sin(angle) times the axis and c = cos(angle), all of which are
+// forms in X: psi = angle / |s| = atan2(sqrt(sigma), c) / sqrt(sigma), sigma = s . s.
+
+/// A number and its derivatives by s1, s2, s3 and c.
+struct Dual {
+    double value = 0;
+    std::array<double, 4> by{};
+
+    friend Dual operator+(Dual a, const Dual& b)
+    {
+        a.value += b.value;
+        for (std::size_t i = 0; i < 4; ++i) a.by[i] += b.by[i];
+        return a;
+    }
+    friend Dual operator*(const Dual& a, const Dual& b)
+    {
+        Dual product{a.value * b.value, {}};
+        for (std::size_t i = 0; i < 4; ++i) product.by[i] = a.value * b.by[i] + a.by[i] * b.value;
+        return product;
+    }
+};
+
+/// psi by sigma and c, to the second derivatives.
+struct Psi {
+    double value, by_sigma, by_c, by_sigma_sigma, by_sigma_c, by_c_c;
+};
+
+Psi psi(double sigma, double c)
+{
+    const double r2 = sigma + c * c;
+    Psi p{};
+    p.by_c = -1 / r2;
+    p.by_sigma_c = 1 / (r2 * r2);
+    p.by_c_c = 2 * c / (r2 * r2);
+    const double x = sigma / (c * c);
+    if (c > 0 && x < 0.01) {   // the closed forms cancel: series of atan(sqrt(x)) / sqrt(x)
+        double power = 1, sign = 1;
+        for (int k = 0; k < 10; ++k, power *= x, sign = -sign) {
+            p.value += sign * power / (2 * k + 1);
+            p.by_sigma -= sign * power * (k + 1) / (2 * k + 3);
+            p.by_sigma_sigma += sign * power * (k + 1) * (k + 2) / (2 * k + 5);
+        }
+        p.value /= c;
+        p.by_sigma /= c * c * c;
+        p.by_sigma_sigma /= c * c * c * c * c;
+        return p;
+    }
+    const double s = std::sqrt(sigma);
+    p.value = arc_tangent(s, c) / s;
+    p.by_sigma = (c / r2 - p.value) / (2 * sigma);
+    p.by_sigma_sigma = (-c / (r2 * r2) - 3 * p.by_sigma) / (2 * sigma);
+    return p;
+}
+
+/// r, and the matrix of its derivatives by s and c.
+struct Turn {
+    std::array<Dual, 3> r;
+    std::array<std::array<Dual, 4>, 3> J;
+};
+
+Turn turn_of(const double* q)
+{
+    const auto variable = [&](std::size_t i) {
+        Dual d{q[i], {}};
+        d.by[i] = 1;
+        return d;
+    };
+    const std::array<Dual, 4> v{variable(0), variable(1), variable(2), variable(3)};
+    const Dual sigma = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
+    const Psi p = psi(sigma.value, v[3].value);
+    const auto composed = [&](double value, double by_sigma, double by_c) {
+        Dual d{value, {}};
+        for (std::size_t i = 0; i < 4; ++i) d.by[i] = by_sigma * sigma.by[i] + by_c * v[3].by[i];
+        return d;
+    };
+    const Dual of = composed(p.value, p.by_sigma, p.by_c), twice{2, {}};
+    const Dual by_sigma = composed(p.by_sigma, p.by_sigma_sigma, p.by_sigma_c);
+    const Dual by_c = composed(p.by_c, p.by_sigma_c, p.by_c_c);
+    Turn turn;
+    for (std::size_t k = 0; k < 3; ++k) {
+        turn.r[k] = of * v[k];
+        for (std::size_t l = 0; l < 3; ++l) turn.J[k][l] = twice * by_sigma * v[k] * v[l];
+        turn.J[k][k] = turn.J[k][k] + of;
+        turn.J[k][3] = by_c * v[k];
+    }
+    return turn;
+}
+
+/// Coordinates are three displacements, s1, s2, s3 and c.
+struct BushingLaw {
+    Bushing of;
+    static constexpr std::size_t n = 7;
+
+    /// u by the coordinates: ones for displacements, J for the turn.
+    struct Motion {
+        Turn turn;
+        std::array<double, 6> u{}, rate{};
+    };
+
+    static Motion motion(const LawArguments& at)
+    {
+        Motion m{turn_of(at.values.data() + 3), {}, {}};
+        for (std::size_t k = 0; k < 3; ++k) {
+            m.u[k] = at.values[k];
+            m.rate[k] = at.rates[k];
+            m.u[3 + k] = m.turn.r[k].value;
+            for (std::size_t l = 0; l < 4; ++l) m.rate[3 + k] += m.turn.J[k][l].value * at.rates[3 + l];
+        }
+        return m;
+    }
+
+    /// The generalised force on u.
+    double force(const Motion& m, int k) const
+    {
+        double f = -of.preload[k];
+        for (int l = 0; l < 6; ++l) f -= of.stiffness(k, l) * m.u[l] + of.damping(k, l) * m.rate[l];
+        return f;
+    }
+
+    void operator()(const LawArguments& at, std::span<double> factors, std::span<double> slopes) const
+    {
+        const Motion m = motion(at);
+        const auto J = [&](std::size_t k, std::size_t i) -> Dual {   // du_k by coordinate i
+            if (k < 3 || i < 3) return {k == i ? 1.0 : 0.0, {}};
+            return m.turn.J[k - 3][i - 3];
+        };
+        std::array<double, 6> f;
+        for (int k = 0; k < 6; ++k) f[k] = force(m, k);
+        for (std::size_t i = 0; i < n; ++i) {
+            factors[i] = 0;
+            for (std::size_t k = 0; k < 6; ++k) factors[i] += J(k, i).value * f[k];
+        }
+        if (slopes.empty()) return;
+        for (std::size_t j = 0; j < n; ++j) {   // by coordinate j and its rate
+            std::array<double, 6> by_value{}, by_rate{};
+            for (std::size_t l = 0; l < 6; ++l) {
+                double turned = 0;   // of the rate of u by the coordinate, at fixed rates
+                for (std::size_t i = 3; j >= 3 && i < n; ++i) turned += J(l, i).by[j - 3] * at.rates[i];
+                for (int k = 0; k < 6; ++k) {
+                    const int c = static_cast<int>(l);
+                    by_value[k] -= of.stiffness(k, c) * J(l, j).value + of.damping(k, c) * turned;
+                    by_rate[k] -= of.damping(k, c) * J(l, j).value;
+                }
+            }
+            for (std::size_t i = 0; i < n; ++i) {
+                double &value = slopes[2 * n * i + j], &rate = slopes[2 * n * i + n + j];
+                value = rate = 0;
+                for (std::size_t k = 0; k < 6; ++k) {
+                    const Dual d = J(k, i);
+                    value += d.value * by_value[k] + (j >= 3 ? d.by[j - 3] * f[k] : 0);
+                    rate += d.value * by_rate[k];
+                }
+            }
+        }
+    }
+
+    double potential(const LawArguments& at) const
+    {
+        const Motion m = motion(at);
+        double energy = 0;
+        for (int k = 0; k < 6; ++k) {
+            energy += of.preload[k] * m.u[k];
+            for (int l = 0; l < 6; ++l) energy += 0.5 * m.u[k] * of.stiffness(k, l) * m.u[l];
+        }
+        return energy;
+    }
+
+    double power(const LawArguments& at) const
+    {
+        const Motion m = motion(at);
+        double sum = 0;
+        for (int k = 0; k < 6; ++k)
+            for (int l = 0; l < 6; ++l) sum -= m.rate[k] * of.damping(k, l) * m.rate[l];
+        return sum;
+    }
+};
+
+/// Whether x . A x may be negative, by what is left of the diagonal in Cholesky's elimination.
+bool is_negative(Matrix<6, 6> A)
+{
+    const Matrix<6, 6> given = A;
+    for (int k = 0; k < 6; ++k) {
+        const double slack = 1e-12 * std::abs(given(k, k));
+        if (A(k, k) < -slack || !std::isfinite(A(k, k))) return true;
+        for (int i = k + 1; i < 6; ++i) {
+            if (A(k, k) <= slack && std::abs(A(i, k)) > 1e-9 * std::sqrt(given(k, k) * given(i, i)))
+                return true;
+            for (int j = k + 1; A(k, k) > slack && j < 6; ++j) A(i, j) -= A(i, k) * A(k, j) / A(k, k);
+        }
+    }
+    return false;
+}
+
+void check_matrix(const std::string& name, const Matrix<6, 6>& A, const std::string& key)
+{
+    const auto refuse = [&](const std::string& message, const std::string& value) {
+        throw InputError({"bushing-matrix", "load[" + name + "]." + key, key + " of a bushing " + message,
+                          value, "symmetric and not negative", "else it would gain energy by going round",
+                          ""});
+    };
+    for (int k = 0; k < 6; ++k)
+        for (int l = 0; l < k; ++l)
+            if (!(std::abs(A(k, l) - A(l, k)) <= 1e-12 * (std::abs(A(k, l)) + std::abs(A(l, k)))))
+                refuse("is not symmetric", to_text(A(k, l)) + " and " + to_text(A(l, k)));
+    if (is_negative(A)) refuse("is negative for some displacement", "");
+}
+
+}   // namespace
+
+Load bushing(const std::string& name, int first, const BodyFrame& frame_first, int second,
+             const BodyFrame& frame_second, const Bushing& law, const Configurations& X)
+{
+    check_matrix(name, law.stiffness, "stiffness");
+    check_matrix(name, law.damping, "damping");
+    if (first == second) start_load(name, "bushing", {first, second});   // says why not
+    const auto axis = [](const BodyFrame& frame, int k) { return direction(frame.axes.column(k)); };
+    const auto product = [&](int k, int l) {   // a_k . b_l
+        return inner_product_row(first, axis(frame_first, k), second, axis(frame_second, l), 0, 1);
+    };
+    const auto sum = [](const ConstraintRow& a, double factor, const ConstraintRow& b) {
+        PairForm form = a;
+        form.c_ij += factor * b.c_ij;
+        form.b_i += factor * b.b_i;
+        form.b_j += factor * b.b_j;
+        form.c += factor * b.c;
+        return form;
+    };
+    const auto scaled = [](PairForm form, double factor, double more) {
+        form.c_ij *= factor;
+        form.b_i *= factor;
+        form.b_j *= factor;
+        form.c = factor * form.c + more;
+        return form;
+    };
+    LoadParts parts;
+    const auto add = [&](const PairForm& form) { parts.coordinates.push_back({{{form}}, 0}); };
+    for (int k = 0; k < 3; ++k)
+        add(plane_row(first, axis(frame_first, k), point(frame_first.point), second,
+                      point(frame_second.point), 0, 1));
+    for (int k = 0; k < 3; ++k) {
+        const int l = (k + 1) % 3, m = (k + 2) % 3;
+        add(scaled(sum(product(m, l), -1, product(l, m)), 0.5, 0));
+    }
+    ConstraintRow trace = product(0, 0);
+    static_cast<PairForm&>(trace) = sum(trace, 1, product(1, 1));
+    add(scaled(sum(trace, 1, product(2, 2)), 0.5, -0.5));
+    for (LawCoordinate& q : parts.coordinates) {
+        q.at_stated =
+            form_value(q.coordinate.forms[0], q.coordinate.forms[0].body_i, q.coordinate.forms[0].body_j, X);
+        parts.units.push_back(unit_along(name, q.coordinate, X));
+    }
+    const BushingLaw at{law};
+    parts.law = at;
+    parts.depends_on_rates = law.damping != Matrix<6, 6>{};
+    parts.potential = [at](const LawArguments& q) { return at.potential(q); };
+    parts.power = [at](const LawArguments& q) { return at.power(q); };
+    for (int k = 0; k < 6; ++k) {   // on u, as the law has them, and u
+        const std::string letter(1, "xyz"[k % 3]);
+        parts.readings.push_back({(k < 3 ? "force_" : "torque_") + letter, k < 3 ? "N" : "N m",
+                                  [at, k](const LawArguments& q) { return at.force(at.motion(q), k); }});
+        parts.readings.push_back({(k < 3 ? "displacement_" : "rotation_") + letter, k < 3 ? "m" : "rad",
+                                  [at, k](const LawArguments& q) { return at.motion(q).u[k]; }});
+    }
+    return modulated(name, "bushing", parts, X);
+}
+
+}   // namespace livens

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cmath>
+
+#include "livens/multibody/detail/load_values.h"
+#include "livens/multibody/load_laws.h"
+
+namespace livens {
+
+Load drag(const std::string& name, int body, const Vector3& point, const Drag& law, const Configurations& X)
+{
+    LoadParts parts;
+    const std::vector<ConstraintRow> rows =
+        coincidence_rows(world, livens::point({}), body, livens::point(point), 1);
+    for (int k = 0; k < 3; ++k) {
+        Vector3 unit{};
+        unit[k] = 1;
+        parts.units.push_back(point_force(name, body, point, {unit[0], unit[1], unit[2]}, Frame::inertial));
+        parts.coordinates.push_back({{{rows[k]}}, 0, false});
+    }
+    Load checked = parts.units[0];
+    check_not_negative(checked, law.linear, "linear");
+    check_not_negative(checked, law.quadratic, "quadratic");
+    check_load_vector(checked, law.medium, "the medium's velocity");
+    parts.depends_on_rates = law.linear > 0 || law.quadratic > 0;
+    // d(|v| v)/dv = |v| I + v v^T / |v|, zero at rest.
+    parts.law = [law](const LawArguments& at, std::span<double> factors, std::span<double> slopes) {
+        const Vector3 v = Vector3{at.rates[0], at.rates[1], at.rates[2]} - law.medium;
+        const double speed = norm(v), size = law.linear + law.quadratic * speed;
+        for (int k = 0; k < 3; ++k) {
+            factors[k] = -size * v[k];
+            for (int l = 0; l < 3 && !slopes.empty(); ++l) {
+                slopes[6 * k + l] = 0;
+                slopes[6 * k + 3 + l] =
+                    -(k == l ? size : 0.0) - (speed > 0 ? law.quadratic * v[k] * v[l] / speed : 0.0);
+            }
+        }
+    };
+    for (std::size_t k = 0; k < 3; ++k)
+        parts.readings.push_back(factor_reading(std::string(1, "xyz"[k]), "N", parts.law, k, 3));
+    return modulated(name, "drag", parts, X);
+}
+
+}   // namespace livens

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "livens/multibody/sensors.h"
+
+#include <array>
+
+#include "livens/base/error.h"
+
+namespace livens {
+
+namespace {
+
+constexpr std::array<const char*, 6> of_point{"x", "y", "z", "vx", "vy", "vz"};
+
+/// Three forms, and their rates.
+std::vector<SensorComponent> components_of(const std::vector<ConstraintRow>& rows, const Configurations& X)
+{
+    std::vector<SensorComponent> all;
+    for (std::size_t i = 0; i < 6; ++i) {
+        const bool is_rate = i >= 3;
+        const PairForm& form = rows[i % 3];
+        const NamedCoordinate q{of_point[i % 3], {{form}}, form_value(form, form.body_i, form.body_j, X)};
+        all.push_back({of_point[i], is_rate ? "m s-1" : "m", q, is_rate});
+    }
+    return all;
+}
+
+}   // namespace
+
+Sensor point_sensor(const std::string& name, int body, const Vector3& point, const Configurations& X)
+{
+    return {name, "point",
+            components_of(coincidence_rows(world, livens::point({}), body, livens::point(point), 1), X)};
+}
+
+Sensor relative_sensor(const std::string& name, int first, const Vector3& point_first, int second,
+                       const Vector3& point_second, const Configurations& X)
+{
+    if (first == second)
+        throw InputError({"sensor-self", "sensor[" + name + "]", "a relative sensor reads two bodies", "", "",
+                          "", "name two different ones, or one and the world"});
+    std::vector<ConstraintRow> rows;
+    for (int k = 0; k < 3; ++k) {
+        Vector3 axis{};
+        axis[k] = 1;
+        rows.push_back(
+            plane_row(first, direction(axis), point(point_first), second, point(point_second), 0, 1));
+    }
+    return {name, "relative", components_of(rows, X)};
+}
+
+Sensor joint_sensor(const std::string& name, const Joint& joint)
+{
+    if (joint.coordinates.empty())
+        throw InputError({"joint-coordinate", "sensor[" + name + "].joint",
+                          "joint '" + joint.name + "' (" + joint.type + ") has no coordinate", "", "", "",
+                          ""});
+    Sensor sensor{name, "joint", {}};
+    for (const NamedCoordinate& q : joint.coordinates)
+        for (const bool is_rate : {false, true}) {
+            const std::string unit =
+                std::string(q.coordinate.is_angle() ? "rad" : "m") + (is_rate ? " s-1" : "");
+            sensor.components.push_back({q.name + (is_rate ? "_rate" : ""), unit, q, is_rate});
+        }
+    return sensor;
+}
+
+Sensor load_sensor(const std::string& name, int index, const Load& load)
+{
+    Sensor sensor{name, "load", {}, index};
+    for (const LoadReading& reading : load.readings)
+        sensor.components.push_back({reading.name, reading.unit});
+    sensor.components.push_back({"power", "W"});
+    return sensor;
+}
+
+Sensor energy_sensor(const std::string& name, int body)
+{
+    return {name, "energy", {{"kinetic", "J"}, {"potential", "J"}}, -1, body};
+}
+
+}   // namespace livens

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Sensors: what is read of a motion, by name.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "livens/multibody/joints.h"
+#include "livens/multibody/loads.h"
+
+namespace [[gnu::visibility("default")]] livens {
+
+/// A number that a sensor reads: of a coordinate, or else by a function.
+struct SensorComponent {
+    std::string name;               ///< "x", "angle_rate"
+    std::string unit;               ///< "m", "rad s-1", as files of results have it
+    NamedCoordinate coordinate{};   ///< no forms: none
+    bool is_rate = false;           ///< the coordinate's rate
+};
+
+/// Components are those of coordinates; a sensor of a load reads Load::readings and its power, one of a
+/// body's energy that of motion and that of height.
+struct Sensor {
+    std::string name;
+    std::string type;   ///< "point", "joint", "relative", "load", "energy"
+    std::vector<SensorComponent> components;
+    int load = -1;   ///< which one is read, or -1
+    int body = -1;   ///< whose energy is read, or -1
+};
+
+// X is the configuration of all bodies at the start.
+
+/// A point of a body: x, y, z and vx, vy, vz in world axes.
+Sensor point_sensor(const std::string& name, int body, const Vector3& point, const Configurations& X);
+/// A point of the second body from one of the first, in axes of the first: x, y, z and their rates vx, vy,
+/// vz. Either may be the world.
+Sensor relative_sensor(const std::string& name, int first, const Vector3& point_first, int second,
+                       const Vector3& point_second, const Configurations& X);
+/// All coordinates of a joint and their rates. Throws InputError (`joint-coordinate`) if it has none.
+Sensor joint_sensor(const std::string& name, const Joint& joint);
+/// What a load reports, and its power on the bodies.
+Sensor load_sensor(const std::string& name, int index, const Load& load);
+/// kinetic and potential (of weight, zero where the world's origin is), J.
+Sensor energy_sensor(const std::string& name, int body);
+
+}   // namespace livens

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Expressions: functions of time and of named numbers, with exact derivatives, read from a text.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "livens/time/time_function.h"
+
+namespace [[gnu::visibility("default")]] livens {
+
+/// `-3*phi - 0.2*w + sin(2*pi*t)`: numbers, `+ - * / ^`, parentheses, `pi`, `t` (s), symbols, and
+///
+///     sin cos tan tanh exp log sqrt abs   of one argument
+///     atan2 min max                       of two
+///
+/// `^` binds closest and from the right, a sign before it less: -x^2 is -(x^2). Nothing is executed: a text
+/// becomes a list of operations whose size is bounded. Where an operation has no value (1/0, log(-1)) the
+/// value is no number; where it has no derivative (|x| at 0) it has one from one side.
+class Expression {
+public:
+    static constexpr std::size_t longest = 1000;   ///< characters
+    static constexpr int deepest = 64;             ///< of parentheses, signs and powers
+    static constexpr std::size_t most_symbols = 64;
+
+    /// Throws InputError (`expression-size`, `expression-syntax`, `expression-name`, `expression-value`) with
+    /// the column in the text.
+    Expression(std::string_view text, std::vector<std::string> symbols);
+
+    const std::string& text() const { return text_; }
+    /// Whether the value may change with a symbol.
+    bool depends_on(std::size_t symbol) const;
+
+    /// The value, and its derivatives by the symbols unless `slopes` is empty; one number for each symbol.
+    double operator()(double t, std::span<const double> symbols, std::span<double> slopes = {}) const;
+    /// Value and two derivatives by time, where symbols do not change.
+    TimeValue by_time(double t, std::span<const double> symbols = {}) const;
+    /// "division by 0 at column 5": the first operation that has no value there; empty if all have.
+    std::string without_value(double t, std::span<const double> symbols) const;
+
+    enum class Operation : std::uint8_t {
+        number,
+        time,
+        symbol,
+        negative,
+        plus,
+        minus,
+        times,
+        divided,
+        power,
+        sine,
+        cosine,
+        tangent,
+        hyperbolic_tangent,
+        exponential,
+        logarithm,
+        root,
+        absolute,
+        arc_tangent,
+        least,
+        greatest
+    };
+    /// Operands are earlier steps.
+    struct Step {
+        Operation operation = Operation::number;
+        int first = -1, second = -1;   ///< places of the operands; `first` of a symbol is its number
+        int column = 0;                ///< in the text, from 1
+        double number = 0;
+    };
+
+private:
+    std::vector<TimeValue> evaluate(double t, std::span<const double> symbols, int direction) const;
+
+    std::string text_;
+    std::vector<Step> steps_;   ///< the last is the value
+};
+
+/// A function of time alone; `breaks` are instants where it jumps or bends.
+TimeFunction expression_of_time(const Expression& expression, std::vector<double> breaks = {});
+
+}   // namespace livens

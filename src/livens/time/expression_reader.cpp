@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <numbers>
+
+#include "livens/base/error.h"
+#include "livens/base/text.h"
+#include "livens/time/detail/expression_reader.h"
+
+namespace livens {
+
+namespace {
+
+using Operation = Expression::Operation;
+
+struct Function {
+    std::string_view name;
+    Operation operation;
+    int n_arguments;
+};
+
+constexpr std::array functions{
+    Function{"sin", Operation::sine, 1},          Function{"cos", Operation::cosine, 1},
+    Function{"tan", Operation::tangent, 1},       Function{"tanh", Operation::hyperbolic_tangent, 1},
+    Function{"exp", Operation::exponential, 1},   Function{"log", Operation::logarithm, 1},
+    Function{"sqrt", Operation::root, 1},         Function{"abs", Operation::absolute, 1},
+    Function{"atan2", Operation::arc_tangent, 2}, Function{"min", Operation::least, 2},
+    Function{"max", Operation::greatest, 2}};
+
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+bool begins_name(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
+
+/// By descent: sum, product, sign, power, atom.
+class Reader {
+public:
+    Reader(std::string_view text, const std::vector<std::string>& symbols) : text_(text), symbols_(symbols) {}
+
+    std::vector<Expression::Step> read()
+    {
+        if (text_.size() > Expression::longest)
+            refuse("expression-size", "an expression is too long", std::to_string(text_.size()),
+                   "at most " + std::to_string(Expression::longest) + " characters");
+        if (symbols_.size() > Expression::most_symbols)
+            refuse("expression-size", "an expression has too many inputs", std::to_string(symbols_.size()),
+                   "at most " + std::to_string(Expression::most_symbols));
+        for (const std::string& symbol : symbols_) check_symbol(symbol);
+        sum();
+        skip_blanks();
+        if (at_ < text_.size()) refuse_here("an operator or the end");
+        return std::move(steps_);
+    }
+
+private:
+    [[noreturn]] void refuse(const std::string& code, const std::string& message, const std::string& value,
+                             const std::string& bound, const std::string& help = "") const
+    {
+        throw InputError({code, "expression", message, value, bound, "",
+                          help.empty() ? "in '" + std::string(text_.substr(0, 100)) + "'" : help});
+    }
+
+    [[noreturn]] void refuse_here(const std::string& expected) const
+    {
+        const std::string column = " at column " + std::to_string(at_ + 1);
+        refuse("expression-syntax", "an expression cannot be read",
+               (at_ < text_.size() ? "'" + std::string(1, text_[at_]) + "'" : "it ends") + column, expected);
+    }
+
+    void check_symbol(const std::string& symbol) const
+    {
+        const bool is_name =
+            !symbol.empty() && begins_name(symbol[0]) &&
+            std::ranges::all_of(symbol, [](char c) { return begins_name(c) || is_digit(c); });
+        const bool is_taken =
+            symbol == "t" || symbol == "pi" ||
+            std::ranges::any_of(functions, [&](const Function& f) { return f.name == symbol; });
+        if (is_name && !is_taken) return;
+        refuse("expression-name",
+               is_taken ? "an input has the name of something else" : "an input is no name",
+               "'" + symbol + "'", "letters, digits and _, no digit first",
+               is_taken ? "call it differently; t, pi and the functions are taken" : "");
+    }
+
+    void skip_blanks()
+    {
+        while (at_ < text_.size() &&
+               (text_[at_] == ' ' || text_[at_] == '\t' || text_[at_] == '\n' || text_[at_] == '\r'))
+            ++at_;
+    }
+
+    bool take(char c)
+    {
+        skip_blanks();
+        if (at_ >= text_.size() || text_[at_] != c) return false;
+        ++at_;
+        return true;
+    }
+
+    void expect(char c)
+    {
+        if (!take(c)) refuse_here("'" + std::string(1, c) + "'");
+    }
+
+    int add(const Expression::Step& step)
+    {
+        steps_.push_back(step);
+        return static_cast<int>(steps_.size()) - 1;
+    }
+
+    int column() const { return static_cast<int>(at_); }   // of what was just taken
+
+    int sum()
+    {
+        int value = product();
+        for (;;) {
+            const bool is_plus = take('+');
+            if (!is_plus && !take('-')) return value;
+            const int place = column(), second = product();
+            value = add({is_plus ? Operation::plus : Operation::minus, value, second, place});
+        }
+    }
+
+    int product()
+    {
+        int value = sign();
+        for (;;) {
+            const bool is_times = take('*');
+            if (!is_times && !take('/')) return value;
+            const int place = column(), second = sign();
+            value = add({is_times ? Operation::times : Operation::divided, value, second, place});
+        }
+    }
+
+    int sign()
+    {
+        const Deeper deeper(*this);
+        if (take('-')) {
+            const int place = column(), value = sign();
+            return add({Operation::negative, value, -1, place});
+        }
+        if (take('+')) return sign();
+        const int base = atom();
+        if (!take('^')) return base;
+        const int place = column(), exponent = sign();
+        return add({Operation::power, base, exponent, place});
+    }
+
+    int atom()
+    {
+        skip_blanks();
+        if (at_ >= text_.size()) refuse_here("a number, a name or '('");
+        if (take('(')) {
+            const int value = sum();
+            expect(')');
+            return value;
+        }
+        if (is_digit(text_[at_]) || text_[at_] == '.') return number();
+        if (begins_name(text_[at_])) return name();
+        refuse_here("a number, a name or '('");
+    }
+
+    int number()
+    {
+        double value = 0;
+        const char* const first = text_.data() + at_;
+        const auto [end, error] = std::from_chars(first, text_.data() + text_.size(), value);
+        if (error != std::errc() || !std::isfinite(value)) refuse_here("a number");
+        const int place = column() + 1;
+        at_ += static_cast<std::size_t>(end - first);
+        return add({Operation::number, -1, -1, place, value});
+    }
+
+    int name()
+    {
+        const std::size_t first = at_;
+        while (at_ < text_.size() && (begins_name(text_[at_]) || is_digit(text_[at_]))) ++at_;
+        const std::string_view word = text_.substr(first, at_ - first);
+        const int place = static_cast<int>(first) + 1;
+        if (word == "t") return add({Operation::time, -1, -1, place});
+        if (word == "pi") return add({Operation::number, -1, -1, place, std::numbers::pi});
+        for (const Function& f : functions)
+            if (f.name == word) return call(f, place);
+        const auto symbol = std::ranges::find(symbols_, word);
+        if (symbol != symbols_.end())
+            return add({Operation::symbol, static_cast<int>(symbol - symbols_.begin()), -1, place});
+        std::string known = "known are t, pi";
+        for (const Function& f : functions) known += ", " + std::string(f.name);
+        for (const std::string& symbol_name : symbols_) known += ", " + symbol_name;
+        refuse("expression-name", "an expression has an unknown name",
+               "'" + std::string(word) + "' at column " + std::to_string(place), "", known);
+    }
+
+    int call(const Function& f, int place)
+    {
+        expect('(');
+        const int first = sum();
+        int second = -1;
+        if (f.n_arguments == 2) {
+            expect(',');
+            second = sum();
+        }
+        expect(')');
+        return add({f.operation, first, second, place});
+    }
+
+    /// One level deeper, while it lives.
+    struct Deeper {
+        explicit Deeper(Reader& reader) : of(reader)
+        {
+            if (++of.depth_ > Expression::deepest)
+                of.refuse("expression-size", "an expression is too deep",
+                          "at column " + std::to_string(of.at_ + 1),
+                          "at most " + std::to_string(Expression::deepest) + " levels");
+        }
+        ~Deeper() { --of.depth_; }
+        Deeper(const Deeper&) = delete;
+        Deeper& operator=(const Deeper&) = delete;
+        Reader& of;
+    };
+
+    std::string_view text_;
+    const std::vector<std::string>& symbols_;
+    std::vector<Expression::Step> steps_;
+    std::size_t at_ = 0;
+    int depth_ = 0;
+};
+
+}   // namespace
+
+std::vector<Expression::Step> read_expression(std::string_view text, const std::vector<std::string>& symbols)
+{
+    return Reader(text, symbols).read();
+}
+
+}   // namespace livens

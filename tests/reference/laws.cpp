@@ -1,0 +1,287 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Loads by laws and expressions, and what sensors read, against closed forms, as scenarios say them.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "livens/base/text.h"
+#include "reference/solved.h"
+
+namespace livens::tests {
+namespace {
+
+using std::numbers::pi;
+
+/// A body on a slide along x.
+const std::string slide = R"(
+[[body]]
+name = "b"
+mass = 2
+inertia = [1, 1, 1]
+position = [0, 0, 0]
+[[joint]]
+name = "slide"
+type = "prismatic"
+between = ["world", "b"]
+at = [0, 0, 0]
+axis = [1, 0, 0]
+)";
+
+std::string moving(const std::string& body, const std::string& velocity)
+{
+    const std::string place = "position = [0, 0, 0]\n";
+    std::string text = body;
+    return text.insert(text.find(place) + place.size(), "velocity = " + velocity + "\n");
+}
+
+TEST(Laws, AnOscillatorByAnExpressionIsThatOfASpring)
+{
+    const Solved s = solved(moving(slide, "[1, 0, 0]") + R"(
+[[load]]
+type = "actuator"
+joint = "slide"
+inputs = { x = "slide.displacement", v = "slide.displacement_rate" }
+expression = "2*sin(3*t) - 32*x - 0.8*v"
+[time]
+end = 3
+accuracy = 1e-11
+)");
+    // m x'' + c x' + k x = F sin(w t), from rest position with 1 m/s.
+    const double m = 2, c = 0.8, k = 32, F = 2, w = 3, t = 3;
+    const double d = c / (2 * m), wd = std::sqrt(k / m - d * d);
+    const double a = k - m * w * w, b = c * w, n = a * a + b * b;
+    const double P = F * a / n, Q = -F * b / n;   // P sin + Q cos
+    const double A = -Q, B = (1 - P * w + d * A) / wd;
+    const double x = P * std::sin(w * t) + Q * std::cos(w * t) +
+                     std::exp(-d * t) * (A * std::cos(wd * t) + B * std::sin(wd * t));
+    EXPECT_NEAR(s.coordinate("slide", "displacement", 3).value, x, 1e-10);
+}
+
+TEST(Laws, FallThroughAirFollowsTheHyperbolicTangent)
+{
+    const Solved s = solved(R"(
+gravity = [0, 0, -9.81]
+[[body]]
+name = "ball"
+shape = { point = true }
+mass = 0.5
+[[load]]
+name = "air"
+type = "drag"
+body = "ball"
+quadratic = 0.02
+[[load]]
+name = "calm"
+type = "drag"
+body = "ball"
+linear = 0
+[[sensor]]
+name = "fall"
+type = "point"
+body = "ball"
+[[sensor]]
+name = "brake"
+type = "load"
+load = "air"
+[[sensor]]
+name = "height"
+type = "energy"
+body = "ball"
+[time]
+end = 2
+accuracy = 1e-11
+)");
+    const double g = 9.81, m = 0.5, c = 0.02, end = std::sqrt(m * g / c), t = 2;
+    const double v = end * std::tanh(g * t / end), z = -end * end / g * std::log(std::cosh(g * t / end));
+    const std::vector<double> read = s.sensed(2);
+    ASSERT_EQ(read.size(), 12u);
+    EXPECT_NEAR(read[2], z, 1e-9);
+    EXPECT_NEAR(read[5], -v, 1e-9);
+    EXPECT_NEAR(read[6], 0.5 * m * v * v, 1e-8);   // those of loads come last
+    EXPECT_NEAR(read[7], m * g * z, 1e-8);
+    EXPECT_NEAR(read[10], c * v * v, 1e-9);
+    EXPECT_NEAR(read[11], -c * v * v * v, 1e-8);
+}
+
+TEST(Laws, APlanetCloses)
+{
+    // Half an ellipse, from the far end to the near one: the vis-viva equation.
+    const double mu = 4, far = 2, near = 0.5, a = 0.5 * (far + near),
+                 period = 2 * pi * std::sqrt(a * a * a / mu);
+    const double v = std::sqrt(mu * (2 / far - 1 / a)), w = std::sqrt(mu * (2 / near - 1 / a));
+    const std::string text =
+        "[[body]]\nname = \"b\"\nshape = { point = true }\nmass = 7\nposition = [2, 0, 0]\nvelocity = [0, " +
+        to_text(v) + ", 0]\n[[load]]\ntype = \"attraction\"\nbody = \"b\"\nmu = 4\n" +
+        "[time]\nend = " + to_text(period / 2) + "\naccuracy = 1e-11\n";
+    const Solved s = solved(text);
+    const BodySample end = sample_bodies(s.model, s.solution.motion, period / 2)[0];
+    EXPECT_LT(norm(end.position - Vector3{-near, 0, 0}), 1e-9);
+    EXPECT_LT(norm(end.velocity - Vector3{0, -w, 0}), 1e-8);
+}
+
+TEST(Laws, GravityOverABodyMakesItLibrate)
+{
+    // A slender satellite held at its centre: J phi'' = -3 mu / (2 r^3) (J - J_axis) sin 2 phi, small here.
+    const double mu = 3, r = 2, J = 1.2, along = 0.2, w = std::sqrt(3 * mu / (r * r * r) * (J - along) / J);
+    const double phi = 1e-4, t = 1.5;
+    const auto held = [&](const std::string& gradient) {
+        return solved(R"(
+[[body]]
+name = "b"
+mass = 5
+inertia = [0.2, 1.2, 1.2]
+position = [2, 0, 0]
+rotation_vector = [0, 0, 1e-4]
+[[joint]]
+name = "axle"
+type = "revolute"
+between = ["world", "b"]
+at = [2, 0, 0]
+axis = [0, 0, 1]
+coordinate = 1e-4
+[[load]]
+type = "attraction"
+body = "b"
+mu = 3
+gradient = )" + gradient +
+                      "\n[time]\nend = 1.5\naccuracy = 1e-11\n");
+    };
+    EXPECT_NEAR(held("true").coordinate("axle", "angle", t).value, phi * std::cos(w * t), 1e-11);
+    EXPECT_NEAR(held("false").coordinate("axle", "angle", t).value, phi, 1e-15);
+}
+
+TEST(Laws, ABushingTurnsHarmonicallyHoweverFar)
+{
+    // About one axis the rotation vector is the angle itself, so that 2 rad are no more than 0.02.
+    const double k = 6, J = 1.5, c = 0.3, t = 2, phi = 2;
+    const Solved s = solved(R"(
+[[body]]
+name = "b"
+mass = 2
+inertia = [1, 1.2, 1.5]
+rotation_vector = [0, 0, 2]
+[[load]]
+name = "mount"
+type = "bushing"
+between = ["world", "b"]
+frames = [{}, {}]
+stiffness = [800, 900, 700, 5, 4, 6]
+damping = [0, 0, 0, 0, 0, 0.3]
+preload = [0, 0, 70, 0, 0, 0]
+[[sensor]]
+name = "mount"
+type = "load"
+load = "mount"
+[time]
+end = 2
+accuracy = 1e-11
+)");
+    const double d = c / (2 * J), w = std::sqrt(k / J - d * d);
+    const double angle = phi * std::exp(-d * t) * (std::cos(w * t) + d / w * std::sin(w * t));
+    const std::vector<double> u = s.sensed(t);
+    ASSERT_EQ(u.size(), 13u);
+    EXPECT_NEAR(u[11], angle, 1e-9);
+    // The preload pulls it down, as a weight would.
+    EXPECT_NEAR(u[5], -70.0 / 700 * (1 - std::cos(std::sqrt(700.0 / 2) * t)), 1e-9);
+}
+
+TEST(Laws, AHardeningSpringHasThePeriodOfItsIntegral)
+{
+    // From rest at x0: a quarter of the period is the integral of dx / v, here over x = x0 sin(s) by the
+    // midpoint rule, which is exact to rounding for periodic functions.
+    const double m = 2, k = 5, cubic = 40, x0 = 0.7;
+    double quarter = 0;
+    constexpr int n = 400;
+    for (int i = 0; i < n; ++i) {
+        const double s = (i + 0.5) * pi / 2 / n, sine = std::sin(s);
+        quarter += pi / 2 / n / std::sqrt((k + 0.5 * cubic * x0 * x0 * (1 + sine * sine)) / m);
+    }
+    for (const std::string law : {"law = \"progressive\"\nstiffness = 5\ncubic = 40\n"}) {
+        const Solved s = solved(R"(
+[[body]]
+name = "b"
+shape = { point = true }
+mass = 2
+position = [1.7, 0, 0]
+[[load]]
+name = "spring"
+type = "spring"
+between = ["world", "b"]
+free_length = 1
+)" + law + "[[sensor]]\nname = \"spring\"\ntype = \"load\"\nload = \"spring\"\n[time]\nend = " +
+                                to_text(quarter) + "\naccuracy = 1e-11\n");
+        const std::vector<double> read = s.sensed(quarter);   // force, length, power
+        EXPECT_NEAR(read[1], 1, 1e-9);
+        EXPECT_NEAR(read[0], 0, 1e-7);
+    }
+}
+
+TEST(Laws, ATableOfAStraightLineIsALinearSpring)
+{
+    const auto end = [](const std::string& law) {
+        return solved(moving(slide, "[1, 0, 0]") +
+                      "[[load]]\ntype = \"spring\"\njoint = \"slide\"\nrest = 0.1\npreload = 0.3\n" + law +
+                      "[time]\nend = 2\naccuracy = 1e-10\n")
+            .coordinate("slide", "displacement", 2)
+            .value;
+    };
+    const double linear = end("stiffness = 18\n");
+    const double w = 3, x0 = 0.1 - 0.3 / 18, x = x0 + -x0 * std::cos(w * 2) + std::sin(w * 2) / w;
+    EXPECT_NEAR(linear, x, 1e-9);
+    for (const std::string between : {"linear", "spline"})
+        EXPECT_NEAR(end("law = \"table\"\ntable = { elongations = [-0.1, 0, 0.2], forces = [-1.8, 0, 3.6], "
+                        "interpolation = \"" +
+                        between + "\" }\n"),
+                    x, 1e-9);
+}
+
+TEST(Laws, AFuruPendulumIsHeldUpright)
+{
+    const std::string furuta = R"(
+gravity = [0, 0, -9.81]
+[[body]]
+name = "arm"
+mass = 0.2
+inertia = [1e-3, 1e-3, 1e-3]
+position = [0.1, 0, 0]
+[[body]]
+name = "pendulum"
+mass = 0.1
+inertia = [8e-4, 8e-4, 1e-5]
+position = [0.2, 0.01, 0.15]
+rotation_vector = [-0.06656816377582381, 0, 0]
+[[joint]]
+name = "motor"
+type = "revolute"
+between = ["world", "arm"]
+at = [0, 0, 0]
+axis = [0, 0, 1]
+[[joint]]
+name = "pivot"
+type = "revolute"
+between = ["arm", "pendulum"]
+at = [0.2, 0, 0]
+axis = [1, 0, 0]
+coordinate = -0.06656816377582381
+[[sensor]]
+name = "tip"
+type = "point"
+body = "pendulum"
+point = [0, 0, 0.15]
+)";
+    const std::string control = R"([[load]]
+type = "actuator"
+joint = "motor"
+inputs = { phi = "pivot.angle", w = "pivot.angle_rate", psi = "motor.angle", v = "motor.angle_rate" }
+expression = "-6*phi - 0.8*w + 0.3*psi + 0.35*v"
+)";
+    const std::string time = "[time]\nend = 5\naccuracy = 1e-7\n";
+    const Solved held = solved(furuta + control + time);
+    EXPECT_LT(std::abs(held.coordinate("pivot", "angle", 5).value), 1e-4);
+    EXPECT_NEAR(held.sensed(5)[2], 0.15 + std::hypot(0.01, 0.15), 1e-6);
+    EXPECT_LT(solved(furuta + "[time]\nend = 0.6\naccuracy = 1e-7\n").sensed(0.6)[2], 0.2);   // it falls
+}
+
+}   // namespace
+}   // namespace livens::tests

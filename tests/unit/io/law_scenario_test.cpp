@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Expressions, laws and sensors: what arrives, and what is told where.
+#include "unit/io/scenario_text.h"
+
+namespace livens {
+
+namespace {
+
+/// A body on a pivot, and more.
+std::string with(const std::string& lines)
+{
+    return "format = 1\n[[body]]\nname = \"b\"\nmass = 2\ninertia = [1, 2, 2]\n"
+           "[[joint]]\nname = \"j\"\nbetween = [\"world\", \"b\"]\ntype = \"revolute\"\nat = [0, 0, 0]\n"
+           "axis = [0, 0, 1]\n[[sensor]]\nname = \"tip\"\ntype = \"point\"\nbody = \"b\"\n" +
+           lines + "\n[time]\nend = 1\nelements = 4\n";
+}
+
+std::string actuator(const std::string& lines)
+{
+    return with("[[load]]\ntype = \"actuator\"\njoint = \"j\"\n" + lines);
+}
+
+std::string spring(const std::string& lines)
+{
+    return with("[[load]]\ntype = \"spring\"\njoint = \"j\"\n" + lines);
+}
+
+std::string bushing(const std::string& lines)
+{
+    return with("[[load]]\ntype = \"bushing\"\nbetween = [\"world\", \"b\"]\n" + lines);
+}
+
+std::string sensor(const std::string& lines) { return with("[[sensor]]\nname = \"s\"\n" + lines); }
+
+TEST(LawScenario, AnExpressionWithoutInputsIsAFunctionOfTime)
+{
+    const ScenarioResult result = test::read(actuator("expression = \"2*t + 1\"\nfrom = 0.5"));
+    ASSERT_TRUE(result.scenario.has_value()) << test::shown(result);
+    const Load& load = result.scenario->model.loads()[0];
+    EXPECT_FALSE(load.depends_on_V);
+    EXPECT_EQ(load.breaks, std::vector<double>{0.5});
+    LoadArguments at;
+    at.at.t = 0.75;
+    EXPECT_EQ(load.readings[0].value(at), 2.5);
+    at.at.t = 0.25;
+    EXPECT_EQ(load.readings[0].value(at), 0);
+}
+
+TEST(LawScenario, InputsAreReadFromJointsAndSensors)
+{
+    const ScenarioResult result = test::read(actuator("expression = \"a + 10*b + 100*c\"\ninputs = { a = "
+                                                      "\"j.angle\", b = \"j.angle_rate\", c = \"tip.vy\" }"));
+    ASSERT_TRUE(result.scenario.has_value()) << test::shown(result);
+    const Load& load = result.scenario->model.loads()[0];
+    EXPECT_TRUE(load.depends_on_V);
+    LoadArguments at;
+    at.X[0] = configuration({}, directors_from_rotation_vector({0, 0, 0.25}));
+    at.V[0] = rate(at.X[0], {0, 3, 0}, {0, 0, 2});
+    EXPECT_NEAR(load.readings[0].value(at), 0.25 + 20 + 300, 1e-12);
+}
+
+TEST(LawScenario, NamesOfInputsMayHaveBlanksAndPoints)
+{
+    std::string text = actuator("expression = \"x\"\ninputs = { x = \"the tip. 2.x\" }");
+    text.replace(text.find("\"tip\""), 5, "\"the tip. 2\"");
+    EXPECT_TRUE(test::read(text).scenario.has_value()) << test::shown(test::read(text));
+}
+
+}   // namespace
+
+std::vector<test::Case> test::cases_of_laws()
+{
+    const std::string angle = "inputs = { a = \"j.angle\" }\n";
+    const std::string unit = "stiffness = [1, 1, 1, 1, 1, 1]\n";
+    return {
+        {"expression-syntax", actuator("expression = \"1 +\""), "\"1 +\""},
+        {"expression-name", actuator(angle + "expression = \"a + b\""), "\"a + b\""},
+        {"expression-name", actuator("inputs = { sin = \"j.angle\" }\nexpression = \"1\""), "\"1\"\n[time]"},
+        {"expression-value", actuator("expression = \"1/0\""), "\"1/0\""},
+        {"expression-size", actuator("expression = \"" + std::string(70, '-') + "1\""), "\"-----"},
+        {"input-unknown", actuator("inputs = { a = \"k.angle\" }\nexpression = \"a\""), "{ a"},
+        {"input-unknown", actuator("inputs = { a = \"tip\" }\nexpression = \"a\""), "{ a"},
+        {"input-unused", actuator(angle + "expression = \"t\""), "{ a"},
+        {"input-algebraic",
+         actuator("inputs = { a = \"e.kinetic\" }\nexpression = \"a\"\n[[sensor]]\nname = \"e\"\ntype = "
+                  "\"energy\"\nbody = \"b\""),
+         "{ a"},
+        {"joint-coordinate", actuator("inputs = { a = \"j.displacement\" }\nexpression = \"a\""), "{ a"},
+        {"load-value", actuator("expression = \"1\"\nvalue = 2"), "\"1\"\nvalue"},
+        {"load-value", actuator(angle + "value = 2"), "{ a"},
+        {"wrong-type", actuator("expression = \"1\"\ninputs = { a = 2 }"), "2 }"},
+        {"spring-law", spring("stiffness = 1\nlaw = \"table\""), "[[load]]"},
+        {"spring-law", spring("stiffness = 1\ncubic = 1"), "1\n[time]"},
+        {"spring-law", spring(""), "[[load]]"},
+        {"table-order", spring("law = \"table\"\ntable = { elongations = [0, 0, 1], forces = [0, 1, 2] }"),
+         "{ elong"},
+        {"table-size", spring("law = \"table\"\ntable = { elongations = [0, 1], forces = [0, 1, 2] }"),
+         "{ elong"},
+        {"bushing-matrix", bushing("at = [0, 0, 0]\nstiffness = [1, 2]"), "[1, 2]"},
+        {"bushing-matrix", bushing("at = [0, 0, 0]\nstiffness = [1, 1, 1, 1, 1, -1]"), "[1, 1, 1, 1, 1, -1]"},
+        {"joint-placement", bushing(unit), "[[load]]"},
+        {"joint-frames", bushing(unit + "frames = [{}]"), "[{}]"},
+        {"sensor-self", sensor("type = \"point\"\nbody = \"world\""), "\"world\"\n[time]"},
+        {"joint-unknown", sensor("type = \"joint\"\njoint = \"jj\""), "\"jj\""},
+        {"load-unknown", sensor("type = \"load\"\nload = \"l\""), "\"l\""},
+        {"name-duplicate", with("[[sensor]]\nname = \"j\"\ntype = \"point\"\nbody = \"b\""),
+         "\"j\"\ntype = \"point\""},
+        {"out-of-range", with("[[load]]\ntype = \"attraction\"\nbody = \"b\"\nmu = -1"), "-1\n[time]"},
+        {"drive-size",
+         with("[[body]]\nname = \"c\"\nmass = 1\ninertia = [1, 1, 1]\n[[drive]]\nname = \"d\"\ntype = "
+              "\"point\"\n"
+              "body = \"c\"\nexpression = \"t\""),
+         "\"t\"\n[time]"},
+    };
+}
+
+}   // namespace livens

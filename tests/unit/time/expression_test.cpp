@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "livens/time/expression.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <functional>
+#include <random>
+
+#include "livens/base/error.h"
+
+namespace livens {
+namespace {
+
+double value(const std::string& text, double t = 0, std::vector<double> x = {})
+{
+    return Expression(text, {"x", "y", "z"})(t, x.empty() ? std::vector<double>{0.3, -1.2, 2} : x);
+}
+
+TEST(Expression, ReadsAsMathematicsDoes)
+{
+    EXPECT_EQ(value("1 + 2*3"), 7);
+    EXPECT_EQ(value("(1 + 2)*3"), 9);
+    EXPECT_EQ(value("8 - 3 - 2"), 3);
+    EXPECT_EQ(value("8/4/2"), 1);
+    EXPECT_EQ(value("2^3^2"), 512);
+    EXPECT_EQ(value("-2^2"), -4);
+    EXPECT_EQ(value("2^-1"), 0.5);
+    EXPECT_EQ(value("(-2)^3"), -8);
+    EXPECT_EQ(value("- - 3"), 3);
+    EXPECT_EQ(value("1e-3 + .5 + 2.e1"), 20.501);
+    EXPECT_EQ(value("pi"), std::acos(-1.0));
+    EXPECT_EQ(value(" x *\t y "), 0.3 * -1.2);
+    EXPECT_EQ(value("min(x, y) + max(x, y)*10"), -1.2 + 3);
+    EXPECT_EQ(value("abs(y)"), 1.2);
+    EXPECT_EQ(value("t", 0.7), 0.7);
+    EXPECT_DOUBLE_EQ(value("atan2(y, x)"), std::atan2(-1.2, 0.3));
+    EXPECT_DOUBLE_EQ(value("tanh(z)"), std::tanh(2.0));
+    EXPECT_DOUBLE_EQ(value("tanh(1e-9)"), 1e-9);
+    EXPECT_EQ(value("tanh(-1000)"), -1);
+    EXPECT_DOUBLE_EQ(value("log(exp(x)) + sqrt(z)^2 + tan(x) - sin(x)/cos(x)"), 2.3);
+}
+
+/// By central differences of order 4 of the value alone.
+double difference(const std::function<double(double)>& f, double h)
+{
+    return (8 * (f(h) - f(-h)) - (f(2 * h) - f(-2 * h))) / (12 * h);
+}
+
+TEST(Expression, HasExactDerivatives)
+{
+    for (const std::string text :
+         {"sin(x*t)*y^3", "x^y", "exp(-z*t)/(1 + x^2)", "atan2(x + t, y)", "tanh(x*y - t)",
+          "sqrt(x + z)*log(z)", "abs(y)*tan(x)", "min(x, z)^2*max(y, t)", "z^2.5 + x^0 + (y)^2",
+          "cos(x)^2 + t^3*x", "-x/(y*z)"}) {
+        const Expression of(text, {"x", "y", "z"});
+        const std::array<double, 3> at{0.7, 1.3, 1.9};
+        const double t = 0.4;
+        std::array<double, 3> slopes{};
+        EXPECT_EQ(of(t, at, slopes), of(t, at));
+        for (std::size_t k = 0; k < 3; ++k) {
+            const auto moved = [&](double h) {
+                std::array<double, 3> x = at;
+                x[k] += h;
+                return of(t, x);
+            };
+            EXPECT_NEAR(slopes[k], difference(moved, 1e-3), 1e-9) << text << ", symbol " << k;
+        }
+        const TimeValue rates = of.by_time(t, at);
+        EXPECT_NEAR(rates.first, difference([&](double h) { return of(t + h, at); }, 1e-3), 1e-9) << text;
+        EXPECT_NEAR(rates.second, difference([&](double h) { return of.by_time(t + h, at).first; }, 1e-3),
+                    1e-8)
+            << text;
+    }
+}
+
+TEST(Expression, HasSlopesWhereTermsOfThemHaveNone)
+{
+    std::array<double, 3> slopes{};
+    Expression("x^2 + y^1", {"x", "y", "z"})(0, std::array<double, 3>{0, 0, 0}, slopes);
+    EXPECT_EQ(slopes[0], 0);
+    EXPECT_EQ(slopes[1], 1);
+    // The root does not move with z, so its infinite slope is nobody's.
+    Expression("sqrt(x) + z", {"x", "y", "z"})(0, std::array<double, 3>{0, 0, 0}, slopes);
+    EXPECT_EQ(slopes[2], 1);
+}
+
+std::string code_of(const std::string& text, const std::vector<std::string>& symbols,
+                    std::string* where = nullptr)
+{
+    try {
+        const Expression of(text, symbols);
+    } catch (const InputError& error) {
+        if (where != nullptr) *where = error.complaint().value;
+        return error.complaint().code;
+    }
+    return "";
+}
+
+TEST(Expression, RefusesWhatIsNone)
+{
+    for (const char* text : {"", "1 +", "(1", "1)", "2 x", "sin x", "sin()", "sin(1, 2)", "atan2(1)",
+                             "1 ** 2", "*", "1e", "1e999", ".", "x y", "#", "1; 2", "x = 2", "\xc3\xa9"})
+        EXPECT_EQ(code_of(text, {"x", "y"}), "expression-syntax") << text;
+    std::string where;
+    EXPECT_EQ(code_of("1 + foo(2)", {"x"}, &where), "expression-name");
+    EXPECT_NE(where.find("column 5"), std::string::npos) << where;
+    EXPECT_EQ(code_of("1 + 2/(3 - 3)", {}, &where), "expression-value");
+    EXPECT_EQ(where, "division by 0 at column 6");
+    for (const char* text : {"log(-1)", "log(0)", "sqrt(-2)", "10^1000", "(-2)^0.5", "exp(1e6)"})
+        EXPECT_EQ(code_of(text, {}), "expression-value") << text;
+    EXPECT_EQ(code_of("1/x", {"x"}), "");   // not known yet
+    for (const char* symbol : {"", "t", "pi", "sin", "1a", "a b", "a.b"})
+        EXPECT_EQ(code_of("1", {symbol}), "expression-name") << symbol;
+    EXPECT_EQ(code_of(std::string(1001, '1'), {}), "expression-size");
+    EXPECT_EQ(code_of(std::string(65, '(') + "1" + std::string(65, ')'), {}), "expression-size");
+    EXPECT_EQ(code_of(std::string(62, '(') + "1" + std::string(62, ')'), {}), "");
+    EXPECT_EQ(code_of("1", std::vector<std::string>(65, "a")), "expression-size");
+}
+
+TEST(Expression, SaysWhereItHasNoValue)
+{
+    const Expression of("1 + 3/(x - t)", {"x"});
+    EXPECT_EQ(of.without_value(1, std::array<double, 1>{2}), "");
+    EXPECT_EQ(of.without_value(2, std::array<double, 1>{2}), "division by 0 at column 6");
+    EXPECT_EQ(Expression("sqrt(x)", {"x"}).without_value(0, std::array<double, 1>{-2}),
+              "sqrt(-2) at column 1");
+}
+
+/// Texts of all kinds are read or refused, and what is read is evaluated.
+TEST(Expression, StandsAnyText)
+{
+    std::mt19937 random(7);
+    const std::string seeds[] = {"sin(x)*exp(-t)", "atan2(y, x)^2/(1 + abs(t))",
+                                 "-3*x - 0.2*y + min(x, max(y, 1))"};
+    const std::string letters = "0123456789.eE+-*/^(),xytpisncoaqrlgbmhd \t_#\"";
+    int read = 0;
+    for (int n = 0; n < 100000; ++n) {
+        std::string text = seeds[random() % 3];
+        for (unsigned changes = 1 + random() % 4; changes > 0; --changes) {
+            const std::size_t at = random() % (text.size() + 1);
+            const char letter = letters[random() % letters.size()];
+            if (random() % 3 == 0)
+                text.insert(at, 1, letter);
+            else if (random() % 2 == 0 && at < text.size())
+                text[at] = letter;
+            else if (at < text.size())
+                text.erase(at, 1);
+        }
+        try {
+            const Expression of(text, {"x", "y"});
+            std::array<double, 2> slopes{};
+            of(0.3, std::array<double, 2>{0.5, -0.7}, slopes);
+            ++read;
+        } catch (const InputError& error) {
+            EXPECT_EQ(error.complaint().code.rfind("expression-", 0), 0u);
+        }
+    }
+    EXPECT_GT(read, 5000);   // else it was no test of what can be read
+}
+
+}   // namespace
+}   // namespace livens
