@@ -176,7 +176,8 @@ Verdict judge(const Model& model, const Motion& motion, const SolveReport& repor
                             " s: behind, double precision says nothing of this motion");
     if (!report.converged()) return v;
     Reasons reasons(v.reasons);
-    const LostTurn turned = find_lost_turn(model, motion);
+    const bool counts_turns = motion.constraints_hold == "element nodes";
+    const LostTurn turned = counts_turns ? LostTurn{} : find_lost_turn(model, motion);
     if (turned.load >= 0) reasons.turn(model.loads()[turned.load], turned.t);
     if (!estimate.empty()) reasons.error(estimate, model, std::max(acceptable_error, report.accuracy));
     if (report.accuracy == 0 && motion.constraints_hold == "element nodes")

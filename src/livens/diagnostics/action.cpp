@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cassert>
 
+#include "livens/diagnostics/coordinates.h"
 #include "livens/diagnostics/detail/sampler.h"
 #include "livens/diagnostics/diagnostics.h"
 #include "livens/time/quadrature.h"
@@ -22,7 +23,7 @@ class Integrands {
 public:
     Integrands(const Model& model, const Motion& motion, const Quadrature& rule)
         : model_(model), sampler_(motion, rule.points), X_(static_cast<std::size_t>(motion.n_bodies)),
-          V_(X_.size()), P_(X_.size())
+          V_(X_.size()), P_(X_.size()), turns_(model, motion)
     {
         if (!sampler_.has_momenta()) return;
         for (const Body& body : model.bodies()) inverse_.push_back(inverse_mass(body.mass, body.is_point));
@@ -32,6 +33,8 @@ public:
     {
         sampler_.positions(element, k, X_);
         sampler_.velocities(element, k, V_);
+        if (k == 0) angles_ = turns_.at_end(element);   // points follow in order
+        turns_.turns().follow(X_, angles_);
         double kinetic = 0, legendre = 0;   // T*(P) = 1/2 tr(P m^-1 P^T) and tr(P X'^T)
         if (sampler_.has_momenta()) sampler_.momenta(element, k, P_);
         for (std::size_t b = 0; b < X_.size(); ++b) {
@@ -41,7 +44,7 @@ public:
             legendre += product;
             kinetic += 0.5 * (sampler_.has_momenta() ? dot(P_[b], P_[b] * inverse_[b]) : product);
         }
-        const double potential = potential_energy(model_, sampler_.instant(element, k), X_, V_);
+        const double potential = potential_energy(model_, sampler_.instant(element, k), X_, V_, angles_);
         hamiltonian = kinetic + potential;
         lagrangian = legendre - kinetic - potential;
         moment = angular_momentum(X_, P_);
@@ -56,6 +59,8 @@ private:
     ElementSampler sampler_;
     std::vector<Matrix4> inverse_;
     std::vector<Matrix34> X_, V_, P_;
+    LoadTurns turns_;
+    std::vector<double> angles_;
 };
 
 }   // namespace

@@ -5,6 +5,7 @@
 #include <limits>
 #include <optional>
 
+#include "livens/diagnostics/coordinates.h"
 #include "livens/diagnostics/detail/sampler.h"
 #include "livens/diagnostics/diagnostics.h"
 #include "livens/diagnostics/largest.h"
@@ -90,6 +91,8 @@ public:
             loads_.velocities(element, k, V_);
             for (std::size_t b = 0; b < X_.size(); ++b) now.add_force(X_[b], weights_of_bodies_[b], length_);
             raise_to(largest_kinetic_, kinetic_energy(model_, X_, V_));
+            if (k == 0) angles_ = turns_.at_end(element);
+            turns_.turns().follow(X_, angles_);
             add_loads(loads_.instant(element, k), now);
             sum.add(h * load_weights_[k], now);
             raise_to(largest_gross_moment_, now.gross_moment);
@@ -104,6 +107,7 @@ public:
         sum.add(h, stiffness(element, h));
         return sum;
     }
+    const LoadTurns& turns() const { return turns_; }
     /// Of all instants so far.
     double largest_gross_moment() const { return largest_gross_moment_; }
     double largest_kinetic() const { return largest_kinetic_; }
@@ -112,8 +116,8 @@ private:
     SupplyIntegral(const Model& model, const Motion& motion, Quadrature loads, Quadrature joints)
         : model_(model), tables_(model, all_rows(model)), load_weights_(loads.weights),
           joint_weights_(joints.weights), loads_(motion, loads.points), joints_(motion, joints.points),
-          motion_(motion), length_(model.length()), X_(static_cast<std::size_t>(motion.n_bodies)),
-          V_(X_.size())
+          motion_(motion), turns_(model, motion), length_(model.length()),
+          X_(static_cast<std::size_t>(motion.n_bodies)), V_(X_.size())
     {
         if (!motion.multipliers.empty()) {
             multipliers_.emplace(motion.multipliers, joints_.points());
@@ -129,9 +133,11 @@ private:
         Supply all;
         loads_.positions(element, 0, X_);
         loads_.velocities(element, 0, V_);
-        for (const Load& load : model_.loads()) {
+        angles_ = turns_.at_end(element);
+        for (int l = 0; l < static_cast<int>(model_.loads().size()); ++l) {
+            const Load& load = model_.loads()[l];
             if (!load.depends_on_X && !load.depends_on_V) continue;
-            const LoadArguments arguments = load_arguments(load, loads_.instant(element, 0), X_, V_);
+            const LoadArguments arguments = arguments_of(l, loads_.instant(element, 0));
             LoadTangent tangent(load.bodies.size());
             load.tangent(arguments, tangent);
             for (int b = 0; b < 2; ++b) {
@@ -149,10 +155,16 @@ private:
         return all;
     }
 
+    LoadArguments arguments_of(int load, Instant at) const
+    {
+        return load_arguments(model_.loads()[load], at, X_, V_, turns_.turns().of(load, angles_));
+    }
+
     void add_loads(Instant at, Supply& now) const
     {
-        for (const Load& load : model_.loads()) {
-            const LoadArguments arguments = load_arguments(load, at, X_, V_);
+        for (int l = 0; l < static_cast<int>(model_.loads().size()); ++l) {
+            const Load& load = model_.loads()[l];
+            const LoadArguments arguments = arguments_of(l, at);
             LoadForces F{};
             load.forces(arguments, F);
             for (int b = 0; b < 2; ++b) {
@@ -188,6 +200,8 @@ private:
     std::vector<double> load_weights_, joint_weights_;
     ElementSampler loads_, joints_;
     const Motion& motion_;
+    const LoadTurns turns_;
+    std::vector<double> angles_;   // of loads, where X_ is
     double length_;
     double largest_gross_moment_ = 0, largest_kinetic_ = 0;
     std::optional<FieldTable> multipliers_;   // a field of its own degree, at the joints' points
@@ -263,7 +277,8 @@ private:
                 .subspan(static_cast<std::size_t>(end_) * X_.size(), X_.size());
         positions_at_end(motion_, end_, X_);
         const Instant at{motion_.mesh.ends[end_], end_ == motion_.n_elements() ? Side::left : Side::right};
-        const double kinetic = kinetic_energy(model_, X_, V), potential = potential_energy(model_, at, X_, V);
+        const double kinetic = kinetic_energy(model_, X_, V),
+                     potential = potential_energy(model_, at, X_, V, supply_.turns().at_end(end_));
 
         piece.t.push_back(at.t);
         piece.kinetic.push_back(kinetic);

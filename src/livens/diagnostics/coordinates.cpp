@@ -122,9 +122,10 @@ std::vector<NamedCoordinate> sensed_coordinates(const Model& model)
     return all;
 }
 
-void append_load(const Load& load, const State& state, std::vector<double>& values)
+void append_load(const Load& load, const State& state, std::span<const double> angles,
+                 std::vector<double>& values)
 {
-    const LoadArguments arguments = load_arguments(load, {state.t, Side::right}, state.X, state.V);
+    const LoadArguments arguments = load_arguments(load, {state.t, Side::right}, state.X, state.V, angles);
     for (const LoadReading& reading : load.readings) values.push_back(reading.value(arguments));
     values.push_back(load_power(load, arguments));
 }
@@ -138,19 +139,56 @@ void append_energy(const Model& model, int b, const State& state, std::vector<do
 
 }   // namespace
 
+LoadTurns::LoadTurns(const Model& model, const Motion& motion) : motion_(motion), turns_(model)
+{
+    if (turns_.empty()) return;
+    std::vector<double> now = turns_.begin();
+    turns_.follow(sample_state(motion, motion.start()).X, now);
+    at_ends_ = now;
+    for (int e = 0; e < motion.n_elements(); ++e) {
+        for (int node = 1; node <= motion.X.degree; ++node)
+            turns_.follow(configurations(motion, e, node), now);
+        at_ends_.insert(at_ends_.end(), now.begin(), now.end());
+    }
+}
+
+std::vector<double> LoadTurns::at_end(int end) const
+{
+    const std::size_t n = turns_.size();
+    const auto first = at_ends_.begin() + static_cast<std::ptrdiff_t>(n) * end;
+    return {first, first + static_cast<std::ptrdiff_t>(n)};
+}
+
+std::vector<double> LoadTurns::at(const State& state) const
+{
+    if (turns_.empty()) return {};
+    const int end = element_end_at(motion_.mesh, state.t);
+    if (end >= 0) return at_end(end);
+    const int element = motion_.mesh.element_at(state.t);
+    std::vector<double> now = at_end(element);
+    const std::vector<double> nodes = motion_.X.basis().nodes();
+    const double s = (state.t - motion_.mesh.ends[element]) / motion_.mesh.length(element);
+    for (int node = 1; node <= motion_.X.degree && nodes[node] <= s; ++node)
+        turns_.follow(configurations(motion_, element, node), now);
+    turns_.follow(state.X, now);
+    return now;
+}
+
 SensorReadings::SensorReadings(const Model& model, const Motion& motion)
-    : model_(model), motion_(motion), followed_(model, motion, sensed_coordinates(model))
+    : model_(model), motion_(motion), followed_(model, motion, sensed_coordinates(model)),
+      turns_(model, motion)
 {}
 
 std::vector<double> SensorReadings::at(double t) const
 {
     const State state = sample_state(motion_, t);
     const std::vector<CoordinateValue> coordinates = followed_.at(state);
+    const std::vector<double> angles = turns_.at(state);
     std::vector<double> all;
     std::size_t next = 0;
     for (const Sensor& sensor : model_.sensors()) {
         if (sensor.load >= 0)
-            append_load(model_.loads()[sensor.load], state, all);
+            append_load(model_.loads()[sensor.load], state, turns_.turns().of(sensor.load, angles), all);
         else if (sensor.body >= 0)
             append_energy(model_, sensor.body, state, all);
         else
@@ -187,7 +225,7 @@ LostTurn find_lost_turn(const Model& model, const Motion& motion)
 {
     LostTurn found;
     for (int l = 0; l < static_cast<int>(model.loads().size()); ++l) {
-        for (const JointCoordinate& q : model.loads()[l].bounded_angles) {
+        for (const JointCoordinate& q : model.loads()[l].angles) {
             const double t = first_half_turn(q, motion);
             if (std::isfinite(t) && (found.load < 0 || t < found.t)) found = {l, t};
         }

@@ -7,6 +7,7 @@
 
 #include "livens/multibody/model.h"
 #include "livens/multibody/motion.h"
+#include "livens/multibody/turns.h"
 
 namespace [[gnu::visibility("default")]] livens {
 
@@ -61,6 +62,22 @@ private:
     FollowedCoordinates followed_;
 };
 
+/// Angles of loads along a motion; see Turns.
+class LoadTurns {
+public:
+    LoadTurns(const Model& model, const Motion& motion);
+
+    const Turns& turns() const { return turns_; }
+    /// A row at an end of an element, and in a state of the motion.
+    std::vector<double> at_end(int end) const;
+    std::vector<double> at(const State& state) const;
+
+private:
+    const Motion& motion_;
+    Turns turns_;
+    std::vector<double> at_ends_;
+};
+
 /// What all sensors of a model read along a motion.
 class SensorReadings {
 public:
@@ -74,9 +91,11 @@ private:
     const Model& model_;
     const Motion& motion_;
     FollowedCoordinates followed_;   ///< of components that have a coordinate, in their order
+    LoadTurns turns_;
 };
 
-/// A load whose angle has left the half turn on either side in which it is known (Load::bounded_angle).
+/// A load whose angle has left the half turn on either side in which it is known where nobody
+/// counts turns (Load::angles).
 struct LostTurn {
     int load = -1;   ///< -1: there is none
     double t = 0;    ///< s, of the first node beyond

@@ -82,8 +82,9 @@ BalanceFigures balance(const Model& model, const Motion& motion, int n_ends,
 
 double kinetic_energy(const Model& model, std::span<const Matrix34> X, std::span<const Matrix34> V);
 /// Gravity (body of mass M at height: -M g . x) and the loads' potentials.
+/// `angles`: of loads, see Turns.
 double potential_energy(const Model& model, Instant at, std::span<const Matrix34> X,
-                        std::span<const Matrix34> V);
+                        std::span<const Matrix34> V, std::span<const double> angles = {});
 Vector3 linear_momentum(std::span<const Matrix34> P);
 /// About the world's origin: sum over bodies of sum over columns x_c cross p_c.
 Vector3 angular_momentum(std::span<const Matrix34> X, std::span<const Matrix34> P);
@@ -184,6 +185,7 @@ NodeViolations node_violations(const Model& model, const Motion& motion);
 /// of a single such row of rigidity_rows is 2 lambda_ab.
 std::vector<double> rigidity_multipliers(const Model& model, int body, Instant at,
                                          std::span<const Matrix34> X, std::span<const Matrix34> V,
-                                         std::span<const Matrix34> A, std::span<const double> multipliers);
+                                         std::span<const Matrix34> A, std::span<const double> multipliers,
+                                         std::span<const double> angles = {});
 
 }   // namespace livens

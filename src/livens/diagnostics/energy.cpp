@@ -2,6 +2,7 @@
 #include <cassert>
 
 #include "livens/diagnostics/diagnostics.h"
+#include "livens/multibody/turns.h"
 
 namespace livens {
 
@@ -16,15 +17,17 @@ double kinetic_energy(const Model& model, std::span<const Matrix34> X, std::span
 }
 
 double potential_energy(const Model& model, Instant at, std::span<const Matrix34> X,
-                        std::span<const Matrix34> V)
+                        std::span<const Matrix34> V, std::span<const double> angles)
 {
     assert(X.size() == V.size() && static_cast<int>(X.size()) == model.n_bodies());
     double energy = 0;
     // The weight is constant, so its potential is -tr(F^T X) = -M g . x of the centre of mass.
     for (int b = 0; b < model.n_bodies(); ++b)
         energy -= dot(weight(model.bodies()[b], model.gravity()), X[b]);
-    for (const Load& load : model.loads()) {
-        if (load.potential) energy += load.potential(load_arguments(load, at, X, V));
+    const Turns turns(model);
+    for (int l = 0; l < static_cast<int>(model.loads().size()); ++l) {
+        const Load& load = model.loads()[l];
+        if (load.potential) energy += load.potential(load_arguments(load, at, X, V, turns.of(l, angles)));
     }
     return energy;
 }

@@ -63,7 +63,7 @@ public:
         for (const int l : tables_.loads_with_tangent) {
             const Load& load = tables_.model->loads()[l];
             LoadTangent tangent(load.bodies.size());
-            load.tangent(Tables::arguments(load, at_, state_.X.data(), V.data()), tangent);
+            load.tangent(tables_.arguments(l, at_, state_.X.data(), V.data(), state_.angles), tangent);
             for (std::size_t r = 0; r < 2; ++r)
                 for (std::size_t s = 0; s < load.bodies.size(); ++s) {
                     const int i = load.bodies[r], j = load.bodies[s];
@@ -141,7 +141,7 @@ private:
         }
         tables_.times_mass(A.data(), -1.0, r.data());
         tables_.add_weight(1.0, r.data());
-        tables_.add_loads(at_, state_.X.data(), V.data(), 1.0, r.data());
+        tables_.add_loads(at_, state_.X.data(), V.data(), 1.0, r.data(), state_.angles);
         return r;
     }
 

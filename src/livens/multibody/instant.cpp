@@ -301,7 +301,7 @@ void InstantSystem::accelerate(InstantState& state, Side side)
     }
     tables_.times_mass(centripetal_.data(), -1.0, raw_.data());
     tables_.add_weight(1.0, raw_.data());
-    tables_.add_loads({state.t, side}, X, V_.data(), 1.0, raw_.data());
+    tables_.add_loads({state.t, side}, X, V_.data(), 1.0, raw_.data(), state.angles);
     double* y = a_.data();
     double* forces = b_.data();
     tables_.twist_rows(X, state.maps.data(), raw_.data(), y);

@@ -13,6 +13,7 @@ namespace livens {
 /// Everything the next element, and the motion, need of one instant.
 struct InstantState {
     double t = 0;
+    std::vector<double> angles;     ///< of loads, see Turns
     std::vector<double> X;          ///< 12 a body
     std::vector<double> X_low;      ///< what rounding took off X, see add_increments()
     std::vector<double> maps;     ///< of the scaled twists, 12 a body

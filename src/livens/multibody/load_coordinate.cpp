@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <utility>
 
 #include "livens/base/elementary.h"
@@ -38,8 +39,8 @@ std::vector<PairForm> from(const std::vector<PairForm>& forms, const Configurati
     return {mixed(c, s), mixed(-s, c)};
 }
 
-/// Positions do not tell whole turns: nearer than this to half a turn an angle is not a number. What steps
-/// over that is found by Load::bounded_angles.
+/// Positions do not tell whole turns: where nobody counts them, an angle nearer than this to half a turn is
+/// not a number.
 constexpr double widest_angle = 3.05;
 
 /// Whether the gradient of a form by X of its body j, or i, has more than a first column.
@@ -70,8 +71,13 @@ LoadCoordinate::LoadCoordinate(const JointCoordinate& coordinate, double at_stat
     if (!coordinate_.is_angle()) offset_ -= value_of(first, X);
 }
 
-void LoadCoordinate::place(const std::vector<int>& load_bodies)
+void LoadCoordinate::place(Load& load, bool counts_turns)
 {
+    const std::vector<int>& load_bodies = load.bodies;
+    if (coordinate_.is_angle() && counts_turns) {
+        angle_ = static_cast<int>(load.angles.size());
+        load.angles.push_back(coordinate_);
+    }
     for (std::size_t b = 0; b < n_; ++b)
         places_[b] = static_cast<int>(std::ranges::find(load_bodies, bodies_[b]) - load_bodies.begin());
     std::vector<PairForm> forms = coordinate_.forms;
@@ -91,8 +97,13 @@ CoordinateState LoadCoordinate::look(const LoadArguments& arguments) const
     const Configurations X(arguments.X.data()->data());
     const RowGradient gradient = constraint_gradient(row_, X);
     CoordinateState seen{offset_ + constraint_value(row_, X), 0};
-    if (coordinate_.is_angle() && std::abs(seen.value - at_start_) > widest_angle)
+    if (angle_ >= 0 && !arguments.angles.empty()) {
+        constexpr double turn = 2 * std::numbers::pi;
+        const double near = offset_ + arguments.angles[static_cast<std::size_t>(angle_)];
+        seen.value += turn * std::round((near - seen.value) / turn);
+    } else if (angle_ >= 0 && std::abs(seen.value - at_start_) > widest_angle) {
         seen.value = std::numeric_limits<double>::quiet_NaN();
+    }
     for (std::size_t b = 0; b < n_; ++b) seen.rate += dot(gradient.of(places_[b]), arguments.V[places_[b]]);
     return seen;
 }

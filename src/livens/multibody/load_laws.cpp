@@ -98,7 +98,8 @@ Load modulated(const std::string& name, const std::string& type, const LoadParts
     for (const LawCoordinate& q : parts.coordinates)
         all.coordinates.emplace_back(q.coordinate, q.at_stated, X);
     collect_bodies(load, all.coordinates);
-    for (LoadCoordinate& coordinate : all.coordinates) coordinate.place(load.bodies);
+    for (std::size_t i = 0; i < all.coordinates.size(); ++i)
+        all.coordinates[i].place(load, parts.coordinates[i].is_needed);
     load.depends_on_X = !parts.coordinates.empty();
     load.depends_on_V = parts.depends_on_rates;
     load.breaks = parts.breaks;
@@ -109,9 +110,6 @@ Load modulated(const std::string& name, const std::string& type, const LoadParts
         for (std::size_t b = 0; b < 2; ++b)
             load.needs_directors[b] = load.needs_directors[b] || unit.needs_directors[b];
     }
-    for (std::size_t i = 0; i < parts.coordinates.size(); ++i)
-        if (parts.coordinates[i].is_needed && parts.coordinates[i].coordinate.is_angle())
-            load.bounded_angles.push_back(all.coordinates[i].coordinate());
     load.forces = [all](const LoadArguments& arguments, LoadForces& F) { all.forces(arguments, F); };
     load.tangent = [all](const LoadArguments& arguments, LoadTangent& tangent) {
         all.tangent(arguments, tangent);
@@ -143,7 +141,7 @@ Load unit_along(const std::string& name, const JointCoordinate& coordinate, cons
 {
     LoadCoordinate along(coordinate, 0, X);
     Load load = start_load(name, "unit", along.bodies());
-    along.place(load.bodies);
+    along.place(load, false);   // its direction is the same in every turn
     load.depends_on_X = true;
     load.needs_directors = along.needs_directors();
     load.forces = [along](const LoadArguments& arguments, LoadForces& F) {

@@ -70,10 +70,11 @@ TimeVector window(const TimeVector& value, double from, double until)
 }
 
 LoadArguments load_arguments(const Load& load, Instant at, std::span<const Matrix34> X,
-                             std::span<const Matrix34> V)
+                             std::span<const Matrix34> V, std::span<const double> angles)
 {
     LoadArguments arguments(load.bodies.size());
     arguments.at = at;
+    arguments.angles = angles;
     for (std::size_t b = 0; b < load.bodies.size(); ++b) {
         if (load.bodies[b] == world) continue;
         arguments.X[b] = X[load.bodies[b]];

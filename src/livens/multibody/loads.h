@@ -47,6 +47,8 @@ struct LoadArguments {
     Instant at;
     PerBody<Matrix34> X;
     PerBody<Matrix34> V;
+    /// About what each of Load::angles is, within half a turn. Empty: turns are not known.
+    std::span<const double> angles{};
 };
 
 /// F_b for the one or two bodies that a load acts on, by virtual work tr(F_b^T dX_b); N in the first column,
@@ -85,9 +87,8 @@ struct Load {
         needs_directors{};        ///< F is not zero outside the first column: refused on a point mass
     std::vector<double> breaks;   ///< instants where F jumps or bends; they become element ends
     std::string domain;           ///< where F is a number, for the message if it is not; empty: everywhere
-    /// Angles whose turns F does not see: a motion on which one passes half a turn has another F than it
-    /// should have from there on.
-    std::vector<JointCoordinate> bounded_angles{};
+    /// Angles that F counts with their turns, zero where the bodies are stated; see LoadArguments::angles.
+    std::vector<JointCoordinate> angles{};
 
     /// F; required. Forces arrive as zero.
     std::function<void(const LoadArguments&, LoadForces&)> forces;
@@ -156,8 +157,9 @@ struct JointSpring {
 // Loads along a coordinate of a joint: a force that does the work Q dq, between its two bodies. X is the
 // configuration of all bodies at the start.
 
-/// Q = -stiffness (q - rest) - damping dq/dt - preload. An angle is known up to 3.05 rad from where it is in
-/// X: beyond that a spring is not a number, and the motion ends there by name.
+/// Q = -stiffness (q - rest) - damping dq/dt - preload. Turns of an angle are counted where the caller knows
+/// them (LoadArguments::angles); else it is known up to 3.05 rad from where it is in X, and beyond that the
+/// load is not a number.
 Load joint_spring(const std::string& name, const NamedCoordinate& coordinate, const JointSpring& spring,
                   const Configurations& X);
 /// Q = value(t), N or N m.
@@ -169,7 +171,7 @@ std::string not_finite(const Load& load);
 
 /// What a load is asked with, from X and V of all bodies.
 LoadArguments load_arguments(const Load& load, Instant at, std::span<const Matrix34> X,
-                             std::span<const Matrix34> V);
+                             std::span<const Matrix34> V, std::span<const double> angles = {});
 
 /// tr(F^T V) over both bodies.
 double load_power(const Load& load, const LoadArguments& arguments);

@@ -18,6 +18,7 @@ struct State {
     double t = 0;
     std::vector<Matrix34> X;
     std::vector<Matrix34> V;
+    std::vector<double> angles{};   ///< of loads, see Turns; empty: no turns since the bodies were stated
 };
 
 /// A mechanism is built by the add_ functions and constant from then on; all others take it const.

@@ -99,11 +99,19 @@ void Field::make_rational(int element, std::span<double> M, std::span<double> de
 
 std::size_t Motion::n_bytes() const
 {
-    std::size_t numbers = mesh.ends.capacity() + end_multipliers.capacity();
+    std::size_t numbers = mesh.ends.capacity() + end_multipliers.capacity() + load_angles.capacity();
     for (const Field* field : {&X, &P, &multipliers, &rigidity})
         numbers += field->values.capacity() + field->denominators.capacity();
     for (const auto* columns : {&momenta, &velocities, &accelerations}) numbers += 12 * columns->capacity();
     return numbers * sizeof(double);
+}
+
+std::vector<double> Motion::angles_at(int end) const
+{
+    if (load_angles.empty()) return {};
+    const std::size_t n = load_angles.size() / mesh.ends.size();
+    const auto first = load_angles.begin() + static_cast<std::ptrdiff_t>(n) * end;
+    return {first, first + static_cast<std::ptrdiff_t>(n)};
 }
 
 State Motion::at(double t) const
@@ -126,6 +134,7 @@ State Motion::at(double t) const
         state.X.push_back(body_of(x, b));
         state.V.push_back((1 / h) * body_of(rates, b));
     }
+    state.angles = angles_at(element);
     return state;
 }
 
@@ -141,6 +150,7 @@ State Motion::at_end(int end) const
         state.X.push_back(body_of(x, b));
         state.V.push_back(velocities[end * n_bodies + b]);
     }
+    state.angles = angles_at(end);
     return state;
 }
 

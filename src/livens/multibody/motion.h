@@ -64,6 +64,7 @@ struct Motion {
     std::vector<Matrix34> momenta;         ///< tangent momentum P = X' m
     std::vector<Matrix34> velocities;      ///< X' = [v, w x d_i], from the momentum
     std::vector<Matrix34> accelerations;   ///< X'', entry ((2 * end + side) * n_bodies + body); may be empty
+    std::vector<double> load_angles;       ///< rows of Turns; empty: nobody counted
     std::vector<double> end_multipliers;   ///< acceleration level, (2 * end + side) * n_rows + row; or empty
 
     // What may be believed.
@@ -89,6 +90,9 @@ struct Motion {
     /// X and V at any instant: at element ends the end values, else the polynomial and its derivative.
     State at(double t) const;
     State at_end(int end) const;
+
+private:
+    std::vector<double> angles_at(int end) const;
 };
 
 /// What the joint exerts on its second body.

@@ -116,8 +116,8 @@ bool scale_body(const Body& body, double length, Tables::BodyTable& table)
 }   // namespace
 
 Tables::Tables(const Model& the_model, std::vector<int> rows_to_solve, bool with_rigidity)
-    : model(&the_model), independent(std::move(rows_to_solve)), rank(static_cast<int>(independent.size())),
-      n_bodies_(the_model.n_bodies())
+    : model(&the_model), turns(the_model), independent(std::move(rows_to_solve)),
+      rank(static_cast<int>(independent.size())), n_bodies_(the_model.n_bodies())
 {
     length = the_model.length();
     for (const Body& body : the_model.bodies()) {
@@ -230,10 +230,13 @@ void Tables::add_weight(double factor, double* raw) const
     }
 }
 
-LoadArguments Tables::arguments(const Load& load, Instant instant, const double* X, const double* V)
+LoadArguments Tables::arguments(int index, Instant instant, const double* X, const double* V,
+                                std::span<const double> angles) const
 {
+    const Load& load = model->loads()[index];
     LoadArguments arguments(load.bodies.size());
     arguments.at = instant;
+    arguments.angles = turns.of(index, angles);
     for (std::size_t side = 0; side < load.bodies.size(); ++side) {
         const int body = load.bodies[side];
         if (body == world) continue;
@@ -243,11 +246,13 @@ LoadArguments Tables::arguments(const Load& load, Instant instant, const double*
     return arguments;
 }
 
-void Tables::add_loads(Instant instant, const double* X, const double* V, double factor, double* raw) const
+void Tables::add_loads(Instant instant, const double* X, const double* V, double factor, double* raw,
+                       std::span<const double> angles) const
 {
-    for (const Load& load : model->loads()) {
+    for (std::size_t l = 0; l < model->loads().size(); ++l) {
+        const Load& load = model->loads()[l];
         LoadForces forces{};
-        load.forces(arguments(load, instant, X, V), forces);
+        load.forces(arguments(static_cast<int>(l), instant, X, V, angles), forces);
         for (int side = 0; side < 2; ++side) {
             if (load.bodies[side] == world) continue;
             double* f = raw + 12 * load.bodies[side];
@@ -256,12 +261,12 @@ void Tables::add_loads(Instant instant, const double* X, const double* V, double
     }
 }
 
-int Tables::bad_load(Instant instant, const double* X, const double* V) const
+int Tables::bad_load(Instant instant, const double* X, const double* V, std::span<const double> angles) const
 {
     for (std::size_t l = 0; l < model->loads().size(); ++l) {
         const Load& load = model->loads()[l];
         LoadForces forces{};
-        load.forces(arguments(load, instant, X, V), forces);
+        load.forces(arguments(static_cast<int>(l), instant, X, V, angles), forces);
         double sum = 0;
         for (const Matrix34& F : forces)
             for (const double f : F.a) sum += std::abs(f);

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "livens/multibody/model.h"
+#include "livens/multibody/turns.h"
 
 namespace livens {
 
@@ -67,6 +68,7 @@ struct Tables {
     std::vector<RowTable> rows;            ///< all joint rows of the model, then those of rigidity
     std::vector<ConstraintRow> rigidity;   ///< if asked for
     std::vector<int> loads_with_tangent;
+    Turns turns;
     double length = 1;
     int n_twists = 0;
     std::vector<int> independent;   ///< rows that are solved for, until choose_rows() finds them unfit
@@ -99,11 +101,14 @@ struct Tables {
 
     /// raw += factor * weight, and factor * loads at the instant; X, V: 12 a body.
     void add_weight(double factor, double* raw) const;
-    void add_loads(Instant at, const double* X, const double* V, double factor, double* raw) const;
+    /// `angles`: a row of `turns`, or nothing where turns are not known.
+    void add_loads(Instant at, const double* X, const double* V, double factor, double* raw,
+                   std::span<const double> angles = {}) const;
     /// What a load is asked with.
-    static LoadArguments arguments(const Load& load, Instant at, const double* X, const double* V);
+    LoadArguments arguments(int load, Instant at, const double* X, const double* V,
+                            std::span<const double> angles = {}) const;
     /// The first load that is not finite there; -1: none.
-    int bad_load(Instant at, const double* X, const double* V) const;
+    int bad_load(Instant at, const double* X, const double* V, std::span<const double> angles = {}) const;
     /// q <- the rows of raw: force, and moment about the centre of mass (not the reference point).
     void twist_rows(const double* X, const double* maps, const double* raw, double* q) const;
 

@@ -8,6 +8,7 @@
 
 #include "livens/base/error.h"
 #include "livens/base/text.h"
+#include "livens/diagnostics/coordinates.h"
 #include "livens/multibody/singular.h"
 #include "livens/spacetime/accuracy.h"
 #include "livens/spacetime/guess.h"
@@ -217,8 +218,8 @@ void lower_orders(const Model& model, Motion& motion)
         std::vector<double> X, V, jump(12 * state.X.size(), 0.0);
         for (const Matrix34& x : state.X) X.insert(X.end(), std::begin(x.a), std::end(x.a));
         for (const Matrix34& v : state.V) V.insert(V.end(), std::begin(v.a), std::end(v.a));
-        tables.add_loads({t, Side::right}, X.data(), V.data(), 1, jump.data());
-        tables.add_loads({t, Side::left}, X.data(), V.data(), -1, jump.data());
+        tables.add_loads({t, Side::right}, X.data(), V.data(), 1, jump.data(), state.angles);
+        tables.add_loads({t, Side::left}, X.data(), V.data(), -1, jump.data(), state.angles);
         const int order = std::ranges::any_of(jump, [](double f) { return f != 0; }) ? 1 : 2;
         for (int* stated : {&motion.order_at_ends, &motion.dense_order_X, &motion.dense_order_V})
             *stated = std::min(*stated, order);
@@ -276,7 +277,8 @@ ExactSample sample_exactly(const Model& model, const Motion& motion, const Metho
     quiet.condition = false;   // one shortened element is not what was asked about
     quiet.initial =
         StartPolicy::project;   // an end state holds its constraints to rounding; polish, never refuse
-    const Problem problem{{motion.at_end(element)}};
+    Problem problem{{motion.at_end(element)}};
+    problem.conditions.start.angles = LoadTurns(model, motion).at_end(element);   // files do not hold them
     const TimeMesh one{{motion.mesh.ends[element], t}};
     Solution s = is_elements(method) ? solve_by_windows(model, problem, one, method, quiet)
                                      : solve_by_steps(model, problem, one, method, quiet);

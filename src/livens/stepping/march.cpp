@@ -291,7 +291,7 @@ private:
                 : "; the largest residual is " + to_text(outcome.worst.value, 6) + " in " +
                       outcome.worst.name;
         if (!outcome.load.empty()) {
-            report.message = "the load '" + outcome.load + "' is not finite" + where;
+            report.message = outcome.load + where;
         } else if (outcome.status == SolveStatus::not_finite) {
             report.message = "the state is not finite" + where + worst + "; take shorter steps";
         } else if (outcome.status == SolveStatus::singular) {

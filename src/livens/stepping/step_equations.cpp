@@ -115,13 +115,13 @@ void StepEquations::add_loads(const StepStart& start, const std::vector<Matrix34
         for (int s = 0; s < 2; ++s) {
             const int body = load.bodies[s];
             if (body == world) continue;
-            if (!finite(F[s])) system.not_finite = load.name;
+            if (!finite(F[s])) system.not_finite = not_finite(load);
             add_force(body, factor, F[s], system);
             for (std::size_t w = 0; w < load.bodies.size(); ++w) {
                 const int by = load.bodies[w];
                 if (by == world) continue;
                 const Matrix<12, 12> d = a_ * T.X[s][w] + (1 / start.h) * T.V[s][w];
-                if (!finite(d)) system.not_finite = load.name;
+                if (!finite(d)) system.not_finite = not_finite(load);
                 for (int r = 0; r < n_numbers(body); ++r)
                     for (int c = 0; c < n_numbers(by); ++c) {
                         if (d(r, c) != 0)

@@ -46,6 +46,8 @@ TEST_F(Results, RunComesBackToTheBit)
     EXPECT_EQ(back.motion.velocities, run.motion.velocities);
     EXPECT_EQ(back.motion.accelerations, run.motion.accelerations);
     EXPECT_EQ(back.motion.end_multipliers, run.motion.end_multipliers);
+    EXPECT_EQ(back.motion.load_angles, run.motion.load_angles);
+    EXPECT_FALSE(run.motion.load_angles.empty());
     EXPECT_EQ(back.motion.redundant_rows, run.motion.redundant_rows);
     EXPECT_EQ(back.motion.rigidity.values, run.motion.rigidity.values);
     EXPECT_EQ(back.motion.rigidity.degree, 1);
@@ -151,7 +153,7 @@ TEST_F(Results, EveryMemberOfARunIsInTheFile)
     [[maybe_unused]] const auto& [r1, r2, r3, r4, r5, r6, r7, r8, r9, r10, r11, r12, r13, r14, r15, r16,
                                   r17] = RunFile{};
     [[maybe_unused]] const auto& [m1, m2, m3, m4, m5, m6, m7, m8, m9, m10, m11, m12, m13, m14, m15, m16, m17,
-                                  m18] = Motion{};
+                                  m18, m19] = Motion{};
     [[maybe_unused]] const auto& [f1, f2, f3, f4, f5, f6] = Field{};
     int report = 0, verdict = 0, balance = 0;
     for (const Figure& figure : run_figures()) {

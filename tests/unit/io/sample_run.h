@@ -169,6 +169,7 @@ inline void fill_motion(Motion& m, const Model& model, int n_elements)
             m.velocities.push_back(b == 0 ? turned_rate(t) : Matrix34{3, 0, 0});
         }
     for (int i = 0; i < 4 * (n_elements + 1); ++i) m.accelerations.push_back({0.1 * i, 1, 2, 3});
+    for (int i = 0; i <= n_elements; ++i) m.load_angles.insert(m.load_angles.end(), {0.5 * i, 7.0 * i});
     for (int i = 0; i <= n_elements; ++i) m.end_multipliers.insert(m.end_multipliers.end(), {5, 7});
     m.order_at_ends = 4;
     m.dense_order_X = 3;

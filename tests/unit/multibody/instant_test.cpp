@@ -53,7 +53,14 @@ Numbers forces_on(const Model& model, Instant at, const Numbers& x, const Number
     for (int b = 0; b < model.n_bodies(); ++b) add(b, weight(model.bodies()[b], model.gravity()));
     for (const Load& load : model.loads()) {
         LoadForces forces{};
-        load.forces(Tables::arguments(load, at, x.data(), v.data()), forces);
+        LoadArguments asked;
+        asked.at = at;
+        for (std::size_t side = 0; side < 2; ++side) {
+            if (load.bodies[side] == world) continue;
+            std::copy_n(x.data() + 12 * load.bodies[side], 12, asked.X[side].a);
+            std::copy_n(v.data() + 12 * load.bodies[side], 12, asked.V[side].a);
+        }
+        load.forces(asked, forces);
         for (int side = 0; side < 2; ++side)
             if (load.bodies[side] != world) add(load.bodies[side], forces[side]);
     }

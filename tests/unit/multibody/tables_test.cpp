@@ -345,7 +345,8 @@ TEST(Tables, LoadsAreThoseOfTheModel)
     const Numbers V = bench.any_rates();
     Numbers sum(V.size(), 0.0), wanted(V.size(), 0.0);
     bench.tables.add_loads(now, bench.x.data(), V.data(), -3.0, sum.data());
-    for (const Load& load : bench.model.loads()) {
+    for (int l = 0; l < static_cast<int>(bench.model.loads().size()); ++l) {
+        const Load& load = bench.model.loads()[l];
         LoadArguments asked;
         asked.at = now;
         LoadForces forces{};
@@ -354,7 +355,7 @@ TEST(Tables, LoadsAreThoseOfTheModel)
             asked.X[side] = body_of(bench.x, load.bodies[side]);
             asked.V[side] = body_of(V, load.bodies[side]);
         }
-        const LoadArguments given = Tables::arguments(load, now, bench.x.data(), V.data());
+        const LoadArguments given = bench.tables.arguments(l, now, bench.x.data(), V.data());
         for (int side = 0; side < 2; ++side) {
             EXPECT_EQ(given.X[side], asked.X[side]);
             EXPECT_EQ(given.V[side], asked.V[side]);

@@ -30,12 +30,14 @@ std::vector<Variation> variations(const Model& model, int n)
 {
     std::vector<Variation> all;
     for (int i = 0; i < n; ++i) {
-        Variation one{&model, {model.start()}, make_time_mesh(0, 1, 5 + i)};
+        Variation& one = all.emplace_back();   // in place: GCC 12 warns of a temporary's members
+        one.model = &model;
+        one.problem.conditions.start = model.start();
+        one.time = make_time_mesh(0, 1, 5 + i);
         one.problem.conditions.start.V[0] = (0.1 * i) * configuration({0, 1, 0}, Matrix3{});
         if (i % 3 == 1) one.method = Radau{3};
         if (i % 3 == 2) one.time = Span{0, 1, 1e-7};
         if (i % 3 == 2) one.method = Lobatto{0};
-        all.push_back(std::move(one));
     }
     return all;
 }

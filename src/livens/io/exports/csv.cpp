@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "livens/diagnostics/coordinates.h"
 #include "livens/diagnostics/sample.h"
 #include "livens/io/exports.h"
 #include "livens/io/json.h"
@@ -50,12 +51,13 @@ void add_cells(std::string& line, const Matrix<Rows, Cols>& values)
 }
 
 /// As in the balance: where loads jump, what follows.
-void add_energies(std::string& line, const Model& model, const Motion& motion, double t)
+void add_energies(std::string& line, const Model& model, const Motion& motion, const LoadTurns& turns,
+                  double t)
 {
     const State state = sample_state(motion, t);
     const Instant at{t, t == motion.end() ? Side::left : Side::right};
     const double kinetic = kinetic_energy(model, state.X, state.V);
-    const double potential = potential_energy(model, at, state.X, state.V);
+    const double potential = potential_energy(model, at, state.X, state.V, turns.at(state));
     add_cells(line, Vector3{kinetic, potential, kinetic + potential});
 }
 
@@ -65,6 +67,7 @@ void write_csv(const std::filesystem::path& file, const Model& model, const Run&
 {
     check_writable(file);
     std::string text = header(run);
+    const LoadTurns turns(model, run.motion);
     std::vector<Vector4> previous(run.body_names.size(), Vector4{1, 0, 0, 0});
     for (const double asked : run.output) {
         if (asked < run.motion.start() || asked > run.motion.end()) continue;
@@ -79,7 +82,7 @@ void write_csv(const std::filesystem::path& file, const Model& model, const Run&
             add_cells(text, s.velocity);
             add_cells(text, s.angular_velocity);
         }
-        add_energies(text, model, run.motion, t);
+        add_energies(text, model, run.motion, turns, t);
         text += "\r\n";
     }
     replace_file(file, text);

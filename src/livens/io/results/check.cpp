@@ -67,6 +67,7 @@ void check_motion(const Motion& m)
     require(m.velocities.size() == ends * bodies, "the number of velocities at element ends");
     require(m.accelerations.empty() || m.accelerations.size() == 2 * ends * bodies,
             "the number of accelerations at element ends");
+    require(m.load_angles.size() % ends == 0, "angles of loads at all element ends");
     require(m.end_multipliers.empty() || m.end_multipliers.size() == 2 * ends * rows,
             "the number of multipliers at element ends");
     for (const int row : m.redundant_rows)

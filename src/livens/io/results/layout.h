@@ -130,6 +130,13 @@ void visit_motion(Archive& archive, AnyMotion& m)
     archive.list({"end_multiplier", {"element_end", "side", "row"}, "mixed", "none",
                   "multipliers of the acceleration-level equation at the element ends, from both sides"},
                  m.end_multipliers);
+    archive.list({"load_angle",
+                  {"load_angle"},
+                  "rad",
+                  "none",
+                  "element end after element end, angles that loads count with their turns, less what they "
+                  "are where bodies are stated"},
+                 m.load_angles);
     indices("redundant_row", "rows whose multipliers are not unique, from 0", m.redundant_rows);
     indices("block_end", "element ends, from 0, between blocks of elements solved together", m.block_ends);
 }

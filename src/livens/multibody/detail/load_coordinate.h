@@ -23,7 +23,7 @@ struct CoordinateState {
 };
 
 /// A coordinate of the bodies of a load, and F_b = Q dq/dX_b on those, by virtual work Q dq. An angle is
-/// counted from where it stands in X at the start, from -pi to pi there.
+/// counted from where it stands in X at the start.
 class LoadCoordinate {
 public:
     /// Of bodies of the model; `at_stated` is what the coordinate is at the start.
@@ -38,8 +38,9 @@ public:
     /// What it is at the start: the middle of the angles that it knows.
     double at_start() const { return at_start_; }
 
-    /// Its bodies as places in a load's list, which has them all. Required before what follows.
-    void place(const std::vector<int>& load_bodies);
+    /// Its bodies as places in a load's list, which has them all; an angle whose turns count joins the load's
+    /// list of these. Required before what follows.
+    void place(Load& load, bool counts_turns = true);
     CoordinateState look(const LoadArguments& arguments) const;
 
     void add_forces(const LoadArguments& arguments, double Q, LoadForces& F) const;
@@ -56,6 +57,7 @@ private:
     ConstraintRow row_;   ///< of q, with places for bodies
     double at_start_ = 0, offset_ = 0;
     std::array<int, 2> places_{};
+    int angle_ = -1;      ///< its place among those of the load
     std::size_t n_ = 1;   ///< of bodies
 };
 

@@ -9,7 +9,6 @@ namespace {
 struct AlongJoint {
     LoadCoordinate along;
     JointSpring spring;
-    bool knows_turns;   ///< else a preload, which does work in every turn, has no potential
 
     SpringValue elastic(double value) const
     {
@@ -21,19 +20,16 @@ struct AlongJoint {
     LawValue force(const CoordinateState& q) const
     {
         const double drag = spring.damping * q.rate + spring.preload;
-        if (!is_elastic()) return {-drag, 0, -spring.damping};   // also where the angle is not known
+        if (!is_elastic()) return {-drag, 0, -spring.damping};   // also where turns are not known
         const SpringValue value = elastic(q.value);
         return {-value.force - drag, -value.stiffness, -spring.damping};
     }
     double potential(const CoordinateState& q) const
     {
         return (is_elastic() ? elastic(q.value).energy : 0) +
-               (knows_turns ? spring.preload * (q.value - spring.rest) : 0);
+               (spring.preload == 0 ? 0 : spring.preload * (q.value - spring.rest));
     }
-    double power(const CoordinateState& q) const
-    {
-        return -(spring.damping * q.rate + (knows_turns ? 0 : spring.preload)) * q.rate;
-    }
+    double power(const CoordinateState& q) const { return -spring.damping * q.rate * q.rate; }
 };
 
 }   // namespace
@@ -42,19 +38,19 @@ Load joint_spring(const std::string& name, const NamedCoordinate& coordinate, co
                   const Configurations& X)
 {
     const bool is_angle = coordinate.coordinate.is_angle();
-    AlongJoint of{LoadCoordinate(coordinate.coordinate, coordinate.at_stated, X), spring, !is_angle};
+    AlongJoint of{LoadCoordinate(coordinate.coordinate, coordinate.at_stated, X), spring};
     Load load = start_load(name, "joint_spring", of.along.bodies());
-    of.along.place(load.bodies);
     check_not_negative(load, spring.stiffness, "stiffness");
     check_not_negative(load, spring.damping, "damping");
     check_load_vector(load, {spring.rest, spring.preload, 0}, "rest and preload");
     load.depends_on_X = true;
     load.depends_on_V = spring.damping > 0;
     load.needs_directors = of.along.needs_directors();
-    if (is_angle && of.is_elastic()) {
-        load.bounded_angles = {of.along.coordinate()};
-        load.domain = "it knows its angle up to 175 degrees from where the joint stands at the start";
-    }
+    const bool counts_turns = is_angle && (of.is_elastic() || spring.preload != 0);
+    of.along.place(load, counts_turns);
+    if (counts_turns)
+        load.domain =
+            "this family knows its angle up to 175 degrees from where the joint stands at the start";
     load.forces = [of](const LoadArguments& arguments, LoadForces& F) {
         of.along.add_forces(arguments, of.force(of.along.look(arguments)).force, F);
     };

@@ -228,14 +228,13 @@ void MarchKernel::guess(const Stretch& stretch, const InstantState& start)
 void MarchKernel::compare_guesses()
 {
     if (!guess_.by_polynomial.is_known) return;
-    const int W = functions_->width;
     const double* place = nodes_.values().place;
     const auto distance = [&](const Guess::End& end) {
         double far = 0, wide = 0;
         for (int b = 0; b < tables_.n_bodies(); ++b)
             for (int i = 0; i < (tables_.bodies[b].dofs == 6 ? 7 : 3); ++i) {
-                double& largest = i < 3 ? far : wide;
-                largest = std::max(largest, std::abs(end.place[7 * b + i] - place[(7 * b + i) * W]));
+                const double gap = std::abs(end.place[7 * b + i] - place[(7 * b + i) * functions_->width]);
+                (i < 3 ? far : wide) = std::max(i < 3 ? far : wide, gap);
             }
         return std::max(far / tables_.length, 2 * wide);
     };
@@ -265,9 +264,11 @@ void MarchKernel::evaluate_loads(const Stretch& stretch)
                     V[i] -= center[a] * V[3 + 3 * a + i];
                 }
         }
+        if (c == 0) work_.angles = stretch.angles;
+        tables_.turns.follow(Configurations(work_.X.data()), work_.angles);
         std::fill(work_.raw.begin(), work_.raw.end(), 0.0);
         tables_.add_loads(stretch.load_point(rule_, 0, c), work_.X.data(), work_.V.data(),
-                          stretch.h(0) * rule_.loads.weights[c], work_.raw.data());
+                          stretch.h(0) * rule_.loads.weights[c], work_.raw.data(), work_.angles);
         for (int b = 0; b < tables_.n_bodies(); ++b) {
             if (!pattern.bodies[b].loaded) continue;
             double *F = work_.raw.data() + 12 * b, wrench[6];

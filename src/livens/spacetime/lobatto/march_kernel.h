@@ -62,6 +62,7 @@ private:
     };
     struct Work {
         std::vector<double> twist, X, V, raw;
+        std::vector<double> angles;     // of loads, see Turns
         std::vector<double> wrenches;   // six numbers a body: of loads, then of multipliers
     };
 

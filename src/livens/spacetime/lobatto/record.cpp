@@ -36,6 +36,7 @@ void Record::for_sizes(int place, Action&& action)
     action(m.momenta, (n + 1) * bodies);
     action(m.accelerations, 2 * (n + 1) * bodies);
     action(m.end_multipliers, 2 * (n + 1) * rows);
+    action(m.load_angles, (n + 1) * tables_.turns.size());
 }
 
 /// A march forwards touches its memory as it goes, so that it can begin, and be stopped, at once.
@@ -61,6 +62,7 @@ void Record::divided(int element)
     insert(m.momenta, (e + 1) * bodies, bodies);
     insert(m.accelerations, 2 * (e + 1) * bodies, 2 * bodies);
     insert(m.end_multipliers, 2 * (e + 1) * rows, 2 * rows);
+    insert(m.load_angles, (e + 1) * tables_.turns.size(), tables_.turns.size());
     ++first_, ++last_, ++reached_;
 }
 
@@ -84,6 +86,8 @@ void Record::end(int place, const InstantState& state, const InstantSystem& syst
     first_ = std::min(first_, place);
     last_ = std::max(last_, place);
     node(std::min(place, mesh_.n_elements() - 1), place < mesh_.n_elements() ? 0 : degree_, state.X.data());
+    std::ranges::copy(state.angles,
+                      m.load_angles.begin() + static_cast<std::ptrdiff_t>(state.angles.size()) * place);
     const double *V = system.rates(), *turn = system.centripetal();
     tables_.times_mass(V, 1.0, work_.data());
     std::copy_n(V, work_.size(), m.velocities[place * m.n_bodies].a);
@@ -136,6 +140,7 @@ Motion Record::take()
     cut(m.momenta, first, last + 1, bodies);
     cut(m.accelerations, first, last + 1, 2 * bodies);
     cut(m.end_multipliers, first, last + 1, 2 * rows);
+    cut(m.load_angles, first, last + 1, tables_.turns.size());
     return std::move(motion_);
 }
 

@@ -34,7 +34,7 @@ void Rows::open(const Stretch& stretch)
     const auto n = static_cast<std::size_t>(stretch.n_nodes());
     int n_active = 0;
     for (int A = 0; A < stretch.n_nodes(); ++A) n_active += stretch.is_active(A) ? 1 : 0;
-    forces_.resize(static_cast<std::size_t>(stretch.n_elements() * rule_.size()) * size_of_X_);
+    of_loads_.forces.resize(static_cast<std::size_t>(stretch.n_elements() * rule_.size()) * size_of_X_);
     raw_.resize(n * size_of_X_);
     impulses_.resize(n * static_cast<std::size_t>(tables_.rank));
     reduced_.resize(static_cast<std::size_t>(n_active * tables_.freedoms()));
@@ -64,18 +64,39 @@ void Rows::interpolate(const Stretch& stretch, const Nodes& nodes, int e, int c,
     }
 }
 
+void Rows::count_turns(const Stretch& stretch, const Nodes& nodes)
+{
+    of_loads_.angles.clear();
+    if (tables_.turns.empty()) return;
+    std::vector<double> now = stretch.angles;
+    for (int A = 0; A < stretch.n_nodes(); ++A) {
+        tables_.turns.follow(Configurations(nodes.X(A)), now);
+        of_loads_.angles.insert(of_loads_.angles.end(), now.begin(), now.end());
+    }
+}
+
+std::span<const double> Rows::angles(int e, int c) const
+{
+    if (of_loads_.angles.empty()) return {};
+    int node = 0;
+    while (node < rule_.degree && rule_.nodes[node + 1] <= rule_.loads.points[c]) ++node;
+    const std::size_t n = tables_.turns.size();
+    return std::span(of_loads_.angles).subspan(static_cast<std::size_t>(e * rule_.degree + node) * n, n);
+}
+
 /// F_A of the loads at all nodes of an element.
 void Rows::add_loads(const Stretch& stretch, const Nodes& nodes, int e)
 {
     const int n_nodes = rule_.size();
     const double h = stretch.h(e);
-    double* first = forces_.data() + place(e * n_nodes);
+    double* first = of_loads_.forces.data() + place(e * n_nodes);
     std::fill_n(first, static_cast<std::size_t>(n_nodes) * size_of_X_, 0.0);
     for (std::size_t c = 0; c < rule_.loads.points.size(); ++c) {
         interpolate(stretch, nodes, e, static_cast<int>(c), X_.data(), V_.data());
         std::fill(work_.begin(), work_.end(), 0.0);
         const Instant at = stretch.load_point(rule_, e, static_cast<int>(c));
-        tables_.add_loads(at, X_.data(), V_.data(), h * rule_.loads.weights[c], work_.data());
+        tables_.add_loads(at, X_.data(), V_.data(), h * rule_.loads.weights[c], work_.data(),
+                          angles(e, static_cast<int>(c)));
         for (int A = 0; A < n_nodes; ++A) {
             const double m = rule_.M[c * n_nodes + A];
             accumulate(first + place(A), m, work_.data(), size_of_X_);
@@ -163,6 +184,7 @@ bool Rows::evaluate(const Stretch& stretch, const Nodes& nodes)
     size_ = 0;
     bool are_finite = true;
     const bool has_loads = !tables_.model->loads().empty();
+    count_turns(stretch, nodes);
     for (int e = 0; has_loads && e < stretch.n_elements(); ++e) add_loads(stretch, nodes, e);
     double* reduced = reduced_.data();
     for (int A = 0; A < stretch.n_nodes(); ++A) {
@@ -195,7 +217,7 @@ std::string Rows::bad_load(const Stretch& stretch, const Nodes& nodes) const
         for (std::size_t c = 0; c < rule_.loads.points.size(); ++c) {
             interpolate(stretch, nodes, e, static_cast<int>(c), X.data(), V.data());
             const Instant at = stretch.load_point(rule_, e, static_cast<int>(c));
-            const int load = tables_.bad_load(at, X.data(), V.data());
+            const int load = tables_.bad_load(at, X.data(), V.data(), angles(e, static_cast<int>(c)));
             if (load >= 0) return not_finite(tables_.model->loads()[load]);
         }
     return "";

@@ -47,7 +47,7 @@ public:
     /// For impulses that were found elsewhere.
     double* own_impulses(int A) { return impulses_.data() + static_cast<std::size_t>(A * tables_.rank); }
     /// F_A of element e, local node A, without weight.
-    const double* forces(int e, int A) const { return forces_.data() + place(e * rule_.size() + A); }
+    const double* forces(int e, int A) const { return of_loads_.forces.data() + place(e * rule_.size() + A); }
     /// The row before N^T and multipliers, at an active node.
     const double* raw(int A) const { return raw_.data() + place(A); }
     /// out <- N^T of the row without multipliers and end momenta, about the centres of mass, at any node.
@@ -58,8 +58,17 @@ public:
     void interpolate(const Stretch& stretch, const Nodes& nodes, int e, int c, double* X, double* V) const;
     /// Name of a load that is not finite, empty if all are.
     std::string bad_load(const Stretch& stretch, const Nodes& nodes) const;
+    /// Follows the angles of loads through all nodes, as evaluate() does; see Turns.
+    void count_turns(const Stretch& stretch, const Nodes& nodes);
+    /// About what these are at load point c of element e: what they are at the node before.
+    std::span<const double> angles(int e, int c) const;
 
 private:
+    struct OfLoads {
+        std::vector<double> forces;   // F_A, element after element
+        std::vector<double> angles;   // see Turns, node after node
+    };
+
     std::size_t place(int node) const { return static_cast<std::size_t>(node) * size_of_X_; }
     void add_loads(const Stretch& stretch, const Nodes& nodes, int e);
     void add_element(const Stretch& stretch, const Nodes& nodes, int e, int A, double* raw);
@@ -70,7 +79,8 @@ private:
     const ElementRule& rule_;
     std::size_t size_of_X_;
     EndMomentum momenta_[2];
-    std::vector<double> forces_, raw_, q_;   // q_: N^T raw
+    OfLoads of_loads_;
+    std::vector<double> raw_, q_;   // q_: N^T raw
     std::vector<double> impulses_, reduced_;
     std::vector<double> work_, X_, V_;
     double size_ = 0, terms_ = 0, start_terms_ = 0;

@@ -26,6 +26,7 @@ namespace livens {
 /// | X and P at the first, radau  | 1..n      | 1..n                 | 1..n        |
 struct Stretch {
     std::vector<double> times;   ///< element ends
+    std::vector<double> angles;   ///< of loads at the first node, or about there; see Turns
     int degree = 1;
     Points points = Points::lobatto;   ///< radau: one element, whose state is known at the first node
     bool X_first = true, P_first = true, X_last = false, P_last = false;

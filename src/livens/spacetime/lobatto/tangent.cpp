@@ -177,7 +177,8 @@ void Tangent::evaluate_loads(const Stretch& stretch, const Nodes& nodes, const R
         for (std::size_t l = 0; l < n; ++l) {
             const Load& load = tables_.model->loads()[tables_.loads_with_tangent[l]];
             const Instant at = stretch.load_point(rule_, e, c);
-            const LoadArguments arguments = Tables::arguments(load, at, X_.data(), V_.data());
+            const LoadArguments arguments =
+                tables_.arguments(tables_.loads_with_tangent[l], at, X_.data(), V_.data(), rows.angles(e, c));
             LoadTangent& tangent = load_tangents_[c * n + l];
             tangent = LoadTangent(load.bodies.size());
             load.tangent(arguments, tangent);

@@ -57,6 +57,7 @@ bool LobattoWindow::open(int first, int last, SolveReport& report)
     }
     if (!front_.is_ready && !begin_front(report)) return false;
     if (stretch_.X_last && !set_state(far_, ends_.end, report)) return false;
+    stretch_.angles = stretch_.X_first ? front_.here().angles : tables_.turns.begin();
     system_.open(stretch_, stretch_.X_first ? &front_.here() : nullptr, stretch_.X_last ? &far_ : nullptr);
     if (!stretch_.X_first && stretch_.P_first)
         set_momenta(ends_.start, system_.balances().end_momentum(false).about_reference);
@@ -88,6 +89,8 @@ bool LobattoWindow::set_state(InstantState& state, const State& given, SolveRepo
         const Vector3 w = body.dofs == 6 ? angular_velocity(given.X[b], given.V[b]) : Vector3{};
         for (int i = 0; i < body.dofs; ++i) state.velocity[body.first + i] = i < 3 ? v[i] : w[i - 3];
     }
+    state.angles = tables_.turns.begin(given);
+    tables_.turns.follow(Configurations(state.X.data()), state.angles);
     if (!instant_.prepare(state, tables_.independent))
         return fail(report,
                     "the mass matrix on the free motions is singular at t = " + to_text(state.t, 6) + " s");
@@ -125,6 +128,7 @@ bool LobattoWindow::solve(const NewtonOptions& options, NewtonReport& report)
         kernel_.increments(B, work_.raw.data());
         system_.nodes().place_solved(B, work_.raw.data(), kernel_.pivot(B));
     }
+    system_.balances().count_turns(stretch_, system_.nodes());
     return true;
 }
 
@@ -176,6 +180,7 @@ bool LobattoWindow::near_state(State& state) const
     std::vector<double> V(here.X.size());
     tables_.rates_of(here.X.data(), here.velocity.data(), V.data());
     state.t = here.t;
+    state.angles = here.angles;
     state.X.resize(tables_.bodies.size());
     state.V.resize(tables_.bodies.size());
     for (std::size_t b = 0; b < state.X.size(); ++b) {
@@ -205,6 +210,8 @@ bool LobattoWindow::find_first_state(SolveReport& report)
     const double weight = stretch_.weight(system_.rule(), 0);
     here.t = stretch_.times[0];
     if (!stretch_.X_first) {
+        here.angles = tables_.turns.begin();
+        tables_.turns.follow(Configurations(system_.nodes().X(0)), here.angles);
         std::copy_n(system_.nodes().X(0), here.X.size(), here.X.begin());
         std::copy_n(system_.nodes().low(0), here.X.size(), here.X_low.begin());
         if (!instant_.prepare(here, tables_.independent))

@@ -84,6 +84,8 @@ bool LobattoWindow::end_element(int e, SolveReport& report)
     next.t = stretch_.times[e + 1];
     sum_momentum(e);
     if (is_radau()) take_spin_of_polynomial(e);
+    next.angles = here.angles;
+    for (int a = 1; a <= p; ++a) tables_.turns.follow(Configurations(nodes.X(e * p + a)), next.angles);
     std::copy_n(nodes.X(A), next.X.size(), next.X.begin());
     std::copy_n(nodes.low(A), next.X.size(), next.X_low.begin());
     std::copy_n(nodes.maps(A), next.X.size(), next.maps.begin());

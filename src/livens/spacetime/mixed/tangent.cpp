@@ -133,9 +133,9 @@ void Equations::sum_loads(int e, int g)
         const Load& load = m.tables.model->loads()[block.load];
         if (block.load != of_load) {
             tangent = LoadTangent(load.bodies.size());
-            load.tangent(
-                m.tables.arguments(load, {time(e, g), Side::middle}, sample_.X.data(), sample_.V.data()),
-                tangent);
+            load.tangent(m.tables.arguments(block.load, {time(e, g), Side::middle}, sample_.X.data(),
+                                            sample_.V.data()),
+                         tangent);
             of_load = block.load;
         }
         const Matrix<12, 12>& by_X = tangent.X[block.by][block.of];

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "livens/multibody/turns.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "livens/base/elementary.h"
+
+namespace livens {
+
+Turns::Turns(const Model& model) : first_{0}
+{
+    for (const Load& load : model.loads()) {
+        angles_.insert(angles_.end(), load.angles.begin(), load.angles.end());
+        first_.push_back(static_cast<int>(angles_.size()));
+    }
+}
+
+void Turns::follow(const Configurations& X, std::span<double> row) const
+{
+    constexpr double turn = 2 * std::numbers::pi;
+    for (std::size_t i = 0; i < row.size(); ++i) {
+        const PairForm &c = angles_[i].forms[0], &s = angles_[i].forms[1];
+        const double angle =
+            arc_tangent(form_value(s, s.body_i, s.body_j, X), form_value(c, c.body_i, c.body_j, X));
+        row[i] = angle + turn * std::round((row[i] - angle) / turn);
+    }
+}
+
+}   // namespace livens

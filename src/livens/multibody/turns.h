@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Angles that loads count with their turns, which positions alone do not tell.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "livens/multibody/model.h"
+
+namespace [[gnu::visibility("default")]] livens {
+
+/// Load::angles of all loads of a model. A row holds a number for each, less what it is where the bodies are
+/// stated; whoever goes along a motion carries it with him.
+class Turns {
+public:
+    explicit Turns(const Model& model);
+
+    bool empty() const { return angles_.empty(); }
+    std::size_t size() const { return angles_.size(); }
+    /// The row where nothing has turned yet, or that of a state.
+    std::vector<double> begin(const State& state = {}) const
+    {
+        return state.angles.empty() ? std::vector<double>(angles_.size(), 0.0) : state.angles;
+    }
+    /// Goes on to X, each angle the shorter way.
+    void follow(const Configurations& X, std::span<double> row) const;
+    /// The part of a load; of an empty row nothing.
+    std::span<const double> of(int load, std::span<const double> row) const
+    {
+        return row.empty() ? row
+                           : row.subspan(static_cast<std::size_t>(first_[load]),
+                                         static_cast<std::size_t>(first_[load + 1] - first_[load]));
+    }
+
+private:
+    std::vector<JointCoordinate> angles_;
+    std::vector<int> first_;   ///< of each load, and their number
+};
+
+}   // namespace livens
