@@ -68,6 +68,30 @@ void add_scenario_commands(CLI::App& app, Arguments& a)
     add_common(solve, a);
 }
 
+void add_rest_commands(CLI::App& app, Arguments& a)
+{
+    CLI::App& equilibrium =
+        add_command(app, a, "equilibrium", "Find where a mechanism rests, and say whether it is stable");
+    equilibrium.add_option("FILE", a.scenario, "scenario (TOML)")->required()->type_name("FILE.toml");
+    add_common(equilibrium, a);
+    CLI::App& modes =
+        add_command(app, a, "modes", "Frequencies, damping and shapes of small motions about a rest");
+    modes.add_option("FILE", a.modes.scenario, "scenario (TOML)")->required()->type_name("FILE.toml");
+    add_choice(modes, "--at", a.modes.at, {"equilibrium", "start"},
+               "where; default: the equilibrium that the start leads to");
+    modes
+        .add_option("--input", a.modes.inputs,
+                    "of the state matrices: a force on JOINT.angle, JOINT.displacement or BODY.x")
+        ->allow_extra_args(false)
+        ->type_name("NAME");
+    modes
+        .add_option("--output", a.modes.outputs,
+                    "of the state matrices: likewise, as a position; with _rate its rate")
+        ->allow_extra_args(false)
+        ->type_name("NAME");
+    add_common(modes, a);
+}
+
 void add_run_commands(CLI::App& app, Arguments& a)
 {
     CLI::App& info = add_command(app, a, "info", "Say what a result file holds");
@@ -160,6 +184,7 @@ void declare(CLI::App& app, Arguments& arguments)
     app.add_flag("--version", arguments.is_version, "print the version");
     add_colour(app, arguments);
     add_scenario_commands(app, arguments);
+    add_rest_commands(app, arguments);
     add_run_commands(app, arguments);
     add_other_commands(app, arguments);
     app.footer(footer());

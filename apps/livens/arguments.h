@@ -22,6 +22,7 @@ struct Arguments {
     std::string colour = "auto";
     SolveArguments solve;
     std::string scenario;
+    ModesArguments modes;
     std::string run;
     SampleArguments sample;
     ExportArguments exports;

@@ -5,6 +5,7 @@
 #include "commands.h"
 #include "console.h"
 #include "failure.h"
+#include "known_state.h"
 #include "livens/multibody/closing.h"
 #include "memory.h"
 
@@ -45,20 +46,6 @@ std::string json_of(const Scenario& scenario, const ClosedStart& assembly,
     return json.text() + "\n";
 }
 
-/// Closes the mechanism where its positions are known: rank and redundant rows, for people.
-ClosedStart assembly_of(const Scenario& scenario)
-{
-    const Conditions& b = scenario.conditions;
-    const bool at_start = b.at_start == Known::state || b.at_start == Known::positions;
-    const bool at_end = !at_start && (b.at_end == Known::state || b.at_end == Known::positions);
-    State state = at_end ? b.end : b.start;
-    if (b.at_start == Known::state || b.at_end == Known::state)
-        return close_start(scenario.model, state, scenario.options.initial);
-    for (Matrix34& V : state.V) V = {};   // velocities are guesses; positions may be
-    return close_start(scenario.model, state,
-                       at_start || at_end ? scenario.options.initial : StartPolicy::project);
-}
-
 /// How time is divided, for people.
 std::string division_of(const Scenario& scenario)
 {
@@ -75,7 +62,8 @@ int check_command(const std::string& file, const Common& common)
 {
     std::vector<Diagnostic> warnings;
     const Scenario scenario = load_scenario(file, common, &warnings);
-    const ClosedStart assembly = assembly_of(scenario);
+    const KnownState known = known_state(scenario);   // rank and redundant rows, for people
+    const ClosedStart assembly = close_start(scenario.model, known.state, known.initial);
     check_memory({&scenario});
     if (common.json) {
         print(json_of(scenario, assembly, warnings));

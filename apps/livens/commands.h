@@ -32,6 +32,15 @@ int solve_command(const SolveArguments& arguments, const Common& common);
 
 int check_command(const std::string& scenario, const Common& common);
 
+int equilibrium_command(const std::string& scenario, const Common& common);
+
+struct ModesArguments {
+    std::string scenario;
+    std::string at = "equilibrium";             ///< or "start"
+    std::vector<std::string> inputs, outputs;   ///< of the state matrices, see state_matrices()
+};
+int modes_command(const ModesArguments& arguments, const Common& common);
+
 int info_command(const std::string& run, const Common& common);
 
 struct SampleArguments {

@@ -196,11 +196,35 @@ livens_mutant(NAME radau_blow_up_hidden
 
 # What bears a preload taken for what lets go.
 livens_mutant(NAME frequency_of_a_preload_reversed
-              FILE multibody/frequencies.cpp
-              OLD [[b, b, -maps_]]
-              NEW [[b, b, maps_]]
+              FILE multibody/small_motions.cpp
+              OLD [[stored<6, 6>(-turned)]]
+              NEW [[stored<6, 6>(turned)]]
               TESTS_OF unit_multibody
               MUST_FAIL Frequencies.OfAPreloadThatABodyBears)
+
+# Rigidity's part of the stiffness forgotten where moments are balanced.
+livens_mutant(NAME stiffness_without_geometric_term
+              FILE multibody/small_motions.cpp
+              OLD [[twist::add_geometric(state_.X.data() + 12 * b, r.data() + 12 * b, K.data(), 6);]]
+              NEW [[twist::add_geometric(state_.X.data() + 12 * b, r.data() + 12 * b, K.data(), 6), K.setZero();]]
+              TESTS_OF unit_multibody
+              MUST_FAIL Linearisation.IsThatOfDifferencesOfAccelerations)
+
+# Newton's own steps, which climb to the upright pendulum as well.
+livens_mutant(NAME equilibrium_by_newton_alone
+              FILE multibody/equilibrium.cpp
+              OLD [[divisor(i) = mu < 0 ? std::copysign(size, k) : size + mu;]]
+              NEW [[divisor(i) = std::copysign(size, k);]]
+              TESTS_OF unit_multibody
+              MUST_FAIL Equilibrium.OfAPendulumIsTheHangingOneFromAnywhere)
+
+# The skew part of a stiffness lost.
+livens_mutant(NAME stiffness_made_symmetric
+              FILE multibody/linearisation.cpp
+              OLD [[linear.K = by_rows(K);]]
+              NEW [[linear.K = by_rows(0.5 * (K + K.transpose()));]]
+              TESTS_OF unit_multibody
+              MUST_FAIL Linearisation.OfAFollowerForceIsNotSymmetric)
 
 # --- the paper's elements
 

@@ -297,7 +297,7 @@ class Pipes(HardTest):
     def commands(self):
         self.put_old()
         return (("solve", "new.toml", "-o", "run.nc", "--json"), ("solve", "new.toml", "-o", "run.nc"),
-                ("check", "new.toml"), ("info", "run.nc"), ("schema",), ("schema", "--json"), ("explain",),
+                ("check", "new.toml"), ("equilibrium", "new.toml"), ("modes", "new.toml"), ("info", "run.nc"), ("schema",), ("schema", "--json"), ("explain",),
                 ("sample", "run.nc", "--body", "bob", "--at", "0"), ("diff", "run.nc", "run.nc"), ("man",),
                 ("completion", "bash"), ("version",), ("--help",))
 

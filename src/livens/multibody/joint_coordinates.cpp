@@ -37,6 +37,22 @@ ConstraintRow row_of(std::vector<PairForm> coordinates, SmoothFunction function,
     throw InputError({code, "", message, value, bound, note, help});
 }
 
+double value_of(const PairForm& form, std::span<const Matrix34> X)
+{
+    return form_value(form, form.body_i, form.body_j, X);
+}
+
+double rate_of(const PairForm& form, std::span<const Matrix34> X, std::span<const Matrix34> V)
+{
+    ConstraintRow row;
+    static_cast<PairForm&>(row) = form;
+    const RowGradient gradient = constraint_gradient(row, X);
+    double rate = 0;
+    for (int side = 0; side < gradient.bodies.size; ++side)
+        rate += dot(gradient.by[side], V[gradient.bodies.bodies[side]]);
+    return rate;
+}
+
 // --- couplings
 
 /// Where the forms of a term stand among the numbers of a row.
@@ -180,22 +196,6 @@ Value across_curve(const SampledCurve& curve, std::size_t normal, const Vector3&
     return value;
 }
 
-double value_of(const PairForm& form, std::span<const Matrix34> X)
-{
-    return form_value(form, form.body_i, form.body_j, X);
-}
-
-double rate_of(const PairForm& form, std::span<const Matrix34> X, std::span<const Matrix34> V)
-{
-    ConstraintRow row;
-    static_cast<PairForm&>(row) = form;
-    const RowGradient gradient = constraint_gradient(row, X);
-    double rate = 0;
-    for (int side = 0; side < gradient.bodies.size; ++side)
-        rate += dot(gradient.by[side], V[gradient.bodies.bodies[side]]);
-    return rate;
-}
-
 }   // namespace
 
 JointCoordinate displacement_along(int body_i, const Vector4& n, const Vector4& a, int body_j,
@@ -207,6 +207,28 @@ JointCoordinate displacement_along(int body_i, const Vector4& n, const Vector4& 
 JointCoordinate angle_between(int body_i, const Vector4& a1, const Vector4& a2, int body_j, const Vector4& b)
 {
     return {{inner_product_row(body_i, a1, body_j, b, 0, 1), inner_product_row(body_i, a2, body_j, b, 0, 1)}};
+}
+
+double coordinate_value(const JointCoordinate& q, std::span<const Matrix34> X)
+{
+    return q.is_angle() ? arc_tangent(value_of(q.forms[1], X), value_of(q.forms[0], X))
+                        : value_of(q.forms[0], X);
+}
+
+double coordinate_rate(const JointCoordinate& q, std::span<const Matrix34> X, std::span<const Matrix34> V)
+{
+    if (!q.is_angle()) return rate_of(q.forms[0], X, V);
+    const double c = value_of(q.forms[0], X), s = value_of(q.forms[1], X);
+    return (c * rate_of(q.forms[1], X, V) - s * rate_of(q.forms[0], X, V)) / (c * c + s * s);
+}
+
+double coordinate_change(const JointCoordinate& q, std::span<const Matrix34> from,
+                         std::span<const Matrix34> to)
+{
+    if (!q.is_angle()) return value_of(q.forms[0], to) - value_of(q.forms[0], from);
+    const double c0 = value_of(q.forms[0], from), s0 = value_of(q.forms[1], from);
+    const double c = value_of(q.forms[0], to), s = value_of(q.forms[1], to);
+    return arc_tangent(c0 * s - s0 * c, c0 * c + s0 * s);
 }
 
 ConstraintRow coupling_row(const std::vector<CoupledCoordinate>& coupled, double constant, double scale,
@@ -266,28 +288,6 @@ std::vector<ConstraintRow> curve_rows(const Curve& curve, int body_i, int body_j
         rows.push_back(row_of(place, {at, change}, scale, k == 0 ? "curve, normal 1" : "curve, normal 2"));
     }
     return rows;
-}
-
-double coordinate_change(const JointCoordinate& q, std::span<const Matrix34> from,
-                         std::span<const Matrix34> to)
-{
-    if (!q.is_angle()) return value_of(q.forms[0], to) - value_of(q.forms[0], from);
-    const double c0 = value_of(q.forms[0], from), s0 = value_of(q.forms[1], from);
-    const double c = value_of(q.forms[0], to), s = value_of(q.forms[1], to);
-    return arc_tangent(c0 * s - s0 * c, c0 * c + s0 * s);
-}
-
-double coordinate_value(const JointCoordinate& q, std::span<const Matrix34> X)
-{
-    return q.is_angle() ? arc_tangent(value_of(q.forms[1], X), value_of(q.forms[0], X))
-                        : value_of(q.forms[0], X);
-}
-
-double coordinate_rate(const JointCoordinate& q, std::span<const Matrix34> X, std::span<const Matrix34> V)
-{
-    if (!q.is_angle()) return rate_of(q.forms[0], X, V);
-    const double c = value_of(q.forms[0], X), s = value_of(q.forms[1], X);
-    return (c * rate_of(q.forms[1], X, V) - s * rate_of(q.forms[0], X, V)) / (c * c + s * s);
 }
 
 }   // namespace livens

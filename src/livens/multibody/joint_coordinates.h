@@ -29,9 +29,10 @@ JointCoordinate angle_between(int body_i, const Vector4& a1, const Vector4& a2, 
 
 /// A coordinate in one configuration: an angle from -pi to pi, with no turns.
 double coordinate_value(const JointCoordinate& coordinate, std::span<const Matrix34> X);
+/// Its rate, linear in V.
 double coordinate_rate(const JointCoordinate& coordinate, std::span<const Matrix34> X,
                        std::span<const Matrix34> V);
-/// From one configuration to another; of an angle the shorter way.
+/// How far it is from one configuration to another: an angle by the shorter way.
 double coordinate_change(const JointCoordinate& coordinate, std::span<const Matrix34> from,
                          std::span<const Matrix34> to);
 

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "known_state.h"
+
+namespace livens::program {
+
+KnownState known_state(const Scenario& scenario)
+{
+    const Conditions& b = scenario.conditions;
+    const bool at_start = b.at_start == Known::state || b.at_start == Known::positions;
+    const bool at_end = !at_start && (b.at_end == Known::state || b.at_end == Known::positions);
+    KnownState known{at_end ? b.end : b.start, scenario.options.initial};
+    if (b.at_start == Known::state || b.at_end == Known::state) return known;
+    for (Matrix34& V : known.state.V) V = {};
+    if (!at_start && !at_end) known.initial = StartPolicy::project;
+    return known;
+}
+
+}   // namespace livens::program

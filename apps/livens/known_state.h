@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The state of a scenario at the end of time where its positions are known.
+#pragma once
+
+#include "livens/io/scenario.h"
+
+namespace livens::program {
+
+struct KnownState {
+    State state;                   ///< V = 0 where velocities are guesses
+    StartPolicy initial;           ///< how exactly it is meant
+};
+
+/// At the start, else at the end; where positions are guesses everywhere, those at the start.
+KnownState known_state(const Scenario& scenario);
+
+}   // namespace livens::program
