@@ -456,7 +456,13 @@ TEST(ScenarioCodes, WarningsLeaveTheScenarioAlone)
     const std::string late = replaced(valid_scenario, "value = [0, 1, 0]", "value = [0, 1, 0]\nfrom = 5");
     const std::string second = replaced(valid_scenario, "format = 1\ngravity = [0, 0, -9.81]",
                                         "gravity = [0, 0, 1]\nformat = 1");
-    for (const auto& [code, text] : {std::pair("load-never-acts", late), std::pair("format-first", second)}) {
+    const std::string missed = replaced(
+        replaced(valid_scenario, "type = \"spherical\"\nbetween = [\"upper\", \"lower\"]\nat = [1, 0, 0]",
+                 "type = \"spherical\"\nbetween = [\"upper\", \"lower\"]\npoints = [[0.5, 0, 1e-8], "
+                 "[-0.5, 0, 0]]"),
+        "[time]", "[start]\njoints = \"fit\"\n\n[time]");
+    for (const auto& [code, text] : {std::pair("load-never-acts", late), std::pair("format-first", second),
+                                     std::pair("joint-fitted", missed)}) {
         const ScenarioResult result = read(text);
         EXPECT_TRUE(result.scenario.has_value()) << shown(result);
         const Diagnostic* d = find(result, code);
@@ -516,7 +522,7 @@ TEST(ScenarioCodes, AllAreProvokedByTheseTests)
                                       "tolerance-out-of-range",
                                       "window",
                                       "window-out-of-range"};
-    others.insert({"format-first", "load-never-acts"});                 // warnings, above
+    others.insert({"format-first", "load-never-acts", "joint-fitted"});   // warnings, above
     others.insert({"io-directory", "io-not-found", "io-unreadable"});   // hostile_test.cpp
     for (const Case& c : cases()) {
         EXPECT_NE(explain(c.code), "") << c.code;

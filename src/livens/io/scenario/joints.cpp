@@ -2,14 +2,18 @@
 // [[joint]]: where it sits, and what may be wrong with that.
 #include <cmath>
 
+#include "livens/base/text.h"
 #include "livens/io/scenario/builder.h"
 #include "livens/io/scenario/joint_kinds.h"
+#include "livens/multibody/fit.h"
 
 namespace livens {
 
 namespace {
 
 constexpr double perpendicular_slack = 1e-9;   // |a . b| of unit axes: what the check of the start allows
+constexpr double widest_fit = 1e-6;            // of the model's length, or rad
+constexpr double closed_slack = 1e-14;         // likewise: rounding
 constexpr double coincidence_slack = 1e-9;     // of the model's length, likewise
 
 Location location_of(const Section& joint)
@@ -151,13 +155,41 @@ JointFrame read_frame(const Section& joint, const Matrix34& X_first, const Matri
     return frame;
 }
 
-Joint make_joint(const Builder& builder, const Section& joint, const std::string& name, int first, int second)
+bool is_fitted(const Section& top)
+{
+    const Section* start = only_section(top, "start");
+    return start != nullptr && start->text("joints") == "fit";
+}
+
+/// The joint as it closes best, if it closes by a move so small that nobody meant it.
+Joint fitted(Builder& builder, const Section& joint, const std::function<Joint(const JointFrame&)>& make,
+             const JointFrame& frame)
+{
+    const Section* time = only_section(builder.top(), "time");
+    std::vector<Matrix34> X;
+    for (const Body& body : builder.model().bodies()) X.push_back(body.X);
+    const Instant at{time == nullptr ? 0 : time->number("start")};
+    FittedJoint fit = fit_joint(make, frame, at, X, builder.length());
+    if (fit.shift > widest_fit * builder.length() || fit.turn > widest_fit) return make(frame);
+    if (fit.shift > closed_slack * builder.length() || fit.turn > closed_slack)
+        builder.findings().warning(joint.place(), "joint-fitted",
+                                   joint.label() + " was fitted: its point on the second body moved by " +
+                                       to_text(fit.shift, 2) + " m, its axes by " + to_text(fit.turn, 2) +
+                                       " rad",
+                                   {"", ""});
+    return std::move(fit.joint);
+}
+
+Joint make_joint(Builder& builder, const Section& joint, const std::string& name, int first, int second)
 {
     const Matrix34 &X_first = builder.start_configuration(first),
                    &X_second = builder.start_configuration(second);
     const JointFrame frame = read_frame(joint, X_first, X_second);
-    Joint made = joint_kinds()[static_cast<std::size_t>(joint.kind())].make(
-        {joint, name, first, second, frame, X_first, X_second, builder.length()});
+    const auto make = [&](const JointFrame& at) {
+        return joint_kinds()[static_cast<std::size_t>(joint.kind())].make(
+            {joint, name, first, second, at, X_first, X_second, builder.length()});
+    };
+    Joint made = is_fitted(builder.top()) ? fitted(builder, joint, make, frame) : make(frame);
     if (joint.has("coordinate")) made.coordinates.front().at_stated = joint.number("coordinate");
     return made;
 }

@@ -51,7 +51,12 @@ Table start_table()
                         "first guesses; nothing: all are."),
          choice("initial", {"check", "project"},
                 "check: refuse it, naming the joint; project: move positions and velocities to the nearest "
-                "that fit, in the metric of the masses.")}};
+                "that fit, in the metric of the masses."),
+         choice(
+             "joints", {"fixed", "fit"},
+             "fixed: as stated; fit: points and axes on the second body of a joint are moved by the least "
+             "that closes it where the bodies stand, at most 1e-6 of the model's length, and that is said: "
+             "for drawings that are rounded.")}};
 }
 
 Table end_table()
