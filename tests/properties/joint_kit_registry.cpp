@@ -2,6 +2,7 @@
 // Every joint of the library, one entry a joint: the kit runs over this list.
 #include <cmath>
 
+#include "livens/multibody/spline_curve.h"
 #include "properties/joint_kit.h"
 
 namespace livens {
@@ -86,6 +87,19 @@ const std::vector<JointCase>& joint_cases()
         {"point_on_line", 2, slid<false>,
          [](int first, int second, const JointFrame& frame, const Matrix34&, const Matrix34&) {
              return point_on_line("j", first, second, frame);
+         },
+         false},
+        {"slot", 2, anywhere,
+         [](int first, int second, const JointFrame& frame, const Matrix34& X_first,
+            const Matrix34& X_second) {
+             const Vector3 here = frame.point_first;   // on the curve, beyond its third point
+             std::vector<Vector3> points{
+                 {-1, 0.2, 0.3}, {-0.5, -0.2, 0}, {0, 0, 0}, {0.6, 0.5, -0.3}, {1.2, 0.1, 0.4}};
+             const Curve curve = spline_curve(points, false);
+             const Vector3 shift = here - curve.at(1.4).x;
+             for (Vector3& p : points) p += shift;
+             return slot("j", first, second, spline_curve(points, false), frame.point_second, X_first,
+                         X_second);
          },
          false},
         {"point_in_plane", 1, slid<true>,

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "livens/diagnostics/coordinates.h"
+#include "livens/diagnostics/diagnostics.h"
 #include "livens/diagnostics/sample.h"
 #include "livens/io/scenario.h"
 #include "livens/spacetime/solve.h"

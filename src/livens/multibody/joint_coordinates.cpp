@@ -133,7 +133,8 @@ struct SampledCurve : Curve {
 
     explicit SampledCurve(const Curve& curve) : Curve(curve)
     {
-        for (int k = 0; k <= n_samples; ++k) samples.push_back(at(first + k * step()).x);
+        if (!without_normals) without_normals = at;
+        for (int k = 0; k <= n_samples; ++k) samples.push_back(without_normals(first + k * step()).x);
         refuse_crossings();
     }
 
@@ -143,7 +144,7 @@ struct SampledCurve : Curve {
     double nearest(const Vector3& x, double s) const
     {
         for (int i = 0; i < 50; ++i) {
-            const CurvePoint here = at(s);
+            const CurvePoint here = without_normals(s);
             const Vector3 r = x - here.x;
             const double slope = dot(here.first, here.first) - dot(r, here.second);
             // beyond the centre of curvature the distance has no minimum: along the tangent then

@@ -109,6 +109,11 @@ Joint constant_angle(const std::string& name, int first, int second, const Joint
 /// A massless rod of the given length between the two points. 1 row. Throws InputError if length <= 0.
 Joint rod(const std::string& name, int first, int second, const JointFrame& frame, double length);
 
+/// A point of the second body slides along a curve in coordinates of the first. 2 rows. Throws InputError as
+/// curve_rows() does.
+Joint slot(const std::string& name, int first, int second, const Curve& curve, const Vector3& point_second,
+           const Matrix34& X_first, const Matrix34& X_second, double scale = 1);
+
 /// The coordinate of that name, or null.
 const NamedCoordinate* find_coordinate(const Joint& joint, std::string_view name);
 

@@ -75,7 +75,6 @@ TEST(ExamplesOfCodes, StandWhereverAScenarioLeads)
         "accuracy-out-of-range",
         "backend-missing",
         "basis-nodes",
-        "curve-crosses-itself",
         "degree",
         "degree-out-of-range",
         "drive-jumps",

@@ -30,6 +30,13 @@ std::string bushing(const std::string& lines)
     return with("[[load]]\ntype = \"bushing\"\nbetween = [\"world\", \"b\"]\n" + lines);
 }
 
+std::string slotted(const std::string& curve)
+{
+    return with("[[body]]\nname = \"c\"\nmass = 1\ninertia = [1, 1, 1]\n[[joint]]\nname = \"s\"\n"
+                "type = \"slot\"\nbetween = [\"world\", \"c\"]\ncurve = { " +
+                curve + " }");
+}
+
 std::string sensor(const std::string& lines) { return with("[[sensor]]\nname = \"s\"\n" + lines); }
 
 TEST(LawScenario, AnExpressionWithoutInputsIsAFunctionOfTime)
@@ -100,6 +107,10 @@ std::vector<test::Case> test::cases_of_laws()
         {"bushing-matrix", bushing("at = [0, 0, 0]\nstiffness = [1, 1, 1, 1, 1, -1]"), "[1, 1, 1, 1, 1, -1]"},
         {"joint-placement", bushing(unit), "[[load]]"},
         {"joint-frames", bushing(unit + "frames = [{}]"), "[{}]"},
+        {"curve-points", slotted("points = [[0, 0, 0]]"), "{ points"},
+        {"curve-straight-back", slotted("points = [[0, 0, 0], [1, 0, 0], [0, 0, 0]]"), "{ points"},
+        {"curve-crosses-itself", slotted("points = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0.5, -1, 0]]"),
+         "\"s\"\ntype"},
         {"sensor-self", sensor("type = \"point\"\nbody = \"world\""), "\"world\"\n[time]"},
         {"joint-unknown", sensor("type = \"joint\"\njoint = \"jj\""), "\"jj\""},
         {"load-unknown", sensor("type = \"load\"\nload = \"l\""), "\"l\""},

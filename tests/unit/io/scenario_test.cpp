@@ -478,7 +478,6 @@ TEST(ScenarioCodes, AllAreProvokedByTheseTests)
     std::set<std::string_view> others{"accuracy-out-of-range",
                                       "backend-missing",   // depends on the build; mixed_scenario_test.cpp
                                       "basis-nodes",
-                                      "curve-crosses-itself",
                                       "degree",
                                       "drive-jumps",
                                       "drives-method",

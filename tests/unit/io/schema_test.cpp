@@ -74,6 +74,7 @@ const Table& table_of(const std::string& header, const std::string& type)
     std::string heading = header.empty() ? "top of the file" : header;
     if (header == "[load.table]") heading = (type == "actuator" ? "table of an " : "table of a ") + type;
     if (header.starts_with("[drive.")) heading = header.substr(7, header.size() - 8) + " of a drive";
+    if (header == "[joint.curve]") heading = "curve of a slot";
     if (header == "[[joint.frames]]") heading = "frame of a joint";
     if (header == "[[load.frames]]") heading = "frame of a bushing";
     if (header == "[body.shape]") heading = "shape of [[body]]";

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "livens/io/scenario/builder.h"
+#include "livens/multibody/spline_curve.h"
 
 namespace livens {
 
@@ -68,6 +69,15 @@ Joint make_rod(const JointParts& p)
     return rod(p.name, p.first, p.second, p.frame, length);
 }
 
+Joint make_slot(const JointParts& p)
+{
+    const Section& curve = *only_section(p.section, "curve");
+    std::vector<Vector3> places;
+    for (int i = 0; i < curve.find("points")->n_rows; ++i) places.push_back(curve.row("points", i));
+    return slot(p.name, p.first, p.second, spline_curve(places, curve.truth("closed")),
+                p.frame.point_second + p.section.vector("point"), p.X_first, p.X_second, p.scale);
+}
+
 /// What turns about one axis, slides along it, or neither.
 std::vector<JointKind> kinds_of_one_axis()
 {
@@ -100,43 +110,56 @@ std::vector<JointKind> kinds_of_one_axis()
 std::vector<JointKind> kinds_of_points_and_axes()
 {
     static const Key frames = frames_of_joint();
-    return {{{"universal", "turns about two perpendicular axes (4)", {at, points, axes, frames}},
-             Location::on_two_axes,
-             by_frame<universal>},
-            {{"constant_velocity",
-              "two shafts that turn equally, however they are bent (4)",
-              {at, points, axes, frames}},
-             Location::on_two_axes,
-             as_it_stands<constant_velocity>},
-            {{"spherical", "one common point (3)", {at, points}}, Location::at_point, by_frame<spherical>},
-            {{"point_on_line",
-              "a point of the second body on a line of the first (2)",
-              {at, line, points, frames, displacement}},
-             Location::on_line,
-             by_frame<point_on_line>},
-            {{"point_in_plane",
-              "a point of the second body in a plane of the first (1)",
-              {at, line, points, frames}},
-             Location::on_line,
-             by_frame<point_in_plane>},
-            {{"parallel_axes", "an axis of each that stay parallel (2)", {free_axis, axes, frames, angle}},
-             Location::along_axis,
-             by_frame<parallel_axes>},
-            {{"perpendicular_axes", "an axis of each that stay perpendicular (1)", {at, axes, frames}},
-             Location::along_two_axes,
-             by_frame<perpendicular_axes>},
-            {{"constant_angle",
-              "an axis of each at a constant angle (1)",
-              {at, axes, frames,
-               Key{"angle", types::number, "Between the axes. Default: what it is at the start.", "rad"}}},
-             Location::along_two_axes,
-             make_constant_angle},
-            {{"rod",
-              "fixed distance (1)",
-              {points, Key{"length", types::number, "Default: the distance of its points at the start.", "m"}
-                           .within(positive)}},
-             Location::at_points,
-             make_rod}};
+    return {
+        {{"universal", "turns about two perpendicular axes (4)", {at, points, axes, frames}},
+         Location::on_two_axes,
+         by_frame<universal>},
+        {{"constant_velocity",
+          "two shafts that turn equally, however they are bent (4)",
+          {at, points, axes, frames}},
+         Location::on_two_axes,
+         as_it_stands<constant_velocity>},
+        {{"spherical", "one common point (3)", {at, points}}, Location::at_point, by_frame<spherical>},
+        {{"point_on_line",
+          "a point of the second body on a line of the first (2)",
+          {at, line, points, frames, displacement}},
+         Location::on_line,
+         by_frame<point_on_line>},
+        {{"point_in_plane",
+          "a point of the second body in a plane of the first (1)",
+          {at, line, points, frames}},
+         Location::on_line,
+         by_frame<point_in_plane>},
+        {{"parallel_axes", "an axis of each that stay parallel (2)", {free_axis, axes, frames, angle}},
+         Location::along_axis,
+         by_frame<parallel_axes>},
+        {{"perpendicular_axes", "an axis of each that stay perpendicular (1)", {at, axes, frames}},
+         Location::along_two_axes,
+         by_frame<perpendicular_axes>},
+        {{"constant_angle",
+          "an axis of each at a constant angle (1)",
+          {at, axes, frames,
+           Key{"angle", types::number, "Between the axes. Default: what it is at the start.", "rad"}}},
+         Location::along_two_axes,
+         make_constant_angle},
+        {{"slot",
+          "a point of the second body on a curve of the first (2)",
+          {Key{"curve", types::table, "Where the point slides."}.needed().holding(
+               {"curve of a slot",
+                "A cubic spline through points, straight on beyond its ends.",
+                {Key{"points", types::rows, "Two or more, in coordinates of the first body.", "m"}.needed(),
+                 Key{"closed", types::truth, "Whether it comes back from the last point to the first.", "",
+                     "false"}}}),
+           Key{"point", types::vector3, "What slides, in coordinates of the second body.", "m",
+               "[0, 0, 0]"}}},
+         Location::on_curve,
+         make_slot},
+        {{"rod",
+          "fixed distance (1)",
+          {points, Key{"length", types::number, "Default: the distance of its points at the start.", "m"}
+                       .within(positive)}},
+         Location::at_points,
+         make_rod}};
 }
 
 /// What couples the coordinates of others.

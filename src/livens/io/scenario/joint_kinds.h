@@ -14,6 +14,7 @@ namespace livens {
 /// What says where a joint is.
 enum class Location : std::uint8_t {
     at_points,        ///< a point of each body
+    on_curve,         ///< a curve of the first body
     at_point,         ///< one point
     on_axis,          ///< one point and one axis
     on_two_axes,      ///< one point and an axis of each body

@@ -57,7 +57,8 @@ const std::vector<Way>& ways()
 bool check_placement(const Section& joint)
 {
     const Location location = location_of(joint);
-    if (location == Location::at_points || location == Location::of_joints) return true;
+    if (location == Location::at_points || location == Location::on_curve || location == Location::of_joints)
+        return true;
     const auto complain = [&](std::string_view key, const std::string& message, std::string_view help) {
         return joint.error(key, "joint-placement", message, {"", std::string(help)});
     };
