@@ -237,6 +237,52 @@ TEST(Laws, ATableOfAStraightLineIsALinearSpring)
                     x, 1e-9);
 }
 
+/// A wheel under an expression of time.
+double wheel_after(const std::string& expression, const std::string& more = "")
+{
+    return solved(R"(
+[[body]]
+name = "w"
+mass = 1
+inertia = [0.4, 0.4, 0.5]
+angular_velocity = [0, 0, 1]
+[[joint]]
+name = "pivot"
+type = "revolute"
+between = ["world", "w"]
+at = [0, 0, 0]
+axis = [0, 0, 1]
+[[load]]
+type = "actuator"
+joint = "pivot"
+expression = ")" + expression +
+                  "\"\n" + more + "[time]\nend = 4\n")
+        .coordinate("pivot", "angle", 4)
+        .value;
+}
+
+TEST(Laws, JumpsAndPulsesOfExpressionsAreSeen)
+{
+    for (int i = 0; i < 20; ++i) {
+        const double c = 1.348 + 0.0731 * i;
+        const double jumped = c - 3 * c * c + (1 - 6 * c) * (4 - c) + 3 * (4 - c) * (4 - c);
+        const std::string from_c = "(t-" + to_text(c) + ")";
+        EXPECT_NEAR(wheel_after("3*max(-1,min(1," + from_c + "*1e9))"), jumped, 1e-5) << c;
+        EXPECT_NEAR(wheel_after("3*abs" + from_c + "/" + from_c), jumped, 1e-5) << c;
+        EXPECT_NEAR(wheel_after("3*abs" + from_c + "/" + from_c, "breaks = [" + to_text(c) + "]\n"), jumped,
+                    1e-5);
+        // theta'' = 6 |t - c|
+        const double bent = 4 + std::pow(c, 2) * 3 * 4 + std::pow(4 - c, 3) - std::pow(c, 3);
+        EXPECT_NEAR(wheel_after("3*abs" + from_c), bent, 1e-5) << c;
+    }
+    // 100 rad/s^2 for 30 ms, with ramps of 1 ms at both ends.
+    const double push = 100 * 0.029, middle = 1.215;
+    EXPECT_NEAR(wheel_after("min(1,max(0,(t-1.2)*1000))*min(1,max(0,(1.23-t)*1000))*50"),
+                4 + push * (4 - middle), 1e-5);
+    const double bell = 100 * std::sqrt(pi) / 2000;
+    EXPECT_NEAR(wheel_after("50*exp(-((t-1.237)*2000)^2)"), 4 + bell * (4 - 1.237), 1e-5);
+}
+
 // Angles of motor and pivot and their rates, from Lagrange's equations in these two angles by DOP853 to
 // 3e-14.
 struct FurutaRow {

@@ -13,6 +13,7 @@
 #include "livens/multibody/projection.h"
 #include "livens/multibody/reactions.h"
 #include "livens/multibody/rows.h"
+#include "livens/multibody/singular.h"
 #include "livens/multibody/statics.h"
 #include "livens/multibody/twist.h"
 
@@ -355,6 +356,7 @@ Equilibrium find_equilibrium(const Model& the_model, const State& start, const E
         result.message = why_not(model, search, here, outcome, result);
         return result;
     }
+    refuse_singular_start(model, close_start(model, result.state, StartPolicy::project));
     result.stability = stability(linearise(model, result.state));
     return result;
 }

@@ -47,7 +47,8 @@ struct Equilibrium {
 /// Stiff springs that carry what moves far want short steps: about (k L / m g)^(1/3) of them.
 ///
 /// Not found: loads that are no number, a limit of iterations, or 25 steps in a row along directions that
-/// nothing restores (a free fall). Throws InputError, see close_start().
+/// nothing restores (a free fall). Throws InputError, see close_start(); also
+/// `start-singular` where the joints hold less at the rest than beside it.
 Equilibrium find_equilibrium(const Model& model, const State& start, const EquilibriumOptions& options = {});
 
 }   // namespace livens

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <optional>
 #include <utility>
@@ -228,7 +229,15 @@ std::string Expression::without_value(double t, std::span<const double> symbols)
 TimeFunction expression_of_time(const Expression& expression, std::vector<double> breaks)
 {
     std::ranges::sort(breaks);
-    return {[expression](Instant at) { return expression.by_time(at.t); }, std::move(breaks)};
+    return {[expression, breaks](Instant at) { return expression.by_time(beside_breaks(at, breaks)); },
+            breaks};
+}
+
+double beside_breaks(Instant at, const std::vector<double>& breaks)
+{
+    if (!std::ranges::binary_search(breaks, at.t)) return at.t;
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    return std::nextafter(at.t, at.side == Side::left ? -infinity : infinity);
 }
 
 }   // namespace livens

@@ -41,6 +41,13 @@ public:
     /// "division by 0 at column 5": the first operation that has no value there; empty if all have.
     std::string without_value(double t, std::span<const double> symbols) const;
 
+    /// Instants in between at which an operation on time alone jumps or bends (abs, min, max, atan2, a
+    /// division by what passes zero), and around what comes and goes faster than a hundredth of the time: an
+    /// element that steps over these sees nothing of them. Pulses shorter than a 4096th may be overlooked.
+    std::vector<double> events(double from, double until) const;
+    /// "max at column 5": the first operation that may jump or bend where symbols decide; empty: none does.
+    std::string kink_by_symbols() const;
+
     enum class Operation : std::uint8_t {
         number,
         time,
@@ -72,13 +79,17 @@ public:
     };
 
 private:
+    std::vector<bool> steps_with_symbols() const;
     std::vector<TimeValue> evaluate(double t, std::span<const double> symbols, int direction) const;
 
     std::string text_;
     std::vector<Step> steps_;   ///< the last is the value
 };
 
-/// A function of time alone; `breaks` are instants where it jumps or bends.
+/// A function of time alone; `breaks` are instants where it jumps or bends, on either side of which it has
+/// the value beside them.
 TimeFunction expression_of_time(const Expression& expression, std::vector<double> breaks = {});
+/// The instant that an expression is asked with: beside a break, on the side that is meant.
+double beside_breaks(Instant at, const std::vector<double>& breaks);
 
 }   // namespace livens

@@ -64,7 +64,15 @@ private:
     {
         const std::string column = " at column " + std::to_string(at_ + 1);
         refuse("expression-syntax", "an expression cannot be read",
-               (at_ < text_.size() ? "'" + std::string(1, text_[at_]) + "'" : "it ends") + column, expected);
+               (at_ < text_.size() ? "'" + character() + "'" : "it ends") + column, expected);
+    }
+
+    /// UTF-8: with what continues it.
+    std::string character() const
+    {
+        std::size_t end = at_ + 1;
+        while (end < text_.size() && (static_cast<unsigned char>(text_[end]) & 0xC0) == 0x80) ++end;
+        return std::string(text_.substr(at_, end - at_));
     }
 
     void check_symbol(const std::string& symbol) const

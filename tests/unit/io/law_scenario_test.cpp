@@ -93,6 +93,13 @@ std::vector<test::Case> test::cases_of_laws()
                   "\"energy\"\nbody = \"b\""),
          "{ a"},
         {"joint-coordinate", actuator("inputs = { a = \"j.displacement\" }\nexpression = \"a\""), "{ a"},
+        {"input-algebraic",
+         actuator(
+             "name = \"m\"\ninputs = { a = \"own.force\" }\nexpression = \"a\"\n[[sensor]]\nname = \"own\"\n"
+             "type = \"load\"\nload = \"m\""),
+         "{ a"},
+        {"expression-value", actuator("expression = \"sqrt(t - 0.5)\""), "\"sqrt"},
+        {"load-value", with("[[load]]\ntype = \"drag\"\nbody = \"b\""), "[[load]]"},
         {"load-value", actuator("expression = \"1\"\nvalue = 2"), "\"1\"\nvalue"},
         {"load-value", actuator(angle + "value = 2"), "{ a"},
         {"wrong-type", actuator("expression = \"1\"\ninputs = { a = 2 }"), "2 }"},

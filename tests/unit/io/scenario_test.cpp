@@ -461,8 +461,12 @@ TEST(ScenarioCodes, WarningsLeaveTheScenarioAlone)
                  "type = \"spherical\"\nbetween = [\"upper\", \"lower\"]\npoints = [[0.5, 0, 1e-8], "
                  "[-0.5, 0, 0]]"),
         "[time]", "[start]\njoints = \"fit\"\n\n[time]");
-    for (const auto& [code, text] : {std::pair("load-never-acts", late), std::pair("format-first", second),
-                                     std::pair("joint-fitted", missed)}) {
+    const std::string kinked = replaced(
+        valid_scenario, "[time]",
+        "[[load]]\ntype = \"actuator\"\njoint = \"shoulder\"\ninputs = { w = \"shoulder.angle_rate\" }\n"
+        "expression = \"-max(w, 0)\"\n\n[time]");
+    for (const auto& [code, text] : {std::pair("expression-kink", kinked), std::pair("load-never-acts", late),
+                                     std::pair("format-first", second), std::pair("joint-fitted", missed)}) {
         const ScenarioResult result = read(text);
         EXPECT_TRUE(result.scenario.has_value()) << shown(result);
         const Diagnostic* d = find(result, code);
@@ -521,7 +525,8 @@ TEST(ScenarioCodes, AllAreProvokedByTheseTests)
                                       "tolerance-out-of-range",
                                       "window",
                                       "window-out-of-range"};
-    others.insert({"format-first", "load-never-acts", "joint-fitted"});   // warnings, above
+    others.insert(
+        {"format-first", "load-never-acts", "joint-fitted", "expression-kink"});   // warnings, above
     others.insert({"io-directory", "io-not-found", "io-unreadable"});   // hostile_test.cpp
     for (const Case& c : cases()) {
         EXPECT_NE(explain(c.code), "") << c.code;

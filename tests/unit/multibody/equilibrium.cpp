@@ -245,5 +245,33 @@ TEST(Equilibrium, OfAHorizontalChainThatIsPulledIsTheCatenaryOfItsLinks)
     expect_catenary(1, 2);
 }
 
+/// A parallelogram that hangs stretched out: two motions meet there, and no linearisation tells them apart.
+TEST(Equilibrium, InASingularPositionIsRefused)
+{
+    Model model({0, 0, -9.81});
+    const auto link = [&](const char* name, double mass, double inertia, const Vector3& at) {
+        Placement place;
+        place.position = at;
+        return model.add_body(rigid_body(name, {mass, {}, {1e-3, 0, 0, 0, inertia, 0, 0, 0, inertia}}, place));
+    };
+    const int l = link("l", 1, 1.0 / 12, {0.5, 0, 0}), r = link("r", 1, 1.0 / 12, {0.5, 0, -0.5});
+    const int c = link("c", 2, 1.0 / 24, {1, 0, -0.25});
+    const auto hinge = [&](const char* name, int first, int second, const Vector3& at) {
+        const Matrix34& X_first = first == world ? world_configuration : model.bodies()[first].X;
+        model.add_joint(
+            revolute(name, first, second, joint_frame(X_first, model.bodies()[second].X, at, {0, 1, 0})));
+    };
+    hinge("a", world, l, {0, 0, 0});
+    hinge("b", world, r, {0, 0, -0.5});
+    hinge("lc", l, c, {1, 0, 0});
+    hinge("rc", r, c, {1, 0, -0.5});
+    try {
+        find_equilibrium(model, model.start());
+        ADD_FAILURE() << "it was not refused";
+    } catch (const InputError& error) {
+        EXPECT_EQ(error.complaint().code, "start-singular");
+    }
+}
+
 }   // namespace
 }   // namespace livens

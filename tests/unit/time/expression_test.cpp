@@ -128,6 +128,37 @@ TEST(Expression, SaysWhereItHasNoValue)
               "sqrt(-2) at column 1");
 }
 
+TEST(Expression, KnowsWhereTimeAloneMakesItJumpOrBend)
+{
+    const auto events = [](const std::string& text) { return Expression(text, {"x"}).events(0, 4); };
+    const auto expect = [&](const std::string& text, const std::vector<double>& wanted) {
+        const std::vector<double> found = events(text);
+        ASSERT_EQ(found.size(), wanted.size()) << text;
+        for (std::size_t i = 0; i < found.size(); ++i) EXPECT_NEAR(found[i], wanted[i], 1e-14) << text;
+    };
+    expect("x*abs(t - 1.348)", {1.348});
+    expect("x*max(0, min(1, 10*(t - 1)))", {1, 1.1});
+    expect("x*abs(t - 2)/(t - 2)", {2});
+    expect("x + min(sin(t), 0.5)", {std::asin(0.5), std::acos(-1.0) - std::asin(0.5)});
+    expect("max(x, t)", {});
+    expect("sin(3*t)*exp(-t) + t^2", {});
+    EXPECT_TRUE(events("abs(sin(3000*t))").empty()) << "an oscillation";
+    // Pulses are fenced in.
+    const std::vector<double> fence = events("50*exp(-((t - 1.237)*2000)^2)");
+    ASSERT_GE(fence.size(), 3u);
+    EXPECT_LT(fence.front(), 1.236);
+    EXPECT_GT(fence.back(), 1.238);
+    EXPECT_EQ(Expression("1 + max(x, 0)", {"x"}).kink_by_symbols(), "max at column 5");
+    EXPECT_EQ(Expression("max(t, 0)*x", {"x"}).kink_by_symbols(), "");
+}
+
+TEST(Expression, IsOnTheSideOfABreakThatIsMeant)
+{
+    const TimeFunction sign = expression_of_time(Expression("abs(t - 1)/(t - 1)", {}), {1});
+    EXPECT_EQ(sign({1, Side::left}).value, -1);
+    EXPECT_EQ(sign({1, Side::right}).value, 1);
+}
+
 /// Texts of all kinds are read or refused, and what is read is evaluated.
 TEST(Expression, StandsAnyText)
 {

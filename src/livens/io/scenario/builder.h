@@ -118,8 +118,12 @@ struct Inputs {
 Inputs read_inputs(const Builder& builder, const Section& section, const std::string& path);
 std::vector<Expression> read_expressions(const Section& section, const Inputs& inputs,
                                          const std::string& path);
+/// `breaks`, and the events of the expressions, ascending; a warning where symbols decide about kinks.
+std::vector<double> breaks_of(const Builder& builder, const Section& section,
+                              const std::vector<Expression>& expressions);
 /// One factor for each expression.
-LoadLaw law_of(const std::vector<Expression>& expressions, const Inputs& inputs);
+LoadLaw law_of(const std::vector<Expression>& expressions, const Inputs& inputs,
+               const std::vector<double>& breaks);
 
 /// `directors`, `quaternion`, `rotation_vector`: of a body or a joint's frame.
 std::vector<Key> orientation_keys();

@@ -76,6 +76,10 @@ void add_input(const Builder& builder, Inputs& inputs, const std::string& symbol
                      is_readable ? has + ", as in \"" + sensor.name + "." + sensor.components[0].name + "\""
                                  : "give an expression of coordinates and their rates");
     }
+    for (const Section& sensor : builder.top().sections("sensor"))
+        if (sensor.has("name") && sensor.text("name") == reference.name && sensor.takes("load"))
+            refuse_input("input-algebraic", path, symbol, text, "a load cannot follow a load",
+                         "give an expression of coordinates and their rates");
     refuse_input("input-unknown", path, symbol, text, "there is nothing of this name",
                  suggest(reference.name, known).empty()
                      ? "give a joint and its coordinate, as in \"pivot.angle\" or \"pivot.angle_rate\""
@@ -132,17 +136,35 @@ std::vector<Expression> read_expressions(const Section& section, const Inputs& i
     return all;
 }
 
-LoadLaw law_of(const std::vector<Expression>& expressions, const Inputs& inputs)
+std::vector<double> breaks_of(const Builder& builder, const Section& section,
+                              const std::vector<Expression>& expressions)
 {
-    return [expressions, inputs](const LawArguments& at, std::span<double> factors,
-                                 std::span<double> slopes) {
+    std::vector<double> breaks;
+    if (const Value* given = section.find("breaks")) breaks = given->numbers;
+    const Section* time = only_section(builder.top(), "time");
+    for (const Expression& one : expressions) {
+        if (time == nullptr || !time->is_valid()) break;
+        const std::vector<double> events = one.events(time->number("start"), time->number("end"));
+        breaks.insert(breaks.end(), events.begin(), events.end());
+    }
+    std::ranges::sort(breaks);
+    const auto repeated = std::unique(breaks.begin(), breaks.end());
+    breaks.erase(repeated, breaks.end());
+    return breaks;
+}
+
+LoadLaw law_of(const std::vector<Expression>& expressions, const Inputs& inputs,
+               const std::vector<double>& breaks)
+{
+    return [expressions, inputs, breaks](const LawArguments& at, std::span<double> factors,
+                                         std::span<double> slopes) {
         const std::size_t m = inputs.coordinates.size(), n = inputs.reads.size();
         std::vector<double> numbers(n), by(slopes.empty() ? 0 : n);
         for (std::size_t k = 0; k < n; ++k)
             numbers[k] = (inputs.reads[k].is_rate ? at.rates : at.values)[inputs.reads[k].coordinate];
         std::ranges::fill(slopes, 0.0);
         for (std::size_t i = 0; i < expressions.size(); ++i) {
-            factors[i] = expressions[i](at.at.t, numbers, by);
+            factors[i] = expressions[i](beside_breaks(at.at, breaks), numbers, by);
             for (std::size_t k = 0; k < by.size(); ++k)
                 slopes[2 * m * i + (inputs.reads[k].is_rate ? m : 0) + inputs.reads[k].coordinate] += by[k];
         }

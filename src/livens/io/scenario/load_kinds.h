@@ -22,7 +22,7 @@ struct LoadSources {
     const Section& section;
     std::string name;
     int first, second;
-    const Builder& builder;
+    Builder& builder;
 
     std::string path() const { return "load[" + name + "]"; }
 };

@@ -2,6 +2,7 @@
 #include "livens/io/scenario/load_makers.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace livens {
@@ -24,6 +25,16 @@ TimeFunction while_it_acts(const Section& load, TimeFunction value)
     return load.has("from") || load.has("until") ? window(std::move(value), acts.from, acts.until) : value;
 }
 
+/// The same, if it has a value when the motion begins.
+TimeFunction told(const LoadSources& p, const Expression& expression, TimeFunction value)
+{
+    const Section* time = only_section(p.builder.top(), "time");
+    const double start = time == nullptr ? 0 : time->number("start");
+    if (std::isfinite(value({start, Side::right}).value)) return value;
+    throw InputError({"expression-value", p.path() + ".expression", "an expression has no value at the start",
+                      expression.without_value(start, {}), "", "", "in '" + expression.text() + "'"});
+}
+
 /// A law over time alone: n components.
 std::vector<TimeFunction> read_values(const LoadSources& p, std::size_t n)
 {
@@ -32,14 +43,14 @@ std::vector<TimeFunction> read_values(const LoadSources& p, std::size_t n)
     const bool is_formula = p.section.has("expression");
     const std::vector<Expression> expressions =
         is_formula ? read_expressions(p.section, {}, p.path()) : std::vector<Expression>();
-    const Value *constant = p.section.find("value"), *breaks = p.section.find("breaks");
+    const Value* constant = p.section.find("value");
+    const std::vector<double> breaks = breaks_of(p.builder, p.section, expressions);
     for (std::size_t c = 0; c < n; ++c) {
         TimeFunction value;
         if (table != nullptr)
             value = read_table(*table, c, n);
         else if (is_formula)
-            value = expression_of_time(expressions[c],
-                                       breaks == nullptr ? std::vector<double>() : breaks->numbers);
+            value = told(p, expressions[c], expression_of_time(expressions[c], breaks));
         else if (constant != nullptr)
             value = constant->numbers[c];
         values.push_back(while_it_acts(p.section, std::move(value)));
@@ -62,7 +73,8 @@ Load by_formula(const LoadSources& p, const std::string& type, const std::string
     LoadParts parts;
     parts.units = std::move(units);
     parts.coordinates = inputs.coordinates;
-    const LoadLaw law = law_of(expressions, inputs);
+    const std::vector<double> breaks = breaks_of(p.builder, p.section, expressions);
+    const LoadLaw law = law_of(expressions, inputs, breaks);
     const TimeFunction acts = while_it_acts(p.section, 1.0);
     parts.law = [law, acts](const LawArguments& at, std::span<double> factors, std::span<double> slopes) {
         law(at, factors, slopes);
@@ -76,10 +88,17 @@ Load by_formula(const LoadSources& p, const std::string& type, const std::string
         const std::string name = parts.units.size() == 1 ? "force" : std::string(1, "xyz"[k]);
         parts.readings.push_back(factor_reading(name, unit, parts.law, k, parts.units.size()));
     }
-    if (const Value* breaks = p.section.find("breaks"))
-        parts.breaks.insert(parts.breaks.end(), breaks->numbers.begin(), breaks->numbers.end());
+    parts.breaks.insert(parts.breaks.end(), breaks.begin(), breaks.end());
     parts.domain =
         "its expression has no value there, or reads an angle more than 175 degrees from its start";
+    for (const Expression& one : expressions)
+        if (const std::string kink = one.kink_by_symbols(); !kink.empty())
+            p.builder.findings().warning(
+                p.section.place("expression"), "expression-kink",
+                p.section.label() + " may jump or bend where the motion decides: " + kink,
+                {"an element sees such a place at its points only, and so does the estimated "
+                 "error",
+                 "compare with more elements, or with a smooth law such as tanh"});
     return modulated(p.name, type, parts, places(p.builder));
 }
 
@@ -208,6 +227,13 @@ bool check_spring(const Section& load)
     return needs("stiffness") && load.refuse({"table"}, "spring-law", "its law is " + law) &&
            (law == "progressive" ? needs("cubic")
                                  : load.refuse({"cubic"}, "spring-law", "its law is linear"));
+}
+
+bool check_drag(const Section& load)
+{
+    return load.has("linear") || load.has("quadratic") ||
+           load.error("", "load-value", load.label() + " has neither 'linear' nor 'quadratic'",
+                      {"", "give at least one of them"});
 }
 
 bool check_bushing(const Section& load)

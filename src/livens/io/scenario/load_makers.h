@@ -10,6 +10,7 @@ namespace livens {
 bool check_value(const Section& load);
 bool check_spring(const Section& load);
 bool check_bushing(const Section& load);
+bool check_drag(const Section& load);
 
 // Each throws InputError.
 Load make_force(const LoadSources& p);

@@ -159,7 +159,12 @@ private:
     {
         if (node.kind != NodeKind::table) return wrong_type(node);
         return std::ranges::all_of(node.entries(), [&](const Entry& entry) {
-            return read_text(entry.value, value_.texts.emplace_back());
+            if (entry.value.kind == NodeKind::text)
+                return read_text(entry.value, value_.texts.emplace_back());
+            return findings_.error(entry.value.place, "wrong-type",
+                                   "'" + entry.key + "' in " + subject() + " must be a text, not " +
+                                       std::string(describe(entry.value.kind)),
+                                   {"", "texts stand in quotes"});
         });
     }
 

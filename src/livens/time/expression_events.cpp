@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Where expressions jump, bend, or come and go so fast that elements could step over it.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+
+#include "livens/time/expression.h"
+
+namespace livens {
+
+namespace {
+
+using Operation = Expression::Operation;
+
+constexpr int n_looks = 4096;
+constexpr std::size_t most_events = 1000;   // beyond, it is an oscillation, which elements resolve or not
+
+/// What changes its sign where the operation jumps or bends.
+double switching(const Expression::Step& step, const std::vector<TimeValue>& values)
+{
+    switch (step.operation) {
+    case Operation::absolute:
+        return values[step.first].value;
+    case Operation::least:
+    case Operation::greatest:
+        return values[step.first].value - values[step.second].value;
+    case Operation::arc_tangent:
+        return values[step.first].value;
+    case Operation::divided:
+        return values[step.second].value;
+    default:
+        return 1;
+    }
+}
+
+const char* word_of(Operation operation)
+{
+    switch (operation) {
+    case Operation::absolute:
+        return "abs";
+    case Operation::least:
+        return "min";
+    case Operation::greatest:
+        return "max";
+    case Operation::arc_tangent:
+        return "atan2";
+    default:
+        return "";
+    }
+}
+
+/// Where a function changes its sign, to the last digit.
+double root(const std::function<double(double)>& f, double a, double b)
+{
+    const bool is_positive = f(a) > 0;
+    for (int i = 0; i < 200; ++i) {
+        const double middle = a + 0.5 * (b - a);
+        if (!(middle > a && middle < b)) break;
+        ((f(middle) > 0) == is_positive ? a : b) = middle;
+    }
+    return b;
+}
+
+/// Ends and middles of stretches that hold much of all that changes: of a pulse.
+void add_pulses(const std::vector<double>& looks, double from, double length, std::vector<double>& events)
+{
+    constexpr int width = n_looks / 100;
+    std::vector<double> sum{0};
+    for (std::size_t i = 1; i < looks.size(); ++i) {
+        const double change = std::abs(looks[i] - looks[i - 1]);
+        sum.push_back(sum.back() + (std::isfinite(change) ? change : 0));
+    }
+    const auto at = [&](int i) { return from + length * i / n_looks; };
+    for (int i = 0; i + width <= n_looks; i += width / 2) {
+        const double inside = sum[static_cast<std::size_t>(i + width)] - sum[static_cast<std::size_t>(i)];
+        if (!(inside > 0.2 * sum.back())) continue;
+        const auto first = looks.begin() + i, last = looks.begin() + i + width;
+        const auto peak =
+            std::max_element(first, last, [](double l, double r) { return std::abs(l) < std::abs(r); });
+        const int middle = static_cast<int>(peak - looks.begin());
+        for (const int k : {i, middle - 1, middle, middle + 1, i + width})
+            if (k > 0 && k < n_looks) events.push_back(at(k));
+    }
+}
+
+}   // namespace
+
+std::vector<bool> Expression::steps_with_symbols() const
+{
+    std::vector<bool> has;
+    for (const Step& step : steps_)
+        has.push_back(step.operation == Operation::symbol ||
+                      (step.operation != Operation::number && step.operation != Operation::time &&
+                       (has[step.first] || (step.second >= 0 && has[step.second]))));
+    return has;
+}
+
+std::vector<double> Expression::events(double from, double until) const
+{
+    const std::vector<bool> has_symbols = steps_with_symbols();
+    const std::vector<double> none(most_symbols);
+    const double length = until - from;
+    std::vector<std::vector<TimeValue>> all;
+    for (int i = 0; i <= n_looks; ++i) all.push_back(evaluate(from + length * i / n_looks, none, -1));
+    std::vector<double> events;
+    for (std::size_t k = 0; k < steps_.size(); ++k) {
+        if (has_symbols[k] || switching(steps_[k], all[0]) == switching(steps_[k], all[n_looks / 3]))
+            continue;
+        const auto f = [&](double t) { return switching(steps_[k], evaluate(t, none, -1)); };
+        for (int i = 0; i < n_looks; ++i)
+            if ((switching(steps_[k], all[i]) > 0) != (switching(steps_[k], all[i + 1]) > 0))
+                events.push_back(root(f, from + length * i / n_looks, from + length * (i + 1) / n_looks));
+    }
+    if (!has_symbols.back()) {
+        std::vector<double> looks;
+        for (const std::vector<TimeValue>& values : all) looks.push_back(values.back().value);
+        add_pulses(looks, from, length, events);
+    }
+    if (events.size() > most_events) return {};
+    std::ranges::sort(events);
+    const double apart = 1e-9 * length;   // nearer ones are one: no element is so short
+    const auto repeated =
+        std::unique(events.begin(), events.end(), [apart](double a, double b) { return b - a < apart; });
+    events.erase(repeated, events.end());
+    return events;
+}
+
+std::string Expression::kink_by_symbols() const
+{
+    const std::vector<bool> has_symbols = steps_with_symbols();
+    for (std::size_t k = 0; k < steps_.size(); ++k) {
+        const std::string word = word_of(steps_[k].operation);
+        if (has_symbols[k] && !word.empty() && word != "atan2")
+            return word + " at column " + std::to_string(steps_[k].column);
+    }
+    return "";
+}
+
+}   // namespace livens
