@@ -161,15 +161,13 @@ int equilibrium_command(const std::string& file, const Common& common)
     const InterruptWatch watch;
     const Equilibrium at = equilibrium_of(scenario);
     const int signal = InterruptWatch::signal();
-    const Found found{scenario, at, frozen(scenario.model, {at.state.t}),
-                      signal != 0   ? exit_signal + signal
-                      : at.is_found ? exit_ok
-                                    : exit_not_converged};
+    const int exit_code = signal != 0 ? exit_signal + signal : at.is_found ? exit_ok : exit_not_converged;
+    const Found found{scenario, at, frozen(scenario.model, {at.state.t}), exit_code};
     if (common.json)
         print(json_of(found, warnings));
     else if (!common.quiet)
         print(text_of(found, file));
-    return found.exit_code;
+    return exit_code;
 }
 
 }   // namespace livens::program
