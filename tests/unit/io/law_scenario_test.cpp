@@ -118,6 +118,8 @@ std::vector<test::Case> test::cases_of_laws()
         {"curve-straight-back", slotted("points = [[0, 0, 0], [1, 0, 0], [0, 0, 0]]"), "{ points"},
         {"curve-crosses-itself", slotted("points = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0.5, -1, 0]]"),
          "\"s\"\ntype"},
+        {"load-not-finite", with("[[load]]\ntype = \"attraction\"\nbody = \"b\"\nmu = 1"), "[[load]]"},
+        {"load-not-finite", actuator(angle + "expression = \"1/a\""), "[[load]]"},
         {"sensor-self", sensor("type = \"point\"\nbody = \"world\""), "\"world\"\n[time]"},
         {"joint-unknown", sensor("type = \"joint\"\njoint = \"jj\""), "\"jj\""},
         {"load-unknown", sensor("type = \"load\"\nload = \"l\""), "\"l\""},

@@ -252,7 +252,8 @@ TEST(Equilibrium, InASingularPositionIsRefused)
     const auto link = [&](const char* name, double mass, double inertia, const Vector3& at) {
         Placement place;
         place.position = at;
-        return model.add_body(rigid_body(name, {mass, {}, {1e-3, 0, 0, 0, inertia, 0, 0, 0, inertia}}, place));
+        return model.add_body(
+            rigid_body(name, {mass, {}, {1e-3, 0, 0, 0, inertia, 0, 0, 0, inertia}}, place));
     };
     const int l = link("l", 1, 1.0 / 12, {0.5, 0, 0}), r = link("r", 1, 1.0 / 12, {0.5, 0, -0.5});
     const int c = link("c", 2, 1.0 / 24, {1, 0, -0.25});

@@ -12,7 +12,7 @@ Key body_key() { return Key{"body", types::text, "On which body it acts."}.neede
 Key interpolation_key()
 {
     return choice("interpolation", {"linear", "spline"},
-                  "Straight lines, or a cubic spline with two continuous derivatives.");
+                  "Straight lines, or a cubic spline with two continuous derivatives (not-a-knot).");
 }
 
 Key times_key()

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // [[load]]: names, bodies, and what may be wrong with them.
+#include <cmath>
+
 #include "livens/io/scenario/builder.h"
 #include "livens/io/scenario/load_kinds.h"
 
@@ -77,6 +79,33 @@ Table load_table()
         .with_kinds("type", {load_kinds().begin(), load_kinds().end()});
 }
 
+namespace {
+
+/// What is no number at the start would end the motion before it begins.
+void check_start(Builder& builder)
+{
+    const Section *start = only_section(builder.top(), "start"), *time = only_section(builder.top(), "time");
+    if (start != nullptr && start->text("initial") == "project") return;   // from another place
+    const Model& model = builder.model();
+    const State state = model.start();
+    for (const Load& load : model.loads()) {
+        const Instant at{time == nullptr ? 0 : time->number("start"), Side::right};
+        LoadForces F{};
+        load.forces(load_arguments(load, at, state.X, state.V), F);
+        double sum = 0;
+        for (const Matrix34& of_body : F)
+            for (const double f : of_body.a) sum += std::abs(f);
+        const std::string path = "load[" + load.name + "]";
+        if (!std::isfinite(sum))
+            builder.guard(path, [&] {
+                throw InputError(
+                    {"load-not-finite", path, not_finite(load) + " at the start", "", "", "", ""});
+            });
+    }
+}
+
+}   // namespace
+
 void read_loads(Builder& builder)
 {
     const std::span<const Section> sections = builder.top().sections("load");
@@ -93,6 +122,7 @@ void read_loads(Builder& builder)
             is_good[i] = builder.findings().n_errors() == before;
         }
     for (std::size_t i = 0; i < sections.size(); ++i) read_load(builder, sections[i], names[i], is_good[i]);
+    check_start(builder);
 }
 
 }   // namespace livens

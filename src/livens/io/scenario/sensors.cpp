@@ -84,9 +84,11 @@ const std::vector<SensorKind>& kinds()
                "m"}}},
          make_relative},
         {{"load",
-          "what a load does: force of a spring (positive where it pulls) and its length, force of an "
-          "actuator, x, "
-          "y, z of a force or torque in its axes, and the power on the bodies in W",
+          "what a load does: `force` of a spring between points (positive where it pulls) and its `length`; "
+          "`force` along the coordinate of springs and actuators on joints; `force_x` .. `torque_z` of a "
+          "bushing on "
+          "its u, and u as `displacement_x` .. `rotation_z`; `x`, `y`, `z` of others; and `power` on the "
+          "bodies, W",
           {Key{"load", types::text, "The load."}.needed()}},
          make_load_sensor},
         {{"energy", "kinetic and potential energy of a body in J, the latter of its weight", {body}},
