@@ -98,6 +98,8 @@ std::vector<bool> Expression::steps_with_symbols() const
 
 std::vector<double> Expression::events(double from, double until) const
 {
+    if (std::ranges::none_of(steps_, [](const Step& step) { return step.operation == Operation::time; }))
+        return {};
     const std::vector<bool> has_symbols = steps_with_symbols();
     const std::vector<double> none(most_symbols);
     const double length = until - from;
