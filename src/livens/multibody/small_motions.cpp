@@ -142,6 +142,7 @@ FreeMotions::FreeMotions(const Tables& tables, const InstantState& state)
     : n_twists(tables.n_twists), n(tables.freedoms()),
       Z(static_cast<std::size_t>(n_twists) * static_cast<std::size_t>(n))
 {
+    if (n == 0) return;
     std::vector<double> by_rows(Z.size());
     state.basis.q.null_space(by_rows.data());
     using ByRows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -150,6 +151,7 @@ FreeMotions::FreeMotions(const Tables& tables, const InstantState& state)
 
 std::vector<double> FreeMotions::reduced(const Tables& tables, const TwistTerms& terms) const
 {
+    if (n == 0) return {};
     const Eigen::Map<const MatrixXd> z(Z.data(), n_twists, n);
     MatrixXd KZ = MatrixXd::Zero(n_twists, n);
     for (const TwistTerm& t : terms) {
@@ -164,6 +166,7 @@ std::vector<double> FreeMotions::reduced(const Tables& tables, const TwistTerms&
 
 std::vector<double> FreeMotions::sizes(const Tables& tables, const TwistTerms& terms) const
 {
+    if (n == 0) return {};
     const MatrixXd z = Eigen::Map<const MatrixXd>(Z.data(), n_twists, n).cwiseAbs();
     Eigen::RowVectorXd sum = Eigen::RowVectorXd::Zero(n);
     for (const TwistTerm& t : terms) {
