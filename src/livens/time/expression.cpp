@@ -236,8 +236,9 @@ TimeFunction expression_of_time(const Expression& expression, std::vector<double
 double beside_breaks(Instant at, const std::vector<double>& breaks)
 {
     if (!std::ranges::binary_search(breaks, at.t)) return at.t;
-    constexpr double infinity = std::numeric_limits<double>::infinity();
-    return std::nextafter(at.t, at.side == Side::left ? -infinity : infinity);
+    // a few digits off: where an argument is zero itself, it is on one side only
+    const double off = 1e-15 * std::abs(at.t) + std::numeric_limits<double>::min();
+    return at.side == Side::left ? at.t - off : at.t + off;
 }
 
 }   // namespace livens

@@ -77,7 +77,6 @@ TEST(ExamplesOfCodes, StandWhereverAScenarioLeads)
         "basis-nodes",
         "degree",
         "degree-out-of-range",
-        "drive-jumps",
         "drives-method",
         "gauss-points-out-of-range",
         "gear-ratio",

@@ -75,11 +75,25 @@ TEST(LawScenario, NamesOfInputsMayHaveBlanksAndPoints)
 
 }   // namespace
 
+namespace {
+
+std::vector<test::Case> cases_of_driven_laws()
+{
+    return {
+        {"drive-jumps",
+         with("[[drive]]\nname = \"d\"\ntype = \"joint\"\njoint = \"j\"\nexpression = \"abs(t - 0.5137) - "
+              "0.5137\"\n[start]\ninitial = \"project\""),
+         "\"d\""},
+    };
+}
+
+}   // namespace
+
 std::vector<test::Case> test::cases_of_laws()
 {
     const std::string angle = "inputs = { a = \"j.angle\" }\n";
     const std::string unit = "stiffness = [1, 1, 1, 1, 1, 1]\n";
-    return {
+    std::vector<Case> all{
         {"expression-syntax", actuator("expression = \"1 +\""), "\"1 +\""},
         {"expression-name", actuator(angle + "expression = \"a + b\""), "\"a + b\""},
         {"expression-name", actuator("inputs = { sin = \"j.angle\" }\nexpression = \"1\""), "\"1\"\n[time]"},
@@ -132,6 +146,8 @@ std::vector<test::Case> test::cases_of_laws()
               "body = \"c\"\nexpression = \"t\""),
          "\"t\"\n[time]"},
     };
+    for (const Case& more : cases_of_driven_laws()) all.push_back(more);
+    return all;
 }
 
 }   // namespace livens

@@ -483,7 +483,6 @@ TEST(ScenarioCodes, AllAreProvokedByTheseTests)
                                       "backend-missing",   // depends on the build; mixed_scenario_test.cpp
                                       "basis-nodes",
                                       "degree",
-                                      "drive-jumps",
                                       "drives-method",
                                       "degree-out-of-range",
                                       "gauss-points-out-of-range",

@@ -112,19 +112,32 @@ std::string drive_name(const Section& drive)
     return between == nullptr ? "" : "drive " + between->texts[0] + "-" + between->texts[1];
 }
 
+/// Of the motion, s.
+struct Duration {
+    double start, end;
+};
+
+/// With its kinks as breaks, so that the model refuses what a drive cannot follow.
+TimeFunction by_formula(const Expression& expression, const Duration& during)
+{
+    std::vector<double> events;
+    if (during.end > during.start) events = expression.events(during.start, during.end);
+    return expression_of_time(expression, events);
+}
+
 /// Component c of the law; `now` is the value at the start, where a rate begins.
-TimeFunction read_law(const Section& drive, std::size_t c, std::size_t n, double now, double start)
+TimeFunction read_law(const Section& drive, std::size_t c, std::size_t n, double now, const Duration& during)
 {
     if (drive.has("value")) return component(drive, "value", c);
-    if (drive.has("rate")) return ramp(now, component(drive, "rate", c), start);
+    if (drive.has("rate")) return ramp(now, component(drive, "rate", c), during.start);
     if (const Section* one = only_section(drive, "harmonic"))
         return harmonic(component(*one, "amplitude", c), one->number("frequency"), one->number("phase"));
     if (drive.has("expression"))
-        return expression_of_time(read_expressions(drive, {}, "drive[" + drive_name(drive) + "]")[c]);
+        return by_formula(read_expressions(drive, {}, "drive[" + drive_name(drive) + "]")[c], during);
     if (const Section* one = only_section(drive, "step")) {
         const TimeFunction step =
             smooth_step(one->number("from"), one->number("until"), component(*one, "rise", c));
-        return shifted(step, now - step({start}).value);
+        return shifted(step, now - step({during.start}).value);
     }
     const bool is_table = drive.has("table");
     const Section* table = only_section(drive, "table");
@@ -136,17 +149,17 @@ TimeFunction read_law(const Section& drive, std::size_t c, std::size_t n, double
     return straight_on(spline_table(times, std::move(own)), times.front(), times.back());
 }
 
-std::array<TimeFunction, 3> read_path(const Section& drive, double start)
+std::array<TimeFunction, 3> read_path(const Section& drive, const Duration& during)
 {
-    return {read_law(drive, 0, 3, 0, start), read_law(drive, 1, 3, 0, start),
-            read_law(drive, 2, 3, 0, start)};
+    return {read_law(drive, 0, 3, 0, during), read_law(drive, 1, 3, 0, during),
+            read_law(drive, 2, 3, 0, during)};
 }
 
-Joint make_on_joint(const Builder& builder, const Section& drive, const std::string& name, double start,
-                    const Configurations& X)
+Joint make_on_joint(const Builder& builder, const Section& drive, const std::string& name,
+                    const Duration& during, const Configurations& X)
 {
     const JointReference of = find_coordinate(builder, drive, "drive[" + name + "]");
-    const TimeFunction law = read_law(drive, 0, 1, of.coordinate->at_stated, start);
+    const TimeFunction law = read_law(drive, 0, 1, of.coordinate->at_stated, during);
     return driven_coordinate(name, *of.joint, *of.coordinate, law, X);
 }
 
@@ -155,16 +168,17 @@ Joint make_drive(Builder& builder, const Section& drive, const std::string& name
 {
     const Section* time = only_section(builder.top(), "time");
     const double start = time == nullptr ? 0 : time->number("start");
+    const Duration during{start, time == nullptr ? start : time->number("end")};
     std::vector<Matrix34> all;
     for (const Body& body : builder.model().bodies()) all.push_back(body.X);
     const Configurations X(all);
     const std::string type = drive.text("type");
-    if (type == "joint") return make_on_joint(builder, drive, name, start, X);
+    if (type == "joint") return make_on_joint(builder, drive, name, during, X);
     if (type == "distance") {
         const Vector3 a = drive.row("points", 0), b = drive.row("points", 1);
         const double now = norm(X[second.index] * point(b) - X[first.index] * point(a));
-        const TimeFunction length = read_law(drive, 0, 1, now, start);
-        const double end = time == nullptr ? start : time->number("end");
+        const TimeFunction length = read_law(drive, 0, 1, now, during);
+        const double end = during.end;
         constexpr int n_looks = 1000;   // what passes between them is no number, see driven_distance()
         for (int i = 0; i <= n_looks; ++i) {
             const double t = start + (end - start) * i / n_looks, l = length({t}).value;
@@ -178,7 +192,7 @@ Joint make_drive(Builder& builder, const Section& drive, const std::string& name
     }
     const Vector3 at = drive.vector("point");
     const auto make = type == "point" ? driven_point : driven_body;
-    return make(name, first.index, at, read_path(drive, start), X, builder.length());
+    return make(name, first.index, at, read_path(drive, during), X, builder.length());
 }
 
 void read_drive(Builder& builder, const Section& drive, std::unordered_set<std::string>& taken)
