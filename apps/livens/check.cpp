@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // livens check: everything that can be said about a scenario without solving it.
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "commands.h"
@@ -7,6 +9,7 @@
 #include "failure.h"
 #include "known_state.h"
 #include "livens/multibody/closing.h"
+#include "livens/multibody/start_coordinates.h"
 #include "memory.h"
 
 namespace livens::program {
@@ -56,6 +59,22 @@ std::string division_of(const Scenario& scenario)
                        scenario.output.empty() ? "element ends are output times" : times);
 }
 
+constexpr int most_bodies_told = 300;   // beyond, finding what is independent takes seconds
+
+/// Which coordinates tell the configuration, for people who want to state or drive some.
+std::string coordinates_of(const Scenario& scenario, const ClosedStart& assembly)
+{
+    if (assembly.degrees_of_freedom == 0 || scenario.model.n_bodies() > most_bodies_told) return {};
+    const IndependentCoordinates found = independent_coordinates(scenario.model, assembly.start);
+    if (found.names.empty()) return {};
+    const std::size_t told = std::min<std::size_t>(found.names.size(), 12);
+    std::string text = "  independent coordinates: ";
+    for (std::size_t i = 0; i < told; ++i) text += (i == 0 ? "" : ", ") + plain(found.names[i]);
+    if (told < found.names.size()) text += fmt::format(" and {} more", found.names.size() - told);
+    if (found.left_free > 0) text += fmt::format("; {} freedoms beside them", found.left_free);
+    return text + "\n";
+}
+
 }   // namespace
 
 int check_command(const std::string& file, const Common& common)
@@ -77,6 +96,7 @@ int check_command(const std::string& file, const Common& common)
         scenario.model.loads().size(), assembly.degrees_of_freedom, start_of(scenario.time),
         end_of(scenario.time), division_of(scenario), bytes_in_words(memory_needed(scenario).most()),
         std::holds_alternative<Span>(scenario.time) ? ", and what the elements take that are found" : "");
+    text += coordinates_of(scenario, assembly);
     for (const std::string& note : assembly.notes) text += "  note: " + plain(note) + "\n";
     print(text);
     return exit_ok;

@@ -50,6 +50,24 @@ TEST(MechanismScenario, FramesArePointsAndAxes)
     EXPECT_GT(std::abs(constraint_value(held.rows[3], std::vector<Matrix34>{world_configuration})), 0.5);
 }
 
+/// The drive begins where the bodies were led, and the file's coordinate counts from there.
+TEST(MechanismScenario, StartsByCoordinates)
+{
+    const std::string turn = "type = \"revolute\"\nat = [0, 0, 0]\naxis = [0, 0, 1]\n",
+                      wanted = "[start]\ncoordinates = [{ joint = \"j\", value = \"450 deg\", rate = 3 }]\n";
+    const ScenarioResult result =
+        read(joined(turn + wanted + "[[drive]]\ntype = \"joint\"\njoint = \"j\"\nrate = 3"));
+    ASSERT_TRUE(result.scenario.has_value()) << shown(result);
+    const Model& model = result.scenario->model;
+    EXPECT_NEAR(model.joints()[0].coordinates[0].at_stated, 2.5 * std::acos(-1.0), 1e-15);
+    EXPECT_LT(norm(model.bodies()[0].X.column(1) - Vector3{0, 1, 0}), 1e-14);
+    EXPECT_LT(norm(model.bodies()[0].V.column(1) - Vector3{-3, 0, 0}), 1e-14);
+    const ScenarioResult by_rate = read(joined(turn + "rate = 3"));
+    ASSERT_TRUE(by_rate.scenario.has_value()) << shown(by_rate);
+    EXPECT_LT(norm(by_rate.scenario->model.bodies()[0].V.column(1) - Vector3{0, 3, 0}), 1e-14);
+    EXPECT_EQ(joint_of(turn).coordinates[0].at_stated, 0) << "negative control";
+}
+
 TEST(MechanismScenario, CoordinatesAreNamedAndBeginWhereTheyAreSaid)
 {
     EXPECT_EQ(joint_of("type = \"revolute\"\nat = [0, 0, 0]\naxis = [0, 0, 1]\ncoordinate = \"90 deg\"")
@@ -95,6 +113,11 @@ std::string driven(const std::string& lines) { return joined(turn + "[[drive]]\n
 std::string other(const std::string& lines) { return joined(turn + "[[joint]]\nname = \"k\"\n" + lines); }
 std::string other_load(const std::string& lines) { return joined(turn + "[[load]]\n" + lines); }
 
+std::string starting(const std::string& tables)
+{
+    return joined(turn + "[start]\ncoordinates = [" + tables + "]");
+}
+
 std::vector<test::Case> cases_of_joints()
 {
     return {
@@ -122,7 +145,13 @@ std::vector<test::Case> cases_of_joints()
 
 std::vector<test::Case> cases_along_joints()
 {
+    const std::string twice = "{ joint = \"j\", value = 1 }, ";
     return {
+        {"start-coordinate", starting("{ joint = \"j\", value = \"5 m\" }"), "\"5 m\""},
+        {"start-coordinate", starting("{ joint = \"j\" }"), "{ joint"},
+        {"start-coordinate", starting(twice + "{ joint = \"j\", rate = 1 }"), "{ joint = \"j\", rate"},
+        {"start-coordinate", starting("{ joint = \"j\", value = 1e5 }"), "{ joint"},
+        {"joint-unknown", starting("{ joint = \"jj\", value = 1 }"), "\"jj\""},
         {"drive-law", driven(on_joint), "[[drive]]"},
         {"drive-law", driven(on_joint + "value = 0\nrate = 1"), "1\n[time]"},
         {"drive-size", driven(on_joint + "value = [0, 1]"), "[0, 1]"},

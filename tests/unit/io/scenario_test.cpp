@@ -465,8 +465,12 @@ TEST(ScenarioCodes, WarningsLeaveTheScenarioAlone)
         valid_scenario, "[time]",
         "[[load]]\ntype = \"actuator\"\njoint = \"shoulder\"\ninputs = { w = \"shoulder.angle_rate\" }\n"
         "expression = \"-max(w, 0)\"\n\n[time]");
+    const std::string hurried =
+        replaced(replaced(valid_scenario, "name = \"shoulder\"", "name = \"shoulder\"\nrate = 1"),
+                 "name = \"lower\"", "name = \"lower\"\nvelocity = [0, 0, 1]");
     for (const auto& [code, text] : {std::pair("expression-kink", kinked), std::pair("load-never-acts", late),
-                                     std::pair("format-first", second), std::pair("joint-fitted", missed)}) {
+                                     std::pair("format-first", second), std::pair("joint-fitted", missed),
+                                     std::pair("start-changed", hurried)}) {
         const ScenarioResult result = read(text);
         EXPECT_TRUE(result.scenario.has_value()) << shown(result);
         const Diagnostic* d = find(result, code);
@@ -524,8 +528,8 @@ TEST(ScenarioCodes, AllAreProvokedByTheseTests)
                                       "tolerance-out-of-range",
                                       "window",
                                       "window-out-of-range"};
-    others.insert(
-        {"format-first", "load-never-acts", "joint-fitted", "expression-kink"});   // warnings, above
+    others.insert({"format-first", "load-never-acts", "joint-fitted", "expression-kink",
+                   "start-changed"});                                   // warnings, above
     others.insert({"io-directory", "io-not-found", "io-unreadable"});   // hostile_test.cpp
     for (const Case& c : cases()) {
         EXPECT_NE(explain(c.code), "") << c.code;

@@ -7,6 +7,11 @@ namespace livens {
 
 namespace {
 
+Key given(std::string_view otherwise, const std::string& doc)
+{
+    return {"given", types::choice, doc, "", otherwise, false, {"nothing", "positions", "momenta", "state"}};
+}
+
 bool check_end_of(const Section& end, bool is_point)
 {
     if (!end.is_valid() || !check_pose(end)) return false;
@@ -49,6 +54,48 @@ void read_end_of(Builder& builder, const std::string& name, const Section& end, 
 }
 
 }   // namespace
+
+Table start_table()
+{
+    return {
+        "[start]",
+        "What is known at the start, and what to do with a start that does not fit the joints. What is not "
+        "given there is a first guess: positions and velocities of `[[body]]` are needed all the same, and "
+        "joints placed by `at` refer to them.",
+        {given("state", "state: positions and velocities; positions or momenta: those alone, the others are "
+                        "first guesses; nothing: all are."),
+         choice("initial", {"check", "project"},
+                "check: refuse it, naming the joint; project: move positions and velocities to the nearest "
+                "that fit, in the metric of the masses."),
+         choice(
+             "joints", {"fixed", "fit"},
+             "fixed: as stated; fit: points and axes on the second body of a joint are moved by the least "
+             "that closes it where the bodies stand, at most 1e-6 of the model's length, and that is said: "
+             "for drawings that are rounded."),
+         Key{"coordinates", types::tables,
+             "Where joints stand at the start, and how fast they move: the bodies are led there along the "
+             "joints. Independent coordinates that are not listed stay as the bodies are stated; what no "
+             "coordinate tells moves by the least, in the metric of the masses."}
+             .holding(
+                 {"[[start.coordinates]]",
+                  "A coordinate of a joint at the start.",
+                  {Key{"joint", types::text, "The joint."}.needed(), coordinate_key(),
+                   Key{"value", types::number, "As the joint counts it. Default: as it is stated.", "rad"}
+                       .or_in("m"),
+                   Key{"rate", types::number, "Default: that of the bodies' velocities.", "rad/s"}.or_in(
+                       "m/s")}})}};
+}
+
+Table end_table()
+{
+    return {
+        "[end]",
+        "What is known at the end of time, by `[body.end]` of every body. In all, positions and momenta must "
+        "be given once each, at one end or at both: a state at the end alone asks where the motion came "
+        "from, positions at both ends how to get from one to the other. Conditions at the end need the "
+        "family lobatto or mixed.",
+        {given("nothing", "Likewise, of `[body.end]`.")}};
+}
 
 void read_boundary(Builder& builder, Conditions& boundary)
 {

@@ -141,6 +141,8 @@ Placement read_placement(const Section& body);
 // The parts of the reader. Each reports all it finds.
 void read_bodies(Builder& builder);
 void read_joints(Builder& builder);
+/// Leads the bodies to what [start] and joints say of coordinates: after the joints, before all others.
+void move_bodies(Builder& builder);
 void read_drives(Builder& builder);   ///< after the joints
 /// Those of loads follow the loads, whose expressions may read the others.
 void read_sensors(Builder& builder, bool of_loads);

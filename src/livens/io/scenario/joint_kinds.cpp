@@ -25,10 +25,15 @@ const Key line{
     "Direction of the line, or normal of the plane, on the first body, of any length: with `at` in the "
     "world at the start, with `points` in coordinates of the first body."};
 const Key free_axis{"axis", types::vector3, "The axis at the start, world axes, of any length; or `axes`."};
-const Key angle{"coordinate", types::number, "What the joint's angle is called at the start.", "rad", "0"};
+const Key angle{"coordinate", types::number, "What the joint's angle is called where the bodies are stated.",
+                "rad", "0"};
 const Key joints{"joints", types::names, "Two joints by name: the driving one and the one that follows."};
-const Key displacement{"coordinate", types::number, "What the joint's displacement is called at the start.",
-                       "m", "0"};
+const Key displacement{"coordinate", types::number,
+                       "What the joint's displacement is called where the bodies are stated.", "m", "0"};
+const Key angle_rate{"rate", types::number, "Of the angle at the start; see also `[[start.coordinates]]`.",
+                     "rad/s"};
+const Key displacement_rate{"rate", types::number,
+                            "Of the displacement at the start; see also `[[start.coordinates]]`.", "m/s"};
 
 Key frames_of_joint()
 {
@@ -84,10 +89,12 @@ std::vector<JointKind> kinds_of_one_axis()
     const Key frames = frames_of_joint();
     return {
         {{"weld", "nothing moves (6 rows)", {at, points, frames}}, Location::at_point, as_it_stands<weld>},
-        {{"revolute", "turns about one axis (5)", {at, axis, points, axes, frames, angle}},
+        {{"revolute", "turns about one axis (5)", {at, axis, points, axes, frames, angle, angle_rate}},
          Location::on_axis,
          by_frame<revolute>},
-        {{"prismatic", "slides along one axis (5)", {at, axis, points, axes, frames, displacement}},
+        {{"prismatic",
+          "slides along one axis (5)",
+          {at, axis, points, axes, frames, displacement, displacement_rate}},
          Location::on_axis,
          as_it_stands<prismatic>},
         {{"cylindrical", "turns about one axis and slides along it (4)", {at, axis, points, axes, frames}},
@@ -101,7 +108,7 @@ std::vector<JointKind> kinds_of_one_axis()
          make_screw},
         {{"planar",
           "slides in a plane, whose normal is the axis, and turns in it (3)",
-          {at, axis, points, axes, frames, angle}},
+          {at, axis, points, axes, frames, angle, angle_rate}},
          Location::on_axis,
          by_frame<planar>}};
 }
@@ -122,7 +129,7 @@ std::vector<JointKind> kinds_of_points_and_axes()
         {{"spherical", "one common point (3)", {at, points}}, Location::at_point, by_frame<spherical>},
         {{"point_on_line",
           "a point of the second body on a line of the first (2)",
-          {at, line, points, frames, displacement}},
+          {at, line, points, frames, displacement, displacement_rate}},
          Location::on_line,
          by_frame<point_on_line>},
         {{"point_in_plane",
@@ -130,7 +137,9 @@ std::vector<JointKind> kinds_of_points_and_axes()
           {at, line, points, frames}},
          Location::on_line,
          by_frame<point_in_plane>},
-        {{"parallel_axes", "an axis of each that stay parallel (2)", {free_axis, axes, frames, angle}},
+        {{"parallel_axes",
+          "an axis of each that stay parallel (2)",
+          {free_axis, axes, frames, angle, angle_rate}},
          Location::along_axis,
          by_frame<parallel_axes>},
         {{"perpendicular_axes", "an axis of each that stay perpendicular (1)", {at, axes, frames}},

@@ -49,6 +49,7 @@ void build(const Node& root, Scenario& scenario, Findings& findings)
     Builder builder(top, findings);
     read_bodies(builder);
     read_joints(builder);
+    move_bodies(builder);
     read_drives(builder);
     read_sensors(builder, false);
     read_loads(builder);

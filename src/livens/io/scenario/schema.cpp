@@ -35,41 +35,6 @@ Table time_table()
              .within({0, 0.1, true})}};
 }
 
-Key given(std::string_view otherwise, const std::string& doc)
-{
-    return {"given", types::choice, doc, "", otherwise, false, {"nothing", "positions", "momenta", "state"}};
-}
-
-Table start_table()
-{
-    return {
-        "[start]",
-        "What is known at the start, and what to do with a start that does not fit the joints. What is not "
-        "given there is a first guess: positions and velocities of `[[body]]` are needed all the same, and "
-        "joints placed by `at` refer to them.",
-        {given("state", "state: positions and velocities; positions or momenta: those alone, the others are "
-                        "first guesses; nothing: all are."),
-         choice("initial", {"check", "project"},
-                "check: refuse it, naming the joint; project: move positions and velocities to the nearest "
-                "that fit, in the metric of the masses."),
-         choice(
-             "joints", {"fixed", "fit"},
-             "fixed: as stated; fit: points and axes on the second body of a joint are moved by the least "
-             "that closes it where the bodies stand, at most 1e-6 of the model's length, and that is said: "
-             "for drawings that are rounded.")}};
-}
-
-Table end_table()
-{
-    return {
-        "[end]",
-        "What is known at the end of time, by `[body.end]` of every body. In all, positions and momenta must "
-        "be given once each, at one end or at both: a state at the end alone asks where the motion came "
-        "from, positions at both ends how to get from one to the other. Conditions at the end need the "
-        "family lobatto or mixed.",
-        {given("nothing", "Likewise, of `[body.end]`.")}};
-}
-
 void collect(const Table& table, std::vector<const Table*>& all)
 {
     if (std::ranges::find(all, &table) != all.end()) return;   // kinds share tables

@@ -132,6 +132,8 @@ Table joint_table();
 Table drive_table();
 Table load_table();
 Table sensor_table();
+Table start_table();
+Table end_table();
 Table method_table();
 const Table& root_table();
 /// All, from the root on, each before those inside it.
