@@ -16,7 +16,7 @@ namespace livens::program {
 
 namespace {
 
-std::string json_of(const Scenario& scenario, const ClosedStart& assembly,
+std::string json_of(const Scenario& scenario, const Model& model, const ClosedStart& assembly,
                     const std::vector<Diagnostic>& warnings)
 {
     JsonWriter json(2);
@@ -35,8 +35,8 @@ std::string json_of(const Scenario& scenario, const ClosedStart& assembly,
     json.key("options").raw(scenario.resolved.empty() ? "null" : scenario.resolved);
     json.key("redundant_rows").begin_array();
     for (const int r : assembly.redundant) {
-        const Joint& joint = scenario.model.joints()[scenario.model.row_joint(r)];
-        json.value(joint.name + ": " + scenario.model.row(r).label);
+        const Joint& joint = model.joints()[model.row_joint(r)];
+        json.value(joint.name + ": " + model.row(r).label);
     }
     json.end_array();
     json.key("notes").begin_array();
@@ -62,10 +62,10 @@ std::string division_of(const Scenario& scenario)
 constexpr int most_bodies_told = 300;   // beyond, finding what is independent takes seconds
 
 /// Which coordinates tell the configuration, for people who want to state or drive some.
-std::string coordinates_of(const Scenario& scenario, const ClosedStart& assembly)
+std::string coordinates_of(const Model& model, const ClosedStart& assembly)
 {
-    if (assembly.degrees_of_freedom == 0 || scenario.model.n_bodies() > most_bodies_told) return {};
-    const IndependentCoordinates found = independent_coordinates(scenario.model, assembly.start);
+    if (assembly.degrees_of_freedom == 0 || model.n_bodies() > most_bodies_told) return {};
+    const IndependentCoordinates found = independent_coordinates(model, assembly.start);
     if (found.names.empty()) return {};
     const std::size_t told = std::min<std::size_t>(found.names.size(), 12);
     std::string text = "  independent coordinates: ";
@@ -82,10 +82,11 @@ int check_command(const std::string& file, const Common& common)
     std::vector<Diagnostic> warnings;
     const Scenario scenario = load_scenario(file, common, &warnings);
     const KnownState known = known_state(scenario);   // rank and redundant rows, for people
-    const ClosedStart assembly = close_start(scenario.model, known.state, known.initial);
+    const Model model = as_it_starts(scenario).model;
+    const ClosedStart assembly = close_start(model, known.state, known.initial);
     check_memory({&scenario});
     if (common.json) {
-        print(json_of(scenario, assembly, warnings));
+        print(json_of(scenario, model, assembly, warnings));
         return exit_ok;
     }
     if (common.quiet) return exit_ok;
@@ -96,7 +97,7 @@ int check_command(const std::string& file, const Common& common)
         scenario.model.loads().size(), assembly.degrees_of_freedom, start_of(scenario.time),
         end_of(scenario.time), division_of(scenario), bytes_in_words(memory_needed(scenario).most()),
         std::holds_alternative<Span>(scenario.time) ? ", and what the elements take that are found" : "");
-    text += coordinates_of(scenario, assembly);
+    text += coordinates_of(model, assembly);
     for (const std::string& note : assembly.notes) text += "  note: " + plain(note) + "\n";
     print(text);
     return exit_ok;

@@ -157,7 +157,7 @@ std::string text_of(const Found& found, const std::string& file)
 int equilibrium_command(const std::string& file, const Common& common)
 {
     std::vector<Diagnostic> warnings;
-    const Scenario scenario = load_scenario(file, common, &warnings);
+    const Scenario scenario = as_it_starts(load_scenario(file, common, &warnings));
     const InterruptWatch watch;
     const Equilibrium at = equilibrium_of(scenario);
     const int signal = InterruptWatch::signal();

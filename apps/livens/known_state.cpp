@@ -3,6 +3,13 @@
 
 namespace livens::program {
 
+Scenario as_it_starts(Scenario scenario)
+{
+    if (scenario.model.has_events())
+        scenario.model = acting_at(scenario.model, start_of(scenario.time)).model;
+    return scenario;
+}
+
 KnownState known_state(const Scenario& scenario)
 {
     const Conditions& b = scenario.conditions;

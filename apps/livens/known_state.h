@@ -11,6 +11,9 @@ struct KnownState {
     StartPolicy initial;           ///< how exactly it is meant
 };
 
+/// With the joints alone that act at the start of time.
+Scenario as_it_starts(Scenario scenario);
+
 /// At the start, else at the end; where positions are guesses everywhere, those at the start.
 KnownState known_state(const Scenario& scenario);
 

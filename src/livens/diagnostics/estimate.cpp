@@ -68,7 +68,10 @@ void ErrorMeter::compare(const Motion& finer, int first, int last)
         const int there = element_end_at(finer.mesh, motion_.mesh.ends[end]);
         if (there < 0) continue;
         compare_states(end, motion_.at_end(end), finer.at_end(there));
-        if (estimate_.n_joints > 0 && !finer.end_multipliers.empty()) compare_reactions(end, finer);
+        if (estimate_.n_joints == 0 || finer.end_multipliers.empty()) continue;
+        // where a piece begins or ends, the other side is that of another one
+        const bool begins = end == first && first > 0, ends = end == last && last < motion_.n_elements();
+        compare_reactions(end, finer, begins ? Side::right : ends ? Side::left : Side::middle);
     }
     estimate_.find_largest(motion_.mesh);
 }
@@ -84,14 +87,19 @@ void ErrorMeter::compare_states(int end, const State& a, const State& b)
     }
 }
 
-void ErrorMeter::compare_reactions(int end, const Motion& finer)
+void ErrorMeter::compare_reactions(int end, const Motion& finer, Side side)
 {
     const double t = motion_.mesh.ends[end];
-    const std::vector<JointSample> a = sample_joints(model_, motion_, t), b = sample_joints(model_, finer, t);
+    std::vector<JointSample> a = sample_joints(model_, motion_, t), b = sample_joints(model_, finer, t);
     for (std::size_t j = 0; j < a.size(); ++j) {
         if (!a[j].is_bounded || !b[j].is_bounded) continue;   // no number stands for it
-        estimate_.reaction[static_cast<std::size_t>(end * estimate_.n_joints) + j] =
-            factor_ * gap_between(a[j], b[j], estimate_.length);
+        for (JointSample* one : {&a[j], &b[j]}) {
+            if (side == Side::left) one->right = one->left;
+            if (side == Side::right) one->left = one->right;
+        }
+        double& error = estimate_.reaction[static_cast<std::size_t>(end * estimate_.n_joints) + j];
+        const double gap = factor_ * gap_between(a[j], b[j], estimate_.length);
+        error = side != Side::middle && error > gap ? error : gap;
         raise_to(estimate_.largest_reaction, size_of(a[j], estimate_.length));
     }
 }

@@ -79,7 +79,7 @@ public:
 private:
     void reach(int end);
     void compare_states(int end, const State& a, const State& b);
-    void compare_reactions(int end, const Motion& finer);
+    void compare_reactions(int end, const Motion& finer, Side side);
 
     const Model& model_;
     const Motion& motion_;

@@ -12,6 +12,7 @@
 #include "livens/base/text.h"
 #include "livens/diagnostics/diagnostics.h"
 #include "livens/multibody/body.h"
+#include "livens/multibody/rank.h"
 #include "livens/multibody/reactions.h"
 #include "livens/multibody/rows.h"
 
@@ -152,6 +153,74 @@ std::vector<double> numbers_of(std::span<const double> left, std::span<const dou
     return numbers;
 }
 
+/// Of multipliers on both sides of an instant; rows that are not independent make reactions that are not
+/// unique.
+std::vector<JointSample> reactions_of(const Model& model, const State& state, std::span<const double> left,
+                                      std::span<const double> right, std::span<const int> independent)
+{
+    std::optional<Model> frozen_now;
+    if (model.has_drives()) frozen_now = frozen(model, {state.t});
+    const Model& now = frozen_now ? *frozen_now : model;
+    const std::vector<bool> is_bounded = bounded_joints(model, left, right);
+    std::vector<double> both = numbers_of(left, right);
+    std::vector<bool> is_unique(model.joints().size(), true);
+    if (static_cast<int>(independent.size()) < model.n_rows()) {
+        UniqueReactions least = least_reactions(now, state.X, both, independent);
+        both = std::move(least.multipliers);
+        is_unique = std::move(least.joint_is_unique);
+    }
+    const std::span<const double> before(both.data(), left.size()), after(&both[left.size()], right.size());
+    const bool jumps = !std::ranges::equal(before, after);
+    std::vector<JointSample> samples;
+    samples.reserve(model.joints().size());
+    for (int j = 0; j < static_cast<int>(model.joints().size()); ++j) {
+        JointSample& sample = samples.emplace_back();
+        sample.is_unique = is_unique[j];
+        sample.is_bounded = is_bounded[j];
+        sample.left = sample.right = unknown;
+        if (!sample.is_bounded) continue;
+        sample.left = joint_reaction(now, j, state.X, before);
+        sample.right = jumps ? joint_reaction(now, j, state.X, after) : sample.left;
+    }
+    return samples;
+}
+
+/// Those that nobody dropped.
+std::vector<int> kept_rows(const Model& model, const Motion& motion)
+{
+    std::vector<int> independent = all_rows(model);
+    std::erase_if(independent, [&](int row) {
+        return std::ranges::find(motion.redundant_rows, row) != motion.redundant_rows.end();
+    });
+    return independent;
+}
+
+/// The same of the joints alone that act around `beside`; others do nothing.
+std::vector<JointSample> reactions_beside(const Model& model, const Motion& motion, const State& state,
+                                          std::span<const double> multipliers, double beside)
+{
+    const ActingModel acting = acting_at(model, beside);
+    std::vector<double> lambda;
+    for (const int row : acting.rows) lambda.push_back(multipliers[row]);
+    std::vector<int> independent = all_rows(acting.model);
+    if (!motion.redundant_rows.empty())
+        independent = row_rank(frozen(acting.model, {state.t}), state.X, independent).independent;
+    const std::vector<JointSample> found = reactions_of(acting.model, state, lambda, lambda, independent);
+    JointSample nothing;
+    nothing.is_unique = nothing.is_bounded = true;
+    std::vector<JointSample> samples(model.joints().size(), nothing);
+    for (std::size_t i = 0; i < found.size(); ++i) samples[acting.joints[i]] = found[i];
+    return samples;
+}
+
+/// Inside the element before or after an element end, or around another instant.
+double beside(const Motion& motion, double t, int end, Side side)
+{
+    if (end < 0) return t;
+    const int element = std::clamp(side == Side::left ? end - 1 : end, 0, motion.n_elements() - 1);
+    return motion.mesh.ends[element] + 0.5 * motion.mesh.length(element);
+}
+
 }   // namespace
 
 std::vector<JointSample> sample_joints(const Model& model, const Motion& motion, double t)
@@ -172,35 +241,20 @@ std::vector<JointSample> sample_joints(const Model& model, const Motion& motion,
         interpolated = field_at(motion.multipliers, motion.mesh, state.t);
         left = right = interpolated;
     }
-    std::optional<Model> frozen_now;
-    if (model.has_drives()) frozen_now = frozen(model, {state.t});
-    const Model& now = frozen_now ? *frozen_now : model;
-    const std::vector<bool> is_bounded = bounded_joints(model, left, right);
-    std::vector<double> both = numbers_of(left, right);
-    std::vector<bool> is_unique(model.joints().size(), true);
-    if (!motion.redundant_rows.empty()) {
-        std::vector<int> independent = all_rows(model);
-        std::erase_if(independent, [&](int row) {
-            return std::ranges::find(motion.redundant_rows, row) != motion.redundant_rows.end();
-        });
-        UniqueReactions least = least_reactions(now, state.X, both, independent);
-        both = std::move(least.multipliers);
-        is_unique = std::move(least.joint_is_unique);
-    }
-    const std::span<const double> before(both.data(), left.size()), after(&both[left.size()], right.size());
-    const bool jumps = !std::ranges::equal(before, after);
     std::vector<JointSample> samples;
-    samples.reserve(model.joints().size());
-    for (int j = 0; j < static_cast<int>(model.joints().size()); ++j) {
-        JointSample& sample = samples.emplace_back();
-        sample.is_acceleration_level = is_acceleration_level;
-        sample.is_unique = is_unique[j];
-        sample.is_bounded = is_bounded[j];
-        sample.left = sample.right = unknown;
-        if (!sample.is_bounded) continue;
-        sample.left = joint_reaction(now, j, state.X, before);
-        sample.right = jumps ? joint_reaction(now, j, state.X, after) : sample.left;
+    if (!model.has_events())
+        samples = reactions_of(model, state, left, right, kept_rows(model, motion));
+    else {
+        samples = reactions_beside(model, motion, state, left, beside(motion, state.t, end, Side::left));
+        const std::vector<JointSample> after =
+            reactions_beside(model, motion, state, right, beside(motion, state.t, end, Side::right));
+        for (std::size_t j = 0; j < samples.size(); ++j) {
+            samples[j].right = after[j].right;
+            samples[j].is_unique = samples[j].is_unique && after[j].is_unique;
+            samples[j].is_bounded = samples[j].is_bounded && after[j].is_bounded;
+        }
     }
+    for (JointSample& sample : samples) sample.is_acceleration_level = is_acceleration_level;
     return samples;
 }
 

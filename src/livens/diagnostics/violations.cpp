@@ -61,12 +61,19 @@ double velocity_violation(const Tables& tables, int row, double t, std::span<con
     return std::abs(rate) / table.row->scale;
 }
 
-/// Largest |Phi| / scale of all rows.
+/// Also at the ends of its time.
+bool is_held(const Tables& tables, int row, double t)
+{
+    const Joint& joint = tables.model->joints()[tables.model->row_joint(row)];
+    return joint.from <= t && t <= joint.until;
+}
+
+/// Largest |Phi| / scale of all rows that are held.
 double worst_joint(const Tables& tables, double t, std::span<const Matrix34> X, int& row)
 {
     double largest = 0;
     for (int r = 0; r < tables.n_rows(); ++r)
-        if (raise_to(largest, std::abs(joint_violation(tables, r, t, X)))) row = r;
+        if (is_held(tables, r, t) && raise_to(largest, std::abs(joint_violation(tables, r, t, X)))) row = r;
     return largest;
 }
 
@@ -115,7 +122,8 @@ void at_velocity_level(const Tables& tables, const Motion& motion, std::span<Mat
         positions_at_end(motion, end, X);
         const std::span<const Matrix34> V = velocities_at_end(motion, end);
         for (int r = 0; r < tables.n_rows(); ++r)
-            raise_to(report.velocity_level, velocity_violation(tables, r, motion.mesh.ends[end], X, V));
+            if (is_held(tables, r, motion.mesh.ends[end]))
+                raise_to(report.velocity_level, velocity_violation(tables, r, motion.mesh.ends[end], X, V));
     }
 }
 
@@ -148,6 +156,7 @@ void as_integrals(const Tables& tables, const Motion& motion, std::span<Matrix34
             sampler.positions(e, k, X);
             const double t = sampler.instant(e, k).t;
             for (std::size_t r = 0; r < n_rows; ++r) {
+                if (!is_held(tables, static_cast<int>(r), t)) continue;
                 joints[r] += rule.weights[k] * joint_violation(tables, static_cast<int>(r), t, X);
             }
             for (std::size_t b = 0; b < X.size(); ++b) {

@@ -2,6 +2,7 @@
 // Joints: names for sets of constraint rows.
 #pragma once
 
+#include <limits>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -41,6 +42,11 @@ struct Joint {
     /// Functions that must be positive at assembly, where rows alone would admit another branch.
     std::vector<ConstraintRow> branches{};
     std::vector<NamedCoordinate> coordinates{};
+    /// It acts from one instant until another (s), which are events of the motion.
+    double from = -std::numeric_limits<double>::infinity();
+    double until = std::numeric_limits<double>::infinity();
+
+    bool acts_at(double t) const { return from <= t && t < until; }
 };
 
 /// Where a joint sits, in coordinates of each body. For the world they are world coordinates.

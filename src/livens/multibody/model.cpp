@@ -3,6 +3,8 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "livens/base/error.h"
 #include "livens/multibody/detail/directors.h"
@@ -221,7 +223,11 @@ int Model::add_joint(Joint joint)
     for (const auto* rows : {&joint.rows, &joint.branches})
         for (const ConstraintRow& row : *rows) check_row(row, joint, bodies_, path);
 
+    if (!(joint.from < joint.until))
+        refuse("joint-time", path, "a joint must begin to act before it ends", "exchange 'from' and 'until'");
+
     const int index = static_cast<int>(joints_.size());
+    has_events_ = has_events_ || std::isfinite(joint.from) || std::isfinite(joint.until);
     first_rows_.push_back(n_rows());
     for (int k = 0; k < static_cast<int>(joint.rows.size()); ++k) rows_.push_back({index, k});
     for (const ConstraintRow& row : joint.rows) has_drives_ = has_drives_ || !row.drives.empty();
@@ -287,9 +293,30 @@ State Model::start() const
     return state;
 }
 
-std::vector<double> Model::load_breaks() const
+namespace {
+
+std::vector<double> ascending(std::vector<double> all)
+{
+    std::ranges::sort(all);
+    const auto repeated = std::unique(all.begin(), all.end());
+    all.erase(repeated, all.end());
+    return all;
+}
+
+}   // namespace
+
+std::vector<double> Model::events() const
 {
     std::vector<double> all;
+    for (const Joint& joint : joints_)
+        for (const double t : {joint.from, joint.until})
+            if (std::isfinite(t)) all.push_back(t);
+    return ascending(std::move(all));
+}
+
+std::vector<double> Model::load_breaks() const
+{
+    std::vector<double> all = events();
     const auto add = [&all](const std::vector<double>& more) {
         all.insert(all.end(), more.begin(), more.end());
     };
@@ -297,10 +324,7 @@ std::vector<double> Model::load_breaks() const
     for (const Joint& joint : joints_)
         for (const ConstraintRow& row : joint.rows)
             for (const Drive& drive : row.drives) add(drive.factor.breaks());
-    std::ranges::sort(all);
-    const auto repeated = std::unique(all.begin(), all.end());
-    all.erase(repeated, all.end());
-    return all;
+    return ascending(std::move(all));
 }
 
 double Model::length() const
@@ -333,6 +357,25 @@ Model frozen(const Model& model, Instant at)
         for (auto* rows : {&joint.rows, &joint.branches})
             for (ConstraintRow& row : *rows) row = frozen(row, at);
     return now;
+}
+
+ActingModel acting_at(const Model& model, double t)
+{
+    ActingModel acting{Model(model.gravity()), {}, {}};
+    for (const Body& body : model.bodies()) acting.model.add_body(body);
+    for (int j = 0; j < static_cast<int>(model.joints().size()); ++j) {
+        Joint joint = model.joints()[j];
+        if (!joint.acts_at(t)) continue;
+        for (int k = 0; k < static_cast<int>(joint.rows.size()); ++k)
+            acting.rows.push_back(model.first_row(j) + k);
+        joint.from = -std::numeric_limits<double>::infinity();
+        joint.until = std::numeric_limits<double>::infinity();
+        acting.joints.push_back(j);
+        acting.model.add_joint(std::move(joint));
+    }
+    for (const Load& load : model.loads()) acting.model.add_load(load);
+    for (const Sensor& sensor : model.sensors()) acting.model.add_sensor(sensor);
+    return acting;
 }
 
 Matrix34 weight(const Body& body, const Vector3& gravity) { return outer(gravity, body.mass.column(0)); }

@@ -63,7 +63,12 @@ public:
     State start() const;
     /// Whether rows depend on time.
     bool has_drives() const { return has_drives_; }
-    /// All instants where a load jumps or bends, or a drive bends, ascending, without repetition.
+    /// Whether joints act for a part of the time; these are what solve() divides it by, see acting_at().
+    bool has_events() const { return has_events_; }
+    /// When joints begin or end to act, ascending, without repetition.
+    std::vector<double> events() const;
+    /// All instants where a load jumps or bends, a drive bends, or a joint begins or ends to act, ascending,
+    /// without repetition.
     std::vector<double> load_breaks() const;
     /// A length typical of the model (m), at the start: the largest of the bodies' radii of gyration, twice
     /// the distances of their centres of mass from the mean of these, the arms from centres of mass to joint
@@ -85,12 +90,20 @@ private:
     std::vector<RowPlace> rows_;
     std::vector<int> first_rows_;
     bool has_drives_ = false;
+    bool has_events_ = false;
 
     friend Model frozen(const Model& model, Instant at);
 };
 
 /// The model with all rows as they are at an instant, without drives: for what is asked of positions alone.
 Model frozen(const Model& model, Instant at);
+
+/// A model with the joints alone that act at an instant, and where they and their rows are in the whole one.
+struct ActingModel {
+    Model model;
+    std::vector<int> joints, rows;
+};
+ActingModel acting_at(const Model& model, double t);
 
 /// Weight of a body: F = g (m e_0)^T.
 Matrix34 weight(const Body& body, const Vector3& gravity);

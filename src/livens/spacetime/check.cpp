@@ -8,6 +8,7 @@
 #include "livens/spacetime/lobatto/rule.h"
 #include "livens/spacetime/mixed/bases.h"
 #include "livens/spacetime/mixed/window.h"
+#include "livens/spacetime/phases.h"
 #include "livens/spacetime/solve.h"
 
 namespace livens {
@@ -150,6 +151,7 @@ void check_method(const Model& model, const Problem& problem, const Time& time, 
         throw InputError({"no-bodies", "body", "a model needs at least one body", "", "", "", "add a body"});
     refuse_special_rows(model, method);
     check_conditions(model, problem.conditions, method);
+    check_events(model, problem, time, method);
     const auto* mesh = std::get_if<TimeMesh>(&time);
     if (mesh != nullptr && mesh->n_elements() < 1)
         throw InputError(

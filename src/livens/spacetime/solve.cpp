@@ -14,6 +14,7 @@
 #include "livens/spacetime/guess.h"
 #include "livens/spacetime/lobatto/window.h"
 #include "livens/spacetime/mixed/window.h"
+#include "livens/spacetime/phases.h"
 #include "livens/spacetime/windows.h"
 #include "livens/stepping/stepping.h"
 
@@ -226,18 +227,29 @@ void lower_orders(const Model& model, Motion& motion)
     }
 }
 
+Solution solve_phase(const Model& model, const Problem& problem, const Time& time, const Method& method,
+                     const SolveOptions& options)
+{
+    const auto* mesh = std::get_if<TimeMesh>(&time);
+    if (mesh == nullptr) return solve_to_accuracy(model, problem, std::get<Span>(time), method, options);
+    return is_elements(method) ? solve_by_windows(model, problem, *mesh, method, options)
+                               : solve_by_steps(model, problem, *mesh, method, options);
+}
+
+Solution solve_all_time(const Model& model, const Problem& problem, const Time& time, const Method& method,
+                        const SolveOptions& options)
+{
+    return model.has_events() ? solve_by_phases(model, problem, time, method, options, solve_phase)
+                              : solve_phase(model, problem, time, method, options);
+}
+
 }   // namespace
 
 Solution solve(const Model& model, const Problem& problem, const Time& time, const Method& method,
                const SolveOptions& options)
 {
     check_method(model, problem, time, method, options);
-    const auto* mesh = std::get_if<TimeMesh>(&time);
-    Solution solution =
-        mesh == nullptr
-            ? solve_to_accuracy(model, problem, std::get<Span>(time), method, options)
-        : is_elements(method) ? solve_by_windows(model, problem, *mesh, method, options)
-                              : solve_by_steps(model, problem, *mesh, method, options);
+    Solution solution = solve_all_time(model, problem, time, method, options);
     lower_orders(model, solution.motion);
     if (!options.judge) return solution;
     estimate(model, problem, method, options, solution);
@@ -280,8 +292,8 @@ ExactSample sample_exactly(const Model& model, const Motion& motion, const Metho
     Problem problem{{motion.at_end(element)}};
     problem.conditions.start.angles = LoadTurns(model, motion).at_end(element);   // files do not hold them
     const TimeMesh one{{motion.mesh.ends[element], t}};
-    Solution s = is_elements(method) ? solve_by_windows(model, problem, one, method, quiet)
-                                     : solve_by_steps(model, problem, one, method, quiet);
+    quiet.judge = false;
+    Solution s = solve_all_time(model, problem, one, method, quiet);
     const double there = s.motion.end();   // t, if it converged
     return {sample_state(s.motion, there), sample_joints(model, s.motion, there), std::move(s.report)};
 }

@@ -134,8 +134,10 @@ void check_ends(Builder& builder, const Conditions& boundary, StartPolicy policy
         if (given == Known::nothing) return;
         if (given == Known::positions)
             for (Matrix34& V : state.V) V = {};   // a guess, which need not fit
-        const ClosedStart closed = close_start(builder.model(), state, policy);
-        if (given == Known::state) refuse_singular_start(builder.model(), closed);
+        const Model model =
+            builder.model().has_events() ? acting_at(builder.model(), state.t).model : builder.model();
+        const ClosedStart closed = close_start(model, state, policy);
+        if (given == Known::state) refuse_singular_start(model, closed);
     };
     builder.guard("start", [&] { close(boundary.start, boundary.at_start); });
     builder.guard("end", [&] {

@@ -14,6 +14,7 @@ struct Spelling {
 constexpr Spelling spellings[] = {
     {"boundary-conditions", "the state at one end", R"(given = "state")"},
     {"boundary-method", "lobatto or mixed", R"(family = "lobatto" in [method])"},
+    {"joint-time-mesh", "elements end there", R"(breaks = "from_loads" in [time])"},
     {"mixed-block", "all elements together", R"(leave `window` out)"},
     {"mixed-pairing", "equal multipliers", R"(multipliers = "equal")"},
     {"mixed-pairing", "natural start", R"(momentum = "natural")"},

@@ -90,6 +90,9 @@ std::string default_name(const Section& section);
 bool claim_name(const Section& section, const std::string& kind, const std::string& name,
                 std::unordered_set<std::string>& taken, const Advice& advice);
 
+/// `from` and `until` of a joint or drive, as far as they are inside the time.
+void read_times(const Builder& builder, const Section& section, Joint& joint);
+
 /// `coordinate`: which of a joint's, for drives and loads.
 Key coordinate_key();
 /// What `joint` and `coordinate` of a section refer to; valid until a joint is added.

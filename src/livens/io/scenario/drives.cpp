@@ -2,6 +2,7 @@
 // [[drive]]: one table of kinds, and of laws over time.
 #include <algorithm>
 #include <array>
+#include <limits>
 
 #include "livens/base/text.h"
 #include "livens/io/scenario/builder.h"
@@ -115,6 +116,7 @@ std::string drive_name(const Section& drive)
 /// Of the motion, s.
 struct Duration {
     double start, end;
+    double begins;   ///< the drive, at the start or later
 };
 
 /// With its kinks as breaks, so that the model refuses what a drive cannot follow.
@@ -129,7 +131,7 @@ TimeFunction by_formula(const Expression& expression, const Duration& during)
 TimeFunction read_law(const Section& drive, std::size_t c, std::size_t n, double now, const Duration& during)
 {
     if (drive.has("value")) return component(drive, "value", c);
-    if (drive.has("rate")) return ramp(now, component(drive, "rate", c), during.start);
+    if (drive.has("rate")) return ramp(now, component(drive, "rate", c), during.begins);
     if (const Section* one = only_section(drive, "harmonic"))
         return harmonic(component(*one, "amplitude", c), one->number("frequency"), one->number("phase"));
     if (drive.has("expression"))
@@ -168,7 +170,8 @@ Joint make_drive(Builder& builder, const Section& drive, const std::string& name
 {
     const Section* time = only_section(builder.top(), "time");
     const double start = time == nullptr ? 0 : time->number("start");
-    const Duration during{start, time == nullptr ? start : time->number("end")};
+    const Duration during{start, time == nullptr ? start : time->number("end"),
+                          std::max(start, drive.has("from") ? drive.number("from") : start)};
     std::vector<Matrix34> all;
     for (const Body& body : builder.model().bodies()) all.push_back(body.X);
     const Configurations X(all);
@@ -218,10 +221,31 @@ void read_drive(Builder& builder, const Section& drive, std::unordered_set<std::
             drive.error("body", "drive-self", drive.label() + " drives the world, which does not move");
     }
     if (findings.n_errors() > before || !drive.is_valid()) return;
-    builder.guard(path, [&] { builder.model().add_joint(make_drive(builder, drive, name, first, second)); });
+    builder.guard(path, [&] {
+        Joint joint = make_drive(builder, drive, name, first, second);
+        read_times(builder, drive, joint);
+        builder.model().add_joint(std::move(joint));
+    });
 }
 
 }   // namespace
+
+void read_times(const Builder& builder, const Section& section, Joint& joint)
+{
+    const Section* time = only_section(builder.top(), "time");
+    if (section.has("from")) joint.from = section.number("from");
+    if (section.has("until")) joint.until = section.number("until");
+    if (time == nullptr) return;
+    const double start = time->number("start"), end = time->number("end");
+    const bool is_over = joint.until <= start;
+    if (is_over || joint.from >= end)
+        throw InputError({"joint-time", "joint[" + joint.name + "]." + (is_over ? "until" : "from"),
+                          "'" + joint.name + "' never acts",
+                          to_text(is_over ? joint.until : joint.from) + " s",
+                          to_text(start) + " s to " + to_text(end) + " s", "", "leave it out"});
+    if (joint.from <= start) joint.from = -std::numeric_limits<double>::infinity();
+    if (joint.until >= end) joint.until = std::numeric_limits<double>::infinity();
+}
 
 Table drive_table()
 {
@@ -252,9 +276,17 @@ Table drive_table()
         "reaction, on the second body; its power is in the balance of energy. Velocities of the bodies at "
         "the start must fit, or `[start]` says `initial = \"project\"`.",
         {Key{"name", types::text, "Results refer to drives as to joints. Default: `drive of` joint or body."},
-         Key{"type", types::choice, ""}.needed(), Key{"value", numbers, "Constant."},
-         Key{"rate", numbers, "Constant rate, from what the coordinate is at the start; rad/s or m/s."}, wave,
-         step,
+         Key{"type", types::choice, ""}.needed(),
+         Key{"from", types::number,
+             "When it begins to act; the motion has to meet it then, in position and rate. Default: the "
+             "start.",
+             "s"},
+         Key{"until", types::number, "When it lets go: velocities go on. Default: never.", "s"},
+         Key{"value", numbers, "Constant."},
+         Key{"rate", numbers,
+             "Constant rate, from what the coordinate is at the start of the motion, beginning with the "
+             "drive; rad/s or m/s."},
+         wave, step,
          Key{"expression", types::text_or_list,
              "A formula of t, in rad or m: `0.1*sin(2*pi*t)`; without kinks."},
          Key{"polynomial", types::list, "Coefficients of 1, t, t^2, ..; of a path x, y, z of each."}, table}}

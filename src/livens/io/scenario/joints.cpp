@@ -191,6 +191,7 @@ Joint make_joint(Builder& builder, const Section& joint, const std::string& name
             {joint, name, first, second, at, X_first, X_second, builder.length()});
     };
     Joint made = is_fitted(builder.top()) ? fitted(builder, joint, make, frame) : make(frame);
+    read_times(builder, joint, made);
     if (joint.has("coordinate")) made.coordinates.front().at_stated = joint.number("coordinate");
     return made;
 }
@@ -225,18 +226,19 @@ void read_coupling(Builder& builder, const Section& section, const std::string& 
     std::vector<Matrix34> X;
     for (const Body& body : builder.model().bodies()) X.push_back(body.X);
     builder.guard(path, [&] {
-        builder.model().add_joint(
-            joint_kinds()[static_cast<std::size_t>(section.kind())].make({section,
-                                                                          name,
-                                                                          world,
-                                                                          world,
-                                                                          {},
-                                                                          world_configuration,
-                                                                          world_configuration,
-                                                                          builder.length(),
-                                                                          first,
-                                                                          second,
-                                                                          X}));
+        Joint joint = joint_kinds()[static_cast<std::size_t>(section.kind())].make({section,
+                                                                                    name,
+                                                                                    world,
+                                                                                    world,
+                                                                                    {},
+                                                                                    world_configuration,
+                                                                                    world_configuration,
+                                                                                    builder.length(),
+                                                                                    first,
+                                                                                    second,
+                                                                                    X});
+        read_times(builder, section, joint);
+        builder.model().add_joint(std::move(joint));
     });
 }
 
@@ -346,7 +348,11 @@ Table joint_table()
         "counted.",
         {Key{"name", types::text,
              "Default: type and bodies, as in `rod world-upper`, where no other joint is called that."},
-         Key{"type", types::choice, ""}.needed()}}
+         Key{"type", types::choice, ""}.needed(),
+         Key{"until", types::number,
+             "When it lets go: velocities go on, the reaction ends. Default: it never does. For lobatto and "
+             "radau.",
+             "s"}}}
         .with_kinds("type", std::move(all));
 }
 

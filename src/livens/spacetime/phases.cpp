@@ -1,0 +1,340 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "livens/spacetime/phases.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "livens/base/error.h"
+#include "livens/base/text.h"
+#include "livens/diagnostics/largest.h"
+#include "livens/diagnostics/sample.h"
+
+namespace livens {
+
+namespace {
+
+constexpr double meets = 1e-6;                      // lengths, rad, and of speeds
+constexpr double near_end = 1e-9;                   // of the whole time, see make_time_mesh()
+constexpr double first_share = 0.3, target = 0.3;   // of the accuracy
+constexpr int most_tries = 4;
+
+std::vector<double> events_inside(const Model& model, double start, double end)
+{
+    const double gap = near_end * (end - start);
+    std::vector<double> inside;
+    for (const double t : model.events())
+        if (t > start + gap && t < end - gap) inside.push_back(t);
+    return inside;
+}
+
+/// Start, end, and what is between them where joints begin or end to act; of a mesh its element ends.
+std::vector<double> phase_ends(const Model& model, const Time& time)
+{
+    const double start = start_of(time), end = end_of(time);
+    std::vector<double> ends{start};
+    for (const double t : events_inside(model, start, end)) {
+        double at = t;
+        if (const auto* mesh = std::get_if<TimeMesh>(&time))
+            at = *std::ranges::min_element(mesh->ends, {}, [t](double e) { return std::abs(e - t); });
+        if (at > ends.back() && at < end) ends.push_back(at);
+    }
+    ends.push_back(end);
+    return ends;
+}
+
+Time part_of(const Time& time, double first, double last, double accuracy)
+{
+    const auto inside = [&](const std::vector<double>& all) {
+        std::vector<double> some;
+        for (const double t : all)
+            if (t >= first && t <= last) some.push_back(t);
+        return some;
+    };
+    if (const auto* mesh = std::get_if<TimeMesh>(&time))
+        return TimeMesh{inside(mesh->ends), inside(mesh->required)};
+    return Span{first, last, accuracy, inside(std::get<Span>(time).output)};
+}
+
+/// From rows of an acting model to all.
+void spread(std::vector<double>& values, const std::vector<int>& rows, int n_rows)
+{
+    if (values.empty() && rows.size() > 0) return;
+    const std::size_t n_sets = rows.empty() ? 0 : values.size() / rows.size();
+    std::vector<double> all(n_sets * static_cast<std::size_t>(n_rows), 0.0);
+    for (std::size_t set = 0; set < n_sets; ++set)
+        for (std::size_t k = 0; k < rows.size(); ++k)
+            all[set * static_cast<std::size_t>(n_rows) + static_cast<std::size_t>(rows[k])] =
+                values[set * rows.size() + k];
+    values = std::move(all);
+}
+
+/// The motion with the multipliers of the whole model's rows.
+void widen(Motion& motion, const Model& model, const ActingModel& acting)
+{
+    const std::size_t n_elements = static_cast<std::size_t>(motion.n_elements());
+    motion.n_rows = model.n_rows();
+    spread(motion.multipliers.values, acting.rows, model.n_rows());
+    spread(motion.end_multipliers, acting.rows, model.n_rows());
+    if (acting.rows.empty()) {   // no row acts: the arrays were empty
+        const auto n = static_cast<std::size_t>(model.n_rows());
+        motion.multipliers.values.assign(
+            n_elements * static_cast<std::size_t>(motion.multipliers.degree + 1) * n, 0.0);
+        motion.end_multipliers.assign(2 * (n_elements + 1) * n, 0.0);
+    }
+    motion.multipliers.n_values = model.n_rows();
+    for (int& row : motion.redundant_rows) row = acting.rows[row];
+}
+
+template <class T>
+void append(std::vector<T>& to, const std::vector<T>& more, std::size_t from)
+{
+    to.insert(to.end(), more.begin() + static_cast<std::ptrdiff_t>(from), more.end());
+}
+
+/// One motion after the other, which begins where it ended. Where they meet the state is that of the first,
+/// and each has its side of what has two.
+void join(Motion& whole, Motion&& next)
+{
+    if (whole.mesh.ends.empty()) {
+        whole = std::move(next);
+        return;
+    }
+    const auto bodies = static_cast<std::size_t>(whole.n_bodies),
+               rows = static_cast<std::size_t>(whole.n_rows);
+    append(whole.mesh.ends, next.mesh.ends, 1);
+    append(whole.mesh.required, next.mesh.required, 0);
+    append(whole.X.values, next.X.values, static_cast<std::size_t>(whole.X.n_values));
+    append(whole.multipliers.values, next.multipliers.values, 0);
+    append(whole.velocities, next.velocities, bodies);
+    append(whole.momenta, next.momenta, bodies);
+    if (!whole.accelerations.empty()) {
+        whole.accelerations.resize(whole.accelerations.size() - bodies);
+        append(whole.accelerations, next.accelerations, bodies);
+    }
+    if (!whole.end_multipliers.empty()) {
+        whole.end_multipliers.resize(whole.end_multipliers.size() - rows);
+        append(whole.end_multipliers, next.end_multipliers, rows);
+    }
+    const std::size_t ends = next.mesh.ends.size();
+    append(whole.load_angles, next.load_angles, next.load_angles.size() / ends);
+    for (const int row : next.redundant_rows)
+        if (std::ranges::find(whole.redundant_rows, row) == whole.redundant_rows.end())
+            whole.redundant_rows.push_back(row);
+    std::ranges::sort(whole.redundant_rows);
+}
+
+/// Counts add up, the rest is of the worse or the later.
+void join(SolveReport& whole, SolveReport&& next)
+{
+    next.n_elements += whole.n_elements;
+    next.unknowns = std::max(next.unknowns, whole.unknowns);
+    next.newton_iterations += whole.newton_iterations;
+    next.most_iterations = std::max(next.most_iterations, whole.most_iterations);
+    next.factorisations += whole.factorisations;
+    next.guess_factorisations += whole.guess_factorisations;
+    next.rescued += whole.rescued;
+    if (whole.divided > 0) next.divided_at = whole.divided_at;
+    next.divided += whole.divided;
+    if (whole.shifted > 0) next.shifted_at = whole.shifted_at;
+    next.shifted += whole.shifted;
+    next.refused += whole.refused;
+    next.tries = std::max(next.tries, whole.tries);
+    next.evaluations += whole.evaluations;
+    next.evaluations_in_all += whole.evaluations_in_all;
+    next.residual_norm = std::max(next.residual_norm, whole.residual_norm);
+    next.smallest_pivot = std::min(next.smallest_pivot, whole.smallest_pivot);
+    next.iterations.insert(next.iterations.begin(), whole.iterations.begin(), whole.iterations.end());
+    std::vector<std::string> notes = std::move(whole.notes);
+    for (std::string& note : next.notes)
+        if (std::ranges::find(notes, note) == notes.end()) notes.push_back(std::move(note));
+    next.notes = std::move(notes);
+    if (next.estimate_failed.empty()) next.estimate_failed = std::move(whole.estimate_failed);
+    next.condition_1 = std::max(next.condition_1, whole.condition_1);
+    next.condition_2 = std::max(next.condition_2, whole.condition_2);
+    next.scaled_condition = std::max(next.scaled_condition, whole.scaled_condition);
+    next.factor_entries = std::max(next.factor_entries, whole.factor_entries);
+    if (whole.guess_distance > next.guess_distance) {
+        next.guess_distance = whole.guess_distance;
+        next.guess_distance_time = whole.guess_distance_time;
+    }
+    whole = std::move(next);
+}
+
+/// How far the joints of a phase find the bodies from where they will hold them: what closing moves, in
+/// lengths and rad, and of velocities as a part of the fastest.
+double miss(const Model& model, const State& state)
+{
+    const ClosedStart closed = close_start(model, state, StartPolicy::project);
+    double far = 0, fastest = 0, slower = 0;
+    for (std::size_t b = 0; b < state.X.size(); ++b) {
+        const auto rate = [&](const Matrix34& V) {
+            return std::max(norm(V.column(0)) / model.length(), norm(directors(V)));
+        };
+        const Matrix34 dX = closed.start.X[b] - state.X[b];
+        raise_to(far, std::max(norm(dX.column(0)) / model.length(), norm(directors(dX))));
+        raise_to(fastest, std::max(rate(state.V[b]), rate(closed.start.V[b])));
+        raise_to(slower, rate(closed.start.V[b] - state.V[b]));
+    }
+    return std::max(far, fastest > 0 ? slower / fastest : 0);
+}
+
+std::string names_of(const Model& model, double t, double Joint::*when, double gap)
+{
+    std::string names;
+    for (const Joint& joint : model.joints())
+        if (std::abs(joint.*when - t) <= gap) names += (names.empty() ? "'" : ", '") + joint.name + "'";
+    return names;
+}
+
+class Chain {
+public:
+    Chain(const Model& model, const Problem& problem, const Time& time, const SolveOptions& options,
+          const SolvePhase& solve_phase)
+        : model_(model), problem_(problem), time_(time), options_(options), solve_phase_(solve_phase),
+          ends_(phase_ends(model, time)), gap_(near_end * (ends_.back() - ends_.front()))
+    {
+        options_.judge = false;
+    }
+
+    /// All phases, as far as they go.
+    Solution solve(Method method, double accuracy, double tolerance_of_meeting) const
+    {
+        Solution whole;
+        Problem problem = problem_;
+        SolveOptions options = options_;
+        for (std::size_t k = 0; k + 1 < ends_.size(); ++k) {
+            const double first = ends_[k], last = ends_[k + 1];
+            const ActingModel acting = acting_at(model_, 0.5 * (first + last));
+            if (k > 0 && !meet(acting.model, problem.conditions.start, tolerance_of_meeting, whole.report))
+                return whole;
+            Solution next =
+                solve_phase_(acting.model, problem, part_of(time_, first, last, accuracy), method, options);
+            method = next.method;   // what was open is chosen once
+            widen(next.motion, model_, acting);
+            whole.method = next.method;
+            whole.estimate_seconds += next.estimate_seconds;
+            join(whole.report, std::move(next.report));
+            join(whole.motion, std::move(next.motion));
+            if (!whole.report.converged()) return whole;
+            if (k + 2 == ends_.size()) break;
+            problem.conditions.start = whole.motion.at_end(whole.motion.n_elements());
+            options.initial = StartPolicy::project;   // an end state holds its joints to rounding
+        }
+        return whole;
+    }
+
+    /// What joints did when they let go, told once.
+    void tell(Solution& solution) const
+    {
+        for (std::size_t k = 1; k + 1 < ends_.size(); ++k) {
+            if (ends_[k] >= solution.motion.end()) return;
+            const std::vector<JointSample> at = sample_joints(model_, solution.motion, ends_[k]);
+            for (std::size_t j = 0; j < at.size(); ++j) {
+                const Joint& joint = model_.joints()[j];
+                if (!(std::abs(joint.until - ends_[k]) <= gap_)) continue;
+                solution.report.notes.push_back(
+                    "'" + joint.name + "' lets go at " + to_text(ends_[k], 6) + " s, where it holds with " +
+                    to_text(norm(at[j].left.force), 3) + " N and " + to_text(norm(at[j].left.torque), 3) +
+                    " N m; velocities, momenta and energy go on without a jump");
+            }
+        }
+    }
+
+private:
+    /// A joint that begins where bodies are elsewhere, or move otherwise, would be an impact.
+    bool meet(const Model& acting, State& state, double tolerance, SolveReport& report) const
+    {
+        const std::string names = names_of(model_, state.t, &Joint::from, gap_);
+        if (names.empty() || tolerance == 0) return true;
+        const double off = miss(acting, state);
+        if (off <= tolerance) return true;
+        report.status = SolveStatus::not_converged;
+        report.failed_at = state.t;
+        report.message = names + " begins to act at " + to_text(state.t, 6) +
+                         " s, where bodies are, or move, otherwise than it holds them (off by " +
+                         to_text(off, 2) + " in lengths, rad or of their speed, more than " +
+                         to_text(tolerance, 2) +
+                         "): livens knows no impacts; try: a law that meets position and rate there, or "
+                         "shorter elements if they are meant to meet";
+        return false;
+    }
+
+    const Model& model_;
+    const Problem& problem_;
+    const Time& time_;
+    SolveOptions options_;
+    const SolvePhase& solve_phase_;
+    std::vector<double> ends_;
+    double gap_;
+};
+
+/// Phases to a part of the accuracy, until the whole is within.
+Solution solve_to_accuracy_of_all(const Chain& chain, const Model& model, const Problem& problem,
+                                  const Span& span, const Method& method, const SolveOptions& options)
+{
+    double part = first_share * span.accuracy, seconds = 0;
+    long long evaluations = 0;
+    for (int tries = 1;; ++tries) {
+        Solution whole = chain.solve(method, part, options.judge ? std::max(meets, span.accuracy) : 0);
+        SolveReport& report = whole.report;
+        report.accuracy = span.accuracy;
+        report.evaluations_in_all += evaluations;
+        evaluations = report.evaluations_in_all;
+        whole.estimate_seconds = seconds += whole.estimate_seconds;
+        if (!report.converged()) return whole;
+        SolveOptions quiet = options;
+        quiet.growth = false;
+        estimate(model, problem, whole.method, quiet, whole);
+        seconds = whole.estimate_seconds;
+        const double error = whole.estimate.largest;
+        if (!whole.estimate.empty() && error <= span.accuracy) return whole;
+        if (whole.estimate.empty() || tries == most_tries) {
+            report.status = SolveStatus::inaccurate;
+            report.failed_at = whole.motion.start();
+            report.message =
+                "the accuracy " + to_text(span.accuracy, 6) + " was not reached over all events: " +
+                (whole.estimate.empty() ? "nothing tells the error, since " + report.estimate_failed
+                                        : "the error is about " + to_text(error, 3)) +
+                "; try: an earlier end of time, or a larger error in accuracy";
+            return whole;
+        }
+        part *= std::min(0.3, target * span.accuracy / error);
+    }
+}
+
+}   // namespace
+
+void check_events(const Model& model, const Problem& problem, const Time& time, const Method& method)
+{
+    if (!model.has_events()) return;
+    if (!is_nodal(method) || problem.conditions.at_start != Known::state)
+        throw InputError({"joint-time-method", "method.family",
+                          "joints and drives that act for a part of the time need lobatto or radau, and the "
+                          "state at the start",
+                          name_of(method), "", "what a joint did cannot be undone from the end of time",
+                          "leave 'from' and 'until' out, or choose lobatto and the state at the start"});
+    const auto* mesh = std::get_if<TimeMesh>(&time);
+    if (mesh == nullptr) return;
+    const std::vector<double> late = missed(*mesh, events_inside(model, mesh->start(), mesh->end()));
+    if (!late.empty())
+        throw InputError({"joint-time-mesh", "time.elements",
+                          "a joint or drive begins or ends to act inside an element", to_text(late[0]) + " s",
+                          "an element end", "elements follow one set of joints each",
+                          "let elements end there"});
+}
+
+Solution solve_by_phases(const Model& model, const Problem& problem, const Time& time, const Method& method,
+                         const SolveOptions& options, const SolvePhase& solve_phase)
+{
+    const Chain chain(model, problem, time, options, solve_phase);
+    Solution solution;
+    if (const auto* span = std::get_if<Span>(&time))
+        solution = solve_to_accuracy_of_all(chain, model, problem, *span, method, options);
+    else
+        solution = chain.solve(method, 0, options.judge ? meets : 0);
+    if (options.judge) chain.tell(solution);
+    return solution;
+}
+
+}   // namespace livens
