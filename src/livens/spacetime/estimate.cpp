@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <variant>
 
 #include "livens/base/error.h"
@@ -47,6 +48,7 @@ Second::Second(const Model& model, const Problem& problem, const Method& method,
 {
     problem_.guess = [&first](double t) { return first.at(t); };
     options_.condition = options_.judge = false;
+    options_.meeting = std::numeric_limits<double>::infinity();   // both meet it within their errors
     // Errors of degrees p and p + 1 are at times alike, above all in elements too long for their degree.
     if (auto* lobatto = std::get_if<Lobatto>(&method_)) lobatto->degree += lobatto->degree < 4 ? 1 : 2;
     if (auto* radau = std::get_if<Radau>(&method_)) ++radau->degree;

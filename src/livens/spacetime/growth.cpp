@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <span>
 
 #include "livens/base/error.h"
@@ -155,6 +156,7 @@ std::vector<double> growth(const Model& model, const Problem& problem, const Met
     if (problem.conditions.at_start != Known::state || motion.n_elements() == 0) return grown;
     SolveOptions quiet = options;
     quiet.condition = quiet.judge = false;
+    quiet.meeting = std::numeric_limits<double>::infinity();   // neighbours are beside it
     quiet.initial = StartPolicy::project;
     const State start = motion.at_end(0);
     const double at_start = fastest_rate(model, start.V), ever = fastest_rate(model, motion.velocities);

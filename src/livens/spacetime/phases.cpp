@@ -14,7 +14,6 @@ namespace livens {
 
 namespace {
 
-constexpr double meets = 1e-6;                      // lengths, rad, and of speeds
 constexpr double near_end = 1e-9;                   // of the whole time, see make_time_mesh()
 constexpr double first_share = 0.3, target = 0.3;   // of the accuracy
 constexpr int most_tries = 4;
@@ -246,7 +245,7 @@ private:
     bool meet(const Model& acting, State& state, double tolerance, SolveReport& report) const
     {
         const std::string names = names_of(model_, state.t, &Joint::from, gap_);
-        if (names.empty() || tolerance == 0) return true;
+        if (names.empty() || std::isinf(tolerance)) return true;
         const double off = miss(acting, state);
         if (off <= tolerance) return true;
         report.status = SolveStatus::not_converged;
@@ -276,7 +275,7 @@ Solution solve_to_accuracy_of_all(const Chain& chain, const Model& model, const 
     double part = first_share * span.accuracy, seconds = 0;
     long long evaluations = 0;
     for (int tries = 1;; ++tries) {
-        Solution whole = chain.solve(method, part, options.judge ? std::max(meets, span.accuracy) : 0);
+        Solution whole = chain.solve(method, part, std::max(options.meeting, span.accuracy));
         SolveReport& report = whole.report;
         report.accuracy = span.accuracy;
         report.evaluations_in_all += evaluations;
@@ -332,8 +331,8 @@ Solution solve_by_phases(const Model& model, const Problem& problem, const Time&
     if (const auto* span = std::get_if<Span>(&time))
         solution = solve_to_accuracy_of_all(chain, model, problem, *span, method, options);
     else
-        solution = chain.solve(method, 0, options.judge ? meets : 0);
-    if (options.judge) chain.tell(solution);
+        solution = chain.solve(method, 0, options.meeting);
+    if (!std::isinf(options.meeting)) chain.tell(solution);
     return solution;
 }
 

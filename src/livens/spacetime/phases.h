@@ -20,9 +20,8 @@ using SolvePhase =
 void check_events(const Model& model, const Problem& problem, const Time& time, const Method& method);
 
 /// The motion through all events of a model, with a note for each. Where a joint begins, bodies that are off
-/// by more than 1e-6 (or the accuracy) in lengths, rad or as much of their speed end the motion; not so if
-/// nobody is to judge it, as in second solutions. An accuracy is that of the whole: phases are solved to a
-/// part of it, and once more to a smaller one until a second solution of the whole is within.
+/// by more than SolveOptions::meeting end the motion. An accuracy is that of the whole: phases are solved to
+/// a part of it, and once more to a smaller one until a second solution of the whole is within.
 Solution solve_by_phases(const Model& model, const Problem& problem, const Time& time, const Method& method,
                          const SolveOptions& options, const SolvePhase& solve_phase);
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <utility>
 
@@ -293,6 +294,7 @@ ExactSample sample_exactly(const Model& model, const Motion& motion, const Metho
     problem.conditions.start.angles = LoadTurns(model, motion).at_end(element);   // files do not hold them
     const TimeMesh one{{motion.mesh.ends[element], t}};
     quiet.judge = false;
+    quiet.meeting = std::numeric_limits<double>::infinity();
     Solution s = solve_all_time(model, problem, one, method, quiet);
     const double there = s.motion.end();   // t, if it converged
     return {sample_state(s.motion, there), sample_joints(model, s.motion, there), std::move(s.report)};

@@ -33,6 +33,10 @@ struct SolveOptions {
     /// Every window by Newton's iteration with its tangent: the reference for quicker ways to the same
     /// motion.
     bool by_newton = false;
+    /// How far bodies may be from where a joint that begins to act holds them, in lengths, rad and of the
+    /// fastest rate; at least the accuracy that is asked for. Farther off would be an impact, which ends the
+    /// motion. Infinite: they are moved there, and nothing is said.
+    double meeting = 1e-6;
     bool judge = true;   ///< false: the caller asks estimate() and judge() himself, or does without
     /// What tells the error of the motion, where it is judged.
     enum class Estimate {
