@@ -9,6 +9,7 @@
 
 #include "commands.h"
 #include "console.h"
+#include "exact.h"
 #include "failure.h"
 #include "finite_number.h"
 #include "livens/base/error.h"
@@ -74,22 +75,11 @@ ExactSample solved_at(const Query& q, double t)
     return sample_exactly(q.scenario.model, q.run.motion, q.scenario.method, t, q.scenario.options);
 }
 
-/// For --exact.
-ExactSample exact_at(const Query& q, double t)
-{
-    if (std::holds_alternative<Mixed>(q.scenario.method))
-        throw failure(exit_usage, "--exact cannot be had of the family mixed: each element depends on all "
-                                  "others of its block; make the instant an output time");
-    ExactSample exact = solved_at(q, t);
-    if (!exact.report.converged()) throw failure(exit_not_converged, exact.report.message);
-    return exact;
-}
-
 BodySample body_at(const Query& q, double t)
 {
     if (!q.arguments.exact)
         return sample_bodies(q.scenario.model, q.run.motion, t)[static_cast<std::size_t>(q.index)];
-    const ExactSample exact = exact_at(q, t);
+    const ExactSample exact = exact_sample(q.run, q.scenario, t);
     const Body& body = q.scenario.model.bodies()[q.index];
     const Matrix34 &X = exact.state.X[q.index], &V = exact.state.V[q.index];
     return sample_body(body, X, V, V * body.mass);
@@ -165,8 +155,9 @@ void body_members(JsonWriter& json, const Query& q, double t)
 
 JointSample joint_at(const Query& q, double t)
 {
-    const std::vector<JointSample> samples =
-        q.arguments.exact ? exact_at(q, t).joints : sample_joints(q.scenario.model, q.run.motion, t);
+    const std::vector<JointSample> samples = q.arguments.exact
+                                                 ? exact_sample(q.run, q.scenario, t).joints
+                                                 : sample_joints(q.scenario.model, q.run.motion, t);
     if (samples.empty())
         throw failure(exit_input_output, "the run holds no multipliers, so it knows no reactions");
     return samples[static_cast<std::size_t>(q.index)];
@@ -199,7 +190,9 @@ struct CoordinateAt {
 std::vector<CoordinateAt> coordinates_at(const Query& q, double t)
 {
     std::vector<CoordinateAt> all;
-    const std::vector<CoordinateValue> values = q.coordinates->at(t);
+    const bool is_exact = q.arguments.exact;
+    const std::vector<CoordinateValue> values =
+        is_exact ? q.coordinates->at(exact_sample(q.run, q.scenario, t).state) : q.coordinates->at(t);
     for (std::size_t i = 0; i < values.size(); ++i)
         if (q.coordinates->places()[i].joint == q.index) {
             const NamedCoordinate& of = q.coordinates->coordinate(static_cast<int>(i));

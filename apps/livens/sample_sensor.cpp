@@ -6,6 +6,7 @@
 
 #include "commands.h"
 #include "console.h"
+#include "exact.h"
 #include "failure.h"
 #include "livens/base/text.h"
 #include "livens/diagnostics/coordinates.h"
@@ -83,12 +84,11 @@ std::string sample_sensor(const SampleArguments& arguments, const Common& common
                           const Scenario& scenario, const std::vector<double>& times)
 {
     const Found found = find_sensor(scenario.model, arguments.sensor);
-    if (arguments.exact)
-        throw failure(exit_usage, "--exact can be had of bodies and joints; make the instant an output time");
     const SensorReadings readings(scenario.model, run.motion);
     std::vector<std::vector<double>> rows;
     for (const double t : times) {
-        const std::vector<double> all = readings.at(t);
+        const std::vector<double> all =
+            arguments.exact ? readings.at(exact_sample(run, scenario, t).state) : readings.at(t);
         const auto first = all.begin() + static_cast<std::ptrdiff_t>(found.first);
         rows.emplace_back(first, first + static_cast<std::ptrdiff_t>(found.sensor->components.size()));
     }

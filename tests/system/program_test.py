@@ -440,6 +440,41 @@ class Reading(ProgramTest):
             self.assertEqual(s["source"], "solved" if how else "polynomial")
         self.assertLess(error[("--exact",)], 0.1 * error[()])
 
+    def test_exact_coordinates_and_readings_beat_the_polynomial(self):
+        swing = """format = 1
+gravity = [0, 0, -9.81]
+[[body]]
+name = "rod"
+mass = 1
+inertia = [1, 1, 1]
+center_of_mass = [0.5, 0, 0]
+[[joint]]
+name = "hinge"
+type = "revolute"
+between = ["world", "rod"]
+at = [0, 0, 0]
+axis = [0, 1, 0]
+[[sensor]]
+name = "turn"
+type = "joint"
+joint = "hinge"
+[time]
+end = 1
+elements = %d
+[method]
+degree = 3
+"""
+        self.solve(swing % 4, name="swing.toml", output="swing.nc")
+        self.solve(swing % 200, name="fine.toml", output="fine.nc")
+        angle = {}
+        for run, how in (("fine.nc", ()), ("swing.nc", ()), ("swing.nc", ("--exact",))):
+            of_joint = json.loads(self.expect(0, "sample", run, "--joint", "hinge", "--at", "0.4", *how, "--json").out)
+            read = json.loads(self.expect(0, "sample", run, "--sensor", "turn", "--at", "0.4", *how, "--json").out)
+            angle[run, how] = of_joint["angle"]
+            self.assertEqual(read["samples"][0]["values"], [of_joint["angle"], of_joint["angle_rate"]])
+        right = angle["fine.nc", ()]
+        self.assertLess(abs(angle["swing.nc", ("--exact",)] - right), 0.2 * abs(angle["swing.nc", ()] - right))
+
     def test_estimated_errors_are_those_of_what_is_printed(self):
         """At element ends, between them by the polynomial, and by a shortened element: against a far finer run."""
         info = self.solve()

@@ -108,7 +108,12 @@ JointCoordinates::JointCoordinates(const Model& model, const Motion& motion)
 
 std::vector<CoordinateValue> JointCoordinates::at(double t) const
 {
-    return places_.empty() ? std::vector<CoordinateValue>() : followed_.at(sample_state(motion_, t));
+    return places_.empty() ? std::vector<CoordinateValue>() : at(sample_state(motion_, t));
+}
+
+std::vector<CoordinateValue> JointCoordinates::at(const State& state) const
+{
+    return places_.empty() ? std::vector<CoordinateValue>() : followed_.at(state);
 }
 
 namespace {
@@ -179,9 +184,10 @@ SensorReadings::SensorReadings(const Model& model, const Motion& motion)
       turns_(model, motion)
 {}
 
-std::vector<double> SensorReadings::at(double t) const
+std::vector<double> SensorReadings::at(double t) const { return at(sample_state(motion_, t)); }
+
+std::vector<double> SensorReadings::at(const State& state) const
 {
-    const State state = sample_state(motion_, t);
     const std::vector<CoordinateValue> coordinates = followed_.at(state);
     const std::vector<double> angles = turns_.at(state);
     std::vector<double> all;

@@ -54,6 +54,8 @@ public:
     }
     /// Of all places at t, after snap_to_element_end().
     std::vector<CoordinateValue> at(double t) const;
+    /// In a state at an instant of the motion, as sample_exactly() has it.
+    std::vector<CoordinateValue> at(const State& state) const;
 
 private:
     const Model& model_;
@@ -86,6 +88,8 @@ public:
     /// Of all components of all sensors at t, one after the other, after snap_to_element_end(). Where a load
     /// jumps, what is there afterwards.
     std::vector<double> at(double t) const;
+    /// The same in a state at an instant of the motion, as sample_exactly() has it.
+    std::vector<double> at(const State& state) const;
 
 private:
     const Model& model_;
