@@ -68,6 +68,19 @@ void add_scenario_commands(CLI::App& app, Arguments& a)
     add_common(solve, a);
 }
 
+void add_mass_command(CLI::App& app, Arguments& a)
+{
+    CLI::App& mass =
+        add_command(app, a, "mass", "Mass, centre and inertia of a mesh, or of a scenario's bodies");
+    mass.add_option("FILE", a.mass.file, "mesh (STL, OBJ, PLY, MSH) or scenario (TOML)")
+        ->required()
+        ->type_name("FILE");
+    mass.add_option("--unit", a.mass.unit, "of the mesh's numbers; default: m")->type_name("UNIT");
+    mass.add_option("--density", a.mass.density, "of the mesh, kg/m^3; default: 1")->type_name("D");
+    mass.add_flag("--turn", a.mass.turn, "turn faces of the mesh that look inwards");
+    add_common(mass, a);
+}
+
 void add_rest_commands(CLI::App& app, Arguments& a)
 {
     CLI::App& equilibrium =
@@ -184,6 +197,7 @@ void declare(CLI::App& app, Arguments& arguments)
     app.add_flag("--version", arguments.is_version, "print the version");
     add_colour(app, arguments);
     add_scenario_commands(app, arguments);
+    add_mass_command(app, arguments);
     add_rest_commands(app, arguments);
     add_run_commands(app, arguments);
     add_other_commands(app, arguments);

@@ -23,6 +23,7 @@ struct Arguments {
     SolveArguments solve;
     std::string scenario;
     ModesArguments modes;
+    MassArguments mass;
     std::string run;
     SampleArguments sample;
     ExportArguments exports;

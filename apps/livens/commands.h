@@ -32,6 +32,14 @@ int solve_command(const SolveArguments& arguments, const Common& common);
 
 int check_command(const std::string& scenario, const Common& common);
 
+struct MassArguments {
+    std::string file;            ///< a mesh, or a scenario (.toml)
+    std::string unit = "m";      ///< of a mesh's numbers
+    std::string density = "1";   ///< as typed, kg/m^3
+    bool turn = false;
+};
+int mass_command(const MassArguments& arguments, const Common& common);
+
 int equilibrium_command(const std::string& scenario, const Common& common);
 
 struct ModesArguments {

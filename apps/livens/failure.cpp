@@ -204,7 +204,7 @@ Scenario load_scenario(const std::string& file, const Common& common, std::vecto
 
 Scenario scenario_of_run(const Run& run, const std::string& run_file)
 {
-    ScenarioResult result = parse_scenario(run.scenario_text, "scenario in " + run_file);
+    ScenarioResult result = parse_scenario(run.scenario_text, "scenario in " + run_file, {{}, run.meshes});
     if (!result.scenario)
         throw Failure{exit_input_output, "the run's scenario cannot be read by this version",
                       std::move(result.diagnostics), std::move(result.text)};

@@ -44,6 +44,7 @@ int run(const CLI::App& app, const Arguments& a)
     set_verbosity(common.quiet ? Verbosity::quiet : common.verbose ? Verbosity::verbose : Verbosity::normal);
     if (app.got_subcommand("solve")) return solve_command(a.solve, common);
     if (app.got_subcommand("check")) return check_command(a.scenario, common);
+    if (app.got_subcommand("mass")) return mass_command(a.mass, common);
     if (app.got_subcommand("equilibrium")) return equilibrium_command(a.scenario, common);
     if (app.got_subcommand("modes")) return modes_command(a.modes, common);
     if (app.got_subcommand("info")) return info_command(a.run, common);

@@ -152,6 +152,7 @@ Solved solve_scenario(Job& job, double share, ProgressLine& line)
     const Method method = solution.method;
     solved.run = make_run(scenario.model, std::move(solution), method);
     solved.run.scenario_text = scenario.text;
+    solved.run.meshes = scenario.meshes;
     solved.run.title = scenario.title;
     solved.run.resolved = scenario.resolved;
     solved.run.output = scenario.output.empty() ? solved.run.motion.mesh.ends : scenario.output;

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Hostile files. `fuzz_mutations` is deterministic; `fuzz.scenario` and `fuzz.result` are libFuzzer for a minute each,
+# Hostile files. `fuzz_mutations` is deterministic; `fuzz.scenario`, `fuzz.result` and `fuzz.mesh_*` are libFuzzer for a minute each,
 # in the preset clang. For longer runs:
 #   cmake --preset clang -DLIVENS_SLOW_TESTS=ON && cmake --build --preset clang
 #   cd build/clang/tests && ./fuzz_scenario -max_total_time=3600 corpus-scenario ../../../tests/fuzz/corpus
@@ -24,5 +24,18 @@ if(LIVENS_FUZZ)
                          -artifact_prefix=${CMAKE_CURRENT_BINARY_DIR}/ -print_final_stats=1 ${found}
                          ${seeds_${target}})
         set_tests_properties(fuzz.${target} PROPERTIES LABELS fuzz TIMEOUT 600 COST 200)
+    endforeach()
+    foreach(format stl obj ply msh)
+        add_executable(fuzz_mesh_${format} ${CMAKE_CURRENT_SOURCE_DIR}/fuzz/mesh.cpp)
+        target_compile_definitions(fuzz_mesh_${format} PRIVATE LIVENS_MESH_FORMAT=".${format}")
+        target_link_libraries(fuzz_mesh_${format} PRIVATE livens_flags livens_core)
+        target_link_options(fuzz_mesh_${format} PRIVATE -fsanitize=fuzzer)
+        set(found ${CMAKE_CURRENT_BINARY_DIR}/corpus-mesh-${format})
+        file(MAKE_DIRECTORY ${found})
+        add_test(NAME fuzz.mesh_${format}
+                 COMMAND fuzz_mesh_${format} -max_total_time=60 -timeout=20 -rss_limit_mb=4096 -max_len=50000
+                         -artifact_prefix=${CMAKE_CURRENT_BINARY_DIR}/ -print_final_stats=1 ${found}
+                         ${CMAKE_CURRENT_SOURCE_DIR}/fuzz/corpus_meshes ${CMAKE_CURRENT_SOURCE_DIR}/unit/geometry/data)
+        set_tests_properties(fuzz.mesh_${format} PROPERTIES LABELS fuzz TIMEOUT 600 COST 200)
     endforeach()
 endif()

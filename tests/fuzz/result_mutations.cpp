@@ -110,9 +110,11 @@ bool is_same(const Run& a, const Run& b)
            bits(a.motion.multipliers.values, b.motion.multipliers.values) &&
            bits(a.motion.end_multipliers, b.motion.end_multipliers) && a.motion.momenta == b.motion.momenta &&
            a.motion.velocities == b.motion.velocities && a.scenario_text == b.scenario_text &&
-           bits(a.estimate.position, b.estimate.position) && bits(a.estimate.velocity, b.estimate.velocity) &&
+           a.meshes == b.meshes && bits(a.estimate.position, b.estimate.position) &&
+           bits(a.estimate.velocity, b.estimate.velocity) &&
            bits(a.estimate.orientation, b.estimate.orientation) &&
-           bits(a.estimate.reaction, b.estimate.reaction) && a.body_names == b.body_names && a.report.status == b.report.status && a.method == b.method;
+           bits(a.estimate.reaction, b.estimate.reaction) && a.body_names == b.body_names &&
+           a.report.status == b.report.status && a.method == b.method;
 }
 
 /// Files that are read with their checksums, half of them, are refused or unharmed; without, they do no harm.

@@ -20,14 +20,15 @@ import tempfile
 # Lowest first. Rooms on one floor do not see each other, unless an arrow is drawn below.
 FLOORS = [
     ["base"],
-    ["time", "solvers"],
+    ["time", "solvers", "geometry"],
     ["multibody"],
     ["spacetime", "stepping", "diagnostics"],
     ["io"],
     ["apps"],
 ]
-# solve() hands the classical methods to the witnesses and its motion to the judge; they know nothing of it.
-ARROWS = {("spacetime", "stepping"), ("spacetime", "diagnostics")}
+# solve() hands the classical methods to the witnesses and its motion to the judge; they know nothing of it. Elements
+# in space are integrated by the rules of time.
+ARROWS = {("geometry", "time"), ("spacetime", "stepping"), ("spacetime", "diagnostics")}
 
 FLOOR = {room: number for number, rooms in enumerate(FLOORS) for room in rooms}
 

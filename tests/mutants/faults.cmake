@@ -375,3 +375,43 @@ livens_mutant(NAME memory_unlimited
               NEW [[return;]]
               TESTS_OF livens
               MUST_FAIL program_test.Files.test_memory_is_checked_before_solving)
+
+# Integrals about the origin: right for parts that lie there.
+livens_mutant(NAME moments_about_origin
+              FILE geometry/moments.cpp
+              OLD [[return 0.5 * low + 0.5 * high;   // the sum might overflow]]
+              NEW [[return {};]]
+              TESTS_OF unit_geometry
+              MUST_FAIL Moments.OfABoxFarAwayLoseNothing)
+
+# Pieces that lie in each other count twice.
+livens_mutant(NAME pieces_unseen
+              FILE geometry/pieces.cpp
+              OLD [[if (piece.depth == (piece.volume > 0 ? 0 : 1)) continue;]]
+              NEW [[if (piece.volume != 0) continue;]]
+              TESTS_OF unit_geometry
+              MUST_FAIL Soundness.NamesWhatIsInsideOutAndTurnsIt)
+
+# Neighbours that share one corner are taken for apart.
+livens_mutant(NAME contacts_of_neighbours
+              FILE geometry/contacts.cpp
+              OLD [[if (n_shared_ == 3) return true;]]
+              NEW [[if (n_shared_ >= 1) return true;]]
+              TESTS_OF unit_geometry
+              MUST_FAIL Soundness.NamesWhereASurfaceMeetsItself)
+
+# A pressure that pulls.
+livens_mutant(NAME pressure_sign
+              FILE multibody/loads/pressure.cpp
+              OLD [[F[0] = -value(arguments.at).value * (directors]]
+              NEW [[F[0] = value(arguments.at).value * (directors]]
+              TESTS_OF unit_multibody
+              MUST_FAIL SurfaceLoads.PressurePushesAgainstTheNormalAtTheMiddleOfASide)
+
+# A link that leads out of the scenario's folder.
+livens_mutant(NAME mesh_by_a_link
+              FILE io/scenario/meshes.cpp
+              OLD [[if (!is_inside(file, folder))]]
+              NEW [[if (file.empty())]]
+              TESTS_OF unit_io
+              MUST_FAIL MeshScenario.RefusesWhatItMustNotRead)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Every load of the library in every variant, one entry each: the kit runs over this list.
 #include "livens/multibody/load_laws.h"
+#include "livens/multibody/surface_loads.h"
 #include "livens/time/expression.h"
 #include "properties/load_kit.h"
 
@@ -28,6 +29,39 @@ LoadCase force_case(const std::string& what, Frame frame, TimeVector (*value)(Ra
     return {"force", what, [=](Random& random) {
                 const Vector3 place = random.vector();
                 return point_force("l", 0, place, value(random), frame);
+            }};
+}
+
+SurfaceMoments any_surface(Random& random)
+{
+    SurfaceMoments m;
+    for (double& x : m.area.a) x = random.number();
+    for (double& x : m.normal.a) x = random.number();
+    return m;
+}
+
+LoadCase traction_case(const std::string& what, Frame frame, TimeVector (*value)(Random&))
+{
+    return {"traction", what, [=](Random& random) {
+                const SurfaceMoments surface = any_surface(random);
+                return traction("l", 0, surface, value(random), frame);
+            }};
+}
+
+LoadCase body_force_case(const std::string& what, Frame frame, TimeVector (*value)(Random&))
+{
+    return {"body_force", what, [=](Random& random) {
+                Matrix4 m{};
+                for (double& x : m.a) x = random.number();
+                return body_force("l", 0, m, value(random), frame);
+            }};
+}
+
+LoadCase pressure_case(const std::string& what, TimeVector (*value)(Random&))
+{
+    return {"pressure", what, [=](Random& random) {
+                const SurfaceMoments surface = any_surface(random);
+                return pressure("l", 0, surface, value(random)[1]);
             }};
 }
 
@@ -216,6 +250,12 @@ const std::vector<LoadCase>& load_cases()
         force_case("force in body axes", Frame::body_fixed, varying),
         {"force", "force at the reference point",
          [](Random& random) { return point_force("l", 0, {}, steady(random), Frame::inertial); }},
+        traction_case("traction", Frame::inertial, varying),
+        traction_case("traction in body axes", Frame::body_fixed, varying),
+        pressure_case("pressure", steady),
+        pressure_case("pressure that varies", varying),
+        body_force_case("force per unit mass", Frame::inertial, varying),
+        body_force_case("force per unit mass in body axes", Frame::body_fixed, steady),
         torque_case("torque", Frame::inertial, steady),
         torque_case("torque that varies", Frame::inertial, varying),
         torque_case("torque in body axes", Frame::body_fixed, varying),

@@ -729,7 +729,7 @@ degree = 6
         self.assertIn("unknown-key", codes)
         for code in codes:
             self.assertGreater(len(self.expect(0, "explain", code).out), 20, code)
-        for command in ("solve", "check", "equilibrium", "modes", "info", "sample", "export", "schema", "explain",
+        for command in ("solve", "check", "mass", "equilibrium", "modes", "info", "sample", "export", "schema", "explain",
                         "version"):
             self.assertIn(f"livens {command}", self.expect(0, command, "--help").out)
             self.assertIn(f"livens {command}", (SOURCE / "docs" / "program.md").read_text())

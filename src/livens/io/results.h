@@ -24,6 +24,7 @@ inline constexpr int format_minor = 4;   ///< additions only
 /// A run as it stands in the file: everything but the model, which is made again from the scenario text.
 struct Run {
     std::string scenario_text;
+    std::string meshes;   ///< Scenario::meshes
     std::string title;
     std::string resolved;   ///< options after defaults, JSON
     std::vector<std::string> body_names;

@@ -16,13 +16,29 @@
 namespace [[gnu::visibility("default")]] livens {
 
 /// The surface of a shape, for pictures: a profile that is turned about d3 in so many steps, then stretched
-/// along d1, d2, d3. Its origin is the centre of mass.
+/// along d1, d2, d3; or triangles. Its origin is the centre of mass.
 struct Outline {
     std::vector<std::array<double, 2>> profile;   ///< (radius, height), inside on the left; empty: no shape
     int sides = 24;                               ///< with 4 the sides of a square are normal to d1 and d2
     Vector3 stretch{1, 1, 1};
+    std::vector<Vector3> points{};   ///< of triangles, stretched likewise
+    std::vector<std::array<int, 3>> triangles{};
+    // Of a union: its parts, each at a place and in axes of the whole.
+    std::vector<Outline> parts{};
+    Vector3 place{};
+    Matrix3 axes = identity<3>();
+
+    bool is_empty() const { return profile.empty() && triangles.empty() && parts.empty(); }
 };
 Outline ball_outline();   ///< of radius 1
+
+/// Where the meshes of a scenario are.
+struct MeshSource {
+    /// Paths of meshes begin there and do not leave it. None: meshes cannot be read.
+    std::optional<std::filesystem::path> folder = {};
+    /// What Scenario::meshes held when the run was solved: meshes that stand in it are not read.
+    std::string kept = {};
+};
 
 /// A scenario that has been read, checked and closed as far as it can be without solving.
 struct Scenario {
@@ -37,6 +53,7 @@ struct Scenario {
     Conditions conditions;      ///< what is given at start and end, and the states there, with their times
     SolveOptions options;   ///< tolerance, max_iterations, initial, condition
     std::string resolved;   ///< all options after defaults, as one JSON object
+    std::string meshes;     ///< what its meshes come to, so that a run needs no file beside its own
 };
 
 struct ScenarioResult {
@@ -61,9 +78,12 @@ inline constexpr std::size_t max_scenario_bytes = 16u << 20;
 inline constexpr int max_scenario_depth = 64;
 
 /// Reads and checks (including check_method() and close_start()). Throws nothing: every problem is a
-/// diagnostic; codes `io-...` mean the file could not be read at all.
+/// diagnostic; codes `io-...` mean the file could not be read at all. Meshes lie in the file's folder.
 ScenarioResult read_scenario(const std::filesystem::path& file);
-ScenarioResult parse_scenario(std::string text, const std::string& file_name);
+ScenarioResult parse_scenario(std::string text, const std::string& file_name, const MeshSource& meshes = {});
+
+/// "mm" in m; 0 for what is no unit of length.
+double unit_of_length(const std::string& unit);
 
 /// The schema of scenarios: for editors (JSON Schema draft 2020-12) and for people (Markdown).
 std::string schema_json();

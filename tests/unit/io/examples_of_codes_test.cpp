@@ -68,6 +68,9 @@ TEST(ExamplesOfCodes, TheWrongOnesLeadToTheCodeAndTheRightOnesToNone)
     EXPECT_EQ(n_examples, 0) << "each wrong one has a right one";
 }
 
+/// Meshes are files of their own.
+bool needs_file(std::string_view code) { return code.starts_with("mesh-") || code == "surface-unknown"; }
+
 /// Codes without examples: no scenario leads to them, another code comes first, or it depends on the machine.
 TEST(ExamplesOfCodes, StandWhereverAScenarioLeads)
 {
@@ -103,7 +106,7 @@ TEST(ExamplesOfCodes, StandWhereverAScenarioLeads)
         "no-elements",
         "no-such-port",
         "not-at-rest",
-        "not-in-equilibrium",
+        "not-in-equilibrium", "not-in-this-version",
         "point-with-directors",
         "quadrature-points",
         "quaternion-zero",
@@ -122,7 +125,9 @@ TEST(ExamplesOfCodes, StandWhereverAScenarioLeads)
         "window-out-of-range",
     };
     for (const std::string_view code : diagnostic_codes())
-        EXPECT_EQ(examples_behind(explain(code), "Wrong:").size(), 1 - without.count(code)) << code;
+        EXPECT_EQ(examples_behind(explain(code), "Wrong:").size(),
+                  needs_file(code) ? 0 : 1 - without.count(code))
+            << code;
 }
 
 }   // namespace

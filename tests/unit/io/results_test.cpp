@@ -32,6 +32,7 @@ TEST_F(Results, RunComesBackToTheBit)
 
     EXPECT_EQ(image_of(model, back), image_of(model, run));   // everything that is written
     EXPECT_EQ(back.scenario_text, run.scenario_text);
+    EXPECT_EQ(back.meshes, run.meshes);
     EXPECT_EQ(back.body_names, run.body_names);
     EXPECT_EQ(back.body_is_point, run.body_is_point);
     EXPECT_EQ(back.output, run.output);
@@ -150,8 +151,8 @@ TEST_F(Results, EveryFigureComesBackAndStandsInJson)
 /// As many members as the table of figures and the walk of layout.h know: who adds one adds it there.
 TEST_F(Results, EveryMemberOfARunIsInTheFile)
 {
-    [[maybe_unused]] const auto& [r1, r2, r3, r4, r5, r6, r7, r8, r9, r10, r11, r12, r13, r14, r15, r16,
-                                  r17] = RunFile{};
+    [[maybe_unused]] const auto& [r1, r2, r3, r4, r5, r6, r7, r8, r9, r10, r11, r12, r13, r14, r15, r16, r17,
+                                  r18] = RunFile{};
     [[maybe_unused]] const auto& [m1, m2, m3, m4, m5, m6, m7, m8, m9, m10, m11, m12, m13, m14, m15, m16, m17,
                                   m18, m19] = Motion{};
     [[maybe_unused]] const auto& [f1, f2, f3, f4, f5, f6] = Field{};

@@ -185,6 +185,7 @@ inline RunFile sample_run(const Model& model, int n_elements = 8)
 {
     RunFile run;
     run.scenario_text = "format = 1\ntitle = \"Größe\"\n";
+    run.meshes = "mesh 0 1 0 0 0 1 1 1 0 0 0 a.stl\n";
     run.title = "Größe";
     run.resolved = R"({"method": {"family": "lobatto", "degree": 2}})";
     run.body_names = {"körper eins", "bob"};

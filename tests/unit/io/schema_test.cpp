@@ -3,6 +3,7 @@
 // odd numbers.
 #include "livens/io/scenario/schema.h"
 
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
@@ -16,8 +17,14 @@ namespace livens {
 namespace {
 
 using test::find;
-using test::read;
 using test::shown;
+
+/// Their meshes lie beside them.
+ScenarioResult read(const std::string& text)
+{
+    return parse_scenario(text, "test.toml",
+                          {std::filesystem::path(LIVENS_SOURCE_DIR) / "tests/fuzz/corpus"});
+}
 
 std::string file_text(const std::string& name)
 {
@@ -27,6 +34,7 @@ std::string file_text(const std::string& name)
 
 // Valid scenarios with one key on a line, which together use every key; headers tell the table.
 const std::vector<std::string> documents{file_text("tests/fuzz/corpus/every_key_of_bodies.toml"),
+                                         file_text("tests/fuzz/corpus/every_key_of_shapes.toml"),
                                          file_text("tests/fuzz/corpus/accuracy.toml"),
                                          file_text("tests/fuzz/corpus/every_key_of_joints_and_loads.toml"),
                                          file_text("tests/fuzz/corpus/every_key_of_mechanisms.toml"),
@@ -78,7 +86,12 @@ const Table& table_of(const std::string& header, const std::string& type)
     if (header == "[[joint.frames]]") heading = "frame of a joint";
     if (header == "[[load.frames]]") heading = "frame of a bushing";
     if (header == "[body.shape]") heading = "shape of [[body]]";
-    if (header.starts_with("[body.shape.")) heading = header.substr(12, header.size() - 13) + " of shape";
+    if (header == "[body.shape.parts.cylinder]")
+        heading = "cylinder of shape";
+    else if (header == "[[body.shape.parts]]")
+        heading = "parts of shape";
+    else if (header.starts_with("[body.shape."))
+        heading = header.substr(12, header.size() - 13) + " of shape";
     for (const Table* table : schema_tables())
         if (table->heading == heading) return *table;
     throw std::logic_error("no table " + heading);

@@ -92,6 +92,40 @@ private:
     Surface surface_;
 };
 
+/// Flat faces: each has its own corners.
+void add_triangles(const Outline& outline, Surface& to)
+{
+    for (const std::array<int, 3>& t : outline.triangles) {
+        std::array<Vector3, 3> p;
+        for (int k = 0; k < 3; ++k)
+            for (int i = 0; i < 3; ++i) p[k][i] = outline.stretch[i] * outline.points[t[k]][i];
+        const Vector3 area = cross(p[1] - p[0], p[2] - p[0]);
+        if (norm(area) == 0) continue;   // a needle has no side
+        const int first = static_cast<int>(to.points.size());
+        for (const Vector3& corner : p) {
+            to.points.push_back(corner);
+            to.normals.push_back(unit(area));
+        }
+        to.triangles.push_back({first, first + 1, first + 2});
+    }
+}
+
+/// About the origin of the outline.
+Surface surface_of(const Outline& outline)
+{
+    Surface whole = outline.profile.empty() ? Surface{} : Turning(outline, {}).take();
+    add_triangles(outline, whole);
+    for (const Outline& part : outline.parts) {
+        const Surface surface = surface_of(part);
+        const int first = static_cast<int>(whole.points.size());
+        for (const Vector3& p : surface.points) whole.points.push_back(part.place + part.axes * p);
+        for (const Vector3& n : surface.normals) whole.normals.push_back(part.axes * n);
+        for (const auto& t : surface.triangles)
+            whole.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+    }
+    return whole;
+}
+
 }   // namespace
 
 std::vector<Surface> surfaces_of(const Scenario& scenario)
@@ -103,11 +137,12 @@ std::vector<Surface> surfaces_of(const Scenario& scenario)
         const Body& body = model.bodies()[b];
         const Vector3 centre = body.is_point ? Vector3{} : mass_properties(body.mass).center_of_mass;
         Outline outline = b < scenario.outlines.size() ? scenario.outlines[b] : Outline{};
-        if (outline.profile.empty()) {
+        if (outline.is_empty()) {
             outline = body.is_point ? ball_outline() : Outline{{{0, -1}, {1, 0}, {0, 1}}, 4};
             outline.stretch = {size, size, size};
         }
-        surfaces.push_back(Turning(outline, centre).take());
+        surfaces.push_back(surface_of(outline));
+        for (Vector3& p : surfaces.back().points) p = centre + p;
     }
     return surfaces;
 }

@@ -80,6 +80,7 @@ void visit_model(Archive& archive, AnyRun& run)
     archive.names("row", "names of the constraint rows of the joints", run.row_labels);
     archive.names("report_note", "what the solver deemed worth a word", run.report.notes);
     archive.text("scenario", "the scenario, byte by byte", run.scenario_text);
+    archive.text("meshes", "what the scenario's meshes come to", run.meshes);
     archive.flags({"is_point_mass", {"body"}, "1", "none", "1: the body is a point mass without orientation"},
                   run.body_is_point);
     archive.list({"body_center_of_mass", {"body", "xyz"}, "m", "body-fixed", "in body coordinates"},

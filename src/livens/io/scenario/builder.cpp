@@ -58,10 +58,8 @@ std::string spoken(const std::string& path)
 
 }   // namespace
 
-Builder::Builder(const Section& top, Findings& findings)
-    : top_(top),
-      findings_(findings),
-      model_(top.vector("gravity"))
+Builder::Builder(const Section& top, const MeshSource& meshes, Findings& findings)
+    : top_(top), findings_(findings), model_(top.vector("gravity")), meshes_(meshes)
 {
     remember("", top);
     for (const std::string_view name : {"time", "method", "start", "end"})

@@ -10,6 +10,7 @@
 
 #include "livens/base/error.h"
 #include "livens/io/scenario.h"
+#include "livens/io/scenario/meshes.h"
 #include "livens/io/scenario/section.h"
 #include "livens/multibody/load_laws.h"
 #include "livens/time/expression.h"
@@ -24,13 +25,15 @@ struct BodyReference {
 
 class Builder {
 public:
-    Builder(const Section& top, Findings& findings);
+    Builder(const Section& top, const MeshSource& meshes, Findings& findings);
 
     const Section& top() const { return top_; }
     Findings& findings() { return findings_; }
     Model& model() { return model_; }
     const Model& model() const { return model_; }
     std::vector<Outline>& outlines() { return outlines_; }   ///< of the bodies so far
+    std::vector<std::vector<NamedSurface>>& surfaces() { return surfaces_; }   ///< of the bodies so far
+    MeshStore& meshes() { return meshes_; }
     /// Call once all bodies are there: computes length().
     void close_bodies();
     std::unordered_map<std::string, BodyReference>& bodies() { return bodies_; }
@@ -74,6 +77,8 @@ private:
     Findings& findings_;
     Model model_;
     std::vector<Outline> outlines_;
+    std::vector<std::vector<NamedSurface>> surfaces_;
+    MeshStore meshes_;
     std::unordered_map<std::string, BodyReference> bodies_;
     std::map<std::string, Place> places_;
     double length_ = 1;

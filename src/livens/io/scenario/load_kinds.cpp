@@ -107,6 +107,25 @@ std::vector<Key> keys_of_actuator()
                   expression_keys(false), interval_keys());
 }
 
+Key surface_key()
+{
+    return {"surface", types::text,
+            "Of the body's mesh by its name in the file: a physical group (MSH), a solid (STL), object/group "
+            "(OBJ). Default: all."};
+}
+
+std::vector<Key> keys_of_pressure()
+{
+    const Key table = Key{"table", types::table, "As a function of time."}.holding(
+        {"table of a pressure",
+         "Values between the times; constant before and after.",
+         {times_key(), Key{"values", types::list, "One for each time.", "Pa"}.needed(),
+          interpolation_key()}});
+    return joined({body_key(), surface_key(),
+                   Key{"value", types::number, "Constant; instead of `table`.", "Pa"}, table},
+                  expression_keys(false), interval_keys());
+}
+
 std::vector<Key> keys_of_bushing()
 {
     const std::string of_u = "of u, three displacements in m and three rotations in rad: six numbers, or 36 "
@@ -157,7 +176,17 @@ const std::vector<LoadKind>& load_kinds()
            Key{"gradient", types::truth,
                "Also what the body's extent does, which turns it: the next term of the potential.", "",
                "false"}}},
-         make_attraction}};
+         make_attraction},
+        {{"traction", "force per area on a surface of the body's mesh",
+          keys_on_body("traction", "Pa", {surface_key()})},
+         make_traction,
+         check_value},
+        {{"pressure", "against a surface of the body's mesh, which it follows", keys_of_pressure()},
+         make_pressure,
+         check_value},
+        {{"body_force", "force per unit mass on all of a body", keys_on_body("body_force", "m/s^2", {})},
+         make_body_force,
+         check_value}};
     return all;
 }
 

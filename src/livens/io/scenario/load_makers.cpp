@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "livens/multibody/surface_loads.h"
+
 namespace livens {
 
 namespace {
@@ -268,6 +270,52 @@ Load make_torque(const LoadSources& p)
     return on_body(p, [&](const TimeVector& value) {
         return torque(p.name, p.first, value, p.section.pick<Frame>("frame"));
     });
+}
+
+namespace {
+
+/// That of the name, or the whole. Throws InputError `surface-unknown`.
+const SurfaceMoments& surface_of(const LoadSources& p)
+{
+    const std::vector<NamedSurface>& all = p.builder.surfaces()[static_cast<std::size_t>(p.first)];
+    const std::string name = p.section.text("surface");
+    std::string known;
+    for (const NamedSurface& s : all) {
+        if (s.name == name) return s.moments;
+        if (!s.name.empty()) known += (known.empty() ? "it has '" : "', '") + s.name;
+    }
+    const std::string body = "body '" + p.builder.body_name(p.first) + "'";
+    throw InputError({"surface-unknown", p.path() + ".surface",
+                      name.empty() ? "all of the surface of " + body + " is not known: it is not one mesh"
+                                   : body + " has no surface '" + name + "'",
+                      "", "", known.empty() ? "meshes with named regions have named surfaces" : known + "'",
+                      ""});
+}
+
+}   // namespace
+
+Load make_traction(const LoadSources& p)
+{
+    const SurfaceMoments& surface = surface_of(p);
+    return on_body(p, [&](const TimeVector& value) {
+        return traction(p.name, p.first, surface, value, p.section.pick<Frame>("frame"));
+    });
+}
+
+Load make_body_force(const LoadSources& p)
+{
+    const Matrix4& mass = p.builder.model().bodies()[p.first].mass;
+    return on_body(p, [&](const TimeVector& value) {
+        return body_force(p.name, p.first, mass, value, p.section.pick<Frame>("frame"));
+    });
+}
+
+Load make_pressure(const LoadSources& p)
+{
+    const SurfaceMoments& surface = surface_of(p);
+    const Inputs inputs = read_inputs(p.builder, p.section, p.path());
+    if (inputs.reads.empty()) return pressure(p.name, p.first, surface, read_values(p, 1)[0]);
+    return by_formula(p, "pressure", "Pa", {pressure(p.name, p.first, surface, 1.0)}, inputs);
 }
 
 Load make_actuator(const LoadSources& p)

@@ -20,5 +20,8 @@ Load make_spring(const LoadSources& p);
 Load make_bushing(const LoadSources& p);
 Load make_drag(const LoadSources& p);
 Load make_attraction(const LoadSources& p);
+Load make_traction(const LoadSources& p);
+Load make_pressure(const LoadSources& p);
+Load make_body_force(const LoadSources& p);
 
 }   // namespace livens

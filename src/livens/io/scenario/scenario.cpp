@@ -41,12 +41,12 @@ bool check_format(const Node& root, Findings& findings)
 }
 
 /// Everything behind the parser. The scenario counts if there is no error.
-void build(const Node& root, Scenario& scenario, Findings& findings)
+void build(const Node& root, Scenario& scenario, const MeshSource& meshes, Findings& findings)
 {
     if (!check_format(root, findings)) return;
     const Section top(root, root_table(), "the scenario", findings);
     if (!check_counts(top, findings)) return;
-    Builder builder(top, findings);
+    Builder builder(top, meshes, findings);
     read_bodies(builder);
     read_joints(builder);
     move_bodies(builder);
@@ -66,9 +66,10 @@ void build(const Node& root, Scenario& scenario, Findings& findings)
     if (fits) check_ends(builder, scenario.conditions, scenario.options.initial);
     scenario.model = std::move(builder.model());
     scenario.outlines = std::move(builder.outlines());
+    scenario.meshes = builder.meshes().kept();
 }
 
-void parse(Scenario& scenario, Findings& findings)
+void parse(Scenario& scenario, const MeshSource& meshes, Findings& findings)
 {
     const std::string_view text = scenario.text;
     if (text.size() > max_scenario_bytes) {
@@ -83,7 +84,7 @@ void parse(Scenario& scenario, Findings& findings)
     }
     if (!scan(text, findings)) return;
     const std::optional<Node> root = parse_toml(text, findings);
-    if (root) build(*root, scenario, findings);
+    if (root) build(*root, scenario, meshes, findings);
 }
 
 /// Reads a file to its end or to one byte over the limit. False after an error.
@@ -128,14 +129,14 @@ void shield(Findings& findings, Work work) noexcept
 
 }   // namespace
 
-ScenarioResult parse_scenario(std::string text, const std::string& file_name)
+ScenarioResult parse_scenario(std::string text, const std::string& file_name, const MeshSource& meshes)
 {
     Findings findings;
     ScenarioResult result;
     Scenario scenario;
     scenario.file = file_name;
     scenario.text = std::move(text);
-    shield(findings, [&] { parse(scenario, findings); });
+    shield(findings, [&] { parse(scenario, meshes, findings); });
     result.text = scenario.text;
     if (findings.n_errors() == 0) result.scenario = std::move(scenario);
     result.diagnostics = findings.take(file_name);
@@ -149,7 +150,7 @@ ScenarioResult read_scenario(const std::filesystem::path& file)
     std::string text;
     bool is_read = false;
     shield(findings, [&] { is_read = read_text(file, text, findings); });
-    if (is_read) return parse_scenario(std::move(text), file.string());
+    if (is_read) return parse_scenario(std::move(text), file.string(), {file.parent_path()});
     result.diagnostics = findings.take(file.string());
     return result;
 }

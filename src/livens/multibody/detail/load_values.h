@@ -21,6 +21,11 @@ void set_load_value(Load& load, const TimeVector& value);
 /// Reports its components.
 void report_load_value(Load& load, const TimeVector& value, const char* unit);
 
+/// F = t w^T with a vector t in world axes, or t = sum_i t_i d_i: a force at a point, or one that is the same
+/// all over a body or a surface. `unit`: of t.
+Load uniform_load(const std::string& name, const char* type, int body, const Vector4& w,
+                  const TimeVector& value, Frame frame, const char* unit);
+
 inline Vector3 load_value(const TimeVector& value, Instant at)
 {
     return {value[0](at).value, value[1](at).value, value[2](at).value};

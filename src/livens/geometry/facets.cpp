@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <array>
+
+#include "livens/base/text.h"
+#include "livens/geometry/detail/facets.h"
+
+namespace livens {
+
+namespace {
+
+/// One fault of each kind is told, with the number of them.
+class Tally {
+public:
+    void add(std::string first)
+    {
+        if (n_++ == 0) first_ = std::move(first);
+    }
+    void report(std::vector<Complaint>& faults, const std::string& code, const Mesh& mesh,
+                const std::string& what, const std::string& note, const std::string& help) const
+    {
+        if (n_ == 0) return;
+        const std::string count = n_ == 1 ? "" : " (and " + std::to_string(n_ - 1) + " more)";
+        faults.push_back({code, "", mesh.name + ": " + what + ": " + first_ + count, "", "", note, help});
+    }
+
+private:
+    std::int64_t n_ = 0;
+    std::string first_;
+};
+
+std::string text_of_edge(const Facets& f, std::int32_t face, std::int32_t h)
+{
+    return "the edge from " + text_of(f.at(h)) + " to " + text_of(f.at(f.next(face, h))) + " of " +
+           name_of_face(*f.mesh, face);
+}
+
+struct Linker {
+    const Facets& f;
+    Links& links;
+    Tally degenerate, open, manifold, turned, middle;
+
+    struct End {
+        std::int32_t high, h;   // the other end of the edge, the half-edge
+    };
+
+    bool is_forward(std::int32_t h) const { return f.corners[h] < f.corners[f.next(links.faces[h], h)]; }
+
+    /// All half-edges of one edge.
+    void edge(const End* ends, std::size_t n)
+    {
+        const std::int32_t h = ends[0].h, face = links.faces[h];
+        if (n == 1) return open.add(text_of_edge(f, face, h));
+        const std::int32_t g = ends[1].h, other = links.faces[g];
+        if (n > 2)
+            return manifold.add(text_of_edge(f, face, h) + " belongs to " + std::to_string(n) +
+                                " faces, also to " + name_of_face(*f.mesh, other));
+        links.twins[h] = g;
+        links.twins[g] = h;
+        if (is_forward(h) == is_forward(g))
+            turned.add(text_of_edge(f, face, h) + " and of " + name_of_face(*f.mesh, other));
+        if (!f.middles.empty() && f.middles[h] != f.middles[g])
+            middle.add(text_of_edge(f, face, h) + " and of " + name_of_face(*f.mesh, other));
+    }
+};
+
+}   // namespace
+
+std::string text_of(const Vector3& p)
+{
+    return "(" + to_text(p[0]) + ", " + to_text(p[1]) + ", " + to_text(p[2]) + ")";
+}
+
+std::string name_of_face(const Mesh& mesh, std::int32_t face)
+{
+    std::int64_t at = face;
+    for (const ElementBlock& b : mesh.blocks) {
+        if (dimension(b.kind) != 2) continue;
+        if (at < b.size()) {
+            const Region& region = mesh.regions[b.regions[at]];
+            return std::string(name_of(b.kind)) + " " + std::to_string(at + 1) +
+                   (region.names.empty() ? "" : " of '" + region.names.front() + "'");
+        }
+        at -= b.size();
+    }
+    return "face " + std::to_string(face + 1);
+}
+
+Facets facets_of(const Mesh& mesh)
+{
+    Facets f;
+    f.mesh = &mesh;
+    const bool is_curved = mesh.block(ElementKind::triangle6) != nullptr;
+    f.begins.reserve(mesh.n_elements(2) + 1);
+    f.begins.push_back(0);
+    for (const ElementBlock& b : mesh.blocks) {
+        if (dimension(b.kind) != 2) continue;
+        const int n = n_corners(b.kind);
+        f.corners.reserve(f.corners.size() + n * b.size());
+        for (std::int64_t e = 0; e < b.size(); ++e) {
+            const std::int32_t* nodes = b.element(e);
+            f.corners.insert(f.corners.end(), nodes, nodes + n);
+            f.begins.push_back(static_cast<std::int32_t>(f.corners.size()));
+            for (int k = 0; is_curved && k < n; ++k)
+                f.middles.push_back(b.kind == ElementKind::triangle6 ? nodes[n + k] : -1);
+        }
+    }
+    return f;
+}
+
+/// Half-edges are put into buckets by the lower of their two points.
+Links link(const Facets& f, std::vector<Complaint>& faults)
+{
+    const auto n = static_cast<std::int32_t>(f.corners.size());
+    Links links{std::vector<std::int32_t>(n, -1), std::vector<std::int32_t>(n)};
+    Linker linker{f, links, {}, {}, {}, {}, {}};
+    std::vector<std::int32_t> begins(f.mesh->points.size() + 1, 0);
+    for (std::int32_t face = 0; face < f.n_faces(); ++face)
+        for (std::int32_t h = f.begins[face]; h < f.begins[face + 1]; ++h) {
+            links.faces[h] = face;
+            for (std::int32_t g = f.begins[face]; g < h; ++g)
+                if (f.corners[g] == f.corners[h])
+                    linker.degenerate.add(name_of_face(*f.mesh, face) + " has the corner " +
+                                          text_of(f.at(h)) + " twice");
+            ++begins[std::min(f.corners[h], f.corners[f.next(face, h)]) + 1];
+        }
+    for (std::size_t i = 1; i < begins.size(); ++i) begins[i] += begins[i - 1];
+    std::vector<Linker::End> ends(n);
+    std::vector<std::int32_t> fill(begins.begin(), begins.end() - 1);
+    for (std::int32_t h = 0; h < n; ++h) {
+        const std::int32_t a = f.corners[h], b = f.corners[f.next(links.faces[h], h)];
+        ends[fill[std::min(a, b)]++] = {std::max(a, b), h};
+    }
+    for (std::size_t p = 0; p + 1 < begins.size(); ++p) {
+        const auto first = ends.begin() + begins[p], last = ends.begin() + begins[p + 1];
+        std::sort(first, last, [](const auto& l, const auto& r) {
+            return std::pair(l.high, l.h) < std::pair(r.high, r.h);
+        });
+        for (auto at = first; at != last;) {
+            auto end = at;
+            while (end != last && end->high == at->high) ++end;
+            linker.edge(&*at, end - at);
+            at = end;
+        }
+    }
+    const std::string law = "mass and inertia follow from the surface alone: it must close";
+    linker.degenerate.report(faults, "mesh-non-manifold", *f.mesh, "a face is no triangle", "",
+                             "leave faces out whose corners fall together");
+    linker.open.report(
+        faults, "mesh-open", *f.mesh, "the surface is open", law,
+        "close the hole, or let equal points be one: neighbours must share their corners to the bit");
+    linker.manifold.report(faults, "mesh-non-manifold", *f.mesh, "more than two faces share an edge",
+                           "each edge of a closed surface belongs to two faces",
+                           "separate what touches there");
+    linker.turned.report(faults, "mesh-inverted", *f.mesh, "neighbours face opposite sides",
+                         "seen from outside the corners of every face go round against the clock",
+                         "turn one of them; a scenario does with `turn = true`");
+    linker.middle.report(faults, "mesh-open", *f.mesh, "curved neighbours have different nodes on one edge",
+                         law, "");
+    return links;
+}
+
+void check_fans(const Facets& f, const Links& links, std::vector<Complaint>& faults)
+{
+    std::vector<std::int32_t> n_at(f.mesh->points.size(), 0);
+    for (const std::int32_t corner : f.corners) ++n_at[corner];
+    Tally touching;
+    std::vector<bool> is_seen(f.mesh->points.size(), false);
+    for (std::int32_t first = 0; first < static_cast<std::int32_t>(f.corners.size()); ++first) {
+        const std::int32_t corner = f.corners[first];
+        if (is_seen[corner]) continue;
+        is_seen[corner] = true;
+        std::int32_t n = 0, h = first;
+        do {   // round the corner: across the edge that comes in, to the one that goes out of it beyond
+            h = links.twins[f.previous(links.faces[h], h)];
+            ++n;
+        } while (h != first && h >= 0 && n <= n_at[corner]);
+        if (n != n_at[corner])
+            touching.add("at " + text_of(f.mesh->points[corner]) + ", a corner of " +
+                         name_of_face(*f.mesh, links.faces[first]));
+    }
+    touching.report(faults, "mesh-self-contact", *f.mesh, "parts of the surface touch at a point",
+                    "around each point of a closed surface its faces form one ring",
+                    "separate the parts, or give each its own points");
+}
+
+std::vector<std::int32_t> pieces_of(const Facets& f, const Links& links, std::int32_t& n_pieces)
+{
+    std::vector<std::int32_t> pieces(f.n_faces(), -1), waiting;
+    n_pieces = 0;
+    for (std::int32_t first = 0; first < f.n_faces(); ++first) {
+        if (pieces[first] >= 0) continue;
+        pieces[first] = n_pieces;
+        waiting.assign(1, first);
+        while (!waiting.empty()) {
+            const std::int32_t face = waiting.back();
+            waiting.pop_back();
+            for (std::int32_t h = f.begins[face]; h < f.begins[face + 1]; ++h) {
+                if (links.twins[h] < 0) continue;
+                const std::int32_t other = links.faces[links.twins[h]];
+                if (pieces[other] >= 0) continue;
+                pieces[other] = n_pieces;
+                waiting.push_back(other);
+            }
+        }
+        ++n_pieces;
+    }
+    return pieces;
+}
+
+}   // namespace livens

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "livens/geometry/mesh.h"
+
+#include <algorithm>
+#include <fstream>
+#include <memory>
+
+#include "livens/base/error.h"
+#include "livens/geometry/detail/cursor.h"
+
+namespace livens {
+
+namespace {
+
+struct KindInfo {
+    int n_nodes, n_corners, dimension;
+    const char* name;
+};
+constexpr KindInfo kinds[] = {{3, 3, 2, "triangle"},        {4, 4, 2, "quadrilateral"},
+                              {6, 3, 2, "curved triangle"}, {4, 4, 3, "tetrahedron"},
+                              {8, 8, 3, "hexahedron"},      {10, 4, 3, "curved tetrahedron"}};
+
+const KindInfo& info(ElementKind kind) { return kinds[static_cast<int>(kind)]; }
+
+std::string ending_of(const std::string& name)
+{
+    const std::size_t dot = name.rfind('.');
+    std::string ending = dot == std::string::npos ? "" : name.substr(dot);
+    for (char& c : ending) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    return ending;
+}
+
+[[noreturn]] void refuse_file(const std::string& name, const std::string& why)
+{
+    throw InputError({"mesh-file", "", "the mesh '" + name + "' " + why, "", "", "", ""});
+}
+
+}   // namespace
+
+int n_nodes(ElementKind kind) { return info(kind).n_nodes; }
+int n_corners(ElementKind kind) { return info(kind).n_corners; }
+int dimension(ElementKind kind) { return info(kind).dimension; }
+const char* name_of(ElementKind kind) { return info(kind).name; }
+
+const ElementBlock* Mesh::block(ElementKind kind) const
+{
+    const auto found = std::ranges::find(blocks, kind, &ElementBlock::kind);
+    return found == blocks.end() ? nullptr : &*found;
+}
+
+bool Mesh::is_volume() const { return n_elements(3) > 0; }
+
+std::int64_t Mesh::n_elements(int of_dimension) const
+{
+    std::int64_t n = 0;
+    for (const ElementBlock& b : blocks)
+        if (dimension(b.kind) == of_dimension) n += b.size();
+    return n;
+}
+
+ElementBlock& MeshBuilder::block(ElementKind kind)
+{
+    for (ElementBlock& b : mesh_.blocks)
+        if (b.kind == kind) return b;
+    mesh_.blocks.push_back({kind, {}, {}});
+    return mesh_.blocks.back();
+}
+
+void MeshBuilder::add(ElementKind kind, const std::int32_t* nodes, std::int32_t region)
+{
+    ElementBlock& b = block(kind);
+    b.nodes.insert(b.nodes.end(), nodes, nodes + n_nodes(kind));
+    b.regions.push_back(region);
+}
+
+std::int32_t MeshBuilder::region(int dimension, const std::string& name)
+{
+    return region(dimension, name.empty() ? std::vector<std::string>{} : std::vector{name});
+}
+
+std::int32_t MeshBuilder::region(int dimension, const std::vector<std::string>& names)
+{
+    const auto next = static_cast<std::int32_t>(mesh_.regions.size());
+    const auto [known, is_new] = regions_.try_emplace({dimension, names}, next);
+    if (is_new) mesh_.regions.push_back({dimension, names});
+    return known->second;
+}
+
+void MeshBuilder::add_polygon(const std::vector<std::int32_t>& corners, std::int32_t region,
+                              const Cursor& cursor)
+{
+    const std::vector<Vector3>& p = mesh_.points;
+    if (corners.size() > 3) {
+        Vector3 area{};
+        double size = 0;
+        for (std::size_t i = 1; i + 1 < corners.size(); ++i) {
+            const Vector3 a = p[corners[i]] - p[corners[0]], b = p[corners[i + 1]] - p[corners[0]];
+            area += cross(a, b);
+            size = std::max({size, norm(a), norm(b)});
+        }
+        for (const std::int32_t corner : corners)
+            if (std::abs(dot(area, p[corner] - p[corners[0]])) > 1e-6 * size * norm(area))
+                cursor.fail("a face with " + std::to_string(corners.size()) +
+                            " corners is not flat; divide it into triangles");
+    }
+    for (std::size_t i = 1; i + 1 < corners.size(); ++i) {
+        const std::int32_t triangle[] = {corners[0], corners[i], corners[i + 1]};
+        add(ElementKind::triangle, triangle, region);
+    }
+}
+
+Mesh read_mesh(std::string_view bytes, const std::string& name)
+{
+    Mesh mesh;
+    mesh.name = name;
+    const std::string ending = ending_of(name);
+    if (bytes.empty()) refuse_file(name, "is empty");
+    if (ending == ".stl")
+        read_stl(bytes, mesh);
+    else if (ending == ".obj")
+        read_obj(bytes, mesh);
+    else if (ending == ".ply")
+        read_ply(bytes, mesh);
+    else if (ending == ".msh")
+        read_msh(bytes, mesh);
+    else
+        refuse_file(name, "ends in none of .stl, .obj, .ply, .msh, which say what it is");
+    if (mesh.n_elements(2) + mesh.n_elements(3) == 0)
+        throw InputError({"mesh-format", "", name + ": the file has no faces and no elements of volume", "",
+                          "", "", "export the solid as triangles, or as elements of volume"});
+    return mesh;
+}
+
+Mesh read_mesh_file(const std::filesystem::path& file, std::string name)
+{
+    if (name.empty()) name = file.string();
+    std::error_code error;
+    const std::filesystem::file_status status = std::filesystem::status(file, error);
+    if (!std::filesystem::exists(status)) refuse_file(name, "does not exist");
+    if (!std::filesystem::is_regular_file(status)) refuse_file(name, "is no file");
+    const std::uintmax_t size = std::filesystem::file_size(file, error);
+    if (error) refuse_file(name, "cannot be read");
+    if (size > max_mesh_bytes)
+        refuse_file(name,
+                    "has " + std::to_string(size) + " bytes, more than " + std::to_string(max_mesh_bytes));
+    const auto bytes = std::make_unique_for_overwrite<char[]>(size);
+    std::ifstream stream(file, std::ios::binary);
+    stream.read(bytes.get(), static_cast<std::streamsize>(size));
+    if (!stream) refuse_file(name, "cannot be read");
+    return read_mesh({bytes.get(), size}, name);
+}
+
+}   // namespace livens

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Integrals over solids that are given as meshes.   (P16)-(P19)
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "livens/geometry/mesh.h"
+
+namespace [[gnu::visibility("default")]] livens {
+
+/// Integrals of 1, x and (x - c)(x - c)^T over a solid, c its centroid: what (P19) leaves of a mesh where the
+/// density is constant. With it M = rho volume, and about a reference point r S = M (c - r),
+/// E = rho second + M (c - r)(c - r)^T.
+struct Moments {
+    double volume = 0;    ///< m^3
+    Vector3 centroid{};   ///< m
+    Matrix3 second{};     ///< about the centroid, m^5
+};
+
+/// Of a sound mesh, in its own unit. Volumes by shape functions and quadrature that is exact for elements
+/// with curved edges, too (P19); surfaces by the divergence theorem. All about the middle of the bounding
+/// box, with compensated sums, so that neither the place of a part nor the number of its elements costs
+/// digits.
+Moments moments(const Mesh& mesh);
+
+/// Of a volume, region by region; zero for those that are none of volume.
+std::vector<Moments> region_moments(const Mesh& mesh);
+
+/// With each weighted by a number, such as densities: then `volume` is the mass. The sum of weights times
+/// volumes must not be zero.
+Moments combined(std::span<const Moments> parts, std::span<const double> weights);
+
+/// Integrals over faces: the moments of the shape functions that loads on a surface need (P20).
+struct SurfaceMoments {
+    Vector4 area{};      ///< of (1, x): m^2, m^3
+    Matrix34 normal{};   ///< of n (1, x)^T with the outward normal n: m^2, m^3
+};
+SurfaceMoments operator+(const SurfaceMoments& a, const SurfaceMoments& b);
+
+/// Of the boundary of a sound mesh, by the names of its regions; the first is all of it and has no name.
+struct NamedSurface {
+    std::string name;
+    SurfaceMoments moments;
+};
+std::vector<NamedSurface> surface_moments(const Mesh& mesh);
+
+/// After a change of the unit of length: one of the mesh's is so many m.
+Moments scaled(const Moments& m, double length);
+SurfaceMoments scaled(const SurfaceMoments& m, double length);
+/// After a rotation about the origin, then a displacement.
+Moments moved(const Moments& m, const Matrix3& rotation, const Vector3& displacement);
+SurfaceMoments moved(const SurfaceMoments& m, const Matrix3& rotation, const Vector3& displacement);
+
+}   // namespace livens

@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Pieces of a surface: which of them lie in each other, and whether they are turned as that asks for.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "livens/geometry/detail/facets.h"
+#include "livens/geometry/detail/volumes.h"
+#include "livens/geometry/soundness.h"
+
+namespace livens {
+
+namespace {
+
+constexpr std::int32_t most_pieces = 20000;   // each is looked for in all others
+
+struct Piece {
+    std::vector<std::int32_t> faces;
+    double volume = 0;
+    Vector3 low{1, 1, 1}, high{-1, -1, -1};
+    int depth = 0;   ///< in how many other pieces it lies, those that are inside out counted down
+
+    bool holds(const Vector3& p) const
+    {
+        for (int i = 0; i < 3; ++i)
+            if (!(p[i] >= low[i] && p[i] <= high[i])) return false;
+        return true;
+    }
+};
+
+/// Calls work(a, b, c) with the corners of triangles that make up a face.
+template <class Work>
+void for_triangles(const Facets& f, std::int32_t face, Work work)
+{
+    for (std::int32_t h = f.begins[face] + 1; h + 1 < f.begins[face + 1]; ++h)
+        work(f.at(f.begins[face]), f.at(h), f.at(h + 1));
+}
+
+/// The solid angle of a face seen from p over 4 pi [van Oosterom and Strackee 1983].
+double share_of_view(const Facets& f, std::int32_t face, const Vector3& p)
+{
+    double angle = 0;
+    for_triangles(f, face, [&](const Vector3& A, const Vector3& B, const Vector3& C) {
+        const Vector3 a = A - p, b = B - p, c = C - p;
+        const double la = norm(a), lb = norm(b), lc = norm(c);
+        const double below = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb;
+        angle += 2 * std::atan2(dot(a, cross(b, c)), below);
+    });
+    return angle / (4 * std::numbers::pi);
+}
+
+std::vector<Piece> make_pieces(const Facets& f, const std::vector<std::int32_t>& piece_of, std::int32_t n)
+{
+    std::vector<Piece> pieces(n);
+    for (std::int32_t face = 0; face < f.n_faces(); ++face) pieces[piece_of[face]].faces.push_back(face);
+    for (Piece& piece : pieces) {
+        piece.low = piece.high = f.at(f.begins[piece.faces.front()]);
+        for (const std::int32_t face : piece.faces)
+            for (std::int32_t h = f.begins[face]; h < f.begins[face + 1]; ++h)
+                for (int i = 0; i < 3; ++i) {
+                    piece.low[i] = std::min(piece.low[i], f.at(h)[i]);
+                    piece.high[i] = std::max(piece.high[i], f.at(h)[i]);
+                }
+        const Vector3 middle = 0.5 * piece.low + 0.5 * piece.high;
+        for (const std::int32_t face : piece.faces)
+            for_triangles(f, face, [&](const Vector3& a, const Vector3& b, const Vector3& c) {
+                piece.volume += dot(a - middle, cross(b - middle, c - middle)) / 6;
+            });
+    }
+    return pieces;
+}
+
+void find_depths(const Facets& f, std::vector<Piece>& pieces, bool as_if_outwards)
+{
+    for (Piece& inner : pieces) {
+        const Vector3 p = f.at(f.begins[inner.faces.front()]);
+        double depth = 0;
+        for (const Piece& outer : pieces) {
+            if (&inner == &outer || !outer.holds(p)) continue;
+            double seen = 0;
+            for (const std::int32_t face : outer.faces) seen += share_of_view(f, face, p);
+            depth += as_if_outwards ? std::abs(seen) : seen;
+        }
+        inner.depth = static_cast<int>(std::lround(depth));
+    }
+}
+
+/// Makes neighbours agree, beginning with the first face of each piece. Of surfaces with one side only
+/// nothing could; the check says so afterwards.
+void agree(const Facets& f, const Links& links, std::vector<bool>& is_turned)
+{
+    std::vector<bool> is_known(f.n_faces(), false);
+    std::vector<std::int32_t> waiting;
+    for (std::int32_t first = 0; first < f.n_faces(); ++first) {
+        if (is_known[first]) continue;
+        is_known[first] = true;
+        waiting.assign(1, first);
+        while (!waiting.empty()) {
+            const std::int32_t face = waiting.back();
+            waiting.pop_back();
+            for (std::int32_t h = f.begins[face]; h < f.begins[face + 1]; ++h) {
+                const std::int32_t g = links.twins[h];
+                if (g < 0 || is_known[links.faces[g]]) continue;
+                const std::int32_t other = links.faces[g];
+                is_known[other] = true;
+                is_turned[other] = is_turned[face] != (f.corners[h] == f.corners[g]);
+                waiting.push_back(other);
+            }
+        }
+    }
+}
+
+void turn_faces(Mesh& mesh, const std::vector<bool>& is_turned)
+{
+    std::size_t face = 0;
+    for (ElementBlock& b : mesh.blocks)
+        for (std::int64_t e = 0; dimension(b.kind) == 2 && e < b.size(); ++e)
+            if (is_turned[face++]) turn_element(b.kind, b.nodes.data() + e * n_nodes(b.kind));
+}
+
+}   // namespace
+
+void turn_element(ElementKind kind, std::int32_t* nodes)
+{
+    switch (kind) {
+    case ElementKind::triangle:
+        std::swap(nodes[1], nodes[2]);
+        break;
+    case ElementKind::quadrilateral:
+        std::swap(nodes[1], nodes[3]);
+        break;
+    case ElementKind::triangle6:
+        std::swap(nodes[1], nodes[2]), std::swap(nodes[3], nodes[5]);
+        break;
+    case ElementKind::tetrahedron:
+        std::swap(nodes[0], nodes[1]);
+        break;
+    case ElementKind::hexahedron:
+        for (int k = 0; k < 4; ++k) std::swap(nodes[k], nodes[k + 4]);
+        break;
+    case ElementKind::tetrahedron10:
+        std::swap(nodes[0], nodes[1]), std::swap(nodes[5], nodes[6]), std::swap(nodes[7], nodes[9]);
+    }
+}
+
+void check_pieces(const Facets& f, const Links& links, std::vector<Complaint>& faults)
+{
+    std::int32_t n = 0;
+    const std::vector<std::int32_t> piece_of = pieces_of(f, links, n);
+    const std::string& name = f.mesh->name;
+    if (n > most_pieces) {
+        faults.push_back({"mesh-self-contact", "",
+                          name + ": the surface has " + std::to_string(n) +
+                              " separate pieces, too many to see whether they lie in each other",
+                          "", std::to_string(most_pieces), "", "divide it into several meshes"});
+        return;
+    }
+    std::vector<Piece> pieces = make_pieces(f, piece_of, n);
+    find_depths(f, pieces, false);
+    for (const Piece& piece : pieces) {
+        const std::string which = "the piece of " + std::to_string(piece.faces.size()) + " faces with " +
+                                  name_of_face(*f.mesh, piece.faces.front());
+        if (!(piece.volume != 0)) {
+            faults.push_back({"mesh-inverted", "", name + ": " + which + " holds no volume", "", "", "", ""});
+            return;
+        }
+        if (piece.depth == (piece.volume > 0 ? 0 : 1)) continue;
+        const bool is_in = piece.depth > 0;
+        if (piece.volume < 0)
+            faults.push_back({"mesh-inverted", "",
+                              name + ": " + which + " is turned inside out, and is no hollow", "", "",
+                              "seen from outside the corners of every face go round against the clock",
+                              "turn it; a scenario does with `turn = true`"});
+        else
+            faults.push_back(
+                {"mesh-self-contact", "",
+                 name + ": " + which + " lies " +
+                     (is_in ? "in another one, whose mass would count twice" : "in a hollow that is none"),
+                 "", "", "", "turn it inside out if it is a hollow, or leave it out"});
+        return;
+    }
+}
+
+void turn_outwards(Mesh& mesh)
+{
+    if (mesh.is_volume()) return turn_volumes(mesh);
+    std::vector<Complaint> ignored;
+    Facets f = facets_of(mesh);
+    Links links = link(f, ignored);
+    std::vector<bool> is_turned(f.n_faces(), false);
+    agree(f, links, is_turned);
+    turn_faces(mesh, is_turned);
+    f = facets_of(mesh);
+    links = link(f, ignored);
+    std::int32_t n = 0;
+    const std::vector<std::int32_t> piece_of = pieces_of(f, links, n);
+    if (n > most_pieces) return;
+    std::vector<Piece> pieces = make_pieces(f, piece_of, n);
+    find_depths(f, pieces, true);
+    std::fill(is_turned.begin(), is_turned.end(), false);
+    for (const Piece& piece : pieces)
+        if ((piece.volume > 0) != (piece.depth % 2 == 0))
+            for (const std::int32_t face : piece.faces) is_turned[face] = true;
+    turn_faces(mesh, is_turned);
+}
+
+}   // namespace livens

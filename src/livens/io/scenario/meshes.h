@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The meshes that a scenario names: each is read, checked and integrated once.
+#pragma once
+
+#include <array>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "livens/geometry/moments.h"
+#include "livens/io/scenario.h"
+
+namespace livens {
+
+/// What a scenario takes of a mesh, in the mesh's unit. Bodies need no more, so that a run can do without the
+/// file.
+struct ReducedMesh {
+    Moments whole;
+    std::vector<std::pair<std::string, Moments>> regions;   ///< of volume, by name
+    std::vector<NamedSurface> surfaces;                     ///< the whole first, if it is known
+    /// Its surface about the centroid, for pictures; empty where it has more than most_shown triangles.
+    std::vector<Vector3> points;
+    std::vector<std::array<int, 3>> triangles;
+};
+inline constexpr std::int64_t most_shown = 5000;
+
+/// What is left of a sound mesh.
+ReducedMesh reduced(const Mesh& mesh);
+
+class MeshStore {
+public:
+    explicit MeshStore(MeshSource source);
+
+    /// Of a path as the scenario has it; with `is_turned` what faces inwards is turned. Throws InputError:
+    /// `mesh-path`, `mesh-file`, and what the mesh is refused for.
+    const ReducedMesh& find(const std::string& path, bool is_turned);
+
+    /// All that was asked for, as MeshSource::kept.
+    std::string kept() const;
+
+private:
+    using Key = std::pair<std::string, bool>;
+    ReducedMesh load(const std::string& path, bool is_turned) const;
+
+    MeshSource source_;
+    std::map<Key, ReducedMesh> known_;
+    std::map<Key, ReducedMesh> kept_;   ///< of a run
+};
+
+}   // namespace livens

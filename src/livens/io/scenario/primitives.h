@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Shapes that are stated by a few lengths.
+#pragma once
+
+#include "livens/io/scenario.h"
+#include "livens/io/scenario/section.h"
+
+namespace livens {
+
+struct Primitive {
+    Key key;
+    MassProperties (*make)(double density, const Section& shape);
+    Outline (*outline)(const Section& shape);
+};
+const std::vector<Primitive>& primitives();
+const Primitive* find_primitive(std::string_view key);
+
+}   // namespace livens

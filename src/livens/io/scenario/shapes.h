@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// `shape` of a body: primitives, meshes and unions of both.
+#pragma once
+
+#include "livens/io/scenario/builder.h"
+#include "livens/multibody/solid.h"
+
+namespace livens {
+
+/// What a shape comes to.
+struct Solid {
+    MassProperties properties;     ///< with the body's density, 1 kg/m^3 without one
+    bool has_own_origin = false;   ///< its centre of mass is where it lies, not at the origin
+    Outline outline;
+    std::vector<NamedSurface> surfaces;   ///< of meshes, in the coordinates of the shape
+};
+
+Table shape_table();
+bool is_point_mass(const Section& body);
+/// Reports what is wrong with a shape without looking into its meshes.
+bool check_shape(const Section& shape);
+/// Of a body; empty without a shape and for point masses. Throws InputError.
+Solid read_shape(const Section& body, MeshStore& meshes);
+
+}   // namespace livens

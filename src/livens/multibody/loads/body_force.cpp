@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "livens/multibody/detail/load_values.h"
+#include "livens/multibody/surface_loads.h"
+
+namespace livens {
+
+Load body_force(const std::string& name, int body, const Matrix4& mass_matrix, const TimeVector& value,
+                Frame frame)
+{
+    return uniform_load(name, "body_force", body, mass_matrix.column(0), value, frame, "m/s^2");
+}
+
+}   // namespace livens
