@@ -6,3 +6,8 @@ find_package(CLI11 REQUIRED)
 find_path(LIVENS_TOML_INCLUDE_DIR toml++/toml.h REQUIRED)
 add_library(livens_toml INTERFACE)
 target_include_directories(livens_toml SYSTEM INTERFACE ${LIVENS_TOML_INCLUDE_DIR})
+
+# Compresses the numbers of a report. Linked only, as UMFPACK is: no public header mentions it.
+find_package(ZLIB REQUIRED)
+add_library(livens_zlib INTERFACE)
+target_link_libraries(livens_zlib INTERFACE $<BUILD_INTERFACE:ZLIB::ZLIB> $<INSTALL_INTERFACE:z>)

@@ -8,7 +8,7 @@ if(LIVENS_UMFPACK)
     list(APPEND libraries livens_umfpack)
 endif()
 if(LIVENS_BUILD_PROGRAM)
-    list(APPEND libraries livens_io)
+    list(APPEND libraries livens_io livens_zlib)
     install(TARGETS livens RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
     # Where the shells and man look without being told.
     install(FILES ${livens_pages}/livens.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
@@ -22,7 +22,7 @@ install(TARGETS ${libraries} EXPORT livens-targets ARCHIVE DESTINATION ${CMAKE_I
 # What users include, and no insides: tests/install/headers.txt lists it.
 install(DIRECTORY src/livens DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h"
         PATTERN "detail" EXCLUDE PATTERN "results" EXCLUDE PATTERN "scenario" EXCLUDE
-        PATTERN "exports" EXCLUDE
+        PATTERN "exports" EXCLUDE PATTERN "report" EXCLUDE
         PATTERN "lobatto" EXCLUDE PATTERN "mixed" EXCLUDE PATTERN "stepping" EXCLUDE
         PATTERN "dense.h" EXCLUDE PATTERN "elementary.h" EXCLUDE PATTERN "projection.h" EXCLUDE PATTERN "time_space.h" EXCLUDE
         PATTERN "constraint_basis.h" EXCLUDE PATTERN "instant.h" EXCLUDE PATTERN "rank.h" EXCLUDE
@@ -30,6 +30,7 @@ install(DIRECTORY src/livens DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCH
         PATTERN "linear_solver.h" EXCLUDE PATTERN "newton.h" EXCLUDE PATTERN "ends.h" EXCLUDE PATTERN "guess.h"
         EXCLUDE PATTERN "window.h" EXCLUDE PATTERN "windows.h" EXCLUDE PATTERN "accuracy.h" EXCLUDE
         PATTERN "pace.h" EXCLUDE PATTERN "phases.h" EXCLUDE PATTERN "second.h" EXCLUDE PATTERN "largest.h" EXCLUDE
+        PATTERN "acceptance_bounds.h" EXCLUDE
         PATTERN "forest.h" EXCLUDE PATTERN "joint_factor.h" EXCLUDE PATTERN "row_pattern.h" EXCLUDE PATTERN "sparse_rows.h" EXCLUDE
         PATTERN "small_motions.h" EXCLUDE PATTERN "statics.h" EXCLUDE
         PATTERN "lanes.h" EXCLUDE PATTERN "lane_rows.h" EXCLUDE PATTERN "lane_arithmetic.h" EXCLUDE)

@@ -143,6 +143,23 @@ void add_run_commands(CLI::App& app, Arguments& a)
     add_common(diff, a);
 }
 
+void add_report_commands(CLI::App& app, Arguments& a)
+{
+    CLI::App& report = add_command(app, a, "report", "Write a page for browsers: picture, plots, quality");
+    CLI::App& view = add_command(app, a, "view", "Show that page in the browser, served from here alone");
+    for (CLI::App* command : {&report, &view}) {
+        command->add_option("RUN", a.report.run, "result file")->required()->type_name("RUN.nc");
+        command->add_option("OTHER", a.report.other, "result file to compare it with")->type_name("RUN.nc");
+        add_common(*command, a);
+    }
+    report.add_option("-o,--output", a.report.output, "page; default: the run's stem with .html, here")
+        ->type_name("FILE.html");
+    view.add_option("--port", a.report.port, "on 127.0.0.1; default: any that is free")
+        ->check(CLI::Range(1, 65535))
+        ->type_name("N");
+    view.add_flag("--address", a.report.address_only, "print the address and open no browser");
+}
+
 void add_other_commands(CLI::App& app, Arguments& a)
 {
     CLI::App& schema = add_command(app, a, "schema", "Print the schema of scenarios");
@@ -200,6 +217,7 @@ void declare(CLI::App& app, Arguments& arguments)
     add_mass_command(app, arguments);
     add_rest_commands(app, arguments);
     add_run_commands(app, arguments);
+    add_report_commands(app, arguments);
     add_other_commands(app, arguments);
     app.footer(footer());
 }

@@ -27,6 +27,7 @@ struct Arguments {
     std::string run;
     SampleArguments sample;
     ExportArguments exports;
+    ReportArguments report;
     DiffArguments diff;
     std::string name;   ///< of a new scenario
     bool schema_json = false;

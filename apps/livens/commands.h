@@ -71,6 +71,18 @@ struct ExportArguments {
 };
 int export_command(const ExportArguments& arguments, const Common& common);
 
+struct ReportArguments {
+    std::string run;
+    std::string other;    ///< that it is compared with; empty: none
+    std::string output;   ///< HTML file; of `report` alone
+    int port = 0;         ///< of `view` alone; 0: one that is free
+    bool address_only = false;   ///< of `view`: no browser
+};
+int report_command(const ReportArguments& arguments, const Common& common);
+int view_command(const ReportArguments& arguments, const Common& common);
+/// The page of a run, or of two.
+std::string report_of(const ReportArguments& arguments);
+
 struct DiffArguments {
     std::string first, second;   ///< result files
     std::string rtol = "1e-6";   ///< as typed

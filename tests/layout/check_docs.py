@@ -75,10 +75,10 @@ def check_notation(root):
 
 
 def documents(root):
-    """The project's own: nothing below a build folder or a hidden one."""
+    """The project's own: nothing below a build folder, a hidden one or packages of others."""
     for path in sorted(root.rglob("*.md")):
         parts = path.relative_to(root).parts
-        if not any(part.startswith(".") for part in parts) and parts[0] != "build":
+        if not any(part.startswith(".") or part == "node_modules" for part in parts) and parts[0] != "build":
             yield path
 
 

@@ -39,6 +39,7 @@ FOREIGN = [
     (r"toml\+\+/|toml\.hpp", {"io"}),
     (r"netcdf|hdf5|H5", set()),   # io reads and writes it itself
     (r"fmt/", {"io", "apps"}),
+    (r"zlib", {"io"}),
     (r"CLI/", {"apps"}),
     (r"spdlog/", set()),
     (r"gtest/|gmock/|benchmark/", set()),

@@ -415,3 +415,27 @@ livens_mutant(NAME mesh_by_a_link
               NEW [[if (file.empty())]]
               TESTS_OF unit_io
               MUST_FAIL MeshScenario.RefusesWhatItMustNotRead)
+
+# A page served to the whole network instead of this machine.
+livens_mutant(NAME view_everywhere
+              FILE apps/livens/view.cpp
+              OLD [[htonl(INADDR_LOOPBACK)]]
+              NEW [[htonl(INADDR_ANY)]]
+              TESTS_OF livens
+              MUST_FAIL report_test.View.test_serves_the_page_here_and_nothing_else)
+
+# Pages of other sites may ask for it by a name of their own.
+livens_mutant(NAME view_any_host
+              FILE apps/livens/view.cpp
+              OLD [[is_ours = (is_get || is_head) && asks_this_host(head, port)]]
+              NEW [[is_ours = is_get || is_head]]
+              TESTS_OF livens
+              MUST_FAIL report_test.View.test_serves_the_page_here_and_nothing_else)
+
+# Directors that are not orthonormal as quaternions: a picture of another motion.
+livens_mutant(NAME report_free_directors
+              FILE io/report/poses.cpp
+              OLD [[orthonormal = 1e-14]]
+              NEW [[orthonormal = 1e-2]]
+              TESTS_OF livens
+              MUST_FAIL report_test.Report.test_directors_that_are_free_are_kept_whole)

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Bodies by their surfaces, and how far they reach through the motion.
+import {
+  BufferAttribute,
+  BufferGeometry,
+  Color,
+  EdgesGeometry,
+  LineBasicMaterial,
+  Matrix4,
+  MeshPhongMaterial,
+  Vector3,
+} from "three";
+import { Instances, Poses, as_lines, vector } from "./instances";
+import type { Run } from "./run";
+import { body_colour, theme } from "./theme";
+
+const looks = 1500; // instants that are looked at
+const most_looks = 30000; // times bodies
+const edge_angle = 28; // degrees between faces
+
+/** Forms and their edges; a ghost is what another run is shown as. */
+export function make_bodies(run: Run, is_ghost: boolean): Instances[] {
+  const layers: Instances[] = [];
+  for (let k = 0; k < run.meta.shapes; ++k) {
+    const geometry = new BufferGeometry();
+    geometry.setAttribute("position", new BufferAttribute(run.array(`points ${k}`) as Float32Array, 3));
+    geometry.setAttribute("normal", new BufferAttribute(run.array(`normals ${k}`) as Float32Array, 3));
+    geometry.setIndex(new BufferAttribute(run.array(`corners ${k}`) as Uint32Array, 1));
+    const places = run.meta.bodies.flatMap((body, b) => {
+      if (body.shape !== k) return [];
+      const local = new Matrix4().makeTranslation(...body.middle).scale(vector(body.half));
+      return [{ body: b, local, colour: new Color(is_ghost ? theme().ghost : body_colour(b)) }];
+    });
+    const ghostly = is_ghost ? { transparent: true, opacity: 0.4, depthWrite: false } : {};
+    layers.push(
+      new Instances(
+        geometry,
+        new MeshPhongMaterial({ specular: 0x222222, shininess: 40, ...ghostly }),
+        places,
+      ),
+    );
+    const edges = new LineBasicMaterial({
+      color: theme().edge,
+      transparent: true,
+      opacity: is_ghost ? 0.3 : 0.55,
+    });
+    const bare = places.map(({ body, local }) => ({ body, local }));
+    layers.push(as_lines(new Instances(new EdgesGeometry(geometry, edge_angle), edges, bare)));
+  }
+  return layers;
+}
+
+/** Points of a form that reach as far as it does in every direction. */
+function corners_of(run: Run, shape: number): Vector3[] {
+  const all = run.array(`points ${shape}`),
+    points = new Map<string, Vector3>();
+  for (let i = 0; i < all.length; i += 3) {
+    const p = new Vector3(all[i], all[i + 1], all[i + 2]);
+    points.set(
+      p
+        .toArray()
+        .map((x) => x.toFixed(4))
+        .join(),
+      p,
+    );
+  }
+  if (points.size <= 16) return [...points.values()];
+  const far = new Set<Vector3>();
+  for (let k = 0; k < 27; ++k) {
+    const way = new Vector3((k % 3) - 1, (Math.floor(k / 3) % 3) - 1, Math.floor(k / 9) - 1);
+    if (way.lengthSq() > 0)
+      far.add([...points.values()].reduce((best, p) => (p.dot(way) > best.dot(way) ? p : best)));
+  }
+  return [...far];
+}
+
+/** x, y, z of all that must be seen: corners of bodies through the motion, joints and springs at the world. */
+export function extent_of(run: Run): Float32Array {
+  const { meta, motion } = run,
+    all: number[] = [],
+    p = new Vector3(),
+    poses = new Poses(motion.bodies);
+  const corners = Array.from({ length: meta.shapes }, (_, k) => corners_of(run, k)),
+    span = motion.end - motion.start;
+  const n = span > 0 ? Math.max(12, Math.min(looks, Math.ceil(most_looks / (meta.bodies.length + 1)))) : 1;
+  for (let k = 0; k < n; ++k) {
+    motion.at(motion.start + (n > 1 ? k / (n - 1) : 0) * span, poses.X);
+    poses.update();
+    meta.bodies.forEach((body, b) => {
+      for (const corner of corners[body.shape]) {
+        p.copy(corner).multiply(vector(body.half)).add(vector(body.middle)).applyMatrix4(poses.matrices[b]);
+        if (Number.isFinite(p.x + p.y + p.z)) all.push(p.x, p.y, p.z);
+      }
+    });
+  }
+  for (const joint of meta.joints) if (joint.first < 0) all.push(...joint.point_first);
+  for (const spring of run.springs) if (spring.second < 0) all.push(...spring.point_second!);
+  return Float32Array.from(all.length ? all : [-1, -1, -1, 1, 1, 1]);
+}

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What stands in the page: one JSON text and one block of numbers a run. src/livens/io/report writes both.
+
+export type Vector = [number, number, number];
+
+export interface Body {
+  name: string;
+  point: boolean;
+  mark: boolean;
+  mass: number;
+  shape: number;
+  middle: Vector;
+  half: Vector;
+  centre: Vector;
+}
+export interface Joint {
+  name: string;
+  type: string;
+  first: number;
+  second: number;
+  point_first: Vector;
+  point_second: Vector;
+  axis_first: Vector;
+  axis_second: Vector;
+}
+export interface Load {
+  name: string;
+  type: string;
+  first: number;
+  second: number;
+  point_first: Vector | null;
+  point_second: Vector | null;
+}
+export interface Sensor {
+  name: string;
+  type: string;
+  components: string[];
+}
+export interface Channel {
+  kind: string;
+  index: number;
+  name: string;
+  unit: string;
+}
+
+export interface Meta {
+  name: string;
+  title: string;
+  status: string;
+  message: string;
+  converged: boolean;
+  notes: string[];
+  method: string;
+  version: string;
+  constraints_hold_at: string;
+  scenario: string;
+  options: unknown;
+  figures: Record<string, number | null>;
+  start: number;
+  end: number;
+  wanted_end: number;
+  pose: {
+    precision: "double" | "single" | "thinned";
+    position_loss: number | null;
+    orientation_loss: number | null;
+    elements: number;
+    degree: number;
+    continuous: boolean;
+    nodes: number[];
+    forms: number[];
+  };
+  bodies: Body[];
+  joints: Joint[];
+  loads: Load[];
+  sensors: Sensor[];
+  shapes: number;
+  gravity: Vector;
+  length: number;
+  curves: { every: boolean; nodes: number[] };
+  channels: Channel[];
+  quality: { bounds: Record<string, number>; worst_body: number; every: boolean; series: string[] };
+  arrays: Record<string, ["f8" | "f4" | "u4", number]>;
+}
+
+export type Numbers = Float64Array | Float32Array | Uint32Array;
+export interface Data {
+  meta: Meta;
+  arrays: Map<string, Numbers>;
+}
+
+async function inflated(base64: string): Promise<Uint8Array> {
+  const text = atob(base64);
+  const bytes = new Uint8Array(text.length);
+  for (let i = 0; i < text.length; ++i) bytes[i] = text.charCodeAt(i);
+  const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"));
+  return new Uint8Array(await new Response(stream).arrayBuffer());
+}
+
+/** Bytes of one significance lie together. */
+function unshuffled(bytes: Uint8Array, at: number, size: number, count: number): ArrayBuffer {
+  const plain = new Uint8Array(size * count);
+  for (let k = 0; k < size; ++k)
+    for (let i = 0, from = at + k * count, to = k; i < count; ++i, to += size) plain[to] = bytes[from + i];
+  return plain.buffer;
+}
+
+/** All runs that a page holds: this one, or another report that was read from a file. */
+export async function runs_of(page: ParentNode): Promise<Data[]> {
+  const texts = [...page.querySelectorAll("script.run")],
+    blocks = [...page.querySelectorAll("script.numbers")];
+  return Promise.all(
+    texts.map(async (text, i) => {
+      const meta = JSON.parse(text.textContent ?? "") as Meta;
+      const bytes = await inflated((blocks[i].textContent ?? "").trim());
+      const arrays = new Map<string, Numbers>();
+      let at = 0;
+      for (const [name, [kind, count]] of Object.entries(meta.arrays)) {
+        const size = kind === "f8" ? 8 : 4,
+          plain = unshuffled(bytes, at, size, count);
+        arrays.set(
+          name,
+          kind === "f8"
+            ? new Float64Array(plain)
+            : kind === "f4"
+              ? new Float32Array(plain)
+              : new Uint32Array(plain),
+        );
+        at += size * count;
+      }
+      return { meta, arrays };
+    }),
+  );
+}

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Joints by kind along their axes, on feet where they hold to the world; sticks of bodies without a shape.
+import {
+  BoxGeometry,
+  BufferGeometry,
+  Color,
+  CylinderGeometry,
+  InstancedMesh,
+  Matrix4,
+  MeshPhongMaterial,
+  Object3D,
+  Quaternion,
+  SphereGeometry,
+  Vector3,
+} from "three";
+import { has_bar, has_foot, pieces_of, type Part, type Piece } from "./glyphs";
+import { Instances, Poses, unit_z, vector, type Place } from "./instances";
+import type { Run } from "./run";
+import { body_colour, theme } from "./theme";
+
+const many = 30; // joints that are drawn with fewer sides
+
+export class Joints {
+  readonly objects: Object3D[] = [];
+  private readonly places: Record<Part, Place[]> = { box: [], cylinder: [], ball: [] };
+  private readonly layers: Instances[] = [];
+  private readonly bars: { first: number; second: number; a: Vector3; b: Vector3 }[] = [];
+  private bar_mesh: InstancedMesh | null = null;
+  private readonly grey = new Color(theme().joint);
+  private readonly fixed = new Color(theme().foot);
+
+  /** `radius`: of a pin, m. */
+  constructor(
+    private readonly run: Run,
+    private readonly radius: number,
+  ) {
+    this.add_joints();
+    this.add_sticks();
+    const sides = run.meta.joints.length > many ? 10 : 28;
+    const forms: Record<Part, BufferGeometry> = {
+      box: new BoxGeometry(2, 2, 2),
+      cylinder: new CylinderGeometry(1, 1, 2, sides).rotateX(Math.PI / 2),
+      ball: new SphereGeometry(1, sides, sides / 2),
+    };
+    const material = new MeshPhongMaterial({ specular: 0x222222, shininess: 40 });
+    for (const part of Object.keys(forms) as Part[])
+      if (this.places[part].length) this.layers.push(new Instances(forms[part], material, this.places[part]));
+    if (this.bars.length) {
+      this.bar_mesh = new InstancedMesh(
+        forms.cylinder,
+        new MeshPhongMaterial({ color: this.grey }),
+        this.bars.length,
+      );
+      this.bar_mesh.frustumCulled = false;
+      this.objects.push(this.bar_mesh);
+    }
+    this.objects.push(...this.layers.map((layer) => layer.mesh));
+  }
+
+  private put(piece: Piece, body: number, at: Vector3, axis: Vector3, colour: Color) {
+    const turn = new Quaternion().setFromUnitVectors(
+      unit_z,
+      axis.lengthSq() > 0 ? axis.clone().normalize() : unit_z,
+    );
+    const aside = new Vector3(...(piece.at ?? [0, 0, 0])).multiplyScalar(this.radius).applyQuaternion(turn);
+    const local = new Matrix4().compose(
+      at.clone().add(aside),
+      turn,
+      new Vector3(...piece.half).multiplyScalar(this.radius),
+    );
+    this.places[piece.part].push({ body, colour, local });
+  }
+
+  private add_joints() {
+    const { run, grey, fixed } = this;
+    for (const joint of run.meta.joints) {
+      const first = vector(joint.point_first),
+        second = vector(joint.point_second);
+      for (const piece of pieces_of(joint.type)) {
+        if (piece.on === "first")
+          this.put(piece, joint.first, first, vector(joint.axis_first), joint.first < 0 ? fixed : grey);
+        else this.put(piece, joint.second, second, vector(joint.axis_second), grey);
+      }
+      if (joint.first < 0 && has_foot(joint.type)) {
+        this.put({ part: "cylinder", half: [0.55, 0.55, 1.5], at: [0, 0, -1.5] }, -1, first, run.up, fixed);
+        this.put({ part: "box", half: [2.4, 2.4, 0.3], at: [0, 0, -3.2] }, -1, first, run.up, fixed);
+      }
+      if (has_bar(joint.type))
+        this.bars.push({ first: joint.first, second: joint.second, a: first, b: second });
+    }
+    for (const spring of run.springs)
+      if (spring.second < 0)
+        this.put({ part: "box", half: [1.4, 1.4, 1.4] }, -1, vector(spring.point_second!), run.up, fixed);
+  }
+
+  /** From the centre of a body to its joints. */
+  private add_sticks() {
+    const { bodies, joints, length } = this.run.meta,
+      thick = 0.45 * this.radius;
+    bodies.forEach((body, b) => {
+      if (!body.mark || body.point) return;
+      for (const joint of joints) {
+        if (joint.first !== b && joint.second !== b) continue;
+        const centre = vector(body.centre),
+          arm = vector(joint.first === b ? joint.point_first : joint.point_second).sub(centre);
+        const size = arm.length();
+        if (size < 1e-9 * length) continue;
+        const turn = new Quaternion().setFromUnitVectors(unit_z, arm.clone().normalize());
+        const local = new Matrix4().compose(
+          centre.addScaledVector(arm, 0.5),
+          turn,
+          new Vector3(thick, thick, size / 2),
+        );
+        this.places.cylinder.push({ body: b, colour: new Color(body_colour(b)), local });
+      }
+    });
+  }
+
+  move(poses: Poses, is_shown: boolean) {
+    for (const object of this.objects) object.visible = is_shown;
+    if (!is_shown) return;
+    for (const layer of this.layers) layer.move(poses);
+    const m = new Matrix4(),
+      r = 0.6 * this.radius;
+    this.bars.forEach(({ first, second, a, b }, i) => {
+      const from = poses.place(first, a),
+        arm = poses.place(second, b).sub(from),
+        length = arm.length();
+      const turn = new Quaternion().setFromUnitVectors(
+        unit_z,
+        length > 0 ? arm.clone().divideScalar(length) : unit_z,
+      );
+      this.bar_mesh!.setMatrixAt(
+        i,
+        m.compose(from.addScaledVector(arm, 0.5), turn, new Vector3(r, r, length / 2)),
+      );
+    });
+    if (this.bar_mesh) this.bar_mesh.instanceMatrix.needsUpdate = true;
+  }
+}

@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The report: reads what lies in the page and ties picture, plots, time, tabs and keys together.
+import { build_about } from "./about";
+import { Compare } from "./compare";
+import { runs_of } from "./data";
+import { Picture } from "./picture";
+import { Playback } from "./playback";
+import type { Plot } from "./plot";
+import { PlotList } from "./plot_list";
+import { build_quality } from "./quality";
+import { Run } from "./run";
+import { Scrub } from "./scrub";
+import { Tabs, tab_names } from "./tabs";
+import { by_id, element } from "./text";
+import { dark_wanted, set_printing } from "./theme";
+import { Timeline } from "./timeline";
+import { verdict_of } from "./verdict";
+
+const half_of_a_page = 335; // px, of A4 and of letter
+
+class Report {
+  readonly time: Timeline;
+  readonly picture: Picture;
+  readonly playback: Playback;
+  private readonly scrub: Scrub;
+  private readonly list: PlotList;
+  private readonly compare: Compare;
+  private readonly tabs: Tabs;
+  private quality: Plot[] | null = null;
+
+  constructor(
+    readonly run: Run,
+    other: Run | undefined,
+  ) {
+    const { motion } = run;
+    this.time = new Timeline(motion.start, motion.end);
+    say_verdict(run);
+    this.picture = new Picture(run, this.time);
+    this.list = new PlotList(run, this.time);
+    this.playback = new Playback(this.time);
+    this.scrub = new Scrub(
+      this.time,
+      motion.ends,
+      run.meta.pose.precision === "thinned" ? "part" : "element",
+      () => this.playback.stop(),
+    );
+    this.compare = new Compare(by_id("compare"), run, this.time, (second) => this.picture.compare(second));
+    const script = document.querySelector('script[type="module"]')!.textContent ?? "";
+    const { version } = JSON.parse(by_id("program").textContent ?? "{}") as { version: string };
+    build_about(by_id("about"), run, version, /\/\*!([\s\S]*?)\*\//.exec(script)?.[1].trim() ?? "");
+    this.time.on_move((t) => {
+      for (const plot of this.plots()) plot.show(t);
+    });
+    this.time.on_zoom(() => {
+      for (const plot of this.plots()) plot.zoom();
+    });
+    this.tabs = new Tabs((name) => {
+      if (name === "quality") this.build_quality();
+      this.layout();
+    });
+    if (other) this.compare.set(other);
+    this.tabs.open("motion");
+    this.listen();
+    this.read_address();
+  }
+
+  private plots(): Plot[] {
+    return [...this.list.plots, ...(this.quality ?? []), ...this.compare.plots];
+  }
+  private build_quality() {
+    this.quality ??= build_quality(by_id("quality"), this.run, this.time);
+  }
+
+  private layout() {
+    this.picture.resize();
+    this.scrub.draw_ruler();
+    for (const plot of this.plots()) plot.resize();
+    this.time.set(this.time.now);
+  }
+  private recolour() {
+    for (const plot of this.plots()) plot.recolour();
+  }
+
+  private listen() {
+    addEventListener("resize", () => this.layout());
+    addEventListener("keydown", (e) => this.press(e));
+    addEventListener("hashchange", () => this.read_address());
+    dark_wanted.addEventListener("change", () => {
+      this.picture.build();
+      this.recolour();
+      this.layout();
+    });
+    addEventListener("beforeprint", () => {
+      set_printing(true); // paper is white
+      by_id("quality").hidden = false;
+      this.build_quality();
+      this.recolour();
+      for (const plot of this.plots()) plot.set_width(half_of_a_page);
+      this.picture.print_stills(by_id("paper"));
+    });
+    addEventListener("afterprint", () => {
+      set_printing(false);
+      this.recolour();
+      this.tabs.open(tab_names.find((tab) => by_id(`tab-${tab}`).ariaSelected === "true") ?? "motion");
+    });
+  }
+
+  private press(e: KeyboardEvent) {
+    const target = e.target as HTMLElement,
+      { time, playback, scrub } = this;
+    if (e.ctrlKey || e.metaKey || e.altKey) return;
+    if (target.matches("input, select, textarea, summary") && !scrub.is(target)) return;
+    if (e.key === " " && target.matches("button")) return; // presses it
+    const is_scrolling = /^(Home|End|Page)/.test(e.key) && by_id("motion").hidden;
+    const step = (time.span / 500) * (e.shiftKey ? 10 : 1);
+    const by_hand = (act: () => void) => () => {
+      playback.stop();
+      act();
+    };
+    const actions: Record<string, () => void> = {
+      " ": () => playback.toggle(),
+      ArrowLeft: by_hand(() => time.set(time.now - step)),
+      ArrowRight: by_hand(() => time.set(time.now + step)),
+      Home: by_hand(() => time.set(time.start)),
+      End: by_hand(() => time.set(time.end)),
+      PageUp: by_hand(() => scrub.step_element(-1)),
+      PageDown: by_hand(() => scrub.step_element(1)),
+      "+": () => time.zoom_by(0.5),
+      "=": () => time.zoom_by(0.5),
+      "-": () => time.zoom_by(2),
+      "0": () => {
+        time.zoom(null);
+        this.picture.stage?.eye.fit("fitted");
+      },
+    };
+    tab_names.forEach((tab, i) => {
+      actions[String(i + 1)] = () => this.tabs.open(tab);
+    });
+    if (!actions[e.key] || is_scrolling) return;
+    e.preventDefault();
+    actions[e.key]();
+  }
+
+  /** #t=1.62&tab=quality */
+  private read_address() {
+    const asked = new URLSearchParams(location.hash.slice(1)),
+      t = Number(asked.get("t") ?? NaN),
+      tab = asked.get("tab") ?? "";
+    if (Number.isFinite(t)) this.time.set(t);
+    if (tab_names.includes(tab)) this.tabs.open(tab);
+  }
+}
+
+function say_verdict(run: Run) {
+  const v = verdict_of(run);
+  by_id("title").textContent = run.name;
+  by_id("verdict").append(
+    element("span", { class: `chip ${v.grade}` }, `${v.sign} ${v.word}`),
+    v.digits ? element("strong", {}, v.digits) : "",
+    element("small", {}, v.rest),
+    ...v.reasons.slice(0, 3).map((reason) => element("span", { class: "reason" }, reason)),
+  );
+}
+
+/** What tests ask. */
+function open_to_tests(report: Report, timings: Record<string, number>) {
+  const { run, time, picture } = report,
+    { motion } = run,
+    X = new Float64Array(12 * motion.bodies);
+  Object.assign(window, {
+    livensReport: {
+      setTime: (t: number) => time.set(t),
+      now: () => time.now,
+      isPlaying: () => report.playback.is_playing,
+      range: () => time.range,
+      poses: (t: number) => Array.from(motion.at(t, X)),
+      bodies: run.meta.bodies.map((b) => b.name),
+      curve: (kind: string, index: number, name: string, t: number) =>
+        run.curves.at(run.channel(kind, index, name), t),
+      camera: () => picture.stage?.eye.camera.position.toArray(),
+      has_picture: picture.stage !== null,
+      timings,
+      /** Mean milliseconds of a frame, every one waited for, and draw calls of the last. */
+      frames(n: number) {
+        if (!picture.stage) return null;
+        const { renderer } = picture.stage,
+          gl = renderer.getContext(),
+          pixel = new Uint8Array(4),
+          begun = performance.now();
+        for (let k = 0; k < n; ++k) {
+          picture.stage.show(time.start + (k / n) * time.span);
+          gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel);
+        }
+        return { ms: (performance.now() - begun) / n, calls: renderer.info.render.calls };
+      },
+    },
+  });
+}
+
+async function start() {
+  const begun = performance.now(),
+    runs = (await runs_of(document)).map((data) => new Run(data)),
+    unpacked = performance.now();
+  const report = new Report(runs[0], runs[1]),
+    ready = performance.now();
+  open_to_tests(report, {
+    unpack_ms: unpacked - begun,
+    build_ms: ready - unpacked,
+    since_navigation_ms: ready,
+  });
+}
+
+start().catch((error: unknown) => {
+  const why = error instanceof Error ? error.message : String(error);
+  by_id("verdict").append(
+    element(
+      "strong",
+      { class: "bad" },
+      `This page could not be shown: ${why}. It needs a browser of 2023 or later.`,
+    ),
+  );
+  throw error;
+});

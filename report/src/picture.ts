@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The picture with what lies about it: names, scales, switches. Without WebGL plots stand alone.
+import type { Side } from "./camera";
+import type { Run } from "./run";
+import { Stage, type Shown } from "./stage";
+import { by_id, element, number, seconds } from "./text";
+import { body_colour, theme } from "./theme";
+import type { Timeline } from "./timeline";
+
+const few = 8; // bodies that carry their names unless asked otherwise, twice the joints whose forces are shown
+const most_names = 60;
+
+export class Picture {
+  stage: Stage | null = null;
+  private readonly shown: Shown;
+  private readonly labels: HTMLElement[];
+  private other: Run | null = null;
+
+  constructor(
+    private readonly run: Run,
+    private readonly time: Timeline,
+  ) {
+    const { bodies } = run.meta;
+    this.shown = {
+      trails: true,
+      forces: run.forces.length <= 2 * few,
+      joints: true,
+      names: bodies.length <= few,
+      frames: false,
+      other: true,
+    };
+    this.labels = bodies.slice(0, most_names).map((body) => element("span", {}, body.name));
+    by_id("labels").append(...this.labels);
+    this.build();
+    this.listen();
+    time.on_move((t) => this.stage?.show(t));
+  }
+
+  /** Also anew, where colours change. */
+  build() {
+    by_id("space").querySelector("canvas")?.remove();
+    this.stage?.renderer.dispose();
+    this.stage = null;
+    this.labels.forEach((label, b) => {
+      label.style.borderColor = body_colour(b);
+    });
+    const canvas = element("canvas", {
+      id: "stage",
+      tabindex: "0",
+      role: "img",
+      "aria-label": described(this.run),
+    });
+    try {
+      by_id("space").prepend(canvas);
+      this.stage = new Stage(canvas, this.run);
+    } catch (error) {
+      canvas.remove();
+      by_id("motion").classList.add("flat");
+      const why = error instanceof Error ? error.message : String(error);
+      by_id("space").before(
+        element(
+          "p",
+          { id: "no3d", class: "bad" },
+          `There is no picture in space: ${why} Everything else is here.`,
+        ),
+      );
+      return;
+    }
+    this.stage.shown = this.shown;
+    this.stage.after_draw = () => this.place_labels();
+    if (this.other) this.stage.compare(this.other);
+    this.write_caption();
+  }
+
+  private listen() {
+    for (const what of Object.keys(this.shown) as (keyof Shown)[]) {
+      const box = by_id<HTMLInputElement>(`show-${what}`);
+      box.checked = this.shown[what];
+      box.addEventListener("change", () => {
+        this.shown[what] = box.checked;
+        this.write_caption();
+        this.time.set(this.time.now);
+      });
+    }
+    const wide = matchMedia("(min-width: 1000px)"),
+      fold = () => {
+        by_id<HTMLDetailsElement>("show").open = wide.matches;
+      };
+    wide.addEventListener("change", fold);
+    fold();
+    for (const side of ["fitted", "front", "side", "top"] as Side[])
+      by_id(`view-${side}`).addEventListener("click", () => this.stage?.eye.fit(side));
+  }
+
+  compare(other: Run | null) {
+    this.other = other;
+    by_id("other-label").hidden = other === null;
+    this.stage?.compare(other);
+  }
+  resize() {
+    const { clientWidth, clientHeight } = by_id("space");
+    if (clientWidth > 0 && clientHeight > 0) this.stage?.resize(clientWidth, clientHeight);
+  }
+
+  private place_labels() {
+    by_id("labels").hidden = !this.shown.names;
+    if (!this.stage || !this.shown.names) return;
+    this.labels.forEach((label, b) => {
+      const at = this.stage!.screen(b);
+      label.hidden = at === null || !Number.isFinite(at[0] + at[1]);
+      if (at)
+        label.style.transform = `translate(${at[0].toFixed(1)}px, ${at[1].toFixed(1)}px) translate(.7rem, -1.7rem)`;
+    });
+  }
+
+  /** The scales of the picture. */
+  private write_caption() {
+    const { run, stage } = this,
+      said: HTMLElement[] = [];
+    if (!stage) return;
+    const add = (swatch: string | null, text: string) => {
+      const mark = element("i", {});
+      if (swatch) mark.style.background = swatch;
+      said.push(element("span", {}, swatch && mark, text));
+    };
+    if (run.meta.bodies.length > few) add(null, `${run.meta.bodies.length} bodies`);
+    add(null, `grid ${number(stage.cell)} m`);
+    if (this.shown.trails && stage.path_window > 0)
+      add(null, `paths of the last ${number(stage.path_window, 2)} s`);
+    const kinds = new Set(run.forces.map((f) => f.kind));
+    if (this.shown.forces && run.largest_force > 0) {
+      if (kinds.has("reaction")) add(theme().force, "force of a joint on its second body");
+      if (kinds.has("load")) add(theme().load, "force of a load");
+      add(null, `longest arrow ${number(run.largest_force, 3)} N, lengths as \u221aforce`);
+    }
+    if (this.shown.frames) ["d\u2081", "d\u2082", "d\u2083"].forEach((d, i) => add(theme().axes[i], d));
+    by_id("caption").replaceChildren(...said);
+  }
+
+  /** Start, middle and end, for paper. */
+  print_stills(host: HTMLElement) {
+    host.replaceChildren();
+    const { stage } = this,
+      { now, start, end, span } = this.time;
+    if (!stage) return;
+    const source = stage.renderer.domElement;
+    stage.resize(720, 560);
+    for (const t of span > 0 ? [start, (start + end) / 2, end] : [start]) {
+      stage.show(t);
+      const canvas = element("canvas", { width: String(source.width), height: String(source.height) });
+      canvas.getContext("2d")!.drawImage(source, 0, 0);
+      host.append(element("figure", {}, canvas, element("figcaption", {}, `${seconds(t, span)} s`)));
+    }
+    stage.show(now);
+    this.resize();
+  }
+}
+
+function described({ meta }: Run): string {
+  const names = meta.bodies
+      .slice(0, 6)
+      .map((b) => b.name)
+      .join(", "),
+    more = meta.bodies.length > 6 ? ", \u2026" : "";
+  return (
+    `the mechanism in space: ${meta.bodies.length} bodies (${names}${more}) and ${meta.joints.length} joints; ` +
+    "arrow keys turn it, plus and minus come nearer, 0 shows all"
+  );
+}

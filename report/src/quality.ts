@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The tab that tells how right a run is: figures against their bounds, and series over time.
+import { Plot, type PlotOptions } from "./plot";
+import type { Run } from "./run";
+import { element, number, rough } from "./text";
+import type { Timeline } from "./timeline";
+import { verdict_of } from "./verdict";
+
+const checks: [string, string, string][] = [
+  [
+    "estimated_error",
+    "Estimated error",
+    "of positions in lengths of the model, of orientations in rad, against a finer solution",
+  ],
+  [
+    "max_constraint_violation",
+    "Constraint violation",
+    "largest at the nodes of elements, each row by its length",
+  ],
+  ["max_weak_violation", "Constraint violation, mean", "where constraints hold as integrals"],
+  ["energy_drift", "Energy balance", "what is left of it, by the largest energy in motion"],
+  ["linear_momentum_drift", "Momentum balance", "what is left of it, by the largest momentum"],
+  ["angular_momentum_drift", "Angular momentum balance", "likewise"],
+  ["zigzag_positions", "Zig-zag of positions", "0 is smooth, 1 alternates from node to node"],
+  ["zigzag_momenta", "Zig-zag of momenta", "likewise"],
+  ["velocity_jump", "Velocity jump", "of an element\u2019s polynomial against its momentum"],
+  ["guess_distance", "Distance from the guess", "of the march that it began with, in lengths"],
+];
+
+/** Where a value lies between rounding and its bound, both ends of a scale of powers of ten. */
+function gauge(value: number, bound: number): HTMLElement {
+  const low = -17,
+    high = Math.log10(bound) + 2,
+    share = (x: number) => Math.min(Math.max((x - low) / (high - low), 0), 1);
+  const bar = element("span", { class: "gauge", "aria-hidden": "true" }, element("i", {}), element("b", {}));
+  (bar.children[0] as HTMLElement).style.width = `${100 * share(value > 0 ? Math.log10(value) : low)}%`;
+  (bar.children[1] as HTMLElement).style.left = `${100 * share(Math.log10(bound))}%`;
+  if (!(value <= bound)) bar.classList.add("over");
+  return bar;
+}
+
+function table(run: Run): HTMLElement {
+  const rows = checks.flatMap(([name, label, what]) => {
+    const bound = run.meta.quality.bounds[name],
+      value = run.figure(name);
+    if (bound === undefined || (Number.isNaN(value) && name !== "estimated_error")) return [];
+    const is_known = Number.isFinite(value),
+      is_kept = value <= bound;
+    return [
+      element(
+        "tr",
+        {},
+        element("th", { scope: "row", title: what }, label, element("small", {}, what)),
+        element("td", { class: "n" }, is_known ? rough(value) : "not known"),
+        element("td", { class: "n" }, number(bound, 2)),
+        element("td", {}, is_known ? gauge(value, bound) : null),
+        element(
+          "td",
+          { class: !is_known ? "" : is_kept ? "kept" : "broken" },
+          !is_known ? "" : is_kept ? "\u2713 kept" : "\u2717 exceeded",
+        ),
+      ),
+    ];
+  });
+  const head = element(
+    "tr",
+    {},
+    ...["check", "measured", "accepted to", "", ""].map((h) => element("th", { scope: "col" }, h)),
+  );
+  return element(
+    "div",
+    { class: "wide" },
+    element(
+      "table",
+      { class: "checks" },
+      element("caption", {}, "What the run was judged by"),
+      element("thead", {}, head),
+      element("tbody", {}, ...rows),
+    ),
+  );
+}
+
+function facts(run: Run): HTMLElement {
+  const f = (name: string) => run.figure(name),
+    list = element("dl", { class: "facts" });
+  const add = (label: string, value: string, show = true) => {
+    if (show) list.append(element("div", {}, element("dt", {}, label), element("dd", {}, value)));
+  };
+  add("method", run.meta.method);
+  add("elements", number(f("elements"), 9));
+  add("order at element ends", number(f("order_at_element_ends")), f("order_at_element_ends") > 0);
+  add(
+    "Newton iterations",
+    `${number(f("newton_iterations"), 9)}, ${number(f("most_iterations"))} at most in one window`,
+  );
+  add("residual", rough(f("residual_norm")));
+  add("smallest pivot", rough(f("smallest_pivot")));
+  add("elements divided", number(f("divided")), f("divided") > 0);
+  add("accuracy asked for", rough(f("accuracy")), f("accuracy") > 0);
+  add("perturbations grow by", rough(f("growth")), Number.isFinite(f("growth")));
+  add("horizon", `${number(f("horizon"), 5)} s`, Number.isFinite(f("horizon")));
+  add("condition number (2-norm)", rough(f("condition_2")), f("condition_2") > 0);
+  return list;
+}
+
+export function build_quality(host: HTMLElement, run: Run, time: Timeline): Plot[] {
+  const v = verdict_of(run),
+    { quality } = run.meta,
+    plots: Plot[] = [];
+  const said = [
+    element(
+      "p",
+      { class: "lead" },
+      element("strong", { class: v.grade }, `${v.sign} ${v.word}`),
+      ` \u2014 ${v.digits}${v.rest}.`,
+    ),
+  ];
+  const notes = run.meta.notes.length
+    ? [element("ul", { class: "notes" }, ...run.meta.notes.map((n) => element("li", {}, n)))]
+    : [];
+  const worst = run.meta.bodies[quality.worst_body];
+  const where =
+    worst && Number.isFinite(run.figure("estimated_error_time"))
+      ? [
+          element(
+            "p",
+            {},
+            `The largest error is that of \u201c${worst.name}\u201d at ${number(run.figure("estimated_error_time"), 6)} s.`,
+          ),
+        ]
+      : [];
+  const grid = element("div", { class: "grid" });
+  host.append(
+    element(
+      "section",
+      { class: "card" },
+      element("h2", {}, "Is it right?"),
+      ...said,
+      ...where,
+      ...notes,
+      table(run),
+      facts(run),
+    ),
+    grid,
+  );
+  const times = run.array("quality_time");
+  const add = (title: string, unit: string, names: string[], options: Partial<PlotOptions> = {}) => {
+    const series = names
+      .filter((n) => quality.series.includes(n))
+      .map((n, i) => ({ label: n, colour: i, values: run.array(`quality ${n}`) }));
+    if (series.length && times.length > 1)
+      plots.push(new Plot(grid, { title, unit, series, times, log: true, height: 190, ...options }, time));
+  };
+  const horizon = run.figure("horizon"),
+    mark = Number.isFinite(horizon) ? { mark: { t: horizon, label: "horizon" } } : {};
+  const bound = (name: string, scale = 1) => {
+    const value = quality.bounds[name] * scale;
+    return Number.isFinite(value) && value > 0
+      ? { bound: { value, label: `accepted to ${number(value, 2)}` } }
+      : {};
+  };
+  /** What a relative drift was divided by. */
+  const reference = (series: string, figure: string) => {
+    const values = quality.series.includes(series) ? run.array(`quality ${series}`) : [];
+    let largest = 0;
+    for (let i = 0; i < values.length; ++i) largest = Math.max(largest, values[i]);
+    return largest / run.figure(figure);
+  };
+  add(
+    "Estimated error at element ends",
+    "lengths of the model, rad, largest reaction",
+    ["position error", "orientation error", "reaction error"],
+    { ...bound("estimated_error"), ...mark },
+  );
+  add(
+    "Violation of constraints in elements",
+    "",
+    ["joint violation", "rigidity violation"],
+    bound("max_constraint_violation"),
+  );
+  add(
+    "Energy balance",
+    "J",
+    ["energy balance"],
+    bound("energy_drift", reference("energy balance", "energy_drift")),
+  );
+  add(
+    "Momentum balance",
+    "kg m/s",
+    ["momentum balance"],
+    bound("linear_momentum_drift", reference("momentum balance", "linear_momentum_drift")),
+  );
+  add(
+    "Angular momentum balance",
+    "kg m\u00b2/s",
+    ["angular momentum balance"],
+    bound("angular_momentum_drift", reference("angular momentum balance", "angular_momentum_drift")),
+  );
+  add("Growth of a small perturbation", "", ["growth"], mark);
+  add("Lengths of time elements", "s", ["element length"]);
+  add("Newton iterations of each element\u2019s window", "", ["iterations"], { log: false });
+  return plots;
+}

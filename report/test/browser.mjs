@@ -1,0 +1,467 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Opens reports as a person would: from disk, in headless Chromium, without any network.
+//   LIVENS_PROGRAM=build/release/livens node report/test/browser.mjs [NAME]
+// Says SKIPPED and why where Chromium or the packages of report/ are missing. tests/system/report_test.py looks at the
+// same files without a browser.
+import { execFileSync } from "node:child_process";
+import { createHash } from "node:crypto";
+import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { dirname, join } from "node:path";
+import { fileURLToPath } from "node:url";
+import assert from "node:assert/strict";
+
+const source = join(dirname(fileURLToPath(import.meta.url)), "../..");
+const program = process.env.LIVENS_PROGRAM ?? join(source, "build/release/livens");
+const executablePath = [
+  process.env.CHROMIUM,
+  "/usr/bin/chromium",
+  "/usr/bin/chromium-browser",
+  "/usr/bin/google-chrome",
+].find((file) => file && existsSync(file));
+const skip = (why) => {
+  console.log(`SKIPPED: ${why}`);
+  process.exit(0);
+};
+if (!executablePath) skip("no Chromium (Debian: chromium, or scripts/setup browser)");
+const { chromium } = await import("playwright-core").catch(() =>
+  skip("the packages of report/ are not installed (npm ci in report, or scripts/setup browser)"),
+);
+const axe = readFileSync(join(source, "report/node_modules/axe-core/axe.min.js"), "utf8");
+
+const folder = mkdtempSync(join(tmpdir(), "livens-report-"));
+const example = (name) => readFileSync(join(source, "examples", `${name}.toml`), "utf8");
+
+/** Solves a scenario and writes its page; returns the files. */
+function made(name, text, other = []) {
+  const [scenario, run, page] = [".toml", ".nc", ".html"].map((end) => join(folder, name + end));
+  writeFileSync(scenario, text);
+  try {
+    execFileSync(program, ["solve", scenario, "-o", run, "--quiet"], { stdio: "ignore" });
+  } catch (error) {
+    if (![4, 7].includes(error.status)) throw error;
+  }
+  execFileSync(program, ["report", run, ...other, "-o", page], { stdio: "ignore" });
+  return { run, page };
+}
+const sample = (run, ...args) =>
+  JSON.parse(
+    execFileSync(program, ["sample", run, ...args, "--json"], { stdio: ["ignore", "pipe", "ignore"] }),
+  );
+
+const browser = await chromium.launch({
+  executablePath,
+  args: ["--no-sandbox", "--disable-background-networking", "--disable-component-update"],
+});
+const driver = /GPU stall due to ReadPixels/; // what reading pixels makes the driver say
+
+/** A page with what it asked for and what it complained of. */
+async function open(file, options = {}, hash = "", before = null) {
+  const page = await browser.newPage({
+    viewport: { width: 1280, height: 800 },
+    colorScheme: "light",
+    ...options,
+  });
+  page.requests = [];
+  page.problems = [];
+  page.on("request", (r) => page.requests.push(r.url()));
+  page.on("console", (m) => {
+    if (!driver.test(m.text())) page.problems.push(`${m.type()}: ${m.text()}`);
+  });
+  page.on("pageerror", (e) => page.problems.push(String(e)));
+  page.on("dialog", (d) => {
+    page.problems.push(`dialog: ${d.message()}`);
+    void d.dismiss();
+  });
+  if (before) await page.addInitScript(before);
+  await page.goto(`file://${file}${hash}`);
+  await page.waitForFunction(() => window.livensReport, null, { timeout: 60000 });
+  return page;
+}
+const picture = async (page, t) => {
+  await page.evaluate((at) => livensReport.setTime(at), t);
+  await page.mouse.move(5, 5); // off the buttons in the picture
+  return createHash("sha256")
+    .update(await page.locator("#space").screenshot())
+    .digest("hex");
+};
+const focus_name = (page) =>
+  page.evaluate(
+    () => document.activeElement.id || document.activeElement.className || document.activeElement.tagName,
+  );
+
+const tests = {
+  async "one request, nothing said"() {
+    const { page: file } = made("four_bar", example("four_bar"));
+    const page = await open(file);
+    for (const tab of ["quality", "compare", "about", "motion"]) await page.click(`#tab-${tab}`);
+    assert.deepEqual(page.requests, [`file://${file}`]);
+    assert.deepEqual(page.problems, []);
+    assert.ok(await page.evaluate(() => livensReport.has_picture), "a picture");
+    assert.match(await page.title(), /four-bar linkage/);
+    assert.match(await page.textContent("#verdict"), /Converged.*right to \d+ digits/);
+  },
+
+  async "poses are those of livens sample at 20 instants"() {
+    for (const [name, text] of [
+      ["four_bar", example("four_bar")],
+      ["backward", example("backward")],
+      ["lagrange_top", example("lagrange_top")],
+    ]) {
+      const { run, page: file } = made(name, text),
+        page = await open(file);
+      const bodies = await page.evaluate(() => livensReport.bodies),
+        [start, end] = await page.evaluate(() => livensReport.range());
+      const times = Array.from({ length: 20 }, (_, k) =>
+        k === 19 ? end : start + (end - start) * ((k * Math.SQRT2) % 1),
+      );
+      let worst = 0;
+      for (const [b, body] of bodies.entries()) {
+        const theirs = sample(run, "--body", body, ...times.flatMap((t) => ["--at", String(t)])).samples;
+        for (const [k, t] of times.entries()) {
+          const mine = (await page.evaluate((at) => livensReport.poses(at), t)).slice(12 * b, 12 * b + 12);
+          [...theirs[k].position, ...theirs[k].directors_raw.flat()].forEach((x, i) => {
+            worst = Math.max(worst, Math.abs(x - mine[i]));
+          });
+        }
+      }
+      assert.ok(worst < 1e-13, `${name}: ${worst}`);
+      console.log(`    ${name}: ${worst}`);
+      await page.close();
+    }
+  },
+
+  async "pixels change in time and repeat"() {
+    const { page: file } = made("four_bar", example("four_bar")),
+      page = await open(file);
+    const [a, b, again] = [await picture(page, 0.3), await picture(page, 1.7), await picture(page, 0.3)];
+    assert.notEqual(a, b);
+    assert.equal(a, again);
+    for (const what of ["trails", "forces", "joints", "names", "frames"]) {
+      await page.locator(`#show-${what}`).click();
+      assert.notEqual(await picture(page, 0.3), a, `${what} are seen`);
+      await page.locator(`#show-${what}`).click();
+      assert.equal(await picture(page, 0.3), a, `${what} are put back`);
+    }
+    for (const view of ["front", "side", "top"]) {
+      await page.click(`#view-${view}`);
+      assert.notEqual(await picture(page, 0.3), a, view);
+    }
+    await page.click("#view-fitted");
+    assert.equal(await picture(page, 0.3), a);
+  },
+
+  async "the mechanism fills the picture"() {
+    for (const viewport of [
+      { width: 1280, height: 800 },
+      { width: 390, height: 844 },
+    ])
+      for (const name of ["four_bar", "slider_crank", "dzhanibekov"]) {
+        const { page: file } = made(name, example(name)),
+          page = await open(file, { viewport });
+        for (const what of ["names", "forces", "joints"])
+          await page.evaluate((id) => {
+            const box = document.getElementById(id);
+            if (box.checked) box.click();
+          }, `show-${what}`);
+        // The extent of everything that is not background, over the motion.
+        const share = await page.evaluate(() => {
+          const [start, end] = livensReport.range(),
+            canvas = document.getElementById("stage"),
+            flat = document.createElement("canvas");
+          [flat.width, flat.height] = [canvas.width / 4, canvas.height / 4];
+          const c = flat.getContext("2d", { willReadFrequently: true });
+          let l = flat.width,
+            r = 0,
+            top = flat.height,
+            b = 0;
+          for (let k = 0; k <= 24; ++k) {
+            livensReport.setTime(start + ((end - start) * k) / 24);
+            c.clearRect(0, 0, flat.width, flat.height);
+            c.drawImage(canvas, 0, 0, flat.width, flat.height);
+            const { data } = c.getImageData(0, 0, flat.width, flat.height);
+            for (let i = 0; i < flat.width * flat.height; ++i) {
+              const [R, G, B, A] = data.subarray(4 * i, 4 * i + 4);
+              if (A < 200 || Math.max(R, G, B) - Math.min(R, G, B) < 60) continue; // bodies have colours, the ground has none
+              const x = i % flat.width,
+                y = Math.floor(i / flat.width);
+              l = Math.min(l, x);
+              r = Math.max(r, x);
+              top = Math.min(top, y);
+              b = Math.max(b, y);
+            }
+          }
+          return [(r - l) / flat.width, (b - top) / flat.height, l, top];
+        });
+        assert.ok(Math.max(share[0], share[1]) > 0.75, `${name} fills ${share}`);
+        assert.ok(Math.max(share[0], share[1]) < 0.99, `${name} is all there: ${share}`);
+        await page.close();
+      }
+  },
+
+  async "every control by keyboard"() {
+    const { page: file } = made("four_bar", example("four_bar")),
+      page = await open(file);
+    const now = () => page.evaluate(() => livensReport.now()),
+      press = (...keys) => keys.reduce((p, key) => p.then(() => page.keyboard.press(key)), Promise.resolve());
+    const [start, end] = await page.evaluate(() => livensReport.range());
+    await press("ArrowRight");
+    assert.ok(Math.abs((await now()) - (end - start) / 500) < 1e-12);
+    await press("Shift+ArrowRight");
+    assert.ok(Math.abs((await now()) - (11 * (end - start)) / 500) < 1e-12);
+    await press("ArrowLeft", "Home");
+    assert.equal(await now(), start);
+    await press("PageDown", "PageDown");
+    assert.ok(Math.abs((await now()) - 0.1) < 1e-12, "two elements of 0.05 s");
+    await press("PageUp");
+    assert.ok(Math.abs((await now()) - 0.05) < 1e-12);
+    await press("End");
+    assert.equal(await now(), end);
+    await press("Home", " ");
+    await page.waitForFunction(() => livensReport.now() > 0.05);
+    await press(" ");
+    assert.equal(await page.evaluate(() => livensReport.isPlaying()), false);
+    await press("+");
+    const zoomed = await page.evaluate(() => livensReport.range());
+    assert.ok(zoomed[1] - zoomed[0] < 0.6 * (end - start));
+    await press("0");
+    assert.deepEqual(await page.evaluate(() => livensReport.range()), [start, end]);
+    await press("2");
+    assert.ok((await page.isVisible("#quality")) && !(await page.isVisible("#motion")));
+    await press("1");
+    // All that can be clicked is reached by Tab and shows that it is.
+    await page.evaluate(() => document.activeElement.blur());
+    const wanted = new Set(
+      await page.evaluate(() =>
+        [...document.querySelectorAll("button, input, select, summary, canvas[tabindex]")]
+          .filter((e) => e.checkVisibility() && e.tabIndex >= 0 && e.type !== "file")
+          .map((e) => e.id || e.getAttribute("aria-label")),
+      ),
+    );
+    const seen = new Set();
+    for (let k = 0; k < wanted.size + 12; ++k) {
+      await press("Tab");
+      seen.add(
+        await page.evaluate(
+          () => document.activeElement.id || document.activeElement.getAttribute("aria-label"),
+        ),
+      );
+      assert.ok(
+        await page.evaluate(
+          () =>
+            document.activeElement === document.body ||
+            getComputedStyle(document.activeElement).outlineStyle !== "none",
+        ),
+        await focus_name(page),
+      );
+    }
+    for (const id of wanted) assert.ok(seen.has(id), `Tab reaches ${id}`);
+    for (const id of ["play", "scrub", "speed", "show-trails", "stage", "view-top", "tab-motion", "add"])
+      assert.ok(wanted.has(id), id);
+    // Each by its own keys.
+    await page.focus("#tab-motion");
+    await press("ArrowRight", "ArrowRight");
+    assert.equal(await focus_name(page), "tab-compare");
+    await press("Home");
+    await page.focus("#stage");
+    const camera = () => page.evaluate(() => livensReport.camera());
+    for (const key of ["ArrowLeft", "ArrowUp", "+", "Shift+ArrowLeft"]) {
+      const before = await camera();
+      await press(key);
+      assert.notDeepEqual(await camera(), before, key);
+    }
+    await page.focus("#scrub");
+    const before = await now();
+    await press("ArrowRight");
+    assert.ok((await now()) > before, "the scrub bar");
+    await page.focus("#add");
+    const count = await page.locator("#plot-list figure").count();
+    await page.selectOption("#add", { index: 3 });
+    assert.equal(await page.locator("#plot-list figure").count(), count + 1);
+    await page.locator("#plot-list .remove").last().focus();
+    await press("Enter");
+    assert.equal(await page.locator("#plot-list figure").count(), count);
+    await page.focus("#show-trails");
+    await press(" ");
+    assert.equal(await page.isChecked("#show-trails"), false);
+    await page.focus("#play");
+    await press("Enter");
+    assert.equal(await page.getAttribute("#play", "aria-label"), "stop");
+    assert.deepEqual(page.problems, []);
+  },
+
+  async "no serious findings of axe"() {
+    const { page: file } = made("four_bar", example("four_bar"));
+    for (const options of [{}, { colorScheme: "dark" }, { viewport: { width: 390, height: 844 } }]) {
+      const page = await open(file, { ...options, bypassCSP: true });
+      await page.evaluate(axe);
+      for (const tab of ["motion", "quality", "compare", "about"]) {
+        await page.click(`#tab-${tab}`);
+        const { violations } = await page.evaluate(() => window.axe.run());
+        const bad = violations.filter((v) => ["serious", "critical"].includes(v.impact));
+        assert.deepEqual(
+          bad.map((v) => [tab, v.id, v.nodes.map((n) => n.html.slice(0, 120))]),
+          [],
+        );
+      }
+      await page.close();
+    }
+  },
+
+  async "names are text"() {
+    const name = "</script><img src=x onerror=alert(1)>";
+    const text = example("four_bar")
+      .replaceAll('"coupler"', JSON.stringify(name))
+      .replaceAll('"crank"', '"振り子 маятник"')
+      .replace('title = "four-bar linkage"', `title = ${JSON.stringify(`<b>${name}`)}`);
+    const { page: file } = made("hostile", text),
+      page = await open(file);
+    for (const tab of ["quality", "compare", "about", "motion"]) await page.click(`#tab-${tab}`);
+    assert.deepEqual(page.problems, []);
+    assert.equal(await page.locator("img").count(), 0);
+    assert.equal(await page.textContent("h1"), `<b>${name}`);
+    assert.ok((await page.locator("#labels span").allTextContents()).includes(name));
+    assert.ok((await page.locator("#labels span").allTextContents()).includes("振り子 маятник"));
+    assert.ok((await page.title()).startsWith("<b></script>"));
+  },
+
+  async "the policy stops what is not the page's own"() {
+    const { page: file } = made("four_bar", example("four_bar"));
+    const foreign = join(folder, "foreign.html");
+    writeFileSync(
+      foreign,
+      readFileSync(file, "utf8").replace("<noscript>", "<script>window.foreign = 1</script><noscript>"),
+    );
+    const page = await open(foreign);
+    assert.equal(await page.evaluate(() => window.foreign), undefined);
+    assert.ok(
+      page.problems.some((p) => p.includes("Content Security Policy")),
+      "and it is said",
+    );
+  },
+
+  async "runs that are not right open and say so"() {
+    const small = example("double_pendulum_spatial");
+    const coarse = small.replace(/elements = \d+/, "elements = 3").replace(/^output = .*\n/m, "");
+    const stopped = coarse.replace(
+      /\[method\][\s\S]*/,
+      '[method]\nfamily = "midpoint"\nmax_iterations = 1\n',
+    );
+    const mixed = example("double_pendulum_blocks");
+    const single = `format = 1\ntitle = ""\n[[body]]\nname = "p"\nshape = { point = true }\nmass = 1\n[time]\nend = 1\nelements = 2\n`;
+    for (const [name, text, said] of [
+      ["coarse", coarse, /Suspect/],
+      ["stopped", stopped, /Not converged/],
+      ["mixed", mixed, /Converged|Suspect/],
+      ["still", single, /Converged/],
+    ]) {
+      const { page: file } = made(name, text),
+        page = await open(file);
+      for (const tab of ["quality", "compare", "about", "motion"]) {
+        await page.click(`#tab-${tab}`);
+        assert.doesNotMatch(await page.innerText("body"), /\bNaN\b|undefined|Infinity/, `${name}, ${tab}`);
+      }
+      assert.match(await page.textContent("#verdict"), said, name);
+      assert.deepEqual(page.problems, [], name);
+      await page.close();
+    }
+  },
+
+  async "two runs, one opened from a file"() {
+    const a = made("four_bar", example("four_bar")),
+      b = made("rough", example("four_bar").replace("degree = 8", "degree = 4"));
+    const both = made("both", example("four_bar"), [b.run]),
+      page = await open(both.page, {}, "#tab=compare");
+    assert.match(await page.textContent("#compare .lead"), /3 bodies .* at most \d/);
+    assert.equal(await page.locator("#compare figure").count(), 2);
+    const alone = await open(a.page, {}, "#tab=compare");
+    await alone.setInputFiles("#other-file", b.page);
+    await alone.waitForSelector("#compare .lead");
+    assert.equal(await alone.textContent("#compare .lead"), await page.textContent("#compare .lead"));
+    await alone.setInputFiles("#other-file", b.run);
+    assert.match(await alone.locator("#compare .bad").textContent(), /no report/);
+    assert.deepEqual([...page.problems, ...alone.problems], []);
+  },
+
+  async "plots stand without WebGL"() {
+    const { page: file } = made("four_bar", example("four_bar"));
+    const page = await open(file, {}, "", () => {
+      const real = HTMLCanvasElement.prototype.getContext;
+      HTMLCanvasElement.prototype.getContext = function (kind, ...rest) {
+        return kind.startsWith("webgl") ? null : real.call(this, kind, ...rest);
+      };
+    });
+    assert.match(await page.textContent("#motion .bad"), /no picture in space/);
+    assert.equal(await page.locator("#plot-list figure").count(), 3);
+    await page.keyboard.press("ArrowRight");
+    assert.deepEqual(
+      page.problems.filter((p) => !/WebGL/.test(p)),
+      [],
+    );
+  },
+
+  async "paper, and motion that is not wanted"() {
+    const { page: file } = made("four_bar", example("four_bar")),
+      page = await open(file, { reducedMotion: "reduce", colorScheme: "dark" });
+    assert.equal(await page.evaluate(() => livensReport.isPlaying()), false, "nothing moves by itself");
+    const pdf = await page.pdf({ format: "A4" });
+    assert.ok(pdf.length > 50000);
+    assert.equal(await page.locator("#paper canvas").count(), 3);
+    assert.deepEqual(page.problems, []);
+  },
+
+  async "a hundred bodies are quick"() {
+    const bodies = Array.from(
+      { length: 100 },
+      (_, n) =>
+        `[[body]]\nname = "pendulum ${n}"\nshape = { box = [0.08, 0.08, ${0.5 + 0.003 * n}] }\ndensity = 2000\n` +
+        `position = [${Math.floor(n / 10)}, ${n % 10}, 0]\ncenter_of_mass = [0, 0, ${-0.25 - 0.0015 * n}]\nrotation_vector = [0, ${0.4 + 0.02 * n}, 0]\n` +
+        `[[joint]]\nname = "pivot ${n}"\ntype = "revolute"\nbetween = ["world", "pendulum ${n}"]\nat = [${Math.floor(n / 10)}, ${n % 10}, 0]\naxis = [0, 1, 0]\n`,
+    ).join("");
+    const { page: file } = made(
+      "hundred",
+      `format = 1\ntitle = "a hundred"\ngravity = [0, 0, -9.81]\n${bodies}[time]\nend = 5\nelements = 125\n[method]\nfamily = "lobatto"\ndegree = 8\nestimate = "none"\n`,
+    );
+    const four = await open(made("four_bar", example("four_bar")).page),
+      page = await open(file);
+    const client = await page.context().newCDPSession(page);
+    await client.send("Performance.enable", { timeDomain: "threadTicks" });
+    await page.reload();
+    await page.waitForFunction(() => window.livensReport);
+    const { metrics } = await client.send("Performance.getMetrics"),
+      cpu = metrics.find((m) => m.name === "TaskDuration").value;
+    const quickest = async (p) => {
+      const all = [];
+      for (let k = 0; k < 5; ++k) all.push(await p.evaluate(() => livensReport.frames(6)));
+      return { ms: Math.min(...all.map((f) => f.ms)), calls: all[0].calls };
+    };
+    const [one, many] = [await quickest(four), await quickest(page)];
+    console.log(
+      `    ready after ${cpu.toFixed(2)} s of CPU; a frame ${many.ms.toFixed(0)} ms in ${many.calls} draw calls, of the four-bar ${one.ms.toFixed(0)} ms in ${one.calls}`,
+    );
+    assert.ok(cpu < 3, `${cpu} s of CPU`);
+    assert.ok(many.calls <= 20 && one.calls <= 20);
+    // By a clock that other programs share, a little more than the twice that is meant.
+    assert.ok(many.ms < 2.5 * one.ms);
+  },
+};
+
+let failed = 0;
+const chosen = Object.entries(tests).filter(([name]) =>
+  process.argv.slice(2).every((word) => name.includes(word)),
+);
+for (const [name, test] of chosen) {
+  const begun = performance.now();
+  try {
+    await test();
+    console.log(`ok      ${name} (${((performance.now() - begun) / 1000).toFixed(1)} s)`);
+  } catch (error) {
+    ++failed;
+    console.log(`FAILED  ${name}\n${error.stack}`);
+  }
+  for (const context of browser.contexts()) await context.close();
+}
+await browser.close();
+rmSync(folder, { recursive: true, force: true });
+console.log(`${chosen.length - failed} passed, ${failed} failed`);
+process.exit(failed || chosen.length === 0 ? 1 : 0);

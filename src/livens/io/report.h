@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A run as one page for a browser: picture in space, plots, quality. Nothing is loaded from anywhere.
+#pragma once
+
+#include <string>
+
+#include "livens/io/results.h"
+#include "livens/io/scenario.h"
+
+namespace [[gnu::visibility("default")]] livens {
+
+struct ReportInput {
+    const Scenario& scenario;   ///< that of the run's text
+    const Run& run;
+    std::string name;   ///< how the page calls the run, such as the stem of its file
+};
+
+struct ReportOptions {
+    /// What the poses of a run may take on the page before they are compressed, bytes: those of all nodes in
+    /// double precision if they fit, else in single precision, else those of fewer, longer elements. The page
+    /// says which, and by how much it is off.
+    double most_bytes = 8e6;
+};
+
+/// HTML of one run, or of two that are compared (the poses of each may take `most_bytes`): `other` may be
+/// null. One file that needs no network; its policy admits its own script and style by their hashes and
+/// nothing else, and all names and texts of a run are shown as text.
+///
+/// Poses are polynomials in time elements as in the run itself. Same runs, same bytes (with one version of
+/// zlib).
+std::string report_page(const ReportInput& run, const ReportInput* other = nullptr,
+                        const ReportOptions& options = {});
+
+}   // namespace livens

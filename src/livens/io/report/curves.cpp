@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Series over time that the page cannot make of poses: energies, coordinates, reactions, loads, sensors.
+#include <algorithm>
+#include <cmath>
+
+#include "livens/diagnostics/coordinates.h"
+#include "livens/diagnostics/diagnostics.h"
+#include "livens/diagnostics/sample.h"
+#include "livens/io/report/lines_of_action.h"
+#include "livens/io/report/parts.h"
+
+namespace livens {
+
+namespace {
+
+constexpr double most_numbers = 4e5;   // of all series, about: what they add to a page is to stay below 2 MB
+constexpr double most_instants = 700, fewest_instants = 120;
+
+struct Channel {
+    const char* kind;   ///< "energy", "joint", "reaction", "load", "sensor"
+    int index;          ///< of the joint, load or sensor
+    std::string name;
+    std::string unit;
+};
+
+/// Instants in elements, or in several of them together: at the nodes of a polynomial through the series,
+/// which the page evaluates in between. Both ends of an element are instants of it.
+struct Instants {
+    std::vector<double> ends;
+    int degree = 0;
+    std::vector<double> nodes{0};
+
+    Instants(const TimeMesh& mesh, std::size_t n_channels, int most_degree)
+    {
+        const double wanted =
+            std::clamp(most_numbers / static_cast<double>(n_channels), fewest_instants, most_instants);
+        const double n = mesh.n_elements();
+        const auto merged = static_cast<std::size_t>(std::max(1.0, std::ceil(2 * n / wanted)));
+        for (std::size_t e = 0; e < mesh.ends.size(); e += merged) ends.push_back(mesh.ends[e]);
+        if (ends.back() != mesh.ends.back()) ends.push_back(mesh.ends.back());
+        if (n < 1) return;
+        degree = merged > 1 ? 1 : std::clamp(static_cast<int>(wanted / n) - 1, 1, most_degree);
+        nodes = lobatto_basis(degree).nodes();
+    }
+    std::size_t n_elements() const { return std::max<std::size_t>(ends.size() - 1, 1); }
+    double at(std::size_t element, std::size_t node) const
+    {
+        if (nodes[node] == 0) return ends[element];
+        if (nodes[node] == 1) return ends[element + 1];
+        return ends[element] + nodes[node] * (ends[element + 1] - ends[element]);
+    }
+};
+
+class Curves {
+public:
+    Curves(const Scenario& scenario, const Run& run)
+        : model_(scenario.model), motion_(run.motion), coordinates_(model_, motion_),
+          sensors_(model_, motion_), turns_(model_, motion_), lines_(lines_of_action(model_, motion_)),
+          has_reactions_(!sample_joints(model_, motion_, motion_.start()).empty())
+    {
+        for (const char* const name : {"kinetic", "potential"}) channels_.push_back({"energy", 0, name, "J"});
+        for (std::size_t i = 0; i < coordinates_.places().size(); ++i) {
+            const std::string& name = coordinates_.coordinate(static_cast<int>(i)).name;
+            const char* const unit = name == "angle" ? "rad" : "m";
+            const int joint = coordinates_.places()[i].joint;
+            channels_.push_back({"joint", joint, name, unit});
+            channels_.push_back({"joint", joint, name + " rate", std::string(unit) + "/s"});
+        }
+        for (int j = 0; has_reactions_ && j < static_cast<int>(model_.joints().size()); ++j)
+            for (const char* const name :
+                 {"force x", "force y", "force z", "torque x", "torque y", "torque z"})
+                channels_.push_back({"reaction", j, name, name[0] == 'f' ? "N" : "N m"});
+        for (std::size_t l = 0; l < lines_.size(); ++l)
+            for (const char* const name : {"force x", "force y", "force z"})
+                if (lines_[l].points[0]) channels_.push_back({"load", static_cast<int>(l), name, "N"});
+        for (std::size_t s = 0; s < model_.sensors().size(); ++s)
+            for (const SensorComponent& c : model_.sensors()[s].components)
+                channels_.push_back({"sensor", static_cast<int>(s), c.name, c.unit});
+    }
+
+    const std::vector<Channel>& channels() const { return channels_; }
+
+    /// The values of all channels. `is_before`: from the left, where they jump.
+    std::vector<double> at(double t, bool is_before) const
+    {
+        const State state = sample_state(motion_, t);
+        const std::vector<double> angles = turns_.at(state);
+        const Instant instant{t, is_before ? Side::left : Side::right};
+        std::vector<double> all{kinetic_energy(model_, state.X, state.V),
+                                potential_energy(model_, instant, state.X, state.V, angles)};
+        for (const CoordinateValue& c : coordinates_.at(t)) {
+            all.push_back(c.value);
+            all.push_back(c.rate);
+        }
+        if (has_reactions_) add_reactions(all, t, is_before);
+        if (std::ranges::any_of(lines_,
+                                [](const LineOfAction& line) { return line.points[0].has_value(); })) {
+            const std::vector<Vector3> forces = load_forces(model_, state, angles, instant.side);
+            for (std::size_t l = 0; l < lines_.size(); ++l)
+                if (lines_[l].points[0]) all.insert(all.end(), forces[l].a, forces[l].a + 3);
+        }
+        for (const double x : sensors_.at(t)) all.push_back(x);
+        return all;
+    }
+
+private:
+    void add_reactions(std::vector<double>& all, double t, bool is_before) const
+    {
+        const std::vector<JointSample> joints = sample_joints(model_, motion_, t);
+        for (std::size_t j = 0; j < model_.joints().size(); ++j) {
+            const double nan = std::numeric_limits<double>::quiet_NaN();
+            Reaction r{{nan, nan, nan}, {nan, nan, nan}};
+            if (!joints.empty() && joints[j].is_bounded) r = is_before ? joints[j].left : joints[j].right;
+            for (const Vector3& v : {r.force, r.torque}) all.insert(all.end(), v.a, v.a + 3);
+        }
+    }
+
+    const Model& model_;
+    const Motion& motion_;
+    JointCoordinates coordinates_;
+    SensorReadings sensors_;
+    LoadTurns turns_;
+    std::vector<LineOfAction> lines_;
+    bool has_reactions_;
+    std::vector<Channel> channels_;
+};
+
+}   // namespace
+
+void write_curves(ReportData& data, const Scenario& scenario, const Run& run)
+{
+    const Curves curves(scenario, run);
+    const Instants instants(run.motion.mesh, curves.channels().size(), std::max(run.motion.X.degree, 2));
+    std::vector<std::vector<double>> columns(curves.channels().size());
+    for (std::size_t e = 0; e < instants.n_elements(); ++e)
+        for (std::size_t a = 0; a < instants.nodes.size(); ++a) {
+            const std::vector<double> values = curves.at(instants.at(e, a), a > 0 && instants.nodes[a] == 1);
+            for (std::size_t c = 0; c < columns.size(); ++c) columns[c].push_back(values[c]);
+        }
+    std::vector<double> all;
+    for (const std::vector<double>& column : columns) all.insert(all.end(), column.begin(), column.end());
+    data.payload.add("curve", Precision::single, all);
+    data.payload.add("curve_end", Precision::full, instants.ends);
+    JsonWriter& json = data.json;
+    json.key("curves").begin_object();
+    json.member("every", instants.ends.size() == run.motion.mesh.ends.size());
+    json.key("nodes").value(std::span<const double>(instants.nodes)).end_object();
+    json.key("channels").begin_array();
+    for (const Channel& c : curves.channels()) {
+        json.begin_object().member("kind", c.kind).member("index", c.index);
+        json.member("name", c.name).member("unit", c.unit).end_object();
+    }
+    json.end_array();
+}
+
+}   // namespace livens

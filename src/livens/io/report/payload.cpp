@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "livens/io/report/payload.h"
+
+#include <bit>
+#include <new>
+
+#include <zlib.h>
+
+namespace livens {
+
+namespace {
+
+/// Byte k of all numbers, then byte k + 1.
+template <class Bits, class Convert>
+void append_shuffled(std::string& out, std::span<const double> values, Convert convert)
+{
+    const std::size_t n = values.size(), start = out.size();
+    out.resize(start + n * sizeof(Bits));
+    for (std::size_t i = 0; i < n; ++i) {
+        const Bits bits = convert(values[i]);
+        for (std::size_t k = 0; k < sizeof(Bits); ++k)
+            out[start + k * n + i] = static_cast<char>(bits >> (8 * k) & 0xff);
+    }
+}
+
+}   // namespace
+
+void Payload::add(std::string name, Precision precision, std::span<const double> values)
+{
+    entries_.push_back({std::move(name), precision, values.size()});
+    if (precision == Precision::full)
+        append_shuffled<std::uint64_t>(bytes_, values,
+                                       [](double x) { return std::bit_cast<std::uint64_t>(x); });
+    else if (precision == Precision::single)
+        append_shuffled<std::uint32_t>(
+            bytes_, values, [](double x) { return std::bit_cast<std::uint32_t>(static_cast<float>(x)); });
+    else
+        append_shuffled<std::uint32_t>(bytes_, values,
+                                       [](double x) { return static_cast<std::uint32_t>(x); });
+}
+
+void Payload::write_table(JsonWriter& json) const
+{
+    json.begin_object();
+    for (const Entry& e : entries_) {
+        json.key(e.name).begin_array();
+        json.value(e.precision == Precision::full ? "f8" : e.precision == Precision::single ? "f4" : "u4");
+        json.value(e.count).end_array();
+    }
+    json.end_object();
+}
+
+std::string Payload::encoded() const
+{
+    uLongf size = ::compressBound(bytes_.size());
+    std::string packed(size, '\0');
+    // Only memory can fail: the buffer is large enough by compressBound().
+    if (::compress2(reinterpret_cast<Bytef*>(packed.data()), &size,
+                    reinterpret_cast<const Bytef*>(bytes_.data()), bytes_.size(), Z_BEST_COMPRESSION) != Z_OK)
+        throw std::bad_alloc();
+    packed.resize(size);
+    return base64(packed);
+}
+
+std::string base64(std::string_view bytes)
+{
+    constexpr char letters[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string out;
+    out.reserve((bytes.size() + 2) / 3 * 4);
+    for (std::size_t i = 0; i < bytes.size(); i += 3) {
+        std::uint32_t three = 0;
+        for (std::size_t k = 0; k < 3; ++k)
+            three = three << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u);
+        for (std::size_t k = 0; k < 4; ++k)
+            out += i + k <= bytes.size() ? letters[three >> (18 - 6 * k) & 63] : '=';
+    }
+    return out;
+}
+
+}   // namespace livens

@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What is drawn: surfaces of bodies, joints with their axes, lines of action of loads.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <optional>
+
+#include "livens/diagnostics/coordinates.h"
+#include "livens/diagnostics/sample.h"
+#include "livens/io/exports/formats.h"
+#include "livens/io/report/lines_of_action.h"
+#include "livens/io/report/parts.h"
+#include "livens/multibody/body.h"
+
+namespace livens {
+
+namespace {
+
+void add(JsonWriter& json, const char* key, const Vector3& v)
+{
+    json.key(key).value(std::span<const double>(v.a));
+}
+
+/// A surface in a box from -1 to 1; the body's is this one stretched and moved.
+struct UnitSurface {
+    Surface surface;
+    Vector3 middle{}, half{1, 1, 1};
+};
+
+UnitSurface unit_surface(Surface surface)
+{
+    UnitSurface unit;
+    for (int i = 0; i < 3; ++i) {
+        const auto of = [i](const Vector3& p) { return p[i]; };
+        const auto [least, most] = std::ranges::minmax(surface.points, {}, of);
+        unit.middle[i] = 0.5 * (least[i] + most[i]);
+        if (most[i] > least[i]) unit.half[i] = 0.5 * (most[i] - least[i]);
+    }
+    for (std::size_t k = 0; k < surface.points.size(); ++k) {
+        Vector3 &p = surface.points[k], &n = surface.normals[k];
+        for (int i = 0; i < 3; ++i) {
+            p[i] = (p[i] - unit.middle[i]) / unit.half[i];
+            n[i] *= unit.half[i];
+        }
+        n = (1 / norm(n)) * n;
+    }
+    unit.surface = std::move(surface);
+    return unit;
+}
+
+/// Bodies of one form, whatever their sizes, share a surface.
+class Shapes {
+public:
+    explicit Shapes(Payload& payload) : payload_(payload) {}
+
+    int index_of(const Surface& unit)
+    {
+        std::vector<int> key;
+        for (const auto* vectors : {&unit.points, &unit.normals})
+            for (const Vector3& v : *vectors)
+                for (const double x : v.a) key.push_back(static_cast<int>(std::lround(1e5 * x)));
+        for (const auto& corners : unit.triangles) key.insert(key.end(), corners.begin(), corners.end());
+        const auto [place, is_new] = known_.try_emplace(std::move(key), static_cast<int>(known_.size()));
+        if (is_new) store(unit, std::to_string(place->second));
+        return place->second;
+    }
+    std::size_t size() const { return known_.size(); }
+
+private:
+    void store(const Surface& unit, const std::string& number)
+    {
+        std::vector<double> points, normals, corners;
+        for (const Vector3& p : unit.points) points.insert(points.end(), p.a, p.a + 3);
+        for (const Vector3& n : unit.normals) normals.insert(normals.end(), n.a, n.a + 3);
+        for (const auto& t : unit.triangles) corners.insert(corners.end(), t.begin(), t.end());
+        payload_.add("points " + number, Precision::single, points);
+        payload_.add("normals " + number, Precision::single, normals);
+        payload_.add("corners " + number, Precision::whole, corners);
+    }
+
+    Payload& payload_;
+    std::map<std::vector<int>, int> known_;
+};
+
+void write_bodies(ReportData& data, const Scenario& scenario)
+{
+    Shapes shapes(data.payload);
+    JsonWriter& json = data.json;
+    std::vector<Surface> surfaces = surfaces_of(scenario);
+    json.key("bodies").begin_array();
+    for (std::size_t b = 0; b < surfaces.size(); ++b) {
+        const Body& body = scenario.model.bodies()[b];
+        const UnitSurface unit = unit_surface(std::move(surfaces[b]));
+        const bool is_mark = b >= scenario.outlines.size() || scenario.outlines[b].is_empty();
+        json.begin_object().member("name", body.name).member("point", body.is_point);
+        json.member("mark", is_mark).member("mass", body.mass(0, 0));
+        json.member("shape", shapes.index_of(unit.surface));
+        add(json, "middle", unit.middle);
+        add(json, "half", unit.half);
+        add(json, "centre", body.is_point ? Vector3{} : mass_properties(body.mass).center_of_mass);
+        json.end_object();
+    }
+    json.end_array();
+    json.member("shapes", shapes.size());
+}
+
+/// The two directions of a row a . b = 0, or a . (x - y) = 0, in coordinates of its bodies: its form is one
+/// product. Zero where it is not.
+struct RowDirections {
+    Vector3 first{}, second{};
+};
+RowDirections directions_of(const ConstraintRow& row)
+{
+    Matrix<3, 4> product{};   // rows: components of the first direction
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 4; ++j) product(i, j) = row.body_i == world ? row.b_j(i, j) : row.c_ij(i + 1, j);
+    int largest = 0;
+    for (int k = 1; k < 12; ++k)
+        if (std::abs(product[k]) > std::abs(product[largest])) largest = k;
+    const Vector3 first = product.column(largest / 3);
+    const Vector3 second{product(largest % 3, 1), product(largest % 3, 2), product(largest % 3, 3)};
+    const auto unit = [](const Vector3& v) { return norm(v) > 0 ? (1 / norm(v)) * v : Vector3{}; };
+    return {unit(first), unit(second)};
+}
+
+/// Directions of a joint in coordinates of its first and of its second body; zero where it has none.
+RowDirections axes_of(const Joint& joint)
+{
+    const auto lines = [&](std::size_t r) { return directions_of(joint.rows[r]); };
+    if (norm(joint.axis_first) > 0) return {joint.axis_first, joint.axis_second};
+    if (joint.type == "universal" || joint.type == "perpendicular_axes" || joint.type == "constant_angle")
+        return lines(joint.rows.size() - 1);
+    if (joint.type == "point_in_plane") return {lines(0).first, {}};
+    if (joint.type == "point_on_line" && joint.rows.size() == 2)
+        return {cross(lines(0).first, lines(1).first), {}};
+    return {};
+}
+
+void write_joints(JsonWriter& json, const Model& model)
+{
+    json.key("joints").begin_array();
+    for (const Joint& joint : model.joints()) {
+        const RowDirections axes = axes_of(joint);
+        json.begin_object().member("name", joint.name).member("type", joint.type);
+        json.member("first", joint.first).member("second", joint.second);
+        add(json, "point_first", joint.point_first);
+        add(json, "point_second", joint.point_second);
+        add(json, "axis_first", axes.first);
+        add(json, "axis_second", axes.second);
+        json.end_object();
+    }
+    json.end_array();
+}
+
+void write_loads(JsonWriter& json, const Model& model, const Motion& motion)
+{
+    const std::vector<LineOfAction> lines = lines_of_action(model, motion);
+    json.key("loads").begin_array();
+    for (std::size_t l = 0; l < lines.size(); ++l) {
+        const Load& load = model.loads()[l];
+        json.begin_object().member("name", load.name).member("type", load.type);
+        json.member("first", load.bodies[0]).member("second", load.bodies[1]);
+        for (const int side : {0, 1}) {
+            const char* const key = side == 0 ? "point_first" : "point_second";
+            if (const auto& point = lines[l].points[static_cast<std::size_t>(side)])
+                add(json, key, *point);
+            else
+                json.key(key).null();
+        }
+        json.end_object();
+    }
+    json.end_array();
+}
+
+void write_sensors(JsonWriter& json, const Model& model)
+{
+    json.key("sensors").begin_array();
+    for (const Sensor& sensor : model.sensors()) {
+        json.begin_object().member("name", sensor.name).member("type", sensor.type);
+        json.key("components").begin_array();
+        for (const SensorComponent& component : sensor.components) json.value(component.name);
+        json.end_array().end_object();
+    }
+    json.end_array();
+}
+
+}   // namespace
+
+void write_scene(ReportData& data, const Scenario& scenario, const Run& run)
+{
+    write_bodies(data, scenario);
+    write_joints(data.json, scenario.model);
+    write_loads(data.json, scenario.model, run.motion);
+    write_sensors(data.json, scenario.model);
+    add(data.json, "gravity", scenario.model.gravity());
+    data.json.member("length", scenario.model.length());
+}
+
+}   // namespace livens

@@ -1,0 +1,20 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# The page of `livens report` in its own tools: rebuilt from its sources, and opened in a browser. Both say SKIPPED where
+# Node, the packages of report/ or Chromium are missing; tests/system/report_test.py needs none of them.
+
+find_program(LIVENS_NODE node)
+if(LIVENS_NODE)
+    set(run_node ${LIVENS_NODE})
+else()
+    set(run_node ${CMAKE_COMMAND} -E echo "SKIPPED: no node to run")
+endif()
+add_test(NAME report.page_is_what_its_sources_make COMMAND ${run_node} ${PROJECT_SOURCE_DIR}/report/test/bundle.mjs)
+set_tests_properties(report.page_is_what_its_sources_make PROPERTIES LABELS fast TIMEOUT 120)
+set(report_tests report.page_is_what_its_sources_make)
+if(LIVENS_BUILD_PROGRAM AND LIVENS_SLOW_TESTS)
+    add_test(NAME report.in_a_browser COMMAND ${run_node} ${PROJECT_SOURCE_DIR}/report/test/browser.mjs)
+    set_tests_properties(report.in_a_browser PROPERTIES LABELS slow TIMEOUT 900 COST 100
+                         ENVIRONMENT "LIVENS_PROGRAM=$<TARGET_FILE:livens>")
+    list(APPEND report_tests report.in_a_browser)
+endif()
+set_tests_properties(${report_tests} PROPERTIES SKIP_REGULAR_EXPRESSION "^SKIPPED: ")
