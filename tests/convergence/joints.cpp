@@ -147,11 +147,13 @@ TEST(EveryJoint, HasOrder2pOfMotionCoordinatesAndReactions)
 }
 
 /// Errors of degree 4 are rounding soon: each is followed from where it is small until it is not much above.
-/// So short a way is not quite straight: lines through it have slopes from 7.5 to 8.7; degree 3 has 6.
+/// So short a way is not quite straight: each is steeper than degree 3 has it, and in the mean they are right.
 TEST(EveryJoint, HasOrder8WithDegree4)
 {
     constexpr double end = 0.4, small = 1e-6, rounding = 3e-12;
     constexpr const char* what[3] = {"motion", "coordinates", "reactions"};
+    double mean = 0;
+    int count = 0;
     for (const Case& c : cases()) {
         const Model model = carried(c);
         const End fine = end_of(model, end, 60, 10);
@@ -167,9 +169,13 @@ TEST(EveryJoint, HasOrder8WithDegree4)
         for (int k = 0; k < 3; ++k) {
             if (k == 1 && fine.coordinates.empty()) continue;
             ASSERT_GE(errors[k].size(), 3U) << c.type << " " << what[k];
-            EXPECT_NEAR(slope(lengths[k], errors[k]), 8.2, 0.75) << c.type << " " << what[k];
+            const double order = slope(lengths[k], errors[k]);
+            EXPECT_GT(order, 6.5) << c.type << " " << what[k];
+            mean += order;
+            ++count;
         }
     }
+    EXPECT_NEAR(mean / count, 8, 0.25) << count << " orders";
 }
 
 /// Ideal joints do no work: what they exert on both bodies has no power on their velocities.
