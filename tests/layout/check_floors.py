@@ -56,7 +56,7 @@ LINE, HEADER, SOURCE, TEST, FUNCTION, BASE = 110, 300, 400, 600, 60, 300
 MEMBERS, NARROW_ROOMS = 15, {"spacetime"}
 BAD_NAMES = {"util", "utils", "utility", "utilities", "common", "misc", "helper", "helpers"}
 LICENCE = "SPDX-License-Identifier: BSD-3-Clause"
-LICENSED_FOLDERS = ("src", "apps", "tests", "benchmarks", "experiments", "cmake", "scripts", ".ci")
+LICENSED_FOLDERS = ("src", "apps", "tests", "benchmarks", "experiments", "cmake", "scripts", "python", ".ci")
 LICENSED_SUFFIXES = {".h", ".cpp", ".py", ".cmake", ".map"}
 ALLOWANCE = re.compile(r"//\s*layout allows (long-file|long-function|long-line): \S.{9,}")
 

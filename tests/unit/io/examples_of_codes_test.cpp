@@ -108,6 +108,7 @@ TEST(ExamplesOfCodes, StandWhereverAScenarioLeads)
         "not-at-rest",
         "not-in-equilibrium", "not-in-this-version",
         "point-with-directors",
+        "python-function",
         "quadrature-points",
         "quaternion-zero",
         "sample-exact-method",

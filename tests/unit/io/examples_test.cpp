@@ -9,6 +9,7 @@
 #include <map>
 
 #include "livens/io/scenario.h"
+#include "livens/io/scenario/tree.h"
 #include "livens/spacetime/solve.h"
 #include "unit/io/scenario_text.h"
 
@@ -36,6 +37,24 @@ TEST(Examples, AllAreReadWithoutAWord)
         ++n;
     }
     EXPECT_GE(n, 18);
+}
+
+TEST(Examples, AreTheSameAsTrees)
+{
+    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+        if (entry.path().extension() != ".toml") continue;
+        SCOPED_TRACE(entry.path());
+        const Scenario scenario = example(entry.path().stem());
+        Findings findings;
+        const std::optional<Node> root = parse_toml(scenario.text, findings);
+        ASSERT_TRUE(root.has_value());
+        const ScenarioResult whole = read_tree(*root, scenario.text, "");
+        ASSERT_TRUE(whole.scenario.has_value()) << test::shown(whole);
+        EXPECT_EQ(whole.scenario->resolved, scenario.resolved);
+        EXPECT_EQ(whole.scenario->model.length(), scenario.model.length());
+        const ScenarioResult model = read_tree(*root, "", "", TreePart::model);
+        EXPECT_TRUE(!model.scenario.has_value() && model.diagnostics.empty()) << test::shown(model);
+    }
 }
 
 TEST(Examples, BeginWithThreeLinesOnWhatTheyShow)

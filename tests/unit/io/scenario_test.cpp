@@ -516,6 +516,7 @@ TEST(ScenarioCodes, AllAreProvokedByTheseTests)
                                       "not-at-rest",
                                       "not-in-equilibrium",
                                       "point-with-directors",
+                                      "python-function",   // python/tests
                                       "quadrature-points",
                                       "quaternion-zero",
                                       "sample-exact-method",
@@ -596,5 +597,4 @@ TEST(Scenario, SyntaxErrorsPointAtTheCause)
 }
 
 }   // namespace
-
 }   // namespace livens

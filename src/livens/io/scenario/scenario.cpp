@@ -5,6 +5,7 @@
 #include <new>
 
 #include "livens/io/scenario/builder.h"
+#include "livens/io/scenario/tree.h"
 
 namespace livens {
 
@@ -41,7 +42,7 @@ bool check_format(const Node& root, Findings& findings)
 }
 
 /// Everything behind the parser. The scenario counts if there is no error.
-void build(const Node& root, Scenario& scenario, const MeshSource& meshes, Findings& findings)
+void build(const Node& root, TreePart part, const MeshSource& meshes, Scenario& scenario, Findings& findings)
 {
     if (!check_format(root, findings)) return;
     const Section top(root, root_table(), "the scenario", findings);
@@ -54,6 +55,7 @@ void build(const Node& root, Scenario& scenario, const MeshSource& meshes, Findi
     read_sensors(builder, false);
     read_loads(builder);
     read_sensors(builder, true);
+    if (part == TreePart::model) return;
     read_run(builder, scenario);
     if (findings.n_errors() > 0) return;
     scenario.conditions.start = builder.model().start();
@@ -84,7 +86,7 @@ void parse(Scenario& scenario, const MeshSource& meshes, Findings& findings)
     }
     if (!scan(text, findings)) return;
     const std::optional<Node> root = parse_toml(text, findings);
-    if (root) build(*root, scenario, meshes, findings);
+    if (root) build(*root, TreePart::whole, meshes, scenario, findings);
 }
 
 /// Reads a file to its end or to one byte over the limit. False after an error.
@@ -140,6 +142,18 @@ ScenarioResult parse_scenario(std::string text, const std::string& file_name, co
     result.text = scenario.text;
     if (findings.n_errors() == 0) result.scenario = std::move(scenario);
     result.diagnostics = findings.take(file_name);
+    return result;
+}
+
+ScenarioResult read_tree(const Node& root, std::string text, const MeshSource& meshes, TreePart part)
+{
+    Findings findings;
+    ScenarioResult result;
+    Scenario scenario;
+    scenario.text = std::move(text);
+    shield(findings, [&] { build(root, part, meshes, scenario, findings); });
+    if (findings.n_errors() == 0 && part == TreePart::whole) result.scenario = std::move(scenario);
+    result.diagnostics = findings.take("");
     return result;
 }
 

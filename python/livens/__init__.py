@@ -1,0 +1,40 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""livens: rigid multibody dynamics, the whole motion solved at once.
+
+A model is made by name (:class:`Model`, :func:`load`), solved (:func:`solve`), and its solution looked at by name::
+
+    import livens as lv
+
+    m = lv.Model("pendulum", gravity=(0, 0, -9.81))
+    rod = m.add_body("rod", lv.box(1, 0.05, 0.05, density=7850), position=(0.5, 0, 0))
+    m.add_revolute("pivot", "world", rod, at=(0, 0, 0), axis=(0, 1, 0))
+    sol = lv.solve(m, 10)
+    sol["rod"].position, sol["pivot"].force, sol.energy
+
+SI units and world axes unless said. ``docs/python.md`` is the guide, ``docs/scenario.md`` lists all keys.
+"""
+from . import _generated
+from ._core import version as __version__
+from ._entries import Entry, Names, Section
+from ._errors import (Diagnostic, InputError, ModelWarning, Place, ResultFileError, SlowWarning, SolveError,
+                      SolveWarning)
+from ._explain import explain
+from ._export import Comparison, compare
+from ._generated import *   # noqa: F403  the shapes and methods that the schema has, see __all__ there
+from ._generated import Body, Drive, Joint, Load, MethodOptions, Sensor
+from ._functions import BodyState
+from ._load import load
+from ._model import Model
+from ._results import (BodySeries, JointSeries, LoadSeries, Parts, ReadingSeries, SensorSeries, Series, Solution,
+                       load_solution)
+from ._solve import solve, solve_many
+from ._values import Condition, Method, Shape, momenta, positions, state, table
+
+__all__ = [
+    "Body", "BodySeries", "BodyState", "Comparison", "Condition", "Diagnostic", "Drive", "Entry", "InputError", "Joint",
+    "JointSeries", "Load", "LoadSeries", "Method", "MethodOptions", "Model", "ModelWarning", "Names", "Parts", "Place",
+    "ReadingSeries", "ResultFileError", "Section", "Sensor", "SensorSeries", "Series", "Shape", "SlowWarning",
+    "Solution", "SolveError", "SolveWarning", "__version__", "compare", "explain", "load", "load_solution", "momenta",
+    "positions", "solve", "solve_many", "state", "table",
+]
+__all__ += _generated.__all__

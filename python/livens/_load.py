@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Scenarios as models."""
+from __future__ import annotations
+
+import os
+
+from . import _core
+from ._errors import InputError, Place, fault, file_name, raised
+from ._model import Model
+from ._places import some_time
+from ._tree import diagnostics_of_text, tables
+
+
+def load(file: str | os.PathLike[str] | None = None, *, text: str | None = None, check: bool = True) -> Model:
+    """Reads a scenario, from a file or from a text.
+
+    Args:
+        file: Its name.
+        text: The scenario itself, instead.
+        check: Whether what is wrong with it is raised now; else by :func:`solve`, and listed by
+            :meth:`Model.check`. What is no TOML is always raised.
+
+    Raises:
+        InputError: with line and column of all that is wrong.
+        OSError: the file cannot be read.
+
+    Example:
+        >>> import livens as lv
+        >>> m = lv.load(text='''
+        ... format = 1
+        ... [[body]]
+        ... name = "ball"
+        ... shape = { sphere = "10 cm" }
+        ... mass = 1
+        ... [time]
+        ... end = 1
+        ... ''')
+        >>> m["ball"].shape.sphere
+        0.1
+    """
+    if (file is None) == (text is None):
+        raise TypeError("load() takes a file's name or text=, one of them")
+    name = "" if file is None else file_name(file)
+    if file is not None:
+        with open(name, "rb") as stream:
+            content = stream.read(1 + (16 << 20))
+    else:
+        assert text is not None
+        try:
+            content = text.encode()
+        except UnicodeEncodeError:
+            raise fault("not-text", "this text holds surrogates, which are no characters") from None
+    parsed, found = _core.parse(content)
+    shown = content.decode("utf-8", "replace")
+    if parsed is None:
+        raise InputError(diagnostics_of_text(found, name, shown))
+    model = Model()
+    model._root = tables(parsed[0], parsed[1], name or "<text>", Place(name or "<text>", 1))
+    model._file, model._text = name or "<text>", shown
+    if check:
+        scenario, listed = model._build({} if "time" in model._root else {"time": some_time(model._root)})
+        if scenario is None:
+            raise raised(listed)
+    return model

@@ -1,0 +1,119 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Where things stand in a tree: paths, places of diagnostics, what refers to what."""
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from . import _core
+from ._entries import Section, default_name
+from ._errors import Diagnostic, Place, fault, user_place
+from ._tree import KINDS, Table
+from ._values import Shape
+
+
+def store(table: Table, name: str, value: Any) -> None:
+    table[name] = value
+    table.places[name] = user_place()
+
+
+def key_below(section: Section, top: Section) -> str:
+    while section._top is not top:
+        assert section._top is not None
+        section = section._top
+    return section._key
+
+
+def words_in(value: Any) -> list[str]:
+    if isinstance(value, str):
+        return [value]
+    if isinstance(value, dict):
+        return [word for item in value.values() for word in words_in(item)]
+    if isinstance(value, (list, tuple)) and value and not isinstance(value[0], (int, float)):
+        return [word for item in value for word in words_in(item)]
+    return []
+
+
+def arranged(content: Mapping[str, Any]) -> dict[str, Any]:
+    """first, second -> between (or joints), and points where they are (body, point)."""
+    shape = content.get("shape")
+    made: dict[str, Any] = {"shape": None} if shape is not None else {}
+    made.update({key: value for key, value in content.items() if key not in ("first", "second", "name", "shape")})
+    if isinstance(shape, Shape):
+        for key, value in shape.keys.items():
+            if made.get(key) is not None:
+                raise fault("wrong-type", f"'{key}' is given to the body and to its shape")
+            made[key] = value
+    elif shape is not None:
+        made["shape"] = shape
+    both = [content[key] for key in ("first", "second") if content.get(key) is not None]
+    if not both:
+        return made
+    pairs = [end if isinstance(end, (tuple, list)) and len(end) == 2 else (end, None) for end in both]
+    points = [point for _, point in pairs if point is not None]
+    into = "joints" if "joints" in content and "between" not in content else "between"
+    if made.get(into) is not None:
+        raise fault("wrong-type", f"'{into}' is given twice: in front, and by its name")
+    made[into] = tuple(end for end, _ in pairs)
+    if points:
+        if len(points) < len(pairs):
+            raise fault("wrong-type", "a point is given on one side only; write both as (body, point)")
+        if made.get("points") is not None:
+            raise fault("wrong-type", "'points' are given twice: with the bodies, and by their name")
+        made["points"] = tuple(points)
+    return made
+
+
+def path_of(kind: str, table: Mapping[str, Any], index: int = -1) -> str:
+    if kind not in KINDS:
+        return kind
+    return f"{kind}[{table.get('name') or (default_name(kind, table) if index < 0 else index + 1)}]"
+
+
+def of_table(d: dict[str, Any], kind: str, table: Table) -> Diagnostic:
+    key = d["location"][2]
+    path = path_of(kind, table) + (f".{key}" if key else "")
+    return Diagnostic(d["severity"], d["code"], d["message"], path, d["note"], d["help"],
+                      table.places.get(key, table.place))
+
+
+def diagnostic_of(d: dict[str, Any], root: Mapping[str, Any]) -> Diagnostic:
+    """Of the compiled reader, with the place in the user's file."""
+    kind, index, _ = d["location"]
+    value = root.get(kind)
+    if isinstance(value, list) and 0 <= index < len(value) and isinstance(value[index], Table):
+        return of_table(d, kind, value[index])
+    if isinstance(value, Table):
+        return of_table(d, kind, value)
+    place = root.places.get(kind, root.place) if isinstance(root, Table) else Place()
+    return Diagnostic(d["severity"], d["code"], d["message"], kind, d["note"], d["help"], place or user_place())
+
+
+def faults_in(part: Mapping[str, Any], kind: str, table: Table) -> list[Diagnostic]:
+    _, found = _core.build_tree(dict(part), "", "", True)   # of meshes nothing: they are looked at by check()
+    index = next(i for i, item in enumerate(part[kind]) if item is table)
+    return [diagnostic_of(d, part) for d in found
+            if d["severity"] == "error" and d["location"][:2] == (kind, index) and not d["code"].startswith("mesh-")]
+
+
+def path_at(root: Table, place: Place) -> str:
+    best, path = (0, 0), ""
+    for kind, value in root.items():
+        entries = value if isinstance(value, list) else [value] if isinstance(value, Table) else []
+        spots = [(root.places.get(kind, Place()), kind)] if not entries else []
+        for table in entries:
+            spots.append((table.place, path_of(kind, table)))
+            spots += [(spot, f"{path_of(kind, table)}.{key}") for key, spot in table.places.items()]
+        for spot, found in spots:
+            at = (spot.line, spot.column)
+            if best <= at <= (place.line, place.column) and spot.line == place.line or best == (0, 0) == at:
+                best, path = at, found
+    return path
+
+
+def some_time(root: Mapping[str, Any]) -> Table:
+    method = root.get("method")
+    knots = method.get("knots") if isinstance(method, Table) else None
+    if isinstance(knots, tuple) and len(knots) > 1:
+        return Table({"start": knots[0], "end": knots[-1]})
+    return Table({"end": 1})

@@ -1,0 +1,370 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""solve() and solve_many()."""
+from __future__ import annotations
+
+import sys
+import time as clock
+import warnings
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any, Literal, Union
+
+import numpy as np
+
+from . import _core
+from ._errors import InputError, SolveError, SolveWarning, fault, stack_level, user_place
+from ._model import Model
+from ._places import diagnostic_of
+from ._results import Solution
+from ._tree import Table, plain, schema, toml
+from ._values import Condition, Method, Number, Vector
+
+if TYPE_CHECKING:
+    from typing_extensions import TypeAlias, Unpack
+
+    from ._generated import MethodOptions
+
+Time: TypeAlias = Union[Number, tuple[Number, Number], Sequence[Number], None]
+"""An end (from the start of the model's own ``[time]``, or 0), or (start, end); s, texts with units are taken."""
+End: TypeAlias = Union[Condition, Literal["nothing", "positions", "momenta", "state"], None]
+"""What is known at an end of time."""
+ProgressArgument: TypeAlias = Union[bool, Callable[[int, int, float], Any]]
+"""True: a line on standard error. A function is called with (elements done, elements, t) about 20 times a second;
+what it raises ends the solution."""
+
+_ORIENTATIONS = ("directors", "quaternion", "rotation_vector")
+
+
+def solve(model: Model, time: Time = None, *, accuracy: Number | None = None, elements: int | None = None,
+          output: Number | Vector | None = None, breaks: Literal["from_loads", "ignore"] | None = None,
+          method: Method | str | None = None, start: End = None, end: End = None, progress: ProgressArgument = False,
+          strict: bool = False, **options: Unpack[MethodOptions]) -> Solution:
+    """Solves a model's whole motion.
+
+    What is not given is what the model's own tables ``[time]``, ``[method]``, ``[start]``, ``[end]`` say, or
+    their defaults: to an accuracy of 1e-6, by the method ``auto``.
+
+    Args:
+        model: What is solved; it is not changed.
+        time: Its end, or (start, end), s.
+        accuracy: Largest error of positions, in lengths of the model, and of orientations, in rad. Elements and,
+            unless stated, the degree follow from it. Default: 1e-6.
+        elements: Instead: so many time elements of equal length.
+        output: Interval between output times, or their ascending list, s: they become element ends.
+        breaks: Whether elements end where loads jump (``"from_loads"``, default) or not (``"ignore"``).
+        method: ``lv.Lobatto(7)``, ``lv.Radau()``, ``lv.Mixed(..)``, .., or a word: ``"radau"``.
+        start: What is known at the start, by default the state: a word, or ``lv.positions({..})``, ..
+        end: What is known at the end, by default nothing. Two halves must be known in all.
+        progress: True for a line of progress, or a function.
+        strict: Raise :class:`SolveError` with what there is, instead of warning, unless all is well.
+        **options: What all methods have: ``tolerance``, ``max_iterations``, ``estimate``, ``growth``,
+            ``condition``.
+
+    Returns:
+        The solution, also if it is not a good one: then ``success`` is False, and :class:`SolveWarning` has been
+        warned of. Ctrl-C ends it with ``KeyboardInterrupt``. Other threads run meanwhile.
+
+    Raises:
+        InputError: what is wrong with model or arguments.
+        SolveError: with ``strict=True``.
+
+    Example:
+        >>> import livens as lv
+        >>> m = lv.Model("pendulum", gravity=(0, 0, -9.81))
+        >>> rod = m.add_body("rod", lv.box(1, 0.05, 0.05, density=7850), position=(0.5, 0, 0))
+        >>> pivot = m.add_revolute("pivot", "world", rod, at=(0, 0, 0), axis=(0, 1, 0))
+        >>> sol = lv.solve(m, 2, accuracy=1e-9)
+        >>> sol["pivot"].force.shape == (len(sol.t), 3)
+        True
+    """
+    if not isinstance(model, Model):
+        raise TypeError(f"solve() takes a livens.Model first, not {type(model).__name__}")
+    overrides = _overrides(model, time, dict(accuracy=accuracy, elements=elements, output=output, breaks=breaks),
+                           method, options, start, end)
+    scenario = model._scenario(overrides)
+    shown = _Progress(progress)
+    try:
+        result = _core.solve(scenario, shown.function, _most_bytes(int(clock.monotonic())))
+    finally:
+        shown.end()
+    solution = Solution(result, bool(model._functions))
+    if not result.converged:
+        _complain(solution, strict)
+    return solution
+
+
+def solve_many(models: Model | Iterable[Model], time: Time = None, *,
+               variations: Iterable[Mapping[str, Any]] | None = None, threads: int = 0,
+               accuracy: Number | None = None, elements: int | None = None, output: Number | Vector | None = None,
+               breaks: Literal["from_loads", "ignore"] | None = None, method: Method | str | None = None,
+               start: End = None, end: End = None, progress: bool | Callable[[int, int], Any] = False,
+               strict: bool = False, **options: Unpack[MethodOptions]) -> list[Solution]:
+    """Solves many models, several at a time; no bit of a result depends on how many.
+
+    Args:
+        models: Models, or one of which ``variations`` say what is changed.
+        time: Its end, or (start, end), s; this one and all that are not explained here as :func:`solve` has them.
+        variations: For each solution what is assigned before: ``{"crank.mass": 2.6, "return.stiffness": 800}``;
+            ``"gravity"`` and ``"time.end"`` work, too.
+        threads: 0: as many as there are processors.
+        progress: True for a line, or a function that is called with (done, all).
+        accuracy: Largest error of each.
+        elements: Instead: time elements of each.
+        output: Interval between output times, or their list, s.
+        breaks: Whether elements end where loads jump.
+        method: Of all of them.
+        start: What is known at the start.
+        end: What is known at the end.
+        strict: Raise :class:`SolveError` for the first that is not good; else one warning tells how many.
+        **options: ``tolerance``, ``estimate``, ..
+
+    Returns:
+        The solutions, in the order of models or variations.
+
+    Raises:
+        InputError: what is wrong with the first that is wrong; nothing is solved if an assignment is wrong.
+
+    Example:
+        >>> import livens as lv
+        >>> m = lv.Model("fall", gravity=(0, 0, -9.81))
+        >>> ball = m.add_body("ball", lv.point(mass=1))
+        >>> speeds = [{"ball.velocity": (v, 0, 0)} for v in (1, 2, 3)]
+        >>> [round(sol["ball"].position[-1].item(0), 9) for sol in lv.solve_many(m, 2, variations=speeds, elements=2)]
+        [2.0, 4.0, 6.0]
+    """
+    pairs = []
+    of_time = dict(accuracy=accuracy, elements=elements, output=output, breaks=breaks)
+    for model in _varied(models, variations):
+        model._refuse_functions("solved beside others")
+        root = model._with(_overrides(model, time, of_time, method, options, start, end))
+        pairs.append((root, toml(root), model._folder))
+    if isinstance(threads, bool) or not isinstance(threads, int) or threads < 0:
+        raise fault("out-of-range", f"threads must be 0 or more, not {threads!r}", "threads")
+    line = _Progress(progress if isinstance(progress, bool) else False, "solutions")
+    tell: Callable[[int], Any] | None = None
+    if callable(progress):
+        function = progress
+        tell = lambda done: function(done, len(pairs))   # noqa: E731
+    elif line.function is not None:
+        show = line.function
+        tell = lambda done: show(done, len(pairs), None)   # noqa: E731
+    try:
+        found = _core.solve_many(pairs, threads, tell, _most_bytes(int(clock.monotonic())))
+    finally:
+        line.end()
+    solutions = []
+    for i, (result, diagnostics) in enumerate(found):
+        if result is None:
+            faults = [diagnostic_of(d, pairs[i][0]) for d in diagnostics if d["severity"] == "error"]
+            error = InputError(faults)
+            error.args = (f"variation {i}: {error}",)
+            raise error
+        solutions.append(Solution(result))
+    bad = [i for i, solution in enumerate(solutions) if not solution.success]
+    if bad:
+        message = f"{len(bad)} of {len(solutions)} are not good, the first is {bad[0]}: {_words(solutions[bad[0]])}"
+        if strict:
+            raise SolveError(message, solutions[bad[0]])
+        warnings.warn(message, SolveWarning, stacklevel=stack_level())
+    return solutions
+
+
+def _varied(models: Model | Iterable[Model], variations: Iterable[Mapping[str, Any]] | None) -> Iterable[Model]:
+    if not isinstance(models, Model):
+        if variations is not None:
+            raise TypeError("variations= are of one model; a list of models is solved as it is")
+        return models
+    if variations is None:
+        raise TypeError("solve_many() takes a list of models, or one with variations=")
+    return (_with_values(models, values) for values in variations)
+
+
+def _with_values(model: Model, values: Mapping[str, Any]) -> Model:
+    varied = model.copy()
+    for path, value in values.items():
+        name, _, key = path.rpartition(".")
+        if not name and key in ("gravity", "title"):
+            setattr(varied, key, value)
+        elif name in ("time", "method", "start", "end") and name not in varied:
+            setattr(getattr(varied, name), key, value)
+        elif not name:
+            raise fault("unknown-key", f"'{path}' names no value: write 'part.key'", path)
+        else:
+            setattr(varied[name], key, value)
+    return varied
+
+
+def _words(solution: Solution) -> str:
+    return solution.message or (solution.reasons or [solution.status])[0]
+
+
+def _complain(solution: Solution, strict: bool) -> None:
+    reached = f"; it ends at {solution.t[-1]:.6g} s" if not solution._result.reached_end else ""
+    message = f"{solution.status}: {_words(solution)}{reached}"
+    if strict:
+        raise SolveError(message, solution)
+    warnings.warn(message, SolveWarning, stacklevel=stack_level())
+
+
+def _set(table: Table, kind: str, name: str, value: Any) -> None:
+    key = schema().key(schema().children[kind], table, name)
+    table[name] = plain(value, key, f"{kind}.{name}")
+    table.places[name] = user_place()
+
+
+def _overrides(model: Model, time: Time, of_time: dict[str, Any], method: Method | str | None,
+               options: Mapping[str, Any], start: End, end: End) -> dict[str, Any]:
+    """Tables of the root that the arguments replace; empty: none."""
+    made: dict[str, Any] = {}
+    if time is not None or any(value is not None for value in of_time.values()):
+        made["time"] = _time(model, time, of_time)
+    elif "time" not in model._root:
+        raise fault("missing-key", "the model does not say until when", "time.end",
+                    "say it here: lv.solve(model, 10), or in the model: model.time.end = 10")
+    if method is not None or options:
+        made["method"] = _method(model, method, options)
+    if start is not None:
+        condition = _condition(start, "start")
+        made["start"] = _given(model, "start", condition.given)
+        if condition.bodies:
+            made["body"] = _moved(model._root.get("body", []), condition, "start")
+    if end is not None:
+        condition = _condition(end, "end")
+        made["end"] = _given(model, "end", condition.given)
+        if condition.bodies:
+            made["body"] = _moved(made.get("body", model._root.get("body", [])), condition, "end")
+    return made
+
+
+def _base(model: Model, name: str) -> Table:
+    table = model._root.get(name)
+    return Table(table, table.place, table.places) if isinstance(table, Table) else Table(place=user_place())
+
+
+def _time(model: Model, time: Time, of_time: dict[str, Any]) -> Table:
+    table = _base(model, "time")
+    both: tuple[Any, ...] = (None, time)
+    if np.ndim(time) == 1 and not hasattr(time, "to_base_units"):   # type: ignore[arg-type]
+        both = tuple(time)   # type: ignore[arg-type]
+        if len(both) != 2:
+            raise fault("wrong-type", f"time is its end, or (start, end), not {len(both)} numbers", "time")
+    for name, value in zip(("start", "end"), both):
+        if value is not None:
+            _set(table, "time", name, value)
+    if of_time["elements"] is not None:
+        table.pop("accuracy", None)
+    if of_time["accuracy"] is not None:
+        table.pop("elements", None)
+    for name, value in of_time.items():
+        if value is not None:
+            _set(table, "time", name, value)
+    return table
+
+
+def _method(model: Model, method: Method | str | None, options: Mapping[str, Any]) -> Table:
+    table = _base(model, "method")
+    known = [key["name"] for key in schema().children["method"]["keys"]]
+    if method is not None:
+        table = Table({k: v for k, v in table.items() if k in known and k != "family"}, table.place, table.places)
+        if isinstance(method, str):
+            method = Method(method)
+        if not isinstance(method, Method):
+            raise TypeError(f"a method is lv.Lobatto(..), .. or a word, not {type(method).__name__}")
+        _set(table, "method", "family", method.family)
+        for name, value in method.keys.items():
+            _set(table, "method", name, value)
+    for name, value in options.items():
+        if name not in known or name == "family":
+            names = [n for n in known if n != "family"]
+            of_solve = ["time", "accuracy", "elements", "output", "breaks", "method", "start", "end", "progress", "strict"]
+            raise fault("unknown-key", f"solve() has no keyword '{name}'", name,
+                        _core.suggestion(name, names + of_solve)
+                        if name not in ("degree", "window", "basis") else f"write method=lv.Lobatto({name}=..)")
+        if value is None:
+            table.pop(name, None)
+        else:
+            _set(table, "method", name, value)
+    return table
+
+
+def _condition(given: Any, at: str) -> Condition:
+    if isinstance(given, Condition):
+        return given
+    if isinstance(given, str):
+        return Condition(given)
+    raise TypeError(f"{at}= takes a word or lv.positions(..), lv.momenta(..), lv.state(..), not {type(given).__name__}")
+
+
+def _given(model: Model, name: str, word: str) -> Table:
+    table = _base(model, name)
+    _set(table, name, "given", word)
+    return table
+
+
+def _moved(bodies: list[Table], condition: Condition, at: str) -> list[Table]:
+    """Bodies with what they have at an end of time."""
+    names = [str(body.get("name")) for body in bodies]
+    for name in condition.bodies:
+        if name not in names:
+            raise fault("body-unknown", f"{at}= refers to '{name}', but there is no such body", f"{at}.{name}",
+                        _core.suggestion(str(name), names))
+    moved = []
+    for body in bodies:
+        keys = condition.bodies.get(str(body.get("name")))
+        body = Table(body, body.place, body.places)
+        if keys is not None:
+            into = body if at == "start" else Table(place=user_place())
+            if any(word in keys for word in _ORIENTATIONS):
+                for word in _ORIENTATIONS:
+                    into.pop(word, None)
+            child = schema().children["body"]
+            if at == "end":
+                child = schema().tables[schema().keys(child)["end"]["child"]]
+            for word, value in keys.items():
+                into[word] = plain(value, schema().keys(child).get(word), f"body[{body.get('name')}].{word}")
+                into.places[word] = user_place()
+            if at == "end":
+                body["end"] = into
+                body.places["end"] = into.place
+        moved.append(body)
+    return moved
+
+
+@lru_cache(maxsize=1)
+def _most_bytes(now: int) -> float:
+    """Half of what the machine has left, looked up once a second; a march to an accuracy gives up there."""
+    try:
+        with open("/proc/meminfo", encoding="ascii") as stream:
+            for line in stream:
+                if line.startswith("MemAvailable:"):
+                    return 0.5 * 1024 * float(line.split()[1])
+    except (OSError, ValueError, IndexError):
+        pass
+    return float("inf")
+
+
+class _Progress:
+    """A line on standard error, while it is worth one."""
+
+    def __init__(self, asked: ProgressArgument, what: str = "elements") -> None:
+        self._what, self._begin, self._width = what, clock.monotonic(), 0
+        self.function: Callable[..., Any] | None = None
+        if callable(asked):
+            self.function = asked
+        elif asked:
+            self.function = self._show
+
+    def _show(self, done: int, n: int, t: float | None) -> None:
+        share = done / n if n > 0 else 0.0
+        bar = "#" * round(24 * share)
+        at = f", t = {t:.4g} s" if t is not None else ""
+        of = f"{done} of {n}" if n > 0 else f"{done}"
+        text = f"\r[{bar:<24}] {of} {self._what}{at}, {clock.monotonic() - self._begin:.0f} s"
+        sys.stderr.write(text.ljust(self._width))
+        sys.stderr.flush()
+        self._width = len(text)
+
+    def end(self) -> None:
+        if self._width:
+            sys.stderr.write("\r" + " " * self._width + "\r")
+            sys.stderr.flush()

@@ -1,0 +1,154 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Values that models and solve() take: shapes, methods, tables over time, conditions at the ends of time."""
+from __future__ import annotations
+
+import functools
+import inspect
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar, Union
+
+import numpy as np
+import numpy.typing as npt
+
+if TYPE_CHECKING:
+    from typing_extensions import TypeAlias
+
+_F = TypeVar("_F", bound=Callable[..., Any])
+
+
+class Quantity(Protocol):
+    """Something with a unit that can be converted, as pint has it."""
+
+    def to_base_units(self) -> Any:
+        """In base units."""
+        ...
+
+
+Number: TypeAlias = Union[float, str, Quantity, "np.floating[Any]", "np.integer[Any]"]
+"""A number in SI units, a text with a unit (``"30 deg"``), or a quantity of pint."""
+Vector: TypeAlias = Union[Sequence[Number], npt.NDArray[Any], Quantity]
+"""Some numbers."""
+Matrix: TypeAlias = Union[Sequence[Vector], npt.NDArray[Any], Quantity]
+"""Rows of three numbers."""
+
+
+def _repr(name: str, keys: Mapping[str, Any]) -> str:
+    return f"{name}({', '.join(f'{key}={value!r}' for key, value in keys.items())})"
+
+
+@dataclass(frozen=True, repr=False)
+class Shape:
+    """A solid of constant density, for mass and inertia; made by :func:`box`, :func:`sphere`, ..
+
+    What it has beside the shape (``density`` or ``mass``) goes to the body.
+    """
+
+    keys: Mapping[str, Any] = field(default_factory=dict)
+    """The keys of ``[[body]]`` that it sets."""
+
+    def __repr__(self) -> str:
+        return _repr("Shape", self.keys)
+
+
+@dataclass(frozen=True, repr=False)
+class Method:
+    """How a motion is discretised: :class:`Lobatto`, :class:`Radau`, :class:`Mixed`, .."""
+
+    family: str = ""
+    """The word of the scenario."""
+    keys: Mapping[str, Any] = field(default_factory=dict)
+    """Its keys of ``[method]``."""
+
+    def __repr__(self) -> str:
+        return _repr(type(self).__name__, self.keys)
+
+    def _set(self, family: str, keys: Mapping[str, Any]) -> None:
+        object.__setattr__(self, "family", family)
+        object.__setattr__(self, "keys", {key: value for key, value in keys.items() if value is not None})
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return (_restored, (type(self), self.family, dict(self.keys)))
+
+
+def _restored(kind: type[Method], family: str, keys: Mapping[str, Any]) -> Method:
+    method = object.__new__(kind)
+    method._set(family, keys)
+    return method
+
+
+@dataclass(frozen=True)
+class Condition:
+    """What is known at one end of time; made by :func:`positions`, :func:`momenta`, :func:`state`."""
+
+    given: str
+    """The word of the scenario."""
+    bodies: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
+    """Keys of each body there."""
+
+
+def positions(bodies: Mapping[str, Mapping[str, Any]] | None = None) -> Condition:
+    """Positions are known at an end of time: ``solve(m, 1, start="positions", end=lv.positions({...}))``.
+
+    Args:
+        bodies: For each body by name what it has there: ``position`` (m, world), one of ``quaternion``,
+            ``rotation_vector``, ``directors``, and velocities, which are a guess. At the start bodies have their
+            own, which these replace.
+
+    Example:
+        >>> import livens as lv
+        >>> m = lv.Model("throw", gravity=(0, 0, -9.81))
+        >>> ball = m.add_body("ball", lv.point(mass=1))
+        >>> sol = lv.solve(m, 1, elements=4, start="positions", end=lv.positions({"ball": {"position": (2, 0, 0)}}))
+        >>> sol["ball"].velocity[0][2].round(3).item()
+        4.905
+    """
+    return Condition("positions", dict(bodies or {}))
+
+
+def momenta(bodies: Mapping[str, Mapping[str, Any]] | None = None) -> Condition:
+    """Momenta are known at an end of time: those of the positions and velocities stated; see :func:`positions`."""
+    return Condition("momenta", dict(bodies or {}))
+
+
+def state(bodies: Mapping[str, Mapping[str, Any]] | None = None) -> Condition:
+    """Positions and velocities are known at an end of time; see :func:`positions`."""
+    return Condition("state", dict(bodies or {}))
+
+
+def table(times: Vector, values: Vector | Matrix, interpolation: str | None = None) -> dict[str, Any]:
+    """Values over time, for ``table=`` of loads and drives.
+
+    Args:
+        times: s, ascending, shape (n,).
+        values: One for each time, shape (n,), or (n, 3) for forces and torques; their unit is that of the load.
+        interpolation: ``"linear"`` (default) or ``"spline"``; drives always take splines, and no word here.
+
+    Example:
+        >>> import livens as lv
+        >>> lv.table([0, 1, 2], [0, 5, 0], "spline")["interpolation"]
+        'spline'
+    """
+    made: dict[str, Any] = {"times": times, "values": values}
+    if interpolation is not None:
+        made["interpolation"] = interpolation
+    return made
+
+
+def open_keys(kind: str, word: str) -> Callable[[_F], _F]:
+    """Lets a generated method hand keywords that it does not know to the reader, who knows what was meant."""
+    def decorate(method: _F) -> _F:
+        signature = inspect.signature(method)
+        known = frozenset(signature.parameters)
+
+        @functools.wraps(method)
+        def call(self: Any, *args: Any, **keywords: Any) -> Any:
+            unknown = {name: value for name, value in keywords.items() if name not in known}
+            if not unknown:
+                return method(self, *args, **keywords)
+            bound = signature.bind_partial(self, *args, **{k: v for k, v in keywords.items() if k in known})
+            content = dict(list(bound.arguments.items())[1:])
+            chosen = content.pop("type", word)
+            return self._add(kind, chosen, {**content, **unknown})
+        return call   # type: ignore[return-value]
+    return decorate

@@ -1,0 +1,300 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A motion at given instants, as arrays: one dict for bodies, joints, coordinates, sensors, loads, energies.
+#include <algorithm>
+#include <chrono>
+#include <limits>
+#include <map>
+#include <string>
+
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/string.h>
+
+#include "livens/base/error.h"
+#include "livens/diagnostics/coordinates.h"
+#include "livens/diagnostics/sample.h"
+#include "result.h"
+
+namespace livens::python {
+
+namespace {
+
+constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+
+/// Arrays whose first dimension is time, filled instant by instant.
+class Columns {
+public:
+    explicit Columns(std::size_t n_times) : n_times_(n_times) {}
+
+    void declare(const std::string& name, const std::vector<std::size_t>& shape)
+    {
+        Column& column = columns_[name];
+        column.shape = {n_times_};
+        std::size_t n = n_times_;
+        for (const std::size_t size : shape) column.shape.push_back(size), n *= size;
+        column.numbers.reserve(n);
+    }
+    void add(const std::string& name, double x) { columns_.at(name).numbers.push_back(x); }
+    template <int R, int C>
+    void add(const std::string& name, const Matrix<R, C>& m)
+    {
+        std::vector<double>& numbers = columns_.at(name).numbers;
+        numbers.insert(numbers.end(), m.data(), m.data() + R * C);
+    }
+
+    /// With the lock.
+    nb::dict take()
+    {
+        nb::dict all;
+        for (auto& [name, column] : columns_)
+            all[name.c_str()] = array(std::move(column.numbers), column.shape);
+        return all;
+    }
+
+private:
+    struct Column {
+        std::vector<std::size_t> shape;
+        std::vector<double> numbers;
+    };
+    std::size_t n_times_;
+    std::map<std::string, Column> columns_;
+};
+
+/// work(t) for all instants, without the lock, which is taken now and then to look for signals.
+template <class Work>
+void at_all(const Times& times, const Work& work)
+{
+    using Clock = std::chrono::steady_clock;
+    const nb::gil_scoped_release unlock;
+    Clock::time_point next = Clock::now() + std::chrono::milliseconds(50);
+    for (std::size_t i = 0; i < times.size(); ++i) {
+        work(times.data()[i]);
+        if (i % 16 != 15 || Clock::now() < next) continue;
+        const nb::gil_scoped_acquire lock;
+        if (PyErr_CheckSignals() != 0) throw nb::python_error();
+        next = Clock::now() + std::chrono::milliseconds(50);
+    }
+}
+
+void declare_bodies(Columns& c, std::size_t n)
+{
+    for (const char* name : {"position", "center_of_mass", "velocity", "angular_velocity",
+                             "angular_velocity_body", "linear_momentum", "angular_momentum"})
+        c.declare(name, {n, 3});
+    for (const char* name : {"directors", "directors_raw"}) c.declare(name, {n, 3, 3});
+    c.declare("quaternion", {n, 4});
+}
+
+/// Columns of directors are rows of the array: [d1, d2, d3].
+void add_bodies(Columns& c, std::vector<BodySample>&& samples, std::vector<Vector4>& previous)
+{
+    for (std::size_t b = 0; b < samples.size(); ++b) {
+        BodySample& s = samples[b];
+        previous[b] = s.quaternion = continued(previous[b], s.quaternion);
+        c.add("position", s.position);
+        c.add("center_of_mass", s.center_of_mass);
+        c.add("velocity", s.velocity);
+        c.add("angular_velocity", s.angular_velocity);
+        c.add("angular_velocity_body", s.angular_velocity_body);
+        c.add("linear_momentum", s.linear_momentum);
+        c.add("angular_momentum", s.angular_momentum);
+        c.add("directors", s.directors);
+        c.add("directors_raw", s.directors_raw);
+        c.add("quaternion", s.quaternion);
+    }
+}
+
+void declare_joints(Columns& c, std::size_t n)
+{
+    for (const char* name : {"force", "torque", "force_before", "torque_before"}) c.declare(name, {n, 3});
+    for (const char* name : {"is_unique", "is_bounded"}) c.declare(name, {n});
+}
+
+void add_joints(Columns& c, std::vector<JointSample>&& samples, std::size_t n)
+{
+    const Reaction none{{unknown, unknown, unknown}, {unknown, unknown, unknown}};
+    if (samples.empty()) samples.assign(n, {none, none, false, false, false});
+    for (const JointSample& s : samples) {
+        c.add("force", s.right.force);
+        c.add("torque", s.right.torque);
+        c.add("force_before", s.left.force);
+        c.add("torque_before", s.left.torque);
+        c.add("is_unique", s.is_unique ? 1 : 0);
+        c.add("is_bounded", s.is_bounded ? 1 : 0);
+    }
+}
+
+std::vector<Vector4> upright(const Model& model)
+{
+    return std::vector<Vector4>(static_cast<std::size_t>(model.n_bodies()), Vector4{1, 0, 0, 0});
+}
+
+nb::dict bodies_at(const Result& r, const Times& times)
+{
+    Columns c(times.size());
+    const Model& model = r.scenario->model;
+    std::vector<Vector4> previous = upright(model);
+    declare_bodies(c, previous.size());
+    at_all(times, [&](double t) { add_bodies(c, sample_bodies(model, r.run.motion, t), previous); });
+    return c.take();
+}
+
+nb::dict joints_at(const Result& r, const Times& times)
+{
+    Columns c(times.size());
+    const Model& model = r.scenario->model;
+    const std::size_t n = model.joints().size();
+    declare_joints(c, n);
+    at_all(times, [&](double t) { add_joints(c, sample_joints(model, r.run.motion, t), n); });
+    return c.take();
+}
+
+std::vector<NamedCoordinate> coordinates_of(const Model& model)
+{
+    std::vector<NamedCoordinate> all;
+    for (const Joint& joint : model.joints())
+        all.insert(all.end(), joint.coordinates.begin(), joint.coordinates.end());
+    return all;
+}
+
+/// The model with a sensor for each of its loads, behind its own.
+Model with_load_sensors(const Model& model)
+{
+    Model all = model;
+    for (int i = 0; i < static_cast<int>(model.loads().size()); ++i) {
+        std::string name = "load " + std::to_string(i);
+        while (std::ranges::any_of(model.sensors(), [&](const Sensor& s) { return s.name == name; }))
+            name += "'";
+        all.add_sensor(load_sensor(name, i, model.loads()[static_cast<std::size_t>(i)]));
+    }
+    return all;
+}
+
+std::size_t n_readings(const Model& model)
+{
+    std::size_t n = 0;
+    for (const Sensor& sensor : model.sensors()) n += sensor.components.size();
+    return n;
+}
+
+/// What follows from states, whether these are of the polynomials or solved.
+class OfStates {
+public:
+    OfStates(const Result& r, std::size_t n_times)
+        : c(n_times), model_(with_load_sensors(r.scenario->model)), readings_(model_, r.run.motion),
+          coordinates_(model_, r.run.motion, coordinates_of(model_)), turns_(model_, r.run.motion)
+    {
+        const std::size_t n = coordinates_of(model_).size();
+        c.declare("coordinate", {n});
+        c.declare("coordinate_rate", {n});
+        c.declare("reading", {n_readings(model_)});
+        c.declare("kinetic", {});
+        c.declare("potential", {});
+    }
+
+    void add(const State& state)
+    {
+        for (const CoordinateValue& q : coordinates_.at(state)) {
+            c.add("coordinate", q.value);
+            c.add("coordinate_rate", q.rate);
+        }
+        for (const double x : readings_.at(state)) c.add("reading", x);
+        c.add("kinetic", kinetic_energy(model_, state.X, state.V));
+        c.add("potential",
+              potential_energy(model_, {state.t, Side::right}, state.X, state.V, turns_.at(state)));
+    }
+
+    Columns c;
+
+private:
+    Model model_;
+    SensorReadings readings_;
+    FollowedCoordinates coordinates_;
+    LoadTurns turns_;
+};
+
+nb::dict scalars_at(const Result& r, const Times& times)
+{
+    OfStates of_states(r, times.size());
+    at_all(times, [&](double t) { of_states.add(sample_state(r.run.motion, t)); });
+    return of_states.c.take();
+}
+
+/// Everything, each instant solved in the full order of the method.
+nb::dict exact_at(const Result& r, const Times& times)
+{
+    const Model& model = r.scenario->model;
+    const std::size_t n_joints = model.joints().size();
+    OfStates all(r, times.size());
+    std::vector<Vector4> previous = upright(model);
+    declare_bodies(all.c, previous.size());
+    declare_joints(all.c, n_joints);
+    at_all(times, [&](double t) {
+        ExactSample s = sample_exactly(model, r.run.motion, r.method, t, r.scenario->options);
+        if (!s.report.converged())
+            throw InputError({"sample-exact-method", "",
+                              "the motion cannot be had exactly at this instant: " + s.report.message, "", "",
+                              "", "take the polynomials, without exact=True"});
+        std::vector<BodySample> bodies;
+        for (std::size_t b = 0; b < model.bodies().size(); ++b)
+            bodies.push_back(sample_body(model.bodies()[b], s.state.X[b], s.state.V[b],
+                                         s.state.V[b] * model.bodies()[b].mass));
+        add_bodies(all.c, std::move(bodies), previous);
+        add_joints(all.c, std::move(s.joints), n_joints);
+        all.add(s.state);
+    });
+    return all.c.take();
+}
+
+/// Balances at element ends.
+nb::dict balance_at_ends(const Result& r)
+{
+    const Verdict& verdict = r.run.verdict;
+    std::shared_ptr<const Balance> b = verdict.balances;
+    if (b == nullptr) {
+        const nb::gil_scoped_release unlock;
+        b = std::make_shared<const Balance>(balance(r.scenario->model, r.run.motion));
+    }
+    const std::size_t n = b->t.size();
+    nb::dict all;
+    const auto add = [&](const char* name, std::vector<double> values) {
+        all[name] = array(std::move(values), {n});
+    };
+    add("kinetic", b->kinetic);
+    add("potential", b->potential);
+    add("energy", b->energy);
+    add("work", b->work);
+    add("energy_drift", b->energy_drift);
+    const auto add_vectors = [&](const char* name, const std::vector<Vector3>& vectors) {
+        std::vector<double> values;
+        for (const Vector3& v : vectors) values.insert(values.end(), v.a, v.a + 3);
+        all[name] = array(std::move(values), {n, 3});
+    };
+    add_vectors("linear_momentum", b->linear_momentum);
+    add_vectors("angular_momentum", b->angular_momentum);
+    return all;
+}
+
+/// The instants, each element end where it is meant. Throws InputError (`time-outside`).
+nb::object snapped(const Result& r, const Times& times)
+{
+    std::vector<double> all;
+    for (std::size_t i = 0; i < times.size(); ++i)
+        all.push_back(snap_to_element_end(r.run.motion.mesh, times.data()[i]));
+    const std::size_t n = all.size();
+    return array(std::move(all), {n});
+}
+
+}   // namespace
+
+void add_samples(nb::class_<Result>& result)
+{
+    result.def("snapped", &snapped, nb::arg("t"))
+        .def("bodies_at", &bodies_at, nb::arg("t"))
+        .def("joints_at", &joints_at, nb::arg("t"))
+        .def("scalars_at", &scalars_at, nb::arg("t"))
+        .def("exact_at", &exact_at, nb::arg("t"))
+        .def("balance", &balance_at_ends);
+}
+
+}   // namespace livens::python

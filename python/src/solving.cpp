@@ -1,0 +1,302 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// From a tree to a scenario, from a scenario to a result; Python is free to do other things meanwhile.
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <future>
+#include <ranges>
+#include <string>
+#include <thread>
+#include <utility>
+
+#include <nanobind/nanobind.h>
+#include <nanobind/stl/shared_ptr.h>
+#include <nanobind/stl/string.h>
+
+#include "livens/io/scenario/tree.h"
+#include "livens/spacetime/ensemble.h"
+#include "python_load.h"
+#include "result.h"
+#include "tree.h"
+
+namespace livens::python {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using Shared = std::shared_ptr<const Scenario>;
+
+double seconds_since(Clock::time_point begin)
+{
+    return std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+nb::object shared(std::optional<Scenario>& scenario)
+{
+    if (!scenario) return nb::none();
+    return nb::cast(std::make_shared<Scenario>(std::move(*scenario)));
+}
+
+/// (scenario or None, diagnostics).
+/// Of meshes; empty: where Python is.
+MeshSource meshes_in(const std::string& folder) { return {folder.empty() ? "." : folder}; }
+
+nb::tuple build_text(const std::string& text, const std::string& file, const std::string& folder)
+{
+    ScenarioResult result;
+    {
+        const nb::gil_scoped_release unlock;
+        result = parse_scenario(text, file, meshes_in(folder));
+    }
+    return nb::make_tuple(shared(result.scenario), to_python(result.diagnostics, nullptr));
+}
+
+nb::tuple build_tree(const nb::dict& root, const std::string& text, const std::string& folder, bool model_alone)
+{
+    TreeReader reader;
+    const Node tree = reader.read(root);
+    ScenarioResult result;
+    {
+        const nb::gil_scoped_release unlock;
+        result = read_tree(tree, text, meshes_in(folder), model_alone ? TreePart::model : TreePart::whole);
+    }
+    return nb::make_tuple(shared(result.scenario), to_python(result.diagnostics, &reader.locations()));
+}
+
+/// Asks Python now and then whether someone pressed Ctrl-C, and tells it how far things are: taking the lock
+/// at every element would cost more than the elements do.
+class Watch {
+public:
+    explicit Watch(nb::object callback) : callback_(std::move(callback)) {}
+
+    bool goes_on(const Progress& progress)
+    {
+        if (Clock::now() < next_ && !has_failed_) return !has_failed_;
+        next_ = Clock::now() + std::chrono::milliseconds(interval);
+        const nb::gil_scoped_acquire lock;
+        if (PyErr_Occurred() != nullptr || PyErr_CheckSignals() != 0) return !(has_failed_ = true);
+        if (callback_.is_none()) return true;
+        try {
+            callback_(progress.done, progress.n_elements, progress.t);
+        } catch (nb::python_error& error) {
+            error.restore();
+            has_failed_ = true;
+        }
+        return !has_failed_;
+    }
+    bool has_failed() const { return has_failed_; }
+
+private:
+    static constexpr int interval = 50;   // ms
+    nb::object callback_;
+    Clock::time_point next_ = Clock::now() + std::chrono::milliseconds(interval);
+    bool has_failed_ = false;
+};
+
+/// A motion that was solved and is to be judged, which cannot be interrupted.
+struct Unjudged {
+    Shared scenario;
+    Solution solution;
+    double seconds = 0;
+};
+
+/// What solve() and estimate() make.
+Unjudged solved(const Shared& scenario, const ProgressCallback& progress, double most_bytes)
+{
+    SolveOptions options = scenario->options;
+    options.progress = progress;
+    options.judge = false;
+    options.most_bytes = std::min(options.most_bytes, most_bytes);
+    const Problem problem{scenario->conditions};
+    const Clock::time_point begin = Clock::now();
+    Unjudged motion{scenario, solve(scenario->model, problem, scenario->time, scenario->method, options)};
+    motion.seconds = seconds_since(begin) - motion.solution.estimate_seconds;
+    if (motion.solution.report.status != SolveStatus::cancelled)
+        estimate(scenario->model, problem, scenario->method, options, motion.solution);
+    return motion;
+}
+
+/// What `livens solve` does between solving and writing.
+Result judged(Unjudged&& motion)
+{
+    const Scenario& scenario = *motion.scenario;
+    Solution& solution = motion.solution;
+    const double estimate_seconds = solution.estimate_seconds;
+    try {
+        judge(scenario.model, solution);
+    } catch (const std::bad_alloc&) {
+        if (solution.report.converged()) solution.report.status = SolveStatus::suspect;
+        solution.report.message = "memory ended before the motion was checked";
+    }
+    const Method method = solution.method;
+    Run run = make_run(scenario.model, std::move(solution), method);
+    run.scenario_text = scenario.text;
+    run.meshes = scenario.meshes;
+    run.title = scenario.title;
+    run.resolved = scenario.resolved;
+    run.output = scenario.output.empty() ? run.motion.mesh.ends : scenario.output;
+    return {motion.scenario, std::move(run), method, motion.seconds, estimate_seconds};
+}
+
+/// Motions that are judged although nobody waits for them any more.
+std::atomic<int> n_left = 0;
+
+bool is_of_python(const Model& model)
+{
+    return std::ranges::any_of(model.loads(), [](const Load& load) { return load.type == "python"; });
+}
+
+/// judged() in a thread of its own while this one, which is Python's, looks after signals. After one the
+/// thread is left to itself: it holds all it needs, and ends.
+Result judged_beside(Unjudged&& motion)
+{
+    auto task = std::make_shared<std::packaged_task<Result()>>(
+        [kept = std::make_shared<Unjudged>(std::move(motion))] { return judged(std::move(*kept)); });
+    std::future<Result> result = task->get_future();
+    ++n_left;
+    std::thread([task]() mutable {
+        (*task)();
+        task.reset();
+        --n_left;
+    }).detach();
+    while (result.wait_for(std::chrono::milliseconds(20)) != std::future_status::ready) {
+        const nb::gil_scoped_acquire lock;
+        if (PyErr_CheckSignals() != 0) throw nb::python_error();
+    }
+    return result.get();
+}
+
+/// Before the process ends.
+void wait_for_the_rest()
+{
+    const nb::gil_scoped_release unlock;
+    while (n_left > 0) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+}
+
+Result solve_one(const Shared& scenario, nb::object progress, double most_bytes)
+{
+    Watch watch(std::move(progress));
+    Result result;
+    {
+        const nb::gil_scoped_release unlock;
+        Unjudged motion = solved(
+            scenario, [&](const Progress& p) { return watch.goes_on(p); }, most_bytes);
+        const std::size_t size = motion.solution.motion.X.values.size();
+        constexpr std::size_t small = 100'000;   // numbers, which are judged within some milliseconds
+        const bool is_beside = size > small && !is_of_python(scenario->model);
+        if (!watch.has_failed())
+            result = is_beside ? judged_beside(std::move(motion)) : judged(std::move(motion));
+    }
+    if (watch.has_failed() || PyErr_Occurred() != nullptr) throw nb::python_error();
+    return result;
+}
+
+/// What became of one of many.
+struct Variant {
+    Node tree;
+    std::string text, folder;
+    std::vector<Location> locations;
+    std::vector<Diagnostic> diagnostics{};
+    std::optional<Result> result{};
+    std::exception_ptr failure{};
+};
+
+/// Reads and solves; another one's failure is no reason to stop.
+void solve_variant(Variant& variant, double most_bytes, std::atomic<bool>& is_stopped)
+{
+    try {
+        ScenarioResult read = read_tree(variant.tree, variant.text, meshes_in(variant.folder));
+        variant.tree = {};
+        variant.diagnostics = std::move(read.diagnostics);
+        if (!read.scenario || is_stopped) return;
+        Unjudged motion = solved(
+            std::make_shared<Scenario>(std::move(*read.scenario)),
+            [&](const Progress&) { return !is_stopped; }, most_bytes);
+        if (!is_stopped) variant.result = judged(std::move(motion));
+    } catch (...) {
+        variant.failure = std::current_exception();
+    }
+}
+
+/// False when Python has something to raise.
+bool tell(int n_done, const nb::object& progress)
+{
+    const nb::gil_scoped_acquire lock;
+    if (PyErr_CheckSignals() != 0) return false;
+    if (progress.is_none()) return true;
+    try {
+        progress(n_done);
+        return true;
+    } catch (nb::python_error& error) {
+        error.restore();
+        return false;
+    }
+}
+
+/// [(tree, text, folder of meshes), ..] -> [(result or None, diagnostics), ..] in their order; what one of them
+/// throws is thrown when all have ended.
+nb::list solve_many(const nb::list& trees, int n_threads, nb::object progress, double most_bytes)
+{
+    std::vector<Variant> variants;
+    variants.reserve(nb::len(trees));
+    for (nb::handle item : trees) {
+        const auto triple = nb::cast<nb::tuple>(item);
+        TreeReader reader;
+        Node tree = reader.read(nb::cast<nb::dict>(triple[0]));
+        variants.push_back({std::move(tree), nb::cast<std::string>(triple[1]),
+                            nb::cast<std::string>(triple[2]), reader.locations()});
+    }
+    const int n = static_cast<int>(variants.size()),
+              threads = std::min(threads_for(n_threads), std::max(n, 1));
+    std::atomic<bool> is_stopped = false;
+    std::atomic<int> n_done = 0;
+    {
+        const nb::gil_scoped_release unlock;
+        const auto work = [&](int i) {
+            if (!is_stopped)
+                solve_variant(variants[static_cast<std::size_t>(i)], most_bytes / threads, is_stopped);
+            ++n_done;
+        };
+        // This thread is Python's: it looks after signals.
+        std::future<void> all_done =
+            std::async(std::launch::async, [&] { run_in_order(n, threads, work, [](int) {}); });
+        while (all_done.wait_for(std::chrono::milliseconds(20)) != std::future_status::ready)
+            if (!is_stopped && !tell(n_done, progress)) is_stopped = true;
+        all_done.get();
+    }
+    if (is_stopped) throw nb::python_error();
+    nb::list all;
+    for (Variant& v : variants) {
+        if (v.failure) std::rethrow_exception(v.failure);
+        nb::object diagnostics = to_python(v.diagnostics, &v.locations);
+        all.append(nb::make_tuple(v.result ? nb::cast(std::move(*v.result)) : nb::none(), diagnostics));
+    }
+    return all;
+}
+
+}   // namespace
+
+void add_solving(nb::module_& m)
+{
+    nb::class_<Scenario>(m, "Scenario")
+        .def_prop_ro("text", [](const Scenario& s) { return s.text; })
+        .def_prop_ro("resolved", [](const Scenario& s) { return s.resolved; })
+        .def_prop_ro("memory", [](const Scenario& s) { return memory_needed(s).most(); })
+        .def(
+            "with_load",
+            [](const Scenario& s, const std::string& name, const std::string& body, nb::object function) {
+                auto copy = std::make_shared<Scenario>(s);
+                add_python_load(copy->model, name, body, std::move(function));
+                return copy;
+            },
+            nb::arg("name"), nb::arg("body"), nb::arg("function"));
+    m.def("build_text", &build_text, nb::arg("text"), nb::arg("file"), nb::arg("folder"));
+    m.def("build_tree", &build_tree, nb::arg("root"), nb::arg("text"), nb::arg("folder"),
+          nb::arg("model_alone") = false);
+    m.def("solve", &solve_one, nb::arg("scenario"), nb::arg("progress").none(), nb::arg("most_bytes"));
+    nb::module_::import_("atexit").attr("register")(nb::cpp_function(&wait_for_the_rest));
+    m.def("solve_many", &solve_many, nb::arg("trees"), nb::arg("n_threads"), nb::arg("progress").none(),
+          nb::arg("most_bytes"));
+}
+
+}   // namespace livens::python

@@ -1,0 +1,379 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""solve() and solve_many(): words, warnings, interruption, threads."""
+from __future__ import annotations
+
+import os
+import pickle
+import subprocess
+import sys
+import threading
+import time
+import warnings
+from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+from typing import Any
+
+import numpy as np
+import pytest
+from conftest import ROOT
+
+import livens as lv
+
+
+def free_fall() -> lv.Model:
+    m = lv.Model("fall", gravity=(0, 0, -9.81))
+    m.add_body("ball", lv.point(mass=1), velocity=(1, 0, 0))
+    return m
+
+
+def chain(n: int) -> lv.Model:
+    """Rods in a row, swinging: as much work as is wanted."""
+    m = lv.Model("chain", gravity=(0, 0, -9.81))
+    last = "world"
+    for i in range(n):
+        m.add_body(f"rod {i}", lv.box(1, 0.1, 0.1, mass=1), position=(0.5 + i, 0, 0))
+        m.add_revolute(f"pin {i}", last, f"rod {i}", at=(i, 0, 0), axis=(0, 1, 0))
+        last = f"rod {i}"
+    return m
+
+
+def test_scipys_words(pendulum: lv.Model) -> None:
+    sol = lv.solve(pendulum, 2)
+    assert sol.success is True and sol.status == "converged" and sol.message == ""
+    assert sol.nfev > 0 and sol.nit > 0 and sol.n_elements == len(sol.t) - 1 and sol.seconds > 0
+    assert sol.error < 1e-6 and sol.figures["accuracy"] == 1e-6 and sol.method.startswith(("lobatto", "radau"))
+    assert "converged" in repr(sol) and "lobatto" in repr(sol) and "<table" in sol._repr_html_()
+    assert "<iframe srcdoc=" in sol._repr_html_()
+    assert sol.options["time"]["accuracy"] == 1e-6
+
+
+def test_against_the_pendulum_of_scipy(pendulum: lv.Model) -> None:
+    """The physical pendulum by another integrator, which shares no code."""
+    integrate = pytest.importorskip("scipy.integrate")
+    g, b = 9.81, 0.05
+    inertia = (1 + b * b) / 12 + 0.25   # of a box about its end, by mass
+    other = integrate.solve_ivp(lambda t, y: [y[1], g * 0.5 * np.cos(y[0]) / inertia], (0, 3), [0, 0], rtol=1e-12,
+                                atol=1e-13)
+    sol = lv.solve(pendulum, 3, accuracy=1e-10)
+    assert sol["pivot"].angle[-1] == pytest.approx(other.y[0, -1], abs=1e-9)
+    assert sol["pivot"].angle_rate[-1] == pytest.approx(other.y[1, -1], abs=1e-8)
+
+
+def test_time_and_methods(pendulum: lv.Model) -> None:
+    assert lv.solve(pendulum, (1, 2), elements=4).t.tolist() == [1, 1.25, 1.5, 1.75, 2]
+    assert lv.solve(pendulum, "500 ms", elements=2).t.tolist() == [0, 0.25, 0.5]
+    assert lv.solve(pendulum, 1, elements=2, output=[0.25, 1]).t.tolist() == [0, 0.25, 0.625, 1]
+    for method, name in ((lv.Lobatto(6), "lobatto(6)"), (lv.Radau(3), "radau(3)"), ("midpoint", "midpoint"),
+                         (lv.Mixed(2, basis="bspline"), "mixed(bspline, 2, natural, equal)"),
+                         (lv.Endpoint(), "endpoint"), (None, "lobatto(4)")):
+        sol = lv.solve(pendulum, 0.2, elements=200, method=method)
+        assert sol.success and sol.method == name
+        assert pickle.loads(pickle.dumps(method)) == method
+    assert repr(lv.Radau(3)) == "Radau(degree=3)"
+    pendulum.time.end, pendulum.time.elements = 1, 10
+    pendulum.method.family, pendulum.method.degree, pendulum.method.estimate = "radau", 5, "none"
+    assert lv.solve(pendulum).method == "radau(5)" and lv.solve(pendulum).n_elements == 10
+    sol = lv.solve(pendulum, accuracy=1e-5, method=lv.Lobatto(), estimate="second")
+    assert sol.method.startswith("lobatto") and sol.figures["accuracy"] == 1e-5
+    with pytest.raises(lv.InputError, match="until when"):
+        lv.solve(free_fall())
+
+
+def test_conditions_at_both_ends() -> None:
+    m = free_fall()
+    there = lv.positions({"ball": {"position": ("2 m", 0, 0)}})
+    sol = lv.solve(m, 1, elements=4, start="positions", end=there)
+    assert sol["ball"].velocity[0] == pytest.approx([2, 0, 4.905], abs=1e-12)
+    back = lv.solve(m, 1, elements=4, start="nothing",
+                    end=lv.state({"ball": {"position": sol["ball"].position[-1], "velocity": sol["ball"].velocity[-1]}}))
+    assert np.allclose(back["ball"].position, sol["ball"].position, atol=1e-12)
+    moved = lv.solve(m, 1, elements=1, start=lv.state({"ball": {"position": (0, 0, 5)}}))
+    assert moved["ball"].position[0].tolist() == [0, 0, 5] and m["ball"].position.tolist() == [0, 0, 0]
+    with pytest.raises(lv.InputError):
+        lv.solve(m, 1, elements=1, start="positions")
+
+
+def test_what_is_not_good_is_told(pendulum: lv.Model) -> None:
+    coarse: dict[str, Any] = dict(elements=4, method="midpoint")
+    with pytest.warns(lv.SolveWarning, match="suspect") as warned:
+        sol = lv.solve(pendulum, 10, **coarse)
+    assert not sol.success and sol.status == "suspect" and sol.reasons and "because" in repr(sol)
+    assert warned[0].filename == __file__
+    with pytest.raises(lv.SolveError, match="suspect") as error:
+        lv.solve(pendulum, 10, strict=True, **coarse)
+    partial = error.value.partial
+    assert partial.t[-1] == 10 and not partial.success
+    again = pickle.loads(pickle.dumps(error.value))
+    assert (again.partial["rod"].position == partial["rod"].position).all()
+    assert lv.solve(pendulum, 10, strict=True).success, "the control"
+
+
+def test_what_ends_early_keeps_what_was_solved() -> None:
+    m = lv.Model("fast")
+    m.add_body("ball", lv.point(mass=1), position=(1, 0, 0))
+    m.add_point_sensor("at", "ball")
+    m.add_force("blow up", "ball", inputs={"x": "at.x"}, expression=("10*x^3", "0", "0"))
+    with pytest.warns(lv.SolveWarning, match="it ends at"):
+        sol = lv.solve(m, 5, elements=50)
+    assert not sol.success and 0 < sol.t[-1] < 5 and len(sol["ball"].position) == len(sol.t)
+
+
+INTERRUPTED = """
+import os, signal, sys, threading, time
+sys.path.insert(0, sys.argv[1])
+signal.signal(signal.SIGINT, signal.default_int_handler)   # in the background it is ignored
+import livens as lv
+from test_solve import chain
+assert signal.getsignal(signal.SIGINT) is signal.default_int_handler   # importing leaves signals alone
+m = chain(12)
+lv.solve(m, 0.1, elements=1)
+sent = []
+def press():
+    time.sleep(float(sys.argv[2]))
+    sent.append(time.perf_counter())
+    os.kill(os.getpid(), signal.SIGINT)
+threading.Thread(target=press).start()
+try:
+    WORK
+    print("not interrupted")
+except KeyboardInterrupt:
+    print(time.perf_counter() - sent[0])
+print(lv.solve(m, 0.1, elements=1).success)   # nothing is broken
+"""
+
+
+@pytest.mark.parametrize(("work", "after"), [
+    ('lv.solve(m, 1000, elements=200000, estimate="none")', 0.5),
+    ("lv.solve(m, 1000, accuracy=1e-9)", 0.7),
+    ('lv.solve_many(m, 100, elements=20000, variations=[{}] * 8, estimate="none")', 1.0),
+    ('sol = lv.solve(m, 1, elements=200); sol(__import__("numpy").linspace(0, 1, 10**6))["rod 3"].quaternion', 0.7),
+], ids=["march", "accuracy", "many", "samples"])
+def test_ctrl_c_within_a_fifth_of_a_second(work: str, after: float) -> None:
+    """Measured from the signal to KeyboardInterrupt, in a process of its own; the best of three on a busy machine."""
+    delays = []
+    for _ in range(3):
+        done = subprocess.run([sys.executable, "-c", INTERRUPTED.replace("WORK", work), os.path.dirname(__file__),
+                               str(after)], capture_output=True, text=True, timeout=120, check=True)
+        delay, alive = done.stdout.split()
+        assert alive == "True", done.stdout
+        delays.append(float(delay))
+        if delays[-1] < 0.2:
+            break
+    assert min(delays) < 0.2, delays
+
+
+def test_ctrl_c_while_a_motion_is_judged() -> None:
+    """The march is done by then: the first of two solutions tells how long it takes."""
+    script = INTERRUPTED.replace("time.sleep(float(sys.argv[2]))", "time.sleep(after)").replace("sent = []", """
+begin = time.perf_counter()
+sol = lv.solve(m, 50, elements=10000, estimate="none")
+after = sol.seconds + 0.4 * (time.perf_counter() - begin - sol.seconds)
+sent = []""").replace("WORK", 'lv.solve(m, 50, elements=10000, estimate="none")')
+    delays = []
+    for _ in range(3):
+        done = subprocess.run([sys.executable, "-W", "ignore", "-c", script, os.path.dirname(__file__), ""], text=True,
+                              capture_output=True, timeout=120, check=True)   # and the process ends in order
+        delay, alive = done.stdout.split()
+        assert alive == "True", done.stdout
+        delays.append(float(delay))
+        if delays[-1] < 0.2:
+            break
+    assert min(delays) < 0.2, delays
+
+
+def test_progress(pendulum: lv.Model, capsys: pytest.CaptureFixture[str]) -> None:
+    calls: list[tuple[int, int, float]] = []
+    lv.solve(chain(6), 20, elements=4000, estimate="none", progress=lambda *state: calls.append(state))
+    assert calls and all(0 <= done <= n for done, n, _ in calls) and sorted(calls) == calls
+
+    class Stop(Exception):
+        pass
+
+    def stop(done: int, n: int, t: float) -> None:
+        raise Stop
+
+    with pytest.raises(Stop):
+        lv.solve(chain(6), 50, elements=20000, progress=stop)
+    lv.solve(chain(6), 20, elements=4000, estimate="none", progress=True)
+    assert "elements" in capsys.readouterr().err
+
+
+def test_other_threads_run_meanwhile() -> None:
+    counted = [0]
+    stop = threading.Event()
+
+    def count() -> None:
+        while not stop.is_set():
+            counted[0] += 1
+            time.sleep(0.002)
+
+    thread = threading.Thread(target=count)
+    thread.start()
+    begin, before = time.perf_counter(), counted[0]
+    lv.solve(chain(8), 20, elements=4000, estimate="none")
+    ran, took = counted[0] - before, time.perf_counter() - begin
+    stop.set()
+    thread.join()
+    assert ran > 0.2 * took / 0.003, (ran, took)
+
+
+def test_two_threads_solve_the_same() -> None:
+    m = chain(4)
+    alone = lv.solve(m, 2, elements=200)["rod 3"].position
+    with ThreadPoolExecutor(4) as pool:
+        for sol in pool.map(lambda _: lv.solve(m, 2, elements=200), range(8)):
+            assert (sol["rod 3"].position == alone).all()
+
+
+def job(mass: float) -> lv.Solution:
+    """For another process."""
+    m = chain(2)
+    m["rod 1"].mass = mass
+    return lv.solve(m, 1, elements=20)
+
+
+def test_models_and_solutions_go_to_other_processes() -> None:
+    import multiprocessing
+    with ProcessPoolExecutor(2, mp_context=multiprocessing.get_context("spawn")) as pool:
+        for sol, mass in zip(pool.map(job, (1.0, 2.0, 3.0)), (1.0, 2.0, 3.0)):
+            assert (sol["rod 1"].position == job(mass)["rod 1"].position).all()
+            assert sol.model["rod 1"].mass == mass
+
+
+@pytest.mark.filterwarnings("default")   # what others warn of is not ours
+def test_models_and_solutions_go_through_dask() -> None:
+    distributed = pytest.importorskip("distributed")
+    with distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster, \
+            distributed.Client(cluster) as client:
+        sols = client.gather(client.map(job, (1.0, 2.0, 3.0)))
+    for sol, mass in zip(sols, (1.0, 2.0, 3.0)):
+        assert (sol["rod 1"].position == job(mass)["rod 1"].position).all()
+
+
+def test_many() -> None:
+    m = chain(2)
+    masses = [0.5 + 0.1 * i for i in range(20)]
+    many = lv.solve_many(m, 1, elements=20, variations=[{"rod 1.mass": mass} for mass in masses])
+    for mass, sol in zip(masses, many):
+        m["rod 1"].mass = mass
+        alone = lv.solve(m, 1, elements=20)
+        assert (sol["rod 1"].position == alone["rod 1"].position).all() and sol.model == alone.model
+    one = lv.solve_many(m, 1, elements=20, threads=1, variations=[{"rod 1.mass": mass} for mass in masses])
+    assert all((a.nodes == b.nodes).all() for a, b in zip(one, many)), "no bit depends on threads"
+    assert [sol.t[-1] for sol in lv.solve_many([m, free_fall()], 1, elements=30)] == [1, 1]
+    seen: list[tuple[int, int]] = []
+    lv.solve_many(m, 3, elements=3000, variations=[{}] * 8, progress=lambda *at: seen.append(at))
+    assert seen and seen[0][1] == 8
+    assert lv.solve_many([], 1) == []
+
+
+def test_many_tell_what_is_wrong() -> None:
+    m = chain(1)
+    with pytest.raises(lv.InputError, match="unknown key"):
+        lv.solve_many(m, 1, variations=[{"rod 0.mas": 1}])
+    with pytest.raises(lv.InputError, match="variation 1"):
+        lv.solve_many(m, 1, elements=2, variations=[{}, {"pin 0.at": (1, 2, 3), "rod 0.mass": None}])
+    with pytest.raises(KeyError, match="rod 0"):
+        lv.solve_many(m, 1, variations=[{"rood 0.mass": 1}])
+    with pytest.raises(TypeError):
+        lv.solve_many(m, 1)
+    with pytest.warns(lv.SolveWarning, match="1 of 2"):
+        good, bad = lv.solve_many([short(m), m], elements=4, method="midpoint")
+    assert good.success and not bad.success
+
+
+def short(m: lv.Model) -> lv.Model:
+    """A copy with little time to solve; the model itself gets much."""
+    copy = m.copy()
+    copy.time.end = 1e-3
+    m.time.end = 10
+    return copy
+
+
+def test_threads_share_the_work() -> None:
+    """Work is divided evenly: each of two threads has about half of the CPU time of all."""
+    if (os.cpu_count() or 1) < 2:
+        pytest.skip("one processor")
+    m = chain(3)
+    variations = [{"rod 1.mass": 1 + 0.01 * i} for i in range(200)]
+
+    def cpu(threads: int) -> tuple[float, float]:
+        own, all_of_them = time.thread_time(), time.process_time()
+        lv.solve_many(m, 1, elements=40, variations=variations, threads=threads, estimate="none")
+        return time.thread_time() - own, time.process_time() - all_of_them
+
+    cpu(2)
+    python, whole = cpu(2)
+    assert python < 0.35 * whole, "what Python's thread does alone is little"
+
+
+def test_second_solve_costs_little(pendulum: lv.Model) -> None:
+    """The built model is kept: what Python adds to a solution is below 0.1 ms."""
+    from livens import _core
+    for _ in range(20):
+        lv.solve(pendulum, 0.1, elements=1, estimate="none")
+
+    def best(work: Any) -> float:
+        times = []
+        for _ in range(200):
+            begin = time.perf_counter()
+            work()
+            times.append(time.perf_counter() - begin)
+        return min(times)
+
+    scenario = next(iter(pendulum._built.values()))[0]
+    bare = best(lambda: _core.solve(scenario, None, 1e9))
+    whole = best(lambda: lv.solve(pendulum, 0.1, elements=1, estimate="none"))
+    assert whole - bare < 1e-4, (whole, bare)
+    pendulum["rod"].density *= 2
+    assert not pendulum._built, "an edit is seen"
+
+
+def test_thousand_rounds_without_growth() -> None:
+    resource = pytest.importorskip("resource")
+
+    def rounds(n: int) -> int:
+        for i in range(n):
+            m = lv.Model("one", gravity=(0, 0, -9.81))
+            m.add_body("rod", lv.box(1, 0.1, 0.1, mass=1 + i), position=(0.5, 0, 0))
+            m.add_revolute("pivot", "world", "rod", at=(0, 0, 0), axis=(0, 1, 0))
+            sol = lv.solve(m, 1, elements=20)
+            sol["rod"].quaternion, sol["pivot"].force, sol.energy, sol(0.5)["rod"].velocity
+            try:
+                m.add_weld("x", "world", "y", at=(0, 0, 0))
+            except lv.InputError:
+                pass
+        with open("/proc/self/statm", encoding="ascii") as stream:
+            return int(stream.read().split()[1]) * int(resource.getpagesize())
+
+    if not os.path.exists("/proc/self/statm"):
+        pytest.skip("no /proc")
+    after_100, after_1000 = rounds(100), rounds(900)
+    assert after_1000 - after_100 < 1 << 20, (after_100, after_1000)
+
+
+def test_examples_of_the_report_of_people() -> None:
+    """The four-bar with a motor and a return spring, and what its bearings feel."""
+    m = lv.load(ROOT / "examples" / "four_bar.toml")
+    t = np.linspace(0, 5, 21)
+    m["crank"].density = "7800 kg/m^3"
+    m.add_actuator("motor", "crank shaft", table=lv.table(t, 2 * np.sin(t), "spline"))
+    m.add_spring("return", ("world", (1, 0, 0.2)), ("rocker", (0.2, 0, 0)), stiffness=800, damping=3, free_length=0.3)
+    assert m.check() == []
+    sol = lv.solve(m, (0, 2), elements=100)
+    peak = max(m.joints, key=lambda j: float(np.linalg.norm(sol[j].force, axis=1).max()))
+    assert sol[peak].unique is False and any(peak in note or "unique" in note for note in sol.notes)
+    assert sol.loads["return"].readings["length"] == "m" and sol["motor"].power.shape == sol.t.shape
+    variant = m.copy()
+    variant["coupler"].density *= 0.5
+    assert variant != m
+    assert lv.compare(sol, lv.solve(variant, (0, 2), elements=100)).largest["coupler"]["position"] > 1e-3
+
+
+def test_warnings_of_models_are_shown_once(pendulum: lv.Model) -> None:
+    pendulum.add_force("never", "rod", value=(1, 0, 0), from_=5, until=6)
+    assert [d.code for d in pendulum.check()] in ([], ["load-never-acts"])
+    with warnings.catch_warnings(record=True) as seen:
+        warnings.simplefilter("always")
+        lv.solve(pendulum, 1, elements=10)
+        lv.solve(pendulum, 1, elements=10)
+    assert [w.category for w in seen] == [lv.ModelWarning] and "load-never-acts" in str(seen[0].message)
