@@ -32,6 +32,7 @@ End: TypeAlias = "Union[str, Entry, tuple[Union[str, Entry], Vector]]"
 WRITTEN = {FLAG: "bool", TRUTH: "bool", INTEGER: "int", NUMBER: "Number", TEXT: "str", NAMES: "Sequence[str | Entry]",
            NAMED_TEXTS: "Mapping[str, str]", ROW: "Vector", ROWS: "Matrix", TABLE: "Mapping[str, Any]",
            TABLES: "Sequence[Mapping[str, Any]]"}
+OF_MESHES = ("unit", "scale", "turn", "densities")
 READ = {FLAG: "bool", TRUTH: "bool", INTEGER: "int", NUMBER: "float", TEXT: "str", ROW: "Floats", ROWS: "Floats",
         CHOICE: "str"}
 REFERENCES = {"body": "str | Entry", "joint": "str | Entry", "load": "str | Entry"}
@@ -254,15 +255,19 @@ class Writer:
         shape = next(key for key in self.children["body"]["keys"] if key["name"] == "shape")
         self.shape_names = []
         keys = self.tables[shape["child"]]["keys"]
-        beside = [key for key in keys if key["form"] == CHOICE or key["name"] == "unit"]   # no shapes: they say how
+        beside = [key for key in keys if key["name"] in OF_MESHES]   # no shapes: they say how a file is meant
         for key in keys:
             if key["form"] == NONE or key in beside:
                 continue
             name = name_of(key)
             child = None if key["child"] is None else self.tables[key["child"]]
-            density = key["form"] != FLAG
+            density = key["form"] not in (FLAG, TABLES)
             parameters, value, docs = [], None, []
-            if child is not None:
+            if key["form"] == TABLES:
+                parameters = [f"{name}: Sequence[Mapping[str, Any]]"]
+                known = ", ".join(f"``{k['name']}``" for k in child["keys"])
+                docs, value = [(name, f"One table each, with the keys {known}.")], f"list({name})"
+            elif child is not None:
                 for inner in child["keys"]:
                     optional = "" if inner["required"] else " | None = None"
                     parameters.append(f"{name_of(inner)}: {written(inner)}{optional}")
@@ -282,18 +287,20 @@ class Writer:
             more = beside if key["form"] == TEXT else []   # of files
             docs += [(name_of(k), meaning(k)) for k in more]
             self.shape_names.append(name)
-            arguments = parameters + ["*"] + [f"{name_of(k)}: {written(k)} | None = None" for k in more] + (["density: Number | None = None"] if density else []) + \
+            arguments = parameters + ["*"] + [f"{name_of(k)}: {written(k)} | None = None" for k in more] + (["density: Number | None = None"] if density or key["form"] == TABLES else []) + \
                 ["mass: Number | None = None"]
             self.line(f"\n\ndef {name}({', '.join(arguments)}) -> Shape:")
             self.line(wrapped(f'"""A shape of a body: {key["name"]}. {sentence(key["doc"])}', "    "))
             self.line("\n    Args:")
             for parameter, doc in docs:
                 self.line(wrapped(f"{parameter}: {doc}", " " * 8, " " * 12))
-            if density:
+            if key["form"] == TABLES:
+                self.line("        density: kg/m^3, times that of each part; or")
+            elif density:
                 self.line("        density: kg/m^3; or")
             self.line("        mass: kg.")
             self.line('    """')
-            extra = ('"density": density, ' if density else "") + '"mass": mass'
+            extra = ('"density": density, ' if density or key["form"] == TABLES else "") + '"mass": mass'
             inside = ", ".join([f'"{key["name"]}": {value}'] + [f'"{k["name"]}": {name_of(k)}' for k in more])
             inside = f"{{k: v for k, v in {{{inside}}}.items() if v is not None}}" if more else f"{{{inside}}}"
             self.line(f'    keys = {{"shape": {inside}, {extra}}}')

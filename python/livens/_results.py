@@ -692,7 +692,7 @@ class Solution(Series):
             >>> page = pathlib.Path(tempfile.mkdtemp()) / "ball.html"
             >>> lv.solve(m, 1).report(page)
             >>> page.read_text(encoding="utf-8")[:15]
-            '<!DOCTYPE html>'
+            '<!doctype html>'
         """
         name = file_name(file)
         page = self._page(os.path.splitext(os.path.basename(name))[0], other)

@@ -48,11 +48,11 @@ TEST(Examples, AreTheSameAsTrees)
         Findings findings;
         const std::optional<Node> root = parse_toml(scenario.text, findings);
         ASSERT_TRUE(root.has_value());
-        const ScenarioResult whole = read_tree(*root, scenario.text, "");
+        const ScenarioResult whole = read_tree(*root, scenario.text);
         ASSERT_TRUE(whole.scenario.has_value()) << test::shown(whole);
         EXPECT_EQ(whole.scenario->resolved, scenario.resolved);
         EXPECT_EQ(whole.scenario->model.length(), scenario.model.length());
-        const ScenarioResult model = read_tree(*root, "", "", TreePart::model);
+        const ScenarioResult model = read_tree(*root, "", {}, TreePart::model);
         EXPECT_TRUE(!model.scenario.has_value() && model.diagnostics.empty()) << test::shown(model);
     }
 }
