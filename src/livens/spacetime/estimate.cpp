@@ -7,9 +7,10 @@
 #include <variant>
 
 #include "livens/base/error.h"
-#include "livens/diagnostics/largest.h"
 #include "livens/base/text.h"
+#include "livens/diagnostics/largest.h"
 #include "livens/multibody/frequencies.h"
+#include "livens/spacetime/phases.h"
 #include "livens/spacetime/second.h"
 
 namespace livens {
@@ -88,6 +89,74 @@ bool Second::advance(int end)
     return true;
 }
 
+namespace {
+
+/// Of the joints that act before an element end.
+std::vector<Vibration> vibrations_beside(const Model& model, const Motion& motion, int end)
+{
+    if (!model.has_events()) return vibrations(model, motion.at_end(end));
+    const int element = std::max(end - 1, 0);
+    const double middle = motion.mesh.ends[element] + 0.5 * motion.mesh.length(element);
+    return vibrations(acting_at(model, middle).model, motion.at_end(end));
+}
+
+/// Element ends where events are.
+std::vector<int> event_ends(const Model& model, const Motion& motion)
+{
+    std::vector<int> ends;
+    for (const double t : model.events()) {
+        const int end = element_end_at(motion.mesh, snap_to_element_end(motion.mesh, t));
+        if (end > 0 && end < motion.n_elements()) ends.push_back(end);
+    }
+    return ends;
+}
+
+/// Adds what grows from an event on: errors of place, and of rates that go on.
+void add_from(int event, const Miss& off, const Model& model, const Motion& motion, ErrorEstimate& found)
+{
+    const auto n = static_cast<std::size_t>(found.n_bodies);
+    for (std::size_t i = static_cast<std::size_t>(event) * n; i < found.position.size(); ++i) {
+        const double since = motion.mesh.ends[i / n] - motion.mesh.ends[event];
+        found.position[i] += off.shift + off.speed * since;
+        if (!model.bodies()[i % n].is_point) found.orientation[i] += off.turn + off.spin * since;
+        found.velocity[i] += off.speed * found.length;
+    }
+    found.find_largest(motion.mesh);
+}
+
+}   // namespace
+
+void add_events(const Model& model, const Motion& motion, ErrorEstimate& found)
+{
+    if (!model.has_events() || found.empty()) return;
+    const std::vector<double> jumps = velocity_jumps(model, motion);
+    const double root = motion.damps() ? std::sqrt(2 * std::max(balance(model, motion).energy_loss, 0.0)) : 0;
+    int before = 0;
+    for (const int event : event_ends(model, motion)) {
+        Miss off = miss_at_event(model, motion, event);
+        double slowest = std::numeric_limits<double>::infinity(), shift = 0, turn = 0;
+        for (const Vibration& one : vibrations_beside(model, motion, event)) {
+            if (one.rate * motion.mesh.length(event - 1) < motion.X.degree || one.rate < one.decay) continue;
+            slowest = std::min(slowest, one.rate);
+            raise_to(shift, one.shift);
+            raise_to(turn, one.turn);
+        }
+        if (motion.damps()) {
+            off.speed += root * shift / found.length;
+            off.spin += root * turn;
+        }
+        const bool is_unresolved = std::isfinite(slowest) && !motion.damps();
+        for (int e = before; e < event && is_unresolved; ++e) {
+            const double h = motion.mesh.length(e);
+            if (slowest * h < motion.X.degree) continue;
+            raise_to(off.speed, jumps[e] / h);
+            raise_to(off.spin, jumps[e] / h);
+        }
+        add_from(event, off, model, motion, found);
+        before = event;
+    }
+}
+
 void add_lost_vibrations(const Model& model, const Motion& motion, ErrorEstimate& found)
 {
     if (!motion.damps() || found.empty()) return;
@@ -95,7 +164,7 @@ void add_lost_vibrations(const Model& model, const Motion& motion, ErrorEstimate
     for (int e = 0; e < motion.n_elements(); ++e) raise_to(longest, motion.mesh.length(e));
     double shift = 0, turn = 0, speed = 0;   // by the root of twice the energy
     for (const int end : {0, motion.n_elements() / 2, motion.n_elements()}) {
-        for (const Vibration& one : vibrations(model, motion.at_end(end))) {
+        for (const Vibration& one : vibrations_beside(model, motion, end)) {
             if (one.rate * longest < motion.X.degree || one.rate < one.decay) continue;
             raise_to(shift, one.shift / one.rate);
             raise_to(turn, one.turn / one.rate);
@@ -156,6 +225,7 @@ void measure_error(const Model& model, const Problem& problem, const Method& met
     }
     solution.estimate = second.take(n);
     add_lost_vibrations(model, solution.motion, solution.estimate);
+    add_events(model, solution.motion, solution.estimate);
 }
 
 /// E_e = E_(e-1) g_e / g_(e-1) + 20 C_p J^q + rounding, with the largest growth g that there was by then. On
@@ -183,6 +253,7 @@ ErrorEstimate grown_errors(const Model& model, const Motion& motion, const std::
     }
     found.find_largest(motion.mesh);
     add_lost_vibrations(model, motion, found);
+    add_events(model, motion, found);
     return found;
 }
 

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numbers>
 #include <utility>
 
 #include "livens/base/error.h"
@@ -160,23 +162,33 @@ void join(SolveReport& whole, SolveReport&& next)
     whole = std::move(next);
 }
 
-/// How far the joints of a phase find the bodies from where they will hold them: what closing moves, in
-/// lengths and rad, and of velocities as a part of the fastest.
-double miss(const Model& model, const State& state)
+}   // namespace
+
+Miss miss_at_event(const Model& model, const Motion& motion, int end)
 {
-    const ClosedStart closed = close_start(model, state, StartPolicy::project);
-    double far = 0, fastest = 0, slower = 0;
-    for (std::size_t b = 0; b < state.X.size(); ++b) {
-        const auto rate = [&](const Matrix34& V) {
-            return std::max(norm(V.column(0)) / model.length(), norm(directors(V)));
-        };
-        const Matrix34 dX = closed.start.X[b] - state.X[b];
-        raise_to(far, std::max(norm(dX.column(0)) / model.length(), norm(directors(dX))));
-        raise_to(fastest, std::max(rate(state.V[b]), rate(closed.start.V[b])));
-        raise_to(slower, rate(closed.start.V[b] - state.V[b]));
+    Miss miss;
+    const double t = motion.mesh.ends[end], gap = near_end * (motion.end() - motion.start());
+    const bool begins = std::ranges::any_of(
+        model.joints(), [&](const Joint& joint) { return std::abs(joint.from - t) <= gap; });
+    if (!begins) return miss;
+    const State state = motion.at_end(end);
+    const ActingModel acting = acting_at(model, t + 0.5 * near_end * (motion.end() - motion.start()));
+    try {
+        const ClosedStart closed = close_start(acting.model, state, StartPolicy::project);
+        for (std::size_t b = 0; b < state.X.size(); ++b) {
+            const Matrix34 dX = closed.start.X[b] - state.X[b], dV = closed.start.V[b] - state.V[b];
+            raise_to(miss.shift, norm(dX.column(0)) / model.length());
+            raise_to(miss.turn, norm(directors(dX)) / std::numbers::sqrt2);
+            raise_to(miss.speed, norm(dV.column(0)) / model.length());
+            raise_to(miss.spin, norm(directors(dV)) / std::numbers::sqrt2);
+        }
+    } catch (const InputError&) {   // no place near holds them
+        miss.shift = std::numeric_limits<double>::infinity();
     }
-    return std::max(far, fastest > 0 ? slower / fastest : 0);
+    return miss;
 }
+
+namespace {
 
 std::string names_of(const Model& model, double t, double Joint::*when, double gap)
 {
@@ -205,11 +217,21 @@ public:
         for (std::size_t k = 0; k + 1 < ends_.size(); ++k) {
             const double first = ends_[k], last = ends_[k + 1];
             const ActingModel acting = acting_at(model_, 0.5 * (first + last));
-            if (k > 0 && !meet(acting.model, problem.conditions.start, tolerance_of_meeting, whole.report))
+            if (k > 0 && !meet(whole.motion, tolerance_of_meeting, whole.report)) return whole;
+            Solution next = solve_next(acting, problem, first, last, accuracy, method, options);
+            if (k > 0)
+                for (std::string& note : next.report.notes)
+                    if (std::ranges::find(whole.report.notes, note) == whole.report.notes.end())
+                        note = "from " + to_text(first, 6) + " s on: " + note;
+            if (next.motion.mesh.ends.empty()) {
+                join(whole.report, std::move(next.report));
                 return whole;
-            Solution next =
-                solve_phase_(acting.model, problem, part_of(time_, first, last, accuracy), method, options);
+            }
             method = next.method;   // what was open is chosen once
+            if (next.report.status == SolveStatus::inaccurate && next.motion.end() == last) {
+                next.report.status = SolveStatus::converged;   // the whole is judged, not a part of it
+                next.report.message.clear();
+            }
             widen(next.motion, model_, acting);
             whole.method = next.method;
             whole.estimate_seconds += next.estimate_seconds;
@@ -242,21 +264,51 @@ public:
 
 private:
     /// A joint that begins where bodies are elsewhere, or move otherwise, would be an impact.
-    bool meet(const Model& acting, State& state, double tolerance, SolveReport& report) const
+    bool meet(const Motion& so_far, double tolerance, SolveReport& report) const
     {
-        const std::string names = names_of(model_, state.t, &Joint::from, gap_);
+        const double t = so_far.end();
+        const std::string names = names_of(model_, t, &Joint::from, gap_);
         if (names.empty() || std::isinf(tolerance)) return true;
-        const double off = miss(acting, state);
-        if (off <= tolerance) return true;
+        const Miss miss = miss_at_event(model_, so_far, so_far.n_elements());
+        double fastest = 1 / (ends_.back() - ends_.front());
+        for (const Matrix34& V : so_far.velocities)
+            raise_to(fastest, std::max(norm(V.column(0)) / model_.length(), norm(directors(V))));
+        if (std::max(miss.shift, miss.turn) <= tolerance &&
+            std::max(miss.speed, miss.spin) <= tolerance * fastest)
+            return true;
+        const bool is_near = std::isfinite(miss.shift);
         report.status = SolveStatus::not_converged;
-        report.failed_at = state.t;
-        report.message = names + " begins to act at " + to_text(state.t, 6) +
-                         " s, where bodies are, or move, otherwise than it holds them (off by " +
-                         to_text(off, 2) + " in lengths, rad or of their speed, more than " +
-                         to_text(tolerance, 2) +
-                         "): livens knows no impacts; try: a law that meets position and rate there, or "
-                         "shorter elements if they are meant to meet";
+        report.failed_at = t;
+        report.message =
+            names + " begins to act at " + to_text(t, 6) +
+            " s, where bodies are, or move, otherwise than it holds them (" +
+            (is_near ? "off by " + to_text(miss.shift * model_.length(), 2) + " m, " + to_text(miss.turn, 2) +
+                           " rad, " + to_text(miss.speed * model_.length(), 2) + " m/s, " +
+                           to_text(miss.spin, 2) + " rad/s"
+                     : std::string("no place near fits")) +
+            "): livens knows no impacts; try: a law that meets position and rate there, or shorter elements "
+            "if "
+            "they are meant to meet";
         return false;
+    }
+
+    /// A phase that cannot begin leaves what was solved before it.
+    Solution solve_next(const ActingModel& acting, const Problem& problem, double first, double last,
+                        double accuracy, const Method& method, const SolveOptions& options) const
+    {
+        const Time part = part_of(time_, first, last, accuracy);
+        if (first == ends_.front()) return solve_phase_(acting.model, problem, part, method, options);
+        try {
+            return solve_phase_(acting.model, problem, part, method, options);
+        } catch (const InputError& error) {
+            Solution none;
+            none.method = method;
+            none.report.status = SolveStatus::singular;
+            none.report.failed_at = first;
+            none.report.message = "behind the event at " + to_text(first, 6) +
+                                  " s the motion cannot begin: " + error.complaint().message;
+            return none;
+        }
     }
 
     const Model& model_;
@@ -289,10 +341,15 @@ Solution solve_to_accuracy_of_all(const Chain& chain, const Model& model, const 
         const double error = whole.estimate.largest;
         if (!whole.estimate.empty() && error <= span.accuracy) return whole;
         if (whole.estimate.empty() || tries == most_tries) {
+            int good = 0;
+            while (!whole.estimate.empty() && good < whole.motion.n_elements() &&
+                   whole.estimate.error(good + 1) <= span.accuracy)
+                ++good;
             report.status = SolveStatus::inaccurate;
-            report.failed_at = whole.motion.start();
+            report.failed_at = whole.motion.mesh.ends[good];
             report.message =
-                "the accuracy " + to_text(span.accuracy, 6) + " was not reached over all events: " +
+                "the accuracy " + to_text(span.accuracy, 6) +
+                " holds up to t = " + to_text(report.failed_at, 6) + " s, over events: " +
                 (whole.estimate.empty() ? "nothing tells the error, since " + report.estimate_failed
                                         : "the error is about " + to_text(error, 3)) +
                 "; try: an earlier end of time, or a larger error in accuracy";
@@ -308,7 +365,7 @@ void check_events(const Model& model, const Problem& problem, const Time& time, 
 {
     if (!model.has_events()) return;
     if (!is_nodal(method) || problem.conditions.at_start != Known::state)
-        throw InputError({"joint-time-method", "method.family",
+        throw InputError({"joint-time-method", is_nodal(method) ? "end.given" : "method.family",
                           "joints and drives that act for a part of the time need lobatto or radau, and the "
                           "state at the start",
                           name_of(method), "", "what a joint did cannot be undone from the end of time",

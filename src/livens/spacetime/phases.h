@@ -25,4 +25,11 @@ void check_events(const Model& model, const Problem& problem, const Time& time, 
 Solution solve_by_phases(const Model& model, const Problem& problem, const Time& time, const Method& method,
                          const SolveOptions& options, const SolvePhase& solve_phase);
 
+/// How far the joints that begin at an element end find the bodies from where they will hold them: what
+/// closing moves, in lengths and rad, and changes of velocities, by the model's length. Infinite: it fails.
+struct Miss {
+    double shift = 0, turn = 0, speed = 0, spin = 0;
+};
+Miss miss_at_event(const Model& model, const Motion& motion, int end);
+
 }   // namespace livens

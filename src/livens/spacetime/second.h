@@ -44,6 +44,12 @@ private:
 /// for lobatto.  (docs/theory.md, "What radau takes")
 void add_lost_vibrations(const Model& model, const Motion& motion, ErrorEstimate& found);
 
+/// What events add to errors, and no second solution tells: how far joints that begin miss the motion, which
+/// both solutions are moved by; and vibrations that elements do not resolve, whose phase, where a joint lets
+/// go, becomes a velocity that goes on. Of lobatto, its speed is at most the velocity jump of such elements;
+/// of radau, that of the energy that was taken.
+void add_events(const Model& model, const Motion& motion, ErrorEstimate& found);
+
 /// Where it is more the motion is beyond its horizon, which the verdict tells.
 constexpr double growth_at_horizon = 1e11;
 /// What the rounding of numbers at the start has grown to, up to the horizon, in lengths of the model and

@@ -237,14 +237,15 @@ void read_times(const Builder& builder, const Section& section, Joint& joint)
     if (section.has("until")) joint.until = section.number("until");
     if (time == nullptr) return;
     const double start = time->number("start"), end = time->number("end");
-    const bool is_over = joint.until <= start;
-    if (is_over || joint.from >= end)
+    const double gap = 1e-8 * (end - start);   // nothing happens in so short a time
+    const bool is_over = joint.until <= start + gap;
+    if (is_over || joint.from >= end - gap)
         throw InputError({"joint-time", "joint[" + joint.name + "]." + (is_over ? "until" : "from"),
                           "'" + joint.name + "' never acts",
                           to_text(is_over ? joint.until : joint.from) + " s",
                           to_text(start) + " s to " + to_text(end) + " s", "", "leave it out"});
-    if (joint.from <= start) joint.from = -std::numeric_limits<double>::infinity();
-    if (joint.until >= end) joint.until = std::numeric_limits<double>::infinity();
+    if (joint.from <= start + gap) joint.from = -std::numeric_limits<double>::infinity();
+    if (joint.until >= end - gap) joint.until = std::numeric_limits<double>::infinity();
 }
 
 Table drive_table()
