@@ -433,6 +433,7 @@ class Experiment:
         path = arguments.expected or pathlib.Path(script).resolve().parent / "expected.json"
         self.expected = json.loads(pathlib.Path(path).read_text(encoding="utf-8"))
         self.verdicts, self.remarks = [], []
+        self.files = {}   # what stands beside each scenario: bytes by name
         self.scratch = tempfile.TemporaryDirectory(prefix="livens-paper-")
 
     # Solving
@@ -440,6 +441,8 @@ class Experiment:
     def _launch(self, text):
         folder = pathlib.Path(tempfile.mkdtemp(dir=self.scratch.name))
         (folder / "run.toml").write_text(text, encoding="utf-8")
+        for name, content in self.files.items():
+            (folder / name).write_bytes(content)
         return folder / "run.nc", subprocess.run(
             [self.livens, "solve", "run.toml", "-o", "run.nc", "--json", "-q"], cwd=folder,
             capture_output=True, text=True, check=False)

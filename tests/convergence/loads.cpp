@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Order 2p under loads of every kind, against Newton's and Euler's equations with quaternions.
 #include "convergence/studies.h"
+#include "livens/multibody/surface_loads.h"
 #include "newton_euler.h"
 
 namespace livens::tests {
@@ -78,6 +79,44 @@ Loaded under_a_torque(Frame frame)
     return loaded;
 }
 
+/// Pressures on five sides of the brick, which grow with the depth; the witness takes them at points of the
+/// sides.
+Loaded under_water()
+{
+    Loaded loaded{"pressure that follows five sides", flying_brick(), {}};
+    Mesh mesh;
+    const Vector3 c{0.3, 0.1, -0.05}, half{0.5, 0.3, 0.2}, gradient{3, -5, -40};
+    for (int k = 0; k < 8; ++k) {
+        Vector3 corner = c;
+        for (int i = 0; i < 3; ++i) corner[i] += (k >> i & 1) != 0 ? half[i] : -half[i];
+        mesh.points.push_back(corner);
+    }
+    const double value = 12;
+    mesh.regions.resize(1);
+    mesh.blocks = {{ElementKind::quadrilateral,
+                    {0, 4, 6, 2, 1, 3, 7, 5, 0, 1, 5, 4, 2, 6, 7, 3, 0, 2, 3, 1},
+                    std::vector<std::int32_t>(5, 0)}};
+    loaded.model.add_load(pressure("water", 0, surface_moments(mesh)[0].moments, value,
+                                   {gradient[0], gradient[1], gradient[2]}));
+    loaded.pushes = [=](double, Movers& bodies) {
+        Mover& brick = bodies[0];
+        for (int side = 0; side < 5; ++side) {
+            const int i = side / 2, j = (i + 1) % 3, k = (i + 2) % 3;
+            Vector3 normal{};
+            normal[i] = side == 1 || side == 3 ? 1 : -1;
+            for (const double u : {-1., 1.})
+                for (const double v : {-1., 1.}) {   // Gauss
+                    Vector3 theta = c + half[i] * normal;
+                    theta[j] += u * half[j] / std::sqrt(3.);
+                    theta[k] += v * half[k] / std::sqrt(3.);
+                    const double p = value + dot(gradient, brick.at(theta));
+                    brick.push(theta, -p * half[j] * half[k] * (brick.R * normal));
+                }
+        }
+    };
+    return loaded;
+}
+
 /// All of them on two bodies that a spring joins.
 Loaded under_everything()
 {
@@ -148,6 +187,8 @@ TEST(LobattoLoads, HaveOrder2PForABodyBetweenTwoSprings)
 }
 
 TEST(LobattoLoads, HaveOrder2PWithForcesThatTurnWithTheBody) { expect_order_2p(under_a_follower_force()); }
+
+TEST(LobattoLoads, HaveOrder2PWithPressuresThatFollowTheBody) { expect_order_2p(under_water()); }
 
 TEST(LobattoLoads, HaveOrder2PWithTorquesThatVaryInTime)
 {

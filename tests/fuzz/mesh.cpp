@@ -32,6 +32,7 @@ void answer_to(std::string_view bytes)
     }
     const bool is_sound = faults_of(mesh).empty();
     if (moments(mesh); is_sound && mesh.is_volume()) boundary_of(mesh);
+    if (is_sound || !mesh.is_volume()) surface_moments(mesh);
     n_pieces(mesh);
     turn_outwards(mesh);
     faults_of(mesh);

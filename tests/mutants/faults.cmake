@@ -400,13 +400,29 @@ livens_mutant(NAME contacts_of_neighbours
               TESTS_OF unit_geometry
               MUST_FAIL Soundness.NamesWhereASurfaceMeetsItself)
 
+# Faces round a point that fold back are taken for neighbours that lie side by side.
+livens_mutant(NAME contacts_of_fans
+              FILE geometry/contacts.cpp
+              OLD [[return state_[point] == 1;]]
+              NEW [[return state_[point] < 3;]]
+              TESTS_OF unit_geometry
+              MUST_FAIL Soundness.NamesWhereASurfaceMeetsItself)
+
 # A pressure that pulls.
 livens_mutant(NAME pressure_sign
               FILE multibody/loads/pressure.cpp
-              OLD [[F[0] = -value(arguments.at).value * (directors]]
-              NEW [[F[0] = value(arguments.at).value * (directors]]
+              OLD [[F[0] = -1. * (directors]]
+              NEW [[F[0] = 1. * (directors]]
               TESTS_OF unit_multibody
               MUST_FAIL SurfaceLoads.PressurePushesAgainstTheNormalAtTheMiddleOfASide)
+
+# A pressure that is the same at all depths of a body, as at its reference point.
+livens_mutant(NAME pressure_by_depth
+              FILE multibody/loads/pressure.cpp
+              OLD [[q[0] += value(arguments.at).value;]]
+              NEW [[q = Vector4{q[0] + value(arguments.at).value, 0, 0, 0};]]
+              TESTS_OF unit_multibody
+              MUST_FAIL SurfaceLoads.PressureThatGrowsWithDepthBearsWhatIsDisplaced)
 
 # A link that leads out of the scenario's folder.
 livens_mutant(NAME mesh_by_a_link

@@ -36,7 +36,10 @@ SurfaceMoments any_surface(Random& random)
 {
     SurfaceMoments m;
     for (double& x : m.area.a) x = random.number();
-    for (double& x : m.normal.a) x = random.number();
+    for (Matrix4& of : m.normal)
+        for (double& x : of.a) x = random.number();
+    m.area = m.area + transpose(m.area);   // as integrals are
+    for (Matrix4& of : m.normal) of = of + transpose(of);
     return m;
 }
 
@@ -45,6 +48,24 @@ LoadCase traction_case(const std::string& what, Frame frame, TimeVector (*value)
     return {"traction", what, [=](Random& random) {
                 const SurfaceMoments surface = any_surface(random);
                 return traction("l", 0, surface, value(random), frame);
+            }};
+}
+
+LoadCase linear_traction_case(const std::string& what, Frame frame)
+{
+    return {"traction", what, [=](Random& random) {
+                const SurfaceMoments surface = any_surface(random);
+                const std::vector<TimeVector> gradient{steady(random), varying(random), steady(random)};
+                return traction("l", 0, surface, varying(random), frame, gradient);
+            }};
+}
+
+LoadCase linear_pressure_case(const std::string& what, TimeVector (*gradient)(Random&))
+{
+    return {"pressure", what, [=](Random& random) {
+                const SurfaceMoments surface = any_surface(random);
+                const TimeFunction value = varying(random)[2];
+                return pressure("l", 0, surface, value, gradient(random));
             }};
 }
 
@@ -254,6 +275,10 @@ const std::vector<LoadCase>& load_cases()
         traction_case("traction in body axes", Frame::body_fixed, varying),
         pressure_case("pressure", steady),
         pressure_case("pressure that varies", varying),
+        linear_traction_case("traction linear in the place", Frame::inertial),
+        linear_traction_case("traction linear in the place, in body axes", Frame::body_fixed),
+        linear_pressure_case("pressure linear in the place", steady),
+        linear_pressure_case("pressure linear in the place that varies", varying),
         body_force_case("force per unit mass", Frame::inertial, varying),
         body_force_case("force per unit mass in body axes", Frame::body_fixed, steady),
         torque_case("torque", Frame::inertial, steady),

@@ -3,7 +3,9 @@
 // then separating directions.
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <utility>
 
 #include "livens/geometry/detail/facets.h"
 
@@ -11,31 +13,97 @@ namespace livens {
 
 namespace {
 
-constexpr int leaf = 4;                     // triangles
+constexpr int leaf = 8;                     // triangles
 constexpr double touch = 1e-13;             // gaps below it, relative to the pair's size, are none
 constexpr std::int64_t most_pairs = 3000;   // looked at a triangle: more are no surface of a part
 
+/// Three numbers of 20 bits each, with a bit between them that is free.
+using Packed = std::uint64_t;
+constexpr int lane = 21;
+constexpr Packed lane_mask = (Packed{1} << 20) - 1;
+constexpr Packed guards = Packed{1} << 20 | Packed{1} << 41 | Packed{1} << 62;
+constexpr Packed ones = Packed{1} | Packed{1} << 21 | Packed{1} << 42;
+
+/// Free bits of the numbers of a that are not below those of b.
+Packed not_below(Packed a, Packed b) { return ((a | guards) - b) & guards; }
+/// Those of a where the free bit is set, else those of b.
+Packed select(Packed free_bits, Packed a, Packed b)
+{
+    const Packed mask = free_bits - (free_bits >> 20);
+    return (a & mask) | (b & ~mask);
+}
+
+/// In units of a millionth of the surface's size.
 struct Box {
-    std::array<float, 3> low, high;
+    Packed low, high;
 
     bool meets(const Box& other) const
     {
-        bool meets = true;
-        for (int i = 0; i < 3; ++i) meets = meets && low[i] <= other.high[i] && other.low[i] <= high[i];
-        return meets;
+        return (not_below(other.high, low) & not_below(high, other.low)) == guards;
     }
     void add(const Box& other)
     {
-        for (int i = 0; i < 3; ++i) {
-            low[i] = std::min(low[i], other.low[i]);
-            high[i] = std::max(high[i], other.high[i]);
-        }
+        low = select(not_below(low, other.low), other.low, low);
+        high = select(not_below(high, other.high), high, other.high);
     }
 };
 
 struct Triangle {
     std::array<std::int32_t, 3> corners;
     std::int32_t face;
+};
+
+/// At which points the triangles are known to lie beside each other like the slices of a cake: seen along
+/// one direction all turn the same way, and go round once. Then those that share such a point have nothing
+/// else in common. The others are looked at pair by pair.
+class Fans {
+public:
+    Fans(const std::vector<Vector3>& points, const std::vector<Triangle>& triangles)
+        : points_(points), axes_(points.size()), state_(points.size(), 0)
+    {
+        for (const Triangle& t : triangles) {
+            const Vector3& p = points[t.corners[0]];
+            const Vector3 n = cross(points[t.corners[1]] - p, points[t.corners[2]] - p);
+            for (const std::int32_t c : t.corners) axes_[c] += n;
+        }
+        for (const Triangle& t : triangles) {
+            const Vector3& p = points[t.corners[0]];
+            const Vector3 n = cross(points[t.corners[1]] - p, points[t.corners[2]] - p);
+            for (int i = 0; i < 3; ++i)
+                add(t.corners[i], n, points[t.corners[(i + 1) % 3]], points[t.corners[(i + 2) % 3]]);
+        }
+    }
+
+    bool is_known(std::int32_t point) const { return state_[point] == 1; }
+
+private:
+    static constexpr std::uint8_t unknown = 2;   // and beyond: more than once round
+
+    /// A triangle with the normal n (not of unit length), from the edge to a to the edge to b.
+    void add(std::int32_t at, const Vector3& n, const Vector3& a, const Vector3& b)
+    {
+        std::uint8_t& state = state_[at];
+        if (state >= unknown) return;
+        const Vector3& axis = axes_[at];
+        const Vector3 u = a - points_[at], v = b - points_[at];
+        const double turn = dot(n, axis), nn = dot(n, n);
+        // More than 3 degrees from being seen edgewise, and no needle: far from where rounding decides.
+        const bool is_clear =
+            turn > 0 && turn * turn > 2.5e-3 * nn * dot(axis, axis) && nn > 1e-10 * dot(u, u) * dot(v, v);
+        if (!is_clear) {
+            state = unknown;
+            return;
+        }
+        // All go round once if one of them passes the half-line with y = 0 < x in axes across.
+        const bool is_steep = std::abs(axis[2]) > std::abs(axis[0]);
+        const double y_u = is_steep ? axis[2] * u[1] - axis[1] * u[2] : axis[0] * u[1] - axis[1] * u[0];
+        const double y_v = is_steep ? axis[2] * v[1] - axis[1] * v[2] : axis[0] * v[1] - axis[1] * v[0];
+        if (y_u <= 0 && y_v > 0) ++state;
+    }
+
+    const std::vector<Vector3>& points_;
+    std::vector<Vector3> axes_;
+    std::vector<std::uint8_t> state_;   ///< how often round, or unknown
 };
 
 /// Every third bit.
@@ -68,6 +136,7 @@ public:
             a_[i] = points[of_a[i]] - about;
             b_[i] = points[of_b[i]] - about;
         }
+        for (int i = n_shared_; i < 3; ++i) size_ = std::max({size_, dot(a_[i], a_[i]), dot(b_[i], b_[i])});
     }
 
     bool is_apart() const
@@ -88,18 +157,18 @@ public:
 private:
     bool separates(const Vector3& n) const
     {
-        double low_a = HUGE_VAL, high_a = -HUGE_VAL, low_b = HUGE_VAL, high_b = -HUGE_VAL, size = 0;
+        double low_a = HUGE_VAL, high_a = -HUGE_VAL, low_b = HUGE_VAL, high_b = -HUGE_VAL;
         const auto widen = [&](const Vector3& p, double& low, double& high) {
             const double x = dot(n, p);
             low = std::min(low, x);
             high = std::max(high, x);
-            size = std::max(size, dot(p, p));
         };
         for (int i = n_shared_; i < 3; ++i) {
             widen(a_[i], low_a, high_a);
             widen(b_[i], low_b, high_b);
         }
-        const double gap = touch * std::sqrt(size * dot(n, n));
+        if (n_shared_ == 0 && !(low_b > high_a || low_a > high_b)) return false;
+        const double gap = touch * std::sqrt(size_ * dot(n, n));
         if (n_shared_ == 0) return low_b - high_a > gap || low_a - high_b > gap;
         // Common corners lie at 0, if there is one; with a common edge so must the direction.
         if (n_shared_ == 2 && std::abs(dot(n, a_[1])) > gap) return false;
@@ -110,20 +179,12 @@ private:
 
     std::array<Vector3, 3> a_, b_;
     int n_shared_ = 0;
+    double size_ = 0;   ///< squared: of the largest distance from the first corner of a
 };
 
 class Contacts {
 public:
-    explicit Contacts(const Facets& f) : points_(f.mesh->points)
-    {
-        std::vector<Triangle> triangles;
-        triangles.reserve(f.n_faces());
-        for (std::int32_t face = 0; face < f.n_faces(); ++face)
-            for (std::int32_t h = f.begins[face] + 1; h + 1 < f.begins[face + 1]; ++h)
-                triangles.push_back({{f.corners[f.begins[face]], f.corners[h], f.corners[h + 1]}, face});
-        sort(triangles);
-        make_tree();
-    }
+    explicit Contacts(const Facets& f) : Contacts(f, triangles_of(f)) {}
 
     /// The first pair that touches; {-1, -1} if there is none, {0, 0} if there are too many to look at.
     std::pair<std::int32_t, std::int32_t> find()
@@ -134,24 +195,26 @@ public:
     }
 
 private:
-    Box box_of(const Triangle& t) const
+    Contacts(const Facets& f, const std::vector<Triangle>& triangles)
+        : points_(f.mesh->points), fans_(f.mesh->points, triangles)
     {
-        Box box;
-        for (int i = 0; i < 3; ++i) {
-            double low = points_[t.corners[0]][i], high = low;
-            for (const std::int32_t c : t.corners) {
-                low = std::min(low, points_[c][i]);
-                high = std::max(high, points_[c][i]);
-            }
-            // To floats outwards, about the middle of all and in units of its size.
-            box.low[i] = std::nextafter(static_cast<float>((low - middle_[i]) * scale_), -HUGE_VALF);
-            box.high[i] = std::nextafter(static_cast<float>((high - middle_[i]) * scale_), HUGE_VALF);
-        }
-        return box;
+        sort(triangles);
+        make_tree();
     }
 
-    /// Along a curve that fills space [Morton 1966].
-    void sort(const std::vector<Triangle>& triangles)
+    static std::vector<Triangle> triangles_of(const Facets& f)
+    {
+        std::vector<Triangle> triangles;
+        triangles.reserve(f.n_faces());
+        for (std::int32_t face = 0; face < f.n_faces(); ++face)
+            for (std::int32_t h = f.begins[face] + 1; h + 1 < f.begins[face + 1]; ++h)
+                triangles.push_back({{f.corners[f.begins[face]], f.corners[h], f.corners[h + 1]}, face});
+        return triangles;
+    }
+
+    /// Every coordinate is rounded down in the same way, so that what meets still does; a box is one unit
+    /// larger above, for gaps that are as good as none.
+    std::vector<Packed> pack(const std::vector<Triangle>& triangles) const
     {
         Vector3 low = points_[triangles[0].corners[0]], high = low;
         for (const Triangle& t : triangles)
@@ -160,36 +223,65 @@ private:
                     low[i] = std::min(low[i], points_[c][i]);
                     high[i] = std::max(high[i], points_[c][i]);
                 }
-        middle_ = 0.5 * low + 0.5 * high;
         const Vector3 half = 0.5 * high - 0.5 * low;
-        const double size = std::max({half[0], half[1], half[2]});
-        scale_ = size > 0 ? 1 / size : 1;
-        std::vector<std::pair<std::uint32_t, std::int32_t>> order(triangles.size());
-        for (std::size_t k = 0; k < triangles.size(); ++k) {
-            const Vector3& p = points_[triangles[k].corners[0]];
-            std::uint32_t code = 0;
+        constexpr double most = lane_mask - 2;   // what is nothing meets nothing
+        const double units = most / std::max({half[0], half[1], half[2]}),
+                     scale = std::isfinite(units) ? units : 0;
+        std::vector<Packed> packed(points_.size());
+        for (std::size_t k = 0; k < packed.size(); ++k)
+            for (int i = 0; i < 3; ++i) {   // points of no triangle may lie outside
+                const double x = std::clamp((0.5 * points_[k][i] - 0.5 * low[i]) * scale, 0., most);
+                packed[k] |= static_cast<Packed>(x) << (lane * i);
+            }
+        return packed;
+    }
+
+    /// Along a curve that fills space [Morton 1966].
+    void sort(const std::vector<Triangle>& triangles)
+    {
+        const std::vector<Packed> packed = pack(triangles);
+        const std::size_t n = triangles.size();
+        const auto box_of = [&](const Triangle& t) {
+            Box box{packed[t.corners[0]], packed[t.corners[0]]};
+            for (int i = 1; i < 3; ++i) box.add({packed[t.corners[i]], packed[t.corners[i]]});
+            return Box{box.low, box.high + ones};
+        };
+        std::vector<std::uint64_t> order(n), other(n);   // place on the curve, number of the triangle
+        std::array<std::array<std::uint32_t, 1024>, 3> begins{};
+        for (std::size_t k = 0; k < n; ++k) {
+            const Box box = box_of(triangles[k]);
+            const Packed twice = box.low + (box.high - ones);
+            std::uint64_t code = 0;
             for (int i = 0; i < 3; ++i)
-                code |= spread(static_cast<std::uint32_t>(511.5 * (1 + (p[i] - middle_[i]) * scale_))) << i;
-            order[k] = {code, static_cast<std::int32_t>(k)};
+                code |= spread(static_cast<std::uint32_t>(twice >> (lane * i + 11)) & 1023) << i;
+            order[k] = code << 32 | k;
+            for (int pass = 0; pass < 3; ++pass) ++begins[pass][code >> (10 * pass) & 1023];
         }
-        std::sort(order.begin(), order.end());
-        triangles_.reserve(triangles.size());
-        boxes_.reserve(triangles.size());
-        for (const auto& [code, k] : order) {
-            triangles_.push_back(triangles[k]);
-            boxes_.push_back(box_of(triangles[k]));
+        for (int pass = 0; pass < 3; ++pass) {   // by digits, the lowest first
+            std::uint32_t begin = 0;
+            for (std::uint32_t& count : begins[pass]) begin += std::exchange(count, begin);
+            for (const std::uint64_t item : order)
+                other[begins[pass][item >> (32 + 10 * pass) & 1023]++] = item;
+            order.swap(other);
+        }
+        triangles_.reserve(n);
+        boxes_.reserve(n);
+        for (const std::uint64_t item : order) {
+            triangles_.push_back(triangles[item & 0xffffffff]);
+            boxes_.push_back(box_of(triangles_.back()));
         }
     }
 
     /// A full binary tree in one array: node k has the nodes 2 k and 2 k + 1, leaves are the last level.
     void make_tree()
     {
-        const std::size_t n = (triangles_.size() + leaf - 1) / leaf;
+        const std::size_t n_triangles = boxes_.size(), n = (n_triangles + leaf - 1) / leaf;
         n_leaves_ = 1;
         while (n_leaves_ < n) n_leaves_ *= 2;
-        constexpr Box nothing{{2, 2, 2}, {-2, -2, -2}};
+        constexpr Box nothing{lane_mask * ones, 0};
         tree_.assign(2 * n_leaves_, nothing);
-        for (std::size_t k = 0; k < boxes_.size(); ++k) tree_[n_leaves_ + k / leaf].add(boxes_[k]);
+        boxes_.resize(n_leaves_ * leaf, nothing);
+        for (std::size_t k = 0; k < n_triangles; ++k) tree_[n_leaves_ + k / leaf].add(boxes_[k]);
         for (std::size_t k = n_leaves_; k-- > 1;) {
             tree_[k] = tree_[2 * k];
             tree_[k].add(tree_[2 * k + 1]);
@@ -204,38 +296,62 @@ private:
         if (k >= n_leaves_) return look(k, k);
         inside(2 * k);
         inside(2 * k + 1);
-        between(2 * k, 2 * k + 1);
+        if (tree_[2 * k].meets(tree_[2 * k + 1])) between(2 * k, 2 * k + 1);
     }
 
-    void between(std::size_t k, std::size_t l)   // of one level
+    void between(std::size_t k, std::size_t l)   // that meet, of one level
     {
-        if (is_done() || !tree_[k].meets(tree_[l])) return;
+        if (is_done()) return;
         if (--left_ < 0) found_ = {0, 0};
         if (k >= n_leaves_) return look(k, l);
-        for (const std::size_t i : {2 * k, 2 * k + 1})
-            for (const std::size_t j : {2 * l, 2 * l + 1}) between(i, j);
+        for (const std::size_t i : {2 * k, 2 * k + 1}) {
+            if (!tree_[i].meets(tree_[l])) continue;
+            for (const std::size_t j : {2 * l, 2 * l + 1})
+                if (tree_[i].meets(tree_[j])) between(i, j);
+        }
+    }
+
+    /// Which boxes of a leaf meet one: bits. Without branches, as none of them can be foreseen.
+    unsigned met(const Box& box, std::size_t first) const
+    {
+        unsigned bits = 0;
+        for (int j = 0; j < leaf; ++j) bits |= static_cast<unsigned>(box.meets(boxes_[first + j])) << j;
+        return bits;
     }
 
     void look(std::size_t k, std::size_t l)
     {
-        const std::size_t first = leaf * (k - n_leaves_), other = leaf * (l - n_leaves_),
-                          n = triangles_.size();
-        for (std::size_t i = first; i < std::min(first + leaf, n); ++i)
-            for (std::size_t j = k == l ? i + 1 : other; j < std::min(other + leaf, n); ++j) {
-                if (!boxes_[i].meets(boxes_[j])) continue;
+        const std::size_t first = leaf * (k - n_leaves_), other = leaf * (l - n_leaves_);
+        for (unsigned rows = met(tree_[l], first); rows != 0; rows &= rows - 1) {
+            const std::size_t i = first + std::countr_zero(rows);
+            unsigned met = this->met(boxes_[i], other);
+            if (k == l) met &= ~1u << (i - other);
+            if (met == 0) continue;
+            std::array<std::int32_t, 3> known = triangles_[i].corners;
+            for (std::int32_t& c : known)
+                if (!fans_.is_known(c)) c = -1;
+            for (; met != 0 && !is_done(); met &= met - 1) {
                 if (--left_ < 0) found_ = {0, 0};
-                const Triangle &a = triangles_[i], &b = triangles_[j];
-                if (a.face != b.face && !Pair(points_, a, b).is_apart()) found_ = std::minmax(a.face, b.face);
-                if (is_done()) return;
+                look_at(triangles_[i], known, triangles_[other + std::countr_zero(met)]);
             }
+        }
+    }
+
+    /// `known`: corners of a that nothing else need be asked about.
+    void look_at(const Triangle& a, const std::array<std::int32_t, 3>& known, const Triangle& b)
+    {
+        bool shares = false;
+        for (const std::int32_t c : known)
+            for (const std::int32_t d : b.corners) shares |= c == d;
+        if (!shares && a.face != b.face && !Pair(points_, a, b).is_apart())
+            found_ = std::minmax(a.face, b.face);
     }
 
     const std::vector<Vector3>& points_;
+    Fans fans_;
     std::vector<Triangle> triangles_;
     std::vector<Box> boxes_, tree_;
     std::size_t n_leaves_ = 1;
-    Vector3 middle_{};
-    double scale_ = 1;
     std::int64_t left_ = 0;
     std::pair<std::int32_t, std::int32_t> found_{-1, -1};
 };

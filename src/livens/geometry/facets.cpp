@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <array>
+#include <numeric>
 
 #include "livens/base/text.h"
 #include "livens/geometry/detail/facets.h"
@@ -184,27 +185,23 @@ void check_fans(const Facets& f, const Links& links, std::vector<Complaint>& fau
                     "separate the parts, or give each its own points");
 }
 
+/// A tree for each piece, whose root is its first face.
 std::vector<std::int32_t> pieces_of(const Facets& f, const Links& links, std::int32_t& n_pieces)
 {
-    std::vector<std::int32_t> pieces(f.n_faces(), -1), waiting;
-    n_pieces = 0;
-    for (std::int32_t first = 0; first < f.n_faces(); ++first) {
-        if (pieces[first] >= 0) continue;
-        pieces[first] = n_pieces;
-        waiting.assign(1, first);
-        while (!waiting.empty()) {
-            const std::int32_t face = waiting.back();
-            waiting.pop_back();
-            for (std::int32_t h = f.begins[face]; h < f.begins[face + 1]; ++h) {
-                if (links.twins[h] < 0) continue;
-                const std::int32_t other = links.faces[links.twins[h]];
-                if (pieces[other] >= 0) continue;
-                pieces[other] = n_pieces;
-                waiting.push_back(other);
-            }
-        }
-        ++n_pieces;
+    std::vector<std::int32_t> pieces(f.n_faces());
+    std::iota(pieces.begin(), pieces.end(), 0);
+    const auto root = [&](std::int32_t face) {
+        while (pieces[face] != face) face = pieces[face] = pieces[pieces[face]];
+        return face;
+    };
+    for (std::size_t h = 0; h < links.twins.size(); ++h) {
+        if (links.twins[h] < 0) continue;
+        const std::int32_t a = root(links.faces[h]), b = root(links.faces[links.twins[h]]);
+        pieces[std::max(a, b)] = std::min(a, b);
     }
+    n_pieces = 0;
+    for (std::int32_t face = 0; face < f.n_faces(); ++face)   // what lies above is numbered already
+        pieces[face] = pieces[face] == face ? n_pieces++ : pieces[pieces[face]];
     return pieces;
 }
 

@@ -2,6 +2,7 @@
 // Integrals over solids that are given as meshes.   (P16)-(P19)
 #pragma once
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -31,10 +32,11 @@ std::vector<Moments> region_moments(const Mesh& mesh);
 /// volumes must not be zero.
 Moments combined(std::span<const Moments> parts, std::span<const double> weights);
 
-/// Integrals over faces: the moments of the shape functions that loads on a surface need (P20).
+/// Integrals of (1, x) (1, x)^T over faces: the moments of the shape functions that loads on a surface need,
+/// whose fields are linear at most (P20).
 struct SurfaceMoments {
-    Vector4 area{};      ///< of (1, x): m^2, m^3
-    Matrix34 normal{};   ///< of n (1, x)^T with the outward normal n: m^2, m^3
+    Matrix4 area{};                    ///< m^2, m^3, m^4
+    std::array<Matrix4, 3> normal{};   ///< weighted by each component of the outward normal
 };
 SurfaceMoments operator+(const SurfaceMoments& a, const SurfaceMoments& b);
 

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // STL: triangles without indices. Equal corners, to the bit but for the sign of zero, become one point.
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 
 #include "livens/geometry/detail/cursor.h"
 
@@ -21,19 +23,40 @@ public:
         points_.reserve(n_corners / 6 + 16);
     }
 
-    std::int32_t index(Vector3 p)
+    std::int32_t index(const Vector3& point)
+    {
+        const Vector3 p = without_signs(point);
+        return index(p, hash(p));
+    }
+
+    /// Of many at a time: so the table's memory need not be waited for.
+    void index(std::span<const Vector3> points, std::int32_t* indices)
+    {
+        hashes_.resize(points.size());
+        for (std::size_t k = 0; k < points.size(); ++k) {
+            hashes_[k] = hash(without_signs(points[k]));
+            __builtin_prefetch(&slots_[hashes_[k] & (slots_.size() - 1)]);
+        }
+        for (std::size_t k = 0; k < points.size(); ++k)
+            indices[k] = index(without_signs(points[k]), hashes_[k]);
+    }
+
+private:
+    static Vector3 without_signs(Vector3 p)
     {
         for (int i = 0; i < 3; ++i) p[i] += 0.0;   // -0 is 0
+        return p;
+    }
+    std::int32_t index(const Vector3& p, std::uint64_t hash)
+    {
         if (2 * points_.size() >= slots_.size()) grow();
-        std::int32_t& slot = find(p);
+        std::int32_t& slot = find(p, hash);
         if (slot < 0) {
             slot = static_cast<std::int32_t>(points_.size());
             points_.push_back(p);
         }
         return slot;
     }
-
-private:
     static std::uint64_t hash(const Vector3& p)
     {
         std::uint64_t h = 0;
@@ -41,22 +64,33 @@ private:
             h = (h ^ std::bit_cast<std::uint64_t>(p[i])) * 0x9e3779b97f4a7c15ull, h ^= h >> 29;
         return h ^ (h >> 32);
     }
-    std::int32_t& find(const Vector3& p)
+    std::int32_t& find(const Vector3& p, std::uint64_t hash)
     {
         const std::size_t mask = slots_.size() - 1;
-        std::size_t at = hash(p) & mask;
+        std::size_t at = hash & mask;
         while (slots_[at] >= 0 && !(points_[slots_[at]] == p)) at = (at + 1) & mask;
         return slots_[at];
     }
     void grow()
     {
         slots_.assign(2 * slots_.size(), -1);
-        for (std::size_t i = 0; i < points_.size(); ++i) find(points_[i]) = static_cast<std::int32_t>(i);
+        for (std::size_t i = 0; i < points_.size(); ++i)
+            find(points_[i], hash(points_[i])) = static_cast<std::int32_t>(i);
     }
 
     std::vector<Vector3>& points_;
     std::vector<std::int32_t> slots_;
+    std::vector<std::uint64_t> hashes_;
 };
+
+template <bool swap>
+float float_at(const char* bytes)
+{
+    std::uint32_t bits;
+    std::memcpy(&bits, bytes, sizeof bits);
+    if (swap) bits = bits >> 24 | (bits >> 8 & 0xff00) | (bits << 8 & 0xff0000) | bits << 24;
+    return std::bit_cast<float>(bits);
+}
 
 void read_binary(Cursor& cursor, std::uint32_t n, Mesh& mesh)
 {
@@ -68,18 +102,22 @@ void read_binary(Cursor& cursor, std::uint32_t n, Mesh& mesh)
     block.nodes.resize(3 * std::size_t{n});
     block.regions.assign(n, 0);
     Welder welder(mesh.points, 3 * std::size_t{n});
-    for (std::uint32_t f = 0; f < n; ++f) {
-        cursor.raw_bytes(12);   // the normal: what counts is the order of the corners
-        for (int k = 0; k < 3; ++k) {
-            Vector3 p;
-            for (int i = 0; i < 3; ++i) {
-                p[i] = cursor.raw<float>(swap);
-                if (!std::isfinite(p[i]))
+    constexpr std::size_t some = 64;   // triangles at a time
+    std::vector<Vector3> corners;
+    for (std::size_t first = 0; first < n; first += some) {
+        corners.clear();
+        for (std::size_t f = first; f < std::min<std::size_t>(first + some, n); ++f) {
+            cursor.raw_bytes(12);   // the normal: what counts is the order of the corners
+            const char* at = cursor.raw_bytes(triangle_bytes - 12).data();
+            for (int k = 0; k < 3; ++k) {
+                Vector3 p;
+                for (int i = 0; i < 3; ++i, at += 4) p[i] = float_at<swap>(at);
+                if (!std::isfinite(p[0] + p[1] + p[2]))   // doubles that are floats do not overflow
                     cursor.fail("a coordinate of triangle " + std::to_string(f + 1) + " is not finite");
+                corners.push_back(p);
             }
-            block.nodes[3 * std::size_t{f} + k] = welder.index(p);
         }
-        cursor.raw_bytes(2);
+        welder.index(corners, block.nodes.data() + 3 * first);
     }
 }
 

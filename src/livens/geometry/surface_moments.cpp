@@ -18,8 +18,9 @@ SurfaceMoments of_face(const Mesh& mesh, ElementKind kind, const std::int32_t* n
         const ElementPoint at = element_point(point, mesh, kind, nodes, {});
         const Vector3 n = point.weight * cross(at.F.column(0), at.F.column(1));
         const Vector4 place = livens::point(at.x);
-        m.area += norm(n) * place;
-        m.normal += outer(n, place);
+        const Matrix4 of = outer(place, place);
+        m.area += norm(n) * of;
+        for (int i = 0; i < 3; ++i) m.normal[i] += n[i] * of;
     }
     return m;
 }
@@ -35,7 +36,10 @@ SurfaceMoments& find(std::vector<NamedSurface>& all, const std::string& name)
 
 SurfaceMoments operator+(const SurfaceMoments& a, const SurfaceMoments& b)
 {
-    return {a.area + b.area, a.normal + b.normal};
+    SurfaceMoments sum = a;
+    sum.area += b.area;
+    for (int i = 0; i < 3; ++i) sum.normal[i] += b.normal[i];
+    return sum;
 }
 
 std::vector<NamedSurface> surface_moments(const Mesh& mesh)
@@ -63,12 +67,11 @@ std::vector<NamedSurface> surface_moments(const Mesh& mesh)
 
 SurfaceMoments scaled(const SurfaceMoments& m, double length)
 {
-    const double area = length * length;
-    SurfaceMoments s{area * m.area, area * m.normal};
-    for (int a = 1; a < 4; ++a) {
-        s.area[a] *= length;
-        s.normal.set_column(a, length * s.normal.column(a));
-    }
+    SurfaceMoments s = m;
+    for (Matrix4* of : {&s.area, &s.normal[0], &s.normal[1], &s.normal[2]})
+        for (int a = 0; a < 4; ++a)
+            for (int b = 0; b < 4; ++b)
+                (*of)(a, b) *= length * length * (a > 0 ? length : 1) * (b > 0 ? length : 1);
     return s;
 }
 
@@ -81,7 +84,13 @@ SurfaceMoments moved(const SurfaceMoments& m, const Matrix3& R, const Vector3& d
         T(i + 1, 0) = d[i];
         for (int j = 0; j < 3; ++j) T(i + 1, j + 1) = R(i, j);
     }
-    return {T * m.area, R * m.normal * transpose(T)};
+    SurfaceMoments to;
+    to.area = T * m.area * transpose(T);
+    for (int j = 0; j < 3; ++j) {
+        const Matrix4 of = T * m.normal[j] * transpose(T);
+        for (int i = 0; i < 3; ++i) to.normal[i] += R(i, j) * of;
+    }
+    return to;
 }
 
 }   // namespace livens

@@ -274,6 +274,76 @@ TEST_F(MeshScenario, LoadsOnSurfacesMoveTheBodyAsForcesDo)
     EXPECT_LE(apart(final_X(on + "\"pressure\"\nvalue = 1\n"), final_X("")), 1e-12);
 }
 
+/// What floats upright is borne by the pressure at its bottom: it heaves with omega^2 = rho g A / m.
+TEST_F(MeshScenario, FloatsOnAPressureThatGrowsWithDepth)
+{
+    put("sides.obj", sides);
+    const auto height = [&](const std::string& more) {
+        const ScenarioResult result =
+            read("shape = { mesh = \"sides.obj\", unit = \"m\" }\ndensity = 1.5\nvelocity = [0, 0, 1]\n",
+                 "[[load]]\nbody = \"b\"\ntype = \"pressure\"\nsurface = \"bottom\"\n" + more);
+        EXPECT_TRUE(result.scenario.has_value()) << shown(result);
+        if (!result.scenario) return 0.;
+        const Scenario& s = *result.scenario;
+        return solve(s.model, {s.conditions}, s.time, s.method, s.options).motion.at(1).X[0](2, 0);
+    };
+    // m = 3, A = 2, the bottom at -0.5: at rest with its middle at 0, omega = 2.
+    const std::string water = "value = -3\ngradient = [0, 0, -6]\n";
+    EXPECT_NEAR(height(water), std::sin(2.) / 2, 1e-9);
+    EXPECT_NEAR(height(water + "until = 0.5\n"), std::sin(1.) / 2 + std::cos(1.) / 2, 1e-9);
+    EXPECT_NEAR(height("gradient = [0, 0, -6]\n"),   // about 0.5, where p = 0
+                0.5 + std::sin(2.) / 2 - std::cos(2.) / 2, 1e-9);
+    EXPECT_NEAR(height("value = 0\n"), 1, 1e-12);
+}
+
+/// All of a hull with a keel under water: the weight of the water at its centroid, and so a moment about the
+/// centre of mass below it.
+TEST_F(MeshScenario, IsRightedByThePressureThatGrowsWithDepth)
+{
+    put("hull.obj", "g hull\n" + box_obj({-1, -0.5, -0.5}, {1, 0.5, 0.5}));
+    const ScenarioResult result =
+        read("shape = { parts = [{ mesh = \"hull.obj\", unit = \"m\" }, { sphere = 0.1, position = [0, 0, "
+             "-0.7], density = 100 }] }\ndensity = 1",
+             "[[load]]\nbody = \"b\"\ntype = \"pressure\"\nsurface = \"hull\"\ngradient = [0, 0, -10]\n");
+    ASSERT_TRUE(result.scenario.has_value()) << shown(result);
+    const double heel = 0.3, c = std::cos(heel), s = std::sin(heel);
+    LoadArguments at;
+    at.X[0] = {5, 6, -7, 1, 0, 0, 0, c, s, 0, -s, c};
+    LoadForces F{};
+    result.scenario->model.loads()[0].forces(at, F);
+    EXPECT_LE(norm(F[0].column(0) - Vector3{0, 0, 20}), 1e-13);
+    const double keel = 100 * 4 * M_PI / 3000, below = 0.7 * keel / (2 + keel);
+    const Matrix4& m = result.scenario->model.bodies()[0].mass;
+    const Vector3 center{m(1, 0) / m(0, 0), m(2, 0) / m(0, 0), m(3, 0) / m(0, 0)};
+    EXPECT_LE(norm(center - Vector3{0, 0, -below}), 1e-15);
+    Vector3 moment{};   // about the reference point, less that of the force if it were at the centre of mass
+    for (int i = 1; i < 4; ++i) moment += cross(at.X[0].column(i), F[0].column(i));
+    moment -= cross(directors(at.X[0]) * center, F[0].column(0));
+    EXPECT_LE(norm(moment - Vector3{-20 * below * s, 0, 0}), 1e-13);
+}
+
+TEST_F(MeshScenario, FieldsThatAreLinearStandAlone)
+{
+    put("sides.obj", sides);
+    const auto load = [&](const std::string& text) {
+        return read(sided, "[[load]]\nname = \"l\"\nbody = \"b\"\nsurface = \"top\"\n" + text);
+    };
+    // Shear that grows from the middle: 3 r over 2 m x 1 m, as a torque about the normal.
+    const ScenarioResult twist =
+        load("type = \"traction\"\ngradient = [[0, -3, 0], [3, 0, 0], [0, 0, 0]]\nframe = \"body\"");
+    ASSERT_TRUE(twist.scenario.has_value()) << shown(twist);
+    LoadArguments at;
+    LoadForces F{};
+    twist.scenario->model.loads()[0].forces(at, F);
+    EXPECT_LE(norm(F[0].column(0)), 1e-15);
+    EXPECT_NEAR(F[0](1, 1) - F[0](0, 2), 3 * 2 * (4. + 1) / 12, 1e-14);
+    const ScenarioResult both =
+        load("type = \"pressure\"\ngradient = [0, 0, -6]\nexpression = \"z\"\n"
+             "inputs = { z = \"s.x\" }\n[[sensor]]\nname = \"s\"\ntype = \"point\"\nbody = \"b\"\n");
+    EXPECT_NE(find(both, "load-value"), nullptr) << shown(both);
+    EXPECT_NE(find(load("type = \"pressure\"\n"), "load-value"), nullptr);
+}
+
 TEST_F(MeshScenario, RefusesUnknownSurfaces)
 {
     put("sides.obj", sides);

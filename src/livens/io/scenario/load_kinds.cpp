@@ -121,7 +121,12 @@ std::vector<Key> keys_of_pressure()
          "Values between the times; constant before and after.",
          {times_key(), Key{"values", types::list, "One for each time.", "Pa"}.needed(),
           interpolation_key()}});
-    return joined({body_key(), surface_key(),
+    const Key gradient{"gradient", types::vector3,
+                       "What is added is gradient . x at the place x in the world, on all of the surface: of "
+                       "water, `[0, 0, -9810]`. There is no surface of the water: where the sum is negative, "
+                       "it pulls.",
+                       "Pa/m"};
+    return joined({body_key(), surface_key(), gradient,
                    Key{"value", types::number, "Constant; instead of `table`.", "Pa"}, table},
                   expression_keys(false), interval_keys());
 }
@@ -178,12 +183,17 @@ const std::vector<LoadKind>& load_kinds()
                "false"}}},
          make_attraction},
         {{"traction", "force per area on a surface of the body's mesh",
-          keys_on_body("traction", "Pa", {surface_key()})},
+          keys_on_body("traction", "Pa",
+                       {surface_key(),
+                        Key{"gradient", types::triple,
+                            "What is added is gradient theta at the place theta in the body: a row for each "
+                            "component of the traction.",
+                            "Pa/m"}})},
          make_traction,
-         check_value},
+         check_field},
         {{"pressure", "against a surface of the body's mesh, which it follows", keys_of_pressure()},
          make_pressure,
-         check_value},
+         check_field},
         {{"body_force", "force per unit mass on all of a body", keys_on_body("body_force", "m/s^2", {})},
          make_body_force,
          check_value}};

@@ -202,6 +202,19 @@ bool check_value(const Section& load)
     return true;
 }
 
+/// A field that may be linear in the place.
+bool check_field(const Section& load)
+{
+    if (load.has("gradient") && load.has("inputs"))
+        return load.error("inputs", "load-value",
+                          "'inputs' and 'gradient' of " + load.label() + " stand together",
+                          {"a formula that looks at the motion is the same all over the surface",
+                           "give the gradient to a load of its own, with value = 0"});
+    if (load.has("gradient") && !load.has("value") && !load.has("table") && !load.has("expression"))
+        return true;
+    return check_value(load);
+}
+
 /// Between two points, or on a joint; linear, or by a law.
 bool check_spring(const Section& load)
 {
@@ -292,13 +305,26 @@ const SurfaceMoments& surface_of(const LoadSources& p)
                       ""});
 }
 
+/// A row of the gradient, while the load acts.
+TimeVector gradient_of(const LoadSources& p, std::size_t row)
+{
+    TimeVector gradient;
+    for (int j = 0; j < 3; ++j) {
+        const double slope = p.section.find("gradient")->numbers[3 * row + j];
+        gradient[j] = while_it_acts(p.section, slope);
+    }
+    return gradient;
+}
+
 }   // namespace
 
 Load make_traction(const LoadSources& p)
 {
     const SurfaceMoments& surface = surface_of(p);
+    std::vector<TimeVector> gradient;
+    for (std::size_t i = 0; p.section.has("gradient") && i < 3; ++i) gradient.push_back(gradient_of(p, i));
     return on_body(p, [&](const TimeVector& value) {
-        return traction(p.name, p.first, surface, value, p.section.pick<Frame>("frame"));
+        return traction(p.name, p.first, surface, value, p.section.pick<Frame>("frame"), gradient);
     });
 }
 
@@ -314,7 +340,8 @@ Load make_pressure(const LoadSources& p)
 {
     const SurfaceMoments& surface = surface_of(p);
     const Inputs inputs = read_inputs(p.builder, p.section, p.path());
-    if (inputs.reads.empty()) return pressure(p.name, p.first, surface, read_values(p, 1)[0]);
+    const TimeVector gradient = p.section.has("gradient") ? gradient_of(p, 0) : TimeVector{0.0, 0.0, 0.0};
+    if (inputs.reads.empty()) return pressure(p.name, p.first, surface, read_values(p, 1)[0], gradient);
     return by_formula(p, "pressure", "Pa", {pressure(p.name, p.first, surface, 1.0)}, inputs);
 }
 

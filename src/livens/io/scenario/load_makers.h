@@ -8,6 +8,7 @@ namespace livens {
 
 // False after an error.
 bool check_value(const Section& load);
+bool check_field(const Section& load);
 bool check_spring(const Section& load);
 bool check_bushing(const Section& load);
 bool check_drag(const Section& load);

@@ -117,7 +117,9 @@ bool read_line(std::string_view text, std::map<std::pair<std::string, bool>, Red
     }
     if (word == "surface") {
         SurfaceMoments m;
-        if (!line.read_all(m.area) || !line.read_all(m.normal)) return false;
+        if (!line.read_all(m.area)) return false;
+        for (Matrix4& of : m.normal)
+            if (!line.read_all(of)) return false;
         mesh->surfaces.push_back({line.rest(), m});
         return true;
     }
@@ -206,8 +208,11 @@ std::string MeshStore::kept() const
         text +=
             "mesh " + std::to_string(key.second ? 1 : 0) + " " + numbers_of(mesh.whole) + key.first + "\n";
         for (const auto& [name, m] : mesh.regions) text += "region " + numbers_of(m) + name + "\n";
-        for (const NamedSurface& s : mesh.surfaces)
-            text += "surface " + numbers_of(s.moments.area) + numbers_of(s.moments.normal) + s.name + "\n";
+        for (const NamedSurface& s : mesh.surfaces) {
+            text += "surface " + numbers_of(s.moments.area);
+            for (const Matrix4& of : s.moments.normal) text += numbers_of(of);
+            text += s.name + "\n";
+        }
         for (const Vector3& p : mesh.points) text += "point " + numbers_of(p) + "\n";
         for (const auto& t : mesh.triangles)
             text += "face " + std::to_string(t[0]) + " " + std::to_string(t[1]) + " " + std::to_string(t[2]) +

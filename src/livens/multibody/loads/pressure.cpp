@@ -4,21 +4,64 @@
 
 namespace livens {
 
-Load pressure(const std::string& name, int body, const SurfaceMoments& surface, const TimeFunction& value)
+namespace {
+
+/// int (q . (1, theta)) n (1, theta)^T dA with body-fixed normals n.
+Matrix34 integral(const SurfaceMoments& surface, const Vector4& q)
+{
+    Matrix34 G;
+    for (int i = 0; i < 3; ++i) {
+        const Vector4 row = surface.normal[i] * q;
+        for (int a = 0; a < 4; ++a) G(i, a) = row[a];
+    }
+    return G;
+}
+
+struct Pressure {
+    SurfaceMoments surface;
+    TimeFunction value;
+    TimeVector gradient;
+
+    Matrix34 integral(const LoadArguments& arguments) const
+    {
+        Vector4 q = transpose(arguments.X[0]) * load_value(gradient, arguments.at);
+        q[0] += value(arguments.at).value;
+        return livens::integral(surface, q);
+    }
+
+    /// F = -D G, and G depends on X by q.
+    void add_tangent(const LoadArguments& arguments, Matrix<12, 12>& tangent) const
+    {
+        const Matrix34 G = integral(arguments);
+        const Matrix3 D = directors(arguments.X[0]);
+        const Vector3 g = load_value(gradient, arguments.at);
+        for (int a = 0; a < 4; ++a) {
+            for (int i = 0; i < 3; ++i) add_block(tangent, a, i + 1, -G(i, a) * identity<3>());
+            for (int b = 0; b < 4; ++b) {
+                const Vector3 n{surface.normal[0](a, b), surface.normal[1](a, b), surface.normal[2](a, b)};
+                add_block(tangent, a, b, -outer(D * n, g));
+            }
+        }
+    }
+};
+
+}   // namespace
+
+Load pressure(const std::string& name, int body, const SurfaceMoments& surface, const TimeFunction& value,
+              const TimeVector& gradient)
 {
     Load load = start_load(name, "pressure", {body, world});
     set_load_value(load, {value, TimeFunction(0.0), TimeFunction(0.0)});
+    set_load_value(load, gradient);
     load.readings = {
         {"pressure", "Pa", [value](const LoadArguments& arguments) { return value(arguments.at).value; }}};
     load.depends_on_X = load.needs_directors[0] = true;
-    const Matrix34 N = surface.normal;
-    load.forces = [N, value](const LoadArguments& arguments, LoadForces& F) {
-        F[0] = -value(arguments.at).value * (directors(arguments.X[0]) * N);
+    const Pressure of{surface, value, gradient};
+    load.forces = [of](const LoadArguments& arguments, LoadForces& F) {
+        F[0] = -1. * (directors(arguments.X[0]) * of.integral(arguments));
     };
-    load.tangent = [N, value](const LoadArguments& arguments, LoadTangent& tangent) {
-        const double p = value(arguments.at).value;
-        for (int a = 0; a < 4; ++a)
-            for (int i = 0; i < 3; ++i) add_block(tangent.X[0][0], a, i + 1, -p * N(i, a) * identity<3>());
+    load.tangent = [of](const LoadArguments& arguments, LoadTangent& tangent) {
+        of.add_tangent(arguments, tangent.X[0][0]);
     };
     return load;
 }
