@@ -235,6 +235,92 @@ TEST(Events, TheTrebuchetAsShippedThrowsAsFarAsItsEquationsSay)
     }
 }
 
+/// What a drive misses by is part of the error that is told, since the second solution is moved as well.
+TEST(Events, WhatADriveMissesByIsTold)
+{
+    const Scenario s =
+        parse_scenario("format = 1\n" + relay("polynomial = [-0.9999995, 2]"), "test.toml").scenario.value();
+    const Solution solution = solve(s.model, {s.model.start()}, s.time, s.method, s.options);
+    EXPECT_GT(solution.estimate.largest * s.model.length(), 4.9e-7) << "off by 5e-7 m";
+    EXPECT_LT(solution.estimate.largest * s.model.length(), 5e-6);
+    EXPECT_LT(solved(relay("polynomial = [-1, 2]")).solution.estimate.largest, 1e-12) << "negative control";
+}
+
+/// Where no place near fits, the motion up to there is kept as well; and radau goes through events.
+TEST(Events, AreTheSameForRadauAndFarMisses)
+{
+    const std::string radau = "family = \"radau\"\n";
+    EXPECT_NEAR(solved(relay("polynomial = [-1, 2]") + radau).coordinate("rail", "displacement", 2).value, 3,
+                1e-12);
+    const std::string turned = R"(
+[[body]]
+name = "a"
+mass = 2
+inertia = [2, 2, 3]
+[[joint]]
+name = "p"
+type = "revolute"
+between = ["world", "a"]
+at = [0, 0, 0]
+axis = [0, 0, 1]
+[[joint]]
+name = "held"
+type = "weld"
+between = ["world", "a"]
+at = [0, 0, 0]
+until = 0.5
+[[drive]]
+type = "joint"
+joint = "p"
+from = 0.5
+value = 1.6
+[time]
+end = 1
+elements = 4
+)";
+    const Scenario s = parse_scenario("format = 1\n" + turned, "test.toml").scenario.value();
+    const Solution solution = solve(s.model, {s.model.start()}, s.time, s.method, s.options);
+    EXPECT_EQ(solution.report.status, SolveStatus::not_converged) << solution.report.message;
+    EXPECT_NEAR(solution.motion.end(), 0.5, 1e-12);
+}
+
+/// A triple pendulum on a stiff spring that long elements do not resolve: its phase, where a joint lets go,
+/// becomes a velocity that goes on. Against elements that resolve it.
+TEST(Events, AVibrationThatIsNotResolvedIsPartOfTheError)
+{
+    std::string text = "gravity = [0, 0, -9.81]\n";
+    const double pitch[] = {0, 0.3, -0.4};
+    Vector3 at{};
+    for (int i = 0; i < 3; ++i) {
+        const Vector3 along{std::cos(pitch[i]), 0, -std::sin(pitch[i])}, middle = at + 0.5 * along;
+        const auto vector = [](const Vector3& v) {
+            return "[" + to_text(v[0]) + ", " + to_text(v[1]) + ", " + to_text(v[2]) + "]\n";
+        };
+        const std::string n = std::to_string(i), before = i == 0 ? "world" : "b" + std::to_string(i - 1);
+        text += "[[body]]\nname = \"b" + n +
+                "\"\nmass = 1\ninertia = [0.08, 0.08, 0.08]\nposition = " + vector(middle) +
+                "rotation_vector = " + vector({0, pitch[i], 0});
+        text += "[[joint]]\nname = \"j" + n + "\"\ntype = \"revolute\"\nbetween = [\"" + before + "\", \"b" +
+                n + "\"]\nat = " + vector(at) + "axis = [0, 1, 0]\n" + (i == 2 ? "until = 0.437\n" : "");
+        at += along;
+    }
+    text += "[[load]]\ntype = \"spring\"\njoint = \"j1\"\nstiffness = 1e5\n[time]\nend = 1\n";
+    const Solved fine =
+        solved(text + "elements = 600\noutput = [0.437]\n[method]\ndegree = 8\nestimate = \"none\"\n");
+    for (const std::string how :
+         {"elements = 40\n[method]\nfamily = \"radau\"\ndegree = 4\n", "accuracy = 1e-2\n"}) {
+        SCOPED_TRACE(how);
+        const Scenario s = parse_scenario("format = 1\n" + text + how, "test.toml").scenario.value();
+        const Solution solution = solve(s.model, {s.model.start()}, s.time, s.method, s.options);
+        ASSERT_EQ(solution.motion.end(), 1) << solution.report.message;
+        const State a = solution.motion.at(1), b = fine.solution.motion.at(1);
+        double error = 0;
+        for (int i = 0; i < 3; ++i)
+            error = std::max(error, norm(a.X[i].column(0) - b.X[i].column(0)) / s.model.length());
+        EXPECT_LT(error, 1.5 * solution.estimate.largest);
+    }
+}
+
 /// A four-bar has three rows too many as long as it is closed; then its rocker is let go.
 TEST(Events, ALoopOpens)
 {

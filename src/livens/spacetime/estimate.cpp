@@ -136,7 +136,7 @@ void add_events(const Model& model, const Motion& motion, ErrorEstimate& found)
         Miss off = miss_at_event(model, motion, event);
         double slowest = std::numeric_limits<double>::infinity(), shift = 0, turn = 0;
         for (const Vibration& one : vibrations_beside(model, motion, event)) {
-            if (one.rate * motion.mesh.length(event - 1) < motion.X.degree || one.rate < one.decay) continue;
+            if (one.rate * motion.mesh.length(event - 1) < motion.X.degree || one.decay > one.rate) continue;
             slowest = std::min(slowest, one.rate);
             raise_to(shift, one.shift);
             raise_to(turn, one.turn);
