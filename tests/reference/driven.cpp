@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Every drive with every law: order 2p, and the balance of energy with what the drive does.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "reference/solved.h"
+
+namespace livens::tests {
+namespace {
+
+/// A cart that is driven, and a bob on a skew pin that swings.
+const std::string cart_and_bob = R"toml(
+gravity = [0, 0, -9.81]
+[[body]]
+name = "cart"
+mass = 3
+inertia = [1, 1, 1]
+[[body]]
+name = "bob"
+mass = 2
+inertia = [0.2, 0.3, 0.3]
+position = [0.5, 0, 0]
+[[joint]]
+name = "pin"
+type = "revolute"
+between = ["cart", "bob"]
+at = [0, 0, 0]
+axis = [0.6, 0.8, 0]
+)toml";
+const std::string on_rail = R"toml([[joint]]
+name = "rail"
+type = "prismatic"
+between = ["world", "cart"]
+at = [0, 0, 0]
+axis = [1, 0, 0]
+[[drive]]
+type = "joint"
+joint = "rail"
+)toml";
+const std::string on_axle = R"toml([[joint]]
+name = "axle"
+type = "revolute"
+between = ["world", "cart"]
+at = [0, 0, 0]
+axis = [0, 0, 1]
+[[drive]]
+type = "joint"
+joint = "axle"
+)toml";
+
+struct Driven {
+    const char* what;
+    std::string text;
+    int finer = 1;   ///< elements, where the motion is quick
+};
+
+std::vector<Driven> all_drives()
+{
+    const std::string wave = "harmonic = { amplitude = 0.3, frequency = 0.7 }\n";
+    return {
+        {"displacement, harmonic", on_rail + wave},
+        {"angle, harmonic", on_axle + wave},
+        {"angle, rate", on_axle + "rate = 3\n"},
+        {"displacement, step", on_rail + "step = { from = 0.25, until = 1.5, rise = 0.7 }\n"},
+        {"displacement, table",
+         on_rail + "table = { times = [0, 0.5, 1, 2], values = [0, 0.2, -0.1, 0.4] }\n"},
+        {"body, expression", "[[drive]]\ntype = \"body\"\nbody = \"cart\"\n"
+                             "expression = [\"0.3*sin(2*t)\", \"0.1*t^2\", \"0.2*cos(3*t) - 0.2\"]\n"},
+        {"point, polynomial",
+         "[[drive]]\ntype = \"point\"\nbody = \"cart\"\npolynomial = [0, 0, 0, 0.1, 0.2, 0, 0.3, 0, 0.1]\n"},
+        {"distance, expression",
+         "[[drive]]\ntype = \"distance\"\nbetween = [\"world\", \"bob\"]\npoints = [[0, 2, 1], [0.2, 0, 0]]\n"
+         "expression = \"2.179449471770337 + 0.1*sin(2*t)^2\"\n",
+         4}};
+}
+
+Solved moved(const Driven& driven, const std::string& how)
+{
+    return solved(cart_and_bob + driven.text + "[start]\ninitial = \"project\"\n[time]\nend = 2\n" + how);
+}
+
+TEST(EveryDrive, HasOrder2pAndItsPowerInTheBalance)
+{
+    for (const Driven& driven : all_drives()) {
+        SCOPED_TRACE(driven.what);
+        const Solved fine = moved(driven, "accuracy = 1e-12\n");
+        EXPECT_LT(fine.solution.verdict.energy_drift, 1e-11);
+        EXPECT_LT(fine.solution.estimate.largest, 1e-12);
+        const State right = fine.solution.motion.at(2);
+        for (const int p : {1, 2, 3}) {
+            double before = 0;
+            const int n = driven.finer * (p == 1   ? 640
+                                          : p == 2 ? 64
+                                                   : 32);   // elements end at 0.25, 0.5, 1 and 1.5
+            for (const int elements : {n, 2 * n}) {
+                const State state =
+                    moved(driven, "elements = " + std::to_string(elements) +
+                                      "\n[method]\ndegree = " + std::to_string(p) + "\nestimate = \"none\"\n")
+                        .solution.motion.at(2);
+                double error = 0;
+                for (int b = 0; b < 2; ++b)
+                    error = std::max({error, norm(state.X[b] - right.X[b]), norm(state.V[b] - right.V[b])});
+                if (before > 0) {
+                    EXPECT_NEAR(std::log2(before / error), 2 * p, 0.35) << p << ": " << error;
+                }
+                before = error;
+            }
+        }
+    }
+}
+
+}   // namespace
+}   // namespace livens::tests
