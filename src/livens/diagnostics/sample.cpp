@@ -169,7 +169,8 @@ std::vector<JointSample> reactions_of(const Model& model, const State& state, st
         both = std::move(least.multipliers);
         is_unique = std::move(least.joint_is_unique);
     }
-    const std::span<const double> before(both.data(), left.size()), after(&both[left.size()], right.size());
+    const std::span<const double> before(both.data(), left.size()),
+        after(both.data() + left.size(), right.size());
     const bool jumps = !std::ranges::equal(before, after);
     std::vector<JointSample> samples;
     samples.reserve(model.joints().size());

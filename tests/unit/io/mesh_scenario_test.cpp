@@ -195,7 +195,7 @@ TEST_F(MeshScenario, RefusesHalfOfMSE)
     expect_error("mass = 1\n" + S + E + "inertia = [1, 1, 1]", "mass-conflict", "inertia");
     expect_error("mass = 1\n" + S + E + "shape = { box = [1, 1, 1] }", "mass-conflict", "shape");
     expect_error("mass = 1\n" + S + "second_moment = [[1, 0.5, 0], [0, 1, 0], [0, 0, 1]]",
-                 "inertia-asymmetric", "symmetric");
+                 "inertia-not-symmetric", "symmetric");
     // Less than what the mass at its centre has.
     expect_error("mass = 1\nfirst_moment = [2, 0, 0]\n" + E, "inertia-negative", "");
     expect_error("mass = 1\n" + S + E + "directors = [[1, 0, 0], [0.5, 1, 0], [0, 0, 1]]",

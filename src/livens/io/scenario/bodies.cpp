@@ -50,7 +50,7 @@ void check_moments(const Section& body)
         for (int i = 0; i < 3; ++i)
             for (int j = 0; j < i; ++j)
                 if (E->numbers[3 * i + j] != E->numbers[3 * j + i]) {
-                    body.error("second_moment", "inertia-asymmetric",
+                    body.error("second_moment", "inertia-not-symmetric",
                                "'second_moment' of " + body.label() + " must be symmetric");
                     return;
                 }
