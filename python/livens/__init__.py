@@ -25,8 +25,9 @@ from ._generated import Body, Drive, Joint, Load, MethodOptions, Sensor
 from ._functions import BodyState
 from ._load import load
 from ._model import Model
-from ._results import (BodySeries, JointSeries, LoadSeries, Parts, ReadingSeries, SensorSeries, Series, Solution,
-                       load_solution)
+from ._parts import BodySeries, JointSeries, LoadSeries, Parts, ReadingSeries, SensorSeries
+from ._results import Solution, load_solution
+from ._series import Series
 from ._solve import solve, solve_many
 from ._values import Condition, Method, Shape, momenta, positions, state, table
 

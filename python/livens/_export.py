@@ -8,7 +8,8 @@ import numpy as np
 import numpy.typing as npt
 
 from ._errors import fault, need
-from ._results import UNITS, Floats, Series
+from ._parts import UNITS, Floats
+from ._series import Series
 
 if TYPE_CHECKING:
     import pandas

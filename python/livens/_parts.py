@@ -1,0 +1,268 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Bodies, joints, loads and sensors of a result: read-only arrays by name."""
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
+
+import numpy as np
+import numpy.typing as npt
+
+from ._entries import Entry, unknown_name
+
+if TYPE_CHECKING:
+    from typing_extensions import TypeAlias
+
+    from ._series import Series
+
+Floats: TypeAlias = "npt.NDArray[np.float64]"
+_T = TypeVar("_T")
+
+UNITS = {
+    "position": "m", "center_of_mass": "m", "directors": "1", "directors_raw": "1", "quaternion": "1",
+    "velocity": "m/s", "angular_velocity": "rad/s", "angular_velocity_body": "rad/s", "linear_momentum": "kg m/s",
+    "angular_momentum": "kg m^2/s", "force": "N", "torque": "N m", "force_before": "N", "torque_before": "N m",
+    "angle": "rad", "angle_rate": "rad/s", "displacement": "m", "displacement_rate": "m/s", "kinetic": "J",
+    "potential": "J", "energy": "J", "work": "J", "drift": "J", "position_error": "m", "orientation_error": "rad",
+    "velocity_error": "m/s", "reaction_error": "1", "growth": "1", "t": "s", "power": "W"}
+_BODY_ARRAYS = ("position", "center_of_mass", "quaternion", "directors", "velocity", "angular_velocity",
+                "angular_velocity_body", "linear_momentum", "angular_momentum")
+
+
+class Part:
+    """One body, joint, load or sensor of a result."""
+
+    def __init__(self, series: Series, name: str, index: int) -> None:
+        self._series, self._name, self._index = series, name, index
+
+    @property
+    def name(self) -> str:
+        """What the model calls it."""
+        return self._name
+
+    @property
+    def t(self) -> Floats:
+        """Instants, s, shape (n,)."""
+        return self._series.t
+
+    def arrays(self) -> dict[str, Floats]:
+        """All that there is, by name; units are those of :meth:`unit`."""
+        raise NotImplementedError
+
+    def unit(self, name: str) -> str:
+        """The unit of an attribute: ``"N m"``."""
+        return UNITS[name]
+
+    def __dir__(self) -> list[str]:
+        return [*super().__dir__(), *self.arrays()]
+
+    def __repr__(self) -> str:
+        kind = type(self).__name__.replace("Series", "").lower()
+        return f"<livens {kind} '{self.name}' at {self._series._n_text()}: {', '.join(self.arrays())}>"
+
+
+class BodySeries(Part):
+    """A body along a motion. World axes unless said; the first dimension is time (none for a single instant).
+
+    Point masses have no orientation: what tells of it is nan.
+    """
+
+    def _get(self, name: str) -> Floats:
+        return self._series._shaped(self._series._bodies()[name][:, self._index])
+
+    def arrays(self) -> dict[str, Floats]:
+        return {name: getattr(self, name) for name in _BODY_ARRAYS}
+
+    @property
+    def position(self) -> Floats:
+        """Of the reference point, m, world, shape (n, 3). At element ends a view of the motion."""
+        view = self._series._end_view("end_configurations")
+        return self._get("position") if view is None else view[:, self._index, 0]
+
+    @property
+    def velocity(self) -> Floats:
+        """Of the reference point, m/s, world, shape (n, 3). At element ends a view of the motion."""
+        view = self._series._end_view("end_velocities")
+        return self._get("velocity") if view is None else view[:, self._index, 0]
+
+    @property
+    def center_of_mass(self) -> Floats:
+        """m, world, shape (n, 3)."""
+        return self._get("center_of_mass")
+
+    @property
+    def quaternion(self) -> Floats:
+        """Orientation (w, x, y, z), body to world, sign continuous, shape (n, 4). SciPy's has w last."""
+        return self._get("quaternion")
+
+    @property
+    def directors(self) -> Floats:
+        """Rows d1, d2, d3 in world axes, orthonormal, shape (n, 3, 3): the transpose of the rotation matrix."""
+        return self._get("directors")
+
+    @property
+    def directors_raw(self) -> Floats:
+        """The same of the motion itself, with its violation of rigidity, shape (n, 3, 3)."""
+        return self._get("directors_raw")
+
+    @property
+    def angular_velocity(self) -> Floats:
+        """rad/s, world axes, shape (n, 3)."""
+        return self._get("angular_velocity")
+
+    @property
+    def angular_velocity_body(self) -> Floats:
+        """rad/s, body axes, shape (n, 3)."""
+        return self._get("angular_velocity_body")
+
+    @property
+    def linear_momentum(self) -> Floats:
+        """kg m/s, world, shape (n, 3)."""
+        return self._get("linear_momentum")
+
+    @property
+    def angular_momentum(self) -> Floats:
+        """kg m^2/s about the world's origin, world axes, shape (n, 3)."""
+        return self._get("angular_momentum")
+
+    @property
+    def position_error(self) -> Floats:
+        """Estimated, of the centre of mass, m, shape (n,). nan between element ends and without an estimate."""
+        return self._series._estimate("position", self._index, self._series._length())
+
+    @property
+    def orientation_error(self) -> Floats:
+        """Estimated, rad, shape (n,); 0 for point masses. nan likewise."""
+        return self._series._estimate("orientation", self._index)
+
+    @property
+    def velocity_error(self) -> Floats:
+        """Estimated, of the centre of mass, m/s, shape (n,). nan likewise."""
+        return self._series._estimate("velocity", self._index)
+
+
+class JointSeries(Part):
+    """A joint or drive along a motion; its coordinates (``angle``, ``displacement``, rates) are attributes, too."""
+
+    def __init__(self, series: Series, name: str, index: int, first: int, coordinates: list[tuple[str, str]]) -> None:
+        super().__init__(series, name, index)
+        self._first = first
+        self.coordinates: dict[str, str] = dict(coordinates)
+        """Names and units of its coordinates: ``{"angle": "rad"}``."""
+
+    def _get(self, name: str) -> Floats:
+        return self._series._shaped(self._series._joints()[name][:, self._index])
+
+    def __getattr__(self, name: str) -> Any:
+        coordinates = self.__dict__.get("coordinates", {})
+        for i, known in enumerate(coordinates):
+            if name in (known, known + "_rate"):
+                column = "coordinate" if name == known else "coordinate_rate"
+                return self._series._shaped(self._series._scalars()[column][:, self._first + i])
+        have = ", ".join(coordinates) or "none"
+        raise AttributeError(f"joint '{self._name}' has no '{name}'; its coordinates: {have}", name=name, obj=self)
+
+    def arrays(self) -> dict[str, Floats]:
+        names = [name + end for name in self.coordinates for end in ("", "_rate")]
+        return {name: getattr(self, name) for name in [*names, "force", "torque"]}
+
+    @property
+    def force(self) -> Floats:
+        """Of the joint on its second body, N, world axes, shape (n, 3). Where a load jumps, afterwards."""
+        return self._get("force")
+
+    @property
+    def torque(self) -> Floats:
+        """Of the joint on its second body about the joint point, N m, world axes, shape (n, 3). Likewise."""
+        return self._get("torque")
+
+    @property
+    def force_before(self) -> Floats:
+        """The force just before each instant, N, world axes, shape (n, 3)."""
+        return self._get("force_before")
+
+    @property
+    def torque_before(self) -> Floats:
+        """The torque just before each instant, N m, world axes, shape (n, 3)."""
+        return self._get("torque_before")
+
+    @property
+    def unique(self) -> bool:
+        """False: other joints of a closed loop could carry part of the reactions; these are the least."""
+        return bool(np.all(self._series._joints()["is_unique"][:, self._index] != 0))
+
+    @property
+    def bounded(self) -> bool:
+        """False: the joints lose rank at some instant; reactions are nan there."""
+        return bool(np.all(self._series._joints()["is_bounded"][:, self._index] != 0))
+
+    @property
+    def reaction_error(self) -> Floats:
+        """Estimated, relative to the largest reaction of the run, shape (n,). nan where it is not known."""
+        return self._series._estimate("reaction", self._index)
+
+
+class ReadingSeries(Part):
+    """What a load or a sensor tells along a motion: its readings are attributes, and items."""
+
+    def __init__(self, series: Series, name: str, index: int, first: int, readings: list[tuple[str, str]]) -> None:
+        super().__init__(series, name, index)
+        self._first = first
+        self.readings: dict[str, str] = {name: _spaced(unit) for name, unit in readings}
+        """Names and units: ``{"force": "N", "length": "m", "power": "W"}``."""
+
+    def unit(self, name: str) -> str:
+        return self.readings[name]
+
+    def __getitem__(self, name: str) -> Floats:
+        """A reading by name, shape (n,)."""
+        if name not in self.readings:
+            raise unknown_name("reading", name, list(self.readings))
+        column = self._first + list(self.readings).index(name)
+        return self._series._shaped(self._series._scalars()["reading"][:, column])
+
+    def __getattr__(self, name: str) -> Any:
+        if name in self.__dict__.get("readings", {}):
+            return self[name]
+        known = ", ".join(self.__dict__.get("readings", {}))
+        raise AttributeError(f"'{self.__dict__.get('_name')}' has no '{name}'; it tells {known}", name=name, obj=self)
+
+    def arrays(self) -> dict[str, Floats]:
+        return {name: self[name] for name in self.readings}
+
+
+class LoadSeries(ReadingSeries):
+    """A load along a motion: what it does, and its ``power`` (W) on the bodies."""
+
+
+class SensorSeries(ReadingSeries):
+    """A sensor along a motion."""
+
+
+def _spaced(unit: str) -> str:
+    """"rad s-1" as "rad/s"."""
+    import re
+    return re.sub(r" (\w+)-(\d)", lambda m: "/" + m[1] + ("" if m[2] == "1" else "^" + m[2]), unit)
+
+
+class Parts(Mapping[str, _T], Generic[_T]):
+    """Bodies (joints, loads, sensors) of a result by name. Iterating gives names."""
+
+    def __init__(self, kind: str, names: list[str], make: Callable[[int], _T]) -> None:
+        self._kind, self._names, self._make = kind, names, make
+
+    def __getitem__(self, name: str) -> _T:
+        name = name.name if isinstance(name, (Entry, Part)) else name
+        if name not in self._names:
+            raise unknown_name(self._kind, name, self._names)
+        return self._make(self._names.index(name))
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._names)
+
+    def __len__(self) -> int:
+        return len(self._names)
+
+    def __repr__(self) -> str:
+        plural = "bodies" if self._kind == "body" else self._kind + "s"
+        return f"<{plural}: {', '.join(self._names) or 'none'}>"

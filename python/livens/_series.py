@@ -1,0 +1,198 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A motion at instants: what solutions and their samples have in common."""
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ._entries import Entry, unknown_name
+from ._parts import UNITS, BodySeries, Floats, JointSeries, LoadSeries, Part, Parts, SensorSeries
+
+if TYPE_CHECKING:
+    import pandas
+    import xarray
+
+
+class Series:
+    """A motion at instants: what :class:`Solution` is at element ends, and ``sol(t)`` at others.
+
+    Arrays are read-only and stay valid as long as they are used. SI units; world axes unless said.
+    """
+
+    def __init__(self, result: Any, times: Floats | None, is_single: bool = False,
+                 exact: dict[str, Floats] | None = None) -> None:
+        self._result = result
+        self._times = times
+        self._is_single = is_single
+        self._groups: dict[str, dict[str, Floats]] = {}
+        if exact is not None:
+            self._groups = {"bodies_at": exact, "joints_at": exact, "scalars_at": exact}
+
+    # What arrays are made of.
+
+    def _instants(self) -> Floats:
+        times: Floats = self._result.t if self._times is None else self._times
+        return times
+
+    def _group(self, name: str) -> dict[str, Floats]:
+        if name not in self._groups:
+            self._groups[name] = getattr(self._result, name)(self._instants())
+        return self._groups[name]
+
+    def _bodies(self) -> dict[str, Floats]:
+        return self._group("bodies_at")
+
+    def _joints(self) -> dict[str, Floats]:
+        return self._group("joints_at")
+
+    def _scalars(self) -> dict[str, Floats]:
+        return self._group("scalars_at")
+
+    def _end_view(self, name: str) -> Floats | None:
+        return None if self._times is not None else getattr(self._result, name)
+
+    def _shaped(self, array: Floats) -> Floats:
+        return array[0] if self._is_single else array
+
+    def _length(self) -> float:
+        return float(self._result.figures["model_length"] or np.nan)
+
+    def _estimate(self, name: str, index: int, scale: float = 1.0) -> Floats:
+        ends, known = self._result.t, self._result.estimates.get(name)
+        values: npt.NDArray[Any]
+        if known is None:
+            values = np.full(len(self._instants()), np.nan)
+        elif self._times is None:
+            values = known[:, index] * scale
+        else:
+            at = np.minimum(np.searchsorted(ends, self._times), len(ends) - 1)
+            values = np.where(ends[at] == self._times, known[at, index] * scale, np.nan)
+        values.flags.writeable = False
+        return self._shaped(values)
+
+    def _n_text(self) -> str:
+        return "one instant" if self._is_single else f"{len(self._instants())} instants"
+
+    # What there is.
+
+    @property
+    def t(self) -> Floats:
+        """The instants, s, shape (n,)."""
+        return self._shaped(self._instants())
+
+    @property
+    def bodies(self) -> Parts[BodySeries]:
+        """All bodies by name."""
+        names = self._result.body_names
+        return Parts("body", names, lambda i: BodySeries(self, names[i], i))
+
+    @property
+    def joints(self) -> Parts[JointSeries]:
+        """All joints by name, and the drives behind them."""
+        joints = self._result.joints
+
+        def make(i: int) -> JointSeries:
+            first = sum(len(coordinates) for _, _, coordinates in joints[:i])
+            return JointSeries(self, joints[i][0], i, first, joints[i][2])
+        return Parts("joint", [name for name, _, _ in joints], make)
+
+    @property
+    def sensors(self) -> Parts[SensorSeries]:
+        """All sensors by name."""
+        sensors = self._result.sensors
+
+        def make(i: int) -> SensorSeries:
+            first = sum(len(readings) for _, _, readings in sensors[:i])
+            return SensorSeries(self, sensors[i][0], i, first, sensors[i][2])
+        return Parts("sensor", [name for name, _, _ in sensors], make)
+
+    @property
+    def loads(self) -> Parts[LoadSeries]:
+        """All loads by name."""
+        loads, of_sensors = self._result.loads, sum(len(readings) for _, _, readings in self._result.sensors)
+
+        def make(i: int) -> LoadSeries:
+            first = of_sensors + sum(len(readings) for _, _, readings in loads[:i])
+            return LoadSeries(self, loads[i][0], i, first, loads[i][2])
+        return Parts("load", [name for name, _, _ in loads], make)
+
+    def __getitem__(self, name: str | Entry | Part) -> Any:
+        """The body, joint, load or sensor of that name (or handle)."""
+        groups: list[Parts[Any]] = [self.bodies, self.joints, self.loads, self.sensors]
+        if isinstance(name, Entry):
+            kinds = {"body": 0, "joint": 1, "drive": 1, "load": 2, "sensor": 3}
+            return groups[kinds[name._key]][name.name]
+        word = name.name if isinstance(name, Part) else name
+        found = [group for group in groups if word in group]
+        if len(found) == 1:
+            return found[0][word]
+        if found:
+            raise KeyError(f"several parts are called '{word}'; write .bodies['{word}'], .joints['{word}'], ..")
+        raise unknown_name("part", word, [known for group in groups for known in group])
+
+    @property
+    def kinetic(self) -> Floats:
+        """Kinetic energy, J, shape (n,)."""
+        return self._shaped(self._scalars()["kinetic"])
+
+    @property
+    def potential(self) -> Floats:
+        """Potential energy of gravity and loads, J, shape (n,)."""
+        return self._shaped(self._scalars()["potential"])
+
+    @property
+    def energy(self) -> Floats:
+        """Kinetic and potential energy, J, shape (n,)."""
+        return self.kinetic + self.potential
+
+    # Elsewhere.
+
+    def to_xarray(self) -> xarray.Dataset:
+        """An ``xarray.Dataset`` with dimensions ``time``, ``body``, ``joint``, ``xyz``; units in ``attrs``.
+
+        Needs xarray: ``pip install 'livens[xarray]'``.
+        """
+        from ._export import to_xarray
+        return to_xarray(self)
+
+    def to_dataframe(self, *names: str | Entry) -> pandas.DataFrame:
+        """A ``pandas.DataFrame`` of the parts named (default: all bodies), a row an instant.
+
+        Columns are ``"rod.position.x"``, the index is ``t``; ``frame.attrs["units"]`` has the units. Needs pandas:
+        ``pip install 'livens[pandas]'``.
+        """
+        from ._export import to_dataframe
+        return to_dataframe(self, names)
+
+    def plot(self, *what: str, **keywords: Any) -> npt.NDArray[Any]:
+        """Draws arrays over time, one axis each, with units; returns the axes.
+
+        Args:
+            *what: ``"rod.position"``, ``"pivot.force"``, ``"energy"``; default: energies.
+            **keywords: For ``Axes.plot``.
+
+        Needs matplotlib: ``pip install 'livens[plot]'``.
+        """
+        from ._export import plot
+        return plot([("", self)], what, keywords)
+
+    def _array(self, what: str) -> tuple[Floats, str]:
+        """By a name with a dot: (array, unit)."""
+        name, _, attribute = what.rpartition(".")
+        if not name:
+            if attribute not in UNITS or not hasattr(type(self), attribute):
+                raise unknown_name("series", what, [n for n in UNITS if hasattr(type(self), n)])
+            return getattr(self, attribute), UNITS[attribute]
+        part = self[name]
+        try:
+            return getattr(part, attribute), part.unit(attribute)
+        except (AttributeError, KeyError):
+            raise unknown_name(f"array of '{name}'", attribute, list(part.arrays())) from None
+
+    def __len__(self) -> int:
+        return len(self._instants())
+
+    def __repr__(self) -> str:
+        return f"<livens.Series: {self._n_text()} of {', '.join(self.bodies)}>"
