@@ -73,11 +73,13 @@ void note_difference(Largest& largest, double difference, double size, double t)
     largest.time = t;
 }
 
+Matrix3 triad_of(const BodySample& s) { return directors_from_quaternion(s.quaternion); }
+
 void compare(std::array<Largest, n_quantities>& largest, const BodySample& a, const BodySample& b,
              bool is_point, double t)
 {
     note_difference(largest[0], norm(a.position - b.position), norm(a.position), t);
-    if (!is_point) note_difference(largest[1], angle_between(a.directors, b.directors), 1, t);
+    if (!is_point) note_difference(largest[1], angle_between(triad_of(a), triad_of(b)), 1, t);
     note_difference(largest[2], norm(a.velocity - b.velocity), norm(a.velocity), t);
     if (!is_point)
         note_difference(largest[3], norm(a.angular_velocity - b.angular_velocity), norm(a.angular_velocity),

@@ -17,6 +17,7 @@
 #include "livens/diagnostics/sample.h"
 #include "livens/io/results.h"
 #include "livens/spacetime/solve.h"
+#include "rigidity_members.h"
 #include "simd.h"
 
 namespace livens::program {
@@ -47,13 +48,6 @@ template <int Rows>
 void add(JsonWriter& json, const char* key, const Matrix<Rows, 1>& v)
 {
     json.key(key).value(std::span<const double>(v.a));
-}
-
-void add_triad(JsonWriter& json, const char* key, const Matrix3& d)
-{
-    json.key(key).begin_array();
-    for (int i = 0; i < 3; ++i) json.value(std::span<const double>(d.column(i).a));
-    json.end_array();
 }
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
@@ -124,6 +118,14 @@ void horizon_member(JsonWriter& json, const Query& q, double t)
         json.null();
 }
 
+RigiditySample rigidity_at(const Query& q, double t)
+{
+    const std::size_t body = static_cast<std::size_t>(q.index);
+    const Model& model = q.scenario.model;
+    const Rigidity rigidity(model, q.run.motion);
+    return (q.arguments.exact ? rigidity.at(exact_sample(q.run, q.scenario, t).state) : rigidity.at(t))[body];
+}
+
 void body_members(JsonWriter& json, const Query& q, double t)
 {
     const BodySample s = body_at(q, t);
@@ -144,6 +146,10 @@ void body_members(JsonWriter& json, const Query& q, double t)
     }
     add(json, "linear_momentum", s.linear_momentum);
     add(json, "angular_momentum", s.angular_momentum);
+    if (q.scenario.model.bodies()[q.index].is_point)
+        for (const char* key : {"rigidity", "mean_stress"}) json.key(key).null();
+    else
+        rigidity_members(json, q.scenario.model.bodies()[q.index], rigidity_at(q, t));
     const BodyGap error = body_error(q, t);
     json.member("estimated_position_error", error.position);
     json.member("estimated_orientation_error", error.orientation);

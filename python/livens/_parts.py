@@ -24,7 +24,7 @@ UNITS = {
     "angular_momentum": "kg m^2/s", "force": "N", "torque": "N m", "force_before": "N", "torque_before": "N m",
     "angle": "rad", "angle_rate": "rad/s", "displacement": "m", "displacement_rate": "m/s", "kinetic": "J",
     "potential": "J", "energy": "J", "work": "J", "drift": "J", "position_error": "m", "orientation_error": "rad",
-    "velocity_error": "m/s", "reaction_error": "1", "growth": "1", "t": "s", "power": "W"}
+    "velocity_error": "m/s", "rigidity_stress": "N m", "mean_stress": "Pa", "reaction_error": "1", "growth": "1", "t": "s", "power": "W"}
 _BODY_ARRAYS = ("position", "center_of_mass", "quaternion", "directors", "velocity", "angular_velocity",
                 "angular_velocity_body", "linear_momentum", "angular_momentum")
 
@@ -92,12 +92,16 @@ class BodySeries(Part):
 
     @property
     def quaternion(self) -> Floats:
-        """Orientation (w, x, y, z), body to world, sign continuous, shape (n, 4). SciPy's has w last."""
+        """Orientation (w, x, y, z), body to world, sign continuous, shape (n, 4). SciPy's has w last.
+
+        Of the nearest orthonormal triad, where directors are skew."""
         return self._get("quaternion")
 
     @property
     def directors(self) -> Floats:
-        """Rows d1, d2, d3 in world axes, orthonormal, shape (n, 3, 3): the transpose of the rotation matrix."""
+        """Rows d1, d2, d3 in world axes, shape (n, 3, 3): the transpose of the rotation matrix.
+
+        Orthonormal, unless the body was stated with skew ones."""
         return self._get("directors")
 
     @property
@@ -112,7 +116,7 @@ class BodySeries(Part):
 
     @property
     def angular_velocity_body(self) -> Floats:
-        """rad/s, body axes, shape (n, 3)."""
+        """rad/s, components along the directors, shape (n, 3)."""
         return self._get("angular_velocity_body")
 
     @property
@@ -124,6 +128,22 @@ class BodySeries(Part):
     def angular_momentum(self) -> Floats:
         """kg m^2/s about the world's origin, world axes, shape (n, 3)."""
         return self._get("angular_momentum")
+
+    @property
+    def rigidity_stress(self) -> Floats:
+        """What keeps the body rigid, N m, along its directors, shape (n, 3, 3): tension is positive.
+
+        The second Piola-Kirchhoff stress summed up over the body, from the equations of motion, after the instant
+        where loads jump; zero for point masses, nan where joints lose rank. In closed loops with redundant joints it
+        is one of many, of the least reactions."""
+        return self._series._shaped(self._series._rigidity()["rigidity"][:, self._index])
+
+    @property
+    def mean_stress(self) -> Floats:
+        """:attr:`rigidity_stress` by the volume of the body's shape, Pa, shape (n, 3, 3); nan without a shape."""
+        stress: Floats = self.rigidity_stress / self._series._result.body_volumes()[self._index]
+        stress.flags.writeable = False
+        return stress
 
     @property
     def position_error(self) -> Floats:

@@ -28,7 +28,7 @@ class Series:
         self._is_single = is_single
         self._groups: dict[str, dict[str, Floats]] = {}
         if exact is not None:
-            self._groups = {"bodies_at": exact, "joints_at": exact, "scalars_at": exact}
+            self._groups = {"bodies_at": exact, "joints_at": exact, "scalars_at": exact, "rigidity_at": exact}
 
     # What arrays are made of.
 
@@ -43,6 +43,9 @@ class Series:
 
     def _bodies(self) -> dict[str, Floats]:
         return self._group("bodies_at")
+
+    def _rigidity(self) -> dict[str, Floats]:
+        return self._group("rigidity_at")
 
     def _joints(self) -> dict[str, Floats]:
         return self._group("joints_at")

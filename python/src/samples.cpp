@@ -12,6 +12,7 @@
 
 #include "livens/base/error.h"
 #include "livens/diagnostics/coordinates.h"
+#include "livens/diagnostics/rigidity.h"
 #include "livens/diagnostics/sample.h"
 #include "result.h"
 
@@ -104,6 +105,21 @@ void add_bodies(Columns& c, std::vector<BodySample>&& samples, std::vector<Vecto
     }
 }
 
+void declare_rigidity(Columns& c, std::size_t n)
+{
+    for (const char* name : {"rigidity", "rigidity_before"}) c.declare(name, {n, 3, 3});
+    c.declare("rigidity_unique", {n});
+}
+
+void add_rigidity(Columns& c, const std::vector<RigiditySample>& samples)
+{
+    for (const RigiditySample& s : samples) {
+        c.add("rigidity", s.right);
+        c.add("rigidity_before", s.left);
+        c.add("rigidity_unique", s.is_unique ? 1 : 0);
+    }
+}
+
 void declare_joints(Columns& c, std::size_t n)
 {
     for (const char* name : {"force", "torque", "force_before", "torque_before"}) c.declare(name, {n, 3});
@@ -137,6 +153,26 @@ nb::dict bodies_at(const Result& r, const Times& times)
     declare_bodies(c, previous.size());
     at_all(times, [&](double t) { add_bodies(c, sample_bodies(model, r.run.motion, t), previous); });
     return c.take();
+}
+
+nb::dict rigidity_at(const Result& r, const Times& times)
+{
+    Columns c(times.size());
+    const Model& model = r.scenario->model;
+    declare_rigidity(c, model.bodies().size());
+    const Rigidity rigidity(model, r.run.motion);
+    at_all(times, [&](double t) { add_rigidity(c, rigidity.at(t)); });
+    return c.take();
+}
+
+/// m^3, one a body; nan where no shape tells.
+nb::object body_volumes(const Result& r)
+{
+    std::vector<double> volumes;
+    for (const Body& body : r.scenario->model.bodies())
+        volumes.push_back(body.volume > 0 ? body.volume : unknown);
+    const std::size_t n = volumes.size();
+    return array(std::move(volumes), {n});
 }
 
 nb::dict joints_at(const Result& r, const Times& times)
@@ -229,6 +265,8 @@ nb::dict exact_at(const Result& r, const Times& times)
     std::vector<Vector4> previous = upright(model);
     declare_bodies(all.c, previous.size());
     declare_joints(all.c, n_joints);
+    declare_rigidity(all.c, model.bodies().size());
+    const Rigidity rigidity(model, r.run.motion);
     at_all(times, [&](double t) {
         ExactSample s = sample_exactly(model, r.run.motion, r.method, t, r.scenario->options);
         if (!s.report.converged())
@@ -241,6 +279,7 @@ nb::dict exact_at(const Result& r, const Times& times)
                                          s.state.V[b] * model.bodies()[b].mass));
         add_bodies(all.c, std::move(bodies), previous);
         add_joints(all.c, std::move(s.joints), n_joints);
+        add_rigidity(all.c, rigidity.at(s.state));
         all.add(s.state);
     });
     return all.c.take();
@@ -291,6 +330,8 @@ void add_samples(nb::class_<Result>& result)
 {
     result.def("snapped", &snapped, nb::arg("t"))
         .def("bodies_at", &bodies_at, nb::arg("t"))
+        .def("rigidity_at", &rigidity_at, nb::arg("t"))
+        .def("body_volumes", &body_volumes)
         .def("joints_at", &joints_at, nb::arg("t"))
         .def("scalars_at", &scalars_at, nb::arg("t"))
         .def("exact_at", &exact_at, nb::arg("t"))

@@ -260,3 +260,24 @@ def test_comparison(sol: lv.Solution) -> None:
     rod.add_body("other", lv.sphere(1, mass=1))
     with pytest.raises(lv.InputError):
         lv.compare(sol, lv.solve(rod, 1, elements=1))
+
+
+def test_what_keeps_bodies_rigid() -> None:
+    """E11 w^2 along a rod that spins, by its volume the mean stress; the same along skew directors."""
+    m = lv.Model()
+    m.add_body("rod", lv.box(2, 0.1, 0.1, mass=3), angular_velocity=(0, 0, 5))
+    E = np.diag([1.0, 0.0025, 0.0025])
+    C = np.array([[1, 0.5, 0.2], [0, 0.8, -0.1], [0, 0, 1.3]])
+    back = np.linalg.inv(C)
+    m.add_body("skew", mass=3, first_moment=(0, 0, 0), second_moment=(back @ E @ back.T).tolist(),
+               directors=C.T.tolist(), angular_velocity=(0, 0, 5), position=(0, 9, 0))
+    sol = lv.solve(m, 1, elements=20, degree=8)
+    expected = np.diag([25, 0.0625, 0])
+    for at in (sol, sol(sol.t), sol(0.123, exact=True)):
+        rod, skew = at["rod"], at["skew"]
+        assert np.allclose(rod.rigidity_stress, expected, atol=1e-9)
+        assert np.allclose(rod.mean_stress, expected / 0.02, atol=1e-7)
+        assert np.allclose(skew.rigidity_stress, back @ expected @ back.T, atol=1e-9)
+        assert np.isnan(skew.mean_stress).all()
+        assert np.allclose(np.swapaxes(skew.directors, -1, -2), np.swapaxes(rod.directors, -1, -2) @ C, atol=1e-12)
+    assert sol["rod"].unit("mean_stress") == "Pa" and not sol["rod"].mean_stress.flags.writeable

@@ -18,6 +18,14 @@ livens_mutant(NAME second_moment_sign
               TESTS_OF unit_multibody
               MUST_FAIL MassProperties.MassMatrixHoldsTheSecondMomentsAboutTheReferencePoint)
 
+# The moments of a skew body taken for those along perpendicular axes: right for all other bodies.
+livens_mutant(NAME skew_moments
+              FILE multibody/body.cpp
+              OLD [[mass_properties(A * mass * transpose(A))]]
+              NEW [[mass_properties(mass)]]
+              TESTS_OF unit_multibody
+              MUST_FAIL SkewBodies.AreTheirOrthonormalSelvesInOtherCoordinates)
+
 # The factor 1/2 of (P21) forgotten.
 livens_mutant(NAME torque_half
               FILE multibody/loads/torque.cpp

@@ -1,7 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <cassert>
+#include "livens/diagnostics/rigidity.h"
 
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "livens/base/error.h"
 #include "livens/diagnostics/diagnostics.h"
+#include "livens/diagnostics/sample.h"
+#include "livens/multibody/reactions.h"
+#include "livens/multibody/rows.h"
+#include "livens/multibody/small_motions.h"
 #include "livens/multibody/turns.h"
 
 namespace livens {
@@ -31,6 +42,160 @@ std::vector<double> rigidity_multipliers(const Model& model, int body, Instant a
         rest -= multipliers[r] * constraint_gradient(model.row(r), at, X).of(body);
     const Matrix3 along = transpose(directors(rest)) * directors(X[body]);   // (a, b): column a along d_b
     return {along(0, 0), along(1, 1), along(2, 2), along(0, 1), along(0, 2), along(1, 2)};
+}
+
+namespace {
+
+/// X'' = [a, alpha x d_i + w x (w x d_i)].
+Matrix34 acceleration(const Matrix34& X, const double* twist, const double* rates)
+{
+    const Vector3 alpha{twist[3], twist[4], twist[5]}, w{rates[3], rates[4], rates[5]};
+    Matrix34 A{};
+    A.set_column(0, {twist[0], twist[1], twist[2]});
+    for (int i = 1; i < 4; ++i) A.set_column(i, cross(alpha, X.column(i)) + cross(w, cross(w, X.column(i))));
+    return A;
+}
+
+/// Along the directors as they are stated: tr(Lambda U^T Phi U) is tr(U Lambda U^T Phi).
+Matrix3 as_stated(const Body& body, const std::vector<double>& six)
+{
+    const Matrix3 straight{six[0], six[3], six[4], six[3], six[1], six[5], six[4], six[5], six[2]};
+    if (!is_skew(body)) return straight;
+    const Matrix3 back = inverse(body.stretch);
+    return back * straight * transpose(back);
+}
+
+bool holds(const Model& model, int joint, int body)
+{
+    return std::ranges::any_of(model.joints()[joint].rows, [&](const ConstraintRow& row) {
+        const RowBodies bodies = row_bodies(row);
+        return bodies.find(body) < bodies.size;
+    });
+}
+
+/// On one side, with the joints that act there.
+struct SideOfRigidity {
+    explicit SideOfRigidity(std::size_t n) : multipliers(n), is_unique(n, true) {}
+
+    std::vector<Matrix3> multipliers;
+    std::vector<bool> is_unique;
+    bool is_bounded = true;
+};
+
+/// All that the equations of motion say of an instant.
+struct Balanced {
+    Instant at;
+    const std::vector<Matrix34>&X, &V, &A;
+    std::span<const double> multipliers, angles;
+    std::span<const int> independent;
+};
+
+SideOfRigidity rigidity_of(const Model& model, const Balanced& b)
+{
+    SideOfRigidity all(b.X.size());
+    all.is_bounded = std::ranges::none_of(b.multipliers, [](double x) { return std::isnan(x); });
+    if (!all.is_bounded) return all;
+    const UniqueReactions least = least_reactions(frozen(model, b.at), b.X, b.multipliers, b.independent);
+    for (std::size_t j = 0; j < least.joint_is_unique.size(); ++j)
+        for (std::size_t i = 0; i < b.X.size() && !least.joint_is_unique[j]; ++i)
+            if (holds(model, static_cast<int>(j), static_cast<int>(i))) all.is_unique[i] = false;
+    for (std::size_t i = 0; i < b.X.size(); ++i)
+        all.multipliers[i] =
+            as_stated(model.bodies()[i], rigidity_multipliers(model, static_cast<int>(i), b.at, b.X, b.V, b.A,
+                                                              least.multipliers, b.angles));
+    return all;
+}
+
+/// By the equations of motion, solved in a state that need not be closed.
+SideOfRigidity rigidity_on(const Model& model, const State& state, Side side)
+{
+    const std::size_t n = model.bodies().size(), s = side == Side::left ? 0 : 1;
+    std::optional<PreparedState> prepared;
+    try {
+        prepared.emplace(model, state, side, false);
+    } catch (const InputError&) {   // it is too far from any that the joints allow
+    }
+    if (!prepared || !prepared->is_fit) {
+        SideOfRigidity none(n);
+        none.is_bounded = false;
+        return none;
+    }
+    const InstantState& at = prepared->state;
+    std::vector<Matrix34> X(n), V(n), A(n);
+    for (std::size_t b = 0; b < n; ++b) {
+        std::copy_n(at.X.begin() + 12 * static_cast<std::ptrdiff_t>(b), 12, X[b].a);
+        const auto& body = prepared->tables.bodies[b];
+        double twist[6] = {}, rates[6] = {};
+        std::copy_n(at.acceleration[s].begin() + body.first, body.dofs, twist);
+        std::copy_n(at.velocity.begin() + body.first, body.dofs, rates);
+        A[b] = acceleration(X[b], twist, rates);
+        V[b] = rate(X[b], {rates[0], rates[1], rates[2]}, {rates[3], rates[4], rates[5]});
+    }
+    return rigidity_of(model, {{state.t, side}, X, V, A, at.multipliers[s], at.angles, at.rows});
+}
+
+std::vector<RigiditySample> of_both_sides(const SideOfRigidity& left, const SideOfRigidity& right)
+{
+    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+    std::vector<RigiditySample> samples;
+    for (std::size_t b = 0; b < left.multipliers.size(); ++b) {
+        RigiditySample& sample = samples.emplace_back();
+        sample.left = left.multipliers[b];
+        sample.right = right.multipliers[b];
+        sample.is_unique = left.is_unique[b] && right.is_unique[b];
+        sample.is_bounded = left.is_bounded && right.is_bounded;
+        if (sample.is_bounded) continue;
+        std::fill_n(sample.left.a, 9, nan);
+        sample.right = sample.left;
+    }
+    return samples;
+}
+
+}   // namespace
+
+Rigidity::Rigidity(const Model& model, const Motion& motion)
+    : model_(model), motion_(motion), turns_(model, motion)
+{}
+
+std::vector<RigiditySample> Rigidity::at(double t) const
+{
+    const State state = sample_state(motion_, t);
+    const int end = element_end_at(motion_.mesh, state.t);
+    const bool is_held = !motion_.accelerations.empty() && !motion_.end_multipliers.empty();
+    return end >= 0 && is_held && !model_.has_events() ? at_end(state, end) : at(state);
+}
+
+std::vector<RigiditySample> Rigidity::at(const State& given) const
+{
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    State state = given;
+    state.angles = turns_.at(given);
+    if (!model_.has_events())
+        return of_both_sides(rigidity_on(model_, state, Side::left), rigidity_on(model_, state, Side::right));
+    const Model before = acting_at(model_, std::nextafter(state.t, -infinity)).model,
+                after = acting_at(model_, state.t).model;
+    return of_both_sides(rigidity_on(before, state, Side::left), rigidity_on(after, state, Side::right));
+}
+
+std::vector<RigiditySample> Rigidity::at_end(const State& state, int end) const
+{
+    const std::vector<double> angles = turns_.at_end(end);
+    std::vector<int> independent = all_rows(model_);
+    std::erase_if(independent, [&](int row) {
+        return std::ranges::find(motion_.redundant_rows, row) != motion_.redundant_rows.end();
+    });
+    const std::size_t n = static_cast<std::size_t>(motion_.n_bodies),
+                      n_rows = static_cast<std::size_t>(motion_.n_rows);
+    const auto side = [&](Side of) {
+        const std::size_t place = 2 * static_cast<std::size_t>(end) + (of == Side::left ? 0 : 1);
+        const auto first = motion_.accelerations.begin() + static_cast<std::ptrdiff_t>(place * n);
+        const std::vector<Matrix34> A(first, first + motion_.n_bodies);
+        const std::span<const double> all(motion_.end_multipliers);
+        return rigidity_of(
+            model_,
+            {{state.t, of}, state.X, state.V, A, all.subspan(place * n_rows, n_rows), angles, independent});
+    };
+    return of_both_sides(side(Side::left), side(Side::right));
 }
 
 }   // namespace livens

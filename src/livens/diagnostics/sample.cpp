@@ -81,13 +81,19 @@ BodySample sample_body(const Body& body, const Matrix34& X, const Matrix34& V, c
         s.angular_velocity = s.angular_velocity_body = {nan, nan, nan};
         return s;
     }
-    s.directors_raw = directors(X);
-    s.directors = project_directors(s.directors_raw);
-    s.quaternion = quaternion_from_directors(s.directors);
-    const Matrix34 rigid = configuration(s.position, s.directors);
+    const Matrix3 triad = project_directors(directors(X));
+    s.quaternion = quaternion_from_directors(triad);
+    const Matrix34 rigid = configuration(s.position, triad);
     s.center_of_mass = rigid * point(mass_properties(body.mass).center_of_mass);
     s.angular_velocity = angular_velocity(rigid, V);
-    s.angular_velocity_body = transpose(s.directors) * s.angular_velocity;
+    s.angular_velocity_body = transpose(triad) * s.angular_velocity;
+    s.directors_raw = directors(X);
+    s.directors = triad;
+    if (is_skew(body)) {
+        s.directors_raw = s.directors_raw * body.stretch;
+        s.directors = triad * body.stretch;
+        s.angular_velocity_body = inverse(body.stretch) * s.angular_velocity_body;
+    }
     s.angular_momentum = angular_momentum(std::span(&X, 1), std::span(&P, 1));
     return s;
 }

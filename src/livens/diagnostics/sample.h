@@ -17,12 +17,13 @@ namespace [[gnu::visibility("default")]] livens {
 struct BodySample {
     Vector3 position{};                ///< of the reference point, m, inertial axes
     Vector3 center_of_mass{};          ///< m, inertial axes
-    Matrix3 directors{};               ///< columns d1, d2, d3; the orthonormal triad nearest to directors_raw
+    Matrix3 directors{};               ///< columns d1, d2, d3, as stated: a triad turned as the body is
     Matrix3 directors_raw{};           ///< of the motion, with its violation of rigidity
-    Vector4 quaternion{};              ///< (w, x, y, z), body to world, w >= 0
+    Vector4 quaternion{};              ///< (w, x, y, z), body to world, w >= 0; of the nearest orthonormal
+                                       ///< triad, where directors are skew
     Vector3 velocity{};                ///< of the reference point, m/s, inertial axes
     Vector3 angular_velocity{};        ///< rad/s, inertial axes
-    Vector3 angular_velocity_body{};   ///< rad/s, body axes
+    Vector3 angular_velocity_body{};   ///< rad/s, components along the directors
     Vector3 linear_momentum{};         ///< N s, inertial axes
     Vector3 angular_momentum{};        ///< N m s about the world's origin, inertial axes
 };

@@ -11,15 +11,36 @@
 
 namespace livens {
 
-namespace {
-
-/// Largest entry of |D^T D - I|.
 double skewness(const Matrix3& directors)
 {
     const Matrix3 gap = transpose(directors) * directors - identity<3>();
     double largest = 0;
     for (const double entry : gap.a) largest = std::max(largest, std::abs(entry));
     return largest;
+}
+
+namespace {
+
+constexpr double flattest = 1e-6;   // volume of a triad by the product of its lengths
+
+void check_handedness(const Matrix3& directors, const std::string& path)
+{
+    if (determinant(directors) < 0)
+        throw InputError({"directors-left-handed", path, "directors must be right-handed, d1 x d2 = d3",
+                          "d1 x d2 = -d3", "", "", "change the sign of one director, or swap two"});
+}
+
+void check_skew_directors(const Matrix3& directors, const std::string& path)
+{
+    require_finite(directors, path, "directors");
+    double product = 1;
+    for (int i = 0; i < 3; ++i) product *= norm(directors.column(i));
+    if (!(std::abs(determinant(directors)) > flattest * product))
+        throw InputError({"directors-dependent", path, "directors must not lie in one plane",
+                          "d1 x d2 . d3 = " + to_text(determinant(directors)),
+                          "above " + to_text(flattest * product) + " in size", "",
+                          "three directors span space: coordinates along them tell every point apart"});
+    check_handedness(directors, path);
 }
 
 }   // namespace
@@ -33,9 +54,7 @@ void check_directors(const Matrix3& directors, const std::string& path)
             {"directors-not-orthonormal", path, "directors must be perpendicular unit vectors",
              "largest |d_a . d_b - delta_ab| = " + to_text(gap), "<= 1e-10", "",
              "directors are the columns of a rotation matrix; a quaternion avoids the question"});
-    if (determinant(directors) < 0)
-        throw InputError({"directors-left-handed", path, "directors must be right-handed, d1 x d2 = d3",
-                          "d1 x d2 = -d3", "", "", "change the sign of one director, or swap two"});
+    check_handedness(directors, path);
 }
 
 Body rigid_body(const std::string& name, const MassProperties& properties, const Placement& placement)
@@ -53,6 +72,29 @@ Body rigid_body(const std::string& name, const MassProperties& properties, const
     body.V = rate(body.X, placement.velocity, placement.angular_velocity);
     return body;
 }
+
+/// D = R U with the polar factor R: theta along D is U theta along R, so that m becomes A m A^T with
+/// A = diag(1, U).  (docs/theory.md, "Skew directors")
+Body skew_body(const std::string& name, const Matrix4& mass, const Placement& placement)
+{
+    const std::string path = "body[" + name + "]";
+    check_skew_directors(placement.directors, path + ".directors");
+    check_mass_properties({mass(0, 0), {}, {}}, path);   // before anything is divided by it
+    if (skewness(placement.directors) <= 1e-10) return rigid_body(name, mass_properties(mass), placement);
+    Placement straight = placement;
+    straight.directors = project_directors(placement.directors);
+    const Matrix3 U = transpose(straight.directors) * placement.directors;
+    const Matrix3 stretch = 0.5 * (U + transpose(U));
+    Matrix4 A{};
+    A(0, 0) = 1;
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) A(i + 1, j + 1) = stretch(i, j);
+    Body body = rigid_body(name, mass_properties(A * mass * transpose(A)), straight);
+    body.stretch = stretch;
+    return body;
+}
+
+bool is_skew(const Body& body) { return !(body.stretch == identity<3>()); }
 
 Body point_mass(const std::string& name, double mass, const Vector3& position, const Vector3& velocity)
 {

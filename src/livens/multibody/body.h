@@ -18,6 +18,10 @@ struct Body {
     Matrix4 mass{};   ///< m (P7)
     Matrix34 X{};     ///< configuration at the start
     Matrix34 V{};     ///< dX/dt at the start
+    /// The directors as the user counts them are [d1 d2 d3] stretch: symmetric, the identity unless they are
+    /// skew (P4). X, m and all places on the body are in the orthonormal triad.
+    Matrix3 stretch = identity<3>();
+    double volume = 0;   ///< m^3; 0: nobody said
 };
 
 /// What a state is usually given by; all in world axes.
@@ -31,6 +35,13 @@ struct Placement {
 /// Throws InputError (path `body[name]`) for impossible mass properties and for directors that are not
 /// orthonormal and right-handed within 1e-10; within that they are orthonormalised.
 Body rigid_body(const std::string& name, const MassProperties& properties, const Placement& placement = {});
+/// A body by its m (P7) in the coordinates of directors that may be skew and of any length (P4); those of
+/// the body are the nearest orthonormal triad, and `stretch` tells how to get back: [Eugster et al. 2014].
+/// Throws InputError too for directors that are left-handed or (nearly) in one plane.
+Body skew_body(const std::string& name, const Matrix4& mass, const Placement& placement);
+/// |D^T D - I|, its largest entry.
+double skewness(const Matrix3& directors);
+bool is_skew(const Body& body);
 Body point_mass(const std::string& name, double mass, const Vector3& position, const Vector3& velocity = {});
 
 /// Orientations. Quaternions are (w, x, y, z), body to world.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "livens/time/time_laws.h"
 
+#include <algorithm>
 #include <cmath>
 #include <initializer_list>
 #include <numbers>
@@ -81,6 +82,33 @@ TimeFunction shifted(const TimeFunction& law, double value)
                 return p;
             },
             law.breaks()};
+}
+
+TimeFunction combination(const std::vector<double>& factors, const std::vector<TimeFunction>& laws)
+{
+    std::vector<double> breaks;
+    bool is_constant = true;
+    for (std::size_t k = 0; k < laws.size(); ++k) {
+        if (factors[k] == 0) continue;
+        is_constant = is_constant && laws[k].is_constant();
+        breaks.insert(breaks.end(), laws[k].breaks().begin(), laws[k].breaks().end());
+    }
+    const auto sum = [factors, laws](Instant at) {
+        TimeValue total;
+        for (std::size_t k = 0; k < laws.size(); ++k) {
+            if (factors[k] == 0) continue;
+            const TimeValue one = laws[k](at);
+            total.value += factors[k] * one.value;
+            total.first += factors[k] * one.first;
+            total.second += factors[k] * one.second;
+        }
+        return total;
+    };
+    if (is_constant) return sum({}).value;
+    std::ranges::sort(breaks);
+    const auto repeated = std::ranges::unique(breaks);
+    breaks.erase(repeated.begin(), repeated.end());
+    return TimeFunction(sum, std::move(breaks));
 }
 
 TimeFunction straight_on(const TimeFunction& law, double first, double last)

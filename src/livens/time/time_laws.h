@@ -23,6 +23,9 @@ TimeFunction polynomial(std::vector<double> coefficients);
 /// value + law.
 TimeFunction shifted(const TimeFunction& law, double value);
 
+/// sum_k factors[k] laws[k].
+TimeFunction combination(const std::vector<double>& factors, const std::vector<TimeFunction>& laws);
+
 /// `law` from `first` to `last`, and straight on with its slopes there before and after.
 TimeFunction straight_on(const TimeFunction& law, double first, double last);
 

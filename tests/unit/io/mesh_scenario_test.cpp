@@ -198,8 +198,25 @@ TEST_F(MeshScenario, RefusesHalfOfMSE)
                  "inertia-not-symmetric", "symmetric");
     // Less than what the mass at its centre has.
     expect_error("mass = 1\nfirst_moment = [2, 0, 0]\n" + E, "inertia-negative", "");
-    expect_error("mass = 1\n" + S + E + "directors = [[1, 0, 0], [0.5, 1, 0], [0, 0, 1]]",
-                 "directors-not-orthonormal", "");
+    // Skew directors are for these alone, and must span space.
+    const std::string skew = "directors = [[1, 0, 0], [0.5, 1, 0], [0, 0, 1]]\n";
+    expect_error("mass = 1\ninertia = [1, 1, 1]\n" + skew, "directors-not-orthonormal", "");
+    expect_error("mass = 1\n" + S + E + "directors = [[1, 0, 0], [0, 1, 0], [1, 1, 0]]",
+                 "directors-dependent", "one plane");
+    expect_error("mass = 1\n" + S + E + "directors = [[1, 0, 0], [0.5, 1, 0], [0, 0, -1]]",
+                 "directors-left-handed", "");
+    const std::string ends = "[start]\ngiven = \"nothing\"\n[end]\ngiven = \"state\"\n";
+    expect_error("mass = 1\n" + S + E + skew + "[body.end]\ndirectors = [[1, 0, 0], [0, 1, 0], [0, 0, 1]]\n" +
+                     ends,
+                 "directors-metric", "lengths and angles");
+    const ScenarioResult turned =
+        read("mass = 1\n" + S + E + skew + "[body.end]\ndirectors = [[0, 1, 0], [-1, 0.5, 0], [0, 0, 1]]\n" +
+             ends);
+    EXPECT_TRUE(turned.scenario.has_value()) << shown(turned);
+    const ScenarioResult rounded =
+        read("mass = 1\n" + S + E + "directors = [[1, 0, 0], [1e-5, 1, 0], [0, 0, 1]]");
+    EXPECT_TRUE(rounded.scenario.has_value()) << shown(rounded);
+    EXPECT_NE(find(rounded, "directors-nearly-orthonormal"), nullptr);
 }
 
 /// Forces of the first load with the body anywhere, skew directors included.

@@ -61,6 +61,21 @@ TEST(TimeLaws, GoStraightOnBeforeAndAfterATable)
     EXPECT_EQ(law({4}).second, 0);
 }
 
+TEST(TimeLaws, AddUpWithTheirBreaks)
+{
+    const TimeFunction table = linear_table({0, 1, 2}, {1, 3, 0}), wave = harmonic(2, 0.7, 0.3);
+    const TimeFunction sum = combination({2, -3, 0}, {table, wave, smooth_step(0.1, 0.3, 1)});
+    EXPECT_EQ(sum.breaks(), (std::vector<double>{0, 1, 2})) << "what is not in it has no breaks in it";
+    for (const double t : {0.2, 1.3}) {
+        const TimeValue a = table({t}), b = wave({t}), all = sum({t});
+        EXPECT_EQ(all.value, 2 * a.value - 3 * b.value);
+        EXPECT_EQ(all.first, 2 * a.first - 3 * b.first);
+        EXPECT_EQ(all.second, 2 * a.second - 3 * b.second);
+    }
+    EXPECT_TRUE(combination({2, 0}, {TimeFunction(1.5), wave}).is_constant());
+    EXPECT_EQ(combination({2, 0}, {TimeFunction(1.5), wave})({0}).value, 3);
+}
+
 TEST(TimeLaws, RefuseWhatIsNoLaw)
 {
     constexpr double nan = std::numeric_limits<double>::quiet_NaN();

@@ -47,9 +47,10 @@ struct Picture {
     void add(int body, const Surface& surface, const BodySample& s)
     {
         const int first = static_cast<int>(points.size() / 3);
+        const bool is_point = std::isnan(s.quaternion[0]);
+        const Matrix3 triad = is_point ? identity<3>() : directors_from_quaternion(s.quaternion);
         for (const Vector3& p : surface.points) {
-            const bool is_point = std::isnan(s.quaternion[0]);
-            const Vector3 arm = is_point ? p : s.directors * p;
+            const Vector3 arm = triad * p;
             const Vector3 velocity = is_point ? s.velocity : s.velocity + cross(s.angular_velocity, arm);
             for (int i = 0; i < 3; ++i) {
                 points.push_back(static_cast<float>(s.position[i] + arm[i]));

@@ -5,9 +5,11 @@
 #include <limits>
 #include <memory>
 #include <string>
+#include <utility>
 #include <variant>
 
 #include "livens/diagnostics/coordinates.h"
+#include "livens/diagnostics/rigidity.h"
 #include "livens/diagnostics/sample.h"
 #include "livens/io/results/writing.h"
 
@@ -42,7 +44,7 @@ struct BodyVariable {
 constexpr BodyVariable body_variables[] = {
     {"position", "m", "inertial", "position of the reference point", &BodySample::position},
     {"center_of_mass", "m", "inertial", "position of the centre of mass", &BodySample::center_of_mass},
-    {"directors", "1", "inertial", "directors [d1, d2, d3], projected to the nearest orthonormal triad",
+    {"directors", "1", "inertial", "directors [d1, d2, d3], the rigid triad nearest to those of the motion",
      &BodySample::directors},
     {"directors_raw", "1", "inertial",
      "directors [d1, d2, d3] of the motion, with their violation of rigidity", &BodySample::directors_raw},
@@ -122,7 +124,7 @@ class Samples {
 public:
     Samples(RunWriter& archive, const Model& model, const Run& run)
         : file_(archive.file()), model_(model), motion_(run.motion), estimate_(run.estimate),
-          of_joints_(model, run.motion), sensors_(model, run.motion)
+          of_joints_(model, run.motion), of_rigidity_(model, run.motion), sensors_(model, run.motion)
     {
         const auto first = std::ranges::lower_bound(run.output, motion_.start());
         const auto last = std::ranges::upper_bound(run.output, motion_.end());
@@ -144,6 +146,7 @@ public:
                 bodies_.push_back({archive.declare(info_of(v), NumberType::real, n * sizes[v.part.index()])});
         }
         previous_.resize(model.bodies().size(), Vector4{1, 0, 0, 0});
+        declare_rigidity(archive);
         declare_errors(archive);
         declare_coordinates(archive);
         declare_sensors(archive);
@@ -166,10 +169,11 @@ public:
         for (const double t : times_) {
             if (!bodies_.empty()) add_bodies(t);
             if (!joints_.empty()) add_joints(t);
+            if (!rigidity_.empty()) add_rigidity(t);
             add_errors(t);
             if (!coordinates_.empty()) add_coordinates(t);
             if (!readings_.empty()) append_all(readings_[0], sensors_.at(t));
-            held += 62 * model_.bodies().size() + 12 * model_.joints().size() + 6 * model_.sensors().size();
+            held += 68 * model_.bodies().size() + 12 * model_.joints().size() + 6 * model_.sensors().size();
             if (held < chunk) continue;
             flush();
             held = 0;
@@ -187,6 +191,33 @@ private:
             const std::size_t n = times_.size() * (errors.size() / n_ends);
             errors_.push_back({archive.declare(v.info, NumberType::real, n)});
             errors_at_ends_.push_back(&errors);
+        }
+    }
+
+    /// What keeps bodies rigid, and their volumes, by which it becomes a stress.
+    void declare_rigidity(RunWriter& archive)
+    {
+        std::vector<double> volumes;
+        for (const Body& body : model_.bodies())
+            volumes.push_back(body.volume > 0 ? body.volume : std::numeric_limits<double>::quiet_NaN());
+        if (volumes.empty()) return;
+        const std::size_t n = times_.size() * volumes.size() * 6;
+        archive.list({"body_volume", {"body"}, "m3", "none", "volume of the body's shape"},
+                     std::move(volumes));
+        archive.names("rigidity_row", "components of rigidity_stress", {"11", "22", "33", "12", "13", "23"});
+        const char* const meaning =
+            "multipliers of the body's rigidity along its directors: its second Piola-Kirchhoff stress, "
+            "summed up over the volume; tension is positive";
+        rigidity_.push_back({archive.declare(
+            {"rigidity_stress", {"time", "body", "rigidity_row"}, "N m", "body-fixed", meaning},
+            NumberType::real, n)});
+    }
+
+    void add_rigidity(double t)
+    {
+        for (const RigiditySample& s : of_rigidity_.at(t)) {
+            const Matrix3& m = s.right;
+            append(rigidity_[0].values, Matrix<6, 1>{m(0, 0), m(1, 1), m(2, 2), m(0, 1), m(0, 2), m(1, 2)});
         }
     }
 
@@ -264,7 +295,7 @@ private:
 
     void flush()
     {
-        for (auto* columns : {&bodies_, &joints_, &errors_, &coordinates_, &readings_})
+        for (auto* columns : {&bodies_, &rigidity_, &joints_, &errors_, &coordinates_, &readings_})
             for (Column& column : *columns) {
                 file_.append(column.variable, std::span<const double>(column.values));
                 column.values.clear();
@@ -304,8 +335,9 @@ private:
     const ErrorEstimate& estimate_;
     std::span<const double> times_;
     JointCoordinates of_joints_;
+    Rigidity of_rigidity_;
     SensorReadings sensors_;
-    std::vector<Column> bodies_, joints_, errors_, coordinates_, readings_;
+    std::vector<Column> bodies_, rigidity_, joints_, errors_, coordinates_, readings_;
     std::vector<std::string> kinds_;   // of coordinates_, in pairs of value and rate
     std::vector<const std::vector<double>*> errors_at_ends_;
     std::vector<Vector4> previous_;

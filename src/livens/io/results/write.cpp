@@ -123,7 +123,8 @@ Run make_run(const Model& model, Solution solution, const Method& method)
     for (const Body& body : model.bodies()) {
         run.body_names.push_back(body.name);
         run.body_is_point.push_back(body.is_point);
-        run.centers_of_mass.push_back(body.is_point ? Vector3{} : mass_properties(body.mass).center_of_mass);
+        run.centers_of_mass.push_back(
+            body.is_point ? Vector3{} : inverse(body.stretch) * mass_properties(body.mass).center_of_mass);
     }
     for (const Joint& joint : model.joints()) run.joint_names.push_back(joint.name);
     for (int r = 0; r < model.n_rows(); ++r)

@@ -12,6 +12,7 @@ namespace livens {
 namespace {
 
 constexpr double quaternion_slack = 1e-6;   // | |q| - 1 |: more than printed digits lose
+constexpr double symmetry_slack = 1e-12;    // of the size of a matrix: what rounding loses
 
 /// Keys of the start and of the end alike.
 std::vector<Key> pose_keys()
@@ -46,14 +47,12 @@ void check_moments(const Section& body)
         if (!body.has(key))
             body.error("", "mass-missing", body.label() + " has no '" + key + "'",
                        {"M, S and E are stated by 'mass', 'first_moment' and 'second_moment' together", ""});
-    if (const Value* E = body.find("second_moment"); E != nullptr && E->n_rows == 3)
-        for (int i = 0; i < 3; ++i)
-            for (int j = 0; j < i; ++j)
-                if (E->numbers[3 * i + j] != E->numbers[3 * j + i]) {
-                    body.error("second_moment", "inertia-not-symmetric",
-                               "'second_moment' of " + body.label() + " must be symmetric");
-                    return;
-                }
+    const Value* E = body.find("second_moment");
+    if (E == nullptr || E->n_rows != 3) return;
+    const Matrix3 m = body.columns("second_moment");
+    if (norm(m - transpose(m)) > symmetry_slack * norm(m))
+        body.error("second_moment", "inertia-not-symmetric",
+                   "'second_moment' of " + body.label() + " must be symmetric");
 }
 
 /// Mass and inertia must follow from exactly one set of keys.
@@ -119,6 +118,19 @@ Matrix3 read_symmetric(const Section& body, const char* key)
     return m;
 }
 
+Matrix4 read_moments(const Section& body)
+{
+    Matrix4 m{};
+    m(0, 0) = body.number("mass");
+    const Vector3 S = body.vector("first_moment");
+    const Matrix3 E = read_symmetric(body, "second_moment");
+    for (int i = 0; i < 3; ++i) {
+        m(0, i + 1) = m(i + 1, 0) = S[i];
+        for (int j = 0; j < 3; ++j) m(i + 1, j + 1) = 0.5 * (E(i, j) + E(j, i));
+    }
+    return m;
+}
+
 MassProperties read_mass(const Section& body, const Solid& shape)
 {
     if (only_section(body, "shape") != nullptr) {
@@ -127,17 +139,6 @@ MassProperties read_mass(const Section& body, const Solid& shape)
         return shape.has_own_origin && !body.has("center_of_mass")
                    ? all
                    : with_center(all, body.vector("center_of_mass"));
-    }
-    if (has_moments(body)) {
-        Matrix4 m{};
-        m(0, 0) = body.number("mass");
-        const Vector3 S = body.vector("first_moment");
-        const Matrix3 E = read_symmetric(body, "second_moment");
-        for (int i = 0; i < 3; ++i) {
-            m(0, i + 1) = m(i + 1, 0) = S[i];
-            for (int j = 0; j < 3; ++j) m(i + 1, j + 1) = E(i, j);
-        }
-        return mass_properties(m);
     }
     return {body.number("mass"), body.vector("center_of_mass"), read_symmetric(body, "inertia")};
 }
@@ -152,14 +153,31 @@ std::vector<NamedSurface> surfaces_in_body(const Section& body, const Solid& sha
     return surfaces;
 }
 
+/// Directors that are skew by so little were meant perpendicular, and rounded.
+void warn_of_rounded_directors(Builder& builder, const Section& body)
+{
+    if (!has_moments(body) || !body.has("directors")) return;
+    const double gap = skewness(body.columns("directors"));
+    if (gap <= 1e-10 || gap > 1e-3) return;
+    builder.findings().warning(
+        body.place("directors"), "directors-nearly-orthonormal",
+        "the directors of " + body.label() + " are perpendicular unit vectors but for " + to_text(gap, 2),
+        {"they are taken as they are, with 'first_moment' and 'second_moment' in components along them",
+         "give more digits, or a quaternion"});
+}
+
 Body build_body(const Section& section, const std::string& name, const Solid& shape)
 {
     const Placement placement = read_placement(section);
     if (is_point_mass(section))
         return point_mass(name, section.number("mass"), placement.position, placement.velocity);
-    Body body = rigid_body(name, read_mass(section, shape), placement);
-    if (section.has("director_rates"))
-        for (int i = 0; i < 3; ++i) body.V.set_column(i + 1, section.row("director_rates", i));
+    Body body = has_moments(section) ? skew_body(name, read_moments(section), placement)
+                                     : rigid_body(name, read_mass(section, shape), placement);
+    body.volume = shape.volume;
+    if (section.has("director_rates")) {
+        const Matrix3 rates = section.columns("director_rates") * inverse(body.stretch);
+        for (int i = 0; i < 3; ++i) body.V.set_column(i + 1, rates.column(i));
+    }
     return body;
 }
 
@@ -198,7 +216,9 @@ Table body_table()
          {"second_moment", types::principal_or_full,
           "E of the paper about the reference point: the integral of the density times x x^T, the matrix or "
           "its diagonal "
-          "(not the inertia, which is tr(E) I - E). Directors must be orthonormal with it, too.",
+          "(not the inertia, which is tr(E) I - E). With it `directors` may be skew and of any length: "
+          "coordinates of the body then are components along them, those of frames' axes along the nearest "
+          "perpendicular unit vectors.",
           "kg m^2"},
          Key{"director_rates", types::triple,
              "Time derivatives of the directors, [d1', d2', d3'], as they are. Rates that deform the triad "
@@ -241,12 +261,13 @@ bool check_pose(const Section& body)
     return check_orientation(body) && is_one_spin;
 }
 
-Placement read_placement(const Section& body)
+Placement read_placement(const Section& body, const Matrix3& stretch)
 {
     Placement placement;
     placement.position = body.vector("position");
     placement.velocity = body.vector("velocity");
     placement.directors = read_orientation(body);
+    if (!body.has("directors")) placement.directors = placement.directors * stretch;
     placement.angular_velocity = body.has("angular_velocity_body")
                                      ? placement.directors * body.vector("angular_velocity_body")
                                      : body.vector("angular_velocity");
@@ -269,6 +290,7 @@ void read_bodies(Builder& builder)
         body.is_usable = is_good && builder.guard(path, [&] {
             const Solid shape = read_shape(section, builder.meshes());
             body.index = builder.model().add_body(build_body(section, named->text, shape));
+            warn_of_rounded_directors(builder, section);
             builder.outlines().push_back(shape.outline);
             builder.surfaces().push_back(surfaces_in_body(section, shape));
         });

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // [start], [end] and [body.end]: what is known at the ends of time.
+#include "livens/base/text.h"
 #include "livens/io/scenario/builder.h"
 #include "livens/multibody/singular.h"
 
@@ -31,17 +32,33 @@ InputError at_the_end(const InputError& error)
     return InputError(std::move(complaint));
 }
 
+/// The orthonormal triad of directors that are those of the start, turned.
+Matrix3 straightened(const Matrix3& directors, const Matrix3& stretch, const std::string& name)
+{
+    const Matrix3 triad = directors * inverse(stretch);
+    if (skewness(triad) > 1e-10)
+        throw InputError(
+            {"directors-metric", "body[" + name + "].directors",
+             "skew directors must keep their lengths and angles",
+             "they differ by " + to_text(skewness(triad), 3) + ", relative to those stated first", "<= 1e-10",
+             "a rigid body turns, no more", "a quaternion says by how much"});
+    return triad;
+}
+
 /// X and V of a body at the end of time.
 void read_end_of(Builder& builder, const std::string& name, const Section& end, State& state)
 {
     const int index = builder.bodies()[name].index;
+    const Matrix3& stretch = builder.stretch(index);
     const bool is_point = builder.is_point(index);
     if (!check_end_of(end, is_point)) return;
     const std::string path = "body[" + name + "].end";
     builder.remember(path, end);
     builder.guard(path, [&] {
         try {
-            const Placement placement = read_placement(end);
+            Placement placement = read_placement(end, stretch);
+            if (!(stretch == identity<3>()))
+                placement.directors = straightened(placement.directors, stretch, name);
             // Masses do not matter here, so any that are possible will do.
             const Body body = is_point ? point_mass(name, 1, placement.position, placement.velocity)
                                        : rigid_body(name, {1, {}, identity<3>()}, placement);

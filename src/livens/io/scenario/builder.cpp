@@ -148,6 +148,12 @@ void Builder::close_bodies()
     length_ = length > 0 ? length : 1;
 }
 
+const Matrix3& Builder::stretch(int body) const
+{
+    static constexpr Matrix3 none = identity<3>();
+    return body == world ? none : model_.bodies()[body].stretch;
+}
+
 const Matrix34& Builder::start_configuration(int body) const
 {
     return body == world ? world_configuration : model_.bodies()[body].X;

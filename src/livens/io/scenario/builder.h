@@ -64,6 +64,10 @@ public:
 
     /// X of a body at the start, or of the world.
     const Matrix34& start_configuration(int body) const;
+    /// From components along a body's directors, as its coordinates are stated, to those of its orthonormal
+    /// triad.
+    const Matrix3& stretch(int body) const;
+    Vector3 in_axes(int body, const Vector3& components) const { return stretch(body) * components; }
     /// What violations of joints are measured by: the model's length; 1 m for a model without extent.
     double length() const { return length_; }
     std::string body_name(int body) const { return model_.body_name(body); }
@@ -144,7 +148,8 @@ Matrix3 read_orientation(const Section& section);
 // Position, orientation and velocities of a body, at the start ([[body]]) or at the end ([body.end]).
 bool check_pose(const Section& body);
 /// Throws InputError. Of `director_rates` it knows nothing.
-Placement read_placement(const Section& body);
+/// `stretch`: of a body whose orientation may be told by others than its directors.
+Placement read_placement(const Section& body, const Matrix3& stretch = identity<3>());
 
 // The parts of the reader. Each reports all it finds.
 void read_bodies(Builder& builder);

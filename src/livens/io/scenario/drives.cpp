@@ -178,7 +178,8 @@ Joint make_drive(Builder& builder, const Section& drive, const std::string& name
     const std::string type = drive.text("type");
     if (type == "joint") return make_on_joint(builder, drive, name, during, X);
     if (type == "distance") {
-        const Vector3 a = drive.row("points", 0), b = drive.row("points", 1);
+        const Vector3 a = builder.in_axes(first.index, drive.row("points", 0)),
+                      b = builder.in_axes(second.index, drive.row("points", 1));
         const double now = norm(X[second.index] * point(b) - X[first.index] * point(a));
         const TimeFunction length = read_law(drive, 0, 1, now, during);
         const double end = during.end;
@@ -193,7 +194,7 @@ Joint make_drive(Builder& builder, const Section& drive, const std::string& name
         }
         return driven_distance(name, first.index, a, second.index, b, length, X);
     }
-    const Vector3 at = drive.vector("point");
+    const Vector3 at = builder.in_axes(first.index, drive.vector("point"));
     const auto make = type == "point" ? driven_point : driven_body;
     return make(name, first.index, at, read_path(drive, during), X, builder.length());
 }

@@ -78,9 +78,11 @@ Joint make_slot(const JointParts& p)
 {
     const Section& curve = *only_section(p.section, "curve");
     std::vector<Vector3> places;
-    for (int i = 0; i < curve.find("points")->n_rows; ++i) places.push_back(curve.row("points", i));
+    for (int i = 0; i < curve.find("points")->n_rows; ++i)
+        places.push_back(p.stretch_first * curve.row("points", i));
     return slot(p.name, p.first, p.second, spline_curve(places, curve.truth("closed")),
-                p.frame.point_second + p.section.vector("point"), p.X_first, p.X_second, p.scale);
+                p.frame.point_second + p.stretch_second * p.section.vector("point"), p.X_first, p.X_second,
+                p.scale);
 }
 
 /// What turns about one axis, slides along it, or neither.

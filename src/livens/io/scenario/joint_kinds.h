@@ -34,6 +34,8 @@ struct JointParts {
     double scale;
     const Joint *one = nullptr, *other = nullptr;   ///< of a coupling
     std::vector<Matrix34> X = {};                   ///< of all bodies, for a coupling
+    /// From coordinates of the bodies as stated to their axes.
+    Matrix3 stretch_first = identity<3>(), stretch_second = identity<3>();
 
     double distance() const
     {

@@ -122,14 +122,17 @@ bool check_point_masses(const Builder& builder, const Section& joint, int first,
     return true;
 }
 
-JointFrame read_frame(const Section& joint, const Matrix34& X_first, const Matrix34& X_second)
+/// What is stated in coordinates of a body is in its axes then.
+JointFrame read_frame(const Builder& builder, const Section& joint, int first, int second)
 {
+    const Matrix34 &X_first = builder.start_configuration(first),
+                   &X_second = builder.start_configuration(second);
     JointFrame frame;
     const std::span<const Section> frames = joint.sections("frames");
     if (frames.size() == 2) {
         const Matrix3 a = read_orientation(frames[0]), b = read_orientation(frames[1]);
-        return {frames[0].vector("point"),
-                frames[1].vector("point"),
+        return {builder.in_axes(first, frames[0].vector("point")),
+                builder.in_axes(second, frames[1].vector("point")),
                 a.column(2),
                 b.column(2),
                 a.column(0),
@@ -141,18 +144,18 @@ JointFrame read_frame(const Section& joint, const Matrix34& X_first, const Matri
         frame = joint_frame(X_first, X_second, place, joint.vector("axis"));
     else if (joint.has("at"))
         frame = joint_frame(X_first, X_second, place);
-    if (joint.has("axis") && !is_in_world) frame.axis_first = joint.vector("axis");
-    if (!joint.has("at")) {
-        frame.point_first = joint.row("points", 0);   // zero without points: the reference points
-        frame.point_second = joint.row("points", 1);
+    if (joint.has("axis") && !is_in_world) frame.axis_first = builder.in_axes(first, joint.vector("axis"));
+    if (!joint.has("at")) {   // zero without points: the reference points
+        frame.point_first = builder.in_axes(first, joint.row("points", 0));
+        frame.point_second = builder.in_axes(second, joint.row("points", 1));
     }
     if (!joint.has("axes")) return frame;
-    frame.axis_first = joint.row("axes", 0);
-    frame.axis_second = joint.row("axes", 1);
-    if (joint.has("at")) {   // directions of the world
-        frame.axis_first = joint_frame(X_first, X_second, place, frame.axis_first).axis_first;
-        frame.axis_second = joint_frame(X_first, X_second, place, frame.axis_second).axis_second;
-    }
+    const Vector3 a = joint.row("axes", 0), b = joint.row("axes", 1);
+    const bool are_in_world = joint.has("at");
+    frame.axis_first =
+        are_in_world ? joint_frame(X_first, X_second, place, a).axis_first : builder.in_axes(first, a);
+    frame.axis_second =
+        are_in_world ? joint_frame(X_first, X_second, place, b).axis_second : builder.in_axes(second, b);
     return frame;
 }
 
@@ -185,10 +188,12 @@ Joint make_joint(Builder& builder, const Section& joint, const std::string& name
 {
     const Matrix34 &X_first = builder.start_configuration(first),
                    &X_second = builder.start_configuration(second);
-    const JointFrame frame = read_frame(joint, X_first, X_second);
+    const JointFrame frame = read_frame(builder, joint, first, second);
     const auto make = [&](const JointFrame& at) {
-        return joint_kinds()[static_cast<std::size_t>(joint.kind())].make(
-            {joint, name, first, second, at, X_first, X_second, builder.length()});
+        JointParts parts{joint, name, first, second, at, X_first, X_second, builder.length()};
+        parts.stretch_first = builder.stretch(first);
+        parts.stretch_second = builder.stretch(second);
+        return joint_kinds()[static_cast<std::size_t>(joint.kind())].make(parts);
     };
     Joint made = is_fitted(builder.top()) ? fitted(builder, joint, make, frame) : make(frame);
     read_times(builder, joint, made);

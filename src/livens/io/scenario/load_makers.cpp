@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "livens/multibody/surface_loads.h"
+#include "livens/time/time_laws.h"
 
 namespace livens {
 
@@ -104,6 +105,19 @@ Load by_formula(const LoadSources& p, const std::string& type, const std::string
     return modulated(p.name, type, parts, places(p.builder));
 }
 
+Vector3 point_of(const LoadSources& p) { return p.builder.in_axes(p.first, p.section.vector("point")); }
+
+/// Of components along the directors those along the body's axes.
+TimeVector in_axes(const LoadSources& p, const TimeVector& value)
+{
+    const Matrix3& U = p.builder.stretch(p.first);
+    if (U == identity<3>() || p.section.pick<Frame>("frame") != Frame::body_fixed) return value;
+    const auto along = [&](int i) {
+        return combination({U(i, 0), U(i, 1), U(i, 2)}, {value[0], value[1], value[2]});
+    };
+    return {along(0), along(1), along(2)};
+}
+
 /// A force or torque: by time alone, or by a formula over units along the axes.
 template <class Make>
 Load on_body(const LoadSources& p, const Make& make)
@@ -111,13 +125,13 @@ Load on_body(const LoadSources& p, const Make& make)
     const Inputs inputs = read_inputs(p.builder, p.section, p.path());
     if (inputs.reads.empty()) {
         const std::vector<TimeFunction> value = read_values(p, 3);
-        return make(TimeVector{value[0], value[1], value[2]});
+        return make(in_axes(p, {value[0], value[1], value[2]}));
     }
     std::vector<Load> units;
     for (std::size_t k = 0; k < 3; ++k) {
         TimeVector unit{0.0, 0.0, 0.0};
         unit[k] = 1.0;
-        units.push_back(make(unit));
+        units.push_back(make(in_axes(p, unit)));
     }
     const std::string type = units[0].type, unit = units[0].readings[0].unit;
     return by_formula(p, type, unit, std::move(units), inputs);
@@ -154,28 +168,6 @@ SpringLaw read_law(const Section& load)
     const Section& table = *only_section(load, "table");
     return tabulated_spring(table.find("elongations")->numbers, table.find("forces")->numbers,
                             table.text("interpolation") == "spline");
-}
-
-Matrix<6, 6> read_matrix(const Section& load, std::string_view key)
-{
-    Matrix<6, 6> matrix{};
-    const Value* v = load.find(key);
-    for (int i = 0; v != nullptr && i < 6; ++i)
-        for (int j = 0; j < 6; ++j)
-            if (v->numbers.size() == 36)
-                matrix(i, j) = v->numbers[6 * i + j];
-            else if (i == j)
-                matrix(i, j) = v->numbers[i];
-    return matrix;
-}
-
-/// At a point of the world with its axes, or by frames.
-BodyFrame read_bushing_frame(const LoadSources& p, std::size_t i)
-{
-    const std::span<const Section> frames = p.section.sections("frames");
-    if (frames.size() == 2) return {frames[i].vector("point"), read_orientation(frames[i])};
-    const Matrix34& X = p.builder.start_configuration(i == 0 ? p.first : p.second);
-    return {transpose(directors(X)) * (p.section.vector("at") - X.column(0)), transpose(directors(X))};
 }
 
 }   // namespace
@@ -251,30 +243,10 @@ bool check_drag(const Section& load)
                       {"", "give at least one of them"});
 }
 
-bool check_bushing(const Section& load)
-{
-    if (!load.at_most_one({"at", "frames"}, "joint-placement")) return false;
-    if (!load.has("at") && !load.has("frames"))
-        return load.error("", "joint-placement", load.label() + " lacks its place",
-                          {"", "give 'at', its point in the world at the start, or 'frames'"});
-    bool is_good = check_frames(load);
-    for (const std::string_view key : {"stiffness", "damping", "preload"}) {
-        const Value* v = load.find(key);
-        const std::size_t n = v == nullptr ? 6 : v->numbers.size();
-        if (n == 6 || (n == 36 && key != "preload")) continue;
-        is_good = load.error(key, "bushing-matrix",
-                             "'" + std::string(key) + "' of " + load.label() + " has " + std::to_string(n) +
-                                 " numbers",
-                             {"", key == "preload" ? "give six: forces, then torques"
-                                                   : "give six, of a diagonal matrix, or 36, row by row"});
-    }
-    return is_good;
-}
-
 Load make_force(const LoadSources& p)
 {
     return on_body(p, [&](const TimeVector& value) {
-        return point_force(p.name, p.first, p.section.vector("point"), value, p.section.pick<Frame>("frame"));
+        return point_force(p.name, p.first, point_of(p), value, p.section.pick<Frame>("frame"));
     });
 }
 
@@ -367,30 +339,21 @@ Load make_spring(const LoadSources& p)
     check_units(s, false, p.path());
     const SpringDamper law{s.number("stiffness"), s.number("damping"), s.number("free_length"),
                            s.number("preload"), read_law(s)};
-    return spring_damper(p.name, p.first, s.row("points", 0), p.second, s.row("points", 1), law);
-}
-
-Load make_bushing(const LoadSources& p)
-{
-    Bushing law{read_matrix(p.section, "stiffness"), read_matrix(p.section, "damping"), {}};
-    if (const Value* v = p.section.find("preload"))
-        for (int i = 0; i < 6; ++i) law.preload[i] = v->numbers[i];
-    return bushing(p.name, p.first, read_bushing_frame(p, 0), p.second, read_bushing_frame(p, 1), law,
-                   places(p.builder));
+    return spring_damper(p.name, p.first, p.builder.in_axes(p.first, s.row("points", 0)), p.second,
+                         p.builder.in_axes(p.second, s.row("points", 1)), law);
 }
 
 Load make_drag(const LoadSources& p)
 {
     const Section& s = p.section;
-    return drag(p.name, p.first, s.vector("point"),
-                {s.number("linear"), s.number("quadratic"), s.vector("medium")}, places(p.builder));
+    return drag(p.name, p.first, point_of(p), {s.number("linear"), s.number("quadratic"), s.vector("medium")},
+                places(p.builder));
 }
 
 Load make_attraction(const LoadSources& p)
 {
     return attraction(p.name, p.first, p.builder.model().bodies()[p.first],
-                      {p.section.vector("point"), p.section.number("mu"), p.section.truth("gradient")},
-                      places(p.builder));
+                      {point_of(p), p.section.number("mu"), p.section.truth("gradient")}, places(p.builder));
 }
 
 }   // namespace livens

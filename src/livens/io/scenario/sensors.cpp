@@ -23,13 +23,13 @@ struct SensorKind : Kind {
 
 Sensor make_point(const SensorSources& s)
 {
-    return point_sensor(s.name, s.first, s.section.vector("point"), s.X);
+    return point_sensor(s.name, s.first, s.builder.in_axes(s.first, s.section.vector("point")), s.X);
 }
 
 Sensor make_relative(const SensorSources& s)
 {
-    return relative_sensor(s.name, s.first, s.section.row("points", 0), s.second, s.section.row("points", 1),
-                           s.X);
+    return relative_sensor(s.name, s.first, s.builder.in_axes(s.first, s.section.row("points", 0)), s.second,
+                           s.builder.in_axes(s.second, s.section.row("points", 1)), s.X);
 }
 
 /// An item of a list by the name that a key says. Throws InputError.

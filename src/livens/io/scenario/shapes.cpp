@@ -134,6 +134,7 @@ Solid read_union(const Section& shape, double density, MeshStore& meshes)
         const Matrix3 axes = read_orientation(section);
         parts.push_back(moved(part.moments, axes, section.vector("position")));
         densities.push_back(section.number("density"));
+        solid.volume += std::copysign(parts.back().volume, densities.back());
         if (densities.back() < 0) continue;   // a picture cannot take away, and a hole has another surface
         add_surfaces(solid.surfaces, part, axes, section.vector("position"));
         part.outline.axes = axes;
@@ -259,12 +260,13 @@ Solid read_shape(const Section& body, MeshStore& meshes)
         const Key& key = *kind_of(*shape);
         if (key.name == "parts") return read_union(*shape, density, meshes);
         if (const Primitive* p = find_primitive(key.name))
-            return {p->make(density, *shape), false, p->outline(*shape), {}};
+            return {p->make(density, *shape), false, p->outline(*shape), {}, p->make(1, *shape).mass};
         const ReducedMesh& mesh = meshes.find(shape->text("mesh"), shape->has("turn"));
         const double unit = unit_of(*shape);
         const MassProperties properties = shape->has("densities") ? solid(1, weighted(*shape, mesh, unit))
                                                                   : solid(density, scaled(mesh.whole, unit));
-        return {properties, true, outline_of(mesh, unit), surfaces_of(mesh, unit)};
+        return {properties, true, outline_of(mesh, unit), surfaces_of(mesh, unit),
+                scaled(mesh.whole, unit).volume};
     } catch (const InputError& error) {
         Complaint complaint = error.complaint();
         if (complaint.path.empty()) complaint.path = "body.shape";

@@ -13,6 +13,7 @@ struct Solid {
     bool has_own_origin = false;   ///< its centre of mass is where it lies, not at the origin
     Outline outline;
     std::vector<NamedSurface> surfaces;   ///< of meshes, in the coordinates of the shape
+    double volume = 0;                    ///< m^3
 };
 
 Table shape_table();
