@@ -410,11 +410,27 @@ livens_mutant(NAME contacts_of_neighbours
 
 # Faces round a point that fold back are taken for neighbours that lie side by side.
 livens_mutant(NAME contacts_of_fans
-              FILE geometry/contacts.cpp
-              OLD [[return state_[point] == 1;]]
-              NEW [[return state_[point] < 3;]]
+              FILE geometry/rings.cpp
+              OLD [[if (bits == 0 && goes_round_once(axis)) bits = 64;]]
+              NEW [[if (bits == 0) bits = 64;]]
               TESTS_OF unit_geometry
               MUST_FAIL Soundness.NamesWhereASurfaceMeetsItself)
+
+# A sheet that leaves the box above or below, and may come back, is taken for one that stays.
+livens_mutant(NAME contacts_beyond_the_box
+              FILE geometry/sheets.cpp
+              OLD [[if (any(met & bad)) return false;]]
+              NEW [[if (any(met & bad) && n_above_ > 1) return false;]]
+              TESTS_OF unit_geometry
+              MUST_FAIL Contacts.OfSurfacesWithASpikeAreThoseOfAllPairs)
+
+# Several sheets over one place are taken for one: they may cross.
+livens_mutant(NAME contacts_of_two_sheets
+              FILE geometry/sheets.cpp
+              OLD [[return go(1) && n_above_ == 1;]]
+              NEW [[return go(1);]]
+              TESTS_OF unit_geometry
+              MUST_FAIL Contacts.OfSheetsThatLieCloseAreWhereADomeComesThrough)
 
 # A pressure that pulls.
 livens_mutant(NAME pressure_sign

@@ -3,126 +3,31 @@
 // then separating directions.
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <utility>
 
+#include "livens/geometry/detail/box_tree.h"
 #include "livens/geometry/detail/facets.h"
+#include "livens/geometry/detail/workers.h"
 
 namespace livens {
 
 namespace {
 
-constexpr int leaf = 8;                     // triangles
 constexpr double touch = 1e-13;             // gaps below it, relative to the pair's size, are none
+constexpr std::size_t few_leaves = 1024;    // below it threads are not worth their while
 constexpr std::int64_t most_pairs = 3000;   // looked at a triangle: more are no surface of a part
-
-/// Three numbers of 20 bits each, with a bit between them that is free.
-using Packed = std::uint64_t;
-constexpr int lane = 21;
-constexpr Packed lane_mask = (Packed{1} << 20) - 1;
-constexpr Packed guards = Packed{1} << 20 | Packed{1} << 41 | Packed{1} << 62;
-constexpr Packed ones = Packed{1} | Packed{1} << 21 | Packed{1} << 42;
-
-/// Free bits of the numbers of a that are not below those of b.
-Packed not_below(Packed a, Packed b) { return ((a | guards) - b) & guards; }
-/// Those of a where the free bit is set, else those of b.
-Packed select(Packed free_bits, Packed a, Packed b)
-{
-    const Packed mask = free_bits - (free_bits >> 20);
-    return (a & mask) | (b & ~mask);
-}
-
-/// In units of a millionth of the surface's size.
-struct Box {
-    Packed low, high;
-
-    bool meets(const Box& other) const
-    {
-        return (not_below(other.high, low) & not_below(high, other.low)) == guards;
-    }
-    void add(const Box& other)
-    {
-        low = select(not_below(low, other.low), other.low, low);
-        high = select(not_below(high, other.high), high, other.high);
-    }
-};
-
-struct Triangle {
-    std::array<std::int32_t, 3> corners;
-    std::int32_t face;
-};
-
-/// At which points the triangles are known to lie beside each other like the slices of a cake: seen along
-/// one direction all turn the same way, and go round once. Then those that share such a point have nothing
-/// else in common. The others are looked at pair by pair.
-class Fans {
-public:
-    Fans(const std::vector<Vector3>& points, const std::vector<Triangle>& triangles)
-        : points_(points), axes_(points.size()), state_(points.size(), 0)
-    {
-        for (const Triangle& t : triangles) {
-            const Vector3& p = points[t.corners[0]];
-            const Vector3 n = cross(points[t.corners[1]] - p, points[t.corners[2]] - p);
-            for (const std::int32_t c : t.corners) axes_[c] += n;
-        }
-        for (const Triangle& t : triangles) {
-            const Vector3& p = points[t.corners[0]];
-            const Vector3 n = cross(points[t.corners[1]] - p, points[t.corners[2]] - p);
-            for (int i = 0; i < 3; ++i)
-                add(t.corners[i], n, points[t.corners[(i + 1) % 3]], points[t.corners[(i + 2) % 3]]);
-        }
-    }
-
-    bool is_known(std::int32_t point) const { return state_[point] == 1; }
-
-private:
-    static constexpr std::uint8_t unknown = 2;   // and beyond: more than once round
-
-    /// A triangle with the normal n (not of unit length), from the edge to a to the edge to b.
-    void add(std::int32_t at, const Vector3& n, const Vector3& a, const Vector3& b)
-    {
-        std::uint8_t& state = state_[at];
-        if (state >= unknown) return;
-        const Vector3& axis = axes_[at];
-        const Vector3 u = a - points_[at], v = b - points_[at];
-        const double turn = dot(n, axis), nn = dot(n, n);
-        // More than 3 degrees from being seen edgewise, and no needle: far from where rounding decides.
-        const bool is_clear =
-            turn > 0 && turn * turn > 2.5e-3 * nn * dot(axis, axis) && nn > 1e-10 * dot(u, u) * dot(v, v);
-        if (!is_clear) {
-            state = unknown;
-            return;
-        }
-        // All go round once if one of them passes the half-line with y = 0 < x in axes across.
-        const bool is_steep = std::abs(axis[2]) > std::abs(axis[0]);
-        const double y_u = is_steep ? axis[2] * u[1] - axis[1] * u[2] : axis[0] * u[1] - axis[1] * u[0];
-        const double y_v = is_steep ? axis[2] * v[1] - axis[1] * v[2] : axis[0] * v[1] - axis[1] * v[0];
-        if (y_u <= 0 && y_v > 0) ++state;
-    }
-
-    const std::vector<Vector3>& points_;
-    std::vector<Vector3> axes_;
-    std::vector<std::uint8_t> state_;   ///< how often round, or unknown
-};
-
-/// Every third bit.
-std::uint32_t spread(std::uint32_t x)
-{
-    x = (x | (x << 16)) & 0x030000ff;
-    x = (x | (x << 8)) & 0x0300f00f;
-    x = (x | (x << 4)) & 0x030c30c3;
-    return (x | (x << 2)) & 0x09249249;
-}
 
 /// Whether two triangles have nothing in common but the corners that both have. Projections onto a direction
 /// are of corners relative to the first one of `a`; `shared` are the leading corners of both that are the
 /// same points.
 class Pair {
 public:
-    Pair(const std::vector<Vector3>& points, const Triangle& a, const Triangle& b)
+    Pair(const std::vector<Vector3>& points, Four a, Four b)
     {
-        std::array<std::int32_t, 3> of_a = a.corners, of_b = b.corners;
+        std::array<std::int32_t, 3> of_a{a[0], a[1], a[2]}, of_b{b[0], b[1], b[2]};
         for (int i = 0; i < 3; ++i)
             for (int j = n_shared_; j < 3; ++j)
                 if (of_a[i] == of_b[j] && i >= n_shared_) {
@@ -182,185 +87,117 @@ private:
     double size_ = 0;   ///< squared: of the largest distance from the first corner of a
 };
 
+/// The pairs of boxes of one level of a tree that meet, or one with itself: what is looked at in one go.
+struct Task {
+    std::size_t k, l;
+    std::int64_t n_pairs = 0;   ///< looked at
+    std::pair<std::int32_t, std::int32_t> found{-1, -1};
+};
+
 class Contacts {
 public:
-    explicit Contacts(const Facets& f) : Contacts(f, triangles_of(f)) {}
+    Contacts(const Facets& f, const Triangles& triangles, const Rings& rings)
+        : points_(f.mesh->points), directions_(rings.directions), tree_(points_, triangles, rings),
+          most_(1'000'000 + most_pairs * static_cast<std::int64_t>(triangles.corners.size() / 3))
+    {
+        tree_.leave_out(lone_sheets(tree_, points_));
+    }
 
     /// The first pair that touches; {-1, -1} if there is none, {0, 0} if there are too many to look at.
     std::pair<std::int32_t, std::int32_t> find()
     {
-        left_ = 1'000'000 + most_pairs * static_cast<std::int64_t>(triangles_.size());
-        inside(1);
-        return found_;
+        std::vector<Task> tasks;
+        divide(tasks, 1, 1, tree_.n_leaves < few_leaves ? 0 : 6);
+        std::atomic<int> last = static_cast<int>(tasks.size());   // with something found
+        in_parallel(static_cast<int>(tasks.size()), [&](int i) {
+            if (i > last) return;
+            Task& task = tasks[i];
+            go(task, task.k, task.l);
+            if (!is_done(task)) return;
+            for (int known = last; i < known && !last.compare_exchange_weak(known, i);) {
+            }
+        });
+        std::int64_t n = 0;   // in the order of tasks, whoever did them
+        for (const Task& task : tasks) {
+            n += task.n_pairs;
+            if (n > most_) return {0, 0};
+            if (task.found.first >= 0) return task.found;
+        }
+        return {-1, -1};
     }
 
 private:
-    Contacts(const Facets& f, const std::vector<Triangle>& triangles)
-        : points_(f.mesh->points), fans_(f.mesh->points, triangles)
+    /// The nodes of one level that meet, in the order in which one thread alone would look at them.
+    void divide(std::vector<Task>& tasks, std::size_t k, std::size_t l, int levels)
     {
-        sort(triangles);
-        make_tree();
+        if (levels == 0 || k >= tree_.n_leaves)
+            tasks.push_back({k, l});
+        else if (k == l) {
+            divide(tasks, 2 * k, 2 * k, levels - 1);
+            divide(tasks, 2 * k + 1, 2 * k + 1, levels - 1);
+            if (tree_.boxes[2 * k].meets(tree_.boxes[2 * k + 1])) divide(tasks, 2 * k, 2 * k + 1, levels - 1);
+        } else
+            for (const std::size_t i : {2 * k, 2 * k + 1})
+                for (const std::size_t j : {2 * l, 2 * l + 1})
+                    if (tree_.boxes[i].meets(tree_.boxes[j])) divide(tasks, i, j, levels - 1);
     }
 
-    static std::vector<Triangle> triangles_of(const Facets& f)
-    {
-        std::vector<Triangle> triangles;
-        triangles.reserve(f.n_faces());
-        for (std::int32_t face = 0; face < f.n_faces(); ++face)
-            for (std::int32_t h = f.begins[face] + 1; h + 1 < f.begins[face + 1]; ++h)
-                triangles.push_back({{f.corners[f.begins[face]], f.corners[h], f.corners[h + 1]}, face});
-        return triangles;
-    }
+    bool is_done(const Task& task) const { return task.found.first >= 0 || task.n_pairs > most_; }
 
-    /// Every coordinate is rounded down in the same way, so that what meets still does; a box is one unit
-    /// larger above, for gaps that are as good as none.
-    std::vector<Packed> pack(const std::vector<Triangle>& triangles) const
+    void go(Task& task, std::size_t k, std::size_t l) const   // that meet, of one level
     {
-        Vector3 low = points_[triangles[0].corners[0]], high = low;
-        for (const Triangle& t : triangles)
-            for (const std::int32_t c : t.corners)
-                for (int i = 0; i < 3; ++i) {
-                    low[i] = std::min(low[i], points_[c][i]);
-                    high[i] = std::max(high[i], points_[c][i]);
-                }
-        const Vector3 half = 0.5 * high - 0.5 * low;
-        constexpr double most = lane_mask - 2;   // what is nothing meets nothing
-        const double units = most / std::max({half[0], half[1], half[2]}),
-                     scale = std::isfinite(units) ? units : 0;
-        std::vector<Packed> packed(points_.size());
-        for (std::size_t k = 0; k < packed.size(); ++k)
-            for (int i = 0; i < 3; ++i) {   // points of no triangle may lie outside
-                const double x = std::clamp((0.5 * points_[k][i] - 0.5 * low[i]) * scale, 0., most);
-                packed[k] |= static_cast<Packed>(x) << (lane * i);
-            }
-        return packed;
-    }
-
-    /// Along a curve that fills space [Morton 1966].
-    void sort(const std::vector<Triangle>& triangles)
-    {
-        const std::vector<Packed> packed = pack(triangles);
-        const std::size_t n = triangles.size();
-        const auto box_of = [&](const Triangle& t) {
-            Box box{packed[t.corners[0]], packed[t.corners[0]]};
-            for (int i = 1; i < 3; ++i) box.add({packed[t.corners[i]], packed[t.corners[i]]});
-            return Box{box.low, box.high + ones};
-        };
-        std::vector<std::uint64_t> order(n), other(n);   // place on the curve, number of the triangle
-        std::array<std::array<std::uint32_t, 1024>, 3> begins{};
-        for (std::size_t k = 0; k < n; ++k) {
-            const Box box = box_of(triangles[k]);
-            const Packed twice = box.low + (box.high - ones);
-            std::uint64_t code = 0;
-            for (int i = 0; i < 3; ++i)
-                code |= spread(static_cast<std::uint32_t>(twice >> (lane * i + 11)) & 1023) << i;
-            order[k] = code << 32 | k;
-            for (int pass = 0; pass < 3; ++pass) ++begins[pass][code >> (10 * pass) & 1023];
+        if (is_done(task) || !tree_.boxes[k].meets(tree_.boxes[k])) return;   // nothing meets nothing
+        if (k >= tree_.n_leaves) return look(task, k - tree_.n_leaves, l - tree_.n_leaves);
+        if (k == l) {
+            go(task, 2 * k, 2 * k);
+            go(task, 2 * k + 1, 2 * k + 1);
+            if (tree_.boxes[2 * k].meets(tree_.boxes[2 * k + 1])) go(task, 2 * k, 2 * k + 1);
+            return;
         }
-        for (int pass = 0; pass < 3; ++pass) {   // by digits, the lowest first
-            std::uint32_t begin = 0;
-            for (std::uint32_t& count : begins[pass]) begin += std::exchange(count, begin);
-            for (const std::uint64_t item : order)
-                other[begins[pass][item >> (32 + 10 * pass) & 1023]++] = item;
-            order.swap(other);
-        }
-        triangles_.reserve(n);
-        boxes_.reserve(n);
-        for (const std::uint64_t item : order) {
-            triangles_.push_back(triangles[item & 0xffffffff]);
-            boxes_.push_back(box_of(triangles_.back()));
-        }
-    }
-
-    /// A full binary tree in one array: node k has the nodes 2 k and 2 k + 1, leaves are the last level.
-    void make_tree()
-    {
-        const std::size_t n_triangles = boxes_.size(), n = (n_triangles + leaf - 1) / leaf;
-        n_leaves_ = 1;
-        while (n_leaves_ < n) n_leaves_ *= 2;
-        constexpr Box nothing{lane_mask * ones, 0};
-        tree_.assign(2 * n_leaves_, nothing);
-        boxes_.resize(n_leaves_ * leaf, nothing);
-        for (std::size_t k = 0; k < n_triangles; ++k) tree_[n_leaves_ + k / leaf].add(boxes_[k]);
-        for (std::size_t k = n_leaves_; k-- > 1;) {
-            tree_[k] = tree_[2 * k];
-            tree_[k].add(tree_[2 * k + 1]);
-        }
-    }
-
-    bool is_done() const { return found_.first >= 0; }
-
-    void inside(std::size_t k)
-    {
-        if (is_done()) return;
-        if (k >= n_leaves_) return look(k, k);
-        inside(2 * k);
-        inside(2 * k + 1);
-        if (tree_[2 * k].meets(tree_[2 * k + 1])) between(2 * k, 2 * k + 1);
-    }
-
-    void between(std::size_t k, std::size_t l)   // that meet, of one level
-    {
-        if (is_done()) return;
-        if (--left_ < 0) found_ = {0, 0};
-        if (k >= n_leaves_) return look(k, l);
+        ++task.n_pairs;
         for (const std::size_t i : {2 * k, 2 * k + 1}) {
-            if (!tree_[i].meets(tree_[l])) continue;
+            if (!tree_.boxes[i].meets(tree_.boxes[l])) continue;
             for (const std::size_t j : {2 * l, 2 * l + 1})
-                if (tree_[i].meets(tree_[j])) between(i, j);
+                if (tree_.boxes[i].meets(tree_.boxes[j])) go(task, i, j);
         }
     }
 
-    /// Which boxes of a leaf meet one: bits. Without branches, as none of them can be foreseen.
-    unsigned met(const Box& box, std::size_t first) const
+    void look(Task& task, std::size_t k, std::size_t l) const
     {
-        unsigned bits = 0;
-        for (int j = 0; j < leaf; ++j) bits |= static_cast<unsigned>(box.meets(boxes_[first + j])) << j;
-        return bits;
-    }
-
-    void look(std::size_t k, std::size_t l)
-    {
-        const std::size_t first = leaf * (k - n_leaves_), other = leaf * (l - n_leaves_);
-        for (unsigned rows = met(tree_[l], first); rows != 0; rows &= rows - 1) {
-            const std::size_t i = first + std::countr_zero(rows);
-            unsigned met = this->met(boxes_[i], other);
-            if (k == l) met &= ~1u << (i - other);
+        const Leaf& others = tree_.leaves[l];
+        unsigned rows = k == l ? 255 : tree_.leaves[k].met(CoarseBox(tree_.boxes[tree_.n_leaves + l]));
+        for (; rows != 0; rows &= rows - 1) {
+            const int i = std::countr_zero(rows);
+            unsigned met = others.met(tree_.leaves[k].box(i));
+            if (k == l) met &= ~1u << i;
             if (met == 0) continue;
-            std::array<std::int32_t, 3> known = triangles_[i].corners;
-            for (std::int32_t& c : known)
-                if (!fans_.is_known(c)) c = -1;
-            for (; met != 0 && !is_done(); met &= met - 1) {
-                if (--left_ < 0) found_ = {0, 0};
-                look_at(triangles_[i], known, triangles_[other + std::countr_zero(met)]);
+            const Four a = tree_.triangle(Leaf::n * k + i);
+            std::array<Four, 3> known;   // corners that nothing else need be asked about, and the face
+            for (int c = 0; c < 3; ++c) {
+                const std::int32_t at = a[c] >= 0 && directions_[a[c]] != 0 ? a[c] : -1;
+                known[c] = Four{at, at, at, a[3]};
+            }
+            for (; met != 0 && !is_done(task); met &= met - 1) {
+                ++task.n_pairs;
+                const Four b = tree_.triangle(Leaf::n * l + std::countr_zero(met));
+                if (any((b == known[0]) | (b == known[1]) | (b == known[2]))) continue;
+                if (!Pair(points_, a, b).is_apart()) task.found = std::minmax(a[3], b[3]);
             }
         }
-    }
-
-    /// `known`: corners of a that nothing else need be asked about.
-    void look_at(const Triangle& a, const std::array<std::int32_t, 3>& known, const Triangle& b)
-    {
-        bool shares = false;
-        for (const std::int32_t c : known)
-            for (const std::int32_t d : b.corners) shares |= c == d;
-        if (!shares && a.face != b.face && !Pair(points_, a, b).is_apart())
-            found_ = std::minmax(a.face, b.face);
     }
 
     const std::vector<Vector3>& points_;
-    Fans fans_;
-    std::vector<Triangle> triangles_;
-    std::vector<Box> boxes_, tree_;
-    std::size_t n_leaves_ = 1;
-    std::int64_t left_ = 0;
-    std::pair<std::int32_t, std::int32_t> found_{-1, -1};
+    const std::vector<std::uint8_t>& directions_;
+    BoxTree tree_;
+    std::int64_t most_;
 };
 
 }   // namespace
 
-void check_contacts(const Facets& f, std::vector<Complaint>& faults)
+void check_contacts(const Facets& f, const Triangles& triangles, const Rings& rings,
+                    std::vector<Complaint>& faults)
 {
-    const auto [a, b] = Contacts(f).find();
+    const auto [a, b] = Contacts(f, triangles, rings).find();
     if (a < 0) return;
     const std::string& name = f.mesh->name;
     if (a == b)
@@ -370,7 +207,7 @@ void check_contacts(const Facets& f, std::vector<Complaint>& faults)
     else
         faults.push_back({"mesh-self-contact", "",
                           name + ": " + name_of_face(*f.mesh, a) + " and " + name_of_face(*f.mesh, b) +
-                              " touch or cross, near " + text_of(f.at(f.begins[a])),
+                              " touch or cross, near " + text_of(f.at(f.begin(a))),
                           "", "", "where a surface meets itself, inside and outside are not told apart",
                           "separate or unite what meets there"});
 }

@@ -60,30 +60,13 @@ void fill_simplex(ShapeValues& v, ElementKind kind, const Vector3& p)
     }
 }
 
-/// Gauss points of the cube; on a simplex folded together (r, s (1 - r), ..), which raises the degree by one
-/// for each dimension but the first.
-std::vector<ShapeValues> make_rule(ElementKind kind)
+/// Points in each direction.
+int n_points_of(ElementKind kind)
 {
     // Degrees of x x^T det F: 2 (tetrahedron), 4 in each coordinate (hexahedron), 7 (curved tetrahedron); of
     // x x^T (x . n): 3, 4 in each (quadrilateral: 3 + 1), 8 (curved triangle).
     constexpr int n_points[] = {3, 3, 5, 3, 3, 5};
-    const Quadrature rule = gauss(n_points[static_cast<int>(kind)]);
-    const int dim = dimension(kind), n = static_cast<int>(rule.points.size());
-    std::vector<ShapeValues> points;
-    for (int i = 0; i < n; ++i)
-        for (int j = 0; j < n; ++j)
-            for (int k = 0; k < (dim == 3 ? n : 1); ++k) {
-                Vector3 p{rule.points[i], rule.points[j], dim == 3 ? rule.points[k] : 0};
-                double weight = rule.weights[i] * rule.weights[j] * (dim == 3 ? rule.weights[k] : 1);
-                if (is_simplex(kind)) {
-                    const double left = 1 - p[0], further = left * (1 - p[1]);
-                    weight *= dim == 3 ? left * further : left;
-                    p = {p[0], left * p[1], further * p[2]};
-                }
-                points.push_back(shape_at(kind, p));
-                points.back().weight = weight;
-            }
-    return points;
+    return n_points[static_cast<int>(kind)];
 }
 
 template <class Make>
@@ -109,12 +92,38 @@ ShapeValues shape_at(ElementKind kind, const Vector3& parent)
     return v;
 }
 
-const std::vector<ShapeValues>& quadrature_of(ElementKind kind) { return of_kind(kind, make_rule); }
+/// Gauss points of the cube; on a simplex folded together (r, s (1 - r), ..), which raises the degree by one
+/// for each dimension but the first.
+std::vector<ShapeValues> rule_of(ElementKind kind, int n)
+{
+    const Quadrature rule = gauss(n);
+    const int dim = dimension(kind);
+    std::vector<ShapeValues> points;
+    for (int i = 0; i < n; ++i)
+        for (int j = 0; j < n; ++j)
+            for (int k = 0; k < (dim == 3 ? n : 1); ++k) {
+                Vector3 p{rule.points[i], rule.points[j], dim == 3 ? rule.points[k] : 0};
+                double weight = rule.weights[i] * rule.weights[j] * (dim == 3 ? rule.weights[k] : 1);
+                if (is_simplex(kind)) {
+                    const double left = 1 - p[0], further = left * (1 - p[1]);
+                    weight *= dim == 3 ? left * further : left;
+                    p = {p[0], left * p[1], further * p[2]};
+                }
+                points.push_back(shape_at(kind, p));
+                points.back().weight = weight;
+            }
+    return points;
+}
+
+const std::vector<ShapeValues>& quadrature_of(ElementKind kind)
+{
+    return of_kind(kind, [](ElementKind k) { return rule_of(k, n_points_of(k)); });
+}
 
 const std::vector<ShapeValues>& probes_of(ElementKind kind)
 {
     return of_kind(kind, [](ElementKind k) {
-        std::vector<ShapeValues> probes = make_rule(k);
+        std::vector<ShapeValues> probes = rule_of(k, n_points_of(k));
         for (int A = 0; A < n_corners(k); ++A) {
             const double* corner = is_simplex(k) ? corners_of_simplex[A] : corners_of_cube[A];
             probes.push_back(shape_at(k, {corner[0], corner[1], corner[2]}));

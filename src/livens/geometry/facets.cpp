@@ -5,6 +5,7 @@
 
 #include "livens/base/text.h"
 #include "livens/geometry/detail/facets.h"
+#include "livens/geometry/detail/workers.h"
 
 namespace livens {
 
@@ -87,26 +88,44 @@ std::string name_of_face(const Mesh& mesh, std::int32_t face)
     return "face " + std::to_string(face + 1);
 }
 
-Facets facets_of(const Mesh& mesh)
+Facets::Facets(const Mesh& of)
+    : mesh(&of), are_triangles(of.n_elements(2) > 0 && of.block(ElementKind::triangle) != nullptr &&
+                               of.n_elements(2) == of.block(ElementKind::triangle)->size())
 {
-    Facets f;
-    f.mesh = &mesh;
-    const bool is_curved = mesh.block(ElementKind::triangle6) != nullptr;
-    f.begins.reserve(mesh.n_elements(2) + 1);
-    f.begins.push_back(0);
-    for (const ElementBlock& b : mesh.blocks) {
+    if (are_triangles) {
+        corners = of.block(ElementKind::triangle)->nodes;
+        return;
+    }
+    const bool is_curved = of.block(ElementKind::triangle6) != nullptr;
+    begins.reserve(of.n_elements(2) + 1);
+    begins.push_back(0);
+    for (const ElementBlock& b : of.blocks) {
         if (dimension(b.kind) != 2) continue;
         const int n = n_corners(b.kind);
-        f.corners.reserve(f.corners.size() + n * b.size());
+        copied_.reserve(copied_.size() + n * b.size());
         for (std::int64_t e = 0; e < b.size(); ++e) {
             const std::int32_t* nodes = b.element(e);
-            f.corners.insert(f.corners.end(), nodes, nodes + n);
-            f.begins.push_back(static_cast<std::int32_t>(f.corners.size()));
+            copied_.insert(copied_.end(), nodes, nodes + n);
+            begins.push_back(static_cast<std::int32_t>(copied_.size()));
             for (int k = 0; is_curved && k < n; ++k)
-                f.middles.push_back(b.kind == ElementKind::triangle6 ? nodes[n + k] : -1);
+                middles.push_back(b.kind == ElementKind::triangle6 ? nodes[n + k] : -1);
         }
     }
-    return f;
+    corners = copied_;
+}
+
+Triangles::Triangles(const Facets& f)
+{
+    if (f.are_triangles) {
+        corners = f.corners;
+        return;
+    }
+    for (std::int32_t face = 0; face < f.n_faces(); ++face)
+        for (std::int32_t h = f.begin(face) + 1; h + 1 < f.begin(face + 1); ++h) {
+            copied_.insert(copied_.end(), {f.corners[f.begin(face)], f.corners[h], f.corners[h + 1]});
+            faces.push_back(face);
+        }
+    corners = copied_;
 }
 
 /// Half-edges are put into buckets by the lower of their two points.
@@ -117,9 +136,9 @@ Links link(const Facets& f, std::vector<Complaint>& faults)
     Linker linker{f, links, {}, {}, {}, {}, {}};
     std::vector<std::int32_t> begins(f.mesh->points.size() + 1, 0);
     for (std::int32_t face = 0; face < f.n_faces(); ++face)
-        for (std::int32_t h = f.begins[face]; h < f.begins[face + 1]; ++h) {
+        for (std::int32_t h = f.begin(face); h < f.begin(face + 1); ++h) {
             links.faces[h] = face;
-            for (std::int32_t g = f.begins[face]; g < h; ++g)
+            for (std::int32_t g = f.begin(face); g < h; ++g)
                 if (f.corners[g] == f.corners[h])
                     linker.degenerate.add(name_of_face(*f.mesh, face) + " has the corner " +
                                           text_of(f.at(h)) + " twice");
@@ -185,24 +204,69 @@ void check_fans(const Facets& f, const Links& links, std::vector<Complaint>& fau
                     "separate the parts, or give each its own points");
 }
 
-/// A tree for each piece, whose root is its first face.
-std::vector<std::int32_t> pieces_of(const Facets& f, const Links& links, std::int32_t& n_pieces)
+namespace {
+
+/// The root of a tree, whose way there is halved.
+std::int32_t root_of(std::vector<std::int32_t>& parents, std::int32_t at)
 {
-    std::vector<std::int32_t> pieces(f.n_faces());
-    std::iota(pieces.begin(), pieces.end(), 0);
-    const auto root = [&](std::int32_t face) {
-        while (pieces[face] != face) face = pieces[face] = pieces[pieces[face]];
-        return face;
-    };
-    for (std::size_t h = 0; h < links.twins.size(); ++h) {
-        if (links.twins[h] < 0) continue;
-        const std::int32_t a = root(links.faces[h]), b = root(links.faces[links.twins[h]]);
-        pieces[std::max(a, b)] = std::min(a, b);
+    while (parents[at] != at) at = parents[at] = parents[parents[at]];
+    return at;
+}
+/// The lower root is that of both.
+void unite(std::vector<std::int32_t>& parents, std::int32_t a, std::int32_t b)
+{
+    a = root_of(parents, a);
+    b = root_of(parents, b);
+    parents[std::max(a, b)] = std::min(a, b);
+}
+
+std::vector<std::int32_t> numbers_up_to(std::size_t n)
+{
+    std::vector<std::int32_t> numbers = filled<std::int32_t>(n, 0);
+    std::iota(numbers.begin(), numbers.end(), 0);
+    return numbers;
+}
+
+/// Numbers the roots that faces have.
+template <class Root>
+Pieces numbered(std::int32_t n_faces, std::size_t n_roots, Root root)
+{
+    Pieces pieces;
+    bool is_one = true;
+    for (std::int32_t face = 1; face < n_faces && is_one; ++face) is_one = root(face) == root(0);
+    if (is_one) {
+        pieces.n = n_faces > 0 ? 1 : 0;
+        return pieces;
     }
-    n_pieces = 0;
-    for (std::int32_t face = 0; face < f.n_faces(); ++face)   // what lies above is numbered already
-        pieces[face] = pieces[face] == face ? n_pieces++ : pieces[pieces[face]];
+    std::vector<std::int32_t> numbers(n_roots, -1);
+    pieces.of_face.resize(n_faces);
+    for (std::int32_t face = 0; face < n_faces; ++face) {
+        std::int32_t& number = numbers[root(face)];
+        if (number < 0) number = pieces.n++;
+        pieces.of_face[face] = number;
+    }
     return pieces;
+}
+
+}   // namespace
+
+Pieces pieces_of(const Facets& f, const Links& links)
+{
+    std::vector<std::int32_t> parents = numbers_up_to(f.n_faces());
+    for (std::size_t h = 0; h < links.twins.size(); ++h)
+        if (links.twins[h] >= 0) unite(parents, links.faces[h], links.faces[links.twins[h]]);
+    return numbered(f.n_faces(), parents.size(), [&](std::int32_t face) { return root_of(parents, face); });
+}
+
+Pieces pieces_of(const Facets& f)
+{
+    std::vector<std::int32_t> parents = numbers_up_to(f.mesh->points.size());
+    for (std::int32_t face = 0; face < f.n_faces(); ++face)
+        for (std::int32_t h = f.begin(face); h + 1 < f.begin(face + 1); ++h)
+            if (parents[f.corners[h]] != parents[f.corners[h + 1]])
+                unite(parents, f.corners[h], f.corners[h + 1]);
+    return numbered(f.n_faces(), parents.size(),
+                    [&](std::int32_t face) { return root_of(parents, f.corners[f.begin(face)]); });
 }
 
 }   // namespace livens

@@ -7,6 +7,7 @@
 
 #include "livens/base/error.h"
 #include "livens/geometry/detail/cursor.h"
+#include "livens/geometry/detail/workers.h"
 
 namespace livens {
 
@@ -144,6 +145,7 @@ Mesh read_mesh_file(const std::filesystem::path& file, std::string name)
         refuse_file(name,
                     "has " + std::to_string(size) + " bytes, more than " + std::to_string(max_mesh_bytes));
     const auto bytes = std::make_unique_for_overwrite<char[]>(size);
+    prefer_large_pages(bytes.get(), size);
     std::ifstream stream(file, std::ios::binary);
     stream.read(bytes.get(), static_cast<std::streamsize>(size));
     if (!stream) refuse_file(name, "cannot be read");

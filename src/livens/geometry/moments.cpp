@@ -6,6 +6,7 @@
 #include <cassert>
 
 #include "livens/geometry/detail/elements.h"
+#include "livens/geometry/detail/workers.h"
 
 namespace livens {
 
@@ -24,6 +25,11 @@ public:
             lost_[i] += (sums_[i] - (sum - of_term)) + (terms[i] - of_term);
             sums_[i] = sum;
         }
+    }
+    void add(const Sums& others)
+    {
+        add(others.sums_);
+        for (int i = 0; i < n; ++i) lost_[i] += others.lost_[i];
     }
     /// The point x has a share of the volume.
     void add(const Vector3& x, double share)
@@ -95,24 +101,32 @@ void add_point(Sums& sums, const Vector3& x, double share)
               second * x[2] * x[2], second * x[0] * x[1], second * x[1] * x[2], second * x[2] * x[0]});
 }
 
+void add_face(Sums& sums, const Mesh& mesh, ElementKind kind, const std::int32_t* nodes, const Vector3& about)
+{
+    if (kind == ElementKind::triangle)
+        return add_triangle(sums, mesh.points[nodes[0]] - about, mesh.points[nodes[1]] - about,
+                            mesh.points[nodes[2]] - about);
+    for (const ShapeValues& point : quadrature_of(kind)) {
+        const ElementPoint at = element_point(point, mesh, kind, nodes, about);
+        add_point(sums, at.x, point.weight * dot(at.x, cross(at.F.column(0), at.F.column(1))));
+    }
+}
+
+/// Parts of fixed size are summed by themselves: the sum does not depend on the number of threads.
+constexpr std::size_t some = 65536;
+
 Moments moments_of_surface(const Mesh& mesh)
 {
     const Vector3 middle = middle_of(mesh, 2);
     Sums sums;
     for (const ElementBlock& b : mesh.blocks) {
         if (dimension(b.kind) != 2) continue;
-        for (std::int64_t e = 0; e < b.size(); ++e) {
-            const std::int32_t* nodes = b.element(e);
-            if (b.kind == ElementKind::triangle) {
-                add_triangle(sums, mesh.points[nodes[0]] - middle, mesh.points[nodes[1]] - middle,
-                             mesh.points[nodes[2]] - middle);
-                continue;
-            }
-            for (const ShapeValues& point : quadrature_of(b.kind)) {
-                const ElementPoint at = element_point(point, mesh, b.kind, nodes, middle);
-                add_point(sums, at.x, point.weight * dot(at.x, cross(at.F.column(0), at.F.column(1))));
-            }
-        }
+        std::vector<Sums> of_parts(b.size() / some + 1);
+        in_parts(b.size(), some, [&](std::size_t begin, std::size_t end, int part) {
+            for (std::size_t e = begin; e < end; ++e)
+                add_face(of_parts[part], mesh, b.kind, b.element(static_cast<std::int64_t>(e)), middle);
+        });
+        for (const Sums& of_part : of_parts) sums.add(of_part);
     }
     return sums.moments(middle, {1. / 6, 1. / 24, 1. / 120});
 }

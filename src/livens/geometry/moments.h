@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -31,6 +32,22 @@ std::vector<Moments> region_moments(const Mesh& mesh);
 /// With each weighted by a number, such as densities: then `volume` is the mass. The sum of weights times
 /// volumes must not be zero.
 Moments combined(std::span<const Moments> parts, std::span<const double> weights);
+
+/// With a density that changes from place to place: then `volume` is the mass, `centroid` its centre, and
+/// `second` its second moment about that. Of a volume, by quadrature that is refined element by element until
+/// it says the same twice, to 1e-13 of the mass: so polynomials are integrated exactly.
+///
+/// throws   InputError (`density-field`) where the density is negative or no number, or changes so fast
+///          within elements that more than 1e-9 of the mass is not known
+Moments weighted_moments(const Mesh& volume, const std::function<double(const Vector3&)>& density);
+
+/// Linear in the mesh's coordinates.
+struct LinearDensity {
+    double at_origin = 0;
+    Vector3 gradient{};
+};
+/// Likewise, also of a closed surface, whose inside is not seen: exactly, by the divergence theorem.
+Moments weighted_moments(const Mesh& mesh, const LinearDensity& density);
 
 /// Integrals of (1, x) (1, x)^T over faces: the moments of the shape functions that loads on a surface need,
 /// whose fields are linear at most (P20).

@@ -8,6 +8,7 @@
 
 #include "livens/geometry/detail/facets.h"
 #include "livens/geometry/detail/volumes.h"
+#include "livens/geometry/detail/workers.h"
 #include "livens/geometry/soundness.h"
 
 namespace livens {
@@ -17,7 +18,8 @@ namespace {
 constexpr std::int32_t most_pieces = 20000;   // each is looked for in all others
 
 struct Piece {
-    std::vector<std::int32_t> faces;
+    std::int32_t first = -1, n_faces = 0;
+    std::vector<std::int32_t> faces;   ///< none where there is one piece, which has all
     double volume = 0;
     Vector3 low{1, 1, 1}, high{-1, -1, -1};
     int depth = 0;   ///< in how many other pieces it lies, those that are inside out counted down
@@ -34,8 +36,8 @@ struct Piece {
 template <class Work>
 void for_triangles(const Facets& f, std::int32_t face, Work work)
 {
-    for (std::int32_t h = f.begins[face] + 1; h + 1 < f.begins[face + 1]; ++h)
-        work(f.at(f.begins[face]), f.at(h), f.at(h + 1));
+    for (std::int32_t h = f.begin(face) + 1; h + 1 < f.begin(face + 1); ++h)
+        work(f.at(f.begin(face)), f.at(h), f.at(h + 1));
 }
 
 /// The solid angle of a face seen from p over 4 pi [van Oosterom and Strackee 1983].
@@ -51,23 +53,56 @@ double share_of_view(const Facets& f, std::int32_t face, const Vector3& p)
     return angle / (4 * std::numbers::pi);
 }
 
-std::vector<Piece> make_pieces(const Facets& f, const std::vector<std::int32_t>& piece_of, std::int32_t n)
+void widen(Piece& piece, const Vector3& p)
 {
-    std::vector<Piece> pieces(n);
-    for (std::int32_t face = 0; face < f.n_faces(); ++face) pieces[piece_of[face]].faces.push_back(face);
+    for (int i = 0; i < 3; ++i) {
+        piece.low[i] = std::min(piece.low[i], p[i]);
+        piece.high[i] = std::max(piece.high[i], p[i]);
+    }
+}
+
+double volume_under(const Facets& f, std::int32_t face, const Vector3& about)
+{
+    double volume = 0;
+    for_triangles(f, face, [&](const Vector3& a, const Vector3& b, const Vector3& c) {
+        volume += dot(a - about, cross(b - about, c - about)) / 6;
+    });
+    return volume;
+}
+
+/// The only one, which need not be found in others.
+Piece whole_piece(const Facets& f)
+{
+    Piece piece;
+    piece.first = 0;
+    piece.n_faces = f.n_faces();
+    constexpr std::size_t some = 65536;   // faces at a time, however many threads there are
+    const std::size_t n = f.n_faces();
+    std::vector<double> parts(n / some + 1, 0);
+    in_parts(n, some, [&](std::size_t begin, std::size_t end, int part) {
+        for (std::size_t k = begin; k < end; ++k)
+            parts[part] += volume_under(f, static_cast<std::int32_t>(k), f.at(0));
+    });
+    for (const double part : parts) piece.volume += part;
+    return piece;
+}
+
+std::vector<Piece> make_pieces(const Facets& f, const Pieces& numbers)
+{
+    if (numbers.n == 1) return {whole_piece(f)};
+    std::vector<Piece> pieces(numbers.n);
+    for (std::int32_t face = 0; face < f.n_faces(); ++face) {
+        Piece& piece = pieces[numbers.of(face)];
+        if (piece.n_faces++ == 0) {
+            piece.first = face;
+            piece.low = piece.high = f.at(f.begin(face));
+        }
+        piece.faces.push_back(face);
+        for (std::int32_t h = f.begin(face); h < f.begin(face + 1); ++h) widen(piece, f.at(h));
+    }
     for (Piece& piece : pieces) {
-        piece.low = piece.high = f.at(f.begins[piece.faces.front()]);
-        for (const std::int32_t face : piece.faces)
-            for (std::int32_t h = f.begins[face]; h < f.begins[face + 1]; ++h)
-                for (int i = 0; i < 3; ++i) {
-                    piece.low[i] = std::min(piece.low[i], f.at(h)[i]);
-                    piece.high[i] = std::max(piece.high[i], f.at(h)[i]);
-                }
         const Vector3 middle = 0.5 * piece.low + 0.5 * piece.high;
-        for (const std::int32_t face : piece.faces)
-            for_triangles(f, face, [&](const Vector3& a, const Vector3& b, const Vector3& c) {
-                piece.volume += dot(a - middle, cross(b - middle, c - middle)) / 6;
-            });
+        for (const std::int32_t face : piece.faces) piece.volume += volume_under(f, face, middle);
     }
     return pieces;
 }
@@ -75,7 +110,7 @@ std::vector<Piece> make_pieces(const Facets& f, const std::vector<std::int32_t>&
 void find_depths(const Facets& f, std::vector<Piece>& pieces, bool as_if_outwards)
 {
     for (Piece& inner : pieces) {
-        const Vector3 p = f.at(f.begins[inner.faces.front()]);
+        const Vector3 p = f.at(f.begin(inner.first));
         double depth = 0;
         for (const Piece& outer : pieces) {
             if (&inner == &outer || !outer.holds(p)) continue;
@@ -100,7 +135,7 @@ void agree(const Facets& f, const Links& links, std::vector<bool>& is_turned)
         while (!waiting.empty()) {
             const std::int32_t face = waiting.back();
             waiting.pop_back();
-            for (std::int32_t h = f.begins[face]; h < f.begins[face + 1]; ++h) {
+            for (std::int32_t h = f.begin(face); h < f.begin(face + 1); ++h) {
                 const std::int32_t g = links.twins[h];
                 if (g < 0 || is_known[links.faces[g]]) continue;
                 const std::int32_t other = links.faces[g];
@@ -145,23 +180,21 @@ void turn_element(ElementKind kind, std::int32_t* nodes)
     }
 }
 
-void check_pieces(const Facets& f, const Links& links, std::vector<Complaint>& faults)
+void check_pieces(const Facets& f, const Pieces& numbers, std::vector<Complaint>& faults)
 {
-    std::int32_t n = 0;
-    const std::vector<std::int32_t> piece_of = pieces_of(f, links, n);
     const std::string& name = f.mesh->name;
-    if (n > most_pieces) {
+    if (numbers.n > most_pieces) {
         faults.push_back({"mesh-self-contact", "",
-                          name + ": the surface has " + std::to_string(n) +
+                          name + ": the surface has " + std::to_string(numbers.n) +
                               " separate pieces, too many to see whether they lie in each other",
                           "", std::to_string(most_pieces), "", "divide it into several meshes"});
         return;
     }
-    std::vector<Piece> pieces = make_pieces(f, piece_of, n);
+    std::vector<Piece> pieces = make_pieces(f, numbers);
     find_depths(f, pieces, false);
     for (const Piece& piece : pieces) {
-        const std::string which = "the piece of " + std::to_string(piece.faces.size()) + " faces with " +
-                                  name_of_face(*f.mesh, piece.faces.front());
+        const std::string which = "the piece of " + std::to_string(piece.n_faces) + " faces with " +
+                                  name_of_face(*f.mesh, piece.first);
         if (!(piece.volume != 0)) {
             faults.push_back({"mesh-inverted", "", name + ": " + which + " holds no volume", "", "", "", ""});
             return;
@@ -187,22 +220,22 @@ void turn_outwards(Mesh& mesh)
 {
     if (mesh.is_volume()) return turn_volumes(mesh);
     std::vector<Complaint> ignored;
-    Facets f = facets_of(mesh);
-    Links links = link(f, ignored);
+    {
+        const Facets f(mesh);
+        std::vector<bool> is_turned(f.n_faces(), false);
+        agree(f, link(f, ignored), is_turned);
+        turn_faces(mesh, is_turned);
+    }
+    const Facets f(mesh);
     std::vector<bool> is_turned(f.n_faces(), false);
-    agree(f, links, is_turned);
-    turn_faces(mesh, is_turned);
-    f = facets_of(mesh);
-    links = link(f, ignored);
-    std::int32_t n = 0;
-    const std::vector<std::int32_t> piece_of = pieces_of(f, links, n);
-    if (n > most_pieces) return;
-    std::vector<Piece> pieces = make_pieces(f, piece_of, n);
+    const Pieces numbers = pieces_of(f, link(f, ignored));
+    if (numbers.n > most_pieces) return;
+    std::vector<Piece> pieces = make_pieces(f, numbers);
     find_depths(f, pieces, true);
-    std::fill(is_turned.begin(), is_turned.end(), false);
-    for (const Piece& piece : pieces)
-        if ((piece.volume > 0) != (piece.depth % 2 == 0))
-            for (const std::int32_t face : piece.faces) is_turned[face] = true;
+    for (std::int32_t face = 0; face < f.n_faces(); ++face) {
+        const Piece& piece = pieces[numbers.of(face)];
+        is_turned[face] = (piece.volume > 0) != (piece.depth % 2 == 0);
+    }
     turn_faces(mesh, is_turned);
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "livens/geometry/detail/cursor.h"
+#include "livens/geometry/detail/workers.h"
 
 namespace livens {
 
@@ -178,7 +179,9 @@ private:
         const std::array<int, 3> at{rows.find({"x"}), rows.find({"y"}), rows.find({"z"})};
         for (const int i : at)
             if (i < 0 || rows.properties[i].is_list) cursor_.fail("vertices need x, y and z");
+        reserve(mesh_.points, rows.count);
         mesh_.points.resize(rows.count);
+        if (read_plain_vertices(rows, at)) return;
         for (Vector3& point : mesh_.points)
             for (int i = 0; i < static_cast<int>(rows.properties.size()); ++i) {
                 const auto axis = std::ranges::find(at, i);
@@ -192,6 +195,39 @@ private:
             }
     }
 
+    /// Rows of one length with coordinates of one type, as nearly all files have: false if these are none.
+    bool read_plain_vertices(const Rows& rows, const std::array<int, 3>& at)
+    {
+        const Number type = rows.properties[at[0]].type;
+        if (is_text_ || (type != Number::f32 && type != Number::f64)) return false;
+        for (const int i : at)
+            if (rows.properties[i].type != type) return false;
+        std::array<std::size_t, 3> offsets{};
+        std::size_t row = 0;
+        for (int i = 0; i < static_cast<int>(rows.properties.size()); ++i) {
+            if (rows.properties[i].is_list) return false;
+            for (int k = 0; k < 3; ++k)
+                if (at[k] == i) offsets[k] = row;
+            row += sizes[static_cast<int>(rows.properties[i].type)];
+        }
+        type == Number::f32 ? read_rows<float>(row, offsets) : read_rows<double>(row, offsets);
+        return true;
+    }
+
+    template <class Real>
+    void read_rows(std::size_t row, const std::array<std::size_t, 3>& offsets)
+    {
+        const bool is_swapped = is_swapped_;
+        for (Vector3& point : mesh_.points) {
+            const char* bytes = cursor_.ahead().data();
+            cursor_.skip(row);   // that all are there is known
+            for (int k = 0; k < 3; ++k) {
+                point[k] = number_at<Real>(bytes + offsets[k], is_swapped);
+                if (!std::isfinite(point[k])) cursor_.fail("a coordinate is not finite");
+            }
+        }
+    }
+
     void read_faces(const Rows& rows)
     {
         const int corners = rows.find({"vertex_indices", "vertex_index"});
@@ -199,15 +235,45 @@ private:
             cursor_.fail("faces need a list vertex_indices");
         if (mesh_.points.empty()) cursor_.fail("vertices must stand before the faces");
         ElementBlock& block = builder_.block(ElementKind::triangle);
-        block.nodes.reserve(3 * static_cast<std::size_t>(rows.count));
-        block.regions.reserve(rows.count);
+        reserve(block.nodes, 3 * static_cast<std::size_t>(rows.count));
+        reserve(block.regions, rows.count);
         std::vector<std::int32_t> face;
-        for (std::int64_t f = 0; f < rows.count; ++f)
+        for (std::int64_t f = read_plain_triangles(rows, block); f < rows.count; ++f)
             for (int i = 0; i < static_cast<int>(rows.properties.size()); ++i)
                 if (i == corners)
                     read_face(rows.properties[i], face);
                 else
                     skip(rows.properties[i]);
+    }
+
+    /// Of faces that are nothing but a list, with a byte and whole numbers of four, the triangles that stand
+    /// first, in most files all; their number.
+    std::int64_t read_plain_triangles(const Rows& rows, ElementBlock& block)
+    {
+        const Property& p = rows.properties.front();
+        if (is_text_ || rows.properties.size() > 1 || p.count_type != Number::u8 ||
+            (p.type != Number::i32 && p.type != Number::u32))
+            return 0;
+        constexpr std::size_t bytes = 13;
+        const std::string_view ahead = cursor_.ahead();
+        const std::size_t n = std::min<std::size_t>(rows.count, ahead.size() / bytes);
+        const auto n_points = static_cast<std::uint32_t>(mesh_.points.size());
+        const bool is_swapped = is_swapped_;
+        block.nodes.resize(3 * n);
+        std::size_t f = 0;
+        for (const char* at = ahead.data(); f < n && *at == 3; ++f, at += bytes) {
+            bool is_there = true;
+            for (int k = 0; k < 3; ++k) {
+                const auto node = number_at<std::uint32_t>(at + 1 + 4 * k, is_swapped);
+                is_there &= node < n_points;
+                block.nodes[3 * f + k] = static_cast<std::int32_t>(node);
+            }
+            if (!is_there) break;   // what is wrong is said where it is read again
+        }
+        cursor_.skip(bytes * f);
+        block.nodes.resize(3 * f);
+        block.regions.resize(f, 0);
+        return static_cast<std::int64_t>(f);
     }
 
     void read_face(const Property& p, std::vector<std::int32_t>& face)

@@ -13,12 +13,15 @@ std::vector<Complaint> faults_of(const Mesh& mesh)
         check_volumes(mesh, faults);
         return faults;
     }
-    const Facets facets = facets_of(mesh);
-    const Links links = link(facets, faults);
+    const Facets facets(mesh);
+    const Triangles triangles(facets);
+    const Rings rings = rings_of(mesh.points, triangles.corners);
+    const bool is_plain = facets.are_triangles && rings.are_closed;   // no edge need be looked at
+    const Links links = is_plain ? Links{} : link(facets, faults);
     // What follows takes a closed surface for granted.
-    if (faults.empty()) check_fans(facets, links, faults);
-    if (faults.empty()) check_contacts(facets, faults);
-    if (faults.empty()) check_pieces(facets, links, faults);
+    if (!is_plain && faults.empty()) check_fans(facets, links, faults);
+    if (faults.empty()) check_contacts(facets, triangles, rings, faults);
+    if (faults.empty()) check_pieces(facets, is_plain ? pieces_of(facets) : pieces_of(facets, links), faults);
     return faults;
 }
 
@@ -31,11 +34,9 @@ void require_sound(const Mesh& mesh)
 int n_pieces(const Mesh& mesh)
 {
     if (mesh.is_volume()) return n_pieces_of_volume(mesh);
-    const Facets facets = facets_of(mesh);
+    const Facets facets(mesh);
     std::vector<Complaint> ignored;
-    std::int32_t n = 0;
-    pieces_of(facets, link(facets, ignored), n);
-    return n;
+    return pieces_of(facets, link(facets, ignored)).n;
 }
 
 }   // namespace livens

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "livens/geometry/detail/cursor.h"
+#include "livens/geometry/detail/workers.h"
 
 namespace livens {
 
@@ -19,8 +20,8 @@ public:
     Welder(std::vector<Vector3>& points, std::size_t n_corners) : points_(points)
     {
         // A closed surface of triangles has half as many points as faces.
-        slots_.assign(std::bit_ceil(n_corners / 2 + 16), -1);
-        points_.reserve(n_corners / 6 + 16);
+        slots_ = filled(std::bit_ceil(n_corners / 2 + 16), -1);
+        reserve(points_, n_corners / 6 + 16);
     }
 
     std::int32_t index(const Vector3& point)
@@ -73,7 +74,7 @@ private:
     }
     void grow()
     {
-        slots_.assign(2 * slots_.size(), -1);
+        slots_ = filled(2 * slots_.size(), -1);
         for (std::size_t i = 0; i < points_.size(); ++i)
             find(points_[i], hash(points_[i])) = static_cast<std::int32_t>(i);
     }
@@ -99,16 +100,17 @@ void read_binary(Cursor& cursor, std::uint32_t n, Mesh& mesh)
     MeshBuilder builder(mesh);
     builder.region(2, "");
     ElementBlock& block = builder.block(ElementKind::triangle);
-    block.nodes.resize(3 * std::size_t{n});
-    block.regions.assign(n, 0);
+    block.nodes = filled(3 * std::size_t{n}, 0);
+    block.regions = filled(n, 0);
     Welder welder(mesh.points, 3 * std::size_t{n});
     constexpr std::size_t some = 64;   // triangles at a time
     std::vector<Vector3> corners;
     for (std::size_t first = 0; first < n; first += some) {
         corners.clear();
         for (std::size_t f = first; f < std::min<std::size_t>(first + some, n); ++f) {
-            cursor.raw_bytes(12);   // the normal: what counts is the order of the corners
-            const char* at = cursor.raw_bytes(triangle_bytes - 12).data();
+            cursor.skip(12);   // the normal: what counts is the order of the corners
+            const char* at = cursor.ahead().data();
+            cursor.skip(triangle_bytes - 12);   // that all are there is known
             for (int k = 0; k < 3; ++k) {
                 Vector3 p;
                 for (int i = 0; i < 3; ++i, at += 4) p[i] = float_at<swap>(at);

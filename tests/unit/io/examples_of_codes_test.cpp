@@ -69,7 +69,10 @@ TEST(ExamplesOfCodes, TheWrongOnesLeadToTheCodeAndTheRightOnesToNone)
 }
 
 /// Meshes are files of their own.
-bool needs_file(std::string_view code) { return code.starts_with("mesh-") || code == "surface-unknown"; }
+bool needs_file(std::string_view code)
+{
+    return code.starts_with("mesh-") || code == "surface-unknown" || code == "density-field";
+}
 
 /// Codes without examples: no scenario leads to them, another code comes first, or it depends on the machine.
 TEST(ExamplesOfCodes, StandWhereverAScenarioLeads)

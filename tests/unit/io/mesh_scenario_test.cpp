@@ -188,6 +188,45 @@ TEST_F(MeshScenario, RefusesWhatIsNoSolid)
                  "mesh-region", "no regions of volume");
 }
 
+/// 1000 (2 + x) over [-1, 1] x [-1/2, 1/2]^2: the mass is 4000 kg, S_x = 1000 int x^2 = 2000/3 kg m.
+TEST_F(MeshScenario, WeighsByADensityThatIsAField)
+{
+    const std::string shape =
+        "shape = { mesh = \"box.obj\", unit = \"m\", density_field = \"1000*(2 + x)\" }";
+    const Matrix4 m = mass(shape);
+    EXPECT_NEAR(m(0, 0), 4000, 1e-11);
+    EXPECT_NEAR(m(1, 0), 2000. / 3, 1e-11);
+    EXPECT_NEAR(m(1, 1), 4000. / 3, 1e-11);
+    EXPECT_NEAR(m(2, 2), 4000. / 12, 1e-11);
+    // The place is in m, whatever the mesh's unit.
+    const Matrix4 small =
+        mass("shape = { mesh = \"box.obj\", unit = \"mm\", density_field = \"1000*(2 + 1000*x)\" }");
+    EXPECT_NEAR(small(0, 0), 4000e-9, 1e-20);
+    EXPECT_NEAR(small(1, 0), 2000e-12 / 3, 1e-23);
+    // A run needs no file beside it.
+    const ScenarioResult result = read(shape);
+    ASSERT_TRUE(result.scenario.has_value());
+    const ScenarioResult again =
+        parse_scenario(result.scenario->text, "again.toml", {std::nullopt, result.scenario->meshes});
+    ASSERT_TRUE(again.scenario.has_value()) << shown(again);
+    EXPECT_EQ(again.scenario->model.bodies()[0].mass, m);
+}
+
+TEST_F(MeshScenario, RefusesFieldsThatAreNoDensity)
+{
+    const auto field = [](const std::string& text) {
+        return "shape = { mesh = \"box.obj\", unit = \"m\", density_field = \"" + text + "\" }";
+    };
+    expect_error(field("x"), "density-field", "no density");
+    expect_error(field("2 + x*y"), "density-field", "not linear");
+    expect_error(field("2 + abs(x)"), "density-field", "bends");
+    expect_error(field("2 + t"), "density-field", "time");
+    expect_error(field("2 + r"), "expression-name", "r");
+    expect_error(field("2 +"), "expression-syntax", "");
+    expect_error(field("2") + "\ndensity = 3", "mass-conflict", "density_field");
+    expect_error("density = 1\nshape = { box = [1, 1, 1], density_field = \"1\" }", "shape", "no mesh");
+}
+
 TEST_F(MeshScenario, RefusesHalfOfMSE)
 {
     const std::string S = "first_moment = [0.1, 0, 0]\n", E = "second_moment = [1, 1, 1]\n";
@@ -337,6 +376,29 @@ TEST_F(MeshScenario, IsRightedByThePressureThatGrowsWithDepth)
     for (int i = 1; i < 4; ++i) moment += cross(at.X[0].column(i), F[0].column(i));
     moment -= cross(directors(at.X[0]) * center, F[0].column(0));
     EXPECT_LE(norm(moment - Vector3{-20 * below * s, 0, 0}), 1e-13);
+}
+
+/// The whole surface of a part with a name, and those with names of their own below it.
+TEST_F(MeshScenario, PartsWithNamesAreSurfacesOfLoads)
+{
+    put("sides.obj", sides);
+    const auto force = [&](const std::string& surface) {
+        const ScenarioResult result =
+            read("shape = { parts = [{ name = \"low\", mesh = \"sides.obj\", unit = \"m\" }, { name = "
+                 "\"high\", mesh = "
+                 "\"sides.obj\", unit = \"m\", position = [0, 0, 3] }] }\ndensity = 1",
+                 "[[load]]\nbody = \"b\"\ntype = \"pressure\"\nvalue = 1\nsurface = \"" + surface + "\"\n");
+        EXPECT_TRUE(result.scenario.has_value()) << shown(result);
+        LoadArguments at;
+        at.X[0] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+        LoadForces F{};
+        if (result.scenario) result.scenario->model.loads()[0].forces(at, F);
+        return F[0];
+    };
+    EXPECT_NEAR(norm(force("high").column(0)), 0, 1e-15) << "closed";
+    EXPECT_NEAR(force("high/top").column(0)[2], -2, 1e-15);
+    EXPECT_NEAR(force("top").column(0)[2], -4, 1e-15) << "of both parts";
+    EXPECT_NEAR(force("high/top")(2, 3) - force("low/top")(2, 3), -2 * 3, 1e-14) << "it lies 3 m higher";
 }
 
 TEST_F(MeshScenario, FieldsThatAreLinearStandAlone)

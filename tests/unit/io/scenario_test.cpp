@@ -477,10 +477,10 @@ TEST(ScenarioCodes, WarningsLeaveTheScenarioAlone)
 
 /// Of mesh_scenario_test.cpp, but for the last lines.
 const std::set<std::string_view> codes_of_meshes{
-    "mesh-file", "mesh-format", "mesh-inverted", "mesh-open", "mesh-path", "mesh-region", "mesh-unit",
-    "surface-unknown",
-    "mesh-non-manifold", "mesh-self-contact",   // soundness_test.cpp of geometry
-    "not-in-this-version"};                     // at present of no key
+    "density-field",      "mesh-file",         "mesh-format",       "mesh-inverted",
+    "mesh-open",          "mesh-path",         "mesh-region",       "mesh-unit",
+    "surface-unknown",    "mesh-non-manifold", "mesh-self-contact",   // soundness_test.cpp of geometry
+    "not-in-this-version"};                                           // at present of no key
 
 /// Whoever adds a code says here how a scenario leads to it, or that none does.
 TEST(ScenarioCodes, AllAreProvokedByTheseTests)

@@ -6,6 +6,7 @@
 #include <bit>
 #include <cstdint>
 #include <cstring>
+#include <iterator>
 #include <map>
 #include <string>
 #include <string_view>
@@ -15,6 +16,16 @@
 #include "livens/geometry/mesh.h"
 
 namespace livens {
+
+/// From its bytes, in the order of this machine or turned round.
+template <class Number>
+Number number_at(const char* bytes, bool is_swapped)
+{
+    char buffer[sizeof(Number)];
+    std::memcpy(buffer, bytes, sizeof buffer);
+    if (is_swapped) std::reverse(std::begin(buffer), std::end(buffer));
+    return std::bit_cast<Number>(buffer);
+}
 
 class Cursor {
 public:
@@ -47,16 +58,15 @@ public:
 
     /// Throws unless there is room for `count` things of at least so many bytes each.
     void require(std::uint64_t count, std::uint64_t bytes_each, const char* what) const;
+    /// What is not read yet.
+    std::string_view ahead() const { return bytes_.substr(at_); }
+    void skip(std::size_t n_bytes) { start_ = at_, at_ += n_bytes; }
     template <class Number>
     Number raw(bool is_swapped)
     {
-        require(1, sizeof(Number), "numbers");
-        start_ = at_;
-        char buffer[sizeof(Number)];
-        std::memcpy(buffer, bytes_.data() + at_, sizeof buffer);
-        at_ += sizeof buffer;
-        if (is_swapped) std::reverse(std::begin(buffer), std::end(buffer));
-        return std::bit_cast<Number>(buffer);
+        if (left() < sizeof(Number)) require(1, sizeof(Number), "numbers");
+        skip(sizeof(Number));
+        return number_at<Number>(bytes_.data() + start_, is_swapped);
     }
     std::string_view raw_bytes(std::uint64_t n);
     /// Moves behind the next occurrence of `what`; throws where there is none.

@@ -24,6 +24,9 @@ ShapeValues shape_at(ElementKind kind, const Vector3& parent);
 /// faces x x^T x times the normal.
 const std::vector<ShapeValues>& quadrature_of(ElementKind kind);
 
+/// Likewise with n points in each direction.
+std::vector<ShapeValues> rule_of(ElementKind kind, int n);
+
 /// Where signs of Jacobians are looked at: points of the rule and all corners.
 const std::vector<ShapeValues>& probes_of(ElementKind kind);
 

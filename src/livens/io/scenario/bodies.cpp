@@ -62,11 +62,12 @@ void check_mass(const Section& body)
     if (body.has("shape")) {
         body.at_most_one({"density", "mass"}, "mass-conflict");
         body.refuse({"inertia"}, "mass-conflict", "it follows from the shape");
-        const bool has_densities =
-            only_section(body, "shape") != nullptr && only_section(body, "shape")->has("densities");
-        if (has_densities)
+        const Section* shape = only_section(body, "shape");
+        if (shape != nullptr && shape->has("densities"))
             body.refuse({"density", "mass"}, "mass-conflict",
                         "the regions of the mesh have their own densities");
+        else if (shape != nullptr && shape->has("mesh") && shape->has("density_field"))
+            body.refuse({"density", "mass"}, "mass-conflict", "'density_field' of the shape says it already");
         else if (!body.has("density") && !body.has("mass"))
             body.error("shape", "mass-missing",
                        body.label() + " has a shape, but neither 'density' nor 'mass'");

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "livens/io/scenario/meshes.h"
 
+#include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <filesystem>
@@ -10,6 +12,7 @@
 #include "livens/base/error.h"
 #include "livens/base/text.h"
 #include "livens/geometry/soundness.h"
+#include "livens/time/expression.h"
 
 namespace livens {
 
@@ -123,6 +126,13 @@ bool read_line(std::string_view text, std::map<std::pair<std::string, bool>, Red
         mesh->surfaces.push_back({line.rest(), m});
         return true;
     }
+    if (word == "weighted") {
+        Moments m;
+        double unit = 0;
+        if (!line.read(m) || !line.read(unit)) return false;
+        mesh->weighted[{unit, line.rest()}] = m;
+        return true;
+    }
     if (word == "point") return line.read(mesh->points.emplace_back());
     std::array<int, 3> t;
     if (word != "face" || !line.read(t[0]) || !line.read(t[1]) || !line.read(t[2])) return false;
@@ -130,6 +140,66 @@ bool read_line(std::string_view text, std::map<std::pair<std::string, bool>, Red
         if (i < 0 || i >= static_cast<int>(mesh->points.size())) return false;
     mesh->triangles.push_back(t);
     return true;
+}
+
+/// A word of its own in the text: letters, digits and _ are one.
+bool has_word(std::string_view text, std::string_view word)
+{
+    const auto is_part = [&](std::size_t at) {
+        if (at >= text.size()) return false;
+        const char c = text[at];
+        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+    };
+    for (std::size_t at = text.find(word); at != std::string_view::npos; at = text.find(word, at + 1))
+        if (!(at > 0 && is_part(at - 1)) && !is_part(at + word.size())) return true;
+    return false;
+}
+
+/// The density of a surface, whose inside has no points to ask at: slopes that are the same at many places,
+/// of an expression without bends, are those of a linear one.
+LinearDensity linear(const Expression& density, const Mesh& mesh, double unit)
+{
+    const auto refuse_field = [&](const std::string& why) {
+        throw InputError({"density-field", "", "'" + mesh.name + "' is a surface, and its density " + why,
+                          "'" + density.text() + "'", "",
+                          "what a closed surface says of its inside is enough for linear densities",
+                          "give a mesh with elements of volume"});
+    };
+    if (!density.kink_by_symbols().empty()) refuse_field("bends or jumps");
+    LinearDensity found;
+    std::array<double, 3> first{};
+    const std::size_t n = mesh.points.size(), step = std::max<std::size_t>(1, n / 16);
+    for (std::size_t k = 0; k + step < n + step; k += step) {
+        const Vector3 p = unit * (0.7 * mesh.points[k] + 0.3 * mesh.points[n - 1 - k]);
+        std::array<double, 3> slopes{};
+        const std::array<double, 3> at{p[0], p[1], p[2]};
+        const double value = density(0, at, slopes);
+        if (k == 0) first = slopes;
+        double size = 0, gap = 0;
+        for (int i = 0; i < 3; ++i) {
+            size = std::max(size, std::abs(first[i]));
+            gap = std::max(gap, std::abs(slopes[i] - first[i]));
+        }
+        if (!(gap <= 1e-12 * size)) refuse_field("is not linear");
+        if (k > 0) continue;
+        for (int i = 0; i < 3; ++i) found.gradient[i] = unit * slopes[i];
+        found.at_origin = value - dot({slopes[0], slopes[1], slopes[2]}, p);
+    }
+    return found;
+}
+
+Moments integrated(const Mesh& mesh, double unit, const std::string& text)
+{
+    const Expression density(text, {"x", "y", "z"});
+    if (has_word(text, "t") || text.find('\n') != std::string::npos)
+        throw InputError({"density-field", "", "a density does not change with time", "'" + text + "'", "",
+                          "it is an expression in x, y and z, on one line", ""});
+    if (!mesh.is_volume()) return scaled(weighted_moments(mesh, linear(density, mesh, unit)), unit);
+    const auto value = [&](const Vector3& p) {
+        const std::array<double, 3> at{unit * p[0], unit * p[1], unit * p[2]};
+        return density(0, at);
+    };
+    return scaled(weighted_moments(mesh, value), unit);
 }
 
 bool is_inside(const std::filesystem::path& file, const std::filesystem::path& folder)
@@ -170,17 +240,29 @@ MeshStore::MeshStore(MeshSource source) : source_(std::move(source))
     }
 }
 
-const ReducedMesh& MeshStore::find(const std::string& path, bool is_turned)
+ReducedMesh& MeshStore::entry(const std::string& path, bool is_turned)
 {
     const auto known = known_.find({path, is_turned});
     if (known != known_.end()) return known->second;
-    return known_.emplace(Key{path, is_turned}, load(path, is_turned)).first->second;
+    const auto kept = kept_.find({path, is_turned});
+    ReducedMesh mesh = kept != kept_.end() ? kept->second : reduced(read(path, is_turned));
+    return known_.emplace(Key{path, is_turned}, std::move(mesh)).first->second;
 }
 
-ReducedMesh MeshStore::load(const std::string& path, bool is_turned) const
+const ReducedMesh& MeshStore::find(const std::string& path, bool is_turned) { return entry(path, is_turned); }
+
+const Moments& MeshStore::weighted(const std::string& path, bool is_turned, double unit,
+                                   const std::string& density)
 {
-    const auto kept = kept_.find({path, is_turned});
-    if (kept != kept_.end()) return kept->second;
+    std::map<std::pair<double, std::string>, Moments>& weighted = entry(path, is_turned).weighted;
+    const auto known = weighted.find({unit, density});
+    if (known != weighted.end()) return known->second;
+    return weighted.emplace(std::pair(unit, density), integrated(read(path, is_turned), unit, density))
+        .first->second;
+}
+
+Mesh MeshStore::read(const std::string& path, bool is_turned) const
+{
     namespace fs = std::filesystem;
     const fs::path relative(path);
     if (path.empty() || relative.is_absolute())
@@ -198,7 +280,7 @@ ReducedMesh MeshStore::load(const std::string& path, bool is_turned) const
     Mesh mesh = read_mesh_file(file, path);
     if (is_turned) turn_outwards(mesh);
     require_sound(mesh);
-    return reduced(mesh);
+    return mesh;
 }
 
 std::string MeshStore::kept() const
@@ -213,6 +295,8 @@ std::string MeshStore::kept() const
             for (const Matrix4& of : s.moments.normal) text += numbers_of(of);
             text += s.name + "\n";
         }
+        for (const auto& [field, m] : mesh.weighted)
+            text += "weighted " + numbers_of(m) + to_text(field.first) + " " + field.second + "\n";
         for (const Vector3& p : mesh.points) text += "point " + numbers_of(p) + "\n";
         for (const auto& t : mesh.triangles)
             text += "face " + std::to_string(t[0]) + " " + std::to_string(t[1]) + " " + std::to_string(t[2]) +

@@ -19,6 +19,8 @@ struct ReducedMesh {
     Moments whole;
     std::vector<std::pair<std::string, Moments>> regions;   ///< of volume, by name
     std::vector<NamedSurface> surfaces;                     ///< the whole first, if it is known
+    /// Weighted by densities that are fields, in m and kg, by the unit and the text that stated them.
+    std::map<std::pair<double, std::string>, Moments> weighted;
     /// Its surface about the centroid, for pictures; empty where it has more than most_shown triangles.
     std::vector<Vector3> points;
     std::vector<std::array<int, 3>> triangles;
@@ -36,12 +38,17 @@ public:
     /// `mesh-path`, `mesh-file`, and what the mesh is refused for.
     const ReducedMesh& find(const std::string& path, bool is_turned);
 
+    /// Weighted by a density in kg/m^3 at the place x, y, z in m; of the mesh's numbers one is so many m.
+    /// Also throws what Expression does, and `density-field`.
+    const Moments& weighted(const std::string& path, bool is_turned, double unit, const std::string& density);
+
     /// All that was asked for, as MeshSource::kept.
     std::string kept() const;
 
 private:
     using Key = std::pair<std::string, bool>;
-    ReducedMesh load(const std::string& path, bool is_turned) const;
+    Mesh read(const std::string& path, bool is_turned) const;
+    ReducedMesh& entry(const std::string& path, bool is_turned);
 
     MeshSource source_;
     std::map<Key, ReducedMesh> known_;

@@ -33,6 +33,13 @@ std::vector<Key> mesh_keys(bool is_part)
          "refused."}};
     if (!is_part)
         keys.push_back(
+            {"density_field", types::text,
+             "The mesh's density in kg/m^3 as an expression in `x`, `y` and `z`, the place in m in the "
+             "mesh's "
+             "axes after `unit` and `scale`: `\"2000 + 300*z\"`; instead of `density` and `mass`. Any "
+             "expression for a mesh with elements of volume, a linear one for a surface."});
+    if (!is_part)
+        keys.push_back(
             {"densities", types::named_texts,
              "Of the mesh's regions of volume by their names in the file, each a text with a unit: "
              "`{ steel = \"7850 kg/m^3\" }`; all of them, instead of `density` and `mass`."});
@@ -63,11 +70,14 @@ const Key* kind_of(const Section& shape)
 bool check_mesh(const Section& shape)
 {
     if (!shape.has("mesh"))
-        return shape.refuse({"unit", "scale", "turn", "densities"}, "shape", "the shape is no mesh");
+        return shape.refuse({"unit", "scale", "turn", "density_field", "densities"}, "shape",
+                            "the shape is no mesh");
     if (!shape.has("unit"))
         return shape.error(
             "mesh", "mesh-unit", shape.label() + " has a mesh without 'unit'",
             {"files of meshes do not say what their numbers mean", "add unit = \"mm\", or \"m\""});
+    if (shape.takes("densities") && !shape.at_most_one({"density_field", "densities"}, "mass-conflict"))
+        return false;
     if (unit_of_length(shape.text("unit")) > 0) return true;
     return shape.error("unit", "mesh-unit",
                        "'unit' of " + shape.label() + " must be a unit of length, not \"" +
@@ -88,17 +98,24 @@ std::vector<NamedSurface> surfaces_of(const ReducedMesh& mesh, double unit)
     return surfaces;
 }
 
-/// Those of a part; surfaces with one name become one, and the whole of a union is not known.
-void add_surfaces(std::vector<NamedSurface>& to, const Part& part, const Matrix3& axes, const Vector3& place)
+void add_surface(std::vector<NamedSurface>& to, const std::string& name, const SurfaceMoments& m)
+{
+    const auto known = std::ranges::find(to, name, &NamedSurface::name);
+    if (known == to.end())
+        to.push_back({name, m});
+    else
+        known->moments = known->moments + m;
+}
+
+/// Those of a part; surfaces with one name become one, and the whole of a union is not known. A part with a
+/// name has its whole surface by that, and those with names as name/surface besides.
+void add_surfaces(std::vector<NamedSurface>& to, const Part& part, const std::string& name,
+                  const Matrix3& axes, const Vector3& place)
 {
     for (const NamedSurface& s : part.surfaces) {
-        if (s.name.empty()) continue;
         const SurfaceMoments m = moved(s.moments, axes, place);
-        const auto known = std::ranges::find(to, s.name, &NamedSurface::name);
-        if (known == to.end())
-            to.push_back({s.name, m});
-        else
-            known->moments = known->moments + m;
+        if (!s.name.empty()) add_surface(to, s.name, m);
+        if (!name.empty()) add_surface(to, s.name.empty() ? name : name + "/" + s.name, m);
     }
 }
 
@@ -136,7 +153,8 @@ Solid read_union(const Section& shape, double density, MeshStore& meshes)
         densities.push_back(section.number("density"));
         solid.volume += std::copysign(parts.back().volume, densities.back());
         if (densities.back() < 0) continue;   // a picture cannot take away, and a hole has another surface
-        add_surfaces(solid.surfaces, part, axes, section.vector("position"));
+        add_surfaces(solid.surfaces, part, section.has("name") ? section.text("name") : "", axes,
+                     section.vector("position"));
         part.outline.axes = axes;
         part.outline.place = parts.back().centroid;
         solid.outline.parts.push_back(std::move(part.outline));
@@ -211,6 +229,10 @@ Table shape_table()
     for (const Primitive& p : primitives()) part.keys.push_back(p.key);
     for (const Key& key : mesh_keys(true)) part.keys.push_back(key);
     part.keys.push_back(
+        {"name", types::text,
+         "Of the part: loads find the whole surface of its mesh by that, and a surface of it as "
+         "`name/surface`."});
+    part.keys.push_back(
         {"position", types::vector3, "Of the part's origin in body coordinates.", "m", "[0, 0, 0]"});
     for (const Key& key : orientation_keys()) part.keys.push_back(key);
     part.keys.push_back({"density", types::number,
@@ -263,8 +285,11 @@ Solid read_shape(const Section& body, MeshStore& meshes)
             return {p->make(density, *shape), false, p->outline(*shape), {}, p->make(1, *shape).mass};
         const ReducedMesh& mesh = meshes.find(shape->text("mesh"), shape->has("turn"));
         const double unit = unit_of(*shape);
-        const MassProperties properties = shape->has("densities") ? solid(1, weighted(*shape, mesh, unit))
-                                                                  : solid(density, scaled(mesh.whole, unit));
+        MassProperties properties = solid(density, scaled(mesh.whole, unit));
+        if (shape->has("densities")) properties = solid(1, weighted(*shape, mesh, unit));
+        if (shape->has("density_field"))
+            properties = solid(1, meshes.weighted(shape->text("mesh"), shape->has("turn"), unit,
+                                                  shape->text("density_field")));
         return {properties, true, outline_of(mesh, unit), surfaces_of(mesh, unit),
                 scaled(mesh.whole, unit).volume};
     } catch (const InputError& error) {
