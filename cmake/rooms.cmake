@@ -16,12 +16,22 @@ if(CMAKE_CXX_COMPILER_ID MATCHES "Clang")
     target_compile_options(livens_flags INTERFACE -Wno-missing-braces)
 endif()
 
-# livens_room(NAME [EIGEN] [STACKS] [LIBRARIES lib...]): LIBRARIES are linked by whatever the room is linked into. STACKS:
+# How hard sources are optimised, after the flags of the build: the wheel is small because most of them are not
+# unrolled and inlined to the last, and because what nobody calls is left out by the linker.
+set(livens_fast $<$<CONFIG:Release>:-O3>)
+set(livens_usual $<$<CONFIG:Release>:-O2>)
+set(livens_small $<$<CONFIG:Release>:-Os>)
+if(NOT MSVC)
+    set(livens_sections -ffunction-sections -fdata-sections)
+endif()
+
+# livens_room(NAME [EIGEN] [STACKS] [FAST | SMALL] [LIBRARIES lib...]): FAST is for kernels, SMALL for what reads, writes
+# and is asked once. LIBRARIES are linked by whatever the room is linked into. STACKS:
 # see livens_harden(). EIGEN rooms use Eigen inside their sources, never in a header. Eigen is given another namespace
 # there: its inline functions depend on processor flags, and a program that uses Eigen with other flags must not share
 # them through the linker.
 function(livens_room name)
-    cmake_parse_arguments(arg "EIGEN;STACKS" "" "LIBRARIES" ${ARGN})
+    cmake_parse_arguments(arg "EIGEN;STACKS;FAST;SMALL" "" "LIBRARIES" ${ARGN})
     file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/livens/${name}/*.cpp)
     if(NOT sources)
         add_library(livens_room_${name} INTERFACE)
@@ -32,6 +42,13 @@ function(livens_room name)
     if(arg_STACKS)
         set(stacks STACKS)
     endif()
+    set(level ${livens_usual})
+    if(arg_FAST)
+        set(level ${livens_fast})
+    elseif(arg_SMALL)
+        set(level ${livens_small})
+    endif()
+    target_compile_options(livens_room_${name} PRIVATE ${level} ${livens_sections})
     livens_harden(livens_room_${name} ${stacks})
     target_link_libraries(livens_room_${name} PRIVATE $<BUILD_INTERFACE:livens_flags> ${arg_LIBRARIES})
     set_target_properties(livens_room_${name} PROPERTIES LIVENS_LIBRARIES "${arg_LIBRARIES}")
@@ -40,6 +57,16 @@ function(livens_room name)
         get_target_property(eigen Eigen3::Eigen INTERFACE_INCLUDE_DIRECTORIES)
         target_include_directories(livens_room_${name} SYSTEM PRIVATE ${eigen})
         target_compile_definitions(livens_room_${name} PRIVATE Eigen=livens_eigen)
+    endif()
+endfunction()
+
+# livens_link_small(TARGET): without functions that nobody calls. Not by gold, which could make one of those that are the
+# same: it takes the wheel's own hypot() for glibc's, see python/src/glibc.cpp.
+include(CheckLinkerFlag)
+function(livens_link_small target)
+    check_linker_flag(CXX "-Wl,--gc-sections" LIVENS_HAS_GC_SECTIONS)
+    if(LIVENS_HAS_GC_SECTIONS)
+        target_link_options(${target} PRIVATE $<$<CONFIG:Release>:-Wl,--gc-sections>)
     endif()
 endfunction()
 

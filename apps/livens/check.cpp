@@ -7,7 +7,7 @@
 #include "commands.h"
 #include "console.h"
 #include "failure.h"
-#include "known_state.h"
+#include "livens/io/known_state.h"
 #include "livens/multibody/closing.h"
 #include "livens/multibody/start_coordinates.h"
 #include "memory.h"

@@ -12,7 +12,7 @@
 #include "console.h"
 #include "failure.h"
 #include "interrupt.h"
-#include "known_state.h"
+#include "livens/io/known_state.h"
 #include "rest.h"
 #include "summary.h"
 

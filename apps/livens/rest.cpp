@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "interrupt.h"
-#include "known_state.h"
+#include "livens/io/known_state.h"
 
 namespace livens::program {
 

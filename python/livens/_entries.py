@@ -13,7 +13,7 @@ from ._tree import Table, schema, si, toml_lines
 if TYPE_CHECKING:
     from typing_extensions import Self
 
-    from ._model import Model
+    from ._editing import Tree
 
 _T = TypeVar("_T")
 _R = TypeVar("_R")
@@ -48,13 +48,13 @@ class Section:
     """
 
     __slots__ = ("_model", "_schema", "_table", "_top", "_key")
-    _model: Model
+    _model: Tree
     _schema: dict[str, Any]
     _table: Table
     _top: Section | None   # that this one is inside of
     _key: str              # its own in there, or the kind
 
-    def __init__(self, model: Model, table: Table, schema_table: dict[str, Any], key: str,
+    def __init__(self, model: Tree, table: Table, schema_table: dict[str, Any], key: str,
                  top: Section | None = None) -> None:
         for name, value in (("_model", model), ("_schema", schema_table), ("_top", top), ("_key", key),
                             ("_table", table)):
@@ -209,7 +209,7 @@ class Names(Mapping[str, _T]):
 
     __slots__ = ("_model", "_kind", "_type")
 
-    def __init__(self, model: Model, kind: str, entry_type: type[_T]) -> None:
+    def __init__(self, model: Tree, kind: str, entry_type: type[_T]) -> None:
         self._model, self._kind, self._type = model, kind, entry_type
 
     def _tables(self) -> dict[str, Table]:

@@ -4,31 +4,22 @@ from __future__ import annotations
 
 import os
 import warnings
-from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
 from . import _core
-from ._entries import Entry, Names, RootSection, Section, default_name, unknown_name
-from ._errors import (Diagnostic, InputError, ModelWarning, SlowWarning, fault, file_name, raised,
-                      stack_level, user_place)
-from ._functions import adapted
-from ._generated import Adders, Body, Drive, Joint, Load, Sensor
-from ._values import Shape
-from ._places import arranged, diagnostic_of, faults_in, key_below, of_table, path_at, path_of, some_time, store, words_in
-from ._tree import KINDS, Table, diagnostics_of_text, frozen, plain, schema, toml
-
-_TYPES: dict[str, type[Entry]] = {"body": Body, "joint": Joint, "drive": Drive, "load": Load, "sensor": Sensor}
-_MISSING = object()
-_INSTEAD = {   # keys that say the same in other ways: assigning one takes the others away
-    "body": (("mass", "density"), ("directors", "quaternion", "rotation_vector"),
-             ("angular_velocity", "angular_velocity_body")),
-    "time": (("accuracy", "elements"),)}
-_SHOWN_BODIES = 30   # that a part of a model holds beside what it needs, for the sake of suggestions
+from ._editing import Tree
+from ._entries import Entry, Names, Section, default_name, unknown_name
+from ._errors import Diagnostic, SlowWarning, SolveWarning, fault, file_name, stack_level, user_place
+from ._generated import Body, Drive, Joint, Load, Sensor
+from ._places import some_time
+from ._rest import Equilibrium, EquilibriumError, Linearisation, Modes
+from ._tree import KINDS, Table, frozen, toml
 
 
-class Model(Adders):
+class Model(Tree):
     """Bodies, joints, drives, loads and sensors: the tree of a scenario file, edited by name.
 
     Args:
@@ -51,9 +42,8 @@ class Model(Adders):
     def __init__(self, title: str = "", *, gravity: Any = None) -> None:
         self._root = Table({"format": 1}, user_place())
         self._file = ""
-        self._text: str | None = None   # as it was read, as long as nothing was edited
-        self._functions: dict[str, tuple[str, Callable[..., Any]]] = {}
-        self._warned = False
+        self._text = None
+        self._functions = {}
         self._forget()
         if title:
             self.title = title
@@ -266,12 +256,6 @@ class Model(Adders):
         self._functions[name] = (wanted, function)
         self._forget()
 
-    def _refuse_functions(self, what: str) -> None:
-        if self._functions:
-            names = ", ".join(f"'{name}'" for name in self._functions)
-            raise fault("python-function", f"the load {names} is a Python function, so the model cannot be {what}",
-                        help="write it as an expression, or remove it: m.remove(name)")
-
     # Checking and building.
 
     def check(self) -> list[Diagnostic]:
@@ -282,219 +266,87 @@ class Model(Adders):
         _, found = self._build({} if "time" in self._root else {"time": some_time(self._root)})
         return found
 
-    @property
-    def _folder(self) -> str:
-        """Where its meshes are: beside the file that it came from, else where Python is."""
-        return os.path.dirname(self._file) if os.path.isfile(self._file) else ""
+    # Rest.
 
-    def _build(self, overrides: Mapping[str, Any]) -> tuple[Any, list[Diagnostic]]:
-        """(compiled scenario or None, diagnostics); what was built last is kept."""
-        key = frozen(overrides)
-        if key in self._built:
-            return self._built[key]
-        if self._text is not None and not overrides:
-            scenario, found = _core.build_text(self._text, self._file, self._folder)
-            made = self._with_paths(diagnostics_of_text(found, self._file, self._text))
-        else:
-            root = self._with(overrides)
-            scenario, found = _core.build_tree(root, toml(root), self._folder)
-            made = [diagnostic_of(d, root) for d in found]
-        if scenario is not None:
-            for name, (body, function) in self._functions.items():
-                scenario = scenario.with_load(name, body, adapted(function))
-        if len(self._built) >= 4:
-            self._built.pop(next(iter(self._built), None), None)
-        self._built[key] = (scenario, made)
-        return self._built[key]
+    def find_equilibrium(self) -> Equilibrium:
+        """Where the mechanism rests under weight and loads, searched from its start (or known end).
 
-    def _scenario(self, overrides: Mapping[str, Any]) -> Any:
-        """Compiled; raises what is wrong, and warns once of what is worth a look."""
-        scenario, found = self._build(overrides)
-        if scenario is None:
-            raise raised(found)
-        if found and not self._warned:
-            self._warned = True
-            for d in found:
-                warnings.warn(str(d), ModelWarning, stacklevel=stack_level())
-        return scenario
+        V = 0, drives and loads as they are at the start of time. The potential energy falls on the way, so it is
+        a stable equilibrium, unless the start is balanced itself: then that one is given, whatever its stability.
 
-    def _with(self, overrides: Mapping[str, Any]) -> Table:
-        root = Table(self._root, self._root.place, self._root.places)
-        root.update(overrides)
-        return root
+        Returns:
+            The equilibrium. If there is none, ``success`` is False, and :class:`SolveWarning` has been warned of.
 
-    def _with_paths(self, found: list[Diagnostic]) -> list[Diagnostic]:
-        """Of a text: the path of what stands there."""
-        from dataclasses import replace
-        return [replace(d, path=path_at(self._root, d.place)) for d in found]
+        Raises:
+            InputError: what is wrong with the model.
 
-    # Editing.
+        Example:
+            >>> import livens as lv
+            >>> m = lv.Model("spring", gravity=(0, 0, -9.81))
+            >>> bob = m.add_body("bob", lv.point(mass=1))
+            >>> rail = m.add_point_on_line("rail", "world", bob, at=(0, 0, 0), axis=(0, 0, 1))
+            >>> spring = m.add_spring("spring", ("world", (0, 0, 1)), (bob, (0, 0, 0)), stiffness=981, free_length=1)
+            >>> rest = m.find_equilibrium()
+            >>> rest.status, rest["bob"].position.round(9).tolist()
+            ('stable', [0.0, 0.0, -0.01])
+            >>> m.vibration_modes().frequency.round(6).tolist()
+            [31.32092]
+        """
+        rest = Equilibrium(_core.equilibrium(self._as_it_starts()))
+        if not rest.success:
+            warnings.warn(f"no equilibrium: {rest.message}", SolveWarning, stacklevel=stack_level())
+        return rest
 
-    def _forget(self) -> None:
-        self._built: dict[Any, tuple[Any, list[Diagnostic]]] = {}
-        self._names: dict[str, list[tuple[str, Table]]] | None = None
-        self._order: dict[int, int] = {}
-        self._warned = False
+    def linearise(self, at: Literal["equilibrium", "start"] = "equilibrium") -> Linearisation:
+        """Masses, damping and stiffness of small motions, their modes, and state matrices.
 
-    def _touch(self) -> None:
-        self._text = None
-        self._forget()
+        Args:
+            at: About what: the equilibrium that :meth:`find_equilibrium` finds, or the start, which must be one.
 
-    def _named(self, name: str) -> list[tuple[str, Table]]:
-        if self._names is None:
-            self._names, self._order = {}, {}
-            for kind in KINDS:
-                for table in self._root.get(kind, []):
-                    self._names.setdefault(default_name(kind, table), []).append((kind, table))
-                    self._order[id(table)] = len(self._order)
-        return self._names.get(name, []) if isinstance(name, str) else []
+        Raises:
+            EquilibriumError: no equilibrium was found.
+            InputError: ``not-at-rest``, ``not-in-equilibrium`` with ``at="start"``; what is wrong with the model.
 
-    def _handle(self, kind: str, table: Table) -> Entry:
-        return _TYPES[kind](self, table, schema().children[kind], kind)
+        Example:
+            >>> import livens as lv
+            >>> m = lv.Model("upright", gravity=(0, 0, -9.81))
+            >>> rod = m.add_body("rod", lv.box(0.05, 0.05, 1, mass=2), position=(0, 0, 0.5))
+            >>> pivot = m.add_revolute("pivot", "world", rod, at=(0, 0, 0), axis=(0, 1, 0))
+            >>> linear = m.linearise(at="start")
+            >>> linear.status
+            'unstable'
+            >>> A, B, C, D, *names = linear.state_matrices(["pivot.angle"], ["pivot.angle"])
+            >>> A.shape, B.shape, C.shape, D.shape
+            ((2, 2), (2, 1), (1, 2), (1, 1))
+        """
+        if at not in ("equilibrium", "start"):
+            raise fault("unknown-choice", f"at= is 'equilibrium' or 'start', not {at!r}", "at",
+                        _core.suggestion(str(at), ["equilibrium", "start"]))
+        linear, found = _core.linearised(self._as_it_starts(), at == "start")
+        if linear is None:
+            rest = Equilibrium(found)
+            raise EquilibriumError(f"no equilibrium was found: {rest.message}", rest)
+        return Linearisation(linear)
 
-    def _section(self, name: str) -> Section:
-        return RootSection(self, Table(place=user_place()), schema().children[name], name)
+    def vibration_modes(self, at: Literal["equilibrium", "start"] = "equilibrium") -> Modes:
+        """How the mechanism vibrates about its rest: frequencies, damping, shapes.
 
-    def _root_section(self) -> Section:
-        return Section(self, self._root, schema().root, "model")
+        Args:
+            at: As :meth:`linearise` has it, which gives matrices, too.
 
-    def _edit_root(self, name: str, value: Any) -> None:
-        key = schema().key(schema().root, {}, name)
-        old = self._root.get(name, _MISSING)
-        store(self._root, name, plain(value, key, name))
-        _, found = _core.build_tree({"format": 1, **{name: self._root[name]}}, "", "", True)
-        self._raise_or_keep(self._root, name, old,
-                            [diagnostic_of(d, self._root) for d in found
-                             if d["location"][0] == name and d["severity"] == "error"
-                             and not d["code"].startswith("mesh-")])
+        Raises:
+            EquilibriumError: no equilibrium was found.
+            InputError: as :meth:`linearise`.
 
-    def _edit(self, section: Section, name: str, value: Any) -> None:
-        top = section
-        while top._top is not None:
-            top = top._top
-        key = schema().key(section._schema, section._table, name)
-        path = f"{path_of(top._key, top._table)}.{name}"
-        if key is None and value is None:
-            raise fault("unknown-key", f"unknown key '{name}' in {section._label()}", path, section._suggestion(name))
-        if top._key in KINDS and not any(table is top._table for table in self._root.get(top._key, [])):
-            raise unknown_name(top._key, f"{top.name} (which was removed)", list(Names(self, top._key, Entry)))
-        if isinstance(value, Shape):
-            return self._reshape(section, value)
-        if name == "name" and isinstance(value, str) and top._key in KINDS and value != section._table.get("name"):
-            if any(kind == top._key for kind, _ in self._named(value)):
-                raise fault("name-duplicate", f"a {top._key} called '{value}' exists already", path,
-                            "names are unique among their kind")
-        old = section._table.get(name, _MISSING)
-        replaced = {} if value is None or section is not top else {
-            other: section._table[other] for group in _INSTEAD.get(top._key, ()) if name in group
-            for other in group if other != name and other in section._table}
-        for other in replaced:
-            del section._table[other]
-        if value is None:
-            section._table.pop(name, None)
-        else:
-            store(section._table, name, plain(value, key, path))
-        top_key = name if section is top else key_below(section, top)
-        if section is not top:
-            top._table.places[top_key] = user_place()
-        found = [] if value is None else [
-            of_table(d, top._key, top._table) for d in _core.check_table(top._key, top._table)
-            if d["severity"] == "error" and d["location"][2] == top_key]
-        if found:
-            section._table.update(replaced)
-        self._raise_or_keep(section._table, name, old, found)
-        if top._key not in KINDS and top._key not in self._root:
-            self._root[top._key] = top._table
+        Example:
+            >>> import livens as lv
+            >>> m = lv.Model("pendulum", gravity=(0, 0, -9.81))
+            >>> bob = m.add_body("bob", lv.point(mass=1), position=(0, 0, -1))
+            >>> thread = m.add_rod("thread", "world", bob, points=[(0, 0, 0), (0, 0, 0)])
+            >>> m.vibration_modes().frequency.round(6).tolist()   # in two directions sqrt(g/l)
+            [3.132092, 3.132092]
+        """
+        return self.linearise(at).vibration_modes()
 
-    def _reshape(self, section: Section, shape: Shape) -> None:
-        """A shape with the density or mass that it brings, which replaces the other."""
-        before = Table(section._table, places=section._table.places)
-        try:
-            self._edit(section, "shape", shape.keys["shape"])
-            for key, other in (("density", "mass"), ("mass", "density")):
-                if key in shape.keys:
-                    self._edit(section, other, None)
-                    self._edit(section, key, shape.keys[key])
-        except InputError:
-            section._table.clear()
-            section._table.update(before)
-            section._table.places = before.places
-            raise
-
-    def _raise_or_keep(self, table: Table, name: str, old: Any, found: list[Diagnostic]) -> None:
-        if not found:
-            return self._touch()
-        if old is _MISSING:
-            table.pop(name, None)
-        else:
-            table[name] = old
-        raise raised(found)
-
-    def _add(self, kind: str, word: str, content: Mapping[str, Any]) -> Any:
-        """Appends a table, or raises what is wrong with it."""
-        name = content.get("name")
-        path = f"{kind}[{name if isinstance(name, str) else len(self._root.get(kind, [])) + 1}]"
-        table = Table(place=user_place())
-        given = {"name": name, "type": word or None, **arranged(content)}
-        for key_name, value in given.items():
-            if value is None:
-                continue
-            key = schema().key(schema().children[kind], {"type": word} if word else {}, key_name)
-            table[key_name] = plain(value, key, f"{path}.{key_name}")
-            table.places[key_name] = table.place
-        self._named("")
-        names, order = self._names, self._order
-        assert names is not None
-        called = default_name(kind, table)
-        entries = self._root.setdefault(kind, [])
-        entries.append(table)
-        names.setdefault(called, []).append((kind, table))
-        order[id(table)] = len(order)
-        try:
-            found = self._faults_of(kind, table)
-        except BaseException:
-            found = []
-            is_refused = True
-            raise
-        else:
-            is_refused = bool(found)
-        finally:
-            if is_refused:
-                entries.pop()
-                names[called].pop()
-                del order[id(table)]
-                if not entries:
-                    del self._root[kind]
-        if found:
-            raise raised(found)
-        self._text, self._built, self._warned = None, {}, False
-        return self._handle(kind, table)
-
-    def _faults_of(self, kind: str, table: Table) -> list[Diagnostic]:
-        """Of a table at the end of its kind, by a model of what it refers to and no more."""
-        part, is_whole = self._part_around(kind, table)
-        found = faults_in(part, kind, table)
-        if found and not is_whole:   # in the whole model lengths, and what is allowed, may be other ones
-            found = faults_in({**self._root, "time": {"end": 1}}, kind, table)
-        return found
-
-    def _part_around(self, kind: str, table: Table) -> tuple[dict[str, Any], bool]:
-        wanted: dict[int, tuple[str, Table]] = {}
-        open_ends = [(kind, table)]
-        for body in self._root.get("body", [])[:_SHOWN_BODIES]:
-            open_ends.append(("body", body))
-        while open_ends:
-            at_kind, at = open_ends.pop()
-            if id(at) in wanted:
-                continue
-            wanted[id(at)] = (at_kind, at)
-            words = [default_name(at_kind, at), *(w for name, v in at.items() if name != "name" for w in words_in(v))]
-            for word in words:
-                for candidate in {word, word.rpartition(".")[0]}:
-                    open_ends += self._named(candidate)
-        part: dict[str, Any] = {key: value for key, value in self._root.items() if key in ("format", "gravity", "start")}
-        part["time"] = {"end": 1}
-        for part_kind, part_table in sorted(wanted.values(), key=lambda item: self._order[id(item[1])]):
-            part.setdefault(part_kind, []).append(part_table)
-        n_all = sum(len(self._root.get(k, [])) for k in KINDS)
-        return part, len(wanted) == n_all
+    def _as_it_starts(self) -> Any:
+        return self._scenario({} if "time" in self._root else {"time": some_time(self._root)})

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from . import _core
+from ._code import written
 from ._entries import Section, default_name
 from ._errors import Diagnostic, Place, fault, user_place
 from ._tree import KINDS, Table
@@ -73,8 +74,10 @@ def path_of(kind: str, table: Mapping[str, Any], index: int = -1) -> str:
 def of_table(d: dict[str, Any], kind: str, table: Table) -> Diagnostic:
     key = d["location"][2]
     path = path_of(kind, table) + (f".{key}" if key else "")
-    return Diagnostic(d["severity"], d["code"], d["message"], path, d["note"], d["help"],
-                      table.places.get(key, table.place))
+    place = table.places.get(key, table.place)
+    if key and place.line and not place.column:   # of Python's code, where a call may have many lines
+        place = written(place, key, table.get("name"))
+    return Diagnostic(d["severity"], d["code"], d["message"], path, d["note"], d["help"], place)
 
 
 def diagnostic_of(d: dict[str, Any], root: Mapping[str, Any]) -> Diagnostic:
@@ -97,7 +100,9 @@ def faults_in(part: Mapping[str, Any], kind: str, table: Table) -> list[Diagnost
 
 
 def path_at(root: Table, place: Place) -> str:
+    """Of the value that stands there, or else of the first one on the line, whose key it is."""
     best, path = (0, 0), ""
+    least, first = (0, 0), ""
     for kind, value in root.items():
         entries = value if isinstance(value, list) else [value] if isinstance(value, Table) else []
         spots = [(root.places.get(kind, Place()), kind)] if not entries else []
@@ -106,9 +111,11 @@ def path_at(root: Table, place: Place) -> str:
             spots += [(spot, f"{path_of(kind, table)}.{key}") for key, spot in table.places.items()]
         for spot, found in spots:
             at = (spot.line, spot.column)
+            if spot.line == place.line and (not first or at < least):
+                least, first = at, found
             if best <= at <= (place.line, place.column) and spot.line == place.line or best == (0, 0) == at:
                 best, path = at, found
-    return path
+    return first if first and best[0] != place.line else path
 
 
 def some_time(root: Mapping[str, Any]) -> Table:

@@ -51,7 +51,7 @@ Wrench call(const nb::object& function, const LoadArguments& at)
 /// F of a force at the reference point and, but for point masses, a torque  (P21).
 Matrix34 forces_of(const Wrench& w, const Matrix34& X, bool is_point)
 {
-    Matrix34 F;
+    Matrix34 F{};
     F.set_column(0, {w[0], w[1], w[2]});
     if (is_point) return F;
     const Matrix3 dual = transpose(inverse(directors(X)));

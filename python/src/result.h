@@ -34,6 +34,7 @@ using Times = nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device::c
 
 void add_solving(nb::module_& m);
 void add_results(nb::module_& m);
+void add_rest(nb::module_& m);
 /// Methods that sample a motion.
 void add_samples(nb::class_<Result>& result);
 

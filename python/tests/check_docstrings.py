@@ -19,9 +19,9 @@ UNIT = re.compile(r"\b(m|s|N|J|kg|rad|W)(/s(\^2)?| m| m/s| m\^2/s)?,|\(m,|quater
                   r"orthonormal|violation|perturbation|lengths|views?\.", re.I)
 WITHOUT_EXAMPLE = {   # shown by that of another
     "Body", "BodySeries", "BodyState", "Comparison", "Condition", "Drive", "Entry", "Joint", "JointSeries", "Load",
-    "LoadSeries", "Method", "MethodOptions", "ModelWarning", "Names", "Parts", "Place", "ReadingSeries",
+    "Linearisation", "LoadSeries", "Method", "MethodOptions", "ModeBody", "ModeJoint", "ModelWarning", "Modes", "Names", "Parts", "Place", "RestBody", "RestJoint", "ReadingSeries",
     "ResultFileError", "Sensor", "SensorSeries", "Series", "Shape", "SlowWarning", "SolveWarning", "load_solution",
-    "momenta", "state", *livens._generated.__all__}
+    "StateMatrices", "momenta", "state", *livens._generated.__all__}
 
 
 def members(name: str, thing: Any) -> Iterator[tuple[str, Any]]:

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The tab on the run and the page themselves: how exact, made how, by what, under which terms.
 import type { Run } from "./run";
-import { by_id, element } from "./text";
+import { by_id, element, rough } from "./text";
 import { exactness } from "./verdict";
 
 const keys: [string, string][] = [
@@ -32,6 +32,17 @@ export function build_about(host: HTMLElement, run: Run, program: string, notice
         "p",
         {},
         `Velocities are the derivatives of these polynomials. Energies, reactions, coordinates of joints, forces of loads and sensors were taken by livens at the nodes of polynomials in each element, in single precision, and are evaluated between them.${curves}${quality} Reactions inside elements are interpolated multipliers, at their ends of the acceleration level.`,
+      ),
+      ...meta.bodies.flatMap(({ name, thinned }) =>
+        thinned
+          ? [
+              element(
+                "p",
+                { class: "thinned" },
+                `The surface of ${name} is drawn with ${thinned[1]} of its ${thinned[0]} triangles: corners are at most ${rough(thinned[2])} m from where they are, and what is smaller may be gone. Motion and masses are those of the whole.`,
+              ),
+            ]
+          : [],
       ),
     ),
     card(

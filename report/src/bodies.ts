@@ -74,10 +74,20 @@ function corners_of(run: Run, shape: number): Vector3[] {
   return [...far];
 }
 
-/** x, y, z of all that must be seen: corners of bodies through the motion, joints and springs at the world. */
-export function extent_of(run: Run): Float32Array {
+/** What must be seen: x, y, z of points. */
+export interface Extent {
+  whole: Float32Array;
+  near: Float32Array; // without the far flights of some bodies, if there are any
+  leaving: string[]; // the names of these bodies
+}
+const far_away = 3; // times as far from the middle as everything else
+const kept_flight = 1.5; // likewise: how much of such a flight is near
+
+/** Corners of bodies through the motion, joints and springs at the world. */
+export function extent_of(run: Run): Extent {
   const { meta, motion } = run,
     all: number[] = [],
+    owners: number[] = [],
     p = new Vector3(),
     poses = new Poses(motion.bodies);
   const corners = Array.from({ length: meta.shapes }, (_, k) => corners_of(run, k)),
@@ -89,11 +99,42 @@ export function extent_of(run: Run): Float32Array {
     meta.bodies.forEach((body, b) => {
       for (const corner of corners[body.shape]) {
         p.copy(corner).multiply(vector(body.half)).add(vector(body.middle)).applyMatrix4(poses.matrices[b]);
-        if (Number.isFinite(p.x + p.y + p.z)) all.push(p.x, p.y, p.z);
+        if (!Number.isFinite(p.x + p.y + p.z)) continue;
+        all.push(p.x, p.y, p.z);
+        owners.push(b);
       }
     });
   }
   for (const joint of meta.joints) if (joint.first < 0) all.push(...joint.point_first);
   for (const spring of run.springs) if (spring.second < 0) all.push(...spring.point_second!);
-  return Float32Array.from(all.length ? all : [-1, -1, -1, 1, 1, 1]);
+  const whole = Float32Array.from(all.length ? all : [-1, -1, -1, 1, 1, 1]);
+  return { whole, ...near_of(run, whole, owners) };
+}
+
+/** Bodies that go much farther than all others, such as a stone that was thrown, would make the others dots. */
+function near_of(run: Run, whole: Float32Array, owners: number[]): { near: Float32Array; leaving: string[] } {
+  const { bodies } = run.meta,
+    p = new Vector3(),
+    middle = new Vector3(),
+    first = owners.findIndex((owner, i) => owner < owners[i - 1]), // points of the first instant
+    n = first < 0 ? owners.length : first;
+  for (let i = 0; i < n; ++i) middle.addScaledVector(p.fromArray(whole, 3 * i), 1 / Math.max(n, 1));
+  const reach = bodies.map(() => 0);
+  owners.forEach((owner, i) => {
+    reach[owner] = Math.max(reach[owner], p.fromArray(whole, 3 * i).distanceTo(middle));
+  });
+  const order = bodies.map((_, b) => b).sort((a, b) => reach[a] - reach[b]);
+  const cut = order.findIndex((b, k) => k > 0 && reach[b] > far_away * reach[order[k - 1]]);
+  if (cut < 0) return { near: whole, leaving: [] };
+  const leaving = new Set(order.slice(cut)),
+    limit = kept_flight * reach[order[cut - 1]],
+    near: number[] = [];
+  for (let i = 0; 3 * i < whole.length; ++i) {
+    p.fromArray(whole, 3 * i);
+    if (!leaving.has(owners[i]) || p.distanceTo(middle) < limit) near.push(p.x, p.y, p.z);
+  }
+  return {
+    near: Float32Array.from(near),
+    leaving: bodies.filter((_, b) => leaving.has(b)).map((b) => b.name),
+  };
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Where the picture is seen from: chosen so that the whole motion fills it, then turned by hand or by keys.
 import { PerspectiveCamera, Vector3 } from "three";
+import type { Extent } from "./bodies";
 
 /** Unit vectors of a view: right, up in the picture, and into it. */
 interface View {
@@ -31,13 +32,15 @@ export class Eye {
   private side: Side = "fitted";
   private readonly across = new Vector3(); // level, where the motion is widest
 
-  /** `points`: x, y, z of all that must be seen. */
+  private points: Float32Array;
+
   constructor(
-    private readonly points: Float32Array,
+    private readonly extent: Extent,
     readonly up: Vector3,
     private readonly redraw: () => void,
   ) {
     this.camera.up.copy(up);
+    this.points = extent.near;
     this.find_width();
   }
 
@@ -81,6 +84,16 @@ export class Eye {
   /** Looks at everything from a side, as near as the picture allows. */
   fit(side: Side = this.side) {
     this.side = side;
+    this.fit_points();
+  }
+  /** Of a mechanism that throws something: the mechanism; once more, the whole flight. */
+  fit_by_hand(side: Side) {
+    const is_again = side === this.side && !this.moved && this.points === this.extent.near;
+    this.points = is_again ? this.extent.whole : this.extent.near;
+    this.fit(side);
+  }
+  private fit_points() {
+    const { side } = this;
     this.moved = false;
     const rise = side === "top" ? 1.5 : side !== "fitted" ? 0 : this.flat ? 0.85 : 0.3;
     const turn = side === "side" ? Math.PI / 2 : side === "fitted" ? -0.42 : 0;

@@ -12,6 +12,7 @@ export interface Body {
   middle: Vector;
   half: Vector;
   centre: Vector;
+  thinned: [number, number, number] | null; // triangles, those drawn, m that corners are moved by at most
 }
 export interface Joint {
   name: string;
@@ -22,6 +23,8 @@ export interface Joint {
   point_second: Vector;
   axis_first: Vector;
   axis_second: Vector;
+  from: number | null; // s, when it begins and ends to act; null: always
+  until: number | null;
 }
 export interface Load {
   name: string;
@@ -30,6 +33,7 @@ export interface Load {
   second: number;
   point_first: Vector | null;
   point_second: Vector | null;
+  place: Vector | null; // where force and torque are told, if there are no points
 }
 export interface Sensor {
   name: string;

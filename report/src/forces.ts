@@ -11,6 +11,7 @@ import {
   Object3D,
   Quaternion,
   SphereGeometry,
+  TorusGeometry,
   Vector3,
 } from "three";
 import { Lines, Poses, unit_z, vector } from "./instances";
@@ -67,6 +68,57 @@ export class Arrows {
       shaft.setMatrixAt(i, is_seen ? m.compose(at, turn, new Vector3(r, r, length - tip)) : none);
       at.addScaledVector(f, length - tip);
       head.setMatrixAt(i, is_seen ? m.compose(at, turn, new Vector3(2.6 * r, 2.6 * r, tip)) : none);
+    });
+    for (const mesh of this.objects) mesh.instanceMatrix.needsUpdate = true;
+  }
+}
+
+/** Torques: arrows that go round, right-handed, larger by the square root as well. */
+export class Torques {
+  readonly objects: InstancedMesh[];
+
+  /** `largest`: the radius of the run's largest torque, m. */
+  constructor(
+    private readonly run: Run,
+    private readonly largest: number,
+  ) {
+    const arc = 1.55 * Math.PI,
+      tip = new ConeGeometry(0.17, 0.5, 16).rotateZ(0).translate(1, 0.2, 0).rotateZ(arc),
+      material = new MeshPhongMaterial({
+        specular: 0x000000,
+        color: theme().load,
+        depthTest: false,
+        depthWrite: false,
+        transparent: true,
+      });
+    const count = run.torques.length;
+    this.objects = count
+      ? [new TorusGeometry(1, 0.055, 8, 40, arc), tip].map((g) => new InstancedMesh(g, material, count))
+      : [];
+    for (const mesh of this.objects) {
+      mesh.renderOrder = 3;
+      mesh.frustumCulled = false;
+      mesh.instanceMatrix.setUsage(DynamicDrawUsage);
+    }
+  }
+
+  move(t: number, poses: Poses, is_shown: boolean) {
+    const { torques, largest_torque } = this.run,
+      torque = new Vector3(),
+      m = new Matrix4(),
+      turn = new Quaternion();
+    for (const mesh of this.objects) mesh.visible = is_shown && largest_torque > 0;
+    if (!this.objects.length || !this.objects[0].visible) return;
+    torques.forEach(({ at, body, point }, i) => {
+      at(t, torque);
+      const size = torque.length(),
+        radius = this.largest * Math.sqrt(size / largest_torque),
+        is_seen = radius > 0.08 * this.largest;
+      if (is_seen) {
+        turn.setFromUnitVectors(unit_z, torque.divideScalar(size));
+        m.compose(poses.place(body, point), turn, new Vector3(radius, radius, radius));
+      } else m.makeScale(0, 0, 0);
+      for (const mesh of this.objects) mesh.setMatrixAt(i, m);
     });
     for (const mesh of this.objects) mesh.instanceMatrix.needsUpdate = true;
   }

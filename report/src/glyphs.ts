@@ -40,8 +40,9 @@ const kinds: Record<string, Piece[]> = {
   parallel_axes: arms,
   perpendicular_axes: arms,
   constant_angle: arms,
-  gear: [],
-  rack_and_pinion: [], // between other joints, nowhere themselves
+  gear: [], // see couplings.ts
+  rack_and_pinion: [],
+  bushing: [disc(0, 1.3, 2.1), disc(0, 1.6, 1.1)], // a load, drawn as what it is made of
 };
 /** Joints that stand on a foot where they hold a body to the world. */
 const standing = new Set(["revolute", "universal", "spherical", "constant_velocity", "weld"]);

@@ -4,7 +4,7 @@ import { BufferGeometry, Color, DynamicDrawUsage, InstancedMesh, Material, Matri
 import { LineMaterial } from "three/examples/jsm/lines/LineMaterial.js";
 import { LineSegments2 } from "three/examples/jsm/lines/LineSegments2.js";
 import { LineSegmentsGeometry } from "three/examples/jsm/lines/LineSegmentsGeometry.js";
-import type { Vector } from "./data";
+import type { Joint, Vector } from "./data";
 
 export const unit_z = new Vector3(0, 0, 1);
 export const vector = (v: Vector) => new Vector3(...v);
@@ -14,6 +14,7 @@ export interface Place {
   body: number;
   local: Matrix4;
   colour?: Color;
+  joint?: Joint; // whose part it is: it is seen while that acts
 }
 
 /** Where everything is at an instant. */
@@ -39,6 +40,10 @@ export function pose_of(X: Float64Array, b: number, into: Matrix4) {
   return into.set(x[3], x[6], x[9], x[0], x[4], x[7], x[10], x[1], x[5], x[8], x[11], x[2], 0, 0, 0, 1);
 }
 
+export const acts = ({ from, until }: Joint, t: number) =>
+  (from ?? -Infinity) <= t && t < (until ?? Infinity);
+const nothing = new Matrix4().makeScale(0, 0, 0);
+
 export class Instances {
   readonly mesh: InstancedMesh;
   private readonly now = new Matrix4();
@@ -55,9 +60,12 @@ export class Instances {
       if (colour) this.mesh.setColorAt(i, colour);
     });
   }
-  move({ matrices }: Poses) {
-    this.places.forEach(({ body, local }, i) => {
-      if (body >= 0) this.mesh.setMatrixAt(i, this.now.multiplyMatrices(matrices[body], local));
+  move({ matrices }: Poses, t = NaN) {
+    this.places.forEach(({ body, local, joint }, i) => {
+      const is_timed = joint && ((joint.from ?? null) !== null || (joint.until ?? null) !== null);
+      if (is_timed && !acts(joint, t)) this.mesh.setMatrixAt(i, nothing);
+      else if (is_timed && body < 0) this.mesh.setMatrixAt(i, local);
+      else if (body >= 0) this.mesh.setMatrixAt(i, this.now.multiplyMatrices(matrices[body], local));
     });
     this.mesh.instanceMatrix.needsUpdate = true;
   }

@@ -13,8 +13,10 @@ import {
   SphereGeometry,
   Vector3,
 } from "three";
+import { Couplings } from "./couplings";
+import type { Joint } from "./data";
 import { has_bar, has_foot, pieces_of, type Part, type Piece } from "./glyphs";
-import { Instances, Poses, unit_z, vector, type Place } from "./instances";
+import { Instances, Poses, acts, unit_z, vector, type Place } from "./instances";
 import type { Run } from "./run";
 import { body_colour, theme } from "./theme";
 
@@ -24,7 +26,7 @@ export class Joints {
   readonly objects: Object3D[] = [];
   private readonly places: Record<Part, Place[]> = { box: [], cylinder: [], ball: [] };
   private readonly layers: Instances[] = [];
-  private readonly bars: { first: number; second: number; a: Vector3; b: Vector3 }[] = [];
+  private readonly bars: { joint: Joint; a: Vector3; b: Vector3 }[] = [];
   private bar_mesh: InstancedMesh | null = null;
   private readonly grey = new Color(theme().joint);
   private readonly fixed = new Color(theme().foot);
@@ -36,6 +38,7 @@ export class Joints {
   ) {
     this.add_joints();
     this.add_sticks();
+    new Couplings(run, radius, (part, place) => this.places[part].push(place));
     const sides = run.meta.joints.length > many ? 10 : 28;
     const forms: Record<Part, BufferGeometry> = {
       box: new BoxGeometry(2, 2, 2),
@@ -57,7 +60,7 @@ export class Joints {
     this.objects.push(...this.layers.map((layer) => layer.mesh));
   }
 
-  private put(piece: Piece, body: number, at: Vector3, axis: Vector3, colour: Color) {
+  private put(piece: Piece, body: number, at: Vector3, axis: Vector3, colour: Color, joint?: Joint) {
     const turn = new Quaternion().setFromUnitVectors(
       unit_z,
       axis.lengthSq() > 0 ? axis.clone().normalize() : unit_z,
@@ -68,7 +71,7 @@ export class Joints {
       turn,
       new Vector3(...piece.half).multiplyScalar(this.radius),
     );
-    this.places[piece.part].push({ body, colour, local });
+    this.places[piece.part].push({ body, colour, local, joint });
   }
 
   private add_joints() {
@@ -78,16 +81,26 @@ export class Joints {
         second = vector(joint.point_second);
       for (const piece of pieces_of(joint.type)) {
         if (piece.on === "first")
-          this.put(piece, joint.first, first, vector(joint.axis_first), joint.first < 0 ? fixed : grey);
-        else this.put(piece, joint.second, second, vector(joint.axis_second), grey);
+          this.put(
+            piece,
+            joint.first,
+            first,
+            vector(joint.axis_first),
+            joint.first < 0 ? fixed : grey,
+            joint,
+          );
+        else this.put(piece, joint.second, second, vector(joint.axis_second), grey, joint);
       }
       if (joint.first < 0 && has_foot(joint.type)) {
         this.put({ part: "cylinder", half: [0.55, 0.55, 1.5], at: [0, 0, -1.5] }, -1, first, run.up, fixed);
         this.put({ part: "box", half: [2.4, 2.4, 0.3], at: [0, 0, -3.2] }, -1, first, run.up, fixed);
       }
-      if (has_bar(joint.type))
-        this.bars.push({ first: joint.first, second: joint.second, a: first, b: second });
+      if (has_bar(joint.type)) this.bars.push({ joint, a: first, b: second });
     }
+    for (const load of run.meta.loads)
+      if (load.type === "bushing" && load.place)
+        for (const piece of pieces_of("bushing"))
+          this.put(piece, load.first, vector(load.place), run.up, piece.half[0] > 2 ? fixed : grey);
     for (const spring of run.springs)
       if (spring.second < 0)
         this.put({ part: "box", half: [1.4, 1.4, 1.4] }, -1, vector(spring.point_second!), run.up, fixed);
@@ -116,15 +129,20 @@ export class Joints {
     });
   }
 
-  move(poses: Poses, is_shown: boolean) {
+  /** Bars between points that act. */
+  bars_at(t: number) {
+    return this.bars.filter(({ joint }) => acts(joint, t)).length;
+  }
+  move(poses: Poses, is_shown: boolean, t: number) {
     for (const object of this.objects) object.visible = is_shown;
     if (!is_shown) return;
-    for (const layer of this.layers) layer.move(poses);
+    for (const layer of this.layers) layer.move(poses, t);
     const m = new Matrix4(),
       r = 0.6 * this.radius;
-    this.bars.forEach(({ first, second, a, b }, i) => {
-      const from = poses.place(first, a),
-        arm = poses.place(second, b).sub(from),
+    this.bars.forEach(({ joint, a, b }, i) => {
+      const from = poses.place(joint.first, a),
+        arm = poses.place(joint.second, b).sub(from),
+        thick = acts(joint, t) ? r : 0,
         length = arm.length();
       const turn = new Quaternion().setFromUnitVectors(
         unit_z,
@@ -132,7 +150,7 @@ export class Joints {
       );
       this.bar_mesh!.setMatrixAt(
         i,
-        m.compose(from.addScaledVector(arm, 0.5), turn, new Vector3(r, r, length / 2)),
+        m.compose(from.addScaledVector(arm, 0.5), turn, new Vector3(thick, thick, thick && length / 2)),
       );
     });
     if (this.bar_mesh) this.bar_mesh.instanceMatrix.needsUpdate = true;

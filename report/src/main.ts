@@ -100,6 +100,7 @@ class Report {
     });
     addEventListener("afterprint", () => {
       set_printing(false);
+      if (dark_wanted.matches) this.picture.build();
       this.recolour();
       this.tabs.open(tab_names.find((tab) => by_id(`tab-${tab}`).ariaSelected === "true") ?? "motion");
     });
@@ -130,7 +131,7 @@ class Report {
       "-": () => time.zoom_by(2),
       "0": () => {
         time.zoom(null);
-        this.picture.stage?.eye.fit("fitted");
+        this.picture.stage?.eye.fit_by_hand("fitted");
       },
     };
     tab_names.forEach((tab, i) => {
@@ -178,6 +179,10 @@ function open_to_tests(report: Report, timings: Record<string, number>) {
       curve: (kind: string, index: number, name: string, t: number) =>
         run.curves.at(run.channel(kind, index, name), t),
       camera: () => picture.stage?.eye.camera.position.toArray(),
+      seen_bars: () => ({
+        at_start: picture.stage?.bars_at(time.start),
+        at_end: picture.stage?.bars_at(time.end),
+      }),
       has_picture: picture.stage !== null,
       timings,
       /** Mean milliseconds of a frame, every one waited for, and draw calls of the last. */

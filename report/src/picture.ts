@@ -3,8 +3,8 @@
 import type { Side } from "./camera";
 import type { Run } from "./run";
 import { Stage, type Shown } from "./stage";
-import { by_id, element, number, seconds } from "./text";
-import { body_colour, theme } from "./theme";
+import { by_id, element, number, rough, seconds } from "./text";
+import { body_colour, dark_wanted, theme } from "./theme";
 import type { Timeline } from "./timeline";
 
 const few = 8; // bodies that carry their names unless asked otherwise, twice the joints whose forces are shown
@@ -15,6 +15,7 @@ export class Picture {
   private readonly shown: Shown;
   private readonly labels: HTMLElement[];
   private other: Run | null = null;
+  private sizes: [number, number][] = []; // of the labels, px
 
   constructor(
     private readonly run: Run,
@@ -89,7 +90,7 @@ export class Picture {
     wide.addEventListener("change", fold);
     fold();
     for (const side of ["fitted", "front", "side", "top"] as Side[])
-      by_id(`view-${side}`).addEventListener("click", () => this.stage?.eye.fit(side));
+      by_id(`view-${side}`).addEventListener("click", () => this.stage?.eye.fit_by_hand(side));
   }
 
   compare(other: Run | null) {
@@ -99,17 +100,25 @@ export class Picture {
   }
   resize() {
     const { clientWidth, clientHeight } = by_id("space");
+    this.sizes = [];
     if (clientWidth > 0 && clientHeight > 0) this.stage?.resize(clientWidth, clientHeight);
   }
 
   private place_labels() {
     by_id("labels").hidden = !this.shown.names;
     if (!this.stage || !this.shown.names) return;
+    const { clientWidth: width, clientHeight: height } = by_id("space");
     this.labels.forEach((label, b) => {
       const at = this.stage!.screen(b);
       label.hidden = at === null || !Number.isFinite(at[0] + at[1]);
-      if (at)
-        label.style.transform = `translate(${at[0].toFixed(1)}px, ${at[1].toFixed(1)}px) translate(.7rem, -1.7rem)`;
+      if (!at || label.hidden) return;
+      this.sizes[b] ??= [label.offsetWidth, label.offsetHeight];
+      // Beside the middle of the body, and in the picture as long as that is in it.
+      const [w, h] = this.sizes[b],
+        is_in = at[0] > 0 && at[0] < width && at[1] > 0 && at[1] < height,
+        x = is_in ? Math.min(at[0] + 11, width - w - 2) : at[0] + 11,
+        y = is_in ? Math.max(at[1] - h - 7, 2) : at[1] - h - 7;
+      label.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px)`;
     });
   }
 
@@ -124,6 +133,8 @@ export class Picture {
       said.push(element("span", {}, swatch && mark, text));
     };
     if (run.meta.bodies.length > few) add(null, `${run.meta.bodies.length} bodies`);
+    if (stage.leaving.length)
+      add(null, `${stage.leaving.slice(0, 3).join(", ")} goes far: Fit once more shows the whole way`);
     add(null, `grid ${number(stage.cell)} m`);
     if (this.shown.trails && stage.path_window > 0)
       add(null, `paths of the last ${number(stage.path_window, 2)} s`);
@@ -133,6 +144,13 @@ export class Picture {
       if (kinds.has("load")) add(theme().load, "force of a load");
       add(null, `longest arrow ${number(run.largest_force, 3)} N, lengths as \u221aforce`);
     }
+    if (this.shown.forces && run.largest_torque > 0) {
+      if (!kinds.has("load") || run.largest_force === 0) add(theme().load, "torque of a load");
+      add(null, `largest torque ${number(run.largest_torque, 3)} N m`);
+    }
+    const thinned = run.meta.bodies.filter((body) => body.thinned);
+    if (thinned.length)
+      add(null, `surfaces thinned, off by ${rough(Math.max(...thinned.map((b) => b.thinned![2])))} m`);
     if (this.shown.frames) ["d\u2081", "d\u2082", "d\u2083"].forEach((d, i) => add(theme().axes[i], d));
     by_id("caption").replaceChildren(...said);
   }
@@ -140,6 +158,10 @@ export class Picture {
   /** Start, middle and end, for paper. */
   print_stills(host: HTMLElement) {
     host.replaceChildren();
+    if (dark_wanted.matches) this.build(); // in the colours of paper
+    this.draw_stills(host);
+  }
+  private draw_stills(host: HTMLElement) {
     const { stage } = this,
       { now, start, end, span } = this.time;
     if (!stage) return;

@@ -43,7 +43,10 @@ export class Plot {
       const value = element("output", { "aria-live": "off" });
       const swatch = element("i", {});
       swatch.style.background = colour(s.colour);
-      keys.append(element("span", {}, swatch, o.series.length > 1 ? `${s.label} ` : null, value));
+      const is_said = o.series.length === 1 && o.title.endsWith(s.label);
+      keys.append(
+        element("span", {}, swatch, is_said ? null : element("b", { title: s.label }, s.label), value),
+      );
       this.values.push(value);
     });
     const title = element(

@@ -34,10 +34,12 @@ export class Run {
   readonly curves: Curves;
   readonly up: Vector3;
   readonly forces: Force[] = [];
+  readonly torques: Force[] = [];
   readonly springs: Load[];
   readonly sensor_points: [number, number, number][] = [];
   readonly tips: [number, number, number][];
   readonly largest_force: number;
+  readonly largest_torque: number;
   readonly specs: PlotSpec[];
   private readonly one = new Float64Array(12);
 
@@ -51,7 +53,8 @@ export class Run {
       (l) => l.type.includes("spring") && l.point_first && l.point_second,
     );
     this.find_forces();
-    this.largest_force = this.find_largest();
+    this.largest_force = this.find_largest(this.forces);
+    this.largest_torque = this.find_largest(this.torques);
     this.meta.sensors.forEach((sensor, s) => {
       const at = xyz.map((name) => this.channel("sensor", s, name));
       if (sensor.type === "point" && at.every((c) => c >= 0))
@@ -81,10 +84,11 @@ export class Run {
       name: string,
       body: number,
       point: [number, number, number],
+      what = "force",
     ) => {
-      const channels = xyz.map((x) => this.channel(kind, index, `force ${x}`));
+      const channels = xyz.map((x) => this.channel(kind, index, `${what} ${x}`));
       if (channels.some((c) => c < 0)) return;
-      this.forces.push({
+      (what === "force" ? this.forces : this.torques).push({
         kind,
         name,
         body,
@@ -100,15 +104,17 @@ export class Run {
     };
     this.meta.joints.forEach((j, i) => add("reaction", i, j.name, j.second, j.point_second));
     this.meta.loads.forEach((l, i) => {
-      if (l.point_first && !this.springs.includes(l)) add("load", i, l.name, l.first, l.point_first);
+      const point = l.point_first ?? l.place;
+      if (point && !this.springs.includes(l)) add("load", i, l.name, l.first, point);
+      if (l.place) add("load", i, l.name, l.first, l.place, "torque");
     });
   }
-  private find_largest(): number {
+  private find_largest(forces: Force[]): number {
     const { start, end } = this.motion,
       f = new Vector3();
-    const n = Math.max(400, Math.min(4000, Math.ceil(40000 / Math.max(this.forces.length, 1))));
+    const n = Math.max(400, Math.min(4000, Math.ceil(40000 / Math.max(forces.length, 1))));
     let largest = 0;
-    for (const force of this.forces)
+    for (const force of forces)
       for (let k = 0; k <= n; ++k) {
         force.at(start + (k / n) * (end - start), f);
         if (f.length() > largest) largest = f.length();
@@ -246,6 +252,13 @@ export class Run {
       "Forces of loads",
       "N",
       many(meta.loads.flatMap((l, i) => size("load", i, "force", l.name))),
+    );
+    add(
+      "load torques",
+      "Loads",
+      "Torques of loads",
+      "N m",
+      many(meta.loads.flatMap((l, i) => size("load", i, "torque", l.name))),
     );
     meta.sensors.forEach((sensor, s) => {
       const units = new Map<string, string[]>();

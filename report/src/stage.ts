@@ -3,11 +3,12 @@
 import { DirectionalLight, HemisphereLight, Object3D, Scene, Vector3, WebGLRenderer } from "three";
 import { extent_of, make_bodies } from "./bodies";
 import { Eye } from "./camera";
-import { Arrows, Beads, Springs } from "./forces";
+import { Arrows, Beads, Springs, Torques } from "./forces";
 import { Frames, make_grid } from "./ground";
 import { Poses, vector, type Instances } from "./instances";
 import { Joints } from "./joints";
 import type { Run } from "./run";
+import { Slots } from "./slots";
 import { Trails } from "./trails";
 
 const few = 4; // bodies, with which details go by the size of everything
@@ -25,6 +26,7 @@ export class Stage {
   readonly renderer: WebGLRenderer;
   readonly eye: Eye;
   readonly cell: number; // of the grid, m
+  readonly leaving: string[]; // bodies that go out of the picture
   shown: Shown = { trails: true, forces: true, joints: true, frames: false, names: true, other: true };
   after_draw = () => {};
   private readonly scene = new Scene();
@@ -34,6 +36,8 @@ export class Stage {
   private readonly trails: Trails;
   private readonly arrows: Arrows;
   private readonly springs: Springs;
+  private readonly torques: Torques;
+  private readonly slots: Slots;
   private readonly frames: Frames;
   private readonly beads: Beads;
   private other: { layers: Instances[]; run: Run; poses: Poses } | null = null;
@@ -45,25 +49,38 @@ export class Stage {
     private readonly run: Run,
   ) {
     this.renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true, preserveDrawingBuffer: true });
-    const points = extent_of(run),
+    const extent = extent_of(run),
+      points = extent.near,
       size = half_diagonal(points),
       { bodies } = run.meta;
     const halves = bodies.map((b) => Math.hypot(...b.half)).sort((a, b) => a - b);
     const detail = bodies.length < few ? size : Math.min(size, 2.25 * halves[halves.length >> 1]);
     this.poses = new Poses(bodies.length);
-    this.eye = new Eye(points, run.up, () => this.draw());
+    this.leaving = extent.leaving;
+    this.eye = new Eye(extent, run.up, () => this.draw());
     this.eye.listen(canvas);
     this.bodies = make_bodies(run, false);
     this.joints = new Joints(run, 0.02 * detail);
     this.trails = new Trails(run);
     this.arrows = new Arrows(run, 0.5 * detail);
     this.springs = new Springs(run, 0.045 * detail);
+    this.torques = new Torques(run, 0.17 * detail);
+    this.slots = new Slots(run);
     this.frames = new Frames(bodies.length, 0.16 * detail);
     this.beads = new Beads(run, 0.022 * detail);
     const grid = make_grid(points, run.up, size);
     this.cell = grid.cell;
     this.scene.add(grid.object, ...lights(run.up), ...this.bodies.map((layer) => layer.mesh));
-    for (const part of [this.joints, this.trails, this.arrows, this.springs, this.frames, this.beads]) {
+    for (const part of [
+      this.joints,
+      this.trails,
+      this.arrows,
+      this.torques,
+      this.springs,
+      this.slots,
+      this.frames,
+      this.beads,
+    ]) {
       const objects: Object3D[] = part.objects;
       if (objects.length) this.scene.add(...objects);
     }
@@ -89,10 +106,12 @@ export class Stage {
     run.motion.at(t, poses.X);
     poses.update();
     for (const layer of this.bodies) layer.move(poses);
-    this.joints.move(poses, shown.joints);
+    this.joints.move(poses, shown.joints, t);
     this.trails.move(t, shown.trails);
     this.arrows.move(t, poses, shown.forces);
+    this.torques.move(t, poses, shown.forces);
     this.springs.move(poses);
+    this.slots.move(poses, shown.joints);
     this.frames.move(poses, shown.frames);
     this.beads.move(t);
     if (this.other) {
@@ -115,6 +134,9 @@ export class Stage {
     this.after_draw();
   }
 
+  bars_at(t: number) {
+    return this.joints.bars_at(t);
+  }
   /** Where the middle of a body is in the picture, in pixels of the page; null behind the eye. */
   screen(b: number): [number, number] | null {
     const p = this.poses.place(b, vector(this.run.meta.bodies[b].middle)).project(this.eye.camera);

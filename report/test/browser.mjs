@@ -312,7 +312,7 @@ const tests = {
     const name = "</script><img src=x onerror=alert(1)>";
     const text = example("four_bar")
       .replaceAll('"coupler"', JSON.stringify(name))
-      .replaceAll('"crank"', '"振り子 маятник"')
+      .replaceAll('"crank"', '"振り子 маятник رقاص 🕰️"')
       .replace('title = "four-bar linkage"', `title = ${JSON.stringify(`<b>${name}`)}`);
     const { page: file } = made("hostile", text),
       page = await open(file);
@@ -321,7 +321,7 @@ const tests = {
     assert.equal(await page.locator("img").count(), 0);
     assert.equal(await page.textContent("h1"), `<b>${name}`);
     assert.ok((await page.locator("#labels span").allTextContents()).includes(name));
-    assert.ok((await page.locator("#labels span").allTextContents()).includes("振り子 маятник"));
+    assert.ok((await page.locator("#labels span").allTextContents()).includes("振り子 маятник رقاص 🕰️"));
     assert.ok((await page.title()).startsWith("<b></script>"));
   },
 
@@ -408,6 +408,116 @@ const tests = {
     assert.ok(pdf.length > 50000);
     assert.equal(await page.locator("#paper canvas").count(), 3);
     assert.deepEqual(page.problems, []);
+    // Paper is white, whatever the screen was: the same stills from both, other ones on the screen.
+    const stills = async (colorScheme) => {
+      const screen = await open(file, { reducedMotion: "reduce", colorScheme });
+      const printed = await screen.evaluate(() => {
+        const pixels = () => [...document.querySelectorAll("#paper canvas")].map((c) => c.toDataURL());
+        const before = document.getElementById("stage").toDataURL();
+        dispatchEvent(new Event("beforeprint"));
+        const on_paper = pixels();
+        dispatchEvent(new Event("afterprint"));
+        return { on_paper, before, after: document.getElementById("stage").toDataURL() };
+      });
+      await screen.close();
+      return printed;
+    };
+    const [light, dark] = [await stills("light"), await stills("dark")];
+    assert.deepEqual(dark.on_paper, light.on_paper);
+    assert.notEqual(dark.before, light.before, "the control");
+    assert.equal(dark.after, dark.before, "the screen is as it was");
+  },
+
+  async "gears, slots, bushings and torques are drawn"() {
+    const wheel = (name, x) =>
+      `[[body]]\nname = "${name}"\nshape = { cylinder = { radius = 0.05, length = 0.02 } }\ndensity = 7850\nposition = [${x}, 0, 0]\n` +
+      `[[joint]]\nname = "${name} shaft"\ntype = "revolute"\nbetween = ["world", "${name}"]\nat = [${x}, 0, 0]\naxis = [0, 0, 1]\n`;
+    const text =
+      'format = 1\ntitle = "glyphs"\n' +
+      wheel("a", 0) +
+      wheel("b", 0.15) +
+      '[[body]]\nname = "bead"\nshape = { sphere = 0.02 }\nmass = 1\nposition = [0, 0.3, 0]\n' +
+      '[[body]]\nname = "block"\nshape = { box = [0.1, 0.1, 0.1] }\nmass = 1\nposition = [0.3, 0.3, 0]\nvelocity = [0.2, 0, 0]\n' +
+      '[[joint]]\nname = "mesh"\ntype = "gear"\njoints = ["a shaft", "b shaft"]\nratio = -0.5\n' +
+      '[[joint]]\nname = "slot"\ntype = "slot"\nbetween = ["world", "bead"]\ncurve = { points = [[-0.1, 0.3, 0], [0, 0.3, 0], [0.1, 0.35, 0]] }\n' +
+      '[[load]]\nname = "push"\ntype = "force"\nbody = "bead"\nexpression = ["sin(4*t)", "0", "0"]\n' +
+      '[[load]]\nname = "motor"\ntype = "torque"\nbody = "a"\nexpression = ["0", "0", "0.1*cos(5*t)"]\n' +
+      '[[load]]\nname = "rubber"\ntype = "bushing"\nbetween = ["world", "block"]\nat = [0.3, 0.3, 0]\nstiffness = [400, 400, 400, 2, 2, 2]\n' +
+      "[time]\nend = 1\n";
+    const { page: file } = made("glyphs", text),
+      page = await open(file);
+    const motor = await page.evaluate(() =>
+      [0.1, 0.5, 0.9].map((t) => livensReport.curve("load", 1, "torque z", t) - 0.1 * Math.cos(5 * t)),
+    );
+    assert.ok(Math.max(...motor.map(Math.abs)) < 1e-6, `${motor}`);
+    const shown = await picture(page, 0.3);
+    for (const what of ["joints", "forces"]) {
+      await page.locator(`#show-${what}`).click();
+      assert.notEqual(await picture(page, 0.3), shown, what);
+      await page.locator(`#show-${what}`).click();
+    }
+    assert.match(await page.textContent("#caption"), /largest torque 0\.1 N m/);
+    assert.ok((await page.evaluate(() => livensReport.frames(2))).calls <= 20);
+    assert.deepEqual(page.problems, []);
+  },
+
+  async "what is thrown away leaves the picture, and its rod goes"() {
+    const { page: file } = made("trebuchet", example("trebuchet")),
+      page = await open(file);
+    assert.match(await page.textContent("#caption"), /stone goes far/);
+    const near = await page.evaluate(() => livensReport.camera());
+    await page.click("#view-fitted");
+    const whole = await page.evaluate(() => livensReport.camera());
+    assert.ok(Math.hypot(...whole) > 2 * Math.hypot(...near), `${near} ${whole}`);
+    const rods = await page.evaluate(() => livensReport.seen_bars());
+    assert.deepEqual(rods, { at_start: 1, at_end: 0 });
+    assert.deepEqual(page.problems, []);
+  },
+
+  async "a surface that was thinned says so"() {
+    const { page: file } = made("four_bar", example("four_bar")),
+      thinned = join(folder, "thinned.html"); // the numbers are what tests/unit/io/report_test.cpp looks at
+    writeFileSync(
+      thinned,
+      readFileSync(file, "utf8").replace('"thinned": null', '"thinned": [1000000, 58311, 0.0021]'),
+    );
+    const page = await open(thinned);
+    assert.match(await page.textContent("#caption"), /surfaces thinned, off by 2\.1e\u22123 m/);
+    await page.click("#tab-about");
+    assert.match(
+      await page.textContent("#about"),
+      /of crank is drawn with 58311 of its 1000000 triangles: corners are at most 2\.1e\u22123 m/,
+    );
+    assert.deepEqual(page.problems, []);
+    assert.doesNotMatch(await (await open(file)).textContent("#about"), /triangles/, "the control");
+  },
+
+  async "long names fit on a phone"() {
+    const long = "lever with a rather long name, as catalogues have them: ISO 4014 M16x80-8.8 zinc",
+      unbroken = "x".repeat(120);
+    const text = example("four_bar")
+      .replaceAll('"crank"', JSON.stringify(long))
+      .replaceAll('"rocker"', JSON.stringify(unbroken))
+      .replace('title = "four-bar linkage"', `title = ${JSON.stringify(`${unbroken} ${long}`)}`);
+    const { page: file } = made("long", text),
+      page = await open(file, { viewport: { width: 390, height: 844 } });
+    for (const tab of ["motion", "quality", "compare", "about"]) {
+      await page.click(`#tab-${tab}`);
+      const wide = await page.evaluate((id) => {
+        const host = document.getElementById(id);
+        return [document.documentElement.scrollWidth, host.scrollWidth - host.clientWidth];
+      }, tab);
+      assert.ok(wide[0] <= 390 && wide[1] <= 1, `${tab} is ${wide} wide`);
+    }
+    await page.click("#tab-motion");
+    const off = await page.evaluate(() =>
+      [...document.querySelectorAll(".keys output, #labels span:not([hidden])")]
+        .map((e) => [e.textContent, e.getBoundingClientRect()])
+        .filter(([, box]) => box.width > 0 && (box.right > 391 || box.left < -1))
+        .map(([text, box]) => `${text} ${box.left} ${box.right}`),
+    );
+    assert.deepEqual(off, [], "values and names that begin in the picture end in it");
+    assert.deepEqual(page.problems, []);
   },
 
   async "a hundred bodies are quick"() {
@@ -430,19 +540,18 @@ const tests = {
     await page.waitForFunction(() => window.livensReport);
     const { metrics } = await client.send("Performance.getMetrics"),
       cpu = metrics.find((m) => m.name === "TaskDuration").value;
-    const quickest = async (p) => {
-      const all = [];
-      for (let k = 0; k < 5; ++k) all.push(await p.evaluate(() => livensReport.frames(6)));
-      return { ms: Math.min(...all.map((f) => f.ms)), calls: all[0].calls };
-    };
-    const [one, many] = [await quickest(four), await quickest(page)];
+    // In turns, so that what other programs take is taken from both.
+    const all = [[], []];
+    for (let k = 0; k < 8; ++k)
+      for (const [i, p] of [four, page].entries())
+        all[i].push(await p.evaluate(() => livensReport.frames(6)));
+    const [one, many] = all.map((f) => ({ ms: Math.min(...f.map((x) => x.ms)), calls: f[0].calls }));
     console.log(
       `    ready after ${cpu.toFixed(2)} s of CPU; a frame ${many.ms.toFixed(0)} ms in ${many.calls} draw calls, of the four-bar ${one.ms.toFixed(0)} ms in ${one.calls}`,
     );
     assert.ok(cpu < 3, `${cpu} s of CPU`);
     assert.ok(many.calls <= 20 && one.calls <= 20);
-    // By a clock that other programs share, a little more than the twice that is meant.
-    assert.ok(many.ms < 2.5 * one.ms);
+    assert.ok(many.ms < 2 * one.ms, `${many.ms} ms a frame, ${one.ms} ms of the four-bar`);
   },
 };
 

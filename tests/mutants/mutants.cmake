@@ -83,6 +83,9 @@ function(livens_mutant)
     endif()
     target_link_libraries(${target} PRIVATE livens_flags ${libraries} livens_core Threads::Threads)
     target_compile_options(${target} PRIVATE -w)
+    # A good object may be taken beside it, for a template that only one of both has as a function; what both define
+    # is the first one's, which is the faulty one's.
+    target_link_options(${target} PRIVATE -Wl,--allow-multiple-definition)
     add_test(NAME mutant.${arg_NAME}
              COMMAND ${CMAKE_COMMAND} -DPROGRAM=$<TARGET_FILE:${target}> "-DMUST_FAIL=${arg_MUST_FAIL}" ${test}
                      -P ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/${script})

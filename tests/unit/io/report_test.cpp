@@ -3,10 +3,16 @@
 // rest.
 #include "livens/io/report.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include <gtest/gtest.h>
 
+#include "livens/diagnostics/coordinates.h"
+#include "livens/diagnostics/sample.h"
 #include "livens/io/report/lines_of_action.h"
 #include "livens/io/report/payload.h"
+#include "livens/io/report/thinned.h"
 #include "livens/spacetime/solve.h"
 
 namespace livens {
@@ -125,6 +131,124 @@ TEST_F(Report, LinesOfActionAreReadFromForces)
     ASSERT_TRUE(lines[0].points[0].has_value());
     EXPECT_LT(norm(*lines[0].points[0]), 1e-12);
     EXPECT_FALSE(lines[0].points[1].has_value());
+}
+
+/// A torque is told at the joint that its body turns about, a bushing where it sits; together with the force
+/// it is what the load does on the body, whatever the place.
+TEST(ReportLoads, WithoutAPointArePlacedWhereTorquesAreLeast)
+{
+    const ScenarioResult read = parse_scenario(R"(format = 1
+[[body]]
+name = "wheel"
+shape = { sphere = 0.1 }
+mass = 1
+position = [1, 0, 0]
+[[body]]
+name = "block"
+shape = { box = [0.2, 0.1, 0.1] }
+mass = 1
+position = [3, 0, 0]
+velocity = [0.4, 0.3, -0.2]
+angular_velocity = [0.5, 1, -0.7]
+[[joint]]
+name = "axle"
+type = "revolute"
+between = ["world", "wheel"]
+at = [1.5, 0, 0]
+axis = [0, 0, 1]
+[[load]]
+name = "motor"
+type = "torque"
+body = "wheel"
+expression = ["0", "0", "2*t"]
+[[load]]
+name = "rubber"
+type = "bushing"
+between = ["block", "world"]
+at = [3.1, 0.02, 0]
+stiffness = [900, 800, 700, 0.01, 0.01, 0.01]
+[time]
+end = 0.5
+elements = 20
+)",
+                                               "loads.toml");
+    ASSERT_TRUE(read.scenario.has_value());
+    const Scenario& s = *read.scenario;
+    const Solution solution = solve(s.model, {s.conditions}, s.time, s.method, s.options);
+    const std::vector<LineOfAction> lines = lines_of_action(s.model, solution.motion);
+    ASSERT_TRUE(lines[0].place && lines[1].place && !lines[0].points[0] && !lines[1].points[0]);
+    EXPECT_LT(norm(*lines[0].place - Vector3{0.5, 0, 0}), 1e-12);
+    EXPECT_LT(norm(*lines[1].place - Vector3{0.1, 0.02, 0}), 0.02);
+    const State state = sample_state(solution.motion, 0.3);
+    const LoadTurns turns(s.model, solution.motion);
+    const std::vector<Reaction> given = load_reactions(s.model, lines, state, turns.at(state), Side::right);
+    EXPECT_LT(norm(given[0].torque - Vector3{0, 0, 0.6}), 1e-12);
+    EXPECT_LT(norm(given[0].force), 1e-12);
+    EXPECT_GT(norm(given[1].force), 1);
+    EXPECT_LT(norm(given[1].torque), 0.1 * norm(given[1].force) * 0.1);
+}
+
+/// A bumpy sheet of 2 n^2 triangles: every corner is drawn within what is said, which is about a cell.
+TEST(ReportSurface, IsThinnedWithinWhatIsSaid)
+{
+    constexpr int n = 200;
+    Surface sheet;
+    for (int i = 0; i <= n; ++i)
+        for (int j = 0; j <= n; ++j) {
+            const double x = i / double(n), y = j / double(n);
+            sheet.points.push_back({x, y, 0.1 * std::sin(9 * x) * std::cos(7 * y)});
+            sheet.normals.push_back({0, 0, 1});
+        }
+    for (int i = 0; i < n; ++i)
+        for (int j = 0; j < n; ++j) {
+            const int a = i * (n + 1) + j, b = a + n + 1;
+            sheet.triangles.push_back({a, b, b + 1});
+            sheet.triangles.push_back({a, b + 1, a + 1});
+        }
+    const Thinned same = thinned(sheet, sheet.triangles.size());
+    EXPECT_EQ(same.n_before, 0u);
+    EXPECT_EQ(same.surface.points.size(), sheet.points.size());
+    const Thinned thin = thinned(sheet, 5000);
+    EXPECT_EQ(thin.n_before, sheet.triangles.size());
+    EXPECT_LE(thin.surface.triangles.size(), 5000u);
+    EXPECT_GT(thin.surface.triangles.size(), 2000u);
+    double farthest = 0;
+    for (const Vector3& p : sheet.points) {
+        double nearest = 1;
+        for (const Vector3& q : thin.surface.points) nearest = std::min(nearest, norm(p - q));
+        farthest = std::max(farthest, nearest);
+    }
+    EXPECT_LE(farthest, thin.moved);
+    EXPECT_LT(thin.moved, 0.05);
+    EXPECT_GT(thin.moved, 0.005);
+    for (const auto& t : thin.surface.triangles)
+        for (const int corner : t) ASSERT_LT(corner, static_cast<int>(thin.surface.points.size()));
+}
+
+/// A body of 400,000 triangles makes a page of a few MB, which says what was taken away.
+TEST_F(Report, OfALargeSurfaceIsSmall)
+{
+    constexpr int n = 500, m = 400;
+    Outline& outline = scenario_.outlines[0];
+    outline = {};
+    for (int i = 0; i <= m; ++i)
+        for (int j = 0; j < n; ++j) {
+            const double u = 3.14159265 * i / m, v = 6.2831853 * j / n,
+                         r = 1 + 0.03 * std::sin(40 * u) * std::cos(31 * v);
+            outline.points.push_back(
+                {r * std::sin(u) * std::cos(v), r * std::sin(u) * std::sin(v), r * std::cos(u)});
+        }
+    for (int i = 0; i < m; ++i)
+        for (int j = 0; j < n; ++j) {
+            const int a = i * n + j, b = i * n + (j + 1) % n;
+            outline.triangles.push_back({a, a + n, b + n});
+            outline.triangles.push_back({a, b + n, b});
+        }
+    const std::string page = report_page({scenario_, run_, "run"});
+    EXPECT_LT(page.size(), 5'000'000u);
+    const std::size_t at = page.find("\"thinned\": [");
+    ASSERT_NE(at, std::string::npos);
+    EXPECT_NE(page.find("\"thinned\": null"), std::string::npos) << "the other body is whole";
 }
 
 /// [RFC 4648, section 10]

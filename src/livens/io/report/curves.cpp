@@ -70,9 +70,12 @@ public:
             for (const char* const name :
                  {"force x", "force y", "force z", "torque x", "torque y", "torque z"})
                 channels_.push_back({"reaction", j, name, name[0] == 'f' ? "N" : "N m"});
-        for (std::size_t l = 0; l < lines_.size(); ++l)
+        for (std::size_t l = 0; l < lines_.size(); ++l) {
             for (const char* const name : {"force x", "force y", "force z"})
-                if (lines_[l].points[0]) channels_.push_back({"load", static_cast<int>(l), name, "N"});
+                if (is_told(lines_[l])) channels_.push_back({"load", static_cast<int>(l), name, "N"});
+            for (const char* const name : {"torque x", "torque y", "torque z"})
+                if (lines_[l].place) channels_.push_back({"load", static_cast<int>(l), name, "N m"});
+        }
         for (std::size_t s = 0; s < model_.sensors().size(); ++s)
             for (const SensorComponent& c : model_.sensors()[s].components)
                 channels_.push_back({"sensor", static_cast<int>(s), c.name, c.unit});
@@ -93,17 +96,19 @@ public:
             all.push_back(c.rate);
         }
         if (has_reactions_) add_reactions(all, t, is_before);
-        if (std::ranges::any_of(lines_,
-                                [](const LineOfAction& line) { return line.points[0].has_value(); })) {
-            const std::vector<Vector3> forces = load_forces(model_, state, angles, instant.side);
-            for (std::size_t l = 0; l < lines_.size(); ++l)
-                if (lines_[l].points[0]) all.insert(all.end(), forces[l].a, forces[l].a + 3);
+        if (std::ranges::any_of(lines_, is_told)) {
+            const std::vector<Reaction> given = load_reactions(model_, lines_, state, angles, instant.side);
+            for (std::size_t l = 0; l < lines_.size(); ++l) {
+                if (is_told(lines_[l])) all.insert(all.end(), given[l].force.a, given[l].force.a + 3);
+                if (lines_[l].place) all.insert(all.end(), given[l].torque.a, given[l].torque.a + 3);
+            }
         }
         for (const double x : sensors_.at(t)) all.push_back(x);
         return all;
     }
 
 private:
+    static bool is_told(const LineOfAction& line) { return line.points[0] || line.place; }
     void add_reactions(std::vector<double>& all, double t, bool is_before) const
     {
         const std::vector<JointSample> joints = sample_joints(model_, motion_, t);

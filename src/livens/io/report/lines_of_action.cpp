@@ -6,6 +6,7 @@
 
 #include "livens/diagnostics/coordinates.h"
 #include "livens/diagnostics/sample.h"
+#include "livens/multibody/body.h"
 
 namespace livens {
 
@@ -53,6 +54,48 @@ private:
     bool has_failed_ = false;
 };
 
+/// sum_i d_i x F_i: about the reference point.
+Vector3 torque_of(const Matrix34& F, const Matrix34& X)
+{
+    Vector3 torque{};
+    for (int i = 1; i < 4; ++i) torque = torque + cross(X.column(i), F.column(i));
+    return torque;
+}
+
+/// What a place is when torques do not tell: a joint of the two bodies, else the centre of mass.
+Vector3 usual_place(const Model& model, const Load& load)
+{
+    const int first = load.bodies[0], second = load.bodies[1];
+    for (const Joint& joint : model.joints()) {
+        if (joint.first == first && joint.second == second) return joint.point_first;
+        if (joint.second == first && joint.first == second) return joint.point_second;
+    }
+    if (first == world) return {};
+    const Body& body = model.bodies()[static_cast<std::size_t>(first)];
+    return body.is_point ? Vector3{} : mass_properties(body.mass).center_of_mass;
+}
+
+/// The p with the least sum of |torque - p x force|^2, both in axes of the body; a little is added for its
+/// distance from where it is usual.
+Vector3 best_place(const Vector3& usual, const std::vector<LoadForces>& looks, const std::vector<Matrix34>& X)
+{
+    Matrix3 A{};
+    Vector3 b{};
+    double scale = 0;
+    for (std::size_t k = 0; k < looks.size(); ++k) {
+        const Matrix3 R = transpose(directors(X[k]));
+        const Matrix3 f = cross_matrix(R * looks[k][0].column(0));
+        const Vector3 torque = R * torque_of(looks[k][0], X[k]) + f * usual;   // about the usual place
+        A = A + transpose(f) * f;
+        b = b - transpose(f) * torque;
+        scale = std::max({scale, A(0, 0), A(1, 1), A(2, 2)});
+    }
+    if (!(scale > 0)) return usual;
+    constexpr double weak = 1e-4;
+    const Vector3 shift = inverse(A + weak * scale * identity<3>()) * b;
+    return std::isfinite(norm(shift)) ? usual + shift : usual;
+}
+
 }   // namespace
 
 std::vector<LineOfAction> lines_of_action(const Model& model, const Motion& motion)
@@ -82,19 +125,36 @@ std::vector<LineOfAction> lines_of_action(const Model& model, const Motion& moti
                 if (norm(F[side].column(0)) > negligible * largest) finding.look(F[side], length);
             lines[l].points[side] = finding.point();
         }
+        const auto exerts = [](const LoadForces& F) {
+            double size = 0;
+            for (int i = 0; i < 12; ++i) size = std::max(size, std::abs(F[0].a[i]));
+            return size > 0;
+        };
+        if (lines[l].points[0] || !std::ranges::any_of(looks, exerts)) continue;
+        std::vector<Matrix34> X;
+        for (const State& state : states)
+            X.push_back(load.bodies[0] == world ? world_configuration
+                                                : state.X[static_cast<std::size_t>(load.bodies[0])]);
+        lines[l].place = best_place(usual_place(model, load), looks, X);
     }
     return lines;
 }
 
-std::vector<Vector3> load_forces(const Model& model, const State& state, std::span<const double> angles,
-                                 Side side)
+std::vector<Reaction> load_reactions(const Model& model, const std::vector<LineOfAction>& lines,
+                                     const State& state, std::span<const double> angles, Side side)
 {
     const Turns turns(model);
-    std::vector<Vector3> forces;
-    for (std::size_t l = 0; l < model.loads().size(); ++l)
-        forces.push_back(
-            forces_of(model.loads()[l], state, turns.of(static_cast<int>(l), angles), side)[0].column(0));
-    return forces;
+    std::vector<Reaction> all;
+    for (std::size_t l = 0; l < model.loads().size(); ++l) {
+        const Load& load = model.loads()[l];
+        const Matrix34 F = forces_of(load, state, turns.of(static_cast<int>(l), angles), side)[0];
+        Reaction& given = all.emplace_back(Reaction{F.column(0), {}});
+        if (!lines[l].place) continue;
+        const Matrix34 X =
+            load.bodies[0] == world ? world_configuration : state.X[static_cast<std::size_t>(load.bodies[0])];
+        given.torque = torque_of(F, X) - cross(directors(X) * *lines[l].place, given.force);
+    }
+    return all;
 }
 
 }   // namespace livens

@@ -15,12 +15,17 @@ namespace livens {
 /// coordinates of each of its two bodies (the world's are world coordinates).
 struct LineOfAction {
     std::array<std::optional<Vector3>, 2> points;
+    /// Where force and torque on the first body are told else, in its coordinates: where the torques are
+    /// least, and along what does not matter to them the point of a joint between the bodies, or the centre
+    /// of mass.
+    std::optional<Vector3> place{};
 };
-/// One a load. Loads that exert nothing, torques and the like have no points.
+/// One a load. Loads that exert nothing have neither points nor a place.
 std::vector<LineOfAction> lines_of_action(const Model& model, const Motion& motion);
 
-/// F of all loads on their first bodies, N: the force, in world axes.
-std::vector<Vector3> load_forces(const Model& model, const State& state, std::span<const double> angles,
-                                 Side side);
+/// Of each load on its first body, world axes: the force (N), and the torque about its place (N m; 0 where it
+/// has none).
+std::vector<Reaction> load_reactions(const Model& model, const std::vector<LineOfAction>& lines,
+                                     const State& state, std::span<const double> angles, Side side);
 
 }   // namespace livens

@@ -11,6 +11,7 @@
 #include "livens/io/exports/formats.h"
 #include "livens/io/report/lines_of_action.h"
 #include "livens/io/report/parts.h"
+#include "livens/io/report/thinned.h"
 #include "livens/multibody/body.h"
 
 namespace livens {
@@ -88,16 +89,27 @@ void write_bodies(ReportData& data, const Scenario& scenario)
     Shapes shapes(data.payload);
     JsonWriter& json = data.json;
     std::vector<Surface> surfaces = surfaces_of(scenario);
+    const std::size_t most_triangles = triangles_of_each(surfaces);
     json.key("bodies").begin_array();
     for (std::size_t b = 0; b < surfaces.size(); ++b) {
         const Body& body = scenario.model.bodies()[b];
-        const UnitSurface unit = unit_surface(std::move(surfaces[b]));
+        const Thinned thin = thinned(std::move(surfaces[b]), most_triangles);
+        const UnitSurface unit = unit_surface(thin.surface);
         const bool is_mark = b >= scenario.outlines.size() || scenario.outlines[b].is_empty();
         json.begin_object().member("name", body.name).member("point", body.is_point);
         json.member("mark", is_mark).member("mass", body.mass(0, 0));
         json.member("shape", shapes.index_of(unit.surface));
         add(json, "middle", unit.middle);
         add(json, "half", unit.half);
+        json.key("thinned");
+        if (thin.n_before == 0)
+            json.null();
+        else
+            json.begin_array()
+                .value(thin.n_before)
+                .value(thin.surface.triangles.size())
+                .value(thin.moved)
+                .end_array();
         add(json, "centre", body.is_point ? Vector3{} : mass_properties(body.mass).center_of_mass);
         json.end_object();
     }
@@ -148,6 +160,10 @@ void write_joints(JsonWriter& json, const Model& model)
         add(json, "point_second", joint.point_second);
         add(json, "axis_first", axes.first);
         add(json, "axis_second", axes.second);
+        for (const auto& [key, t] : {std::pair{"from", joint.from}, {"until", joint.until}}) {
+            json.key(key);
+            std::isfinite(t) ? json.value(t) : json.null();
+        }
         json.end_object();
     }
     json.end_array();
@@ -168,6 +184,10 @@ void write_loads(JsonWriter& json, const Model& model, const Motion& motion)
             else
                 json.key(key).null();
         }
+        if (lines[l].place)
+            add(json, "place", *lines[l].place);
+        else
+            json.key("place").null();
         json.end_object();
     }
     json.end_array();

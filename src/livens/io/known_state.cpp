@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "known_state.h"
+#include "livens/io/known_state.h"
 
-namespace livens::program {
+namespace livens {
 
 Scenario as_it_starts(Scenario scenario)
 {
@@ -22,4 +22,4 @@ KnownState known_state(const Scenario& scenario)
     return known;
 }
 
-}   // namespace livens::program
+}   // namespace livens

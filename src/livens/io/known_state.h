@@ -4,11 +4,11 @@
 
 #include "livens/io/scenario.h"
 
-namespace livens::program {
+namespace [[gnu::visibility("default")]] livens {
 
 struct KnownState {
-    State state;                   ///< V = 0 where velocities are guesses
-    StartPolicy initial;           ///< how exactly it is meant
+    State state;           ///< V = 0 where velocities are guesses
+    StartPolicy initial;   ///< how exactly it is meant
 };
 
 /// With the joints alone that act at the start of time.
@@ -17,4 +17,4 @@ Scenario as_it_starts(Scenario scenario);
 /// At the start, else at the end; where positions are guesses everywhere, those at the start.
 KnownState known_state(const Scenario& scenario);
 
-}   // namespace livens::program
+}   // namespace livens

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "livens/io/report/thinned.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+namespace livens {
+
+namespace {
+
+constexpr std::size_t most_in_all = 120'000, fewest_of_one = 4'000;
+constexpr int finest = 1024, coarsest = 4;   // cells along the longest side
+
+/// Of the points that are one: their mean.
+struct Cluster {
+    Vector3 sum{};
+    double n = 0;
+
+    Vector3 mean() const { return (1 / n) * sum; }
+};
+
+/// A grid over all points, and what falls into its cells.
+class Clusters {
+public:
+    Clusters(const Surface& surface, int n_cells)
+    {
+        Vector3 least = surface.points.front(), most = least;
+        for (const Vector3& p : surface.points)
+            for (int i = 0; i < 3; ++i) {
+                least[i] = std::min(least[i], p[i]);
+                most[i] = std::max(most[i], p[i]);
+            }
+        const double size = std::max({most[0] - least[0], most[1] - least[1], most[2] - least[2]}) / n_cells;
+        cell_of_.reserve(surface.points.size());
+        for (const Vector3& p : surface.points) {
+            std::uint64_t cell = 0;
+            for (int i = 0; i < 3; ++i)
+                cell = cell << 11 | static_cast<std::uint64_t>((p[i] - least[i]) / size);
+            cell_of_.push_back(add(cells_, cell_index_, cell, p));
+        }
+    }
+
+    /// The triangles whose corners are in three cells.
+    std::size_t n_triangles(const Surface& surface) const
+    {
+        return static_cast<std::size_t>(
+            std::ranges::count_if(surface.triangles, [&](const auto& t) { return has_area(t); }));
+    }
+
+    Thinned made(const Surface& surface) const
+    {
+        Thinned thin{{}, surface.triangles.size(), 0};
+        std::vector<Cluster> normals;   // of a cell one for each way that its corners face
+        Index index;
+        std::vector<int> corner_of;
+        for (std::size_t k = 0; k < surface.points.size(); ++k) {
+            const Vector3 at = cells_[static_cast<std::size_t>(cell_of_[k])].mean();
+            thin.moved = std::max(thin.moved, norm(surface.points[k] - at));
+            auto key = static_cast<std::uint64_t>(cell_of_[k]);
+            for (int i = 0; i < 3; ++i) key = key << 2 | way(surface.normals[k][i]);
+            corner_of.push_back(add(normals, index, key, surface.normals[k]));
+            if (normals.size() > thin.surface.points.size()) thin.surface.points.push_back(at);
+        }
+        for (const Cluster& cluster : normals) {
+            const double size = norm(cluster.sum);
+            thin.surface.normals.push_back(size > 0 ? (1 / size) * cluster.sum : Vector3{0, 0, 1});
+        }
+        for (const auto& t : surface.triangles)
+            if (has_area(t)) {
+                auto& triangle = thin.surface.triangles.emplace_back();
+                for (std::size_t i = 0; i < 3; ++i) triangle[i] = corner_of[static_cast<std::size_t>(t[i])];
+            }
+        return thin;
+    }
+
+private:
+    using Index = std::unordered_map<std::uint64_t, int>;
+
+    static std::uint64_t way(double x) { return x > 0.4 ? 2 : x < -0.4 ? 0 : 1; }
+    static int add(std::vector<Cluster>& all, Index& index, std::uint64_t key, const Vector3& v)
+    {
+        const int at = index.try_emplace(key, static_cast<int>(all.size())).first->second;
+        if (at == static_cast<int>(all.size())) all.emplace_back();
+        Cluster& cluster = all[static_cast<std::size_t>(at)];
+        cluster.sum = cluster.sum + v;
+        cluster.n += 1;
+        return at;
+    }
+    int cell(int point) const { return cell_of_[static_cast<std::size_t>(point)]; }
+    bool has_area(const std::array<int, 3>& t) const
+    {
+        return cell(t[0]) != cell(t[1]) && cell(t[1]) != cell(t[2]) && cell(t[2]) != cell(t[0]);
+    }
+
+    std::vector<Cluster> cells_;
+    Index cell_index_;
+    std::vector<int> cell_of_;
+};
+
+}   // namespace
+
+Thinned thinned(Surface surface, std::size_t most_triangles)
+{
+    if (surface.triangles.size() <= most_triangles) return {std::move(surface), 0, 0};
+    // About 4 n^2 triangles of a plate, 12 n^2 of a cube, fewer of a rod.
+    const double most = static_cast<double>(most_triangles);
+    int n_cells = std::min(finest, static_cast<int>(1.5 * std::sqrt(most)));
+    while (n_cells > coarsest) {
+        const Clusters clusters(surface, n_cells);
+        const double n = static_cast<double>(clusters.n_triangles(surface));
+        if (n <= most) return clusters.made(surface);
+        n_cells = std::min(n_cells * 9 / 10, static_cast<int>(n_cells * std::sqrt(most / n)));
+    }
+    return Clusters(surface, coarsest).made(surface);
+}
+
+std::size_t triangles_of_each(std::span<const Surface> surfaces)
+{
+    std::size_t n_large = 0;
+    for (const Surface& surface : surfaces) n_large += surface.triangles.size() > fewest_of_one ? 1 : 0;
+    return std::max(fewest_of_one, most_in_all / std::max<std::size_t>(n_large, 1));
+}
+
+}   // namespace livens
