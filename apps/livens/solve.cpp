@@ -263,6 +263,8 @@ std::string summary_of(const Solved& solved, const Places& p, bool verbose)
     add_figures(summary, run, verbose);
     add_notes(summary, run);
     summary.figure("written", plain(p.output.string()) + (p.csv.empty() ? "" : ", " + plain(p.csv.string())));
+    if (run.report.reached_end() && !run.body_names.empty())
+        summary.aside("see it: livens view " + plain(quoted(p.output.string())));
     summary.aside(plain(next_step(run, p)));
     return summary.text();
 }

@@ -338,6 +338,23 @@ std::string refusal_at_rest(const Hanging& h, Known at_start, Known at_end, doub
     return refusal(h.model, {h.rest, at_start, finish, at_end}, end);
 }
 
+/// A bob that shall be thrown from one side of its hook to another: from rest no way is found.
+TEST(LobattoEnds, ThatAreNotFoundLeaveTheStart)
+{
+    Model model({0, 0, -9.81});
+    const int bob = model.add_body(point_mass("bob", 0.2, {0.8, 0, -0.6}));
+    model.add_joint(rod("string", world, bob, {}, 1));
+    State there = model.start();
+    there.t = 1;
+    there.X[0](0, 0) = 0, there.X[0](1, 0) = 0.6, there.X[0](2, 0) = -0.8;
+    const Solution s = solve(model, {model.start(), Known::positions, there, Known::positions},
+                             make_time_mesh(0, 1, 20), lobatto(4));
+    EXPECT_FALSE(s.report.converged());
+    EXPECT_EQ(s.motion.n_elements(), 0);
+    ASSERT_EQ(s.motion.mesh.ends.size(), 1u);
+    EXPECT_EQ(s.motion.at_end(0).X[0](0, 0), 0.8);
+}
+
 TEST(LobattoEnds, ConjugateTimesOfAPendulumAreSingular)
 {
     const Hanging h = hanging_brick();

@@ -9,6 +9,7 @@ up inside the declaration of Type, a plain name anywhere in src/livens or apps; 
 count.
 Links: relative ones of every .md file, with their #anchors.
 Examples: every examples/*.toml and *.cpp is named in README.md or docs/examples.md, and those name no other.
+Version: that of src/livens/base/version.h is the one that README.md, docs/install.md, CITATION.cff and packaging/ name.
 """
 import argparse
 import pathlib
@@ -127,9 +128,30 @@ def check_examples(root):
               for name in sorted(named - there))]
 
 
+VERSIONS = {"README.md": r"Version (\d+\.\d+\.\d+)", "docs/install.md": r"livens(?:-dev)?[_-](\d+\.\d+\.\d+)",
+            "CITATION.cff": r"^version: (.*)$", "packaging/debian/changelog": r"^livens \(([\d.]+)\) ",
+            "packaging/vcpkg/vcpkg.json": r'"version": "(.*)"', "packaging/conda/meta.yaml": r'set version = "(.*)"'}
+
+
+def check_version(root):
+    version = re.search(r'version = "(.*)"', (root / "src/livens/base/version.h").read_text(encoding="utf-8")).group(1)
+    faults = []
+    for name, pattern in VERSIONS.items():
+        if not (root / name).is_file():
+            faults.append(f"{name}: missing [version]")
+            continue
+        named = re.findall(pattern, (root / name).read_text(encoding="utf-8"), re.M)
+        if name.endswith("changelog"):   # older ones follow
+            del named[1:]
+        faults += [f"{name}: names version {other}, not {version} [version]" for other in named if other != version]
+        if not named:
+            faults.append(f"{name}: names no version [version]")
+    return faults
+
+
 def check_docs(root):
     root = root.resolve()
-    return check_notation(root) + check_links(root) + check_examples(root)
+    return check_notation(root) + check_links(root) + check_examples(root) + check_version(root)
 
 
 GOOD = {
@@ -143,8 +165,14 @@ GOOD = {
                         "| n | `Other::last`, `Body::In::deep`, `Side::left` | |\n\n"
                         "`loose` [up](../README.md#first-steps-2)\n",
     "README.md": "# First steps: 2\n\n[n](docs/notation.md) `[no](link)` [w](https://example.org)\n"
-                 "examples/one.toml\n",
+                 "examples/one.toml\nVersion 1.2.3\n",
     "examples/one.toml": "",
+    "src/livens/base/version.h": 'const char* version = "1.2.3";\n',
+    "docs/install.md": "livens_1.2.3_amd64.deb\n",
+    "CITATION.cff": "version: 1.2.3\n",
+    "packaging/debian/changelog": "livens (1.2.3) unstable\n",
+    "packaging/vcpkg/vcpkg.json": '"version": "1.2.3"\n',
+    "packaging/conda/meta.yaml": '{% set version = "1.2.3" %}\n',
 }
 
 CONTROLS = [
@@ -160,6 +188,9 @@ CONTROLS = [
     ("link", {"docs/more.md": "[out](../../../)\n"}),
     ("example", {"examples/two.toml": ""}),
     ("example", {"docs/examples.md": "examples/three.toml\n"}),
+    ("version", {"CITATION.cff": "version: 1.2.4\n"}),
+    ("version", {"docs/install.md": "liblivens-dev_1.2.2_amd64.deb\n"}),
+    ("version", {"src/livens/base/version.h": 'const char* version = "1.3.0";\n'}),
 ]
 
 

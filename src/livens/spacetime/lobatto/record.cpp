@@ -127,8 +127,23 @@ const Motion& Record::so_far()
     return motion_;
 }
 
-Motion Record::take()
+/// Nothing was solved: the start alone, without what only a solved element would tell.
+void Record::only(const State& start)
 {
+    constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+    Motion& m = motion_;
+    for_sizes(0, [](auto& values, std::size_t size) { values.assign(size, {}); });
+    first_ = last_ = 0;
+    std::copy_n(start.X.front().a, m.X.n_values, m.X.values.begin());
+    m.velocities = start.V;
+    tables_.times_mass(start.V.front().a, 1.0, work_.data());
+    std::copy_n(work_.data(), work_.size(), m.momenta.front().a);
+    std::ranges::fill(m.end_multipliers, unknown);
+}
+
+Motion Record::take(const State& start)
+{
+    if (last_ < first_) only(start);
     Motion& m = motion_;
     const auto first = static_cast<std::size_t>(first_), last = static_cast<std::size_t>(last_);
     const auto p = static_cast<std::size_t>(degree_), bodies = static_cast<std::size_t>(m.n_bodies);

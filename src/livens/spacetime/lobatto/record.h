@@ -31,12 +31,14 @@ public:
 
     /// What is written of a march forwards, in arrays that may be longer.
     const Motion& so_far();
-    Motion take();
+    /// `start`: what is left where no element end was written.
+    Motion take(const State& start);
 
 private:
     template <class Action>
     void for_sizes(int place, Action&& action);
     void reach(int place);
+    void only(const State& start);
     template <class T>
     void cut(std::vector<T>& values, std::size_t first, std::size_t last, std::size_t stride) const;
 

@@ -31,7 +31,7 @@ public:
     void describe(SolveReport& report) const override;
     void measure_condition(SolveReport& report, const std::function<bool()>& goes_on) override;
     const Motion* so_far() override { return &record_.so_far(); }
-    Motion take_motion() override { return record_.take(); }
+    Motion take_motion() override { return record_.take(ends_.start); }
 
 private:
     /// What is passed on from element to element.
