@@ -99,7 +99,9 @@ Moments about_centroid(const Sums& sums, const Vector3& about)
 
 Moments weighted_moments(const Mesh& mesh, const std::function<double(const Vector3&)>& density)
 {
-    const auto [middle, length] = extent_of(mesh, 3);
+    const auto extent = extent_of(mesh, 3);
+    const Vector3 middle = extent.middle;   // captured below
+    const double length = extent.length;
     Sums whole;
     double missing = 0;
     for (const ElementBlock& b : mesh.blocks)

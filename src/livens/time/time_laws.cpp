@@ -106,8 +106,7 @@ TimeFunction combination(const std::vector<double>& factors, const std::vector<T
     };
     if (is_constant) return sum({}).value;
     std::ranges::sort(breaks);
-    const auto repeated = std::ranges::unique(breaks);
-    breaks.erase(repeated.begin(), repeated.end());
+    breaks.erase(std::unique(breaks.begin(), breaks.end()), breaks.end());
     return TimeFunction(sum, std::move(breaks));
 }
 
