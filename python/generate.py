@@ -32,7 +32,7 @@ End: TypeAlias = "Union[str, Entry, tuple[Union[str, Entry], Vector]]"
 WRITTEN = {FLAG: "bool", TRUTH: "bool", INTEGER: "int", NUMBER: "Number", TEXT: "str", NAMES: "Sequence[str | Entry]",
            NAMED_TEXTS: "Mapping[str, str]", ROW: "Vector", ROWS: "Matrix", TABLE: "Mapping[str, Any]",
            TABLES: "Sequence[Mapping[str, Any]]"}
-OF_MESHES = ("unit", "scale", "turn", "densities")
+OF_MESHES = ("unit", "scale", "turn", "densities", "density_field")
 READ = {FLAG: "bool", TRUTH: "bool", INTEGER: "int", NUMBER: "float", TEXT: "str", ROW: "Floats", ROWS: "Floats",
         CHOICE: "str"}
 REFERENCES = {"body": "str | Entry", "joint": "str | Entry", "load": "str | Entry"}

@@ -432,7 +432,7 @@ def add_reference(site: Site) -> None:
 
 PYTHON = {
     "Models": ["Model", "load", "Body", "Joint", "Drive", "Load", "Sensor", "Section", "Entry", "Names"],
-    "Shapes and tables": ["Shape", "box", "sphere", "cylinder", "capsule", "cone", "ellipsoid", "mesh", "density_field", "parts", "point",
+    "Shapes and tables": ["Shape", "box", "sphere", "cylinder", "capsule", "cone", "ellipsoid", "mesh", "parts", "point",
                           "tube", "table"],
     "Solving": ["solve", "solve_many", "Condition", "state", "positions", "momenta"],
     "Methods": ["Method", "Auto", "Lobatto", "Radau", "Mixed", "Midpoint", "Endpoint", "MethodOptions"],

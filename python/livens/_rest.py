@@ -274,7 +274,7 @@ class Modes(_ByName):
 
     @property
     def damping_ratio(self) -> Floats:
-        """-Re s over |s|, relative, shape (n,): 0 undamped, 1 where it dies without a vibration, negative where it grows."""
+        """``-Re s`` over ``|s|``, relative, shape (n,): 0 undamped, 1 where it dies without a vibration, negative where it grows."""
         size = self.frequency
         return np.asarray(np.where(size > 0, -self.s.real / np.where(size > 0, size, 1), 0) + 0.0)
 

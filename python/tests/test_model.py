@@ -277,3 +277,11 @@ def test_what_functions_raise_ends_the_solution() -> None:
         m.add_function("hand", "ball", lambda t, body: (1, 2))
     with pytest.raises(ValueError, match="three numbers"):
         lv.solve(m, 1, elements=4)
+
+
+def test_a_density_of_a_mesh_is_no_shape_of_its_own() -> None:
+    m = lv.Model()
+    m.add_body("part", lv.mesh("part.stl", unit="mm", density_field="7850 + 10*z"))
+    assert 'density_field = "7850 + 10*z"' in m.to_toml() and not hasattr(lv, "density_field")
+    with pytest.raises(TypeError):
+        lv.box(1, 1, 1, density_field="1")   # type: ignore[call-arg]
