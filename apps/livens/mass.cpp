@@ -26,6 +26,7 @@ struct Weighed {
     MassProperties properties;
     Matrix4 mass_matrix;   ///< about the reference point
     bool is_point = false;
+    bool is_skew = false;   ///< stated along other directors than all here is
 };
 
 /// Largest principal moment over the sum of the others: at most 1 for any distribution of mass.
@@ -215,7 +216,7 @@ int mass_of_scenario(const MassArguments& arguments, const Common& common)
     std::vector<Weighed> all;
     double total = 0;
     for (const Body& body : scenario.model.bodies()) {
-        Weighed w{body.name, mass_properties(body.mass), body.mass, body.is_point};
+        Weighed w{body.name, mass_properties(body.mass), body.mass, body.is_point, is_skew(body)};
         if (body.is_point) w.properties = {body.mass(0, 0), {}, {}};
         total += w.properties.mass;
         all.push_back(w);
@@ -226,6 +227,7 @@ int mass_of_scenario(const MassArguments& arguments, const Common& common)
         json.member("title", scenario.title).member("mass", total).key("bodies").begin_array();
         for (const Weighed& w : all) {
             json.begin_object().member("name", w.name).member("point", w.is_point);
+            if (w.is_skew) json.member("axes", "perpendicular unit vectors nearest to the directors");
             add_members(json, w);
             json.end_object();
         }
@@ -240,7 +242,11 @@ int mass_of_scenario(const MassArguments& arguments, const Common& common)
     summary.headline(Ink::good, "Mass",
                      fmt::format("{:.6g} kg in {} bod{}", total, all.size(), all.size() == 1 ? "y" : "ies"));
     for (const Weighed& w : all) {
-        summary.figure("body", plain(w.name) + (w.is_point ? ", a point mass" : ", in its own coordinates"));
+        summary.figure("body",
+                       plain(w.name) +
+                           (w.is_point  ? ", a point mass"
+                            : w.is_skew ? ", along the perpendicular unit vectors nearest to its directors"
+                                        : ", in its own coordinates"));
         add_figures(summary, w);
     }
     print(summary.text());

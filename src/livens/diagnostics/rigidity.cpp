@@ -17,6 +17,43 @@
 
 namespace livens {
 
+namespace {
+
+/// F - G^T lambda - X'' m of all bodies, each load and row looked at once.
+std::vector<Matrix34> forces_less_inertia(const Model& model, Instant at, std::span<const Matrix34> X,
+                                          std::span<const Matrix34> V, std::span<const Matrix34> A,
+                                          std::span<const double> multipliers, std::span<const double> angles)
+{
+    std::vector<Matrix34> rest;
+    rest.reserve(X.size());
+    for (std::size_t b = 0; b < X.size(); ++b)
+        rest.push_back(weight(model.bodies()[b], model.gravity()) - A[b] * model.bodies()[b].mass);
+    const Turns turns(model);
+    for (int l = 0; l < static_cast<int>(model.loads().size()); ++l) {
+        const Load& load = model.loads()[l];
+        LoadForces F{};
+        load.forces(load_arguments(load, at, X, V, turns.of(l, angles)), F);
+        for (int b = 0; b < 2; ++b)
+            if (load.bodies[b] != world) rest[static_cast<std::size_t>(load.bodies[b])] += F[b];
+    }
+    for (int r = 0; r < model.n_rows(); ++r) {
+        if (multipliers[r] == 0) continue;
+        const RowGradient gradient = constraint_gradient(model.row(r), at, X);
+        for (const int body : gradient.bodies)
+            rest[static_cast<std::size_t>(body)] -= multipliers[r] * gradient.of(body);
+    }
+    return rest;
+}
+
+/// Of what is left the parts along the directors.
+std::vector<double> along_directors(const Matrix34& rest, const Matrix34& X)
+{
+    const Matrix3 along = transpose(directors(rest)) * directors(X);   // (a, b): column a along d_b
+    return {along(0, 0), along(1, 1), along(2, 2), along(0, 1), along(0, 2), along(1, 2)};
+}
+
+}   // namespace
+
 std::vector<double> rigidity_multipliers(const Model& model, int body, Instant at,
                                          std::span<const Matrix34> X, std::span<const Matrix34> V,
                                          std::span<const Matrix34> A, std::span<const double> multipliers,
@@ -24,24 +61,8 @@ std::vector<double> rigidity_multipliers(const Model& model, int body, Instant a
 {
     assert(body >= 0 && body < model.n_bodies());
     assert(static_cast<int>(multipliers.size()) == model.n_rows());
-    const Body& self = model.bodies()[body];
-    if (self.is_point) return std::vector<double>(6, 0.0);
-
-    Matrix34 rest = weight(self, model.gravity()) - A[body] * self.mass;   // F - G^T lambda - X'' m
-    const Turns turns(model);
-    for (int l = 0; l < static_cast<int>(model.loads().size()); ++l) {
-        const Load& load = model.loads()[l];
-        if (load.bodies[0] != body && load.bodies[1] != body) continue;
-        LoadForces F{};
-        load.forces(load_arguments(load, at, X, V, turns.of(l, angles)), F);
-        for (int b = 0; b < 2; ++b) {
-            if (load.bodies[b] == body) rest += F[b];
-        }
-    }
-    for (int r = 0; r < model.n_rows(); ++r)
-        rest -= multipliers[r] * constraint_gradient(model.row(r), at, X).of(body);
-    const Matrix3 along = transpose(directors(rest)) * directors(X[body]);   // (a, b): column a along d_b
-    return {along(0, 0), along(1, 1), along(2, 2), along(0, 1), along(0, 2), along(1, 2)};
+    if (model.bodies()[body].is_point) return std::vector<double>(6, 0.0);
+    return along_directors(forces_less_inertia(model, at, X, V, A, multipliers, angles)[body], X[body]);
 }
 
 namespace {
@@ -63,14 +84,6 @@ Matrix3 as_stated(const Body& body, const std::vector<double>& six)
     if (!is_skew(body)) return straight;
     const Matrix3 back = inverse(body.stretch);
     return back * straight * transpose(back);
-}
-
-bool holds(const Model& model, int joint, int body)
-{
-    return std::ranges::any_of(model.joints()[joint].rows, [&](const ConstraintRow& row) {
-        const RowBodies bodies = row_bodies(row);
-        return bodies.find(body) < bodies.size;
-    });
 }
 
 /// On one side, with the joints that act there.
@@ -95,14 +108,20 @@ SideOfRigidity rigidity_of(const Model& model, const Balanced& b)
     SideOfRigidity all(b.X.size());
     all.is_bounded = std::ranges::none_of(b.multipliers, [](double x) { return std::isnan(x); });
     if (!all.is_bounded) return all;
-    const UniqueReactions least = least_reactions(frozen(model, b.at), b.X, b.multipliers, b.independent);
-    for (std::size_t j = 0; j < least.joint_is_unique.size(); ++j)
-        for (std::size_t i = 0; i < b.X.size() && !least.joint_is_unique[j]; ++i)
-            if (holds(model, static_cast<int>(j), static_cast<int>(i))) all.is_unique[i] = false;
+    std::optional<Model> frozen_now;
+    if (model.has_drives()) frozen_now = frozen(model, b.at);
+    const UniqueReactions least =
+        least_reactions(frozen_now ? *frozen_now : model, b.X, b.multipliers, b.independent);
+    for (std::size_t j = 0; j < least.joint_is_unique.size(); ++j) {
+        if (least.joint_is_unique[j]) continue;
+        for (const ConstraintRow& row : model.joints()[j].rows)
+            for (const int body : row_bodies(row)) all.is_unique[static_cast<std::size_t>(body)] = false;
+    }
+    const std::vector<Matrix34> rest =
+        forces_less_inertia(model, b.at, b.X, b.V, b.A, least.multipliers, b.angles);
     for (std::size_t i = 0; i < b.X.size(); ++i)
-        all.multipliers[i] =
-            as_stated(model.bodies()[i], rigidity_multipliers(model, static_cast<int>(i), b.at, b.X, b.V, b.A,
-                                                              least.multipliers, b.angles));
+        if (!model.bodies()[i].is_point)
+            all.multipliers[i] = as_stated(model.bodies()[i], along_directors(rest[i], b.X[i]));
     return all;
 }
 
