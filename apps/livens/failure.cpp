@@ -2,7 +2,9 @@
 #include "failure.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <exception>
+#include <memory>
 #include <new>
 #include <stdexcept>
 
@@ -54,6 +56,11 @@ Diagnostic from_complaint(const Complaint& c)
     return d;
 }
 
+/// Address space in which a failure can be told when nothing else is left. More than the mebibyte that the
+/// C library asks for at least once it can no longer extend its heap.
+constexpr std::size_t report_bytes = std::size_t{1} << 21;
+std::unique_ptr<char[]> kept_for_report;
+
 bool is_error(const Diagnostic& d) { return d.severity == Severity::error; }
 
 int exit_code_of(const std::vector<Diagnostic>& diagnostics)
@@ -65,6 +72,7 @@ int exit_code_of(const std::vector<Diagnostic>& diagnostics)
 
 Failure current_failure()
 {
+    kept_for_report.reset();
     try {
         throw;
     } catch (const Failure& f) {
@@ -171,6 +179,8 @@ Failure failure(int exit_code, const std::string& message)
                                                                                           : "internal";
     return {exit_code, status_of(exit_code), {plain_error(code, message)}};
 }
+
+void keep_memory_for_report() { kept_for_report = std::make_unique_for_overwrite<char[]>(report_bytes); }
 
 int guarded(const Common& common, const std::function<int()>& command)
 {

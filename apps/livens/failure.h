@@ -25,6 +25,10 @@ struct Failure {
 
 Failure failure(int exit_code, const std::string& message);
 
+/// Sets memory aside that guarded() gives back before it tells of a failure, so that exhausted memory is told
+/// in full. Once, before all else.
+void keep_memory_for_report();
+
 /// Runs a command. A failure is printed: diagnostics on standard error and, with --json, one object on
 /// standard output.
 int guarded(const Common& common, const std::function<int()>& command);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // livens, the program: arguments in, a command's exit code out.
+#include <algorithm>
 #include <string>
 #include <string_view>
 
@@ -61,6 +62,13 @@ int run(const CLI::App& app, const Arguments& a)
     return version_command(common);
 }
 
+/// Without parsing, which may have stopped early or not have begun.
+bool asks_for_json(int n, char** arguments)
+{
+    const auto is_it = [](std::string_view argument) { return argument == "--json"; };
+    return std::any_of(arguments, arguments + n, is_it);
+}
+
 /// What CLI11 objects to, or its help.
 int parse_failed(const CLI::App& app, const CLI::ParseError& error, Common common, int n, char** arguments)
 {
@@ -70,16 +78,12 @@ int parse_failed(const CLI::App& app, const CLI::ParseError& error, Common commo
             print(is_top ? app.help() : app.get_subcommands().front()->help("livens"));
             return static_cast<int>(exit_ok);
         });
-    for (int i = 1; i < n; ++i)
-        common.json |= std::string_view(arguments[i]) == "--json";   // parsing stopped early
+    common.json |= asks_for_json(n, arguments);
     return guarded(common, [&]() -> int { throw failure(exit_usage, objection(app, error)); });
 }
 
-}   // namespace
-
-int main(int n, char** arguments)
+int parsed_main(int n, char** arguments)
 {
-    ignore_write_signals();
     Arguments a;
     CLI::App app("livens " + std::string(version) + ": rigid multibody dynamics with elements in time",
                  "livens");
@@ -98,10 +102,20 @@ int main(int n, char** arguments)
     });
 }
 
-}   // namespace livens::program
+}   // namespace
 
 int main(int n, char** arguments)
 {
-    livens::program::fill_standard_streams();
-    return livens::program::guarded({}, [&] { return livens::program::main(n, arguments); });
+    fill_standard_streams();
+    ignore_write_signals();
+    Common common;
+    common.json = asks_for_json(n, arguments);
+    return guarded(common, [&] {
+        keep_memory_for_report();
+        return parsed_main(n, arguments);
+    });
 }
+
+}   // namespace livens::program
+
+int main(int n, char** arguments) { return livens::program::main(n, arguments); }
