@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -20,6 +21,28 @@ inline std::string joined(const Failures& failures)
     std::string text;
     for (const std::string& failure : failures) text += failure + "\n";
     return text;
+}
+
+/// The name of a test from what a case is: "spring and damper" is spring_and_damper.
+inline std::string test_name(std::string what)
+{
+    for (char& c : what)
+        if (std::isalnum(static_cast<unsigned char>(c)) == 0) c = '_';
+    return what;
+}
+
+/// Of `states`, what a study goes through: a tenth under sanitizers, where the code is walked through but the
+/// figures are those of every other build.
+constexpr int of_states(int states)
+{
+#if defined(__SANITIZE_ADDRESS__)
+    return states / 10;
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer)
+    return states / 10;
+#endif
+#endif
+    return states;
 }
 
 /// Every source of a folder, `apart` from what they share, is called by the type of a case; `fewest` of them.

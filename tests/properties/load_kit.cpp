@@ -98,7 +98,7 @@ Failures check_load_tangent(const LoadCase& load_case)
 {
     Random random(1);
     Failures failures;
-    for (int n = 0; n < 1000 && failures.size() < 10; ++n) {
+    for (int n = 0; n < of_states(1000) && failures.size() < 10; ++n) {
         const Load load = load_case.make(random);
         const LoadArguments at = random_state(random, load, load_case);
         LoadTangent tangent(load.bodies.size());

@@ -8,10 +8,12 @@
 namespace livens {
 namespace {
 
-TEST(LoadKit, EveryLoadPasses)
-{
-    for (const LoadCase& load : load_cases()) EXPECT_EQ(joined(check_load(load)), "");
-}
+class EveryLoad : public testing::TestWithParam<LoadCase> {};
+
+TEST_P(EveryLoad, Passes) { EXPECT_EQ(joined(check_load(GetParam())), ""); }
+
+INSTANTIATE_TEST_SUITE_P(LoadKit, EveryLoad, testing::ValuesIn(load_cases()),
+                         [](const auto& of) { return test_name(of.param.type + " " + of.param.what); });
 
 TEST(LoadKit, EveryFileOfALoadIsInTheRegistry)
 {
