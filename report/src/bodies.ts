@@ -10,6 +10,7 @@ import {
   MeshPhongMaterial,
   Vector3,
 } from "three";
+import type { Arrows } from "./forces";
 import { Instances, Poses, as_lines, vector } from "./instances";
 import type { Run } from "./run";
 import { body_colour, theme } from "./theme";
@@ -83,6 +84,35 @@ export interface Extent {
 const far_away = 3; // times as far from the middle as everything else
 const kept_flight = 1.5; // likewise: how much of such a flight is near
 
+/** Goes through the motion in few steps: `poses` are those at each `t`. */
+function each_look(run: Run, poses: Poses, act: (t: number) => void) {
+  const { meta, motion } = run,
+    span = motion.end - motion.start;
+  const n = span > 0 ? Math.max(12, Math.min(looks, Math.ceil(most_looks / (meta.bodies.length + 1)))) : 1;
+  for (let k = 0; k < n; ++k) {
+    const t = motion.start + (n > 1 ? k / (n - 1) : 0) * span;
+    motion.at(t, poses.X);
+    poses.update();
+    act(t);
+  }
+}
+
+/** The same with room for arrows of forces, but of those on bodies that leave. */
+export function with_room(extent: Extent, run: Run, arrows: Arrows): Extent {
+  const tips: number[] = [],
+    leave = new Set(extent.leaving),
+    poses = new Poses(run.motion.bodies);
+  each_look(run, poses, (t) =>
+    arrows.each_tip(t, poses, (body, tip) => {
+      const is_near = body < 0 || !leave.has(run.meta.bodies[body].name);
+      if (is_near && Number.isFinite(tip.x + tip.y + tip.z)) tips.push(tip.x, tip.y, tip.z);
+    }),
+  );
+  const with_tips = (points: Float32Array) => Float32Array.from([...points, ...tips]);
+  const near = with_tips(extent.near);
+  return { ...extent, near, whole: extent.whole === extent.near ? near : with_tips(extent.whole) };
+}
+
 /** Corners of bodies through the motion, joints and springs at the world. */
 export function extent_of(run: Run): Extent {
   const { meta, motion } = run,
@@ -90,21 +120,24 @@ export function extent_of(run: Run): Extent {
     owners: number[] = [],
     p = new Vector3(),
     poses = new Poses(motion.bodies);
-  const corners = Array.from({ length: meta.shapes }, (_, k) => corners_of(run, k)),
-    span = motion.end - motion.start;
-  const n = span > 0 ? Math.max(12, Math.min(looks, Math.ceil(most_looks / (meta.bodies.length + 1)))) : 1;
-  for (let k = 0; k < n; ++k) {
-    motion.at(motion.start + (n > 1 ? k / (n - 1) : 0) * span, poses.X);
-    poses.update();
+  const corners = Array.from({ length: meta.shapes }, (_, k) => corners_of(run, k));
+  const see = (b: number) => {
+    if (!Number.isFinite(p.x + p.y + p.z)) return;
+    all.push(p.x, p.y, p.z);
+    owners.push(b);
+  };
+  each_look(run, poses, () => {
     meta.bodies.forEach((body, b) => {
       for (const corner of corners[body.shape]) {
         p.copy(corner).multiply(vector(body.half)).add(vector(body.middle)).applyMatrix4(poses.matrices[b]);
-        if (!Number.isFinite(p.x + p.y + p.z)) continue;
-        all.push(p.x, p.y, p.z);
-        owners.push(b);
+        see(b);
       }
     });
-  }
+    for (const { body, point } of run.attachments) {
+      p.copy(point).applyMatrix4(poses.matrices[body]);
+      see(body);
+    }
+  });
   for (const joint of meta.joints) if (joint.first < 0) all.push(...joint.point_first);
   for (const spring of run.springs) if (spring.second < 0) all.push(...spring.point_second!);
   const whole = Float32Array.from(all.length ? all : [-1, -1, -1, 1, 1, 1]);

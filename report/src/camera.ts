@@ -30,6 +30,7 @@ export class Eye {
   readonly target = new Vector3();
   private moved = false;
   private side: Side = "fitted";
+  private room = { above: 0.05, below: 0.05 };
   private readonly across = new Vector3(); // level, where the motion is widest
 
   private points: Float32Array;
@@ -98,8 +99,10 @@ export class Eye {
     const rise = side === "top" ? 1.5 : side !== "fitted" ? 0 : this.flat ? 0.85 : 0.3;
     const turn = side === "side" ? Math.PI / 2 : side === "fitted" ? -0.42 : 0;
     const v = view_from(this.up, this.across, turn, rise);
-    const ty = Math.tan((this.camera.fov * Math.PI) / 360) * 0.9,
-      tx = ty * this.camera.aspect;
+    const tangent = Math.tan((this.camera.fov * Math.PI) / 360),
+      tx = 0.9 * tangent * this.camera.aspect,
+      t_up = tangent * (1 - 2 * this.room.above),
+      t_down = tangent * (1 - 2 * this.room.below);
     let l = -Infinity,
       r = -Infinity,
       d = -Infinity,
@@ -112,24 +115,26 @@ export class Eye {
         c = p.dot(v.into);
       l = Math.max(l, -a / tx - c);
       r = Math.max(r, a / tx - c);
-      d = Math.max(d, -b / ty - c);
-      u = Math.max(u, b / ty - c);
+      d = Math.max(d, -b - t_down * c);
+      u = Math.max(u, b - t_up * c);
       near = Math.min(near, c);
       far = Math.max(far, c);
     });
-    const back = Math.max((l + r) / 2, (d + u) / 2),
+    const back = Math.max((l + r) / 2, (d + u) / (t_down + t_up)),
       middle = (near + far) / 2;
     const at = (depth: number) =>
       v.right
         .clone()
         .multiplyScalar((tx * (r - l)) / 2)
-        .addScaledVector(v.up, (ty * (u - d)) / 2)
+        .addScaledVector(v.up, (u - d + (t_down - t_up) * back) / 2)
         .addScaledVector(v.into, depth);
     this.camera.position.copy(at(-back));
     this.target.copy(at(middle));
     this.aim();
   }
-  resize(aspect: number) {
+  /** `above`, `below`: shares of the height that are left to what is written there. */
+  resize(aspect: number, above: number, below: number) {
+    this.room = { above, below };
     this.camera.aspect = aspect;
     this.camera.updateProjectionMatrix();
     if (!this.moved) this.fit();

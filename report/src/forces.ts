@@ -47,26 +47,44 @@ export class Arrows {
     }
   }
 
+  /** Where each force acts, its direction and the length of its arrow; 0: too small to be drawn. */
+  private each(t: number, poses: Poses, act: (i: number, at: Vector3, to: Vector3, length: number) => void) {
+    const { forces, largest_force } = this.run,
+      f = new Vector3();
+    forces.forEach((force, i) => {
+      force.at(t, f);
+      const size = f.length(),
+        length = this.longest * Math.sqrt(size / largest_force);
+      if (length > 0.04 * this.longest)
+        act(i, poses.place(force.body, force.point), f.divideScalar(size), length);
+      else act(i, f, f, 0);
+    });
+  }
+
+  /** Calls for the ends of all arrows, so that the picture has room for them. */
+  each_tip(t: number, poses: Poses, act: (body: number, tip: Vector3) => void) {
+    const { forces, largest_force } = this.run;
+    if (largest_force > 0)
+      this.each(t, poses, (i, at, to, length) => {
+        if (length > 0) act(forces[i].body, at.addScaledVector(to, length));
+      });
+  }
+
   move(t: number, poses: Poses, is_shown: boolean) {
     const [shaft, head] = this.objects,
       { forces, largest_force } = this.run;
     shaft.visible = head.visible = is_shown && forces.length > 0 && largest_force > 0;
     if (!shaft.visible) return;
-    const f = new Vector3(),
-      m = new Matrix4(),
+    const m = new Matrix4(),
       turn = new Quaternion(),
       r = 0.022 * this.longest,
       none = new Matrix4().makeScale(0, 0, 0);
-    forces.forEach((force, i) => {
-      force.at(t, f);
-      const size = f.length(),
-        length = this.longest * Math.sqrt(size / largest_force),
+    this.each(t, poses, (i, at, to, length) => {
+      const is_seen = length > 0,
         tip = Math.min(6 * r, 0.5 * length);
-      const is_seen = length > 0.04 * this.longest,
-        at = poses.place(force.body, force.point);
-      if (is_seen) turn.setFromUnitVectors(unit_z, f.divideScalar(size));
+      if (is_seen) turn.setFromUnitVectors(unit_z, to);
       shaft.setMatrixAt(i, is_seen ? m.compose(at, turn, new Vector3(r, r, length - tip)) : none);
-      at.addScaledVector(f, length - tip);
+      at.addScaledVector(to, length - tip);
       head.setMatrixAt(i, is_seen ? m.compose(at, turn, new Vector3(2.6 * r, 2.6 * r, tip)) : none);
     });
     for (const mesh of this.objects) mesh.instanceMatrix.needsUpdate = true;

@@ -106,27 +106,25 @@ export class Joints {
         this.put({ part: "box", half: [1.4, 1.4, 1.4] }, -1, vector(spring.point_second!), run.up, fixed);
   }
 
-  /** From the centre of a body to its joints. */
+  /** From the centre of a body that has no shape to what holds it. */
   private add_sticks() {
-    const { bodies, joints, length } = this.run.meta,
+    const { bodies, length } = this.run.meta,
       thick = 0.45 * this.radius;
-    bodies.forEach((body, b) => {
-      if (!body.mark || body.point) return;
-      for (const joint of joints) {
-        if (joint.first !== b && joint.second !== b) continue;
-        const centre = vector(body.centre),
-          arm = vector(joint.first === b ? joint.point_first : joint.point_second).sub(centre);
-        const size = arm.length();
-        if (size < 1e-9 * length) continue;
-        const turn = new Quaternion().setFromUnitVectors(unit_z, arm.clone().normalize());
-        const local = new Matrix4().compose(
-          centre.addScaledVector(arm, 0.5),
-          turn,
-          new Vector3(thick, thick, size / 2),
-        );
-        this.places.cylinder.push({ body: b, colour: new Color(body_colour(b)), local });
-      }
-    });
+    for (const { body: b, point } of this.run.attachments) {
+      const body = bodies[b];
+      if (!body.mark || body.point) continue;
+      const centre = vector(body.centre),
+        arm = point.clone().sub(centre),
+        size = arm.length();
+      if (size < 1e-9 * length) continue;
+      const turn = new Quaternion().setFromUnitVectors(unit_z, arm.clone().normalize());
+      const local = new Matrix4().compose(
+        centre.addScaledVector(arm, 0.5),
+        turn,
+        new Vector3(thick, thick, size / 2),
+      );
+      this.places.cylinder.push({ body: b, colour: new Color(body_colour(b)), local });
+    }
   }
 
   /** Bars between points that act. */

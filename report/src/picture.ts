@@ -99,9 +99,16 @@ export class Picture {
     this.stage?.compare(other);
   }
   resize() {
-    const { clientWidth, clientHeight } = by_id("space");
+    const { clientWidth, clientHeight } = by_id("space"),
+      below_caption = 20; // px
     this.sizes = [];
-    if (clientWidth > 0 && clientHeight > 0) this.stage?.resize(clientWidth, clientHeight);
+    if (clientWidth > 0 && clientHeight > 0)
+      this.stage?.resize(
+        clientWidth,
+        clientHeight,
+        by_id("views").offsetTop + by_id("views").offsetHeight,
+        by_id("caption").offsetHeight + below_caption,
+      );
   }
 
   private place_labels() {
@@ -166,7 +173,7 @@ export class Picture {
       { now, start, end, span } = this.time;
     if (!stage) return;
     const source = stage.renderer.domElement;
-    stage.resize(720, 560);
+    stage.resize(720, 560, 0, 0);
     for (const t of span > 0 ? [start, (start + end) / 2, end] : [start]) {
       stage.show(t);
       const canvas = element("canvas", { width: String(source.width), height: String(source.height) });

@@ -160,6 +160,7 @@ export class Plot {
             stroke: () => colour(s.colour),
             width: 1.6,
             points: { show: false },
+            pxAlign: 0, // steep curves are no stairs
             spanGaps: true,
           }),
         ),

@@ -36,6 +36,7 @@ export class Run {
   readonly forces: Force[] = [];
   readonly torques: Force[] = [];
   readonly springs: Load[];
+  readonly attachments: { body: number; point: Vector3 }[] = []; // of joints and springs, in coordinates of bodies
   readonly sensor_points: [number, number, number][] = [];
   readonly tips: [number, number, number][];
   readonly largest_force: number;
@@ -52,6 +53,12 @@ export class Run {
     this.springs = this.meta.loads.filter(
       (l) => l.type.includes("spring") && l.point_first && l.point_second,
     );
+    for (const { first, second, point_first, point_second } of [...this.meta.joints, ...this.springs])
+      for (const [body, point] of [
+        [first, point_first],
+        [second, point_second],
+      ] as const)
+        if (body >= 0) this.attachments.push({ body, point: new Vector3(...point!) });
     this.find_forces();
     this.largest_force = this.find_largest(this.forces);
     this.largest_torque = this.find_largest(this.torques);

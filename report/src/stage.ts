@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The picture in space. Few draw calls, however many bodies there are.
 import { DirectionalLight, HemisphereLight, Object3D, Scene, Vector3, WebGLRenderer } from "three";
-import { extent_of, make_bodies } from "./bodies";
+import { extent_of, make_bodies, with_room } from "./bodies";
 import { Eye } from "./camera";
 import { Arrows, Beads, Springs, Torques } from "./forces";
 import { Frames, make_grid } from "./ground";
@@ -57,12 +57,12 @@ export class Stage {
     const detail = bodies.length < few ? size : Math.min(size, 2.25 * halves[halves.length >> 1]);
     this.poses = new Poses(bodies.length);
     this.leaving = extent.leaving;
-    this.eye = new Eye(extent, run.up, () => this.draw());
-    this.eye.listen(canvas);
     this.bodies = make_bodies(run, false);
     this.joints = new Joints(run, 0.02 * detail);
     this.trails = new Trails(run);
     this.arrows = new Arrows(run, 0.5 * detail);
+    this.eye = new Eye(with_room(extent, run, this.arrows), run.up, () => this.draw());
+    this.eye.listen(canvas);
     this.springs = new Springs(run, 0.045 * detail);
     this.torques = new Torques(run, 0.17 * detail);
     this.slots = new Slots(run);
@@ -94,10 +94,12 @@ export class Stage {
     if (Number.isFinite(this.now)) this.show(this.now);
   }
 
-  resize(width: number, height: number) {
+  /** `above`, `below`: pixels for what is written over the picture. */
+  resize(width: number, height: number, above: number, below: number) {
+    const share = (pixels: number) => Math.min(Math.max(pixels / Math.max(height, 1), 0.05), 0.22);
     this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
     this.renderer.setSize(width, height, false);
-    this.eye.resize(width / Math.max(height, 1));
+    this.eye.resize(width / Math.max(height, 1), share(above), share(below));
   }
 
   show(t: number) {
