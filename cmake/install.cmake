@@ -36,7 +36,7 @@ install(DIRECTORY src/livens DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} ${dev} FILE
         PATTERN "linear_solver.h" EXCLUDE PATTERN "newton.h" EXCLUDE PATTERN "ends.h" EXCLUDE PATTERN "guess.h"
         EXCLUDE PATTERN "window.h" EXCLUDE PATTERN "windows.h" EXCLUDE PATTERN "accuracy.h" EXCLUDE
         PATTERN "pace.h" EXCLUDE PATTERN "phases.h" EXCLUDE PATTERN "second.h" EXCLUDE PATTERN "largest.h" EXCLUDE
-        PATTERN "acceptance_bounds.h" EXCLUDE
+        PATTERN "acceptance_bounds.h" EXCLUDE PATTERN "surface.h" EXCLUDE
         PATTERN "forest.h" EXCLUDE PATTERN "joint_factor.h" EXCLUDE PATTERN "row_pattern.h" EXCLUDE PATTERN "sparse_rows.h" EXCLUDE
         PATTERN "small_motions.h" EXCLUDE PATTERN "statics.h" EXCLUDE
         PATTERN "lanes.h" EXCLUDE PATTERN "lane_rows.h" EXCLUDE PATTERN "lane_arithmetic.h" EXCLUDE)

@@ -32,7 +32,8 @@ End: TypeAlias = "Union[str, Entry, tuple[Union[str, Entry], Vector]]"
 WRITTEN = {FLAG: "bool", TRUTH: "bool", INTEGER: "int", NUMBER: "Number", TEXT: "str", NAMES: "Sequence[str | Entry]",
            NAMED_TEXTS: "Mapping[str, str]", ROW: "Vector", ROWS: "Matrix", TABLE: "Mapping[str, Any]",
            TABLES: "Sequence[Mapping[str, Any]]"}
-OF_MESHES = ("unit", "scale", "turn", "densities", "density_field")
+OF_MESHES = ("unit", "scale", "turn", "densities")
+OF_SOLIDS = ("density_field",)
 READ = {FLAG: "bool", TRUTH: "bool", INTEGER: "int", NUMBER: "float", TEXT: "str", ROW: "Floats", ROWS: "Floats",
         CHOICE: "str"}
 REFERENCES = {"body": "str | Entry", "joint": "str | Entry", "load": "str | Entry"}
@@ -255,9 +256,11 @@ class Writer:
         shape = next(key for key in self.children["body"]["keys"] if key["name"] == "shape")
         self.shape_names = []
         keys = self.tables[shape["child"]]["keys"]
-        beside = [key for key in keys if key["name"] in OF_MESHES]   # no shapes: they say how a file is meant
+        # No shapes: they say how a file is meant, and what any one solid weighs.
+        beside = [key for key in keys if key["name"] in OF_MESHES]
+        weighing = [key for key in keys if key["name"] in OF_SOLIDS]
         for key in keys:
-            if key["form"] == NONE or key in beside:
+            if key["form"] == NONE or key in beside or key in weighing:
                 continue
             name = name_of(key)
             child = None if key["child"] is None else self.tables[key["child"]]
@@ -284,7 +287,7 @@ class Writer:
                 value = "True"
             else:
                 parameters, docs, value = [f"value: {written(key)}"], [("value", meaning(key))], "value"
-            more = beside if key["form"] == TEXT else []   # of files
+            more = (beside if key["form"] == TEXT else []) + (weighing if density else [])
             docs += [(name_of(k), meaning(k)) for k in more]
             self.shape_names.append(name)
             arguments = parameters + ["*"] + [f"{name_of(k)}: {written(k)} | None = None" for k in more] + (["density: Number | None = None"] if density or key["form"] == TABLES else []) + \

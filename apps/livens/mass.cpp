@@ -27,6 +27,7 @@ struct Weighed {
     Matrix4 mass_matrix;   ///< about the reference point
     bool is_point = false;
     bool is_skew = false;   ///< stated along other directors than all here is
+    std::vector<ShapePart> parts = {};   ///< of a union
 };
 
 /// Largest principal moment over the sum of the others: at most 1 for any distribution of mass.
@@ -209,6 +210,29 @@ int mass_of_mesh(const MassArguments& arguments, const Common& common)
 
 // Scenarios.
 
+void add_parts(JsonWriter& json, const std::vector<ShapePart>& parts)
+{
+    json.key("parts").begin_array();
+    for (const ShapePart& part : parts) {
+        json.begin_object().member("name", part.name).member("mass", part.mass);
+        json.key("center_of_mass").value(numbers(part.center)).end_object();
+    }
+    json.end_array();
+}
+
+void add_parts(Summary& summary, const Weighed& w)
+{
+    const double length =
+        std::sqrt(trace(w.properties.inertia) / w.properties.mass) + norm(w.properties.center_of_mass);
+    for (std::size_t k = 0; k < w.parts.size(); ++k) {
+        const ShapePart& part = w.parts[k];
+        summary.figure(
+            "part", (part.name.empty() ? fmt::format("{} of {}", k + 1, w.parts.size()) : plain(part.name)) +
+                        fmt::format(": {:.6g} kg, its centre of mass at {} m", part.mass,
+                                    shown(part.center, length)));
+    }
+}
+
 int mass_of_scenario(const MassArguments& arguments, const Common& common)
 {
     std::vector<Diagnostic> warnings;
@@ -218,6 +242,7 @@ int mass_of_scenario(const MassArguments& arguments, const Common& common)
     for (const Body& body : scenario.model.bodies()) {
         Weighed w{body.name, mass_properties(body.mass), body.mass, body.is_point, is_skew(body)};
         if (body.is_point) w.properties = {body.mass(0, 0), {}, {}};
+        w.parts = scenario.parts[all.size()];
         total += w.properties.mass;
         all.push_back(w);
     }
@@ -229,6 +254,7 @@ int mass_of_scenario(const MassArguments& arguments, const Common& common)
             json.begin_object().member("name", w.name).member("point", w.is_point);
             if (w.is_skew) json.member("axes", "perpendicular unit vectors nearest to the directors");
             add_members(json, w);
+            if (!w.parts.empty()) add_parts(json, w.parts);
             json.end_object();
         }
         json.end_array().key("warnings");
@@ -248,6 +274,7 @@ int mass_of_scenario(const MassArguments& arguments, const Common& common)
                             : w.is_skew ? ", along the perpendicular unit vectors nearest to its directors"
                                         : ", in its own coordinates"));
         add_figures(summary, w);
+        add_parts(summary, w);
     }
     print(summary.text());
     return exit_ok;

@@ -283,5 +283,7 @@ def test_a_density_of_a_mesh_is_no_shape_of_its_own() -> None:
     m = lv.Model()
     m.add_body("part", lv.mesh("part.stl", unit="mm", density_field="7850 + 10*z"))
     assert 'density_field = "7850 + 10*z"' in m.to_toml() and not hasattr(lv, "density_field")
+    m.add_body("block", lv.box(1, 1, 1, density_field="1 + x"))
+    assert 'density_field = "1 + x"' in m.to_toml()
     with pytest.raises(TypeError):
-        lv.box(1, 1, 1, density_field="1")   # type: ignore[call-arg]
+        lv.parts([{"box": [1, 1, 1]}], density_field="1")   # type: ignore[call-arg]

@@ -456,6 +456,23 @@ livens_mutant(NAME mesh_by_a_link
               TESTS_OF unit_io
               MUST_FAIL MeshScenario.RefusesWhatItMustNotRead)
 
+# The volume of turning taken as if all of it were at the rim: right of what is hollow.
+livens_mutant(NAME round_solid_at_its_rim
+              FILE geometry/primitive_solid.cpp
+              OLD [[factor * solid_.bore, factor * wide}]]
+              NEW [[factor * (solid_.bore + wide), 0}]]
+              TESTS_OF unit_geometry
+              MUST_FAIL PrimitiveSolid.OfConstantDensityHasItsClosedForms
+                        PrimitiveSolid.OfOtherFieldsAgreesWithSciPy)
+
+# A part with a density of its own weighed by the body's as well: right where that is 1.
+livens_mutant(NAME field_times_density
+              FILE io/scenario/shapes.cpp
+              OLD [[section.has("density_field") ? factor : density * factor]]
+              NEW [[density * factor]]
+              TESTS_OF unit_io
+              MUST_FAIL SolidScenario.PartsHaveDensitiesThatAreFields)
+
 # A page served to the whole network instead of this machine.
 livens_mutant(NAME view_everywhere
               FILE apps/livens/view.cpp

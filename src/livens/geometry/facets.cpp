@@ -233,7 +233,8 @@ Pieces numbered(std::int32_t n_faces, std::size_t n_roots, Root root)
 {
     Pieces pieces;
     bool is_one = true;
-    for (std::int32_t face = 1; face < n_faces && is_one; ++face) is_one = root(face) == root(0);
+    const std::int32_t first = n_faces > 0 ? root(0) : 0;
+    for (std::int32_t face = 1; face < n_faces && is_one; ++face) is_one = root(face) == first;
     if (is_one) {
         pieces.n = n_faces > 0 ? 1 : 0;
         return pieces;

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <cmath>
+#include <cstdint>
 
 #include "livens/geometry/detail/elements.h"
 #include "livens/geometry/detail/workers.h"
@@ -60,37 +62,52 @@ private:
     Terms sums_{}, lost_{};
 };
 
-/// Of the points that elements use; others may lie anywhere.
+/// Of the points that elements use; others may lie anywhere. Marks cost less than to look at a point once for
+/// each element that has it.
 Vector3 middle_of(const Mesh& mesh, int of_dimension)
 {
-    Vector3 low{}, high{};
-    bool is_first = true;
-    for (const ElementBlock& b : mesh.blocks) {
-        if (dimension(b.kind) != of_dimension) continue;
-        if (is_first) low = high = mesh.points[b.nodes.front()];
-        is_first = false;
-        for (const std::int32_t node : b.nodes)
-            for (int i = 0; i < 3; ++i) {
-                low[i] = std::min(low[i], mesh.points[node][i]);
-                high[i] = std::max(high[i], mesh.points[node][i]);
-            }
-    }
+    std::vector<std::uint8_t> is_used(mesh.points.size(), 0);
+    for (const ElementBlock& b : mesh.blocks)
+        if (dimension(b.kind) == of_dimension)
+            for (const std::int32_t node : b.nodes) is_used[node] = 1;
+    Vector3 low{HUGE_VAL, HUGE_VAL, HUGE_VAL}, high = -low;
+    for (std::size_t k = 0; k < is_used.size(); ++k)
+        for (int i = 0; is_used[k] != 0 && i < 3; ++i) {
+            low[i] = std::min(low[i], mesh.points[k][i]);
+            high[i] = std::max(high[i], mesh.points[k][i]);
+        }
+    if (low[0] > high[0]) return {};
     return 0.5 * low + 0.5 * high;   // the sum might overflow
 }
 
 /// Cones from the middle to each face: for p homogeneous of degree k, int p dV = int p x . n dA / (3 + k).
-void add_triangle(Sums& sums, const Vector3& a, const Vector3& b, const Vector3& c)
+void add_triangle(Sums::Terms& terms, const Vector3& a, const Vector3& b, const Vector3& c)
 {
     // In closed form, for s = a + b + c: a . (b x c) (1, s / 4, (s s^T + a a^T + b b^T + c c^T) / 20) / 6.
     const double six = dot(a, cross(b, c));
     const Vector3 s = a + b + c;
-    Sums::Terms terms{six, six * s[0], six * s[1], six * s[2]};
+    terms[0] += six;
     for (int i = 0; i < 3; ++i) {
         const int j = (i + 1) % 3;
-        terms[4 + i] = six * (s[i] * s[i] + a[i] * a[i] + b[i] * b[i] + c[i] * c[i]);
-        terms[7 + i] = six * (s[i] * s[j] + a[i] * a[j] + b[i] * b[j] + c[i] * c[j]);
+        terms[1 + i] += six * s[i];
+        terms[4 + i] += six * (s[i] * s[i] + a[i] * a[i] + b[i] * b[i] + c[i] * c[i]);
+        terms[7 + i] += six * (s[i] * s[j] + a[i] * a[j] + b[i] * b[j] + c[i] * c[j]);
     }
-    sums.add(terms);
+}
+
+/// What is rounded off between a few neighbours is as small as what is rounded in each: no carrying along.
+void add_triangles(Sums& sums, const Mesh& mesh, const std::int32_t* first, const std::int32_t* last,
+                   const Vector3& about)
+{
+    constexpr std::ptrdiff_t neighbours = 3 * 4;
+    while (first != last) {
+        const std::int32_t* const until = first + std::min(neighbours, last - first);
+        Sums::Terms terms{};
+        for (; first != until; first += 3)
+            add_triangle(terms, mesh.points[first[0]] - about, mesh.points[first[1]] - about,
+                         mesh.points[first[2]] - about);
+        sums.add(terms);
+    }
 }
 
 /// In the scales of triangles: int x . n dA is three times the volume, and so on.
@@ -103,9 +120,6 @@ void add_point(Sums& sums, const Vector3& x, double share)
 
 void add_face(Sums& sums, const Mesh& mesh, ElementKind kind, const std::int32_t* nodes, const Vector3& about)
 {
-    if (kind == ElementKind::triangle)
-        return add_triangle(sums, mesh.points[nodes[0]] - about, mesh.points[nodes[1]] - about,
-                            mesh.points[nodes[2]] - about);
     for (const ShapeValues& point : quadrature_of(kind)) {
         const ElementPoint at = element_point(point, mesh, kind, nodes, about);
         add_point(sums, at.x, point.weight * dot(at.x, cross(at.F.column(0), at.F.column(1))));
@@ -123,6 +137,9 @@ Moments moments_of_surface(const Mesh& mesh)
         if (dimension(b.kind) != 2) continue;
         std::vector<Sums> of_parts(b.size() / some + 1);
         in_parts(b.size(), some, [&](std::size_t begin, std::size_t end, int part) {
+            if (b.kind == ElementKind::triangle)
+                return add_triangles(of_parts[part], mesh, b.nodes.data() + 3 * begin,
+                                     b.nodes.data() + 3 * end, middle);
             for (std::size_t e = begin; e < end; ++e)
                 add_face(of_parts[part], mesh, b.kind, b.element(static_cast<std::int64_t>(e)), middle);
         });

@@ -61,11 +61,12 @@ void widen(Piece& piece, const Vector3& p)
     }
 }
 
-double volume_under(const Facets& f, std::int32_t face, const Vector3& about)
+/// Six times the volume between a point and a face.
+double six_volumes(const Facets& f, std::int32_t face, const Vector3& about)
 {
     double volume = 0;
     for_triangles(f, face, [&](const Vector3& a, const Vector3& b, const Vector3& c) {
-        volume += dot(a - about, cross(b - about, c - about)) / 6;
+        volume += dot(a - about, cross(b - about, c - about));
     });
     return volume;
 }
@@ -80,10 +81,19 @@ Piece whole_piece(const Facets& f)
     const std::size_t n = f.n_faces();
     std::vector<double> parts(n / some + 1, 0);
     in_parts(n, some, [&](std::size_t begin, std::size_t end, int part) {
-        for (std::size_t k = begin; k < end; ++k)
-            parts[part] += volume_under(f, static_cast<std::int32_t>(k), f.at(0));
+        const Vector3 about = f.at(0);
+        double sum = 0;
+        if (f.are_triangles)
+            for (std::size_t h = 3 * begin; h < 3 * end; h += 3) {
+                const auto at = [&](std::size_t k) { return f.at(static_cast<std::int32_t>(h + k)) - about; };
+                sum += dot(at(0), cross(at(1), at(2)));
+            }
+        else
+            for (std::size_t k = begin; k < end; ++k)
+                sum += six_volumes(f, static_cast<std::int32_t>(k), about);
+        parts[part] = sum;
     });
-    for (const double part : parts) piece.volume += part;
+    for (const double part : parts) piece.volume += part / 6;
     return piece;
 }
 
@@ -102,7 +112,7 @@ std::vector<Piece> make_pieces(const Facets& f, const Pieces& numbers)
     }
     for (Piece& piece : pieces) {
         const Vector3 middle = 0.5 * piece.low + 0.5 * piece.high;
-        for (const std::int32_t face : piece.faces) piece.volume += volume_under(f, face, middle);
+        for (const std::int32_t face : piece.faces) piece.volume += six_volumes(f, face, middle) / 6;
     }
     return pieces;
 }

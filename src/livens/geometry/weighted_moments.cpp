@@ -7,16 +7,12 @@
 #include "livens/base/error.h"
 #include "livens/base/text.h"
 #include "livens/geometry/detail/elements.h"
+#include "livens/geometry/detail/weighing.h"
 #include "livens/geometry/moments.h"
 
 namespace livens {
 
 namespace {
-
-/// Points of rules in each direction, one finer than the other: an element takes the first whose successor
-/// says the same. The first is exact for linear densities, the others for polynomials of growing degree.
-constexpr std::array<int, 5> finer{6, 8, 11, 15, 20};
-constexpr double same = 1e-13, unsure = 1e-9;   // of the whole
 
 const std::vector<ShapeValues>& rule_at(ElementKind kind, std::size_t level)
 {
@@ -25,34 +21,6 @@ const std::vector<ShapeValues>& rule_at(ElementKind kind, std::size_t level)
     if (rule.empty()) rule = rule_of(kind, finer[level]);
     return rule;
 }
-
-/// Mass, first and second moment about a point, and of the mass what its size is without signs.
-struct Sums {
-    double mass = 0, size = 0;
-    Vector3 first{};
-    Matrix3 second{};
-
-    void add(const Vector3& x, double share)
-    {
-        mass += share;
-        size += std::abs(share);
-        first += share * x;
-        second += share * outer(x, x);
-    }
-    void add(const Sums& other)
-    {
-        mass += other.mass;
-        size += other.size;
-        first += other.first;
-        second += other.second;
-    }
-    /// In shares of the mass, for a solid that is so large.
-    double gap(const Sums& other, double length) const
-    {
-        return std::max({std::abs(mass - other.mass), norm(first - other.first) / length,
-                         norm(second - other.second) / (length * length)});
-    }
-};
 
 struct Extent {
     Vector3 middle{};
@@ -71,31 +39,31 @@ Extent extent_of(const Mesh& mesh, int of_dimension)
     return {0.5 * low + 0.5 * high, std::max({half[0], half[1], half[2]})};
 }
 
-[[noreturn]] void refuse(const std::string& what, const std::string& value, const std::string& help)
-{
-    throw InputError({"density-field", "", what, value, "", "", help});
-}
-
 std::string text_of_point(const Vector3& p)
 {
     return "(" + to_text(p[0]) + ", " + to_text(p[1]) + ", " + to_text(p[2]) + ")";
 }
 
-double checked(double density, const Vector3& at, double least)
+}   // namespace
+
+void refuse_density(const std::string& what, const std::string& value, const std::string& help)
+{
+    throw InputError({"density-field", "", what, value, "", "", help});
+}
+
+double checked_density(double density, const Vector3& at, double least)
 {
     if (density >= least && std::isfinite(density)) return density;
-    refuse("the density at " + text_of_point(at) + " of the mesh's numbers is no density", to_text(density),
-           "it must be a number >= 0 all over the solid");
+    refuse_density("the density at " + text_of_point(at) + " of the shape's numbers is no density",
+                   to_text(density), "it must be a number >= 0 all over the solid");
 }
 
 Moments about_centroid(const Sums& sums, const Vector3& about)
 {
-    if (!(sums.mass > 0)) refuse("the density leaves no mass", to_text(sums.mass), "");
+    if (!(sums.mass > 0)) refuse_density("the density leaves no mass", to_text(sums.mass), "");
     const Vector3 off = (1 / sums.mass) * sums.first;
     return {sums.mass, about + off, sums.second - sums.mass * outer(off, off)};
 }
-
-}   // namespace
 
 Moments weighted_moments(const Mesh& mesh, const std::function<double(const Vector3&)>& density)
 {
@@ -111,24 +79,19 @@ Moments weighted_moments(const Mesh& mesh, const std::function<double(const Vect
                 for (const ShapeValues& point : rule_at(b.kind, level)) {
                     const ElementPoint at = element_point(point, mesh, b.kind, b.element(e), middle);
                     const Vector3 place = middle + at.x;
-                    sums.add(at.x, point.weight * determinant(at.F) * checked(density(place), place, 0));
+                    sums.add(at.x,
+                             point.weight * determinant(at.F) * checked_density(density(place), place, 0));
                 }
                 return sums;
             };
-            Sums sums = sums_at(0);
-            double gap = HUGE_VAL;
-            for (std::size_t level = 1; level < finer.size() && gap > same * sums.size; ++level) {
-                const Sums better = sums_at(level);
-                gap = better.gap(sums, length);
-                sums = better;
-            }
-            if (gap > same * sums.size) missing += gap;
-            whole.add(sums);
+            const Settled found = settled(length, sums_at);
+            if (found.gap > same_sums * found.sums.size) missing += found.gap;
+            whole.add(found.sums);
         }
-    if (missing > unsure * whole.mass)
-        refuse("the density changes too fast within elements: the mass is known to 1 part in " +
-                   to_text(std::floor(whole.mass / missing)) + " only",
-               "", "let edges of elements lie where the density bends or jumps, or refine the mesh");
+    if (missing > unsure_sums * whole.mass)
+        refuse_density("the density changes too fast within elements: the mass is known to 1 part in " +
+                           to_text(std::floor(whole.mass / missing)) + " only",
+                       "", "let edges of elements lie where the density bends or jumps, or refine the mesh");
     return about_centroid(whole, middle);
 }
 
@@ -145,7 +108,7 @@ Moments weighted_moments(const Mesh& mesh, const LinearDensity& density)
         for (std::int64_t e = 0; dimension(b.kind) == 2 && e < b.size(); ++e) {
             for (int k = 0; k < n_nodes(b.kind); ++k) {
                 const Vector3& corner = mesh.points[b.element(e)[k]];
-                checked(value(corner), corner, -slack);
+                checked_density(value(corner), corner, -slack);
             }
             for (const ShapeValues& point : rule_at(b.kind, 0)) {
                 const ElementPoint at = element_point(point, mesh, b.kind, b.element(e), middle);

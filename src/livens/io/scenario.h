@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -23,6 +24,8 @@ struct Outline {
     Vector3 stretch{1, 1, 1};
     std::vector<Vector3> points{};   ///< of triangles, stretched likewise
     std::vector<std::array<int, 3>> triangles{};
+    std::size_t n_left_out = 0;   ///< triangles of a mesh that has too many to be drawn
+    double moved = 0;             ///< by which its corners are moved for that at most, before stretching
     // Of a union: its parts, each at a place and in axes of the whole.
     std::vector<Outline> parts{};
     Vector3 place{};
@@ -31,6 +34,13 @@ struct Outline {
     bool is_empty() const { return profile.empty() && triangles.empty() && parts.empty(); }
 };
 Outline ball_outline();   ///< of radius 1
+
+/// One of the solids that a shape unites.
+struct ShapePart {
+    std::string name;   ///< may be empty
+    double mass = 0;    ///< kg, of a hole negative
+    Vector3 center{};   ///< of mass, in body coordinates
+};
 
 /// Where the meshes of a scenario are.
 struct MeshSource {
@@ -46,7 +56,8 @@ struct Scenario {
     std::string text;   ///< the file itself
     std::string title;
     Model model;
-    std::vector<Outline> outlines;   ///< of the bodies
+    std::vector<Outline> outlines;               ///< of the bodies
+    std::vector<std::vector<ShapePart>> parts;   ///< of the bodies' shapes; none of one that is no union
     Time time;   ///< element ends hold jumps of loads (unless breaks = "ignore") and output times
     std::vector<double> output;   ///< output times; all element ends, where known, if the scenario lists none
     Method method;

@@ -12,7 +12,7 @@
 #include "livens/diagnostics/sample.h"
 #include "livens/io/report/lines_of_action.h"
 #include "livens/io/report/payload.h"
-#include "livens/io/report/thinned.h"
+#include "livens/io/surface.h"
 #include "livens/spacetime/solve.h"
 
 namespace livens {
@@ -205,24 +205,24 @@ TEST(ReportSurface, IsThinnedWithinWhatIsSaid)
             sheet.triangles.push_back({a, b, b + 1});
             sheet.triangles.push_back({a, b + 1, a + 1});
         }
-    const Thinned same = thinned(sheet, sheet.triangles.size());
-    EXPECT_EQ(same.n_before, 0u);
-    EXPECT_EQ(same.surface.points.size(), sheet.points.size());
-    const Thinned thin = thinned(sheet, 5000);
-    EXPECT_EQ(thin.n_before, sheet.triangles.size());
-    EXPECT_LE(thin.surface.triangles.size(), 5000u);
-    EXPECT_GT(thin.surface.triangles.size(), 2000u);
+    const Surface same = thinned(sheet, sheet.triangles.size());
+    EXPECT_EQ(same.n_left_out, 0u);
+    EXPECT_EQ(same.points.size(), sheet.points.size());
+    const Surface thin = thinned(sheet, 5000);
+    EXPECT_EQ(thin.n_left_out + thin.triangles.size(), sheet.triangles.size());
+    EXPECT_LE(thin.triangles.size(), 5000u);
+    EXPECT_GT(thin.triangles.size(), 2000u);
     double farthest = 0;
     for (const Vector3& p : sheet.points) {
         double nearest = 1;
-        for (const Vector3& q : thin.surface.points) nearest = std::min(nearest, norm(p - q));
+        for (const Vector3& q : thin.points) nearest = std::min(nearest, norm(p - q));
         farthest = std::max(farthest, nearest);
     }
     EXPECT_LE(farthest, thin.moved);
     EXPECT_LT(thin.moved, 0.05);
     EXPECT_GT(thin.moved, 0.005);
-    for (const auto& t : thin.surface.triangles)
-        for (const int corner : t) ASSERT_LT(corner, static_cast<int>(thin.surface.points.size()));
+    for (const auto& t : thin.triangles)
+        for (const int corner : t) ASSERT_LT(corner, static_cast<int>(thin.points.size()));
 }
 
 /// A body of 400,000 triangles makes a page of a few MB, which says what was taken away.

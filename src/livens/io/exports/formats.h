@@ -2,7 +2,6 @@
 // What the writers of exports share.
 #pragma once
 
-#include <array>
 #include <bit>
 #include <cstdint>
 #include <string>
@@ -10,6 +9,7 @@
 #include <vector>
 
 #include "livens/io/exports.h"
+#include "livens/io/surface.h"
 
 namespace livens {
 
@@ -30,13 +30,6 @@ void put(std::string& out, Number number)
     const Bits bits = std::bit_cast<Bits>(number);
     for (std::size_t i = 0; i < sizeof bits; ++i) out += static_cast<char>(bits >> (8 * i) & 0xff);
 }
-
-/// Triangles that bound a body, in its own coordinates; seen from outside their corners go round to the left.
-struct Surface {
-    std::vector<Vector3> points;    ///< m
-    std::vector<Vector3> normals;   ///< of length 1, outwards
-    std::vector<std::array<int, 3>> triangles;
-};
 
 /// One a body: of its outline, else, as a mark, an octahedron at its centre of mass (a ball for point
 /// masses).

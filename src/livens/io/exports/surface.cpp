@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Triangles of outlines: a profile turned about d3.
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <span>
 
 #include "livens/base/elementary.h"
 #include "livens/io/exports/formats.h"
@@ -92,15 +95,40 @@ private:
     Surface surface_;
 };
 
+double largest(const Vector3& v) { return std::max({v[0], v[1], v[2]}); }
+
+/// Normals of a surface that was thinned: each corner has the mean of the faces around it that face alike, as
+/// the curved surface had that they stand for. `areas`: normals of the triangles, as long as they are large.
+void blend_normals(const Outline& outline, const std::vector<Vector3>& areas, std::span<Vector3> normals)
+{
+    std::vector<std::vector<std::size_t>> around(outline.points.size());
+    for (std::size_t f = 0; f < areas.size(); ++f)
+        for (const int point : outline.triangles[f]) around[point].push_back(f);
+    std::size_t corner = 0;
+    for (std::size_t f = 0; f < areas.size(); ++f)
+        for (int k = 0; k < 3 && norm(areas[f]) > 0; ++k, ++corner) {
+            Vector3 sum{};
+            for (const std::size_t other : around[outline.triangles[f][k]])
+                if (dot(areas[f], areas[other]) >= smooth_cosine * norm(areas[f]) * norm(areas[other]))
+                    sum += areas[other];
+            normals[corner] = unit(sum);
+        }
+}
+
 /// Flat faces: each has its own corners.
 void add_triangles(const Outline& outline, Surface& to)
 {
+    const std::size_t n_before = to.normals.size();
+    std::vector<Vector3> areas;
     for (const std::array<int, 3>& t : outline.triangles) {
         std::array<Vector3, 3> p;
         for (int k = 0; k < 3; ++k)
             for (int i = 0; i < 3; ++i) p[k][i] = outline.stretch[i] * outline.points[t[k]][i];
-        const Vector3 area = cross(p[1] - p[0], p[2] - p[0]);
-        if (norm(area) == 0) continue;   // a needle has no side
+        const Vector3 area = areas.emplace_back(cross(p[1] - p[0], p[2] - p[0]));
+        if (norm(area) == 0) {   // a needle has no side
+            to.n_left_out += outline.n_left_out > 0 ? 1 : 0;
+            continue;
+        }
         const int first = static_cast<int>(to.points.size());
         for (const Vector3& corner : p) {
             to.points.push_back(corner);
@@ -108,6 +136,7 @@ void add_triangles(const Outline& outline, Surface& to)
         }
         to.triangles.push_back({first, first + 1, first + 2});
     }
+    if (outline.n_left_out > 0) blend_normals(outline, areas, std::span(to.normals).subspan(n_before));
 }
 
 /// About the origin of the outline.
@@ -115,9 +144,13 @@ Surface surface_of(const Outline& outline)
 {
     Surface whole = outline.profile.empty() ? Surface{} : Turning(outline, {}).take();
     add_triangles(outline, whole);
+    whole.n_left_out += outline.n_left_out;
+    whole.moved = largest(outline.stretch) * outline.moved;
     for (const Outline& part : outline.parts) {
         const Surface surface = surface_of(part);
         const int first = static_cast<int>(whole.points.size());
+        whole.n_left_out += surface.n_left_out;
+        whole.moved = std::max(whole.moved, surface.moved);
         for (const Vector3& p : surface.points) whole.points.push_back(part.place + part.axes * p);
         for (const Vector3& n : surface.normals) whole.normals.push_back(part.axes * n);
         for (const auto& t : surface.triangles)

@@ -11,7 +11,6 @@
 #include "livens/io/exports/formats.h"
 #include "livens/io/report/lines_of_action.h"
 #include "livens/io/report/parts.h"
-#include "livens/io/report/thinned.h"
 #include "livens/multibody/body.h"
 
 namespace livens {
@@ -93,8 +92,8 @@ void write_bodies(ReportData& data, const Scenario& scenario)
     json.key("bodies").begin_array();
     for (std::size_t b = 0; b < surfaces.size(); ++b) {
         const Body& body = scenario.model.bodies()[b];
-        const Thinned thin = thinned(std::move(surfaces[b]), most_triangles);
-        const UnitSurface unit = unit_surface(thin.surface);
+        const Surface thin = thinned(std::move(surfaces[b]), most_triangles);
+        const UnitSurface unit = unit_surface(thin);
         const bool is_mark = b >= scenario.outlines.size() || scenario.outlines[b].is_empty();
         json.begin_object().member("name", body.name).member("point", body.is_point);
         json.member("mark", is_mark).member("mass", body.mass(0, 0));
@@ -102,12 +101,12 @@ void write_bodies(ReportData& data, const Scenario& scenario)
         add(json, "middle", unit.middle);
         add(json, "half", unit.half);
         json.key("thinned");
-        if (thin.n_before == 0)
+        if (thin.n_left_out == 0)
             json.null();
         else
             json.begin_array()
-                .value(thin.n_before)
-                .value(thin.surface.triangles.size())
+                .value(thin.triangles.size() + thin.n_left_out)
+                .value(thin.triangles.size())
                 .value(thin.moved)
                 .end_array();
         add(json, "centre", body.is_point ? Vector3{} : mass_properties(body.mass).center_of_mass);

@@ -63,11 +63,16 @@ void check_mass(const Section& body)
         body.at_most_one({"density", "mass"}, "mass-conflict");
         body.refuse({"inertia"}, "mass-conflict", "it follows from the shape");
         const Section* shape = only_section(body, "shape");
-        if (shape != nullptr && shape->has("densities"))
+        const DensityBy by = shape != nullptr ? density_by(*shape) : DensityBy::body;
+        if (by == DensityBy::shape)
             body.refuse({"density", "mass"}, "mass-conflict",
-                        "the regions of the mesh have their own densities");
-        else if (shape != nullptr && shape->has("mesh") && shape->has("density_field"))
-            body.refuse({"density", "mass"}, "mass-conflict", "'density_field' of the shape says it already");
+                        shape->has("densities") ? "the regions of the mesh have their own densities"
+                                                : "'density_field' of the shape says it already");
+        else if (by == DensityBy::both && body.has("mass"))
+            body.refuse({"mass"}, "mass-conflict", "'density_field' says what parts weigh");
+        else if (by == DensityBy::both && !body.has("density"))
+            body.error("shape", "mass-missing",
+                       body.label() + " has no 'density', and parts of its shape have no 'density_field'");
         else if (!body.has("density") && !body.has("mass"))
             body.error("shape", "mass-missing",
                        body.label() + " has a shape, but neither 'density' nor 'mass'");
@@ -152,6 +157,18 @@ std::vector<NamedSurface> surfaces_in_body(const Section& body, const Solid& sha
     const Vector3 d = body.vector("center_of_mass") - shape.properties.center_of_mass;
     for (NamedSurface& s : surfaces) s.moments = moved(s.moments, identity<3>(), d);
     return surfaces;
+}
+
+/// Likewise, and with the body's mass where that is stated.
+std::vector<ShapePart> parts_in_body(const Section& body, const Solid& shape)
+{
+    std::vector<ShapePart> parts = shape.parts;
+    for (ShapePart& part : parts) {
+        if (body.has("mass")) part.mass *= body.number("mass") / shape.properties.mass;
+        if (body.has("center_of_mass"))
+            part.center += body.vector("center_of_mass") - shape.properties.center_of_mass;
+    }
+    return parts;
 }
 
 /// Directors that are skew by so little were meant perpendicular, and rounded.
@@ -278,6 +295,8 @@ Placement read_placement(const Section& body, const Matrix3& stretch)
 void read_bodies(Builder& builder)
 {
     std::unordered_set<std::string> taken;
+    const bool with_surfaces = std::ranges::any_of(builder.top().sections("load"),
+                                                   [](const Section& load) { return load.takes("surface"); });
     for (const Section& section : builder.top().sections("body")) {
         const bool is_good = check_body(section, builder.findings());
         const Value* named = section.find("name");
@@ -289,10 +308,11 @@ void read_bodies(Builder& builder)
         const std::string path = "body[" + named->text + "]";
         builder.remember(path, section);
         body.is_usable = is_good && builder.guard(path, [&] {
-            const Solid shape = read_shape(section, builder.meshes());
+            const Solid shape = read_shape(section, builder.meshes(), with_surfaces);
             body.index = builder.model().add_body(build_body(section, named->text, shape));
             warn_of_rounded_directors(builder, section);
             builder.outlines().push_back(shape.outline);
+            builder.parts().push_back(parts_in_body(section, shape));
             builder.surfaces().push_back(surfaces_in_body(section, shape));
         });
     }

@@ -32,6 +32,7 @@ public:
     Model& model() { return model_; }
     const Model& model() const { return model_; }
     std::vector<Outline>& outlines() { return outlines_; }   ///< of the bodies so far
+    std::vector<std::vector<ShapePart>>& parts() { return parts_; }            ///< of the bodies so far
     std::vector<std::vector<NamedSurface>>& surfaces() { return surfaces_; }   ///< of the bodies so far
     MeshStore& meshes() { return meshes_; }
     /// Call once all bodies are there: computes length().
@@ -81,6 +82,7 @@ private:
     Findings& findings_;
     Model model_;
     std::vector<Outline> outlines_;
+    std::vector<std::vector<ShapePart>> parts_;
     std::vector<std::vector<NamedSurface>> surfaces_;
     MeshStore meshes_;
     std::unordered_map<std::string, BodyReference> bodies_;

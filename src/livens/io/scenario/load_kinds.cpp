@@ -109,9 +109,10 @@ std::vector<Key> keys_of_actuator()
 
 Key surface_key()
 {
-    return {"surface", types::text,
-            "Of the body's mesh by its name in the file: a physical group (MSH), a solid (STL), object/group "
-            "(OBJ). Default: all."};
+    return {
+        "surface", types::text,
+        "By its name: of a mesh in its file, a physical group (MSH), a solid (STL), object/group (OBJ); of "
+        "a union that of a part. Default: all of a body that is one solid."};
 }
 
 std::vector<Key> keys_of_pressure()
@@ -182,7 +183,7 @@ const std::vector<LoadKind>& load_kinds()
                "Also what the body's extent does, which turns it: the next term of the potential.", "",
                "false"}}},
          make_attraction},
-        {{"traction", "force per area on a surface of the body's mesh",
+        {{"traction", "force per area on a surface of the body's shape",
           keys_on_body("traction", "Pa",
                        {surface_key(),
                         Key{"gradient", types::triple,
@@ -191,7 +192,7 @@ const std::vector<LoadKind>& load_kinds()
                             "Pa/m"}})},
          make_traction,
          check_field},
-        {{"pressure", "against a surface of the body's mesh, which it follows", keys_of_pressure()},
+        {{"pressure", "against a surface of the body's shape, which it follows", keys_of_pressure()},
          make_pressure,
          check_field},
         {{"body_force", "force per unit mass on all of a body", keys_on_body("body_force", "m/s^2", {})},

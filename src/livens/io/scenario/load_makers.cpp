@@ -270,11 +270,13 @@ const SurfaceMoments& surface_of(const LoadSources& p)
         if (!s.name.empty()) known += (known.empty() ? "it has '" : "', '") + s.name;
     }
     const std::string body = "body '" + p.builder.body_name(p.first) + "'";
-    throw InputError({"surface-unknown", p.path() + ".surface",
-                      name.empty() ? "all of the surface of " + body + " is not known: it is not one mesh"
-                                   : body + " has no surface '" + name + "'",
-                      "", "", known.empty() ? "meshes with named regions have named surfaces" : known + "'",
-                      ""});
+    throw InputError(
+        {"surface-unknown", p.path() + ".surface",
+         name.empty() ? "all of the surface of " + body + " is not known: it is not one solid"
+                      : body + " has no surface '" + name + "'",
+         "", "",
+         known.empty() ? "parts with names and meshes with named regions have named surfaces" : known + "'",
+         ""});
 }
 
 /// A row of the gradient, while the load acts.

@@ -12,7 +12,7 @@
 #include "livens/base/error.h"
 #include "livens/base/text.h"
 #include "livens/geometry/soundness.h"
-#include "livens/time/expression.h"
+#include "livens/io/scenario/density_fields.h"
 
 namespace livens {
 
@@ -24,23 +24,24 @@ namespace {
     throw InputError({code, "", "the mesh '" + path + "' " + why, "", "", "", help});
 }
 
-/// The surface of a mesh about its centroid; quadrilaterals as two triangles, curved faces by their corners.
-void add_picture(const Mesh& surface, ReducedMesh& to)
+/// The surface of a mesh about a point; quadrilaterals as two triangles, curved faces by their corners.
+Surface picture_of(const Mesh& surface, const Vector3& about)
 {
-    if (surface.n_elements(2) > most_shown) return;
+    Surface picture;
     std::vector<int> indices(surface.points.size(), -1);
     const auto index = [&](std::int32_t point) {
         if (indices[point] < 0) {
-            indices[point] = static_cast<int>(to.points.size());
-            to.points.push_back(surface.points[point] - to.whole.centroid);
+            indices[point] = static_cast<int>(picture.points.size());
+            picture.points.push_back(surface.points[point] - about);
         }
         return indices[point];
     };
     for (const ElementBlock& b : surface.blocks)
         for (std::int64_t e = 0; dimension(b.kind) == 2 && e < b.size(); ++e)
             for (int k = 1; k + 1 < n_corners(b.kind); ++k)
-                to.triangles.push_back(
+                picture.triangles.push_back(
                     {index(b.element(e)[0]), index(b.element(e)[k]), index(b.element(e)[k + 1])});
+    return thinned(std::move(picture), most_shown);
 }
 
 /// One line of numbers, then what is left.
@@ -133,73 +134,17 @@ bool read_line(std::string_view text, std::map<std::pair<std::string, bool>, Red
         mesh->weighted[{unit, line.rest()}] = m;
         return true;
     }
-    if (word == "point") return line.read(mesh->points.emplace_back());
+    Surface& picture = mesh->picture;
+    if (word == "thinned")
+        return line.read(picture.n_left_out) && line.read(picture.moved) &&
+               picture.n_left_out <= max_mesh_bytes && picture.moved >= 0 && std::isfinite(picture.moved);
+    if (word == "point") return line.read(picture.points.emplace_back());
     std::array<int, 3> t;
     if (word != "face" || !line.read(t[0]) || !line.read(t[1]) || !line.read(t[2])) return false;
     for (const int i : t)
-        if (i < 0 || i >= static_cast<int>(mesh->points.size())) return false;
-    mesh->triangles.push_back(t);
+        if (i < 0 || i >= static_cast<int>(picture.points.size())) return false;
+    picture.triangles.push_back(t);
     return true;
-}
-
-/// A word of its own in the text: letters, digits and _ are one.
-bool has_word(std::string_view text, std::string_view word)
-{
-    const auto is_part = [&](std::size_t at) {
-        if (at >= text.size()) return false;
-        const char c = text[at];
-        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
-    };
-    for (std::size_t at = text.find(word); at != std::string_view::npos; at = text.find(word, at + 1))
-        if (!(at > 0 && is_part(at - 1)) && !is_part(at + word.size())) return true;
-    return false;
-}
-
-/// The density of a surface, whose inside has no points to ask at: slopes that are the same at many places,
-/// of an expression without bends, are those of a linear one.
-LinearDensity linear(const Expression& density, const Mesh& mesh, double unit)
-{
-    const auto refuse_field = [&](const std::string& why) {
-        throw InputError({"density-field", "", "'" + mesh.name + "' is a surface, and its density " + why,
-                          "'" + density.text() + "'", "",
-                          "what a closed surface says of its inside is enough for linear densities",
-                          "give a mesh with elements of volume"});
-    };
-    if (!density.kink_by_symbols().empty()) refuse_field("bends or jumps");
-    LinearDensity found;
-    std::array<double, 3> first{};
-    const std::size_t n = mesh.points.size(), step = std::max<std::size_t>(1, n / 16);
-    for (std::size_t k = 0; k + step < n + step; k += step) {
-        const Vector3 p = unit * (0.7 * mesh.points[k] + 0.3 * mesh.points[n - 1 - k]);
-        std::array<double, 3> slopes{};
-        const std::array<double, 3> at{p[0], p[1], p[2]};
-        const double value = density(0, at, slopes);
-        if (k == 0) first = slopes;
-        double size = 0, gap = 0;
-        for (int i = 0; i < 3; ++i) {
-            size = std::max(size, std::abs(first[i]));
-            gap = std::max(gap, std::abs(slopes[i] - first[i]));
-        }
-        if (!(gap <= 1e-12 * size)) refuse_field("is not linear");
-        if (k > 0) continue;
-        for (int i = 0; i < 3; ++i) found.gradient[i] = unit * slopes[i];
-        found.at_origin = value - dot({slopes[0], slopes[1], slopes[2]}, p);
-    }
-    return found;
-}
-
-Moments integrated(const Mesh& mesh, double unit, const std::string& text)
-{
-    const Expression density(text, {"x", "y", "z"});
-    if (has_word(text, "t") || text.find('\n') != std::string::npos)
-        throw InputError({"density-field", "", "a density does not change with time", "'" + text + "'", "",
-                          "it is an expression in x, y and z, on one line", ""});
-    if (!mesh.is_volume()) return scaled(weighted_moments(mesh, linear(density, mesh, unit)), unit);
-    const auto value = [&](const Vector3& p) {
-        const std::array<double, 3> at{unit * p[0], unit * p[1], unit * p[2]};
-        return density(0, at);
-    };
-    return scaled(weighted_moments(mesh, value), unit);
 }
 
 bool is_inside(const std::filesystem::path& file, const std::filesystem::path& folder)
@@ -216,14 +161,14 @@ ReducedMesh reduced(const Mesh& mesh)
     r.whole = moments(mesh);
     r.surfaces = surface_moments(mesh);
     if (!mesh.is_volume()) {
-        add_picture(mesh, r);
+        r.picture = picture_of(mesh, r.whole.centroid);
         return r;
     }
     const std::vector<Moments> of = region_moments(mesh);
     for (std::size_t k = 0; k < of.size(); ++k)
         if (of[k].volume > 0)
             r.regions.emplace_back(mesh.regions[k].names.empty() ? "" : mesh.regions[k].names.front(), of[k]);
-    add_picture(boundary_of(mesh), r);
+    r.picture = picture_of(boundary_of(mesh), r.whole.centroid);
     return r;
 }
 
@@ -257,7 +202,7 @@ const Moments& MeshStore::weighted(const std::string& path, bool is_turned, doub
     std::map<std::pair<double, std::string>, Moments>& weighted = entry(path, is_turned).weighted;
     const auto known = weighted.find({unit, density});
     if (known != weighted.end()) return known->second;
-    return weighted.emplace(std::pair(unit, density), integrated(read(path, is_turned), unit, density))
+    return weighted.emplace(std::pair(unit, density), weighted_by_field(read(path, is_turned), unit, density))
         .first->second;
 }
 
@@ -297,8 +242,11 @@ std::string MeshStore::kept() const
         }
         for (const auto& [field, m] : mesh.weighted)
             text += "weighted " + numbers_of(m) + to_text(field.first) + " " + field.second + "\n";
-        for (const Vector3& p : mesh.points) text += "point " + numbers_of(p) + "\n";
-        for (const auto& t : mesh.triangles)
+        const Surface& picture = mesh.picture;
+        if (picture.n_left_out > 0)
+            text += "thinned " + std::to_string(picture.n_left_out) + " " + to_text(picture.moved) + "\n";
+        for (const Vector3& p : picture.points) text += "point " + numbers_of(p) + "\n";
+        for (const auto& t : picture.triangles)
             text += "face " + std::to_string(t[0]) + " " + std::to_string(t[1]) + " " + std::to_string(t[2]) +
                     "\n";
     }

@@ -2,7 +2,6 @@
 // The meshes that a scenario names: each is read, checked and integrated once.
 #pragma once
 
-#include <array>
 #include <map>
 #include <string>
 #include <utility>
@@ -10,6 +9,7 @@
 
 #include "livens/geometry/moments.h"
 #include "livens/io/scenario.h"
+#include "livens/io/surface.h"
 
 namespace livens {
 
@@ -21,11 +21,9 @@ struct ReducedMesh {
     std::vector<NamedSurface> surfaces;                     ///< the whole first, if it is known
     /// Weighted by densities that are fields, in m and kg, by the unit and the text that stated them.
     std::map<std::pair<double, std::string>, Moments> weighted;
-    /// Its surface about the centroid, for pictures; empty where it has more than most_shown triangles.
-    std::vector<Vector3> points;
-    std::vector<std::array<int, 3>> triangles;
+    Surface picture;   ///< about the centroid, without normals, thinned to most_shown triangles
 };
-inline constexpr std::int64_t most_shown = 5000;
+inline constexpr std::size_t most_shown = 10'000;
 
 /// What is left of a sound mesh.
 ReducedMesh reduced(const Mesh& mesh);

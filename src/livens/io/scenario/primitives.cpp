@@ -69,6 +69,42 @@ double radius_of_sphere(const Section& shape)
     return table != nullptr ? table->number("radius") : shape.number("sphere");
 }
 
+Outline outline_of_cylinder(const Section& shape)
+{
+    const Section& c = *only_section(shape, "cylinder");
+    return cylinder_outline(c.number("radius"), c.number("length"), c.number("inner_radius"));
+}
+
+PrimitiveSolid solid_of_cylinder(const Section& shape)
+{
+    const Section& c = *only_section(shape, "cylinder");
+    return cylinder_solid(c.number("radius"), c.number("length"), c.number("inner_radius"));
+}
+
+Outline outline_of_capsule(const Section& shape)
+{
+    const Section& c = *only_section(shape, "capsule");
+    return capsule_outline(c.number("radius"), c.number("length"));
+}
+
+PrimitiveSolid solid_of_capsule(const Section& shape)
+{
+    const Section& c = *only_section(shape, "capsule");
+    return capsule_solid(c.number("radius"), c.number("length"));
+}
+
+Outline outline_of_cone(const Section& shape)
+{
+    const Section& c = *only_section(shape, "cone");
+    return cone_outline(c.number("radius"), c.number("height"));
+}
+
+PrimitiveSolid solid_of_cone(const Section& shape)
+{
+    const Section& c = *only_section(shape, "cone");
+    return cone_solid(c.number("radius"), c.number("height"));
+}
+
 }   // namespace
 
 const std::vector<Primitive>& primitives()
@@ -76,13 +112,18 @@ const std::vector<Primitive>& primitives()
     static const std::vector<Primitive> all{
         {Key{"box", types::vector3, "Edges along d1, d2, d3.", "m"}.within(positive),
          [](double density, const Section& shape) { return box(density, shape.vector("box")); },
-         [](const Section& shape) { return box_outline(shape.vector("box")); }},
+         [](const Section& shape) { return box_outline(shape.vector("box")); },
+         [](const Section& shape) { return box_solid(shape.vector("box")); }},
         {Key{"sphere", types::number_or_table, "Radius, or a table with it.", "m"}.within(positive).holding(
              {"sphere of shape", "", {length("radius", "Of the sphere.")}}),
          [](double density, const Section& shape) { return sphere(density, radius_of_sphere(shape)); },
          [](const Section& shape) {
              const double r = radius_of_sphere(shape);
              return stretched(ball_outline(), {r, r, r});
+         },
+         [](const Section& shape) {
+             const double r = radius_of_sphere(shape);
+             return ellipsoid_solid({r, r, r});
          }},
         {Key{"cylinder", types::table, "Solid or tube."}.holding(
              {"cylinder of shape",
@@ -93,10 +134,7 @@ const std::vector<Primitive>& primitives()
              const Section& c = *only_section(shape, "cylinder");
              return cylinder(density, c.number("radius"), c.number("length"), c.number("inner_radius"));
          },
-         [](const Section& shape) {
-             const Section& c = *only_section(shape, "cylinder");
-             return cylinder_outline(c.number("radius"), c.number("length"), c.number("inner_radius"));
-         }},
+         outline_of_cylinder, solid_of_cylinder},
         {Key{"capsule", types::table, "Cylinder between two half spheres."}.holding(
              {"capsule of shape",
               "",
@@ -106,13 +144,11 @@ const std::vector<Primitive>& primitives()
              const Section& c = *only_section(shape, "capsule");
              return capsule(density, c.number("radius"), c.number("length"));
          },
-         [](const Section& shape) {
-             const Section& c = *only_section(shape, "capsule");
-             return capsule_outline(c.number("radius"), c.number("length"));
-         }},
+         outline_of_capsule, solid_of_capsule},
         {Key{"ellipsoid", types::vector3, "Semi-axes along d1, d2, d3.", "m"}.within(positive),
          [](double density, const Section& shape) { return ellipsoid(density, shape.vector("ellipsoid")); },
-         [](const Section& shape) { return stretched(ball_outline(), shape.vector("ellipsoid")); }},
+         [](const Section& shape) { return stretched(ball_outline(), shape.vector("ellipsoid")); },
+         [](const Section& shape) { return ellipsoid_solid(shape.vector("ellipsoid")); }},
         {Key{"cone", types::table, "Solid cone, apex along +d3, origin at its centre of mass."}.holding(
              {"cone of shape",
               "",
@@ -121,10 +157,7 @@ const std::vector<Primitive>& primitives()
              const Section& c = *only_section(shape, "cone");
              return cone(density, c.number("radius"), c.number("height"));
          },
-         [](const Section& shape) {
-             const Section& c = *only_section(shape, "cone");
-             return cone_outline(c.number("radius"), c.number("height"));
-         }},
+         outline_of_cone, solid_of_cone},
     };
     return all;
 }

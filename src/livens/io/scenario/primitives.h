@@ -2,6 +2,7 @@
 // Shapes that are stated by a few lengths.
 #pragma once
 
+#include "livens/geometry/primitive_solid.h"
 #include "livens/io/scenario.h"
 #include "livens/io/scenario/section.h"
 
@@ -11,6 +12,7 @@ struct Primitive {
     Key key;
     MassProperties (*make)(double density, const Section& shape);
     Outline (*outline)(const Section& shape);
+    PrimitiveSolid (*solid)(const Section& shape);
 };
 const std::vector<Primitive>& primitives();
 const Primitive* find_primitive(std::string_view key);

@@ -68,6 +68,7 @@ void build(const Node& root, TreePart part, const MeshSource& meshes, Scenario& 
     if (fits) check_ends(builder, scenario.conditions, scenario.options.initial);
     scenario.model = std::move(builder.model());
     scenario.outlines = std::move(builder.outlines());
+    scenario.parts = std::move(builder.parts());
     scenario.meshes = builder.meshes().kept();
 }
 

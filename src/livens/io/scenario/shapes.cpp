@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "livens/base/text.h"
+#include "livens/io/scenario/density_fields.h"
 #include "livens/io/scenario/primitives.h"
 #include "livens/io/scenario/units.h"
 
@@ -33,17 +34,22 @@ std::vector<Key> mesh_keys(bool is_part)
          "refused."}};
     if (!is_part)
         keys.push_back(
-            {"density_field", types::text,
-             "The mesh's density in kg/m^3 as an expression in `x`, `y` and `z`, the place in m in the "
-             "mesh's "
-             "axes after `unit` and `scale`: `\"2000 + 300*z\"`; instead of `density` and `mass`. Any "
-             "expression for a mesh with elements of volume, a linear one for a surface."});
-    if (!is_part)
-        keys.push_back(
             {"densities", types::named_texts,
              "Of the mesh's regions of volume by their names in the file, each a text with a unit: "
              "`{ steel = \"7850 kg/m^3\" }`; all of them, instead of `density` and `mass`."});
     return keys;
+}
+
+Key density_field_key(bool is_part)
+{
+    return {
+        "density_field", types::text,
+        std::string("The density in kg/m^3 as an expression in `x`, `y` and `z`, the place in m in the ") +
+            (is_part ? "part's own axes, before `position` and orientation" : "axes of the shape") +
+            " (of a mesh after `unit` and `scale`): `\"2000 + 300*z\"`; " +
+            (is_part ? "times `density`, whose sign makes it a hole, and without that of the body."
+                     : "instead of `density` and `mass`; of a union at its parts.") +
+            " A mesh that is a surface takes linear ones."};
 }
 
 /// The key that says what a shape or part is; null after an error.
@@ -67,11 +73,17 @@ const Key* kind_of(const Section& shape)
     return nullptr;
 }
 
+bool check_density_field(const Section& shape, std::string_view kind)
+{
+    if (kind == "point") return shape.refuse({"density_field"}, "shape", "a point mass has no extent");
+    if (kind == "parts") return shape.refuse({"density_field"}, "shape", "it stands at the parts of a union");
+    return true;
+}
+
 bool check_mesh(const Section& shape)
 {
     if (!shape.has("mesh"))
-        return shape.refuse({"unit", "scale", "turn", "density_field", "densities"}, "shape",
-                            "the shape is no mesh");
+        return shape.refuse({"unit", "scale", "turn", "densities"}, "shape", "the shape is no mesh");
     if (!shape.has("unit"))
         return shape.error(
             "mesh", "mesh-unit", shape.label() + " has a mesh without 'unit'",
@@ -84,10 +96,11 @@ bool check_mesh(const Section& shape)
                            shape.text("unit") + "\"");
 }
 
-/// A solid in its own coordinates, by its moments at density 1.
+/// A solid in its own coordinates.
 struct Part {
-    Moments moments;
-    Outline outline;
+    Moments moments;    ///< at density 1
+    Moments weighted;   ///< by its density if it states that, else likewise
+    Outline outline;    ///< about the centroid
     std::vector<NamedSurface> surfaces = {};
 };
 
@@ -122,55 +135,12 @@ void add_surfaces(std::vector<NamedSurface>& to, const Part& part, const std::st
 Outline outline_of(const ReducedMesh& mesh, double unit)
 {
     Outline outline;
-    outline.points = mesh.points;
-    outline.triangles = mesh.triangles;
+    outline.points = mesh.picture.points;
+    outline.triangles = mesh.picture.triangles;
+    outline.n_left_out = mesh.picture.n_left_out;
+    outline.moved = mesh.picture.moved;
     outline.stretch = {unit, unit, unit};
     return outline;
-}
-
-Part read_part(const Section& shape, MeshStore& meshes)
-{
-    const Key& key = *kind_of(shape);
-    if (key.name == "mesh") {
-        const ReducedMesh& mesh = meshes.find(shape.text("mesh"), shape.has("turn"));
-        return {scaled(mesh.whole, unit_of(shape)), outline_of(mesh, unit_of(shape)),
-                surfaces_of(mesh, unit_of(shape))};
-    }
-    const Primitive& p = *find_primitive(key.name);
-    return {moments(p.make(1, shape)), p.outline(shape)};
-}
-
-Solid read_union(const Section& shape, double density, MeshStore& meshes)
-{
-    std::vector<Moments> parts;
-    std::vector<double> densities;
-    Solid solid;
-    solid.has_own_origin = true;
-    for (const Section& section : shape.sections("parts")) {
-        Part part = read_part(section, meshes);
-        const Matrix3 axes = read_orientation(section);
-        parts.push_back(moved(part.moments, axes, section.vector("position")));
-        densities.push_back(section.number("density"));
-        solid.volume += std::copysign(parts.back().volume, densities.back());
-        if (densities.back() < 0) continue;   // a picture cannot take away, and a hole has another surface
-        add_surfaces(solid.surfaces, part, section.has("name") ? section.text("name") : "", axes,
-                     section.vector("position"));
-        part.outline.axes = axes;
-        part.outline.place = parts.back().centroid;
-        solid.outline.parts.push_back(std::move(part.outline));
-    }
-    double mass = 0, size = 0;
-    for (std::size_t k = 0; k < parts.size(); ++k) {
-        mass += densities[k] * parts[k].volume;
-        size += std::abs(densities[k]) * parts[k].volume;
-    }
-    if (!(mass > 1e-12 * size))
-        throw InputError({"shape", "body.shape", "the parts leave no mass", to_text(mass), "> 0",
-                          "parts with a negative density are holes in others", ""});
-    const Moments whole = combined(parts, densities);
-    solid.properties = livens::solid(density, whole);
-    for (Outline& part : solid.outline.parts) part.place -= whole.centroid;
-    return solid;
 }
 
 /// With the densities of its regions, which must all be stated.
@@ -208,6 +178,76 @@ Moments weighted(const Section& shape, const ReducedMesh& mesh, double unit)
     return combined(parts, densities);
 }
 
+Part read_mesh_part(const Section& shape, MeshStore& meshes)
+{
+    const ReducedMesh& mesh = meshes.find(shape.text("mesh"), shape.has("turn"));
+    const double unit = unit_of(shape);
+    const Moments whole = scaled(mesh.whole, unit);
+    Part part{whole, whole, outline_of(mesh, unit), surfaces_of(mesh, unit)};
+    if (shape.has("density_field"))
+        part.weighted =
+            meshes.weighted(shape.text("mesh"), shape.has("turn"), unit, shape.text("density_field"));
+    else if (shape.takes("densities") && shape.has("densities"))
+        part.weighted = weighted(shape, mesh, unit);
+    return part;
+}
+
+Part read_part(const Section& shape, MeshStore& meshes, bool with_surfaces)
+{
+    const Key& key = *kind_of(shape);
+    if (key.name == "mesh") return read_mesh_part(shape, meshes);
+    const Primitive& p = *find_primitive(key.name);
+    const Moments whole = moments(p.make(1, shape));
+    Part part{whole, whole, p.outline(shape)};
+    if (shape.has("density_field"))
+        part.weighted = weighted_by_field(p.solid(shape), shape.text("density_field"));
+    if (with_surfaces) part.surfaces = {{"", surface_moments(p.solid(shape), whole)}};
+    return part;
+}
+
+Solid read_union(const Section& shape, double density, MeshStore& meshes, bool with_surfaces)
+{
+    std::vector<Moments> parts;
+    std::vector<double> densities;
+    Solid solid;
+    solid.has_own_origin = true;
+    double mass = 0, size = 0;
+    for (const Section& section : shape.sections("parts")) {
+        Part part = read_part(section, meshes, with_surfaces);
+        const std::string name = section.has("name") ? section.text("name") : "";
+        const Matrix3 axes = read_orientation(section);
+        const Vector3 place = section.vector("position");
+        const double factor = section.number("density");
+        parts.push_back(moved(part.weighted, axes, place));
+        densities.push_back(section.has("density_field") ? factor : density * factor);
+        mass += densities.back() * parts.back().volume;
+        size += std::abs(densities.back()) * parts.back().volume;
+        solid.volume += std::copysign(part.moments.volume, factor);
+        solid.parts.push_back({name, densities.back() * parts.back().volume, parts.back().centroid});
+        if (factor < 0) continue;   // a picture cannot take away, and a hole has another surface
+        add_surfaces(solid.surfaces, part, name, axes, place);
+        part.outline.axes = axes;
+        part.outline.place = moved(part.moments, axes, place).centroid;
+        solid.outline.parts.push_back(std::move(part.outline));
+    }
+    if (!(mass > 1e-12 * size))
+        throw InputError({"shape", "body.shape", "the parts leave no mass", to_text(mass), "> 0",
+                          "parts with a negative density are holes in others", ""});
+    const Moments whole = combined(parts, densities);
+    solid.properties = livens::solid(1, whole);
+    for (Outline& part : solid.outline.parts) part.place -= whole.centroid;
+    return solid;
+}
+
+/// Where the density is not the same all over, the centre of mass is not the centroid.
+Outline about(const Vector3& center_of_mass, const Part& part)
+{
+    Outline whole;
+    whole.parts = {part.outline};
+    whole.parts.front().place = part.moments.centroid - center_of_mass;
+    return whole;
+}
+
 }   // namespace
 
 double unit_of_length(const std::string& text)
@@ -228,10 +268,11 @@ Table shape_table()
         {}};
     for (const Primitive& p : primitives()) part.keys.push_back(p.key);
     for (const Key& key : mesh_keys(true)) part.keys.push_back(key);
+    part.keys.push_back(density_field_key(true));
     part.keys.push_back(
         {"name", types::text,
-         "Of the part: loads find the whole surface of its mesh by that, and a surface of it as "
-         "`name/surface`."});
+         "Of the part: loads find its whole surface by that, and a surface of its mesh as `name/surface`; "
+         "`livens mass` tells what it weighs."});
     part.keys.push_back(
         {"position", types::vector3, "Of the part's origin in body coordinates.", "m", "[0, 0, 0]"});
     for (const Key& key : orientation_keys()) part.keys.push_back(key);
@@ -245,6 +286,7 @@ Table shape_table()
     shape.keys.push_back(
         Key{"point", types::flag, "A point mass: no orientation, no inertia; needs `mass`."});
     for (const Key& key : mesh_keys(false)) shape.keys.push_back(key);
+    shape.keys.push_back(density_field_key(false));
     shape.keys.push_back(Key{"parts", types::tables, "A union of shapes."}.holding(part));
     return shape;
 }
@@ -259,6 +301,7 @@ bool check_shape(const Section& shape)
 {
     const Key* kind = kind_of(shape);
     if (kind == nullptr || !shape.is_valid() || !check_mesh(shape)) return false;
+    if (!check_density_field(shape, kind->name)) return false;
     const Section* tube = kind->name == "cylinder" ? only_section(shape, "cylinder") : nullptr;
     if (tube != nullptr && tube->number("inner_radius") >= tube->number("radius"))
         return tube->error("inner_radius", "size-inner-radius",
@@ -273,25 +316,37 @@ bool check_shape(const Section& shape)
     });
 }
 
-Solid read_shape(const Section& body, MeshStore& meshes)
+DensityBy density_by(const Section& shape)
+{
+    const auto has_field = [](const Section& s) { return s.has("density_field"); };
+    if (shape.has("densities") || has_field(shape)) return DensityBy::shape;
+    const auto parts = shape.sections("parts");
+    if (!std::ranges::any_of(parts, has_field)) return DensityBy::body;
+    return std::ranges::all_of(parts, has_field) ? DensityBy::shape : DensityBy::both;
+}
+
+Solid read_shape(const Section& body, MeshStore& meshes, bool with_surfaces)
 {
     const Section* shape = only_section(body, "shape");
     if (shape == nullptr || is_point_mass(body)) return {};
     const double density = body.has("density") ? body.number("density") : 1;
     try {
         const Key& key = *kind_of(*shape);
-        if (key.name == "parts") return read_union(*shape, density, meshes);
-        if (const Primitive* p = find_primitive(key.name))
-            return {p->make(density, *shape), false, p->outline(*shape), {}, p->make(1, *shape).mass};
-        const ReducedMesh& mesh = meshes.find(shape->text("mesh"), shape->has("turn"));
-        const double unit = unit_of(*shape);
-        MassProperties properties = solid(density, scaled(mesh.whole, unit));
-        if (shape->has("densities")) properties = solid(1, weighted(*shape, mesh, unit));
-        if (shape->has("density_field"))
-            properties = solid(1, meshes.weighted(shape->text("mesh"), shape->has("turn"), unit,
-                                                  shape->text("density_field")));
-        return {properties, true, outline_of(mesh, unit), surfaces_of(mesh, unit),
-                scaled(mesh.whole, unit).volume};
+        if (key.name == "parts") return read_union(*shape, density, meshes, with_surfaces);
+        const Part part = read_part(*shape, meshes, with_surfaces);
+        const bool has_density = density_by(*shape) == DensityBy::shape;
+        Solid whole{solid(has_density ? 1 : density, part.weighted),
+                    true,
+                    part.outline,
+                    part.surfaces,
+                    {},
+                    part.moments.volume};
+        if (has_density) whole.outline = about(whole.properties.center_of_mass, part);
+        const Primitive* p = find_primitive(key.name);
+        if (p == nullptr || has_density) return whole;
+        whole.properties = p->make(density, *shape);
+        whole.has_own_origin = false;
+        return whole;
     } catch (const InputError& error) {
         Complaint complaint = error.complaint();
         if (complaint.path.empty()) complaint.path = "body.shape";

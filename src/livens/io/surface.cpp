@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "livens/io/report/thinned.h"
+#include "livens/io/surface.h"
 
 #include <algorithm>
 #include <array>
@@ -52,35 +52,52 @@ public:
             std::ranges::count_if(surface.triangles, [&](const auto& t) { return has_area(t); }));
     }
 
-    Thinned made(const Surface& surface) const
+    Surface made(const Surface& surface) const
     {
-        Thinned thin{{}, surface.triangles.size(), 0};
-        std::vector<Cluster> normals;   // of a cell one for each way that its corners face
-        Index index;
-        std::vector<int> corner_of;
-        for (std::size_t k = 0; k < surface.points.size(); ++k) {
-            const Vector3 at = cells_[static_cast<std::size_t>(cell_of_[k])].mean();
-            thin.moved = std::max(thin.moved, norm(surface.points[k] - at));
-            auto key = static_cast<std::uint64_t>(cell_of_[k]);
-            for (int i = 0; i < 3; ++i) key = key << 2 | way(surface.normals[k][i]);
-            corner_of.push_back(add(normals, index, key, surface.normals[k]));
-            if (normals.size() > thin.surface.points.size()) thin.surface.points.push_back(at);
-        }
-        for (const Cluster& cluster : normals) {
-            const double size = norm(cluster.sum);
-            thin.surface.normals.push_back(size > 0 ? (1 / size) * cluster.sum : Vector3{0, 0, 1});
-        }
+        Surface thin;
+        thin.n_left_out = surface.n_left_out + surface.triangles.size();
+        double moved = 0;
+        for (std::size_t k = 0; k < surface.points.size(); ++k)
+            moved = std::max(moved, norm(surface.points[k] - at(cell_of_[k])));
+        thin.moved = surface.moved + moved;
+        const std::vector<int> corner_of = surface.normals.empty() ? bare(thin) : facing(surface, thin);
         for (const auto& t : surface.triangles)
             if (has_area(t)) {
-                auto& triangle = thin.surface.triangles.emplace_back();
+                auto& triangle = thin.triangles.emplace_back();
                 for (std::size_t i = 0; i < 3; ++i) triangle[i] = corner_of[static_cast<std::size_t>(t[i])];
             }
+        thin.n_left_out -= thin.triangles.size();
         return thin;
     }
 
 private:
     using Index = std::unordered_map<std::uint64_t, int>;
 
+    Vector3 at(int cell) const { return cells_[static_cast<std::size_t>(cell)].mean(); }
+    /// A point for each cell; of the points that were, the new ones.
+    std::vector<int> bare(Surface& thin) const
+    {
+        for (const Cluster& cell : cells_) thin.points.push_back(cell.mean());
+        return cell_of_;
+    }
+    /// A point for each way that the corners of a cell face.
+    std::vector<int> facing(const Surface& surface, Surface& thin) const
+    {
+        std::vector<Cluster> normals;
+        Index index;
+        std::vector<int> corner_of;
+        for (std::size_t k = 0; k < surface.points.size(); ++k) {
+            auto key = static_cast<std::uint64_t>(cell_of_[k]);
+            for (int i = 0; i < 3; ++i) key = key << 2 | way(surface.normals[k][i]);
+            corner_of.push_back(add(normals, index, key, surface.normals[k]));
+            if (normals.size() > thin.points.size()) thin.points.push_back(at(cell_of_[k]));
+        }
+        for (const Cluster& cluster : normals) {
+            const double size = norm(cluster.sum);
+            thin.normals.push_back(size > 0 ? (1 / size) * cluster.sum : Vector3{0, 0, 1});
+        }
+        return corner_of;
+    }
     static std::uint64_t way(double x) { return x > 0.4 ? 2 : x < -0.4 ? 0 : 1; }
     static int add(std::vector<Cluster>& all, Index& index, std::uint64_t key, const Vector3& v)
     {
@@ -104,9 +121,9 @@ private:
 
 }   // namespace
 
-Thinned thinned(Surface surface, std::size_t most_triangles)
+Surface thinned(Surface surface, std::size_t most_triangles)
 {
-    if (surface.triangles.size() <= most_triangles) return {std::move(surface), 0, 0};
+    if (surface.triangles.size() <= most_triangles) return surface;
     // About 4 n^2 triangles of a plate, 12 n^2 of a cube, fewer of a rod.
     const double most = static_cast<double>(most_triangles);
     int n_cells = std::min(finest, static_cast<int>(1.5 * std::sqrt(most)));
