@@ -5,6 +5,7 @@
 set(CPACK_GENERATOR TGZ DEB)
 set(CPACK_PACKAGE_NAME livens)
 set(CPACK_PACKAGE_VENDOR "The livens authors")
+# Debian wants an address; there is none yet, and a name under .invalid (RFC 2606) can be nobody else's. The one place for it.
 set(CPACK_PACKAGE_CONTACT "The livens authors <maintainers@livens.invalid>")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "multibody dynamics that says how exact it is")
 set(CPACK_PACKAGE_FILE_NAME livens-${PROJECT_VERSION}-linux-${CMAKE_SYSTEM_PROCESSOR})
@@ -13,6 +14,7 @@ set(CPACK_COMPONENTS_ALL program dev)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_PRE_BUILD_SCRIPTS ${PROJECT_SOURCE_DIR}/cmake/package_documents.cmake)
 set(CPACK_LIVENS_SOURCE_DIR ${PROJECT_SOURCE_DIR})
+set(CPACK_LIVENS_ARCHITECTURE "${CMAKE_LIBRARY_ARCHITECTURE}")   # x86_64-linux-gnu
 
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)

@@ -3,6 +3,7 @@
 
     all.py [--short] [--livens PROGRAM] [--output FOLDER] [figNN ...]
     all.py --scans [--short] [--livens PROGRAM] [--output FOLDER] [NAME ...]
+    all.py --list [--scans] [NAME ...]      which would run
 
 An experiment is named by its folder or by the beginning of it: fig02, text; a scan by what is behind scan_.
 """
@@ -37,11 +38,15 @@ def main():
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--short", action="store_true", help="fewer refinements, a few seconds each")
     parser.add_argument("--scans", action="store_true", help="the scans instead of the paper's figures")
+    parser.add_argument("--list", action="store_true", help="say which, and run none")
     parser.add_argument("--livens", default=paper.PROGRAM)
     parser.add_argument("--output", type=pathlib.Path, help="default: build/paper or build/scan")
     parser.add_argument("names", nargs="*", metavar="figNN", help="which; default: all")
     arguments = parser.parse_args()
 
+    if arguments.list:
+        print("\n".join(folder.name for folder in chosen(arguments.names, arguments.scans)))
+        return
     lines, failed = [], False
     place = arguments.output or paper.ROOT / "build" / ("scan" if arguments.scans else "paper")
     for folder in chosen(arguments.names, arguments.scans):

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The picture in space of reports, alone: node stills.mjs FOLDER WIDTH HEIGHT REPORT.html@T[@FRAMES@END][@VIEW] ...
 // One PNG each, NAME.png at the instant T; or NAME_000.png ... of FRAMES instants from T until END.
+// SCHEME=dark: for dark pages.
 import { chromium } from "playwright-core";
 import { basename, join, resolve } from "node:path";
 import { mkdir } from "node:fs/promises";
@@ -11,7 +12,7 @@ const browser = await chromium.launch({
   executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
   args: ["--no-sandbox"],
 });
-const page = await browser.newPage({ viewport: { width: +width, height: +height }, colorScheme: "light" });
+const page = await browser.newPage({ viewport: { width: +width, height: +height }, colorScheme: process.env.SCHEME ?? "light" });
 for (const [file, start, frames = "1", end = start, view = ""] of wanted.map((word) => word.split("@"))) {
   await page.goto(`file://${resolve(file)}#t=${start}`);
   await page.waitForFunction(() => window.livensReport, null, { timeout: 60000 });

@@ -78,7 +78,9 @@ int explain_command(const std::string& code)
                                       (proposal.empty() ? "'livens explain' alone lists all"
                                                         : "did you mean '" + proposal + "'?"));
     }
-    print(laid_out(page, terminal_of(STDOUT_FILENO)));
+    const std::string where =
+        "\nIn the sources: docs/diagnostics.md#" + code + "\n\nOn the site: diagnostics/" + code + ".html\n";
+    print(laid_out(with_end(std::string(page)) + where, terminal_of(STDOUT_FILENO)));
     return exit_ok;
 }
 

@@ -12,7 +12,6 @@ Between `<!-- tabs -->` and `<!-- /tabs -->` each line that is bold alone begins
 from __future__ import annotations
 
 import base64
-import html
 import json
 import os
 import pathlib
@@ -48,7 +47,6 @@ def sections(text: str, level: int = 2) -> tuple[str, list[tuple[str, str]]]:
 
 
 NESTED = r"\((?:[^()\n]|\([^()\n]*\))*\)"   # parentheses with one more pair inside
-WORDS = re.compile(r"(?<![A-Za-zΑ-ω])([A-Za-z])(?![A-Za-zΑ-ω])")
 
 
 def bare(index: str) -> str:
@@ -57,29 +55,7 @@ def bare(index: str) -> str:
 
 
 def formulas(text: str) -> str:
-    """Indented blocks of the theory as they are meant: with subscripts, letters in italics; nothing else changes.
-    Blocks with drawn matrices keep their columns."""
-    def of_block(match: re.Match[str]) -> str:
-        lines = [line[4:] for line in match.group(0).strip("\n").split("\n")]
-        if any(line.count("|") >= 2 and line.rstrip().endswith("|") or "   | " in line for line in lines):
-            return f'<pre class="formula drawn">{html.escape(chr(10).join(lines))}</pre>\n'
-        shown = []
-        for line in lines:
-            line = re.sub(rf"([_^])(\{{[^{{}}]*\}}|{NESTED}|[A-Za-zΑ-ω0-9*+†]+)",
-                          lambda m: chr(1 if m.group(1) == "_" else 2) + bare(m.group(2)) + chr(3), line)
-            line = WORDS.sub(lambda m: chr(4) + m.group(1) + chr(5), html.escape(line, quote=False))
-            line = re.sub(r"&(\x04)?(amp|lt|gt)(\x05)?;", r"&\2;", line)
-            shown.append(line.translate({1: "<sub>", 2: "<sup>", 4: "<i>", 5: "</i>"}))
-        whole = "\n".join(shown)
-        parts = re.split(r"(<sub>|<sup>|\x03)", whole)
-        last = ""
-        for k, part in enumerate(parts):
-            if part in ("<sub>", "<sup>"):
-                last = part
-            elif part == chr(3):
-                parts[k] = last.replace("<", "</")
-        return '<pre class="formula">' + "".join(parts) + "</pre>\n"
-
+    """Symbols in the sentences of the theory with their indices and powers set as such; nothing else changes."""
     def of_prose(match: re.Match[str]) -> str:
         return f"{match.group(1)}<sub>{bare(match.group(2))}</sub>"
 
@@ -88,13 +64,13 @@ def formulas(text: str) -> str:
 
     def prose(part: str) -> str:
         """s_A, w_c, M_A': what is between backticks or in links stays."""
-        pieces = re.split(r"(`[^`\n]*`|\]\([^)]*\)|<pre.*?</pre>)", part, flags=re.S)
-        index = re.compile(r"(?<![\w.])([A-Za-zΑ-ω]{1,2})_(\{[^{}\n]*\}|[A-Za-z0-9]{1,3}(?![\w(]))")
+        pieces = re.split(r"(`[^`\n]*`|\]\([^)]*\))", part)
+        index = re.compile(r"(?<![\w.])([A-Za-zΑ-ω]{1,2})_(\{[^{}\n]*\}|[A-Za-z0-9]{1,3}(?!\w))")
         power = re.compile(rf"([\w)])\^(\{{[^{{}}\n]*\}}|{NESTED}|[-−]?\w{{1,3}}(?!\w))")
         return "".join(piece if number % 2 else power.sub(of_power, index.sub(of_prose, piece))
                        for number, piece in enumerate(pieces))
 
-    return outside_fences(text, lambda part: prose(re.sub(r"(?<=\n\n)(?: {4}\S[^\n]*\n(?:(?: {4}[^\n]*)?\n(?= {4}))*)+", of_block, part)))
+    return outside_fences(text, prose)
 
 
 def raised(text: str) -> str:
@@ -186,7 +162,7 @@ class Site:
             wanted.add(file)
             if source:
                 text = self.relinked(source, page, text)
-            put(file, tabs(text))
+            put(file, tabs(re.sub(r"^```math$", "```{math}", text, flags=re.M)))
         for copy, source in self.copies.items():
             file = self.folder / copy
             wanted.add(file)
@@ -305,16 +281,18 @@ def add_gallery(site: Site) -> None:
         still = f"docs/figures/gallery/{name}.webp"
         if not (site.root / still).is_file():
             sys.exit(f"{still} is missing: scripts/pictures makes it")
-        site.copies[f"gallery/{name}.webp"] = site.root / still
+        dark = still.replace(".webp", "_dark.webp")
+        site.copies[f"gallery/{name}.webp"], site.copies[f"gallery/{name}_dark.webp"] = site.root / still, site.root / dark
         heading = title.group(1) if title else name.replace("_", " ")
-        cards.append(f":::{{grid-item-card}} {heading}\n:img-top: {name}.webp\n:link: {name}\n:link-type: doc\n"
-                     f":class-card: still\n\n{shows[0].upper()}{shows[1:]}.\n:::\n")
+        cards.append(f"::::{{grid-item-card}} {heading}\n:link: {name}\n:link-type: doc\n:class-card: still\n\n:::{{card-header}}\n"
+                     f"![{heading}]({name}.webp){{.only-light}}\n![]({name}_dark.webp){{.only-dark}}\n:::\n\n{shows[0].upper()}{shows[1:]}.\n::::\n")
         kept = f"Compared in the tests with {witness or 'a closed form'}" + (f", to {allowed}." if allowed else ".")
         site.add(f"gallery/{name}", f"# {heading}\n\n{shows[0].upper()}{shows[1:]}. {kept}\n\n"
                  "```{raw} html\n"
                  f'<div class="report" data-page="../_reports/{report.name}">'
-                 f'<button type="button" class="still"><img src="../_stills/{name}.webp" alt="{heading}, a still" '
-                 'width="960" height="600"><span>Open the live report</span></button></div>\n'
+                 '<button type="button" class="still">'
+                 f'<img class="only-light" src="../_stills/{name}.webp" alt="{heading}, a still" width="960" height="600">'
+                 f'<img class="only-dark" src="../_stills/{name}_dark.webp" alt="" width="960" height="600"><span>Open the live report</span></button></div>\n'
                  f'<p class="aside"><a href="../_reports/{report.name}">The report on a page of its own</a>: '
                  "space plays, the arrow keys step.</p>\n```\n\n"
                  f"```sh\nlivens solve {name}.toml -o {name}.nc\nlivens view {name}.nc\n```\n\n"
@@ -327,8 +305,8 @@ def add_gallery(site: Site) -> None:
     site.where["docs/examples.md", ""] = ("gallery/index", "")
     site.add("gallery/index", "# Gallery\n\nEvery example of the sources, solved while these pages were made. Each has its live report: the "
              "mechanism in space at any instant, plots that follow, and whether the answer is right. Each runs in the tests "
-             "and is compared there with a reference.\n\n::::{grid} 1 2 2 3\n:gutter: 3\n\n" + "\n".join(cards) +
-             "::::\n\n" + toctree(pages, hidden=True))
+             "and is compared there with a reference.\n\n:::::{grid} 1 2 2 3\n:gutter: 3\n\n" + "\n".join(cards) +
+             ":::::\n\n" + toctree(pages, hidden=True))
 
 
 def solved_report(site: Site, scenario: pathlib.Path) -> pathlib.Path:
@@ -342,8 +320,7 @@ def solved_report(site: Site, scenario: pathlib.Path) -> pathlib.Path:
         site.run("report", str(run), "-o", str(page), "--quiet")
     stills = page.parent.parent / "_stills"
     stills.mkdir(exist_ok=True)
-    still = site.root / "docs/figures/gallery" / f"{scenario.stem}.webp"
-    if still.is_file():
+    for still in (site.root / "docs/figures/gallery").glob(f"{scenario.stem}*.webp"):
         shutil.copyfile(still, stills / still.name)
     return page
 

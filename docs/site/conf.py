@@ -11,7 +11,7 @@ BUILD = pathlib.Path(os.environ["LIVENS_DOCS_BUILD"])
 sys.path.insert(0, str(HERE / "extensions"))
 
 project = "livens"
-author = "the authors of livens"
+author = "The livens authors"
 copyright = author   # noqa: A001
 release = re.search(r'version = "([0-9.]+)"', (ROOT / "src/livens/base/version.h").read_text()).group(1)
 version = release

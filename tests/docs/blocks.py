@@ -4,19 +4,25 @@
     blocks.py ROOT [--python] [--write] [PAGE...]
     blocks.py ROOT --controls          pages with one fault each, every one of which must be found
 
-Each page is run from top to bottom in a folder of its own, which has copies of the examples.
+Each page is run from top to bottom in a folder of its own, which has copies of the examples and looks like a checkout that was
+built: its scripts, presets and build/release are links. HOME is this folder too.
 
     toml      a first line `# NAME.toml` names the file that it becomes, and `livens check` must like it; one that begins with
               `format` is scenario.toml. With
               `<!-- with: NAME.toml -->` before it, it is a part that is put into that file: tables of the same name give
               way, and the whole is checked.
-    sh        runs under `bash -eu`, with the program on the path; `<!-- exit: N -->` before it: ends with N
+    sh        runs under `bash -eu`, with the program on the path; `<!-- exit: N -->` before it: ends with N. Stand-ins for what
+              takes minutes or is not here: STAND_INS
+    console   `$ COMMAND` and what it writes, on a terminal of 100 columns; colours are left out
     python    with --python, in this interpreter, all blocks of a page one after the other
-    cpp       compiled and run against the build tree; without a main() it is the inside of one
+    cpp       compiled and run against the build tree; without a main() it is the inside of one. A first line `// NAME.cpp` names
+              the file that it becomes for the blocks behind; `# CMakeLists.txt` that of `cmake`
     text      right behind one of these: what came out. Numbers may differ by one in the last digit that is shown, or by 1e-9
               of themselves, those that are rounding (below 1e-10) by a factor of thirty, counts of iterations by a tenth
               (the sums of another processor's vectors round otherwise); seconds of computing are not compared
     `<!-- not run: WHY -->`   before a block that cannot run here; each is told
+    `<!-- run by: FILE -->`   before one that FILE, a test, takes out of the page and runs; it names the page
+    `<!-- synopsis -->`       before a list of commands: all there are, and each option is one
 
 --write puts what comes out into the text blocks. LIVENS_PROGRAM names the program.
 """
@@ -24,26 +30,58 @@ from __future__ import annotations
 
 import argparse
 import contextlib
+import fcntl
 import io
 import os
 import pathlib
+import pty
 import re
 import shutil
+import struct
 import subprocess
 import sys
 import tempfile
+import termios
 import traceback
 
-BLOCK = re.compile(r"(?:^<!-- (with|exit|not run): (.*?) -->\n)?^```(\w*)\n(.*?)^```[ \t]*$", re.M | re.S)
-RUN = ("toml", "sh", "python", "cpp")
+BLOCK = re.compile(r"(?:^<!-- (with|exit|not run|run by|synopsis)(?:: (.*?))? -->\n)?^```(\w*)\n(.*?)^```[ \t]*$", re.M | re.S)
+RUN = ("toml", "sh", "python", "cpp", "cmake", "console")
+CHECKOUT = ("scripts", "examples", "experiments", "CMakePresets.json")
+STAND_INS = r"""
+livens() {   # a server serves until it is told to stop: here for a moment
+    if [ "$1" = view ]; then timeout 3 livens "$@" --address > view.log 2>&1 || [ $? = 124 ]; else command livens "$@"; fi
+}
+scripts/demo() { LIVENS=$(command -v livens) command scripts/demo "$@" > demo.log 2>&1 || { cat demo.log; return 1; }; }   # builds nothing
+scripts/test() { [ -x scripts/test ] && [ $# = 0 ]; }   # what runs this
+scripts/setup() { [ -x scripts/setup ] && grep -q "^    ${1:-test}) " scripts/setup; }
+scripts/paper() { LIVENS=$(command -v livens) command scripts/paper --list "$@" > list.log; }   # minutes: here only whether there is what is named
+scripts/scan() { LIVENS=$(command -v livens) command scripts/scan --list "$@" > list.log; }
+preset() { command cmake --list-presets="$1" | grep -q "^  \"$2\""; }
+cmake() {   # minutes: here only whether there is such a preset
+    case "$1 $2" in
+        "--preset "*) preset configure "$2" ;;
+        "--build --preset") preset build "$3" ;;
+        *) command cmake "$@" > cmake.log 2>&1 || { cat cmake.log; return 1; } ;;
+    esac
+}
+ctest() { [ "$1" = --preset ] && preset test "$2"; }
+sbatch() {   # Slurm: each job of --array=A-B here, one after the other
+    [[ $1 == --array=* && $2 == --wrap ]] || return 1
+    local range=${1#--array=} job
+    for job in $(seq "${range%-*}" "${range#*-}"); do SLURM_ARRAY_TASK_ID=$job bash -euo pipefail -c "$3"; done
+}
+"""
+DOCUMENTS = ("tutorial", "install", "joints", "python", "scenario", "program", "results", "performance", "paper", "trust", "theory",
+             "examples", "notation", "validation", "architecture")
+ESCAPES = re.compile(r"\x1b\[[0-9;?]*[A-Za-z]|\x1b\][^\x07\x1b]*(?:\x07|\x1b\\)")
 NUMBER = re.compile(r"(?<![\w.])[-−]?\d+(?:\.\d*)?(?:e[-+]?\d+)?(?![\w])")
 ROUNDING = 1e-10
 SECONDS = re.compile(r"(of motion in|in) [0-9.e-]+ s\b")
 
 
 def pages_of(root: pathlib.Path) -> list[pathlib.Path]:
-    return [root / "README.md", *(root / f"docs/{name}.md" for name in ("tutorial", "install", "joints", "scenario", "results")), *sorted((root / "docs/howto").glob("*.md")),
-            *sorted((root / "docs/coming_from").glob("*.md"))]
+    return [root / "README.md", root / "CONTRIBUTING.md", *(root / f"docs/{name}.md" for name in DOCUMENTS),
+            *sorted((root / "docs/howto").glob("*.md")), *sorted((root / "docs/coming_from").glob("*.md"))]
 
 
 def same(shown: str, came: str) -> bool:
@@ -91,7 +129,8 @@ class Page:
         self.skipped: list[str] = []
         self.n_run = 0
         self.space: dict[str, object] = {"__name__": "page"}
-        self.environment = {**os.environ, "NO_COLOR": "1", "LC_ALL": "C.UTF-8",
+        own = {key: value for key, value in os.environ.items() if key != "PYTHONPATH"}   # is this interpreter's alone
+        self.environment = {**own, "NO_COLOR": "1", "LC_ALL": "C.UTF-8",
                             "PATH": os.path.dirname(program) + os.pathsep + os.environ["PATH"]}
 
     def fault(self, at: int, what: str) -> None:
@@ -99,8 +138,7 @@ class Page:
 
     def run(self, folder: pathlib.Path) -> str:
         """Runs all blocks; the text with what came out in it."""
-        for example in (self.root / "examples").glob("*.toml"):
-            shutil.copyfile(example, folder / example.name)
+        self.lay_out(folder)
         out, at, came, behind = [], 0, None, 0
         for match in BLOCK.finditer(self.text):
             key, value, language, code = match.groups()
@@ -116,15 +154,41 @@ class Page:
                 continue
             out.append(match.group(0))
             came = None
+            if key == "synopsis":
+                self.n_run += 1
+                self.check_synopsis(folder, code, match.start())
+                continue
+            if not language and not self.name.endswith("diagnostics.md"):
+                self.fault(match.start(), "a block of no language, which nothing runs")
             if language not in RUN:
                 continue
             if key == "not run":
                 self.skipped.append(f"{self.name}: {value}")
+            elif key == "run by":
+                self.n_run += 1
+                if self.name not in (self.root / value).read_text(encoding="utf-8"):
+                    self.fault(match.start(), f"{value} does not run it")
+            elif language == "console":
+                self.n_run += 1
+                said = self.run_console(folder, code, match.start())
+                if not same(code, said):
+                    self.fault(match.start(), f"shown:\n{code.rstrip()}\ncame out:\n{said.rstrip()}")
+                    out[-1] = "```console\n" + said.rstrip() + "\n```"
             elif language != "python" or self.with_python:
                 self.n_run += 1
                 came = getattr(self, f"run_{language}")(folder, code, match.start(), key, value)
                 behind = match.end()
         return "".join([*out, self.text[at:]])
+
+    def lay_out(self, folder: pathlib.Path) -> None:
+        for example in (self.root / "examples").glob("*.toml"):
+            shutil.copyfile(example, folder / example.name)
+        for name in CHECKOUT:
+            if (self.root / name).exists():
+                (folder / name).symlink_to(self.root / name)
+        (folder / "build").mkdir()
+        (folder / "build/release").symlink_to(self.environment["PATH"].split(os.pathsep)[0])
+        self.environment["HOME"] = str(folder)
 
     def call(self, folder: pathlib.Path, words: list[str]) -> tuple[int, str]:
         done = subprocess.run(words, cwd=folder, env=self.environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
@@ -153,13 +217,48 @@ class Page:
             self.fault(at, f"livens check ended with {status}:\n{said}")
 
     def run_sh(self, folder: pathlib.Path, code: str, at: int, key: str | None, value: str | None) -> str:
-        # A server serves until it is told to stop: here for a moment.
-        prelude = ('livens() { if [ "$1" = view ]; then timeout 3 livens "$@" --address > view.log 2>&1 || [ $? = 124 ]; '
-                   'else command livens "$@"; fi; }\n')
-        status, said = self.call(folder, ["bash", "-euo", "pipefail", "-c", prelude + code])
+        status, said = self.call(folder, ["bash", "-euo", "pipefail", "-c", STAND_INS + code])
         if status != (int(value) if key == "exit" else 0):
             self.fault(at, f"ended with {status}:\n{said}")
         return said
+
+    def run_console(self, folder: pathlib.Path, code: str, at: int) -> str:
+        out = []
+        environment = {**self.environment, "TERM": "xterm", "COLUMNS": "100"}
+        del environment["NO_COLOR"]
+        for command in re.findall(r"^\$ (.*)$", code, re.M):
+            master, slave = pty.openpty()
+            fcntl.ioctl(slave, termios.TIOCSWINSZ, struct.pack("HHHH", 50, 100, 0, 0))
+            process = subprocess.Popen(["bash", "-c", command], cwd=folder, env=environment, stdin=subprocess.DEVNULL,
+                                       stdout=slave, stderr=slave)
+            os.close(slave)
+            said = b""
+            with contextlib.suppress(OSError):   # the terminal is gone when the command has ended
+                while part := os.read(master, 65536):
+                    said += part
+            os.close(master)
+            if process.wait(timeout=300):
+                self.fault(at, f"{command} ended with {process.returncode}")
+            lines = ESCAPES.sub("", said.decode("utf-8").replace("\r\n", "\n")).split("\n")
+            out += [f"$ {command}", *(line.rpartition("\r")[2] for line in lines)]   # progress has been written over
+            while out and not out[-1]:
+                out.pop()
+        return "\n".join(out) + "\n"
+
+    def check_synopsis(self, folder: pathlib.Path, code: str, at: int) -> None:
+        known = re.findall(r"^  ([a-z]+)  ", self.call(folder, ["livens", "--help"])[1].partition("Subcommands:")[2].partition("\n\n")[0], re.M)
+        listed = list(dict.fromkeys(re.findall(r"^livens ([a-z]+)", code, re.M)))
+        if not known or sorted(known) != sorted(listed):
+            self.fault(at, f"too many or too few commands: {sorted(set(known) ^ set(listed))}")
+        for line in code.splitlines():
+            words = line.split()
+            told = self.call(folder, ["livens", words[1], "--help"])[1] if words[1:2] else ""
+            for option in re.findall(r"(?<![\w-])--?[a-z][a-z-]*\b", line):
+                if not re.search(rf"(?<![\w-]){option}(?![\w-])", told):
+                    self.fault(at, f"no option {option} of livens {words[1]}")
+
+    def run_cmake(self, folder: pathlib.Path, code: str, at: int, key: str | None, value: str | None) -> None:
+        (folder / "CMakeLists.txt").write_text(code, encoding="utf-8")
 
     def run_python(self, folder: pathlib.Path, code: str, at: int, key: str | None, value: str | None) -> str:
         printed, here = io.StringIO(), os.getcwd()
@@ -175,6 +274,8 @@ class Page:
         return printed.getvalue()
 
     def run_cpp(self, folder: pathlib.Path, code: str, at: int, key: str | None, value: str | None) -> str:
+        if name := re.match(r"// (\w+\.cpp)\n", code):
+            (folder / name.group(1)).write_text(code, encoding="utf-8")
         if "int main(" not in code:
             heads = "".join(re.findall(r"^#include.*\n", code, re.M))
             code = heads + "int main()\n{\n" + re.sub(r"^#include.*\n", "", code, flags=re.M) + "}\n"
@@ -202,6 +303,12 @@ CONTROLS = {
     "a stale word": "```sh\necho yes\n```\n\n```text\nno\n```\n",
     "a line too many": "```sh\necho yes\n```\n\n```text\nyes\n...\nmore\n```\n",
     "rounding that grew": "```sh\necho 1e-13\n```\n\n```text\n4e-15\n```\n".replace("1e-13", "2e-12").replace("4e-15", "5e-14"),
+    "a block without a language": "```\nlivens version\n```\n",
+    "a stale terminal": "```console\n$ livens version\nlivens 0.0.1\n```\n",
+    "a command that is not there": "<!-- synopsis -->\n```text\nlivens solve FILE\nlivens salve FILE\n```\n",
+    "a page that nobody runs": "<!-- run by: scripts/demo -->\n```sh\nscripts/packages\n```\n",
+    "no such preset": "```sh\ncmake --preset fast\n```\n",
+    "no such figure": "```sh\nscripts/paper fig99\n```\n",
     "an exception": "```python\nassert 1 == 2\n```\n",
     "C++ that is wrong": "```cpp\nint main() { return nothing; }\n```\n",
 }

@@ -7,7 +7,7 @@ if(LIVENS_BUILD_PROGRAM AND NOT CMAKE_CXX_FLAGS MATCHES "-fsanitize")
     set(blocks ${livens_python} -B ${CMAKE_CURRENT_LIST_DIR}/blocks.py ${PROJECT_SOURCE_DIR})
     add_test(NAME docs.blocks COMMAND ${blocks})
     add_test(NAME docs.blocks_refuses_faults COMMAND ${blocks} --controls)
-    set_tests_properties(docs.blocks docs.blocks_refuses_faults PROPERTIES LABELS fast TIMEOUT 300 COST 100
+    set_tests_properties(docs.blocks docs.blocks_refuses_faults PROPERTIES LABELS fast TIMEOUT 900 COST 100
                          ENVIRONMENT "LIVENS_PROGRAM=$<TARGET_FILE:livens>")
 
     set(figures ${livens_python} -B ${CMAKE_CURRENT_LIST_DIR}/figures.py ${PROJECT_SOURCE_DIR} $<TARGET_FILE:livens>)
@@ -16,7 +16,7 @@ if(LIVENS_BUILD_PROGRAM AND NOT CMAKE_CXX_FLAGS MATCHES "-fsanitize")
     endif()
     add_test(NAME docs.figures_are_what_is_measured COMMAND ${figures})
     add_test(NAME docs.figures_refuses_stale_ones COMMAND ${figures} --controls)
-    set_tests_properties(docs.figures_are_what_is_measured docs.figures_refuses_stale_ones PROPERTIES LABELS fast TIMEOUT 300)
+    set_tests_properties(docs.figures_are_what_is_measured docs.figures_refuses_stale_ones PROPERTIES LABELS fast TIMEOUT 900)
 endif()
 add_test(NAME docs.changelog_is_current COMMAND ${livens_python} -B ${PROJECT_SOURCE_DIR}/scripts/changelog --check)
 set_tests_properties(docs.changelog_is_current PROPERTIES LABELS fast TIMEOUT 60)

@@ -1,12 +1,20 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Figures that documents state are those that are measured: figures.py ROOT PROGRAM [REFERENCE_TESTS]. Standard library only.
 
+Measured here:
     README.md             errors of the two bricks, kinds of joints, size of a report
     docs/joints.md        kinds of joints
     docs/validation.md    errors of the published problems, as REFERENCE_TESTS (tests/reference) prints them
+Recorded on one machine in benchmarks/recorded.json, which benchmarks/record.py makes:
+    README.md, docs/validation.md   times
+    docs/trust.md         what the scans have counted
+Read in sources:
+    README.md, docs/examples.md     accuracies: each is one that a test of that example asks for (two are measured here)
+    docs/performance.md   ratios follow from the times on the same page, which benchmarks/peers/write.py makes
 
-An error may be off by a factor of three; times depend on the machine and are not looked at. --controls: stale documents must be found.
+An error may be off by a factor of three. --controls: stale documents must be found.
 """
+import fractions
 import json
 import pathlib
 import re
@@ -17,6 +25,8 @@ import tempfile
 TIP = (0.644182606655, -0.291228917392, -1.136547655061)   # docs/examples.md, free end of the second brick at 2 s
 WORDS = {"seventeen": 17, "eighteen": 18, "nineteen": 19, "twenty": 20}
 FACTOR = 3
+BRICKS = re.compile(r"^\| (midpoint rule|lobatto\(\d+\)) \| ([\d,]+) \| (\S+) m \| (\S+) ms \|", re.M)
+DOCUMENTS = ("README.md", "docs/joints.md", "docs/validation.md", "docs/examples.md", "docs/trust.md", "docs/performance.md")
 
 
 def run(program, *words):
@@ -49,12 +59,45 @@ def kinds_of_joints(program):
     return set(re.findall(r'"(\w+)"', row))
 
 
+def accuracies_of_tests(root):
+    """Example -> the accuracies that stand in tests which name it, or in what is above such a test in its file."""
+    found = {}
+    files = [*(root / "tests/reference").rglob("*.cpp"), *(root / "tests/reference").rglob("*.h"),
+             root / "tests/unit/io/examples_test.cpp"]
+    for file in files:
+        text = file.read_text(encoding="utf-8")
+        heads = [match.start() for match in re.finditer(r"^TEST\w*\(", text, re.M)] + [len(text)]
+        for begin, end in zip(heads, heads[1:]):
+            numbers = set(re.findall(r"(?<![\w.])\d(?:\.\d+)?e-\d+", text[begin:end]))
+            helpers = [match for match in re.finditer(r"^\w[^\n;]* (\w+)\([^;{}]*\)(?:\n\{.*?^\}| \{[^\n]*\}$)", text, re.M | re.S)
+                       if re.search(rf"\b{match.group(1)}\(", text[begin:end])]
+            for helper in helpers:
+                numbers |= set(re.findall(r"(?<![\w.])\d(?:\.\d+)?e-\d+", helper.group(0)))
+            for name in set(re.findall(r'"(?:examples/)?(\w+)(?:\.toml)?"', text[begin:end])):
+                found.setdefault(name, set()).update(numbers)
+    return found
+
+
+def gap_of_examples(root, program, name, other, times):
+    """Largest distance (m) of reference points, or entry of directors, at `times`."""
+    with tempfile.TemporaryDirectory() as folder:
+        found = []
+        for example in (name, other):
+            result = pathlib.Path(folder, f"{example}.nc")
+            run(program, "solve", root / f"examples/{example}.toml", "-o", result, "-q")
+            at = [word for time in times for word in ("--at", time)]
+            bodies = json.loads(run(program, "info", result, "--json"))["bodies"]
+            names = [body if isinstance(body, str) else body["name"] for body in bodies]
+            samples = [sample for body in names
+                       for sample in json.loads(run(program, "sample", result, "--body", body, *at, "--json"))["samples"]]
+            found.append([x for s in samples for row in (s["position"], *(s["directors"] or [])) for x in row])
+        return max(abs(a - b) for a, b in zip(*found, strict=True))
+
+
 def measured(root, program, reference):
     """Everything that costs time, once."""
-    readme = (root / "README.md").read_text(encoding="utf-8")
-    rows = re.findall(r"^\| (midpoint rule|lobatto\(\d+\)) \| ([\d,]+) \| (\S+) m \|", readme, re.M)
     errors = {}
-    for name, count, _ in rows:
+    for name, count, *_ in BRICKS.findall((root / "README.md").read_text(encoding="utf-8")):
         method = 'family = "midpoint"' if "midpoint" in name else f'family = "lobatto"\ndegree = {name[8:-1]}'
         errors[name, count] = tip_error(root, program, method, int(count.replace(",", "")))
     published = {}
@@ -62,57 +105,169 @@ def measured(root, program, reference):
         said = run(reference, "--gtest_filter=Benchmarks.MeetThePublishedDigits")
         published = {name: float(error) for name, error in re.findall(r"^(P\d\d)\s+(\S+)$", said, re.M)}
     return {"errors": errors, "megabytes": report_megabytes(root, program), "joints": kinds_of_joints(program),
-            "published": published}
+            "gaps": {"free_box_paper": gap_of_examples(root, program, "free_box_paper", "free_box", (0.5, 1)),
+                     "double_pendulum_blocks": gap_of_examples(root, program, "double_pendulum_blocks", "double_pendulum_centred",
+                                                               (2, 4, 6, 8, 10))},   # ends of blocks
+            "published": published, "allowed": accuracies_of_tests(root),
+            "recorded": json.loads((root / "benchmarks/recorded.json").read_text(encoding="utf-8"))}
+
+
+class Documents:
+    """What is found as it is gone through: how many statements were looked at, and which do not hold."""
+    def __init__(self, texts, found):
+        self.texts, self.found, self.n, self.faults = texts, found, 0, []
+
+    def holds(self, is_so, fault):
+        self.n += 1
+        if not is_so:
+            self.faults.append(fault)
+
+    def says(self, name, words):
+        """The words stand there, whatever the line breaks."""
+        self.holds(" ".join(words.split()) in " ".join(self.texts[name].split()), f"{name} should say: {words}")
 
 
 def is_about(stated, error):
     return error / FACTOR <= stated <= error * FACTOR
 
 
-def faults_of(readme, joints, validation, found):
-    rows = re.findall(r"^\| (midpoint rule|lobatto\(\d+\)) \| ([\d,]+) \| (\S+) m \|", readme, re.M)
-    if len(rows) < 4:
-        yield "README.md: no table of errors of the two bricks"
-    for name, count, stated in rows:
-        error = found["errors"].get((name, count))
-        if error is None or not is_about(float(stated), error):
-            yield f"README.md: {name} with {count} states {stated} m, measured {error}"
+def shown(value, stated):
+    """Whether `stated` is `value` to as many digits as it has: 3, 0.03, 6.4, 1,900."""
+    stated = stated.replace(",", "")
+    digits = len(stated.replace(".", "").strip("0")) or 1
+    return float(f"{value:.{digits}g}") == float(stated)
+
+
+def check_measured(d):
+    readme, validation = d.texts["README.md"], d.texts["docs/validation.md"]
+    rows = BRICKS.findall(readme)
+    d.holds(len(rows) >= 4, "README.md: no table of errors of the two bricks")
+    for name, count, stated, milliseconds in rows:
+        error = d.found["errors"].get((name, count))
+        d.holds(error is not None and is_about(float(stated), error), f"README.md: {name} with {count} states {stated} m, measured {error}")
+        time = d.found["recorded"]["times"]["bricks_ms"].get(f"{name}, {count.replace(',', '')}")
+        d.holds(time is not None and shown(time, milliseconds), f"README.md: {name} with {count} states {milliseconds} ms, recorded {time}")
     size = re.search(r"one file of ([\d.]+) MB", readme)
-    if not size or abs(float(size.group(1)) - found["megabytes"]) > 0.05:
-        yield f"README.md: a report of {found['megabytes']:.2f} MB"
+    d.holds(size and abs(float(size.group(1)) - d.found["megabytes"]) <= 0.05, f"README.md: a report of {d.found['megabytes']:.2f} MB")
     word = re.search(r"There are (\w+) joints", readme)
-    if not word or WORDS.get(word.group(1)) != len(found["joints"]):
-        yield f"README.md: {len(found['joints'])} kinds of joints"
-    listed = set(re.findall(r"^\| `(\w+)` \| \d? ?\|", joints, re.M))
-    if listed != found["joints"]:
-        yield f"docs/joints.md: lists {sorted(listed ^ found['joints'])} too many or too few"
-    for name, error in found["published"].items():
+    d.holds(word and WORDS.get(word.group(1)) == len(d.found["joints"]), f"README.md: {len(d.found['joints'])} kinds of joints")
+    listed = set(re.findall(r"^\| `(\w+)` \| \d? ?\|", d.texts["docs/joints.md"], re.M))
+    d.holds(listed == d.found["joints"], f"docs/joints.md: lists {sorted(listed ^ d.found['joints'])} too many or too few")
+    for name, error in d.found["published"].items():
         row = re.search(rf"^\| `{name.lower()}_\w+` \|.*\| ([\d.e-]+) \| [\d.e-]+ \|$", validation, re.M)
-        if row is None or not (is_about(float(row.group(1)), error) or max(float(row.group(1)), error) < 2e-13):
-            yield f"docs/validation.md: {name} states {row and row.group(1)}, measured {error}"
+        d.holds(row and (is_about(float(row.group(1)), error) or max(float(row.group(1)), error) < 2e-13),
+                f"docs/validation.md: {name} states {row and row.group(1)}, measured {error}")
+
+
+def check_recorded(d):
+    recorded = d.found["recorded"]
+    machine = recorded["machine"]
+    for name in ("README.md", "docs/validation.md"):
+        d.says(name, f"{machine['processor']}, {machine['date']}, with other work on it (load {machine['load before']:.0f})"
+               if machine["load before"] > 0.5 else f"{machine['processor']}, {machine['date']}")
+    rows = dict(re.findall(r"^\| `(p\d\d_\w+)` \|.*\| ([\d.]+) \|$", d.texts["docs/validation.md"], re.M))
+    d.holds(set(rows) == set(recorded["times"]["published_s"]), "docs/validation.md: not a row for each of examples/benchmarks")
+    for name, time in recorded["times"]["published_s"].items():
+        d.holds(name in rows and shown(time, rows[name]), f"docs/validation.md: {name} states {rows.get(name)} s, recorded {time}")
+    meshes, accuracies = recorded["scans"]["meshes"], recorded["scans"]["accuracies"]
+    for kind, title in (("examples", "seven examples, all"), ("others", "others and the swing, all")):
+        counts = [meshes[kind][key] for key in ("runs", "converged", "suspect", "not converged", "wrong", "false alarms")]
+        d.says("docs/trust.md", f"| {title} | {' | '.join(map(str, counts))} |")
+    d.says("docs/trust.md", " and ".join(f"{meshes[k]['wrong by a thousandth']} of {meshes[k]['converged']}" for k in ("examples", "others"))
+           + " converged runs would be found wrong")
+    d.says("docs/trust.md", f"without estimates {100 * meshes['pass without an estimate']:.0f} percent of the runs")
+    for name, (error, estimate) in meshes["coarse"].items():
+        d.holds(re.search(rf"`{name}` with [^`]*?{error:.1e} (?:off and estimated|and) {estimate:.1e}".replace("e-0", "e-"),
+                          d.texts["docs/trust.md"]), f"docs/trust.md: {name} is {error:.1e} off, estimated {estimate:.1e}")
+    parts = [accuracies[kind] for kind in ("without output", "with output")]
+    d.says("docs/trust.md", f"| motions, bursts apart | {parts[0]['motions']} | {parts[1]['motions']} |")
+    for key, title, digits in (("work", "work of the march", 2), ("work_in_all", "work in all", 1)):
+        cells = [", ".join(f"{x:.{digits}f}" for x in part[key]) for part in parts]
+        d.says("docs/trust.md", f"| {title}: median, nine in ten, largest | {cells[0]} | {cells[1]} |")
+    d.says("docs/trust.md", f"`: {accuracies['bursts']} motions) no uniform mesh")
+    d.says("docs/trust.md", f"{100 * accuracies['estimates within 5']:.1f} percent")
+    d.says("docs/trust.md", f"{accuracies['above six']} cost more than six times")
+    d.holds(accuracies["off"] == 0 and len(accuracies["not reached"]) == 3, "docs/trust.md: what is not reached has changed")
+
+
+def check_allowed(d):
+    for name in ("README.md", "docs/examples.md"):
+        rows = [line for line in d.texts[name].splitlines() if line.startswith(("| `", "| `examples/")) and re.search(r"\d+e-\d+", line)]
+        for row in rows:
+            cells = [cell.strip() for cell in row.strip("|").split("|")]
+            examples = re.findall(r"`(?:examples/)?(_?[a-z_]+)(?:\.toml)?`", cells[0])
+            examples = [("double_pendulum" + e if e.startswith("_") else e) for e in examples]
+            allowed = set().union(*(d.found["allowed"].get(example, set()) for example in examples))
+            for number in re.findall(r"\d+e-\d+", cells[-1]):
+                gap = d.found["gaps"].get(examples[0])
+                if gap is not None:
+                    d.holds(is_about(float(number), gap) and gap <= float(number), f"{name}: {examples[0]} is off by {gap}, not {number}")
+                    continue
+                d.holds(number in allowed, f"{name}: no test of {' or '.join(examples)} asks for {number}")
+
+
+def milliseconds(cell):
+    """Of `**0.3** (8:33)`: 0.3 and the setting; None where an engine did not come that far."""
+    match = re.match(r"\**([\d.]+)\** \(([^,)]*)", cell)
+    return match and (float(match.group(1)), match.group(2))
+
+
+def check_performance(d):
+    text = d.texts["docs/performance.md"]
+    times = {}   # (engine, setting) -> times somewhere on the page
+    for line in text[text.index("## Problems"):].splitlines():
+        cells = [cell.strip() for cell in line.strip("|").split("|")]
+        for cell in cells[1:]:
+            if found := milliseconds(cell):
+                times.setdefault((cells[0], found[1]), set()).add(found[0])
+    rows = re.findall(r"^\| \w+ \| 1e-\d\d \| [^|]* \| ([\d./]+) \| ([\d./]+) \| (livens\S*(?: \S+)?) (\S+), (.+) (\S+) \| (\S+) \|$", text, re.M)
+    d.holds(len(rows) > 20, "docs/performance.md: no table of what was asked")
+    value = lambda word: float(fractions.Fraction(word))   # noqa: E731   # 0.55 or 1/35
+    for asked, ratio, ours, our_setting, theirs, their_setting, verdict in rows:
+        a, b = times.get((ours, our_setting), set()), times.get((theirs, their_setting), set())
+        last = 0.5 * value(ratio) if "/" in ratio else 0.005 / value(ratio)   # half of the last digit, as a part
+        near = any(abs(x / y / value(ratio) - 1) < 0.01 + last for x in a for y in b)
+        d.holds(near, f"docs/performance.md: {ratio} of {ours} {our_setting} and {theirs} {their_setting} is not of these times")
+        d.holds((value(ratio) <= value(asked)) == (verdict == "met"), f"docs/performance.md: {ratio} against {asked} is not {verdict}")
+
+
+def checked(texts, found):
+    d = Documents(texts, found)
+    for check in (check_measured, check_recorded, check_allowed, check_performance):
+        check(d)
+    return d
+
+
+STALE = [("README.md", "| 4e-8 m |", "| 4e-9 m |"), ("README.md", "eighteen joints", "seventeen joints"), ("README.md", "0.8 MB", "0.6 MB"),
+         ("README.md", r"(\d) ms \|", r"\g<1>1 ms |"), ("README.md", "tension 1e-9", "tension 3e-14"),
+         ("docs/joints.md", r"\| `slot` \|", "| `groove` |"), ("docs/validation.md", r"\| 0\.0(\d+) \|", r"| 0.1\1 |"),
+         ("docs/examples.md", r"\| 1e-11 \|", "| 1e-15 |"), ("docs/examples.md", r"\| 2e-7 \|", "| 1e-7 |"), ("docs/trust.md", r"\| 2415 \| 1649", "| 2415 | 1650"),
+         ("docs/trust.md", r"(\d) percent", r"\g<1>5 percent"), ("docs/trust.md", r"6\.4e-2", "6.3e-2"),
+         ("docs/trust.md", r"\| 1\.00, 1\.", "| 1.00, 2."),
+         ("docs/performance.md", r"\| 1 \| 0\.\d\d \|", "| 1 | 0.25 |"), ("docs/performance.md", r"\| met \|", "| **missed** |"),
+         ("docs/performance.md", r"\| Pinocchio \| [\d.]+ ", "| Pinocchio | 0.01 ")]
 
 
 def main():
     words = [word for word in sys.argv[1:] if word != "--controls"]
     root, program = pathlib.Path(words[0]).resolve(), pathlib.Path(words[1]).resolve()
     reference = pathlib.Path(words[2]).resolve() if len(words) > 2 else None
-    texts = [(root / name).read_text(encoding="utf-8") for name in ("README.md", "docs/joints.md", "docs/validation.md")]
+    texts = {name: (root / name).read_text(encoding="utf-8") for name in DOCUMENTS}
     found = measured(root, program, reference)
     if not found["joints"] or reference and len(found["published"]) < 5:
         sys.exit("nothing was measured")
     if "--controls" in sys.argv:
-        stale = [(0, "| 4e-8 m |", "| 4e-9 m |"), (0, "eighteen joints", "seventeen joints"), (0, "0.8 MB", "0.6 MB"),
-                 (1, "| `slot` |", "| `groove` |"), *([(2, "5e-13", "5e-15")] if reference else [])]
-        missed = []
-        for which, old, new in stale:
-            changed = [text.replace(old, new) if number == which else text for number, text in enumerate(texts)]
-            if changed == texts or not list(faults_of(*changed, found)):
+        stale = [*STALE, *([("docs/validation.md", "5e-13", "5e-15")] if reference else [])]
+        missed, before = [], set(checked(texts, found).faults)
+        for name, old, new in stale:
+            changed = texts | {name: re.sub(old, new, texts[name])}
+            if changed == texts or not set(checked(changed, found).faults) - before:
                 missed.append(f"not found: {old} as {new}")
         print("\n".join(missed) or f"all {len(stale)} stale statements were found")
         return bool(missed)
-    faults = list(faults_of(*texts, found))
-    print("\n".join(faults) or f"{len(found['errors']) + len(found['published']) + 3} statements hold")
-    return bool(faults)
+    d = checked(texts, found)
+    print("\n".join(d.faults) or f"{d.n} statements hold")
+    return bool(d.faults)
 
 
 if __name__ == "__main__":

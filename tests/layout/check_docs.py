@@ -102,8 +102,8 @@ def check_links(root):
     faults = []
     for path in documents(root):
         text = prose(path.read_text(encoding="utf-8"))
-        for match in re.finditer(r"\]\(\s*<?([^)\s>]+)>?[^)]*\)", text):
-            target, _, anchor = match.group(1).partition("#")
+        for match in re.finditer(r"\]\(\s*<?([^)\s>]+)>?[^)]*\)|\bsrc(?:set)?=\"([^\"]+)\"", text):
+            target, _, anchor = (match.group(1) or match.group(2)).partition("#")
             if re.match(r"[a-z]+:", target):
                 continue
             where = f"{path.relative_to(root)}:{text.count(chr(10), 0, match.start()) + 1}"
@@ -183,6 +183,7 @@ CONTROLS = [
     ("notation", {"docs/notation.md": "| code |\n|---|\n| `m[0]` |\n"}),
     ("notation", {"docs/notation.md": "no table\n"}),
     ("link", {"docs/more.md": "[gone](gone.md)\n"}),
+    ("link", {"docs/more.md": '<picture><source srcset="gone.webp"></picture>\n'}),
     ("link", {"docs/more.md": "![picture](../gone.png)\n"}),
     ("link", {"docs/more.md": "[gone](notation.md#gone)\n"}),
     ("link", {"docs/more.md": "[out](../../../)\n"}),

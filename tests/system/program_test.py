@@ -727,8 +727,12 @@ degree = 6
         self.assertIn("#", self.expect(0, "schema").out)
         codes = self.expect(0, "explain").out.split()
         self.assertIn("unknown-key", codes)
+        headings = re.findall(r"^## (.+)$", (SOURCE / "docs" / "diagnostics.md").read_text(), re.M)
         for code in codes:
-            self.assertGreater(len(self.expect(0, "explain", code).out), 20, code)
+            page = self.expect(0, "explain", code).out
+            self.assertGreater(len(page), 120, code)
+            self.assertTrue(page.endswith(f"\nIn the sources: docs/diagnostics.md#{code}\n\nOn the site: diagnostics/{code}.html\n"), page)
+            self.assertIn(code, headings)
         for command in ("solve", "check", "mass", "equilibrium", "modes", "info", "sample", "export", "schema", "explain",
                         "version"):
             self.assertIn(f"livens {command}", self.expect(0, command, "--help").out)

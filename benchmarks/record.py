@@ -1,0 +1,131 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Measures the times that documents state, and takes over what the scans have counted: record.py PROGRAM [SCANS]
+
+Writes benchmarks/recorded.json, with machine and date; tests/docs/figures.py holds README.md, docs/validation.md and docs/trust.md
+against it. SCANS: the folder in which scripts/scan left its data (build/scan); without it what was recorded of them stays.
+Times are the least of several runs of solve() alone, each on one core; of long ones, which other work on the machine interrupts, the
+processor's share. Standard library only.
+"""
+import csv
+import datetime
+import json
+import os
+import pathlib
+import resource
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+
+ROOT = pathlib.Path(__file__).resolve().parents[1]
+RECORD = ROOT / "benchmarks/recorded.json"
+BRICKS = [("midpoint rule", 12800), ("lobatto(2)", 2560), ("lobatto(4)", 320), ("lobatto(8)", 40), ("lobatto(8)", 80)]
+ENOUGH = 4.0        # s of repeats, or MOST of them
+MOST = 100
+LONG = 0.3          # s
+COARSE = [("chain_with_spring", 10, 12), ("rocker_in_space", 14, 8)]   # degree, elements: see docs/trust.md
+BURSTS = "light_above_heavy"
+
+
+def bricks(method, elements):
+    """The scenario of README.md's table."""
+    family = 'family = "midpoint"' if "midpoint" in method else f'family = "lobatto"\ndegree = {method[8:-1]}'
+    head = (ROOT / "examples/ball_pendulum_two.toml").read_text(encoding="utf-8").split("[time]")[0]
+    return head + f'[time]\nend = 2\nelements = {elements}\noutput = 2\n[method]\n{family}\nestimate = "none"\n'
+
+
+def seconds(program, scenario, keys):
+    found, spent = [], 0.0
+    processor = lambda: resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime   # noqa: E731
+    with tempfile.TemporaryDirectory() as folder:
+        while not found or spent < ENOUGH and len(found) < MOST:
+            began, used = time.monotonic(), processor()
+            done = subprocess.run([program, "solve", scenario, "-o", f"{folder}/run.nc", "--json"], capture_output=True, text=True,
+                                  check=False)   # a coarse mesh may be suspect
+            figures = json.loads(done.stdout)
+            took = time.monotonic() - began
+            share = min(1, (processor() - used) / took) if sum(figures[key] for key in keys) > LONG else 1
+            found.append(share * sum(figures[key] for key in keys))
+            spent += took
+    return float(f"{min(found):.3g}")
+
+
+def times(program):
+    record = {"bricks_ms": {}, "published_s": {}}
+    with tempfile.TemporaryDirectory() as folder:
+        for method, elements in BRICKS:
+            scenario = pathlib.Path(folder, "bricks.toml")
+            scenario.write_text(bricks(method, elements), encoding="utf-8")
+            record["bricks_ms"][f"{method}, {elements}"] = float(f"{1e3 * seconds(program, scenario, ['solve_seconds']):.3g}")
+    for file in sorted((ROOT / "examples/benchmarks").glob("*.toml")):
+        record["published_s"][file.stem] = seconds(program, file, ["solve_seconds", "estimate_seconds"])
+    return record
+
+
+def rows_of(folder, name):
+    verdict = json.loads((folder / name / "verdict.json").read_text(encoding="utf-8"))
+    if verdict["short"]:
+        sys.exit(f"{folder / name}: a short scan")
+    with (folder / name / "data.csv").open(newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file)), {entry["name"]: entry["seen"] for entry in verdict["expectations"]}
+
+
+def meshes(folder):
+    rows, seen = rows_of(folder, "scan_meshes")
+    others = seen["examples: runs"]   # the first ones are the seven examples
+    record = {}
+    for kind, part in (("examples", rows[:others]), ("others", rows[others:])):
+        ends = [int(row["exit"]) for row in part]
+        record[kind] = {
+            "runs": len(part), "converged": ends.count(0), "suspect": ends.count(7), "not converged": ends.count(4),
+            "wrong": seen[f"{kind}: called converged, and off by more than ten estimates or 0.02"],
+            "false alarms": round(seen[f"{kind}: false alarms, of all runs"] * len(part)),
+            "wrong by a thousandth": seen[f"{kind}: wrong ones that would be seen, were estimates a thousandth"]}
+    record["pass without an estimate"] = round(seen["wrong runs that would pass without an estimate, of all"], 3)
+    record["coarse"] = {row["mechanism"]: [float(f"{float(row[key]):.2g}") for key in ("error", "estimate")] for row in rows
+                        if (row["mechanism"], int(row["degree"]), int(row["elements"])) in COARSE}
+    return record
+
+
+def accuracies(folder):
+    rows, seen = rows_of(folder, "scan_accuracy")
+    record = {"off": seen["off by more than three accuracies before the horizon"],
+              "estimates within 5": round(seen["estimate within a factor of 5, share"], 4),
+              "not reached": [f"{row['problem']} {row['times']} {float(row['accuracy']):g}" for row in rows if row["exit"] != "0"]}
+    for kind in ("without output", "with output"):
+        part = [row for row in rows if row["times"] == kind and row["problem"] != BURSTS]
+        record[kind] = {"motions": len(part)}
+        for key in ("work", "work_in_all"):
+            costs = [float(row[key]) for row in part if row["exit"] == "0"]
+            tenths = statistics.quantiles(costs, n=10, method="inclusive")
+            record[kind][key] = [round(x, 2) for x in (statistics.median(costs), tenths[-1], max(costs))]
+    record["above six"] = sum(row["exit"] == "0" and row["problem"] != BURSTS and float(row["work_in_all"]) > 6 for row in rows)
+    record["bursts"] = sum(row["problem"] == BURSTS for row in rows)
+    return record
+
+
+def machine(program):
+    names = [line.partition(":")[2].strip() for line in pathlib.Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
+             if line.startswith("model name")]
+    version = subprocess.run([program, "version"], capture_output=True, text=True, check=True).stdout.split()[1]
+    return {"processor": names[0] if names else "unknown", "cores": os.cpu_count(), "load before": round(os.getloadavg()[0], 1),
+            "date": datetime.date.today().isoformat(), "version": version}
+
+
+def main():
+    program = str(pathlib.Path(sys.argv[1]).resolve())
+    record = json.loads(RECORD.read_text(encoding="utf-8")) if RECORD.exists() else {}
+    record["machine"] = machine(program)
+    record["times"] = times(program)
+    if len(sys.argv) > 2:
+        folder = pathlib.Path(sys.argv[2])
+        record["scans"] = {"date": record["machine"]["date"], "meshes": meshes(folder), "accuracies": accuracies(folder)}
+    RECORD.write_text(json.dumps(record, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
+    print(f"wrote {RECORD.relative_to(ROOT)}")
+
+
+if __name__ == "__main__":
+    if len(sys.argv) not in (2, 3):
+        sys.exit(__doc__)
+    main()
