@@ -2,7 +2,9 @@
 # What io and the program are made with; the core needs none of it.
 
 find_package(fmt REQUIRED)
-find_package(CLI11 REQUIRED)
+if(LIVENS_BUILD_PROGRAM)
+    find_package(CLI11 REQUIRED)
+endif()
 find_path(LIVENS_TOML_INCLUDE_DIR toml++/toml.h REQUIRED)
 add_library(livens_toml INTERFACE)
 target_include_directories(livens_toml SYSTEM INTERFACE ${LIVENS_TOML_INCLUDE_DIR})

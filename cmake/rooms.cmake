@@ -40,12 +40,19 @@ function(livens_precompile target common)
 endfunction()
 
 # How hard sources are optimised, after the flags of the build: the wheel is small because most of them are not
-# unrolled and inlined to the last, and because what nobody calls is left out by the linker.
-set(livens_fast $<$<CONFIG:Release>:-O3>)
+# unrolled and inlined to the last, and because what nobody calls is left out by the linker. Kernels have Eigen under
+# another name: of inline functions in several objects the linker keeps one, which may be the small one.
+set(livens_fast $<$<CONFIG:Release>:-O3> -UEigen -DEigen=livens_fast_eigen)
 set(livens_usual $<$<CONFIG:Release>:-O2>)
 set(livens_small $<$<CONFIG:Release>:-Os>)
 if(NOT MSVC)
     set(livens_sections -ffunction-sections -fdata-sections)
+endif()
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")   # Its own copy for an object is one that the linker cannot leave out.
+    set(livens_whole $<$<CONFIG:Release>:-fno-ipa-sra> $<$<CONFIG:Release>:-fno-ipa-cp>)
+    list(APPEND livens_usual ${livens_whole})
+    list(APPEND livens_small ${livens_whole})
+    list(APPEND livens_fast $<$<CONFIG:Release>:-fipa-sra> $<$<CONFIG:Release>:-fipa-cp>)
 endif()
 
 # livens_room(NAME [EIGEN] [STACKS] [FAST | SMALL] [LIBRARIES lib...]): FAST is for kernels, SMALL for what reads, writes

@@ -93,6 +93,9 @@ class Section:
     def __dir__(self) -> list[str]:
         return [*super().__dir__(), *self.keys()]
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        raise TypeError(f"{self._label()} cannot be pickled alone: pickle the model")
+
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Section) and self._table is other._table
 
@@ -142,11 +145,19 @@ class Entry(Section):
     def __copy__(self) -> Self:
         return self
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return (_restored, (self._model, self._key, self.name))
+
     def __deepcopy__(self, memo: object) -> Self:
         raise fault("unknown-key", f"{self._label()} cannot be copied alone", help="copy the model: m.copy()")
 
     def _label(self) -> str:
         return f"{self._key} '{self.name}'"
+
+
+def _restored(model: Tree, kind: str, name: str) -> Entry:
+    found: Entry = next(model._handle(at, table) for at, table in model._named(name) if at == kind)
+    return found
 
 
 def _fallback(key: dict[str, Any]) -> Any:

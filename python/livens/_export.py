@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     import xarray
 
 _XYZ = ["x", "y", "z"]
+_TRIAD = [f"d{i + 1}.{c}" for i in range(3) for c in _XYZ]
 _COLUMNS = {3: _XYZ, 4: ["w", "x", "y", "z"]}
 
 
@@ -76,7 +77,7 @@ def to_dataframe(series: Series, names: tuple[Any, ...]) -> pandas.DataFrame:
             elif array.ndim == 2:
                 ends = ["." + c for c in _COLUMNS[array.shape[1]]]
             else:
-                ends = [f".d{i + 1}.{c}" for i in range(3) for c in _XYZ]
+                ends = ["." + c for c in _TRIAD]
             for i, end in enumerate(ends):
                 columns[f"{part.name}.{key}{end}"] = flat[:, i]
                 units[f"{part.name}.{key}{end}"] = part.unit(key)
@@ -89,16 +90,19 @@ def plot(series: list[tuple[str, Series]], what: tuple[str, ...], keywords: dict
     """See Series.plot(); several are drawn over one another."""
     plt = need("matplotlib.pyplot", "plot", "plot()")
     groups = list(what) or ["energy"]
+    if any(not isinstance(name, str) for name in groups):
+        raise TypeError("plot() takes names: 'rod.position', 'energy'")
     arrays = [[s._array(name) for _, s in series] for name in groups]
     _, axes = plt.subplots(len(groups), 1, sharex=True, squeeze=False, layout="constrained",
                            figsize=(7, 1.2 + 2 * len(groups)))
     for axis, name, rows in zip(axes[:, 0], groups, arrays):
         for (label, s), (array, unit), style in zip(series, rows, ("-", "--", ":")):
             flat = np.atleast_1d(array).reshape(len(np.atleast_1d(s.t)), -1)
-            ends = _COLUMNS.get(flat.shape[1], [str(i) for i in range(flat.shape[1])]) if flat.shape[1] > 1 else [""]
+            ends = _ends_of(name, flat.shape[1])
             for i, end in enumerate(ends):
                 words = " ".join(word for word in (end, label) if word)
-                axis.plot(np.atleast_1d(s.t), flat[:, i], **{"linestyle": style, "color": f"C{i}", "label": words or "_", **keywords})
+                axis.plot(np.atleast_1d(s.t), flat[:, i], **{"linestyle": style, "color": f"C{i}", "label": words or "_",
+                                                            "marker": "o" if len(flat) == 1 else None, **keywords})
         axis.set_ylabel(f"{name}\n[{rows[0][1]}]")
         axis.grid(True, alpha=0.3)
         if any(not label.startswith("_") for label in axis.get_legend_handles_labels()[1]):
@@ -106,6 +110,13 @@ def plot(series: list[tuple[str, Series]], what: tuple[str, ...], keywords: dict
     axes[-1, 0].set_xlabel("t [s]")
     result: npt.NDArray[Any] = axes[:, 0]
     return result
+
+
+def _ends_of(name: str, n: int) -> list[str]:
+    """What the components of an array are called."""
+    if n == 9:   # of stresses both directions are the body's
+        return [f"{i + 1}{j + 1}" for i in range(3) for j in range(3)] if name.endswith("stress") else _TRIAD
+    return _COLUMNS.get(n, [""] * n)
 
 
 class Comparison:
@@ -149,6 +160,9 @@ def compare(first: Any, second: Any, t: Any = None) -> Comparison:
         >>> c.largest["ball"]["position"] < 1e-14
         True
     """
+    for solution in (first, second):
+        if not isinstance(solution, Series) or not callable(solution):
+            raise TypeError(f"compare() takes two solutions, not {type(solution).__name__}")
     if t is None:
         ends = first.t
         t = ends[(ends >= second.t[0]) & (ends <= second.t[-1])]

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 import numpy as np
 import numpy.typing as npt
 
+from . import _core
 from ._entries import Entry, unknown_name
 
 if TYPE_CHECKING:
@@ -55,6 +56,13 @@ class Part:
 
     def __dir__(self) -> list[str]:
         return [*super().__dir__(), *self.arrays()]
+
+    if not TYPE_CHECKING:
+        def __getattr__(self, name: str) -> Any:
+            if name.startswith("_"):
+                raise AttributeError(name)
+            raise AttributeError(f"'{self._name}' has no '{name}'; {_core.suggestion(name, list(self.arrays()))}",
+                                 name=name, obj=self)
 
     def __repr__(self) -> str:
         kind = type(self).__name__.replace("Series", "").lower()

@@ -50,6 +50,11 @@ def arranged(content: Mapping[str, Any]) -> dict[str, Any]:
     both = [content[key] for key in ("first", "second") if content.get(key) is not None]
     if not both:
         return made
+    if len(both) == 1 and "first" in content and "second" in content:
+        lacking = "second" if content["first"] is not None else "first"
+        is_joint = "joints" in content and "between" not in content
+        raise fault("missing-key", f"the {lacking} {'joint' if is_joint else 'body'} is None",
+                    help="" if is_joint else "the fixed world is called 'world'")
     pairs = [end if isinstance(end, (tuple, list)) and len(end) == 2 else (end, None) for end in both]
     points = [point for _, point in pairs if point is not None]
     into = "joints" if "joints" in content and "between" not in content else "between"
@@ -71,18 +76,33 @@ def path_of(kind: str, table: Mapping[str, Any], index: int = -1) -> str:
     return f"{kind}[{table.get('name') or (default_name(kind, table) if index < 0 else index + 1)}]"
 
 
+def _place_inside(value: Any, steps: list[str]) -> Place:
+    """Of what stands there from a table inwards, as far as that is known: lists of numbers have one place."""
+    place: Place = value.place
+    for step in steps:
+        if isinstance(value, Table):
+            place = value.places.get(step, value.place)
+            value = value.get(step)
+        elif isinstance(value, (list, tuple)) and int(step) < len(value):
+            value = value[int(step)]
+            place = value.place if isinstance(value, Table) else place
+        else:
+            break
+    return place
+
+
 def of_table(d: dict[str, Any], kind: str, table: Table) -> Diagnostic:
-    key = d["location"][2]
+    _, _, key, inner = d["location"]
     path = path_of(kind, table) + (f".{key}" if key else "")
-    place = table.places.get(key, table.place)
+    place = _place_inside(table, [key, *inner]) if key else table.place
     if key and place.line and not place.column:   # of Python's code, where a call may have many lines
-        place = written(place, key, table.get("name"))
+        place = written(place, key, table.get("name"), inner)
     return Diagnostic(d["severity"], d["code"], d["message"], path, d["note"], d["help"], place)
 
 
 def diagnostic_of(d: dict[str, Any], root: Mapping[str, Any]) -> Diagnostic:
     """Of the compiled reader, with the place in the user's file."""
-    kind, index, _ = d["location"]
+    kind, index, _, _ = d["location"]
     value = root.get(kind)
     if isinstance(value, list) and 0 <= index < len(value) and isinstance(value[index], Table):
         return of_table(d, kind, value[index])

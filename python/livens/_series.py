@@ -184,7 +184,15 @@ class Series:
     def _array(self, what: str) -> tuple[Floats, str]:
         """By a name with a dot: (array, unit)."""
         name, _, attribute = what.rpartition(".")
+        if attribute in ("w", "x", "y", "z") and "." in name and name not in self:   # as columns of data frames
+            array, unit = self._array(name)
+            parts = {3: "xyz", 4: "wxyz"}.get(array.shape[-1], "")
+            if attribute in parts:
+                return array[..., parts.index(attribute)], unit
         if not name:
+            if attribute in self:
+                raise KeyError(f"which array of '{attribute}'? "
+                               + ", ".join(f"'{attribute}.{key}'" for key in self[attribute].arrays()))
             if attribute not in UNITS or not hasattr(type(self), attribute):
                 raise unknown_name("series", what, [n for n in UNITS if hasattr(type(self), n)])
             return getattr(self, attribute), UNITS[attribute]
@@ -193,6 +201,15 @@ class Series:
             return getattr(part, attribute), part.unit(attribute)
         except (AttributeError, KeyError):
             raise unknown_name(f"array of '{name}'", attribute, list(part.arrays())) from None
+
+    def __contains__(self, name: object) -> bool:
+        """Whether a body, joint, load or sensor is called so."""
+        return isinstance(name, (str, Entry, Part)) and any(name in group for group in (self.bodies, self.joints, self.loads, self.sensors))
+
+    __iter__ = None   # names or instants? Python would try numbers
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        raise TypeError("samples are not pickled: pickle the solution, and ask it again; or their arrays")
 
     def __len__(self) -> int:
         return len(self._instants())

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, Literal, Union
 import numpy as np
 
 from . import _core
+from ._entries import default_name
 from ._errors import InputError, SolveError, SolveWarning, fault, stack_level, user_place
 from ._model import Model
 from ._places import diagnostic_of
@@ -233,6 +234,11 @@ def _overrides(model: Model, time: Time, of_time: dict[str, Any], method: Method
         made["end"] = _given(model, "end", condition.given)
         if condition.bodies:
             made["body"] = _moved(made.get("body", model._root.get("body", [])), condition, "end")
+        lacking = [default_name("body", body) for body in made.get("body", model._root.get("body", [])) if "end" not in body]
+        if lacking and condition.given in ("positions", "momenta", "state"):
+            raise fault("missing-key", f"end= says nothing of {', '.join(map(repr, lacking[:5]))}", "end",
+                        f"end=lv.{condition.given}({{{lacking[0]!r}: {{'position': (0, 0, 0)}}}})",
+                        "what is known at the end concerns every body")
     return made
 
 
@@ -269,7 +275,8 @@ def _method(model: Model, method: Method | str | None, options: Mapping[str, Any
         if isinstance(method, str):
             method = Method(method)
         if not isinstance(method, Method):
-            raise TypeError(f"a method is lv.Lobatto(..), .. or a word, not {type(method).__name__}")
+            given = f"the class {method.__name__}" if isinstance(method, type) else type(method).__name__
+            raise TypeError(f"a method is lv.Lobatto(..), .. or a word, not {given}")
         _set(table, "method", "family", method.family)
         for name, value in method.keys.items():
             _set(table, "method", name, value)

@@ -91,6 +91,8 @@ def plain(value: Any, key: dict[str, Any] | None, path: str) -> Any:
     """A value as trees hold it: truth, whole number, number, text, tuple, Table or list of Tables."""
     if isinstance(value, (bool, str)) or type(value) in (int, float):
         return value
+    if isinstance(value, np.longdouble):   # its own item()
+        return float(value)
     if isinstance(value, np.generic):
         return plain(value.item(), key, path)
     if hasattr(value, "to_base_units"):
@@ -111,7 +113,8 @@ def plain(value: Any, key: dict[str, Any] | None, path: str) -> Any:
         items = [plain(item, key, path) for item in value]
         return items if items and all(isinstance(item, Table) for item in items) else tuple(items)
     raise fault("wrong-type", f"{_article(type(value).__name__)} is no value of a model", path,
-                "numbers, texts with units, lists and arrays are")
+                "m.add_function(name, body, function) takes functions; expressions are texts" if callable(value)
+                else "numbers, texts with units, lists and arrays are")
 
 
 def _article(word: str) -> str:

@@ -228,6 +228,8 @@ Node TreeReader::table(nb::dict object, const Location& location, int depth)
             at.table = utf8(name, location);
         else if (at.key.empty())
             at.key = utf8(name, location);
+        else
+            at.inner.push_back(utf8(name, location));
         Entry& entry = node.content->entries.emplace_back();
         entry.key = utf8(name, location);
         entry.place = place(at);
@@ -273,12 +275,18 @@ Node TreeReader::array(nb::handle object, const Location& location, int depth)
     const bool is_of_tables = location.key.empty() && location.index < 0;
     int index = 0;
     for (nb::handle item : nb::borrow<nb::object>(object)) {
-        Location at = location;
-        if (is_of_tables) at.index = index++;
         Node& child = node.content->items.emplace_back();
         child.place = node.place;   // a long list has one place
         count(location);
-        if (!read_scalar(item, at, child)) child = value(item, at, depth + 1);
+        if (!read_scalar(item, location, child)) {
+            Location at = location;
+            if (is_of_tables)
+                at.index = index;
+            else
+                at.inner.push_back(std::to_string(index));
+            child = value(item, at, depth + 1);
+        }
+        ++index;
     }
     return node;
 }
@@ -322,7 +330,9 @@ nb::list to_python(const std::vector<Diagnostic>& diagnostics, const std::vector
         const bool is_known =
             locations != nullptr && d.line > 0 && static_cast<std::size_t>(d.line) < locations->size();
         const Location at = is_known ? (*locations)[static_cast<std::size_t>(d.line)] : Location{};
-        item["location"] = nb::make_tuple(at.table, at.index, at.key);
+        nb::list inner;
+        for (const std::string& step : at.inner) inner.append(nb::str(step.c_str(), step.size()));
+        item["location"] = nb::make_tuple(at.table, at.index, at.key, inner);
         all.append(item);
     }
     return all;

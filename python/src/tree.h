@@ -19,6 +19,7 @@ struct Location {
     std::string table;   ///< key of the root, empty: the root itself
     int index = -1;      ///< among the tables of an array, or -1
     std::string key;     ///< of the table, empty: the table itself
+    std::vector<std::string> inner;   ///< from its value inwards: keys, and numbers from 0 in lists
 };
 
 /// Dicts, tuples, lists, texts, numbers and truths as a tree.

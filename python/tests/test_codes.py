@@ -141,6 +141,70 @@ def test_key_of_a_long_call_is_told_with_its_own_line() -> None:
     assert lines[raised.value.line - 1].strip() == 'accuracy="3 kg",'
 
 
+def test_key_inside_of_a_table_is_told_with_its_own_line() -> None:
+    """In dictionaries, lists of them, functions of the package, variables, and what is assigned later."""
+    with open(__file__, encoding="utf-8") as stream:
+        lines = stream.read().split("\n")
+
+    def told(call: Callable[[], object]) -> tuple[str, str]:
+        """Code, and the line that is marked."""
+        with pytest.raises(lv.InputError) as raised:
+            call()
+        assert raised.value.file == __file__
+        return raised.value.code, lines[raised.value.line - 1].strip()
+
+    m = lv.Model("nested")
+    assert told(lambda: m.add_body(
+        "rod", lv.box(1, 1, 1, mass=1),
+        end={
+            "position": (0, 0, 0),
+            "velocity": (1, "2 kg", 0),
+            "angular_velocity": (0, 0, 1),
+        },
+    )) == ("unit", '"velocity": (1, "2 kg", 0),')
+    assert told(lambda: m.add_body(
+        "rod", lv.parts([
+            {"box": (1, 1, 1), "density": 1},
+            {"sphere": {"radius": 0.5},
+             "density": "1 kg"},
+        ]),
+    )) == ("wrong-type", '"density": "1 kg"},')
+    assert told(lambda: m.add_body(
+        "rod",
+        lv.cylinder(
+            1,
+            "2 s",
+            mass=1,
+        ),
+    )) == ("unit", '"2 s",')
+    pieces = [
+        dict(box=(1, 1, 1), density=1),
+        dict(box=(1, 1, 1),
+             densty=1),
+    ]
+    assert told(lambda: m.add_body("rod", lv.parts(pieces))) == ("unknown-key", "densty=1),")
+    m.add_body("rod", lv.box(1, 1, 1, mass=1))
+    assert told(lambda: m.add_force(
+        "push", "rod",
+        table=lv.table(
+            [0, 1],
+            [("0 N", "0 N", "1 N"), ("0 N", "0 N", "1 m")],
+        ),
+    )) == ("unit", '[("0 N", "0 N", "1 N"), ("0 N", "0 N", "1 m")],')
+
+    def assign() -> None:
+        m["rod"].end = {
+            "position": (0, 0, 0),
+            "velocity": "fast",
+        }
+    assert told(assign) == ("wrong-type", '"velocity": "fast",')
+
+    def assign_inside() -> None:
+        m["rod"].end = {"position": (0, 0, 0)}
+        m["rod"].end.velocity = "fast"
+    assert told(assign_inside) == ("wrong-type", 'm["rod"].end.velocity = "fast"')
+
+
 def test_unknown_names_are_told_with_what_was_meant() -> None:
     m = lv.Model("errors")
     m.add_body("crank", lv.sphere(1, mass=1))
