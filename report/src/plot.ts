@@ -205,8 +205,14 @@ export class Plot {
     if (bound) {
       const y = u.valToPos(bound.value, "y", true);
       draw(left, y, left + width, y);
+      const x = left + width - 4 * ratio,
+        base = y + (y < top + 20 * ratio ? 13 : -4) * ratio,
+        wide = c.measureText(bound.label).width;
       c.textAlign = "right";
-      c.fillText(bound.label, left + width - 4 * ratio, y + (y < top + 20 * ratio ? 13 : -4) * ratio);
+      c.fillStyle = theme().card; // over curves
+      c.fillRect(x - wide - 3 * ratio, base - 10 * ratio, wide + 6 * ratio, 13 * ratio);
+      c.fillStyle = theme().bad;
+      c.fillText(bound.label, x, base);
     }
     if (mark) {
       const x = u.valToPos(mark.t, "x", true);

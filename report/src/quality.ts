@@ -153,10 +153,10 @@ export function build_quality(host: HTMLElement, run: Run, time: Timeline): Plot
   };
   const horizon = run.figure("horizon"),
     mark = Number.isFinite(horizon) ? { mark: { t: horizon, label: "horizon" } } : {};
-  const bound = (name: string, scale = 1) => {
+  const bound = (name: string, scale = 1, of = "") => {
     const value = quality.bounds[name] * scale;
     return Number.isFinite(value) && value > 0
-      ? { bound: { value, label: `accepted to ${number(value, 2)}` } }
+      ? { bound: { value, label: `${of}accepted to ${number(value, 2)}` } }
       : {};
   };
   /** What a relative drift was divided by. */
@@ -170,7 +170,7 @@ export function build_quality(host: HTMLElement, run: Run, time: Timeline): Plot
     "Estimated error at element ends",
     "lengths of the model, rad, largest reaction",
     ["position error", "orientation error", "reaction error"],
-    { ...bound("estimated_error"), ...mark },
+    { ...bound("estimated_error", 1, "poses: "), ...mark },
   );
   add(
     "Violation of constraints in elements",

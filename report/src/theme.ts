@@ -20,6 +20,7 @@ const light = {
   line: "#e3e6ea",
   now: "#20262d",
   bad: "#b3261e",
+  card: "#fff",
 };
 const dark: typeof light = {
   edge: "#05070a",
@@ -37,6 +38,7 @@ const dark: typeof light = {
   line: "#2a313a",
   now: "#e6edf3",
   bad: "#ff8a80",
+  card: "#151b23",
 };
 
 export const dark_wanted = matchMedia("(prefers-color-scheme: dark)");
