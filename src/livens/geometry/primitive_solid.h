@@ -41,4 +41,4 @@ Moments weighted_moments(const PrimitiveSolid& solid, const std::function<double
 /// Areas to 1e-12, by quadrature likewise.
 SurfaceMoments surface_moments(const PrimitiveSolid& solid, const Moments& whole);
 
-}   // namespace gnu::visibility("default")]]livens
+}   // namespace livens
