@@ -17,7 +17,6 @@ HEAD = """# Performance, side by side
 
 livens and other engines on the same problems, in one run on one machine, each in its best settings. This page is made by
 
-<!-- not run: an hour, and other engines are brought from the network -->
 ```sh
 scripts/peers --install    # brings the engines, measures, writes this page: about an hour
 scripts/peers --quick      # P16 and one chain, into build/peers/

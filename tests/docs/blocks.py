@@ -56,6 +56,10 @@ scripts/test() { [ -x scripts/test ] && [ $# = 0 ]; }   # what runs this
 scripts/setup() { [ -x scripts/setup ] && grep -q "^    ${1:-test}) " scripts/setup; }
 scripts/paper() { LIVENS=$(command -v livens) command scripts/paper --list "$@" > list.log; }   # minutes: here only whether there is what is named
 scripts/scan() { LIVENS=$(command -v livens) command scripts/scan --list "$@" > list.log; }
+scripts/peers() {   # an hour, and engines from the network: here only whether there are such options
+    local said; said=$(command scripts/peers --help)
+    for option; do grep -q -e "^  $option " <<< "$said" || return 1; done
+}
 preset() { command cmake --list-presets="$1" | grep -q "^  \"$2\""; }
 cmake() {   # minutes: here only whether there is such a preset
     case "$1 $2" in
@@ -309,6 +313,7 @@ CONTROLS = {
     "a page that nobody runs": "<!-- run by: scripts/demo -->\n```sh\nscripts/packages\n```\n",
     "no such preset": "```sh\ncmake --preset fast\n```\n",
     "no such figure": "```sh\nscripts/paper fig99\n```\n",
+    "no such option of peers": "```sh\nscripts/peers --slow\n```\n",
     "an exception": "```python\nassert 1 == 2\n```\n",
     "C++ that is wrong": "```cpp\nint main() { return nothing; }\n```\n",
 }
