@@ -77,11 +77,51 @@ std::vector<Kernel> counted_kernels()
     return {linear, centred, bricks_6, bricks_8};
 }
 
+Model brick_chain(int n, const std::string& kind)
+{
+    const bool on_hinges = kind == "hinges", is_ring = kind == "ring";
+    const MassProperties brick = with_center(box(50, {1, 0.2, 0.1}), {0.5, 0, 0});   // 1 kg
+    const double corner = 2 * std::acos(-1.0) / n;                                   // of a ring
+    const double whirl = 2.0 / n;                                                    // rad/s
+    Model model(gravity);
+    Vector3 x{};
+    for (int b = 0; b < n; ++b) {
+        const double angle = is_ring ? corner * b : std::acos(0.0) * (b % 2);
+        const Vector3 along{std::cos(angle), std::sin(angle), 0};
+        Placement placement = at_rest(x, Matrix3{along[0], along[1], 0, -along[1], along[0], 0, 0, 0, 1});
+        if (on_hinges) {
+            placement.velocity = {-whirl * x[1], whirl * x[0], 0};
+            placement.angular_velocity = {0, 0, whirl};
+        }
+        const std::string name = std::to_string(b);
+        model.add_body(rigid_body(name, brick, placement));
+        JointFrame frame{.point_first = {b > 0 ? 1.0 : 0.0, 0, 0}, .point_second = {}};
+        if (on_hinges && b % 2 == 1) {   // across the one before
+            frame.axis_first = {-1, 0, 0};
+            frame.axis_second = {0, 1, 0};
+        }
+        model.add_joint(on_hinges ? revolute(name, b - 1, b, frame) : spherical(name, b - 1, b, frame));
+        x = x + along;
+    }
+    if (is_ring) model.add_joint(spherical("last", n - 1, 0, {.point_first = {1, 0, 0}, .point_second = {}}));
+    return model;
+}
+
+Kernel chain_kernel(int n, const std::string& kind, int n_elements)
+{
+    const double h = kind == "balls" ? 0.015 : 0.0075;
+    return {.name = kind,
+            .model = brick_chain(n, kind),
+            .mesh = make_time_mesh(0, h * n_elements, n_elements),
+            .method = Lobatto{8},
+            .tolerance = 1e-14};
+}
+
 Solution run(const Kernel& kernel)
 {
     SolveOptions options;
     options.judge = options.divide = false;   // what is counted is the solution
-    options.tolerance = 1e-12;
+    options.tolerance = kernel.tolerance;
     return solve(kernel.model, {kernel.model.start()}, kernel.mesh, kernel.method, options);
 }
 

@@ -25,17 +25,27 @@ struct Kernel {
     Vector3 point{};            ///< body coordinates
     Vector3 reference{};        ///< where it is at the end, m
     double largest_error = 0;   ///< m; more means that something else was measured
+    double tolerance = 1e-12;
 };
 
 /// The four kernels with a bound on their instructions.
 ///
-/// linear_element   lobatto(1), 1000 elements of 1 ms, centred pendulum: the cost of one element of two
-/// bodies centred_6        lobatto(6), 100 elements to 10 s, centred pendulum bricks_6         lobatto(6), h
-/// = 0.025 to 2 s, two bricks bricks_8         lobatto(8), likewise
+///     linear_element   lobatto(1), 1000 elements of 1 ms, centred pendulum: an element of two bodies
+///     centred_6        lobatto(6), 100 elements to 10 s, centred pendulum
+///     bricks_6         lobatto(6), h = 0.025 to 2 s, two bricks
+///     bricks_8         lobatto(8), likewise
 std::vector<Kernel> counted_kernels();
 
 /// Two bricks to 2 s with any method and number of elements.
 Kernel bricks_kernel(const std::string& name, const Method& method, int n_elements);
+
+/// Bricks of 1 m, of which the first hangs on the world: "balls" in a zigzag from rest, "hinges" likewise,
+/// each across the one before, whirling at 1 rad/s (both as in benchmarks/peers/problems.py), a flat "ring"
+/// from rest on balls.
+Model brick_chain(int n, const std::string& kind);
+
+/// lobatto(8) on elements of 10 ms, which take three steps at most: what a body and an element cost.
+Kernel chain_kernel(int n, const std::string& kind, int n_elements);
 
 Solution run(const Kernel& kernel);
 

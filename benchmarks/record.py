@@ -1,8 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Measures the times that documents state, and takes over what the scans have counted: record.py PROGRAM [SCANS]
+"""Measures the times that documents state, and takes over what the scans have counted: record.py PROGRAM [SCANS [PAPER]]
+       record.py --paper PAPER | --accuracies SCANS | --instructions OUTPUT | --run_time OUTPUT
 
 Writes benchmarks/recorded.json, with machine and date; tests/docs/figures.py holds README.md, docs/validation.md and docs/trust.md
-against it. SCANS: the folder in which scripts/scan left its data (build/scan); without it what was recorded of them stays.
+against it. SCANS: the folder in which scripts/scan left its data (build/scan), PAPER: that of scripts/paper (build/paper); without them what
+was recorded of them stays. With an option nothing else is taken over: --instructions reads what `scripts/instructions` and
+`scripts/instructions chains` have printed to one file, --run_time what benchmarks/paper has: elements and errors, which no other work changes.
 Times are the least of several runs of solve() alone, each on one core; of long ones, which other work on the machine interrupts, the
 processor's share. Standard library only.
 """
@@ -11,6 +14,7 @@ import datetime
 import json
 import os
 import pathlib
+import re
 import resource
 import statistics
 import subprocess
@@ -26,6 +30,7 @@ MOST = 100
 LONG = 0.3          # s
 COARSE = [("chain_with_spring", 10, 12), ("rocker_in_space", 14, 8)]   # degree, elements: see docs/trust.md
 BURSTS = "light_above_heavy"
+LEVELS = "fig09_action_integral"
 
 
 def bricks(method, elements):
@@ -100,9 +105,50 @@ def accuracies(folder):
             costs = [float(row[key]) for row in part if row["exit"] == "0"]
             tenths = statistics.quantiles(costs, n=10, method="inclusive")
             record[kind][key] = [round(x, 2) for x in (statistics.median(costs), tenths[-1], max(costs))]
+    rough = [row for row in rows if row["exit"] == "0" and row["problem"] == BURSTS]
+    smooth = [row for row in rows if row["exit"] == "0" and row["problem"] != BURSTS]
+    record["refused"] = {name: float(f"{value:.2g}") for name, value in (
+        ("largest", max(float(row["refused_share"]) for row in smooth)),
+        ("largest with bursts", max(float(row["refused_share"]) for row in rough)),
+        ("of all", sum(int(row["refused"]) for row in smooth) / sum(int(row["refused"]) + int(row["elements"]) for row in smooth)))}
+    record["second tries"] = sum(int(row["tries"]) > 1 for row in rows)
     record["above six"] = sum(row["exit"] == "0" and row["problem"] != BURSTS and float(row["work_in_all"]) > 6 for row in rows)
     record["bursts"] = sum(row["problem"] == BURSTS for row in rows)
     return record
+
+
+def paper(folder):
+    """What the experiments of the paper have judged, to five digits: experiment -> expectation -> number.
+    Of figure 9 the table of data.csv too: method -> h -> what is in its columns."""
+    record = {}
+    for file in sorted(folder.glob("*/verdict.json")):
+        verdict = json.loads(file.read_text(encoding="utf-8"))
+        if verdict["short"] or not verdict["passed"]:
+            sys.exit(f"{file}: short, or not as expected")
+        record[verdict["experiment"]] = {entry["name"]: float(f"{entry['seen']:.5g}") for entry in verdict["expectations"]
+                                         if isinstance(entry["seen"], (int, float)) and not isinstance(entry["seen"], bool)}
+        if verdict["experiment"] == LEVELS:
+            with file.with_name("data.csv").open(newline="", encoding="utf-8") as table:
+                for row in csv.DictReader(table):
+                    for column in ("inside", "starts", "ends", "steps"):
+                        record[LEVELS][f"{row['method']}, h = {float(row['h']):g}: {column}"] = float(f"{float(row[column]):.5g}")
+    return record or sys.exit(f"{folder}: no verdicts; scripts/paper makes them")
+
+
+def instructions(output):
+    """Thousands of instructions: kernel, or chain and bodies -> [counted, steps of an element, if it is a chain]."""
+    text = pathlib.Path(output).read_text(encoding="utf-8")
+    record = {name.strip(): [float(n) * (1e3 if unit == "M" else 1)]
+              for name, n, unit in re.findall(r"(?m)^(\S.*?)  +([\d.]+) ([kM]) +[\d.]+ [kM] +[\d.]+ +\d\S*$", text)}
+    chains = re.findall(r"(?m)^(\w+) +(\d+) +(\d+) +([\d.]+) k +[\d.]+ k +[\d.]+$", text)
+    record |= {f"{kind} {bodies}": [float(n), int(steps)] for kind, bodies, steps, n in chains}
+    return record if len(chains) > 10 and len(record) > len(chains) else sys.exit(f"{output}: kernels or chains are missing, or over")
+
+
+def run_time(output):
+    """Method -> elements or steps, error (P26)."""
+    rows = re.findall(r"(?m)^(\S.*?) {2,}(\d+) +(\S+e-\d+) +\S+e-\d+ +[\d.]+ +\d+$", pathlib.Path(output).read_text(encoding="utf-8"))
+    return {name: [int(n), float(error)] for name, n, error in rows} if len(rows) > 4 else sys.exit(f"{output}: not what benchmarks/paper prints")
 
 
 def machine(program):
@@ -113,7 +159,19 @@ def machine(program):
             "date": datetime.date.today().isoformat(), "version": version}
 
 
+def write(record):
+    RECORD.write_text(json.dumps(record, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
+    print(f"wrote {RECORD.relative_to(ROOT)}")
+
+
 def main():
+    if sys.argv[1].startswith("--"):
+        record, source = json.loads(RECORD.read_text(encoding="utf-8")), pathlib.Path(sys.argv[2])
+        if sys.argv[1] == "--accuracies":
+            record["scans"]["accuracies"] = accuracies(source)
+        else:
+            record[sys.argv[1][2:]] = {"--paper": paper, "--instructions": instructions, "--run_time": run_time}[sys.argv[1]](source)
+        return write(record)
     program = str(pathlib.Path(sys.argv[1]).resolve())
     record = json.loads(RECORD.read_text(encoding="utf-8")) if RECORD.exists() else {}
     record["machine"] = machine(program)
@@ -121,11 +179,12 @@ def main():
     if len(sys.argv) > 2:
         folder = pathlib.Path(sys.argv[2])
         record["scans"] = {"date": record["machine"]["date"], "meshes": meshes(folder), "accuracies": accuracies(folder)}
-    RECORD.write_text(json.dumps(record, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
-    print(f"wrote {RECORD.relative_to(ROOT)}")
+    if len(sys.argv) > 3:
+        record["paper"] = paper(pathlib.Path(sys.argv[3]))
+    return write(record)
 
 
 if __name__ == "__main__":
-    if len(sys.argv) not in (2, 3):
+    if len(sys.argv) not in (2, 3, 4):
         sys.exit(__doc__)
     main()

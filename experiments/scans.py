@@ -19,7 +19,7 @@ RUNS = (paper.CONVERGED, paper.SUSPECT, paper.NOT_CONVERGED)   # exit codes that
 
 def mechanism(name):
     """Text of a scenario: an example of the program, or one of mechanisms/."""
-    for folder in ("examples", "experiments/mechanisms"):
+    for folder in ("examples", "examples/benchmarks", "experiments/mechanisms"):
         path = paper.ROOT / folder / f"{name}.toml"
         if path.exists():
             return path.read_text(encoding="utf-8")

@@ -30,6 +30,11 @@ def real(x):
     return np.array(x, dtype=REAL)
 
 
+def radians(angle):
+    """Of a number, or of "90 deg" as the program reads it: in double precision."""
+    return float(angle.removesuffix(" deg")) * (np.pi / 180) if isinstance(angle, str) else angle
+
+
 # ---------------------------------------------------------------- polynomials on Chebyshev points of [0, 1]
 
 def tables_of_pieces(n):
@@ -129,7 +134,7 @@ class Body:
         self.inverse = solve(self.inertia[None], np.eye(3, dtype=REAL)[None])[0]
         self.centre = real(entry.get("center_of_mass", [0, 0, 0]))
         if "rotation_vector" in entry:
-            vector = real(entry["rotation_vector"])
+            vector = real([radians(angle) for angle in entry["rotation_vector"]])
             angle = np.sqrt(dot(vector, vector))
             self.q = np.concatenate([[np.cos(angle / 2)], vector / angle * np.sin(angle / 2)])
         else:

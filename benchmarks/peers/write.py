@@ -105,13 +105,18 @@ def target_rows(results):
                 yield [*row, word, sides, "met" if ratio <= target.ratio else "**missed**"]
 
 
-def size_table(sizes):
+def size_rows(sizes):
     rows = []
     for size in sizes:
         for which, title in (("solution", "solution alone"), ("program", "program, with estimate and file")):
             s = size[which]
             rows.append([f"{size['n']:,} {size['title']}", title, f"{digits(s['seconds'])} s", f"{s['memory']:.0f} MiB",
                          f"{s['time_ratio']:.2f}", f"{s['memory_ratio']:.2f}"])
+    return rows
+
+
+def size_table(sizes):
+    rows = size_rows(sizes)
     return table(["", "", "time", "peak memory", "time by n, over that of n/10", "memory, likewise"], rows)
 
 
@@ -232,6 +237,9 @@ def main():
     path = folder / "performance.md"
     path.write_text("\n".join(document(results, figures)), encoding="utf-8")
     print(f"wrote {path.relative_to(engines.ROOT)}")
+    if whole:   # tests/docs/figures.py holds the page against it
+        rows = ",\n ".join(json.dumps(row, ensure_ascii=False) for row in size_rows(results["sizes"]))
+        (engines.ROOT / "benchmarks/peers/sizes.json").write_text(f"[\n {rows}\n]\n", encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -124,6 +124,73 @@ TEST(SingularPositions, EndsThatAreAskedForStay)
     }
 }
 
+/// An output time at the singular position: positions as accurate as asked for, reactions not stated, and the
+/// motion goes on.
+TEST(SingularPositions, OutputTimesThereAreInsideOfElements)
+{
+    for (const Parallelograms& p : {steady(), steady(2), steady(3)}) {
+        const Model model = p.model();
+        for (const double accuracy : {1e-3, 1e-6, 1e-8, 1e-10}) {
+            SCOPED_TRACE(testing::Message() << p.n << " loops to " << accuracy);
+            const Span span{0, 1.5, accuracy, {0.5, 1.0, 1.25}};
+            const Solution s = solve(model, {model.start()}, span, Lobatto{0});
+            ASSERT_TRUE(s.report.converged()) << s.report.message;
+            EXPECT_TRUE(s.verdict.reasons.empty());
+            EXPECT_EQ(element_end_at(s.motion.mesh, 1.0), -1);
+            for (const double t : {0.5, 1.25}) EXPECT_GE(element_end_at(s.motion.mesh, t), 0);
+            EXPECT_GT(s.report.smallest_pivot, 1e-5);
+            const State flat = s.motion.at(1.0);
+            double error = 0;
+            for (int i = 0; i <= p.n; ++i)
+                error = std::max(error, norm(flat.X[i] * point({1, 0, 0}) - Vector3{i + 1.0, 0, 0}));
+            EXPECT_LT(error / model.length(), accuracy);
+            const int e = s.motion.mesh.element_at(1.0);
+            EXPECT_LT(error / model.length(), 3 * s.estimate.error(e) + 1e-14);
+            EXPECT_LE(s.estimate.largest, accuracy);
+            EXPECT_LT(distance(p, s.motion, {1.5 * p.rate, p.rate}), accuracy);
+            for (const JointSample& joint : sample_joints(model, s.motion, 1.0)) {
+                EXPECT_FALSE(joint.is_bounded) << "all joints are in the loops";
+                EXPECT_TRUE(std::isnan(joint.left.force[0]) && std::isnan(joint.right.torque[2]));
+            }
+            // a negative control: beside it they are numbers
+            for (const double t : {0.95, 1.02})
+                for (const JointSample& joint : sample_joints(model, s.motion, t)) {
+                    EXPECT_TRUE(joint.is_bounded);
+                    EXPECT_LT(norm(joint.left.force), 20) << t;
+                }
+        }
+    }
+}
+
+/// A joint beside the loops keeps its reaction where these lose rank.
+TEST(SingularPositions, OnlyReactionsOfTheLoopAreNotStated)
+{
+    const Parallelograms p = steady();
+    Model model = p.model();
+    const int bob = model.add_body(point_mass("bob", 1, {-3, 0, 0}));
+    JointFrame frame;
+    frame.point_first = {-2, 0, 0};
+    const int beside = model.add_joint(rod("rod", world, bob, frame, 1));
+    const Solution s = solve(model, {model.start()}, Span{0, 1.5, 1e-8, {1.0}}, Lobatto{0});
+    ASSERT_TRUE(s.report.converged()) << s.report.message;
+    const std::vector<JointSample> joints = sample_joints(model, s.motion, 1.0);
+    for (int j = 0; j < static_cast<int>(joints.size()); ++j)
+        EXPECT_EQ(joints[j].is_bounded, j == beside) << j;
+}
+
+/// Where a load jumps at the singular position an element must end: no result is called good.
+TEST(SingularPositions, AJumpThereIsToldByName)
+{
+    const Parallelograms p = steady();
+    Model model = p.model();
+    model.add_load(point_force("kick", 0, {1, 0, 0}, {0, window(0.5, 1.0, 1.2), 0}, Frame::inertial));
+    const Solution s = solve(model, {model.start()}, Span{0, 1.5, 1e-8, {1.0}}, Lobatto{0});
+    EXPECT_FALSE(s.report.converged() && s.verdict.reasons.empty());
+    EXPECT_TRUE(s.report.message.find("the joints lose rank at t = 1 s") != std::string::npos ||
+                s.report.status == SolveStatus::inaccurate)
+        << s.report.message;
+}
+
 /// The printed digits of the benchmark, and the same for more links, and with bars that bear force.
 TEST(SingularPositions, ChainsStayParallelForTenSeconds)
 {

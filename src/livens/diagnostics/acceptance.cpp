@@ -136,8 +136,9 @@ Verdict judge(const Model& model, const Motion& motion, const SolveReport& repor
     if (report.smallest_pivot < doubtful_pivot)
         v.remarks.push_back("the constraints came close to losing rank (smallest pivot " +
                             to_text(report.smallest_pivot, 3) +
-                            "): the mechanism passes near a singular position; an output time or a jump "
-                            "that falls on it keeps an element end there");
+                            "): the mechanism passes near a singular position; an output time, a jump or "
+                            "the end of time that falls on it keeps an element end there. With accuracy "
+                            "instead of elements an output time does not");
     const double lost = motion.damps() ? v.balance.relative_energy_loss() : 0;
     if (lost > acceptable_drift)
         v.remarks.push_back("the method has damped " + to_text(lost, 3) +

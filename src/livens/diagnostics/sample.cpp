@@ -220,6 +220,32 @@ std::vector<JointSample> reactions_beside(const Model& model, const Motion& moti
     return samples;
 }
 
+/// Marks joints without a reaction inside an element: where rows lose rank that are independent at its start,
+/// those that take part, without which fewer are lost.
+void forget_unbounded(const Model& model, const Motion& motion, const State& state,
+                      std::vector<JointSample>& samples)
+{
+    constexpr double lost = 1e-4;   // docs/theory.md, "Singular positions"
+    const ActingModel acting = acting_at(model, state.t);
+    const State start = motion.at_end(motion.mesh.element_at(state.t));
+    const std::vector<int> rows =
+        row_rank(frozen(acting.model, {start.t}), start.X, all_rows(acting.model)).independent;
+    const Model now = frozen(acting.model, {state.t});
+    const auto n_lost = [&](const State& at, const std::vector<int>& some) {
+        return row_rank(now, at.X, some, lost).dependent.size();
+    };
+    const std::size_t n = n_lost(state, rows);
+    if (n <= n_lost(start, rows)) return;
+    for (int j = 0; j < static_cast<int>(acting.model.joints().size()); ++j) {
+        std::vector<int> others = rows;
+        std::erase_if(others, [&](int row) { return acting.model.row_joint(row) == j; });
+        if (n_lost(state, others) == n) continue;
+        JointSample& sample = samples[acting.joints[j]];
+        sample.is_bounded = false;
+        sample.left = sample.right = unknown;
+    }
+}
+
 /// Inside the element before or after an element end, or around another instant.
 double beside(const Motion& motion, double t, int end, Side side)
 {
@@ -261,6 +287,7 @@ std::vector<JointSample> sample_joints(const Model& model, const Motion& motion,
             samples[j].is_bounded = samples[j].is_bounded && after[j].is_bounded;
         }
     }
+    if (end < 0) forget_unbounded(model, motion, state, samples);
     for (JointSample& sample : samples) sample.is_acceleration_level = is_acceleration_level;
     return samples;
 }

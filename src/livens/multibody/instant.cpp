@@ -63,7 +63,8 @@ InstantSystem::InstantSystem(const Tables& tables, bool sparse) : tables_(tables
     for (auto* v : {&V_, &centripetal_, &raw_}) v->assign(12 * tables.bodies.size(), 0.0);
 }
 
-bool InstantSystem::prepare(InstantState& state, const std::vector<int>& rows, ConstraintBasis* known)
+bool InstantSystem::prepare(InstantState& state, const std::vector<int>& rows, ConstraintBasis* known,
+                            const NearFactor& near)
 {
     state.rows_chosen = state.has_basis = false;
     if (known != nullptr && tables_.rank == tables_.n_rows()) {
@@ -77,7 +78,7 @@ bool InstantSystem::prepare(InstantState& state, const std::vector<int>& rows, C
     } else {
         tables_.map_twists(state.X.data(), state.maps.data());
     }
-    hold(state, rows);
+    hold(state, rows, near);
     if (tables_.rank < tables_.n_rows() && !rows_are_fit(state)) {
         give_room(state.basis);
         state.basis.choose(tables_, {state.t}, state.X.data(), state.maps.data());
@@ -94,14 +95,14 @@ void InstantSystem::give_room(ConstraintBasis& basis) const
 }
 
 /// What these rows hold.
-void InstantSystem::hold(InstantState& state, const std::vector<int>& rows)
+void InstantSystem::hold(InstantState& state, const std::vector<int>& rows, const NearFactor& near)
 {
     state.rows = rows;
     if (is_sparse_) {
         if (pattern_ == nullptr || pattern_->chosen() != rows)
             pattern_ = std::make_shared<const RowPattern>(tables_, rows);
         state.joints.use(pattern_);
-        state.smallest_pivot = state.joints.prepare(tables_, state.X.data());
+        state.smallest_pivot = state.joints.prepare(tables_, state.X.data(), near);
         state.by_joints = state.smallest_pivot > JointFactor::well_held;
         if (state.by_joints) return;
     }

@@ -52,7 +52,8 @@ public:
     /// 1e-6; else rows are chosen again among all (`rows_chosen`). False if a free motion carries no inertia.
     /// `known` is exchanged with the state's basis where it serves: built for this X with all rows of the
     /// model, as are then state.maps.
-    bool prepare(InstantState& state, const std::vector<int>& rows, ConstraintBasis* known = nullptr);
+    bool prepare(InstantState& state, const std::vector<int>& rows, ConstraintBasis* known = nullptr,
+                 const NearFactor& near = {});
     /// The basis of a prepared state, where there is none.
     void add_basis(InstantState& state) const;
     /// velocity and momentum <- the parts of a given twist momentum N^T P that the constraints and their
@@ -74,7 +75,7 @@ public:
 
 private:
     void give_room(ConstraintBasis& basis) const;
-    void hold(InstantState& state, const std::vector<int>& rows);
+    void hold(InstantState& state, const std::vector<int>& rows, const NearFactor& near = {});
     bool rows_are_fit(const InstantState& state) const;
     bool prepare_singular(const InstantState& state);
     void apply_mass(const InstantState& state, const double* y, double* out);

@@ -34,6 +34,7 @@ void LaneStore::resize(const RowPattern& pattern, int width)
     const std::pair<double**, int> arrays[] = {{&v.numbers, pattern.n_numbers()},
                                                {&v.increments, pattern.n_numbers()},
                                                {&v.place, 7 * p.n_bodies},
+                                               {&v.last_place, 7 * p.n_bodies},
                                                {&v.gradients, p.n_entries},
                                                {&v.factor, pattern.n_factor()},
                                                {&v.violations, p.n_rows},
@@ -45,17 +46,18 @@ void LaneStore::resize(const RowPattern& pattern, int width)
                                                {&v.loads, X},
                                                {&v.load_X, X},
                                                {&v.load_V, X}};
-    const auto n_lines = [width](int size) { return static_cast<std::size_t>((size * width + 7) / 8); };
+    const auto room = [width](int size) { return static_cast<std::size_t>((size * width + 7) / 8 * 8); };
     std::size_t n = 0;
-    for (const auto& [array, size] : arrays) n += n_lines(size);
-    lines_.assign(n, Line{});
+    for (const auto& [array, size] : arrays) n += room(size);
+    numbers_.assign(n, 0.0);
     n = 0;
     for (const auto& [array, size] : arrays) {
-        *array = reinterpret_cast<double*>(lines_.data()) + 8 * n;
-        n += n_lines(size);
+        *array = numbers_.data() + n;
+        n += room(size);
     }
     for (int b = 0; b < p.n_bodies; ++b)
-        for (int l = 0; l < width; ++l) v.place[(7 * b + 3) * width + l] = 1;   // no turn
+        for (int l = 0; l < width; ++l)   // no turn
+            v.place[(7 * b + 3) * width + l] = v.last_place[(7 * b + 3) * width + l] = 1;
     for (int e = 0; e < p.n_entries; ++e)                                       // those without terms stay
         for (int l = 0; l < width; ++l) v.gradients[e * width + l] = p.entries.constants[e];
 }
@@ -74,7 +76,7 @@ void JointFactor::use(std::shared_ptr<const RowPattern> pattern)
     work_.assign(static_cast<std::size_t>(pattern_->n_numbers()), 0.0);
 }
 
-double JointFactor::prepare(const Tables& tables, const double* X)
+double JointFactor::prepare(const Tables& tables, const double* X, const NearFactor& near)
 {
     constexpr double rounding = 1e-16;   // of Phi: nothing to correct
     const lanes::Pattern& p = pattern_->view();
@@ -86,7 +88,12 @@ double JointFactor::prepare(const Tables& tables, const double* X)
     for (int r = 0; r < p.n_rows; ++r)
         if (std::abs(v.violations[r]) < rounding * tables.rows[pattern_->rows()[r]].row->scale)
             v.violations[r] = 0;
-    lanes::factorise<1>(p, v);
+    if (near.pattern == pattern_.get()) {
+        for (int i = 0; i < pattern_->n_factor(); ++i) v.factor[i] = near.values->factor[i * near.width];
+        v.pivots[0] = near.values->pivots[0];
+    } else {
+        lanes::factorise<1>(p, v);
+    }
     const double pivot = std::sqrt(v.pivots[0]);
     n_passes_ = pivot > 1e-3 ? 2 : 4;
     return pivot;

@@ -4,8 +4,10 @@
 #pragma once
 
 #include <memory>
+#include <utility>
 #include <vector>
 
+#include "livens/multibody/aligned_doubles.h"
 #include "livens/multibody/row_pattern.h"
 
 namespace livens {
@@ -15,13 +17,19 @@ class LaneStore {
 public:
     void resize(const RowPattern& pattern, int width);
     const lanes::Values& values() const { return values_; }
+    void swap_places() { std::swap(values_.place, values_.last_place); }
 
 private:
-    struct alignas(64) Line {
-        double x[8];
-    };
-    std::vector<Line> lines_;
+    AlignedDoubles numbers_;
     lanes::Values values_{};
+};
+
+/// The factor of lane 0 of W lanes, made at a configuration so near that a pass of a projection with it
+/// leaves no more than 1e-8 of what it was to take off.
+struct NearFactor {
+    const RowPattern* pattern = nullptr;
+    const lanes::Values* values = nullptr;
+    int width = 0;
 };
 
 /// The gradients G by scaled twists (Tables) and a Cholesky factor of G G^T.
@@ -43,8 +51,9 @@ public:
     void use(std::shared_ptr<const RowPattern> pattern);
     const std::shared_ptr<const RowPattern>& pattern() const { return pattern_; }
     /// Gradients and factor at X. Returns the smallest pivot, |R_kk| of a QR of the scaled rows in the order
-    /// of their elimination; nan if there is none.
-    double prepare(const Tables& tables, const double* X);
+    /// of their elimination; nan if there is none. A `near` factor with the same pattern does instead of a
+    /// new one.
+    double prepare(const Tables& tables, const double* X, const NearFactor& near = {});
     /// y <- the part of y that fits G y = rates (null: 0), and mu with y before = y + G^T mu, in the order of
     /// the pattern. Projected twice, where the smallest pivot is below 1e-3 four times: what is left is
     /// small.

@@ -3,6 +3,8 @@
 // names are the source's own: no two sources may share code through the linker.
 #pragma once
 
+#include <cstdint>
+
 #ifndef LIVENS_REGISTER
 #define LIVENS_REGISTER 2   // doubles in a register
 #endif
@@ -111,8 +113,14 @@ template <int W>
 LIVENS_INLINE void raise_to_size(Lanes<W>& a, const Lanes<W>& b)
 {
     for (int i = 0; i < a.count; ++i) {
-        a.part[i] = a.part[i] < b.part[i] ? b.part[i] : a.part[i];
-        a.part[i] = a.part[i] < -b.part[i] ? -b.part[i] : a.part[i];
+        typename Lanes<W>::Part size;
+        if constexpr (Lanes<W>::size == 1) {
+            size = __builtin_fabs(b.part[i]);
+        } else {
+            typedef long long Bits __attribute__((vector_size(8 * Lanes<W>::size)));
+            size = (typename Lanes<W>::Part)((Bits)b.part[i] & 0x7fffffffffffffffLL);
+        }
+        a.part[i] = a.part[i] < size ? size : a.part[i];
     }
 }
 
@@ -134,14 +142,19 @@ double sum(const Lanes<W>& v)
     return s;
 }
 
-/// Lane 0 becomes that of the start.
+/// Lane 0 becomes that of the start, behind which there must be three numbers more.
 template <int W>
 LIVENS_INLINE Lanes<W> with_start(Lanes<W> v, const double* start)
 {
-    if constexpr (Lanes<W>::size == 1)
+    if constexpr (Lanes<W>::size == 1) {
         v.part[0] = *start;
-    else
+    } else if constexpr (Lanes<W>::size == 4) {   // in one instruction
+        typename Lanes<W>::Part from;
+        __builtin_memcpy(&from, start, sizeof from);
+        v.part[0] = __builtin_shufflevector(v.part[0], from, 4, 1, 2, 3);
+    } else {
         v.part[0][0] = *start;
+    }
     return v;
 }
 
@@ -162,20 +175,34 @@ struct At {
     const double *nodes, *start;
     LIVENS_INLINE Lanes<W> operator[](int i) const
     {
-        const Lanes<W> v = load<W>(nodes + i * W);
+        const Lanes<W> v = load<W>(nodes + static_cast<std::int64_t>(i) * W);
         if constexpr (rows) return with_start(v, start + i);
         return v;
     }
     LIVENS_INLINE Three<W> column(int i) const { return {{(*this)[i], (*this)[i + 1], (*this)[i + 2]}}; }
 };
 
-/// sum_l x_l m_l over lanes l, m an array of lanes.
 template <int W>
-LIVENS_INLINE Lanes<W> times(const double* x, const double* m)
+LIVENS_INLINE Lanes<W> times_here(const double* x, const double* m)
 {
     Lanes<W> s = x[0] * load<W>(m);
     for (int l = 1; l < W; ++l) s += x[l] * load<W>(m + l * W);
     return s;
+}
+template <int W>
+__attribute__((noinline)) Lanes<W> times_apart(const double* x, const double* m)
+{
+    return times_here<W>(x, m);
+}
+
+/// sum_l x_l m_l over lanes l, m an array of lanes. Many lanes are many instructions: in one place.
+template <int W>
+LIVENS_INLINE Lanes<W> times(const double* x, const double* m)
+{
+    if constexpr (W > 8)
+        return times_apart<W>(x, m);
+    else
+        return times_here<W>(x, m);
 }
 
 }   // namespace

@@ -72,6 +72,7 @@ struct Values {
     double* numbers;      ///< 12 n_bodies + n_products
     double* increments;   ///< of the same since the start
     double* place;        ///< 7 a body: displacement of the centre, quaternion of the turn in body axes
+    double* last_place;   ///< likewise, of the element before
     double* gradients;    ///< entries of G
     double* factor;
     double* violations;   ///< n_rows

@@ -53,7 +53,7 @@ Roots undamped_roots(const Linearisation& linear)
 /// Directions that nothing restores: K q = 0.
 MatrixXd idle_directions(const Linearisation& linear)
 {
-    const Eigen::BDCSVD<MatrixXd> svd(square(linear, linear.K), Eigen::ComputeFullV);
+    const Eigen::JacobiSVD<MatrixXd> svd(square(linear, linear.K), Eigen::ComputeFullV);
     const auto n_idle = (svd.singularValues().array() <= linear.rounding).count();
     return svd.matrixV().rightCols(n_idle);
 }

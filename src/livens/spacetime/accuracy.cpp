@@ -39,12 +39,13 @@ const int& degree_of(const Method& method)
 }
 int& degree_of(Method& method) { return const_cast<int&>(degree_of(std::as_const(method))); }
 
-/// What the iteration leaves in an element grows like rounding does, and would be the larger of the two;
-/// elements of the high degree are few.
-SolveOptions with_tolerance_for(double accuracy, SolveOptions options)
+/// What the iteration leaves in an element grows like rounding does, and would be the larger of the two.
+/// Elements of the high degree are few, so that it counts only where a try was not enough: or elements would
+/// be shortened in vain.
+SolveOptions with_tolerance_for(double accuracy, int tries, SolveOptions options)
 {
     constexpr double fine = 1e-8, all_digits = 1e-15;
-    if (accuracy < fine && accuracy >= high_accuracy)
+    if (accuracy < fine && (tries > 1 || accuracy >= high_accuracy))
         options.tolerance = std::min(options.tolerance, all_digits);
     return options;
 }
@@ -55,6 +56,16 @@ std::vector<double> stops_of(const Model& model, const Span& span)
     std::vector<double> required = model.load_breaks();
     required.insert(required.end(), span.output.begin(), span.output.end());
     return make_time_mesh(span.start, span.end, 1, required).ends;
+}
+
+/// Of these, where a state is wanted and nothing jumps.
+std::vector<double> samples_of(const Model& model, const Span& span)
+{
+    std::vector<double> samples = span.output;
+    std::ranges::sort(samples);
+    const std::vector<double> breaks = model.load_breaks();
+    std::erase_if(samples, [&](double t) { return std::ranges::binary_search(breaks, t); });
+    return samples;
 }
 
 /// One march over the time.
@@ -69,8 +80,9 @@ class ToAccuracy {
 public:
     ToAccuracy(const Model& model, const Problem& problem, const Span& span, const Method& method,
                const SolveOptions& options, const Doubt& doubt)
-        : model_(model), problem_(problem), span_(span), options_(with_tolerance_for(span.accuracy, options)),
-          doubt_(doubt), ends_(close_ends(model, problem.conditions, span.start, span.end, options.initial)),
+        : model_(model), problem_(problem), span_(span),
+          options_(with_tolerance_for(span.accuracy, 1, options)), doubt_(doubt),
+          ends_(close_ends(model, problem.conditions, span.start, span.end, options.initial)),
           tables_(model, ends_.independent), stops_(stops_of(model, span)), method_(method),
           is_free_(degree_of(method) == 0), tolerance_(first_share * span.accuracy),
           length_(std::min(0.01 * (span.end - span.start), time_of_motion(model, ends_.start)))
@@ -111,6 +123,7 @@ public:
             // a degree that was too high for the stops may not be too high for shorter elements
             if (!is_free_ && highest_degree_ > 0) degree_of(method_) = fitting_degree(*one.pace);
             length_ = std::min(length_, one.pace->mean_length(degree_of(method_), tolerance_));
+            options_ = with_tolerance_for(span_.accuracy, tries + 1, std::move(options_));
         }
     }
 
@@ -124,6 +137,7 @@ private:
         Second second(model_, problem_, method_, options_, *window.so_far());
         const ElementRule rule = rule_of(method_);
         Pace pace(rule.points, rule.degree, tolerance_, length_, stops_);
+        pace.sample_at(samples_of(model_, span_), span_.accuracy);
         WindowOptions w;
         w.tolerance = options_.tolerance;
         w.by_newton = options_.by_newton;
@@ -157,8 +171,10 @@ private:
         finish(one, second, window.so_far()->n_elements());
         one.solution.motion = window.take_motion();
         one.solution.method = method_;
-        if (report.converged() && !one.is_broken_off)
+        if (report.converged() && !one.is_broken_off) {
             add_lost_vibrations(model_, one.solution.motion, one.solution.estimate);
+            add_inside(model_, one.solution.motion, one.pace->left(), one.solution.estimate);
+        }
         return one;
     }
 
@@ -248,7 +264,7 @@ private:
     const Model& model_;
     const Problem& problem_;
     const Span& span_;
-    const SolveOptions options_;
+    SolveOptions options_;
     const Doubt& doubt_;
     Ends ends_;
     Tables tables_;

@@ -180,6 +180,24 @@ void add_lost_vibrations(const Model& model, const Motion& motion, ErrorEstimate
     found.find_largest(motion.mesh);
 }
 
+void add_inside(const Model& model, const Motion& motion, const std::vector<double>& instants,
+                ErrorEstimate& found)
+{
+    if (instants.empty() || found.empty()) return;
+    const std::vector<double> jumps = velocity_jumps(model, motion);
+    const auto n = static_cast<std::size_t>(found.n_bodies);
+    for (const double t : instants) {
+        const int e = motion.mesh.element_at(t);
+        for (std::size_t i = static_cast<std::size_t>(e) * n; i < (static_cast<std::size_t>(e) + 2) * n;
+             ++i) {
+            raise_to(found.position[i], jumps[e]);
+            if (!model.bodies()[i % n].is_point) raise_to(found.orientation[i], jumps[e]);
+            raise_to(found.velocity[i], jumps[e] * found.length / motion.mesh.length(e));
+        }
+    }
+    found.find_largest(motion.mesh);
+}
+
 double grown_rounding(std::span<const double> growth)
 {
     constexpr double rounding = 0.5 * std::numeric_limits<double>::epsilon();

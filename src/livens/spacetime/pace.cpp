@@ -16,6 +16,7 @@ namespace {
 
 // Measured on 436 runs of twelve problems (docs/theory.md, "To an accuracy").
 constexpr double safety = 0.8, shrink = 0.3, grow = 2.5;
+constexpr double steepest = 0.5;   // of what one length is foretold to be shorter than the one before
 /// After an element that saw nothing of the motion: of its length, and by how much this regains from element
 /// to element, the faster the longer all goes well.
 constexpr double below_blind = 0.8, regain = 1.01;
@@ -57,10 +58,41 @@ double Pace::next_end(double t) const
 
 bool Pace::is_stop(double t) const { return std::binary_search(stops_.begin(), stops_.end(), t); }
 
+void Pace::sample_at(std::vector<double> stops, double error) { sampled_ = {std::move(stops), error}; }
+
+bool Pace::may_leave(double stop) const
+{
+    return is_stop(stop) && stop != stops_.front() && stop != stops_.back() &&
+           std::ranges::binary_search(sampled_.first, stop);
+}
+
+void Pace::leave(double stop)
+{
+    if (!may_leave(stop)) return;
+    stops_.erase(std::ranges::lower_bound(stops_, stop));
+    left_.push_back(stop);
+}
+
+double Pace::largest_jump(double start, double end) const
+{
+    const auto inside = std::ranges::upper_bound(left_, start);
+    const bool is_sampled = inside != left_.end() && *inside < end;
+    return is_sampled ? std::min(largest_jump_, sampled_.second) : largest_jump_;
+}
+
 double Pace::suggestion(double length, double jump) const
 {
     const double error = local_error(points_, degree_, jump);
     return length * safety * power(tolerance_ / error, 1 / order(points_, degree_));
+}
+
+/// By how much the next scale will be smaller than this one, if scales go on as they do. The smaller of the
+/// two before counts, since jumps that pass through zero make single scales large.
+double Pace::trend_to(double scale)
+{
+    const double before = std::min(scales_[0], scales_[1]);
+    scales_[0] = std::exchange(scales_[1], scale);
+    return std::clamp(scale / before, steepest, 1.0);
 }
 
 void Pace::accepted(double length, double jump, bool is_slow)
@@ -70,8 +102,11 @@ void Pace::accepted(double length, double jump, bool is_slow)
     const bool is_rounding = jump < 100 * least_jump;
     regained_ *= regain;
     blind_length_ *= regained_;
-    length_ = is_rounding ? most : std::clamp(suggestion(length, jump), shrink * length, most);
+    const double trend = is_rounding ? 1 : trend_to(length * power(jump, -1.0 / (degree_ + 1)));
+    length_ = is_rounding ? most : std::clamp(trend * suggestion(length, jump), shrink * length, most);
     length_ = std::min(length_, std::max(blind_length_, length));
+    last_refused_.first -= length;
+    if (last_refused_.first > 1e-3 * length) length_ = std::min(length_, last_refused_.second);
     if (is_rounding && tells_length_) return;
     if (!is_rounding && !tells_length_) sum_of_scales_ = n_accepted_ = 0;
     tells_length_ = !is_rounding;
@@ -79,14 +114,19 @@ void Pace::accepted(double length, double jump, bool is_slow)
     ++n_accepted_;
 }
 
-bool Pace::refused(double length, double jump)
+bool Pace::refused(double length, double jump, double most)
 {
+    if (most == 0) most = largest_jump_;
     const bool is_lie = !(jump <= acceptable_velocity_jump);
     if (is_lie) {
         blind_length_ = below_blind * length;
         regained_ = 1;
     }
-    length_ = is_lie ? 0.5 * length : std::clamp(suggestion(length, jump), shrink * length, 0.9 * length);
+    const double whole =
+        std::min(suggestion(length, jump), 0.9 * length * power(most / jump, 1.0 / (degree_ + 1)));
+    length_ = is_lie ? 0.5 * length : std::clamp(whole, shrink * length, 0.9 * length);
+    last_refused_.first = length;
+    last_refused_.second = length_;
     return length_ > shortest * (stops_.back() - stops_.front());
 }
 

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "livens/time/basis.h"
@@ -24,13 +25,25 @@ public:
     double next_end(double t) const;
     /// Beyond, an element is refused: because it loses too much, or because it has not seen the motion.
     double largest_jump() const { return largest_jump_; }
+    /// Of an element between two instants: less where a stop that was left lies inside, for a state is wanted
+    /// there that is as accurate as those at element ends.
+    double largest_jump(double start, double end) const;
+    /// Stops where a state is wanted and nothing else, ascending, and the error that it may have: elements
+    /// may end elsewhere.
+    void sample_at(std::vector<double> stops, double error);
+    /// Not start and end.
+    bool may_leave(double stop) const;
+    /// No element end must be at this stop any more, if it may be left.
+    void leave(double stop);
+    const std::vector<double>& left() const { return left_; }
     /// `is_slow`: Newton's iteration took many steps, so that nothing is gained by longer elements.
     void accepted(double length, double jump, bool is_slow);
     /// The next element is as long as this, if no stop is nearer.
     void shorten(double length) { length_ = length; }
     bool is_stop(double t) const;
     /// Whether shorter elements may help; if not they vanish.
-    bool refused(double length, double jump);
+    /// `most`: the jump it might have had; 0: largest_jump().
+    bool refused(double length, double jump, double most = 0);
 
     double end() const { return stops_.back(); }
     /// Length that the motion would have allowed up to here without any stops, and that of elements of
@@ -42,12 +55,18 @@ public:
 
 private:
     double suggestion(double length, double jump) const;
+    double trend_to(double scale);
 
     Points points_;
     int degree_;
     double tolerance_, length_, largest_jump_;
     double blind_length_ = std::numeric_limits<double>::infinity(), regained_ = 1;
-    std::vector<double> stops_;
+    std::vector<double> stops_, left_;                 // ascending
+    std::pair<std::vector<double>, double> sampled_;   // stops that may be left, error
+    // Of the last element that was refused: what is not solved yet, and how long elements may be in it.
+    std::pair<double, double> last_refused_{0, 0};
+    // h J^(-1 / (p + 1)) of the last two elements, at which they would see nothing; infinite: none.
+    double scales_[2] = {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
     double sum_of_scales_ = 0;   // of log(h J^(-1 / (p + 1))): lengths at which elements see nothing
     int n_accepted_ = 0;
     bool tells_length_ = false;   // by some jump above rounding; else a sum of lower bounds

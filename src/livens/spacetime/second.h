@@ -44,6 +44,11 @@ private:
 /// for lobatto.  (docs/theory.md, "What radau takes")
 void add_lost_vibrations(const Model& model, const Motion& motion, ErrorEstimate& found);
 
+/// States that are wanted inside of elements, since the joints lose rank there, are those of polynomials:
+/// their elements' velocity jumps bound how far these are off.
+void add_inside(const Model& model, const Motion& motion, const std::vector<double>& instants,
+                ErrorEstimate& found);
+
 /// What events add to errors, and no second solution tells: how far joints that begin miss the motion, which
 /// both solutions are moved by; and vibrations that elements do not resolve, whose phase, where a joint lets
 /// go, becomes a velocity that goes on. Of lobatto, its speed is at most the velocity jump of such elements;

@@ -80,6 +80,9 @@ public:
     /// between nodes beyond `trust`), or whose end is no state to go on from (the report says why). What was
     /// refused for its rank may be closed all the same, without asking for that.
     virtual Closed close(const Trust& trust, SolveReport& report) = 0;
+    /// Where the only element of the open window, as iterations left it, is too near to a singular position:
+    /// at one Newton's iteration converges by chance.
+    virtual RankLoss rank_loss() const { return RankLoss::none; }
     /// The mesh has one element more: `element`, which is not closed, was divided in two.
     virtual void divided(int) {}
     /// X of all bodies at an end of an element of the open window.

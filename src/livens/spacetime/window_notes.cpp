@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "livens/spacetime/detail/window_notes.h"
 
+#include <utility>
+
 #include "livens/base/text.h"
 
 namespace livens {
@@ -14,6 +16,50 @@ constexpr double finest_tolerance = 1e-15;
 }   // namespace
 
 std::string count(int n, const char* what) { return std::to_string(n) + " " + what + (n == 1 ? "" : "s"); }
+
+std::string window_at(const TimeMesh& mesh, int first, int last)
+{
+    const std::string name = last - first == 1 ? "element " + std::to_string(first)
+                                               : "the window of elements " + std::to_string(first) + " to " +
+                                                     std::to_string(last - 1);
+    return name + " (t = " + to_text(mesh.ends[first], 6) + " to " + to_text(mesh.ends[last], 6) + " s)";
+}
+
+std::string of_failure(const NewtonReport& outcome, int max_iterations, const std::string& window,
+                       const Place& worst, std::string advice)
+{
+    std::string what = "Newton's iteration found no way on after " + count(outcome.iterations, "iteration");
+    std::string fitting = "more and shorter elements, or a lower degree";
+    if (outcome.iterations == 0) what = "Newton's iteration found no way on from any guess";
+    if (outcome.reached_limit)   // of one attempt; there may have been several
+        what =
+            "Newton's iteration did not converge in " + count(max_iterations, "iteration") + ", the limit,";
+    if (outcome.status == SolveStatus::singular) {
+        what = "the tangent is singular";
+        fitting = "the mechanism may pass a singular position; shift the element ends or use more elements";
+    } else if (outcome.status == SolveStatus::not_finite) {
+        what = worst.bad_load.empty() ? "a number became infinite or undefined" : worst.bad_load;
+        fitting = "look at the loads near that time; use more elements";
+    }
+    if (advice.empty()) advice = std::move(fitting);
+    const std::string where =
+        worst.name.empty() ? "" : "; worst: " + worst.name + " near t = " + to_text(worst.t, 6) + " s";
+    return what + " in " + window + where + "; try: " + advice;
+}
+
+std::string of_vanishing(double t)
+{
+    return "the elements vanish near t = " + to_text(t, 6) +
+           " s: however short they are, each loses more than it may; try: a larger error in accuracy, or "
+           "look for a load that jumps there";
+}
+
+std::string of_singular_end(double t)
+{
+    return "the joints lose rank at t = " + to_text(t, 6) +
+           " s, where an element must end, for time does or a load jumps: velocities and reactions are not "
+           "determined there; try: that instant a little earlier or later";
+}
 
 void add_notes(SolveReport& report, const WindowCounts& counts)
 {

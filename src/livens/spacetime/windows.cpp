@@ -48,7 +48,8 @@ public:
         time_ = options_.direction > 0 ? mesh_.start() : mesh_.end();
         options_.pace != nullptr ? run_at_pace(*options_.pace) : run_mesh();
         window_.describe(report_);
-        add_notes(report_, {options_.tolerance, rounded_, splits_});
+        counts_.tolerance = options_.pace != nullptr ? 1 : options_.tolerance;
+        add_notes(report_, counts_);
     }
 
 private:
@@ -71,16 +72,21 @@ private:
     void run_at_pace(Pace& pace)
     {
         while (time_ < pace.end()) {
-            const double start = time_, length = pace.next_end(start) - start;
-            mesh_.ends.push_back(pace.next_end(start));
+            const double start = time_, end = pace.next_end(start), length = end - start;
+            const double most = pace.largest_jump(start, end);
+            mesh_.ends.push_back(end);
             const int e = mesh_.n_elements() - 1;
             if (!window_.open(e, e + 1, report_)) return void(set_failed(e, e + 1));
             const NewtonReport outcome = attempt(e, e + 1);
             Closed closed{0, outcome.status != SolveStatus::converged, unseen};
+            const bool end_may_move = !pace.is_stop(end) || pace.may_leave(end);
             if (!closed.is_refused)
-                closed = close({pace.largest_jump(), true, true}, !pace.is_stop(mesh_.ends.back()), true);
+                closed = close({most, true, true}, end_may_move, true);
+            else if (window_.rank_loss() == RankLoss::at_end)
+                closed.loss = loss_of_failed(end, end_may_move);
             if (closed.loss != RankLoss::none) {
-                count_shift(mesh_.ends.back());
+                count_shift(end);
+                if (closed.loss == RankLoss::at_end) pace.leave(end);
                 pace.shorten((1 - shift) * length);
                 mesh_.ends.pop_back();
                 continue;
@@ -92,7 +98,8 @@ private:
             }
             ++report_.refused;
             const bool can_help = closed.is_refused && may_shorten(outcome);
-            if (!can_help || !pace.refused(length, closed.velocity_jump)) return give_up(e, closed, outcome);
+            if (!can_help || !pace.refused(length, closed.velocity_jump, most))
+                return give_up(e, closed, outcome);
             mesh_.ends.pop_back();
         }
     }
@@ -101,12 +108,13 @@ private:
     void give_up(int element, const Closed& closed, const NewtonReport& outcome)
     {
         if (!closed.is_refused) return void(set_failed(element, element + 1));   // the report says why
-        if (outcome.status != SolveStatus::converged) return void(explain(element, element + 1, outcome));
+        const bool is_singular =
+            std::abs(mesh_.ends[element] - singular_end_) < 1e-3 * (options_.pace->end() - mesh_.start());
+        if (outcome.status != SolveStatus::converged && !(is_singular && may_shorten(outcome)))
+            return void(explain(element, element + 1, outcome));
         set_failed(element, element + 1);
         report_.status = SolveStatus::not_converged;
-        report_.message = "the elements vanish near t = " + to_text(mesh_.ends[element], 6) +
-                          " s: however short they are, each loses more than it may; try: a larger "
-                          "error in accuracy, or look for a load that jumps there";
+        report_.message = is_singular ? of_singular_end(singular_end_) : of_vanishing(mesh_.ends[element]);
     }
 
     /// Elements first..last - 1, split where they fail together.
@@ -115,12 +123,17 @@ private:
         if (!window_.open(first, last, report_)) return set_failed(first, last);
         NewtonReport outcome = attempt(first, last);
         if (outcome.status == SolveStatus::converged) return accept(first, last, outcome);
-        if (may_divide(first, last, outcome)) return divide_element(first, 0.5);
+        if (may_divide(first, last, outcome)) {
+            const int end = options_.direction > 0 ? last : first;
+            const bool is_singular = window_.rank_loss() == RankLoss::at_end &&
+                                     loss_of_failed(mesh_.ends[end], can_move(end)) != RankLoss::none;
+            return is_singular ? solve_shorter(first) : divide_element(first, 0.5);
+        }
         const int middle = (first + last) / 2;
         const bool can_split = options_.may_split && outcome.status != SolveStatus::cancelled &&
                                middle - first >= options_.shortest && last - middle >= options_.shortest;
         if (!can_split) return explain(first, last, outcome);
-        ++splits_;
+        ++counts_.splits;
         return solve_parts(first, middle, last);
     }
 
@@ -211,9 +224,16 @@ private:
                                     !is_single || may_divide(first, last, outcome));
         if (!is_single || closed.loss == RankLoss::none) return take(first, last, closed, outcome);
         if (closed.loss == RankLoss::inside) return divide_element(first, uneven);
-        count_shift(mesh_.ends[end]);
-        mesh_.ends[end] -= options_.direction * shift * mesh_.length(first);
-        return solve(first, last);
+        return solve_shorter(first);
+    }
+
+    /// With its end off a singular position.
+    bool solve_shorter(int element)
+    {
+        double& end = mesh_.ends[options_.direction > 0 ? element + 1 : element];
+        count_shift(end);
+        end -= options_.direction * shift * mesh_.length(element);
+        return solve(element, element + 1);
     }
 
     /// Closes the open window up to a node too near to a singular position; beyond that where nothing can be
@@ -223,9 +243,17 @@ private:
         const Closed closed = window_.close(trust, report_);
         const bool can_help = closed.loss == RankLoss::at_end ? end_may_move : may_divide;
         const bool is_wanted = can_help && avoided_ < most_shifts;
+        if (closed.loss == RankLoss::at_end && !end_may_move) singular_end_ = mesh_.ends.back();
         if (closed.loss == RankLoss::none || is_wanted || closed.n_elements > 0) return closed;
         trust.full_rank = false;
         return window_.close(trust, report_);
+    }
+
+    /// Of an element that was not solved, whose end is near a singular position.
+    RankLoss loss_of_failed(double end, bool end_may_move)
+    {
+        if (!end_may_move) singular_end_ = end;
+        return end_may_move && avoided_ < most_shifts ? RankLoss::at_end : RankLoss::none;
     }
 
     bool can_move(int end) const
@@ -247,7 +275,7 @@ private:
             report_.iterations.push_back(outcome.iterations);
             report_.residual_norm = std::max(report_.residual_norm, outcome.residual);
             if (is_rescued_) ++report_.rescued;
-            if (outcome.ended_by_rounding) ++rounded_;
+            if (outcome.ended_by_rounding) ++counts_.rounded;
             avoided_ = 0;
         }
         (options_.direction > 0 ? first : last) += options_.direction * closed.n_elements;
@@ -289,11 +317,9 @@ private:
         if (may_divide(first, last, outcome)) return divide_element(first, 0.5);
         set_failed(first, last);
         report_.status = SolveStatus::not_converged;
-        report_.message =
-            name(first, last) + " (t = " + to_text(mesh_.ends[first], 6) + " to " +
-            to_text(mesh_.ends[last], 6) +
-            " s) meets its equations, but leaves the velocity that its momentum has, or turns a "
-            "body by more than 90 degrees between nodes; try: more and shorter elements";
+        report_.message = window_at(mesh_, first, last) +
+                          " meets its equations, but leaves the velocity that its momentum has, or turns a "
+                          "body by more than 90 degrees between nodes; try: more and shorter elements";
         return false;
     }
 
@@ -325,41 +351,12 @@ private:
     {
         set_failed(first, last);
         report_.status = outcome.status;
-        const std::string where = " in " + name(first, last) + " (t = " + to_text(mesh_.ends[first], 6) +
-                                  " to " + to_text(mesh_.ends[last], 6) + " s)";
-        if (outcome.status == SolveStatus::cancelled) {
-            report_.message = "stopped as asked" + where + "; the motion up to there is complete";
-            return false;
-        }
-        const Place worst = window_.worst();
-        std::string what =
-            "Newton's iteration found no way on after " + count(outcome.iterations, "iteration");
-        if (outcome.iterations == 0) what = "Newton's iteration found no way on from any guess";
-        if (outcome.reached_limit)   // of one attempt; there may have been several
-            what = "Newton's iteration did not converge in " + count(options_.max_iterations, "iteration") +
-                   ", the limit,";
-        std::string advice =
-            options_.advice.empty() ? "more and shorter elements, or a lower degree" : options_.advice;
-        if (outcome.status == SolveStatus::singular) {
-            what = "the tangent is singular";
-            if (options_.advice.empty())
-                advice =
-                    "the mechanism may pass a singular position; shift the element ends or use more elements";
-        } else if (outcome.status == SolveStatus::not_finite) {
-            what = worst.bad_load.empty() ? "a number became infinite or undefined" : worst.bad_load;
-            if (options_.advice.empty()) advice = "look at the loads near that time; use more elements";
-        }
-        report_.message = what + where;
-        if (!worst.name.empty())
-            report_.message += "; worst: " + worst.name + " near t = " + to_text(worst.t, 6) + " s";
-        report_.message += "; try: " + advice;
+        report_.message = outcome.status == SolveStatus::cancelled
+                              ? "stopped as asked in " + window_at(mesh_, first, last) +
+                                    "; the motion up to there is complete"
+                              : of_failure(outcome, options_.max_iterations, window_at(mesh_, first, last),
+                                           window_.worst(), options_.advice);
         return false;
-    }
-
-    static std::string name(int first, int last)
-    {
-        if (last - first == 1) return "element " + std::to_string(first);
-        return "the window of elements " + std::to_string(first) + " to " + std::to_string(last - 1);
     }
 
     Window& window_;
@@ -371,12 +368,12 @@ private:
     Guess guess_;   // that the open window started from
     bool is_march_ = false;
     bool is_rescued_ = false;   // converged from another guess than the first
-    int rounded_ = 0;           // windows that ended by rounding, short of the tolerance
+    WindowCounts counts_;
     int most_divisions_ = 0;   // beyond, something else is wrong
-    int splits_ = 0;
-    int avoided_ = 0;   // nodes too near to a singular position, since an element was closed
-    int done_ = 0;      // elements
-    double time_ = 0;   // up to which they are solved
+    int avoided_ = 0;          // nodes too near to a singular position, since an element was closed
+    double singular_end_ = std::numeric_limits<double>::quiet_NaN();   // that can not move; the last one
+    int done_ = 0;                                                     // elements
+    double time_ = 0;                                                  // up to which they are solved
 };
 
 }   // namespace

@@ -43,10 +43,11 @@ struct Course {
 std::vector<double> lanes_of(const std::vector<Course>& courses, const ElementRule& rule, int width,
                              double start, double h)
 {
-    std::vector<double> lanes(7 * courses.size() * static_cast<std::size_t>(width), 0.25);
+    std::vector<double> lanes(7 * courses.size() * static_cast<std::size_t>(width));
     for (std::size_t b = 0; b < courses.size(); ++b)
-        for (int l = 0; l < rule.degree; ++l) {
-            const Place place = courses[b].seen_from(start, start + h * rule.nodes[l == 0 ? rule.degree : l]);
+        for (int l = 0; l < width; ++l) {   // those that stand for no node: at the start
+            const double s = l == 0 ? 1 : l < rule.degree ? rule.nodes[l] : 0;
+            const Place place = courses[b].seen_from(start, start + h * s);
             for (std::size_t c = 0; c < 7; ++c)
                 lanes[(7 * b + c) * static_cast<std::size_t>(width) + l] = place[c];
         }
@@ -56,16 +57,18 @@ std::vector<double> lanes_of(const std::vector<Course>& courses, const ElementRu
 double error_of(const Course& a, const Course& b, int degree, double ratio, double h)
 {
     const ElementRule rule = element_rule(Points::lobatto, degree);
-    const int width = degree + 3;   // some lanes stay empty
-    Extrapolation extrapolation(rule, width);
+    const lanes::Functions* functions = lanes::sse2(degree);
+    const int width = functions->width;   // the last lane of odd degrees stands for no node
+    Extrapolation extrapolation(rule, *functions);
     const double start = 0.3;
-    extrapolation.remember(lanes_of({a, b}, rule, width, start, h).data(), 2, start, start + h);
+    const std::vector<double> before = lanes_of({a, b}, rule, width, start, h);
+    extrapolation.remember(before.data(), 2, start, start + h);
     EXPECT_TRUE(extrapolation.follows(start + h, ratio * h));
     EXPECT_FALSE(extrapolation.follows(start, h));
     EXPECT_FALSE(extrapolation.follows(start + h, 4 * h)) << "much longer";
     const std::vector<double> exact = lanes_of({a, b}, rule, width, start + h, ratio * h);
     std::vector<double> found(exact.size(), 0.25);
-    extrapolation.place(ratio * h, degree, found.data());
+    extrapolation.place(ratio * h, found.data());
     double error = 0;
     for (std::size_t i = 0; i < exact.size(); ++i) error = std::max(error, std::abs(found[i] - exact[i]));
     return error;
@@ -108,8 +111,8 @@ TEST(Extrapolation, OfHighDegreesIsNotDrownedInRounding)
 TEST(Extrapolation, ServesFromDegreeFourOn)
 {
     EXPECT_FALSE(Extrapolation().serves());
-    EXPECT_FALSE(Extrapolation(element_rule(Points::lobatto, 3), 4).serves());
-    Extrapolation four(element_rule(Points::lobatto, 4), 4);
+    EXPECT_FALSE(Extrapolation(element_rule(Points::lobatto, 3), *lanes::sse2(3)).serves());
+    Extrapolation four(element_rule(Points::lobatto, 4), *lanes::sse2(4));
     EXPECT_TRUE(four.serves());
     EXPECT_FALSE(four.follows(0, 1)) << "nothing is remembered";
 }

@@ -131,14 +131,18 @@ Comparison compare(const Model& model, int degree, double h, double fault = 0)
     Comparison found;
     found.is_solved = kernel.solve(stretch, start, {1e-14, 30, {}}, report);
     if (!found.is_solved) return found;
-    std::vector<double> dX(12 * tables.bodies.size()), impulses(static_cast<std::size_t>(tables.rank)),
+    Nodes nodes(tables, kernels_rule);
+    nodes.open(stretch);
+    nodes.fix(0, start);
+    nodes.place_solved(kernel.increments(), kernel.width());
+    const std::size_t n = 12 * tables.bodies.size();
+    std::vector<double> impulses(static_cast<std::size_t>(tables.rank)),
         p(static_cast<std::size_t>(tables.n_twists)), p_newton = p;
     const auto wrench_of = [&](const double* of_rows, int A) { return taken_by(tables, system, of_rows, A); };
     for (int A = 0; A <= degree; ++A) {
-        kernel.increments(A, dX.data());
-        const double* other = system.nodes().dX(0, A);
+        const double *dX = nodes.dX(0, A), *other = system.nodes().dX(0, A);
         found.X =
-            std::max(found.X, difference(dX, {other, other + dX.size()}) / std::max(1.0, tables.length));
+            std::max(found.X, difference({dX, dX + n}, {other, other + n}) / std::max(1.0, tables.length));
         if (A == degree) break;
         // multipliers of rows that nearly depend on each other are those of no one; what they do is
         kernel.impulses(A, impulses.data());

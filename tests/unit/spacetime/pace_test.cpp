@@ -116,6 +116,78 @@ TEST(Pace, ABurstCostsElementsWhereItIs)
     EXPECT_LT(refused, 10);
 }
 
+/// A motion that is rough again and again, as the turns of a crank: what grows into the rough is refused, and
+/// what was refused once is not tried again at once. (Lengths by the last element
+/// alone: 348 of 1134 refused.)
+TEST(Pace, SeesRoughPlacesComing)
+{
+    int refused = 0;
+    Pace pace(Points::lobatto, 12, 1e-12, 0.1, {0, 100});
+    const auto scale = [](double t, double end) {   // the smallest in the element
+        double least = 10;
+        for (int i = 0; i <= 20; ++i)
+            least = std::min(least, 1 - 0.9 * std::cos(5 * (t + 0.05 * i * (end - t))));
+        return least;
+    };
+    const std::vector<double> ends = march(pace, 12, scale, refused);
+    EXPECT_LT(refused, 0.15 * static_cast<double>(ends.size()));
+    EXPECT_LT(ends.size(), 1200);
+}
+
+/// A velocity jump that passes through zero says nothing of the next elements: they are as long as without.
+TEST(Pace, IsNotShyOfSingleSmallJumps)
+{
+    std::size_t n[2];
+    for (const bool dips : {false, true}) {
+        int refused = 0, k = 0;
+        Pace pace(Points::lobatto, 7, 1e-10, 0.1, {0, 100});
+        n[dips] = march(
+                      pace, 7, [&](double, double) { return dips && k++ % 7 == 0 ? 1.5 : 1.0; }, refused)
+                      .size();
+    }
+    EXPECT_LT(static_cast<double>(n[1]), 1.03 * static_cast<double>(n[0]));
+}
+
+/// Behind an element that was refused the next are no longer than what was found to do in it.
+TEST(Pace, RemembersWhatWasRefused)
+{
+    Pace pace(Points::lobatto, 4, 1e-8, 1, {0, 10});
+    const auto jump = [](double h) { return std::pow(h / 2, 5); };
+    ASSERT_TRUE(pace.refused(1, jump(1)));
+    const double first = pace.next_end(0);
+    pace.accepted(first, jump(0.5 * first), false);   // the rough lies behind it
+    EXPECT_LE(pace.next_end(first) - first, first * (1 + 1e-12));
+    for (double t = first; t < 1;) {
+        const double end = pace.next_end(t);
+        pace.accepted(end - t, jump(0.5 * (end - t)), false);
+        t = end;
+    }
+    EXPECT_GT(pace.next_end(1.5) - 1.5, 1.3 * first) << "only there";
+}
+
+/// A stop at which joints lose rank is left; the element around it is as accurate inside as asked for.
+TEST(Pace, LeavesAStopThatIsSampledInside)
+{
+    Pace pace(Points::lobatto, 4, 1e-8, 0.5, {0, 1, 2, 10});
+    pace.sample_at({0, 1, 10}, 1e-7);
+    EXPECT_EQ(pace.next_end(0.9), 1);
+    EXPECT_EQ(pace.largest_jump(0.9, 1.1), pace.largest_jump());
+    EXPECT_TRUE(pace.may_leave(1));
+    for (const double t : {0.0, 0.5, 2.0, 10.0}) EXPECT_FALSE(pace.may_leave(t)) << t;
+    pace.leave(1);
+    EXPECT_EQ(pace.left(), std::vector<double>{1});
+    EXPECT_FALSE(pace.is_stop(1));
+    EXPECT_TRUE(pace.is_stop(0) && pace.is_stop(2) && pace.is_stop(10));
+    EXPECT_GT(pace.next_end(0.9), 1.1);
+    EXPECT_EQ(pace.largest_jump(0.9, 1.1), 1e-7);
+    EXPECT_EQ(pace.largest_jump(1, 1.1), pace.largest_jump());
+    // what is refused for that is as short as it needs to be at the next trial
+    ASSERT_TRUE(pace.refused(0.5, 1e-5, 1e-7));
+    const double h = pace.next_end(0.9) - 0.9, then = 1e-5 * std::pow(h / 0.5, 5);
+    EXPECT_LT(then, 1e-7);
+    EXPECT_GT(then, 1e-8);
+}
+
 TEST(Pace, ElementsVanishAtLast)
 {
     Pace pace(Points::lobatto, 4, 1e-8, 0.1, {0, 10});

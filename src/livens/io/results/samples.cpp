@@ -124,7 +124,8 @@ class Samples {
 public:
     Samples(RunWriter& archive, const Model& model, const Run& run)
         : file_(archive.file()), model_(model), motion_(run.motion), estimate_(run.estimate),
-          of_joints_(model, run.motion), of_rigidity_(model, run.motion), sensors_(model, run.motion)
+          is_to_accuracy_(run.report.accuracy > 0), of_joints_(model, run.motion),
+          of_rigidity_(model, run.motion), sensors_(model, run.motion)
     {
         const auto first = std::ranges::lower_bound(run.output, motion_.start());
         const auto last = std::ranges::upper_bound(run.output, motion_.end());
@@ -231,6 +232,10 @@ private:
             std::vector<double>& values = errors_[i].values;
             if (end >= 0)
                 values.insert(values.end(), first, first + static_cast<std::ptrdiff_t>(n));
+            else if (is_to_accuracy_)   // inside since the joints lose rank there, which the estimate knows
+                for (std::size_t k = 0; k < n; ++k)
+                    values.push_back(ErrorEstimate::at(*errors_at_ends_[i], static_cast<int>(n),
+                                                       static_cast<int>(k), motion_.mesh, t));
             else
                 values.insert(values.end(), n, std::numeric_limits<double>::quiet_NaN());
         }
@@ -333,6 +338,7 @@ private:
     const Model& model_;
     const Motion& motion_;
     const ErrorEstimate& estimate_;
+    bool is_to_accuracy_;
     std::span<const double> times_;
     JointCoordinates of_joints_;
     Rigidity of_rigidity_;

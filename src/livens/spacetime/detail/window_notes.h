@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What deserves a word after all windows were solved.
+// What is said of windows: of those that failed, and after all were solved.
 #pragma once
 
 #include <string>
 
+#include "livens/solvers/newton.h"
 #include "livens/solvers/report.h"
+#include "livens/spacetime/window.h"
+#include "livens/time/time_mesh.h"
 
 namespace livens {
 
@@ -15,6 +18,17 @@ struct WindowCounts {
     int splits = 0;    ///< windows that were solved in halves
 };
 void add_notes(SolveReport& report, const WindowCounts& counts);
+
+/// "element 3 (t = 1 to 2 s)", "the window of elements 3 to 5 (t = 1 to 4 s)" (last is behind it).
+std::string window_at(const TimeMesh& mesh, int first, int last);
+
+/// Why Newton's iteration did not solve a window, and what to try: `advice`, or what fits the status.
+std::string of_failure(const NewtonReport& outcome, int max_iterations, const std::string& window,
+                       const Place& worst, std::string advice);
+
+/// Why a march at a pace ends at t: elements vanish; or one must end where the joints lose rank.
+std::string of_vanishing(double t);
+std::string of_singular_end(double t);
 
 /// "1 element", "2 elements".
 std::string count(int n, const char* what);

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <vector>
 
+#include "livens/multibody/aligned_doubles.h"
+#include "livens/spacetime/lobatto/kernel_functions.h"
 #include "livens/spacetime/lobatto/rule.h"
 #include "livens/time/basis.h"
 
@@ -16,34 +18,36 @@ namespace livens {
 class Extrapolation {
 public:
     Extrapolation() = default;
-    Extrapolation(const ElementRule& rule, int width);
+    Extrapolation(const ElementRule& rule, const lanes::Functions& functions);
 
     /// Whether there is anything to gain: low degrees say less than velocities and accelerations do.
     bool serves() const { return degree_ >= 4; }
-    /// An element that was solved.
+    /// An element that was solved; its places must stay as they are.
     void remember(const double* place, int n_bodies, double start, double end);
     /// Whether an element of length h that begins at `start` follows what was remembered, and is not so much
     /// longer that the polynomial says nothing of it.
     bool follows(double start, double h) const
     {
         constexpr double longest = 3;
-        return serves() && !places_.empty() && start == end_ && std::abs(h) <= longest * std::abs(h_);
+        return serves() && places_ != nullptr && start == end_ && std::abs(h) <= longest * std::abs(h_);
     }
-    void forget() { places_.clear(); }
-    /// Its nodes, if it has the length h; only the first `n_lanes` lanes of `place` are written.
-    void place(double h, int n_lanes, double* place);
+    void forget() { places_ = nullptr; }
+    /// Nodes of the element that follows, if it has the length h.
+    void place(double h, double* place);
 
 private:
     void weigh(double ratio);
 
-    int degree_ = 0, width_ = 1;
+    int degree_ = 0;
+    const lanes::Functions* functions_ = nullptr;
     std::vector<double> nodes_;    // of the rule
     std::vector<int> used_;        // those that the polynomial goes through
     LagrangeBasis basis_{{0.0}};   // on them
-    std::vector<double> places_;
+    const double* places_ = nullptr;
+    int n_bodies_ = 0;
     double end_ = 0, h_ = 0;
-    double ratio_ = 0;              // of lengths, for which the weights below are
-    std::vector<double> weights_;   // of lane l of what is remembered (last: its start), row by row of lanes
+    double ratio_ = 0;         // of lengths, for which the weights below are
+    AlignedDoubles weights_;   // of lane l of what is remembered (last: its start), row by row of lanes
 };
 
 }   // namespace livens

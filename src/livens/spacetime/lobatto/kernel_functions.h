@@ -29,8 +29,13 @@ struct Sizes {
 /// The functions of one set of instructions for W lanes.
 struct Functions {
     int width;
-    /// Numbers and increments from places; then gradients, violations and the factor.
+    /// Places of n nodes from those of the element before: weights, for each of its lanes and last for its
+    /// start a row of lanes. Lanes that stand for no node stay at the start.
+    void (*extrapolate)(int n_bodies, int n, const double* before, const double* weights, double* place);
+    /// Numbers and increments from places; then gradients and violations.
     void (*configure)(const Pattern&, const Values& start, const Values& nodes);
+    /// The factor, from gradients.
+    void (*factorise)(const Pattern&, const Values& nodes);
     /// X and X' at the load points.
     void (*interpolate)(const Pattern&, const Values& start, const Values& nodes, const Rule&);
     /// Balances, less what multipliers take.

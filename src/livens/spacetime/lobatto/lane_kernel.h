@@ -4,38 +4,10 @@
 #pragma once
 
 #include "livens/multibody/lane_rows.h"
-#include "livens/spacetime/lobatto/kernel_functions.h"
+#include "livens/spacetime/lobatto/lane_places.h"
 
 namespace livens::lanes {
 namespace {
-
-template <int W>
-void place_numbers(const Pattern& p, const Values& start, const Values& v)
-{
-    for (int b = 0; b < p.n_bodies; ++b) {
-        const double *place = v.place + 7 * b * W, *X0 = start.numbers + 12 * b;
-        double *dX = v.increments + 12 * b * W, *X = v.numbers + 12 * b * W;
-        for (int i = 0; i < 3; ++i) {
-            const Lanes<W> u = load<W>(place + i * W);
-            store(dX + i * W, u);
-            store(X + i * W, X0[i] + u);
-        }
-        if (p.bodies[b].dofs == 3) continue;
-        const auto s = load<W>(place + 3 * W), x = load<W>(place + 4 * W), y = load<W>(place + 5 * W),
-                   z = load<W>(place + 6 * W);
-        // the turn less 1, its diagonal without cancellation
-        const auto xx = x * x, yy = y * y, zz = z * z, xy = x * y, xz = x * z, yz = y * z, sx = s * x,
-                   sy = s * y, sz = s * z;
-        const Lanes<W> t[9] = {-2 * (yy + zz), 2 * (xy + sz), 2 * (xz - sy), 2 * (xy - sz), -2 * (xx + zz),
-                               2 * (yz + sx),  2 * (xz + sy), 2 * (yz - sx), -2 * (xx + yy)};
-        for (int a = 0; a < 3; ++a)
-            for (int i = 0; i < 3; ++i) {
-                const Lanes<W> d = X0[3 + i] * t[3 * a] + X0[6 + i] * t[3 * a + 1] + X0[9 + i] * t[3 * a + 2];
-                store(dX + (3 + 3 * a + i) * W, d);
-                store(X + (3 + 3 * a + i) * W, X0[3 + 3 * a + i] + d);
-            }
-    }
-}
 
 template <int W>
 void configure(const Pattern& p, const Values& start, const Values& v)
@@ -44,7 +16,6 @@ void configure(const Pattern& p, const Values& start, const Values& v)
     form_products<W>(p, start, v, true);
     form_gradients<W>(p, v);
     form_violations<W>(p, start.violations, v.increments, v.violations);
-    factorise<W>(p, v);
 }
 
 template <int W>
@@ -149,60 +120,6 @@ void balance(const Pattern& p, const Values& start, const Values& v, const Rule&
     sizes.finite = sum(finite);
 }
 
-/// Turns a body by a small rotation vector in its own axes, whose half is t.
-template <int W>
-LIVENS_INLINE void turn(double* place, const Three<W>& t)
-{
-    const auto s = load<W>(place), x = load<W>(place + W), y = load<W>(place + 2 * W),
-               z = load<W>(place + 3 * W);
-    const auto ns = s - (x * t.x[0] + y * t.x[1] + z * t.x[2]),
-               nx = x + (s * t.x[0] + (y * t.x[2] - z * t.x[1])),
-               ny = y + (s * t.x[1] + (z * t.x[0] - x * t.x[2])),
-               nz = z + (s * t.x[2] + (x * t.x[1] - y * t.x[0]));
-    const auto inverse = 1 / root(ns * ns + nx * nx + ny * ny + nz * nz);
-    store(place, ns * inverse);
-    store(place + W, nx * inverse);
-    store(place + 2 * W, ny * inverse);
-    store(place + 3 * W, nz * inverse);
-}
-
-template <int W>
-void move(const Pattern& p, const Values& v, const Rule& rule, Sizes& sizes)
-{
-    Lanes<W> far = all<W>(0), wide = far, moved = far, turned = far, finite = far;
-    for (int b = 0; b < p.n_bodies; ++b) {
-        const Body& body = p.bodies[b];
-        const double* y = v.step + body.first * W;
-        double* place = v.place + 7 * b * W;
-        for (int i = 0; i < 3; ++i) {
-            const Lanes<W> u = body.inverse_root_mass * load<W>(y + i * W),
-                           all_of_it = load<W>(place + i * W) + u;
-            raise_to_size(far, u);
-            raise_to_size(moved, all_of_it);
-            finite += u - u;
-            store(place + i * W, all_of_it);
-        }
-        if (body.dofs == 3) continue;
-        Three<W> t;
-        for (int i = 0; i < 3; ++i) {
-            const double* s = body.spin + i;   // w = L^-T y_2
-            Lanes<W> w = s[3 * i] * load<W>(y + (3 + i) * W);
-            if (!body.principal)
-                w = s[0] * load<W>(y + 3 * W) + s[3] * load<W>(y + 4 * W) + s[6] * load<W>(y + 5 * W);
-            raise_to_size(wide, w);
-            finite += w - w;
-            t.x[i] = 0.5 * w;
-        }
-        turn(place + 3 * W, t);
-        for (int i = 4; i < 7; ++i) raise_to_size(turned, load<W>(place + i * W));
-    }
-    const double a = largest(far) / rule.length, c = largest(wide), d = largest(moved) / rule.length,
-                 e = 2 * largest(turned);
-    sizes.step = a < c ? c : a;
-    sizes.motion = d < e ? e : d;
-    sizes.finite = sum(finite);
-}
-
 template <int W>
 void propose(const Pattern& p, const Values& v, const Rule& rule)
 {
@@ -236,16 +153,18 @@ void sum_impulses(const Pattern& p, const Values& start, const Values& v, double
 }
 
 template <int W>
-constexpr Functions functions_of{W,          configure<W>, interpolate<W>, balance<W>,
-                                 propose<W>, move<W>,      sum_impulses<W>};
+constexpr Functions functions_of{W,          extrapolate<W>, configure<W>, factorise<W>,   interpolate<W>,
+                                 balance<W>, propose<W>,     move<W>,      sum_impulses<W>};
 
 /// For degrees up to 18, with as few lanes as registers have room for.
 template <int W = LIVENS_REGISTER>
 const Functions* functions_for(int n)
 {
     if (n <= W) return &functions_of<W>;
+    // Of registers of two every other width above eight: they are for old processors, and most of the code.
+    constexpr int step = W >= 8 && LIVENS_REGISTER == 2 ? 4 : LIVENS_REGISTER;
     if constexpr (W < 18)
-        return functions_for<W + LIVENS_REGISTER>(n);
+        return functions_for<W + step>(n);
     else
         return nullptr;
 }

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The march kernel on registers of two doubles, which every processor has.
+// The march kernel on registers of two doubles, which every processor has, and on one alone.
 #define LIVENS_REGISTER 2
 #include "livens/spacetime/lobatto/lane_kernel.h"
 
 namespace livens::lanes {
 
-const Functions* sse2(int n) { return functions_for(n); }
+const Functions* sse2(int n) { return n == 1 ? &functions_of<1> : functions_for(n); }
 
 }   // namespace livens::lanes

@@ -18,6 +18,9 @@ constexpr int many_twists = 100, most_combinations = 150, most_slow_combinations
 constexpr double hopeless_step = 10;         // lengths or radians
 constexpr double smallest_step = 1e-18;      // likewise: nothing moves
 constexpr double rounding = 1e-14;           // of the motion: what steps that shrink no more may be
+constexpr double fits_on_the_way = 1e-4;   // times the smallest pivot: motion at which a factor is still good
+constexpr double fits_at_end = 1e-7;       // for multipliers, whose last change it takes with this error
+constexpr double fits_for_next = 1e-8;     // NearFactor
 constexpr double least_pivot = 1e-5;         // of the rows' own size
 constexpr double share_of_tolerance = 0.1;   // left after the last step, as far as contraction foretells it
 constexpr double widest_tolerance =
@@ -25,6 +28,7 @@ constexpr double widest_tolerance =
 
 const lanes::Functions* functions_for(int n_lanes)
 {
+    if (n_lanes == 1) return lanes::sse2(1);   // there is nothing beside it
     switch (instructions()) {
     case Instructions::avx512:
         return lanes::avx512(n_lanes);
@@ -75,36 +79,6 @@ struct Shrinking {
     }
 };
 
-/// The inverse of K_AB = k_AB with rows A = 0..p-1 and columns B = 1..p, row by row.
-std::vector<double> inverse_of_k(const ElementRule& rule)
-{
-    using Wide = long double;
-    const int p = rule.degree;
-    std::vector<Wide> a(static_cast<std::size_t>(2 * p * p), 0);   // [K 1] by rows
-    const auto at = [&](int i, int j) -> Wide& { return a[static_cast<std::size_t>(2 * p * i + j)]; };
-    for (int A = 0; A < p; ++A) {
-        for (int B = 0; B < p; ++B) at(A, B) = rule.k[static_cast<std::size_t>(A * rule.size() + B + 1)];
-        at(A, p + A) = 1;
-    }
-    for (int i = 0; i < p; ++i) {
-        int best = i;
-        for (int r = i; r < p; ++r)
-            if (std::abs(at(r, i)) > std::abs(at(best, i))) best = r;
-        for (int j = 0; j < 2 * p; ++j) std::swap(at(i, j), at(best, j));
-        const Wide pivot = at(i, i);
-        for (int j = 0; j < 2 * p; ++j) at(i, j) /= pivot;
-        for (int r = 0; r < p; ++r) {
-            const Wide factor = at(r, i);
-            for (int j = 0; r != i && j < 2 * p; ++j) at(r, j) -= factor * at(i, j);
-        }
-    }
-    std::vector<double> inverse(static_cast<std::size_t>(p * p));
-    for (int i = 0; i < p; ++i)
-        for (int j = 0; j < p; ++j)
-            inverse[static_cast<std::size_t>(p * i + j)] = static_cast<double>(at(i, p + j));
-    return inverse;
-}
-
 }   // namespace
 
 MarchKernel::MarchKernel(const Tables& tables, const ElementRule& rule) : tables_(tables), rule_(rule)
@@ -116,7 +90,7 @@ MarchKernel::MarchKernel(const Tables& tables, const ElementRule& rule) : tables
     work_.twist.assign(static_cast<std::size_t>(tables.n_twists), 0.0);
     for (auto* v : {&work_.X, &work_.V, &work_.raw}) v->assign(12 * tables.bodies.size(), 0.0);
     work_.wrenches.assign(12 * tables.bodies.size(), 0.0);
-    guess_.polynomial = Extrapolation(rule, functions_->width);
+    guess_.polynomial = Extrapolation(rule, *functions_);
     for (Guess::End* end : {&guess_.by_series, &guess_.by_polynomial})
         end->place.assign(7 * tables.bodies.size(), 0.0);
 }
@@ -125,10 +99,9 @@ MarchKernel::MarchKernel(const Tables& tables, const ElementRule& rule) : tables
 void MarchKernel::make_rule()
 {
     const int p = rule_.degree, W = functions_->width, n = rule_.size(), block = W * W;
-    scaled_.lines.assign(static_cast<std::size_t>(8 * block + 2 * W + 7) / 8 + 1, ScaledRule::Line{});
-    double* x = scaled_.lines.data()->x;
-    double *k = x, *inverse = k + block, *M = inverse + block, *dM = M + block, *M_rows = dM + block,
-           *scaled_k = M_rows + block, *scaled_inverse = scaled_k + block,
+    scaled_.numbers.assign(static_cast<std::size_t>(8 * block + 2 * W), 0.0);
+    double *k = scaled_.numbers.data(), *inverse = k + block, *M = inverse + block, *dM = M + block,
+           *M_rows = dM + block, *scaled_k = M_rows + block, *scaled_inverse = scaled_k + block,
            *scaled_dM = scaled_inverse + block, *weights = scaled_dM + block;
     const std::vector<double> K = inverse_of_k(rule_);
     for (int l = 0; l < p; ++l) {
@@ -149,12 +122,14 @@ void MarchKernel::scale_rule(const Stretch& stretch, const InstantState& start)
     if (stretch.h(0) == scaled_.h) return;
     scaled_.h = stretch.h(0);
     const int W = functions_->width, block = W * W;
-    double *k = scaled_.lines.data()->x, *scaled = k + 5 * block, *weights = k + 8 * block;
-    for (int i = 0; i < block; ++i) {
-        scaled[i] = k[i] / scaled_.h;
-        scaled[block + i] = k[block + i] * scaled_.h;
-        scaled[2 * block + i] = k[3 * block + i] / scaled_.h;
-    }
+    const double h = scaled_.h, *k = scaled_.numbers.data();
+    double *scaled = scaled_.numbers.data() + 5 * block, *weights = scaled + 3 * block;
+    const auto scale = [block](const double* __restrict of, double* __restrict to, auto&& by) {
+        for (int i = 0; i < block; ++i) to[i] = by(of[i]);
+    };
+    scale(k, scaled, [h](double x) { return x / h; });
+    scale(k + block, scaled + block, [h](double x) { return x * h; });
+    scale(k + 3 * block, scaled + 2 * block, [h](double x) { return x / h; });
     for (int A = 0; A < rule_.degree; ++A) weights[A] = scaled_.h * rule_.weights[A];
 }
 
@@ -164,6 +139,7 @@ void MarchKernel::use(const InstantState& start)
     if (pattern_ == start_->pattern()) return;
     pattern_ = start_->pattern();
     nodes_.resize(*pattern_, functions_->width);
+    guess_.polynomial.forget();
     const std::vector<int>&chosen = pattern_->chosen(), &order = pattern_->rows();
     std::vector<int> places(static_cast<std::size_t>(tables_.n_rows()));
     for (std::size_t i = 0; i < order.size(); ++i) places[order[i]] = static_cast<int>(i);
@@ -212,11 +188,11 @@ void MarchKernel::guess(const Stretch& stretch, const InstantState& start)
     guess_.by_series.is_known = guess_.by_polynomial.is_known;   // else there is nothing to compare
     if (guess_.by_polynomial.is_known && guess_.is_polynomial) {
         place_series(series, h, start, 1, guess_.by_series.place.data());
-        guess_.polynomial.place(h, rule_.degree, place);
+        guess_.polynomial.place(h, place);
         return keep_end(guess_.by_polynomial);
     }
     if (guess_.by_polynomial.is_known) {
-        guess_.polynomial.place(h, 1, place);
+        guess_.polynomial.place(h, place);
         keep_end(guess_.by_polynomial);
     }
     for (int l = 0; l < rule_.degree; ++l)
@@ -310,8 +286,15 @@ bool MarchKernel::iterate(const Stretch& stretch, const InstantState& start, con
     lanes::Sizes sizes;
     Shrinking progress{std::min(options.tolerance, widest_tolerance)};
     if (is_accelerated) acceleration_.begin(static_cast<std::size_t>(pattern.n_twists * functions_->width));
+    double moved = 0, pivot = 0;   // since the factor was made, lengths and radians; its own, squared
     for (int steps = 0;; ++steps) {
         functions_->configure(pattern, from, nodes);
+        const double still_fits = progress.is_done ? fits_at_end : fits_on_the_way;
+        if (steps == 0 || progress.n_slow > 0 || !(moved <= still_fits * pivot)) {
+            functions_->factorise(pattern, nodes);
+            pivot = *std::min_element(nodes.pivots, nodes.pivots + rule_.degree);
+            moved = 0;
+        }
         evaluate_loads(stretch);
         functions_->balance(pattern, from, nodes, scaled_.tables, steps == 0, sizes);
         evaluations_ += rule_.size();
@@ -323,19 +306,19 @@ bool MarchKernel::iterate(const Stretch& stretch, const InstantState& start, con
         if (is_accelerated) acceleration_.apply(nodes.step);
         functions_->move(pattern, nodes, scaled_.tables, sizes);
         if (!std::isfinite(sizes.finite)) return false;
+        moved += sizes.step;
         if (!(is_accelerated ? progress.approach(left, sizes) : progress.take(sizes))) return false;
     }
     double terms = sizes.terms;
     for (const double momentum : start.momentum) terms = std::max(terms, std::abs(momentum));
+    has_near_factor_ = moved <= fits_for_next * pivot;
     report = {};
     report.iterations = progress.n_steps;
     report.last_increment = progress.step;
     report.contraction = progress.contraction;
     report.ended_by_rounding = progress.is_rounded;
     report.residual = terms > 0 ? sizes.rows / terms : sizes.rows;
-    for (int A = 0; A <= rule_.degree; ++A)
-        if (!(pivot(A) > least_pivot)) return false;
-    return true;
+    return std::min(pivot, from.pivots[0]) > least_pivot * least_pivot;   // false: also no number
 }
 
 bool MarchKernel::solve(const Stretch& stretch, const InstantState& start, const NewtonOptions& options,
@@ -353,23 +336,11 @@ bool MarchKernel::solve(const Stretch& stretch, const InstantState& start, const
     }
     if (is_solved_ && guess_.polynomial.serves()) {
         compare_guesses();
-        guess_.polynomial.remember(nodes_.values().place, tables_.n_bodies(), stretch.times.front(),
+        nodes_.swap_places();
+        guess_.polynomial.remember(nodes_.values().last_place, tables_.n_bodies(), stretch.times.front(),
                                    stretch.times.back());
     }
     return is_solved_;
-}
-
-void MarchKernel::increments(int B, double* dX) const
-{
-    const int W = functions_->width;
-    if (B == 0) return void(std::fill_n(dX, 12 * tables_.n_bodies(), 0.0));
-    const double* from = nodes_.values().increments + lane_of(B);
-    for (int i = 0; i < 12 * tables_.n_bodies(); ++i) dX[i] = from[i * W];
-    for (int b = 0; b < tables_.n_bodies(); ++b, dX += 12) {
-        const double* c = tables_.bodies[b].center;
-        for (int i = 0; tables_.bodies[b].offset && i < 3; ++i)
-            dX[i] -= dX[3 + i] * c[0] + dX[6 + i] * c[1] + dX[9 + i] * c[2];
-    }
 }
 
 void MarchKernel::impulses(int A, double* out) const

@@ -42,8 +42,15 @@ public:
 
     // Of the element solved last.
 
-    /// X at node B less X at the start, 12 numbers a body.
-    void increments(int B, double* dX) const;
+    /// X less X at the start, 12 numbers a body about its centre of mass, each for all nodes in lanes.
+    const double* increments() const { return nodes_.values().increments; }
+    int width() const { return functions_->width; }
+    /// What fits at the end of an element that was just solved.
+    NearFactor factor_at_end() const
+    {
+        if (!is_solved_ || !has_near_factor_) return {};
+        return {pattern_.get(), &nodes_.values(), functions_->width};
+    }
     /// W_A lambda_A, in the order of the start's rows.
     void impulses(int A, double* out) const;
     /// Smallest scaled pivot of the constraints at a node.
@@ -53,10 +60,7 @@ public:
 
 private:
     struct ScaledRule {   // tables for an element of length 1, then for the one at hand, of length h
-        struct alignas(64) Line {
-            double x[8];
-        };
-        std::vector<Line> lines;
+        AlignedDoubles numbers;
         lanes::Rule tables{};
         double h = 0;
     };
@@ -102,7 +106,7 @@ private:
     Acceleration acceleration_;
     bool was_slow_ = false;   // the last element
     long long evaluations_ = 0;
-    bool is_solved_ = false;
+    bool is_solved_ = false, has_near_factor_ = false;
 };
 
 }   // namespace livens

@@ -86,6 +86,22 @@ inline void add_two_sums(const double* x, const double* x_low, const double* __r
     }
 }
 
+/// dX <- increments of a body about its centre of mass, `width` apart, to its reference point.
+inline void take_increments(const double* __restrict lanes, int width, const double* __restrict center,
+                            double* __restrict dX)
+{
+    for (int i = 3; i < 12; ++i) dX[i] = lanes[i * width];
+    for (int i = 0; i < 3; ++i)
+        dX[i] = lanes[i * width] - (dX[3 + i] * center[0] + dX[6 + i] * center[1] + dX[9 + i] * center[2]);
+}
+
+/// to <- x + x_low + by for a body.
+inline void add_small(const double* __restrict x, const double* __restrict x_low, const double* __restrict by,
+                      double* __restrict to)
+{
+    for (int i = 0; i < 12; ++i) to[i] = x[i] + (x_low[i] + by[i]);
+}
+
 /// d <- x + x_low - (x0 + x0_low).
 inline void subtract_two_sums(const double* __restrict x, const double* __restrict x_low,
                               const double* __restrict x0, const double* __restrict x0_low,
@@ -97,12 +113,23 @@ inline void subtract_two_sums(const double* __restrict x, const double* __restri
 
 }   // namespace
 
-void Nodes::place_solved(int B, const double* dX, double pivot)
+void Nodes::place_solved(const double* increments, int width)
 {
-    std::copy_n(dX, size_, work_.begin());
-    add(sets_[kept_], 0, sets_[kept_], B);
-    subtract_two_sums(X(B), low(B), X(0), low(0), dX_.data() + place(B), size_);
-    pivots_[B] = pivot;
+    const int p = rule_.degree;
+    Set& set = sets_[kept_];
+    for (int B = 1; B <= p; ++B) {
+        const double* d = increments + (B == p ? 0 : B);
+        double *X = set.X.data() + place(B), *dX = dX_.data() + place(B);
+        for (int b = 0; b < tables_.n_bodies(); ++b, d += 12 * width) {
+            const double *X_0 = set.X.data() + 12 * b, *low_0 = set.low.data() + 12 * b;
+            double* by = dX + 12 * b;
+            take_increments(d, width, tables_.bodies[b].center, by);
+            if (B == p)
+                add_two_sums(X_0, low_0, by, X + 12 * b, set.low.data() + place(B) + 12 * b, 12);
+            else
+                add_small(X_0, low_0, by, X + 12 * b);
+        }
+    }
 }
 
 /// Node A of `to` <- node A_from of `from`, both parts, + what is in work_.

@@ -44,9 +44,10 @@ public:
     }
 
     void place_at(int A, const double* X);
-    /// Node B of the only element: the first node moved by dX, where the constraints have this pivot. It gets
-    /// no basis.
-    void place_solved(int B, const double* dX, double pivot);
+    /// All nodes of the only element: the first node moved by increments about the centres of mass, in lanes,
+    /// of which lane 0 is the end. They get no basis, and only the end a lower part.
+    void place_solved(const double* increments, int width);
+    void set_pivot(int A, double pivot) { pivots_[static_cast<std::size_t>(A)] = pivot; }
     /// Node A: node `from` moved by a finite twist; by displacements and quaternions (s, v), 7 numbers a
     /// body.
     void place_from(int A, int from, const double* twist);

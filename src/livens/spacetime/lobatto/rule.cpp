@@ -4,6 +4,7 @@
 #include <cmath>
 #include <span>
 #include <string>
+#include <utility>
 
 #include "livens/base/error.h"
 #include "livens/time/basis.h"
@@ -129,6 +130,35 @@ ElementRule rule_of(const Method& method)
 {
     if (const auto* radau = std::get_if<Radau>(&method)) return element_rule(Points::radau, radau->degree);
     return element_rule(Points::lobatto, std::get<Lobatto>(method).degree);
+}
+
+std::vector<double> inverse_of_k(const ElementRule& rule)
+{
+    using Wide = long double;
+    const int p = rule.degree;
+    std::vector<Wide> a(static_cast<std::size_t>(2 * p * p), 0);   // [K 1] by rows
+    const auto at = [&](int i, int j) -> Wide& { return a[static_cast<std::size_t>(2 * p * i + j)]; };
+    for (int A = 0; A < p; ++A) {
+        for (int B = 0; B < p; ++B) at(A, B) = rule.k[static_cast<std::size_t>(A * rule.size() + B + 1)];
+        at(A, p + A) = 1;
+    }
+    for (int i = 0; i < p; ++i) {
+        int best = i;
+        for (int r = i; r < p; ++r)
+            if (std::abs(at(r, i)) > std::abs(at(best, i))) best = r;
+        for (int j = 0; j < 2 * p; ++j) std::swap(at(i, j), at(best, j));
+        const Wide pivot = at(i, i);
+        for (int j = 0; j < 2 * p; ++j) at(i, j) /= pivot;
+        for (int r = 0; r < p; ++r) {
+            const Wide factor = at(r, i);
+            for (int j = 0; r != i && j < 2 * p; ++j) at(r, j) -= factor * at(i, j);
+        }
+    }
+    std::vector<double> inverse(static_cast<std::size_t>(p * p));
+    for (int i = 0; i < p; ++i)
+        for (int j = 0; j < p; ++j)
+            inverse[static_cast<std::size_t>(p * i + j)] = static_cast<double>(at(i, p + j));
+    return inverse;
 }
 
 }   // namespace livens

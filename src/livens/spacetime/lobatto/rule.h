@@ -34,4 +34,7 @@ ElementRule element_rule(Points points, int degree);
 ElementRule rule_of(const Method& method);
 inline ElementRule lobatto_rule(int degree) { return element_rule(Points::lobatto, degree); }
 
+/// The inverse of K_AB = k_AB with rows A = 0..p-1 and columns B = 1..p, row by row.
+std::vector<double> inverse_of_k(const ElementRule& rule);
+
 }   // namespace livens

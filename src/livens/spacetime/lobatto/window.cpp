@@ -125,9 +125,9 @@ bool LobattoWindow::solve(const NewtonOptions& options, NewtonReport& report)
         return false;
     for (int B = 0; B <= stretch_.degree; ++B) {
         if (B < stretch_.degree) kernel_.impulses(B, system_.balances().own_impulses(B));
-        kernel_.increments(B, work_.raw.data());
-        system_.nodes().place_solved(B, work_.raw.data(), kernel_.pivot(B));
+        system_.nodes().set_pivot(B, kernel_.pivot(B));
     }
+    system_.nodes().place_solved(kernel_.increments(), kernel_.width());
     system_.balances().count_turns(stretch_, system_.nodes());
     return true;
 }
@@ -304,9 +304,12 @@ void LobattoWindow::record_element(int e)
             work_.lambda = work_.end_lambda;
         else if (tables_.rank < tables_.n_rows())
             std::fill(work_.lambda.begin(), work_.lambda.end(), 0.0);
-        for (int c = 0; c < tables_.rank; ++c) {
-            const double own = impulses[c] / (stretch_.h(e) * rule.weights[a]);
-            work_.lambda[rows[c]] = a == p ? work_.lambda[rows[c]] + own : own;
+        const double weight = stretch_.h(e) * rule.weights[a];
+        const int* row = rows.data();
+        double* lambda = work_.lambda.data();
+        for (int c = 0, n = tables_.rank; c < n; ++c) {
+            const double own = impulses[c] / weight;
+            lambda[row[c]] = a == p ? lambda[row[c]] + own : own;
         }
         record_.multipliers(element, place, work_.lambda.data());
     }

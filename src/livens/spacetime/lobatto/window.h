@@ -25,6 +25,7 @@ public:
     bool start_from(const Guess& guess) override;
     bool near_state(State& state) const override;
     Closed close(const Trust& trust, SolveReport& report) override;
+    RankLoss rank_loss() const override { return rank_loss(0); }
     void divided(int element) override { record_.divided(element); }
     std::vector<Matrix34> positions(int element_end) const override;
     Place worst() const override;

@@ -88,13 +88,13 @@ bool LobattoWindow::end_element(int e, SolveReport& report)
     for (int a = 1; a <= p; ++a) tables_.turns.follow(Configurations(nodes.X(e * p + a)), next.angles);
     std::copy_n(nodes.X(A), next.X.size(), next.X.begin());
     std::copy_n(nodes.low(A), next.X.size(), next.X_low.begin());
-    std::copy_n(nodes.maps(A), next.X.size(), next.maps.begin());
+    if (!kernel_.is_solved()) std::copy_n(nodes.maps(A), next.X.size(), next.maps.begin());
     for (int b = 0; mesh_end(e) % 16 == 15 && b < tables_.n_bodies(); ++b)
         if (tables_.bodies[b].dofs == 6) polish(next.X.data() + 12 * b);
     // the node's own basis, where nothing asks for it any more
     const bool is_free = is_last && !is_radau() && stretch_.is_unknown(A) && !kernel_.is_solved();
     ConstraintBasis* known = is_free && system_.bases_fit() ? &system_.nodes().own_basis(A) : nullptr;
-    if (!instant_.prepare(next, here.rows, known))
+    if (!instant_.prepare(next, here.rows, known, kernel_.factor_at_end()))
         return fail(report, "the free motions carry no inertia at t = " + to_text(next.t, 6) + " s");
     if (!rows_compatible(next, report)) return false;
     const double weight = stretch_.h(e) * rule.weights[p];
