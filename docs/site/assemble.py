@@ -46,31 +46,10 @@ def sections(text: str, level: int = 2) -> tuple[str, list[tuple[str, str]]]:
     return text[:first], [(head.group(1).strip(), text[head.end():end]) for head, end in zip(heads, ends)]
 
 
-NESTED = r"\((?:[^()\n]|\([^()\n]*\))*\)"   # parentheses with one more pair inside
-
-
-def bare(index: str) -> str:
-    """An index or a power without the brackets around it."""
-    return index[1:-1] if index[0] in "({" else index
-
-
 def formulas(text: str) -> str:
-    """Symbols in the sentences of the theory with their indices and powers set as such; nothing else changes."""
-    def of_prose(match: re.Match[str]) -> str:
-        return f"{match.group(1)}<sub>{bare(match.group(2))}</sub>"
-
-    def of_power(match: re.Match[str]) -> str:
-        return f"{match.group(1)}<sup>{bare(match.group(2))}</sup>"
-
-    def prose(part: str) -> str:
-        """s_A, w_c, M_A': what is between backticks or in links stays."""
-        pieces = re.split(r"(`[^`\n]*`|\]\([^)]*\))", part)
-        index = re.compile(r"(?<![\w.])([A-Za-zΑ-ω]{1,2})_(\{[^{}\n]*\}|[A-Za-z0-9]{1,3}(?!\w))")
-        power = re.compile(rf"([\w)])\^(\{{[^{{}}\n]*\}}|{NESTED}|[-−]?\w{{1,3}}(?!\w))")
-        return "".join(piece if number % 2 else power.sub(of_power, index.sub(of_prose, piece))
-                       for number, piece in enumerate(pieces))
-
-    return outside_fences(text, prose)
+    """Formulas within sentences as MyST has them. GitHub is given $`x`$ where Markdown would take `_`, `~`,
+    or a backslash before anything but a letter out of $x$."""
+    return outside_fences(text, lambda part: re.sub(r"\$`([^`\n]+)`\$", r"$\1$", part))
 
 
 def raised(text: str) -> str:
@@ -162,7 +141,7 @@ class Site:
             wanted.add(file)
             if source:
                 text = self.relinked(source, page, text)
-            put(file, tabs(re.sub(r"^```math$", "```{math}", text, flags=re.M)))
+            put(file, tabs(re.sub(r"^```math$", "```{math}", formulas(text), flags=re.M)))
         for copy, source in self.copies.items():
             file = self.folder / copy
             wanted.add(file)
@@ -234,7 +213,7 @@ def add_theory(site: Site) -> None:
         page = f"theory/{name}"
         whole = f"## {heading}{text}"
         site.known_anchors(source, whole, page, True)
-        site.add(page, formulas(raised(whole)), source)
+        site.add(page, raised(whole), source)
     site.where[source, ""] = ("theory/index", "")
     site.pages["theory/index"] = (source, head + "\n" + toctree(names, depth=2))
 

@@ -3,7 +3,7 @@
 // Nothing but files of FOLDER may be asked for, nothing may be wider than a phone, and a live report opens where its still was.
 import { chromium } from "playwright-core";
 import assert from "node:assert/strict";
-import { existsSync } from "node:fs";
+import { existsSync, readdirSync } from "node:fs";
 import { resolve } from "node:path";
 import { pathToFileURL } from "node:url";
 
@@ -18,9 +18,9 @@ const browser = await chromium.launch({
   args: ["--no-sandbox", "--disable-background-networking", "--disable-component-update", "--host-resolver-rules=MAP * ~NOTFOUND"],
 });
 const base = pathToFileURL(root).href;
-const pages = ["index", "tutorial", "install", "howto/index", "howto/motors", "gallery/index", "gallery/four_bar", "theory/the-element",
-  "joints", "scenario", "reference/python", "reference/cpp/spacetime", "diagnostics/index", "diagnostics/inertia-triangle",
-  "coming_from/adams", "performance"];
+const pages = ["index", "tutorial", "install", "howto/index", "howto/motors", "gallery/index", "gallery/four_bar", "joints", "scenario", "reference/python", "reference/cpp/spacetime", "diagnostics/index", "diagnostics/inertia-triangle",
+  "coming_from/adams", "performance", "paper", "notation", "trust", "validation", "results",
+  ...readdirSync(`${root}/theory`).filter((file) => file.endsWith(".html")).map((file) => `theory/${file.slice(0, -5)}`)];
 for (const name of pages) {
   const page = await browser.newPage({ viewport: { width: 390, height: 844 } });
   const asked = [], said = [];

@@ -44,7 +44,9 @@ katex = Katex()
 
 def inline(self, node):
     import docutils.nodes
-    self.body.append(katex.html(node.astext(), False))
+    html = katex.html(node.astext(), False)
+    tail = node.get("tail", "")
+    self.body.append(f'<span class="kept">{html}{tail}</span>' if tail else html)
     raise docutils.nodes.SkipNode
 
 
@@ -65,6 +67,17 @@ def copy_style(app, exception):
         (target / "katex.min.css").write_text(style, encoding="utf-8")
         for font in (source / "fonts").glob("*.woff2"):
             shutil.copyfile(font, target / "fonts" / font.name)
+
+
+def keep_marks(app, doctree, name):
+    """A mark behind a short formula stays on its line."""
+    import docutils.nodes
+    for node in list(doctree.findall(docutils.nodes.math)):
+        behind = node.next_node(descend=False, siblings=True)
+        marks = re.match(r"[).,;:]+", behind) if isinstance(behind, docutils.nodes.Text) else None
+        if marks and len(node.astext()) <= 16:
+            node["tail"] = marks.group(0)
+            behind.parent.replace(behind, docutils.nodes.Text(behind[marks.end():]))
 
 
 def as_text(app, what, name, obj, options, lines):
@@ -91,6 +104,7 @@ def share_sidebars():
 def setup(app):
     share_sidebars()
     app.connect("autodoc-process-docstring", as_text)
+    app.connect("doctree-resolved", keep_marks)
     app.add_html_math_renderer("livens", inline_renderers=(inline, None), block_renderers=(block, None))
     app.add_css_file("katex/katex.min.css")
     app.connect("build-finished", copy_style)
