@@ -11,7 +11,7 @@ Recorded on one machine in benchmarks/recorded.json, which benchmarks/record.py 
     docs/paper.md, docs/theory.md   what the experiments have seen: paper.py
 Read in sources:
     README.md, docs/examples.md     accuracies: each is one that a test of that example asks for (two are measured here)
-    docs/theory.md, docs/program.md   constants of the engine and bounds of tests: sources.py
+    docs/theory.md, docs/program.md, docs/validation.md   constants of the engine and bounds of tests: sources.py
     docs/theory.md        limits of stability, computed of the rows: stability.py
     changes/0006-the-fastest.md   counts of instructions
     docs/performance.md   ratios follow from the times on the same page, which benchmarks/peers/write.py makes; so it does

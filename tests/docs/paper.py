@@ -76,6 +76,8 @@ SAYS = [
     ("where a single summand has «4» N m", "fig14_angular_momentum_spatial", ["one summand of the last term of (P36)"]),
     ("its sum is «3e-15» N m", "fig14_angular_momentum_spatial", ["last term of (P36)"]),
     ("impulse itself is wrong by up to «7e-2» N m s", FIG04, ["the rule's impulse is wrong, midpoint, quarter"]),
+    ("grows from mesh to mesh and is −«3.58» between the two finest", "fig03_condition_numbers", ["linear natural, lower: last slope, condition_2"]),
+    ("while the directors differ by up to «2.0»", "fig12_spatial_trajectory", ["projected against consistent: directors"]),
     ("«2.53» for cubic Lagrange functions, «1.49» for quadratic splines", FIG05,
      ["rectangular, whole: lagrange 3 natural lower", "rectangular, whole: bspline 2 natural lower"]),
 ]
