@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <functional>
 #include <future>
+#include <optional>
 #include <ranges>
 #include <string>
 #include <thread>
@@ -146,10 +148,13 @@ bool is_of_python(const Model& model)
     return std::ranges::any_of(model.loads(), [](const Load& load) { return load.type == "python"; });
 }
 
-/// judged() in a thread of its own while this one, which is Python's, looks after signals. After one the
-/// thread is left to itself: it holds all it needs, and ends.
-Result judged_beside(Unjudged&& motion)
+/// judged(), of a large motion in a thread of its own, while this one asks whether anybody still waits for it. When
+/// nobody does there is no result, and that thread is left to itself: it holds all it needs, and ends.
+std::optional<Result> judged_while(const std::function<bool()>& goes_on, Unjudged&& motion)
 {
+    constexpr std::size_t small = 100'000;   // numbers, which are judged within some milliseconds
+    if (motion.solution.motion.X.values.size() <= small || is_of_python(motion.scenario->model))
+        return judged(std::move(motion));
     auto task = std::make_shared<std::packaged_task<Result()>>(
         [kept = std::make_shared<Unjudged>(std::move(motion))] { return judged(std::move(*kept)); });
     std::future<Result> result = task->get_future();
@@ -159,10 +164,8 @@ Result judged_beside(Unjudged&& motion)
         task.reset();
         --n_left;
     }).detach();
-    while (result.wait_for(std::chrono::milliseconds(20)) != std::future_status::ready) {
-        const nb::gil_scoped_acquire lock;
-        if (PyErr_CheckSignals() != 0) throw nb::python_error();
-    }
+    while (result.wait_for(std::chrono::milliseconds(20)) != std::future_status::ready)
+        if (!goes_on()) return {};
     return result.get();
 }
 
@@ -176,19 +179,19 @@ void wait_for_the_rest()
 Result solve_one(const Shared& scenario, nb::object progress, double most_bytes)
 {
     Watch watch(std::move(progress));
-    Result result;
+    std::optional<Result> result;
     {
         const nb::gil_scoped_release unlock;
         Unjudged motion = solved(
             scenario, [&](const Progress& p) { return watch.goes_on(p); }, most_bytes);
-        const std::size_t size = motion.solution.motion.X.values.size();
-        constexpr std::size_t small = 100'000;   // numbers, which are judged within some milliseconds
-        const bool is_beside = size > small && !is_of_python(scenario->model);
-        if (!watch.has_failed())
-            result = is_beside ? judged_beside(std::move(motion)) : judged(std::move(motion));
+        const auto no_signal = [] {
+            const nb::gil_scoped_acquire lock;
+            return PyErr_CheckSignals() == 0;
+        };
+        if (!watch.has_failed()) result = judged_while(no_signal, std::move(motion));
     }
-    if (watch.has_failed() || PyErr_Occurred() != nullptr) throw nb::python_error();
-    return result;
+    if (!result || PyErr_Occurred() != nullptr) throw nb::python_error();
+    return std::move(*result);
 }
 
 /// What became of one of many.
@@ -212,7 +215,7 @@ void solve_variant(Variant& variant, double most_bytes, std::atomic<bool>& is_st
         Unjudged motion = solved(
             std::make_shared<Scenario>(std::move(*read.scenario)),
             [&](const Progress&) { return !is_stopped; }, most_bytes);
-        if (!is_stopped) variant.result = judged(std::move(motion));
+        if (!is_stopped) variant.result = judged_while([&] { return !is_stopped.load(); }, std::move(motion));
     } catch (...) {
         variant.failure = std::current_exception();
     }
