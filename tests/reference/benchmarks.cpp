@@ -32,6 +32,15 @@ TEST(Benchmarks, MeetThePublishedDigits)
     }
 }
 
+/// The lower brick's turn about its long axis is good to 1e-11 at best by 5 s, however short the elements.
+TEST(Benchmarks, WhereRoundingDecidesTheRunSaysSo)
+{
+    const Scenario s = published_problems()[6].scenario;
+    const Solution solution = solve(s.model, {s.model.start()}, Span{0, 5, 3e-12}, s.method, s.options);
+    EXPECT_EQ(solution.report.status, SolveStatus::inaccurate);
+    EXPECT_NE(solution.report.message.find("rounding"), std::string::npos) << solution.report.message;
+}
+
 TEST(Benchmarks, AnotherProblemDoesNotMeetThem)
 {
     Published problem = published_problems()[4];

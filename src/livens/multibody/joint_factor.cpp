@@ -58,7 +58,7 @@ void LaneStore::resize(const RowPattern& pattern, int width)
     for (int b = 0; b < p.n_bodies; ++b)
         for (int l = 0; l < width; ++l)   // no turn
             v.place[(7 * b + 3) * width + l] = v.last_place[(7 * b + 3) * width + l] = 1;
-    for (int e = 0; e < p.n_entries; ++e)                                       // those without terms stay
+    for (int e = 0; e < p.n_entries; ++e)   // those without terms stay
         for (int l = 0; l < width; ++l) v.gradients[e * width + l] = p.entries.constants[e];
 }
 
