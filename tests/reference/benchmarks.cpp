@@ -36,7 +36,7 @@ TEST(Benchmarks, MeetThePublishedDigits)
 TEST(Benchmarks, WhereRoundingDecidesTheRunSaysSo)
 {
     const Scenario s = published_problems()[6].scenario;
-    const Solution solution = solve(s.model, {s.model.start()}, Span{0, 5, 3e-12}, s.method, s.options);
+    const Solution solution = solve(s.model, {s.model.start()}, Span{0, 5, 1e-12}, s.method, s.options);
     EXPECT_EQ(solution.report.status, SolveStatus::inaccurate);
     EXPECT_NE(solution.report.message.find("rounding"), std::string::npos) << solution.report.message;
 }

@@ -24,7 +24,7 @@ constexpr double first_share = 0.03;   // of the accuracy: what the elements of 
 constexpr double target = 0.2;         // of the accuracy: what the next try aims at
 constexpr double hopeless = 30;        // times the accuracy: where a try is broken off
 constexpr int most_tries = 6;
-constexpr double well_helped = 0.5;   // error by that of the try before, whose elements lost three times more
+constexpr double well_helped = 0.5;   // error by the least before, whose elements lost three times more
 constexpr double finest = 1e-22;       // that an element can be asked to lose
 constexpr double blind_share = 0.01;   // of the tolerance, for the next try where the second solution failed
 constexpr int preferred_degree = 7, high_degree = 12, lowest_degree = 3;
@@ -78,6 +78,19 @@ struct Try {
     std::optional<Pace> pace{};   // what was learnt of lengths
 };
 
+/// What shorter elements brought.
+struct Tries {
+    double least = std::numeric_limits<double>::infinity();   // error
+    bool helps = true;                                        // that the last one had shorter elements
+
+    void count(const Try& one)
+    {
+        const double error = one.solution.estimate.largest;
+        helps = one.is_broken_off || error < well_helped * least;
+        if (!one.is_broken_off) least = std::min(least, error);
+    }
+};
+
 class ToAccuracy {
 public:
     ToAccuracy(const Model& model, const Problem& problem, const Span& span, const Method& method,
@@ -118,8 +131,7 @@ public:
             const ErrorEstimate& found = one.solution.estimate;
             if (!one.is_broken_off && look_at_rounding(one.solution, tries)) return give_up(std::move(one));
             if (!one.is_broken_off && found.largest <= span_.accuracy) return std::move(one.solution);
-            helps_ = one.is_broken_off || found.largest < well_helped * before_;
-            if (!one.is_broken_off) before_ = found.largest;
+            so_far_.count(one);
             if (tries == most_tries || tolerance_ <= finest) return give_up(std::move(one));
             const double over = found.largest / span_.accuracy * (one.is_broken_off ? 3 : 1);
             const double share = over > 0 ? power(target / over, 1 + 0.5 / degree_of(method_)) : blind_share;
@@ -260,7 +272,7 @@ private:
             report.message += "; the rounding of numbers at the start grows to " + to_text(grown_, 3);
         else
             report.message += tolerance_ <= finest ? ", where rounding alone is left"
-                              : helps_             ? ", with ever shorter elements"
+                              : so_far_.helps      ? ", with ever shorter elements"
                                                    : ", with ever shorter elements, which help no more: "
                                                      "rounding is left";
         report.message += "); try: an earlier end of time, or a larger error in accuracy";
@@ -280,8 +292,7 @@ private:
     int highest_degree_ = 0;   // that is tried where it is not stated
     double tolerance_, length_;
     double grown_ = 0;   // rounding, by the end; 0 as long as nobody asked
-    double before_ = std::numeric_limits<double>::infinity();   // error of the last try that came to its end
-    bool helps_ = true;                                         // that the last try had shorter elements
+    Tries so_far_;
 };
 
 }   // namespace
