@@ -14,6 +14,8 @@ What it reads of scenarios: boxes, cylinders and points, or mass and inertia; re
 cylindrical, prismatic joints and rods, also until an instant; angles that turn at a rate and bodies that are
 led by expressions; forces by value or spline, torques, springs between points, actuators by expressions of
 angles; velocities that are projected at the start; nothing else, which it says.
+
+Where links lie on one line, joints by accelerations say nothing: Parallelograms is one angle of such a set.
 """
 import ast
 import hashlib
@@ -517,6 +519,62 @@ class Mechanism:
         return y[..., :3], y[..., 3:7]
 
 
+class Parallelograms:
+    """y = (angle, rate) of links that turn alike about fixed axes, and of bars between them that do not turn.
+
+    With S the sum of masses times arms, of links to their centres and of bars to the tips, and J that of their
+    inertias: J angle'' = gravity . (axis x S). Where all links lie on one line, other branches begin: the motion
+    stays on this one.
+    """
+    breaks = ()
+
+    def __init__(self, scenario):
+        whole = Mechanism(scenario)
+        assert not whole.loads and {kind for kind, *_ in whole.rows} == {"point", "pair"}, "not read here"
+        joints = [(*entry["between"], real(entry["at"]), real(entry["axis"])) for entry in scenario["joint"]]
+        axis = joints[0][3]
+        pivots = {whole.index[second]: at for first, second, at, _ in joints if first == "world"}
+        tips = [at - pivots[whole.index[first]] for first, _, at, _ in joints if first != "world"]
+        arm = tips[0]
+        speed = dot(axis, times(rotation(whole.start[:, 3:7]), whole.start[:, 10:])[min(pivots)])
+        for _, _, _, one in joints:
+            assert (one == axis).all() and dot(axis, axis) == 1, "axes are not one"
+        assert all((tip == arm).all() for tip in tips), "no parallelograms"
+        self.axis, self.places, self.quaternions = axis, whole.start[:, :3], whole.start[:, 3:7]
+        every = range(len(whole.bodies))
+        self.arms = real([self.places[i] - pivots[i] if i in pivots else arm for i in every])
+        self.turns = np.array([i in pivots for i in every])
+        for i, body in enumerate(whole.bodies):
+            spin = times(rotation(body.q), body.start[10:]) - self.turns[i] * speed * axis
+            slip = body.start[7:10] - speed * cross(axis, self.arms[i])
+            assert max(np.abs(spin).max(), np.abs(slip).max()) < 1e-15, "velocities do not fit"
+        about = real([dot(axis, times(rotation(body.q), times(body.inertia, back(rotation(body.q), axis))))
+                      for body in whole.bodies])
+        self.inertia = (whole.mass * dot(self.arms, self.arms)).sum() + about[self.turns].sum()
+        self.moment = (whole.mass[:, None] * self.arms).sum(0)
+        self.gravity = whole.gravity
+        self.start = real([0, speed])
+
+    def turned(self, angle, arms):
+        """Arms, which are across the axis, and across them."""
+        c, s = np.cos(angle)[..., None, None], np.sin(angle)[..., None, None]
+        across = cross(self.axis + 0 * arms, arms)
+        return c * arms + s * across, c * across - s * arms
+
+    def rate(self, _, y):
+        across = self.turned(y[..., 0], self.moment[None])[1][..., 0, :]
+        return np.stack([y[..., 1], dot(across, self.gravity) / self.inertia], -1)
+
+    def shown(self, y):
+        centres = self.places + self.turned(y[..., 0], self.arms)[0] - self.arms
+        half = (y[..., 0] / 2)[..., None, None]
+        w, v = np.cos(half), np.sin(half) * self.axis
+        q0, qv = self.quaternions[..., :1], self.quaternions[..., 1:]
+        v = np.broadcast_to(v, (*half.shape[:-2], *qv.shape))
+        turned = np.concatenate([w * q0 - dot(v, qv)[..., None], w * qv + q0 * v + cross(v, qv + 0 * v)], -1)
+        return centres, np.where(self.turns[:, None], turned, self.quaternions)
+
+
 def independent(G):
     """Rows of G that span all, by elimination; of a closed loop in space some follow from others."""
     G = np.array(G, float)
@@ -599,16 +657,17 @@ def march(mechanism, end, first=0.1):
     return Motion(real(ends), np.stack(values), mechanism.shown)
 
 
-def of(scenario, end=None, kept_in=None):
+def of(scenario, end=None, kept_in=None, kind=Mechanism):
     """The motion of a scenario's text up to `end` (default: its own); kept in a folder, it is made once."""
     content = tomllib.loads(scenario)
     end = end or content["time"]["end"]
     for key in ("time", "method", "title"):
         content.pop(key, None)
-    mechanism = Mechanism(content)
+    mechanism = kind(content)
     if kept_in is None:
         return march(mechanism, end)
-    mine = hashlib.sha256((repr(content) + repr(end) + pathlib.Path(__file__).read_text("utf-8")).encode())
+    mine = hashlib.sha256((repr(content) + repr(end) + kind.__name__ +
+                           pathlib.Path(__file__).read_text("utf-8")).encode())
     path = pathlib.Path(kept_in) / f"{mine.hexdigest()[:20]}.npz"
     if not path.exists():
         motion = march(mechanism, end)
