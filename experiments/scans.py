@@ -62,15 +62,19 @@ def errors(run, motion, length):
     return distances(run, motion, length, run["time"], centres, np.nan_to_num(triads))   # nan: points have none
 
 
-def errors_at_ends(run, motion, length):
-    """At all ends of elements, of which `estimated_error` and `accuracy` speak; output times are among them."""
+def errors_everywhere(run, motion, length):
+    """Instants and errors at output times and at all ends of elements, of which `accuracy` and `estimated_error`
+    speak. Nearly all of the former are among the latter: not those on singular positions of the joints."""
     if "X" not in run.file.variables:
-        return np.array([math.inf])
+        return np.zeros(1), np.array([math.inf])
     ends = run["element_end"]
     X = run["X"][np.searchsorted(run["X_node"], ends)]
     triads = X[:, :, 1:]
     centres = X[:, :, 0] + (run["body_center_of_mass"][None, :, :, None] * triads).sum(axis=2)
-    return distances(run, motion, length, ends, centres, triads)
+    there = distances(run, motion, length, ends, centres, triads)
+    if "time" not in run.file.variables:
+        return ends, there
+    return np.concatenate([ends, run["time"]]), np.concatenate([there, errors(run, motion, length)])
 
 
 def so_far(e, text):
