@@ -10,9 +10,14 @@ rest and the last coefficients are rounding.
     motion = truth.of(scenario)            # text of a scenario, docs/scenario.md
     centres, triads = motion.at(times)     # (time, body, xyz) m; (time, body, xyz, director)
 
-What it reads of scenarios: boxes and points, or mass and inertia; revolute, universal, spherical joints and
-rods; forces, torques and springs without tables; nothing else, which it says.
+What it reads of scenarios: boxes, cylinders and points, or mass and inertia; revolute, universal, spherical,
+cylindrical, prismatic joints and rods, also until an instant; angles that turn at a rate and bodies that are
+led by expressions; forces by value or spline, torques, springs between points, actuators by expressions of
+angles; velocities that are projected at the start; nothing else, which it says.
+
+Where links lie on one line, joints by accelerations say nothing: Parallelograms is one angle of such a set.
 """
+import ast
 import hashlib
 import pathlib
 import tomllib
@@ -110,6 +115,65 @@ def dot(a, b):
     return (a * b).sum(-1)
 
 
+# ---------------------------------------------------------------- laws
+
+def expression(text):
+    """A function of jets by name, (value, rate, second rate); of numbers, + - * / and sin."""
+    def of(node, names):
+        match node:
+            case ast.Constant(value=number):
+                return REAL(number), 0, 0
+            case ast.Name(id="pi"):
+                return 4 * np.arctan(REAL(1)), 0, 0
+            case ast.Name(id=name):
+                return names[name]
+            case ast.UnaryOp(op=ast.USub(), operand=operand):
+                return tuple(-x for x in of(operand, names))
+            case ast.BinOp(left=left, op=ast.Add() | ast.Sub() as op, right=right):
+                sign = 1 if isinstance(op, ast.Add) else -1
+                return tuple(x + sign * y for x, y in zip(of(left, names), of(right, names)))
+            case ast.BinOp(left=left, op=ast.Mult() | ast.Div() as op, right=right):
+                (x, dx, ddx), (y, dy, ddy) = of(left, names), of(right, names)
+                if isinstance(op, ast.Div):
+                    y, dy, ddy = 1 / y, -dy / y**2, 2 * dy * dy / y**3 - ddy / y**2
+                return x * y, dx * y + x * dy, ddx * y + 2 * dx * dy + x * ddy
+            case ast.Call(func=ast.Name(id="sin"), args=[argument]):
+                x, dx, ddx = of(argument, names)
+                return np.sin(x), np.cos(x) * dx, np.cos(x) * ddx - np.sin(x) * dx * dx
+        raise AssertionError(f"not read here: {ast.unparse(node)}")
+    tree = ast.parse(text, mode="eval").body
+    return lambda names: of(tree, names)
+
+
+class Spline:
+    """Cubic between rows, constant outside; two continuous derivatives, three next to the ends."""
+
+    def __init__(self, times, values):
+        self.times, self.values = real(times), real(values)
+        h, n = np.diff(self.times), len(times)
+        assert n >= 4, "not read here: short splines"
+        A, b = np.zeros((n, n), REAL), np.zeros(self.values.shape, REAL)
+        slopes = np.diff(self.values, axis=0) / h[:, None]
+        for i in range(1, n - 1):
+            A[i, i - 1:i + 2] = h[i - 1], 2 * (h[i - 1] + h[i]), h[i]
+            b[i] = 6 * (slopes[i] - slopes[i - 1])
+        A[0, :3] = h[1], -h[0] - h[1], h[0]
+        A[-1, -3:] = h[-1], -h[-1] - h[-2], h[-2]
+        self.bends = solve(A[None], b[None])[0]
+
+    def at(self, t):
+        """At instants of which none is on the other side of a row."""
+        middle = (t[0] + t[-1]) / 2
+        if not self.times[0] <= middle <= self.times[-1]:
+            end = self.values[0 if middle < self.times[0] else -1]
+            return np.broadcast_to(end, (len(t), *end.shape))
+        i = int(np.searchsorted(self.times, middle)) - 1 if middle > self.times[0] else 0
+        h = self.times[i + 1] - self.times[i]
+        s = ((t - self.times[i]) / h)[:, None]
+        return (1 - s) * self.values[i] + s * self.values[i + 1] - h * h / 6 * s * (1 - s) * (
+            (2 - s) * self.bends[i] + (1 + s) * self.bends[i + 1])
+
+
 # ---------------------------------------------------------------- the mechanism
 
 class Body:
@@ -120,11 +184,15 @@ class Body:
                  "rotation_vector", "velocity", "angular_velocity", "angular_velocity_body"}
         assert set(entry) <= known, f"not read here: {set(entry) - known}"
         shape = entry.get("shape", {})
-        assert set(shape) <= {"box", "point"}, f"not read here: {shape}"
+        assert set(shape) <= {"box", "point", "cylinder"}, f"not read here: {shape}"
         self.is_point = "point" in shape
         edges = real(shape.get("box", [0, 0, 0]))
         self.mass = real(entry["mass"]) if "mass" in entry else real(entry["density"]) * edges.prod()
         square = edges * edges
+        if "cylinder" in shape:
+            assert set(shape["cylinder"]) == {"radius", "length"} and "mass" in entry, "not read here: tubes"
+            radius, length = real(shape["cylinder"]["radius"]), real(shape["cylinder"]["length"])
+            square = real([3 * radius**2, 3 * radius**2, length**2])   # of the box that turns alike
         self.inertia = np.diag(self.mass * (square.sum() - square) / 12)
         if "inertia" in entry:
             given = real(entry["inertia"])
@@ -171,22 +239,29 @@ class Mechanism:
     """f of y' = f(t, y), y = (centre 3, quaternion 4, velocity 3, spin 3) of each body."""
 
     def __init__(self, scenario):
-        known = {"format", "title", "gravity", "body", "joint", "load", "time", "method"}
+        known = {"format", "title", "gravity", "body", "joint", "drive", "load", "sensor", "start"}
         assert set(scenario) <= known, f"not read here: {set(scenario) - known}"
+        assert scenario.get("start", {}) in ({}, {"initial": "project"}), "not read here: [start]"
         self.gravity = real(scenario.get("gravity", [0, 0, 0]))
         self.bodies = [Body(entry) for entry in scenario["body"]]
         self.index = {"world": -1} | {entry["name"]: i for i, entry in enumerate(scenario["body"])}
+        self.rows = []     # (kind, what it ties, until)
+        self.angles = {}   # of hinges by name: what they are at the start, and directions that tell them
+        for entry in scenario.get("joint", []):
+            self.rows += [(*row, entry.get("until", np.inf)) for row in self.joint(entry)]
+        self.rows += [(*self.drive(entry), np.inf) for entry in scenario.get("drive", [])]
         self.loads = [self.load(entry) for entry in scenario.get("load", [])]
-        self.joints = [self.joint(entry) for entry in scenario.get("joint", [])]
         self.breaks = sorted({t for load in self.loads for t in (load.get("from"), load.get("until"))
-                              if t is not None})
+                              if t is not None} |
+                             {t for load in self.loads if "table" in load for t in load["table"].times} |
+                             {until for *_, until in self.rows if until < np.inf})
         self.mass = real([body.mass for body in self.bodies])
         self.inertia = np.stack([body.inertia for body in self.bodies])
         self.inverse = np.stack([body.inverse for body in self.bodies])
         self.start = np.stack([body.start for body in self.bodies])
-        self.rows = None
-        G, _ = self.conditions(self.start[None])
-        self.rows = independent(G[0].reshape(-1, 6 * len(self.bodies)))
+        self.independent = {}   # rows by what acts
+        if "start" in scenario:
+            self.start = self.projected(self.start)
 
     # a point or a direction of a body: (index, vector from the centre of mass in body axes)
 
@@ -203,35 +278,77 @@ class Mechanism:
         return body, axis if body < 0 else back(rotation(self.bodies[body].q), axis)
 
     def joint(self, entry):
-        """(kind, two points, pairs of directions that stay perpendicular)."""
+        """Rows (kind, what they tie); directions of pairs stay perpendicular."""
+        known = {"name", "type", "between", "at", "axis", "axes", "points", "length", "coordinate", "until"}
+        assert set(entry) <= known, f"not read here: {set(entry) - known}"
         assert "points" not in entry or entry["type"] == "rod", "joints are placed by at"
         if entry["type"] == "rod":
-            return "rod", self.points(entry), []
+            p, q = (self.bodies[b].start[:3] + times(rotation(self.bodies[b].q), r) if b >= 0 else r
+                    for b, r in self.points(entry))
+            length = np.sqrt(dot(p - q, p - q))
+            assert abs(entry.get("length", length) - length) < 1e-12, "not read here: a rod that does not fit"
+            return [("rod", self.points(entry))]
         first, second = entry["between"]
         at = [(self.index[name], real(entry["at"]) if name == "world" else
                self.bodies[self.index[name]].seen_from(entry["at"])) for name in (first, second)]
         if entry["type"] == "spherical":
-            return "point", at, []
+            return [("point", at)]
         if entry["type"] == "universal":
             axes = entry["axes"]
-            return "point", at, [(self.direction(first, axes[0]), self.direction(second, axes[1]))]
-        assert entry["type"] == "revolute", f"not read here: {entry['type']}"
+            pair = self.direction(first, axes[0]), self.direction(second, axes[1])
+            return [("point", at), ("pair", pair)]
+        assert entry["type"] in ("revolute", "cylindrical", "prismatic"), f"not read here: {entry['type']}"
         axis = real(entry["axis"])
         across = cross(axis, np.eye(3, dtype=REAL)[np.argmin(np.abs(axis))])
-        return "point", at, [(self.direction(first, axis), self.direction(second, other))
-                             for other in (across, cross(axis, across))]
+        both = across, cross(axis, across)
+        pairs = [("pair", (self.direction(first, axis), self.direction(second, other))) for other in both]
+        if entry["type"] == "revolute":
+            tell = (first, axis), (first, both[0]), (first, both[1]), (second, both[0])
+            begin = REAL(entry.get("coordinate", 0))
+            self.angles[entry.get("name")] = begin, [self.direction(*of) for of in tell]
+            return [("point", at), *pairs]
+        if entry["type"] == "prismatic":
+            pairs.append(("pair", (self.direction(first, both[0]), self.direction(second, both[1]))))
+        return pairs + [("across", (self.direction(first, other), *at)) for other in both]
+
+    def drive(self, entry):
+        """(kind, what follows and its law: a function of t that gives jets)."""
+        if entry["type"] == "joint":
+            assert set(entry) <= {"name", "type", "joint", "rate"}, f"not read here: {entry}"
+            rate = REAL(entry["rate"])
+            return "angle", (self.angles[entry["joint"]], lambda t: (rate * t, rate, 0))
+        assert set(entry) <= {"name", "type", "body", "expression"} and entry["type"] == "body", \
+            f"not read here: {entry}"
+        laws = [expression(text) for text in entry["expression"]]
+
+        def path(t):
+            jets = [law({"t": (t, 1, 0)}) for law in laws]
+            return [np.stack([np.zeros_like(t) + jet[k] for jet in jets], -1) for k in range(3)]
+        assert not path(real([0]))[0].any(), "the path does not begin where the body stands"
+        body = self.index[entry["body"]]
+        return "led", ((body, -self.bodies[body].centre), path)
 
     def load(self, entry):
         known = {"name", "type", "body", "value", "point", "from", "until", "between", "points", "stiffness",
-                 "damping", "free_length", "frame"}
+                 "damping", "free_length", "frame", "table", "joint", "inputs", "expression"}
         assert set(entry) <= known, f"not read here: {set(entry) - known}"
         load = dict(entry)
         if entry["type"] == "spring":
             load["ends"] = self.points(entry)
+        elif entry["type"] == "actuator":
+            load["law"] = expression(entry["expression"])
+            load["angle"] = self.angles[entry["joint"]]
+            load["inputs"] = {symbol: what.rpartition(".") for symbol, what in entry["inputs"].items()}
+            assert {what for *_, what in load["inputs"].values()} <= {"angle", "angle_rate"}, "other inputs"
         else:
+            assert entry["type"] in ("force", "torque") and "expression" not in entry, "not read here: a load"
             load["index"] = self.index[entry["body"]]
             load["arm"] = real(entry.get("point", [0, 0, 0])) - self.bodies[load["index"]].centre
-            load["value"] = real(entry["value"])
+            if "table" in entry:
+                assert entry["table"].get("interpolation") == "spline", "not read here: straight lines"
+                load["table"] = Spline(entry["table"]["times"], entry["table"]["values"])
+            else:
+                load["value"] = real(entry["value"])
         return load
 
     def of_point(self, at, y, R, is_direction=False):
@@ -247,45 +364,109 @@ class Mechanism:
             value, rate = value + y[:, body, :3], rate + y[:, body, 7:10]
         return value, rate, times(Rb, cross(w, turned)), Rb
 
-    def conditions(self, y):
-        """G (k, row, body, 6) and c with G (a, alpha) = c."""
+    def spin(self, body, y, R):
+        return times(R[:, body], y[:, body, 10:]) if body >= 0 else np.zeros((len(y), 3), REAL)
+
+    def angle(self, of, y, R):
+        """Angle of a hinge, its rate and its axis. Turns are not counted: beyond 3 rad it is no number."""
+        begin, (axis, u, v, other) = of
+        a, u1, v1, u2 = (self.of_point(d, y, R, True)[0] for d in (axis, u, v, other))
+        turned = np.arctan2(dot(v1, u2) * np.sqrt(dot(u1, u1)[0] / dot(v1, v1)[0]), dot(u1, u2))
+        turned[np.abs(turned) > 3] = np.nan
+        return begin + turned, dot(a, self.spin(other[0], y, R) - self.spin(axis[0], y, R)), a
+
+    def conditions(self, t, y):
+        """G (k, row, body, 6) of what acts at t, c with G (a, alpha) = c, and r with G (v, w) = r."""
         R = rotation(y[..., 3:7])
-        G, c = [], []
+        G, c, r = [], [], []
         zero = np.zeros((len(y), len(self.bodies), 6), REAL)
 
-        def row(sides, right):
+        def row(sides, right, rate=0):
             g = zero.copy()
-            for (body, r), n, Rb, is_direction in sides:
+            for (body, arm), n, is_direction in sides:
                 if body < 0:
                     continue
                 if not is_direction:
                     g[:, body, :3] += n
-                g[:, body, 3:] += cross(np.broadcast_to(r, n.shape), back(Rb, n))   # n . R (alpha x r)
+                # n . R (alpha x arm)
+                g[:, body, 3:] += cross(np.broadcast_to(arm, n.shape), back(R[:, body], n))
             G.append(g)
             c.append(right)
+            r.append(np.zeros(len(y), REAL) + rate)
 
-        for kind, (p, q), pairs in self.joints:
-            (x, v, a, Rp), (xq, vq, aq, Rq) = self.of_point(p, y, R), self.of_point(q, y, R)
-            if kind == "rod":
-                d, rate = x - xq, v - vq
-                row([(p, d, Rp, False), (q, -d, Rq, False)], -dot(rate, rate) - dot(d, a - aq))
+        def turning(sides, right, rate=0):
+            row([], right, rate)
+            for body, n in sides:
+                if body >= 0:
+                    G[-1][:, body, 3:] += back(R[:, body], n)
+
+        middle = (t[0] + t[-1]) / 2
+        acting = tuple(middle < until for *_, until in self.rows)
+        axes = [np.broadcast_to(e, (len(y), 3)) for e in np.eye(3, dtype=REAL)]
+        for (kind, what, _), acts in zip(self.rows, acting):
+            if not acts:
+                continue
+            if kind in ("rod", "point"):
+                p, q = what
+                (x, v, a, _), (xq, vq, aq, _) = self.of_point(p, y, R), self.of_point(q, y, R)
+                if kind == "rod":
+                    d, rate = x - xq, v - vq
+                    row([(p, d, False), (q, -d, False)], -dot(rate, rate) - dot(d, a - aq))
+                    continue
+                for n in axes:
+                    row([(p, n, False), (q, -n, False)], -dot(n, a - aq))
+            elif kind == "pair":
+                e, n = what
+                (x, v, a, _), (xn, vn, an, _) = self.of_point(e, y, R, True), self.of_point(n, y, R, True)
+                row([(e, xn, True), (n, x, True)], -dot(a, xn) - dot(x, an) - 2 * dot(v, vn))
+            elif kind == "across":
+                u, p, q = what
+                (x, v, a, _), (xq, vq, aq, _) = self.of_point(p, y, R), self.of_point(q, y, R)
+                n, rate, bend, _ = self.of_point(u, y, R, True)
+                row([(q, n, False), (p, -n, False), (u, xq - x, True)],
+                    -dot(n, aq - a) - 2 * dot(rate, vq - v) - dot(bend, xq - x))
+            elif kind == "angle":
+                (_, (axis, _, _, other)), law = what
+                n, rate, _, _ = self.of_point(axis, y, R, True)
+                _, speed, faster = law(t)
+                turning([(other[0], n), (axis[0], -n)], faster - dot(rate, self.spin(other[0], y, R)), speed)
             else:
-                for e in np.eye(3, dtype=REAL):
-                    n = np.broadcast_to(e, x.shape)
-                    row([(p, n, Rp, False), (q, -n, Rq, False)], -dot(n, a - aq))
-            for e, n in pairs:
-                (x, v, a, Re), (xn, vn, an, Rn) = self.of_point(e, y, R, True), self.of_point(n, y, R, True)
-                row([(e, xn, Re, True), (n, x, Rn, True)], -dot(a, xn) - dot(x, an) - 2 * dot(v, vn))
+                point, path = what
+                _, rate, bend = path(t)
+                a = self.of_point(point, y, R)[2]
+                for n in axes:
+                    row([(point, n, False)], dot(n, bend - a), dot(n, rate))
+                    turning([(point[0], n)], np.zeros(len(y), REAL))
         if not G:
-            return np.zeros((len(y), 0, len(self.bodies), 6), REAL), np.zeros((len(y), 0), REAL)
-        G, c = np.stack(G, 1), np.stack(c, 1)
-        return (G, c) if self.rows is None else (G[:, self.rows], c[:, self.rows])
+            return np.zeros((len(y), 0, len(self.bodies), 6), REAL), *2 * [np.zeros((len(y), 0), REAL)]
+        G, c, r = np.stack(G, 1), np.stack(c, 1), np.stack(r, 1)
+        if acting not in self.independent:
+            self.independent[acting] = independent(G[0].reshape(-1, 6 * len(self.bodies)))
+        kept = self.independent[acting]
+        return G[:, kept], c[:, kept], r[:, kept]
+
+    def changed(self, G, free, right):
+        """`free` (k, body, 6) plus the least in the metric of the masses with which G gives `right`."""
+        by_mass = np.concatenate([G[..., :3] / self.mass[:, None],
+                                  times(self.inverse, G[..., 3:])], -1).reshape(len(G), G.shape[1], -1)
+        flat = G.reshape(by_mass.shape)
+        A = np.einsum("kri,ksi->krs", flat, by_mass)
+        scale = np.sqrt(np.einsum("krr->kr", A))
+        right = (right - np.einsum("kri,ki->kr", flat, free.reshape(len(G), -1))) / scale
+        reactions = solve(A / scale[:, :, None] / scale[:, None], right[..., None])[..., 0] / scale
+        return free + np.einsum("kri,kr->ki", by_mass, reactions).reshape(free.shape)
+
+    def projected(self, start):
+        """A start whose joints are closed, with the nearest velocities that follow joints and drives."""
+        G, _, r = self.conditions(real([0]), start[None])
+        return np.concatenate([start[:, :7], self.changed(G, start[None, :, 7:], r)[0]], -1)
 
     def accelerations(self, t, y):
-        """(k, body, 6): of centres, and spin rates in body axes; t: any instant between the same breaks."""
+        """(k, body, 6): of centres, and spin rates in body axes; t: instants between the same breaks."""
         R, w = rotation(y[..., 3:7]), y[..., 10:]
         force = np.zeros(w.shape, REAL) + self.mass[:, None] * self.gravity
         torque = -cross(w, times(self.inertia, w))
+        middle = (t[0] + t[-1]) / 2
 
         def push(body, arm, F):
             if body >= 0:
@@ -293,7 +474,7 @@ class Mechanism:
                 torque[:, body] += cross(np.broadcast_to(arm, F.shape), back(R[:, body], F))
 
         for load in self.loads:
-            if not load.get("from", -np.inf) <= t <= load.get("until", np.inf):
+            if not load.get("from", -np.inf) <= middle <= load.get("until", np.inf):
                 continue
             if load["type"] == "spring":
                 (x, v, _, _), (xq, vq, _, _) = (self.of_point(end, y, R) for end in load["ends"])
@@ -305,31 +486,93 @@ class Mechanism:
                 push(*load["ends"][0], F)
                 push(*load["ends"][1], -F)
                 continue
+            if load["type"] == "actuator":
+                names = {"t": (t, 1, 0)}
+                for symbol, (joint, _, what) in load["inputs"].items():
+                    names[symbol] = self.angle(self.angles[joint], y, R)[what == "angle_rate"], 0, 0
+                T = load["law"](names)[0][:, None] * self.angle(load["angle"], y, R)[2]
+                (first, _), _, _, (second, _) = load["angle"][1]
+                for body, turn in ((first, -T), (second, T)):
+                    if body >= 0:
+                        torque[:, body] += back(R[:, body], turn)
+                continue
             b = load["index"]
-            value = np.broadcast_to(load["value"], w[:, b].shape)
+            value = load["table"].at(t) if "table" in load else np.broadcast_to(load["value"], w[:, b].shape)
             value = times(R[:, b], value) if load.get("frame") == "body" else value
             if load["type"] == "force":
                 push(b, load["arm"], value)
             else:
                 torque[:, b] += back(R[:, b], value)
         free = np.concatenate([force / self.mass[:, None], times(self.inverse, torque)], -1)
-        G, c = self.conditions(y)
-        if G.shape[1] == 0:
-            return free
-        by_mass = np.concatenate([G[..., :3] / self.mass[:, None],
-                                  times(self.inverse, G[..., 3:])], -1).reshape(len(y), G.shape[1], -1)
-        flat = G.reshape(by_mass.shape)
-        A = np.einsum("kri,ksi->krs", flat, by_mass)
-        scale = np.sqrt(np.einsum("krr->kr", A))
-        right = (c - np.einsum("kri,ki->kr", flat, free.reshape(len(y), -1))) / scale
-        reactions = solve(A / scale[:, :, None] / scale[:, None], right[..., None])[..., 0] / scale
-        return free + np.einsum("kri,kr->ki", by_mass, reactions).reshape(free.shape)
+        G, c, _ = self.conditions(t, y)
+        return self.changed(G, free, c) if G.shape[1] else free
 
     def rate(self, t, y):
         q, w = y[..., 3:7], y[..., 10:]
         spin = np.concatenate([-dot(q[..., 1:], w)[..., None], q[..., :1] * w + cross(q[..., 1:], w)], -1) / 2
         a = self.accelerations(t, y)
         return np.concatenate([y[..., 7:10], spin, a], -1)
+
+    @staticmethod
+    def shown(y):
+        """Centres and quaternions of the bodies."""
+        return y[..., :3], y[..., 3:7]
+
+
+class Parallelograms:
+    """y = (angle, rate) of links that turn alike about fixed axes, and of bars between them that do not turn.
+
+    With S the sum of masses times arms, of links to their centres and of bars to the tips, and J that of their
+    inertias: J angle'' = gravity . (axis x S). Where all links lie on one line, other branches begin: the motion
+    stays on this one.
+    """
+    breaks = ()
+
+    def __init__(self, scenario):
+        whole = Mechanism(scenario)
+        assert not whole.loads and {kind for kind, *_ in whole.rows} == {"point", "pair"}, "not read here"
+        joints = [(*entry["between"], real(entry["at"]), real(entry["axis"])) for entry in scenario["joint"]]
+        axis = joints[0][3]
+        pivots = {whole.index[second]: at for first, second, at, _ in joints if first == "world"}
+        tips = [at - pivots[whole.index[first]] for first, _, at, _ in joints if first != "world"]
+        arm = tips[0]
+        speed = dot(axis, times(rotation(whole.start[:, 3:7]), whole.start[:, 10:])[min(pivots)])
+        for _, _, _, one in joints:
+            assert (one == axis).all() and dot(axis, axis) == 1, "axes are not one"
+        assert all((tip == arm).all() for tip in tips), "no parallelograms"
+        self.axis, self.places, self.quaternions = axis, whole.start[:, :3], whole.start[:, 3:7]
+        every = range(len(whole.bodies))
+        self.arms = real([self.places[i] - pivots[i] if i in pivots else arm for i in every])
+        self.turns = np.array([i in pivots for i in every])
+        for i, body in enumerate(whole.bodies):
+            spin = times(rotation(body.q), body.start[10:]) - self.turns[i] * speed * axis
+            slip = body.start[7:10] - speed * cross(axis, self.arms[i])
+            assert max(np.abs(spin).max(), np.abs(slip).max()) < 1e-15, "velocities do not fit"
+        about = real([dot(axis, times(rotation(body.q), times(body.inertia, back(rotation(body.q), axis))))
+                      for body in whole.bodies])
+        self.inertia = (whole.mass * dot(self.arms, self.arms)).sum() + about[self.turns].sum()
+        self.moment = (whole.mass[:, None] * self.arms).sum(0)
+        self.gravity = whole.gravity
+        self.start = real([0, speed])
+
+    def turned(self, angle, arms):
+        """Arms, which are across the axis, and across them."""
+        c, s = np.cos(angle)[..., None, None], np.sin(angle)[..., None, None]
+        across = cross(self.axis + 0 * arms, arms)
+        return c * arms + s * across, c * across - s * arms
+
+    def rate(self, _, y):
+        across = self.turned(y[..., 0], self.moment[None])[1][..., 0, :]
+        return np.stack([y[..., 1], dot(across, self.gravity) / self.inertia], -1)
+
+    def shown(self, y):
+        centres = self.places + self.turned(y[..., 0], self.arms)[0] - self.arms
+        half = (y[..., 0] / 2)[..., None, None]
+        w, v = np.cos(half), np.sin(half) * self.axis
+        q0, qv = self.quaternions[..., :1], self.quaternions[..., 1:]
+        v = np.broadcast_to(v, (*half.shape[:-2], *qv.shape))
+        turned = np.concatenate([w * q0 - dot(v, qv)[..., None], w * qv + q0 * v + cross(v, qv + 0 * v)], -1)
+        return centres, np.where(self.turns[:, None], turned, self.quaternions)
 
 
 def independent(G):
@@ -352,10 +595,10 @@ def independent(G):
 # ---------------------------------------------------------------- its motion
 
 class Motion:
-    """Pieces of polynomials: ends (piece + 1), values (piece, node, body, 13)."""
+    """Pieces of polynomials: ends (piece + 1), values (piece, node, ...), and what they show of the bodies."""
 
-    def __init__(self, ends, values):
-        self.ends, self.values = ends, values
+    def __init__(self, ends, values, shown):
+        self.ends, self.values, self.shown = ends, values, shown
 
     def at(self, t):
         """Centres of mass (time, body, xyz) and triads (time, body, xyz, director) at instants t."""
@@ -367,17 +610,18 @@ class Motion:
             mine = piece == k
             s = (t[mine] - self.ends[k]) / (self.ends[k + 1] - self.ends[k])
             y[mine] = interpolate(self.values[k], s)
-        q = y[..., 3:7] / np.sqrt(dot(y[..., 3:7], y[..., 3:7]))[..., None]
-        return y[..., :3].astype(float), rotation(q).astype(float)
+        centres, q = self.shown(y)
+        q = q / np.sqrt(dot(q, q))[..., None]
+        return centres.astype(float), rotation(q).astype(float)
 
 
 def piece_of(mechanism, t, h, y0):
     """Values at the nodes and the iterations of one piece; None where it is too long."""
     y = np.broadcast_to(y0, (N + 1, *y0.shape))
-    middle, scale, last = t + h / 2, np.abs(y0).max(), np.inf
+    scale, last = np.abs(y0).max(), np.inf
     for k in range(MOST_ITERATIONS):
         with np.errstate(all="ignore"):   # a piece that is too long runs away
-            f = mechanism.rate(middle, y)
+            f = mechanism.rate(t + h * POINTS, y)
         new = y0 + h * np.tensordot(INTEGRALS, f, 1)
         change = np.abs(new - y).max()
         y = new
@@ -410,22 +654,24 @@ def march(mechanism, end, first=0.1):
             ends.append(stop if step == left else ends[-1] + step)
             y = found[-1]
             h = step * REAL(1.25 if k < 40 else 1)
-    return Motion(real(ends), np.stack(values))
+    return Motion(real(ends), np.stack(values), mechanism.shown)
 
 
-def of(scenario, end=None, kept_in=None):
+def of(scenario, end=None, kept_in=None, kind=Mechanism):
     """The motion of a scenario's text up to `end` (default: its own); kept in a folder, it is made once."""
     content = tomllib.loads(scenario)
     end = end or content["time"]["end"]
     for key in ("time", "method", "title"):
         content.pop(key, None)
+    mechanism = kind(content)
     if kept_in is None:
-        return march(Mechanism(content), end)
-    mine = hashlib.sha256((repr(content) + repr(end) + pathlib.Path(__file__).read_text("utf-8")).encode())
+        return march(mechanism, end)
+    mine = hashlib.sha256((repr(content) + repr(end) + kind.__name__ +
+                           pathlib.Path(__file__).read_text("utf-8")).encode())
     path = pathlib.Path(kept_in) / f"{mine.hexdigest()[:20]}.npz"
     if not path.exists():
-        motion = march(Mechanism(content), end)
+        motion = march(mechanism, end)
         path.parent.mkdir(parents=True, exist_ok=True)
         np.savez(path, ends=motion.ends, values=motion.values)
     with np.load(path) as kept:
-        return Motion(kept["ends"], kept["values"])
+        return Motion(kept["ends"], kept["values"], mechanism.shown)
