@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // How perturbations of the start grow, and until when double precision says something.
 #include "convergence/studies.h"
+#include "livens/multibody/drives.h"
+#include "livens/time/time_laws.h"
 
 namespace livens::tests {
 namespace {
@@ -61,6 +63,31 @@ TEST(Horizon, GrowthOnAnUnstableRestIsItsExponential)
         EXPECT_NEAR(std::log(s.growth[80] / s.growth[40]) / 2, std::sqrt(9.81), 0.01);
         EXPECT_NEAR(s.growth[0], 1, 1e-12);
     }
+}
+
+/// Where drives determine the motion, neighbours of the start are the start, and their distance is rounding.
+TEST(Horizon, WhatIsDrivenDoesNotGrow)
+{
+    Model model({0, 0, -9.81});
+    const Matrix3 inertia{0.02, 0, 0, 0, 0.08, 0, 0, 0, 0.09};
+    model.add_body(rigid_body("crank", {1, {0.5, 0, 0}, inertia}, {.angular_velocity = {0, 2, 0}}));
+    model.add_body(point_mass("slug", 1, {3, 0, 0}, {0, 0, 0}));
+    const Joint shaft = revolute("shaft", world, 0, {.axis_first = {0, 1, 0}, .axis_second = {0, 1, 0}});
+    model.add_joint(shaft);
+    model.add_joint(point_on_line("bore", world, 1, {.axis_first = {1, 0, 0}}));
+    model.add_joint(rod("coupler", 0, 1, {.point_first = {1, 0, 0}}, 2));
+    const std::vector<Matrix34> X = model.start().X;
+    model.add_joint(driven_coordinate("motor", shaft, shaft.coordinates.front(), polynomial({0, 2}),
+                                      Configurations(X.front().a)));
+    SolveOptions options;
+    options.growth = true;
+    const Solution s =
+        solve(model, {model.start()}, Span{.start = 0, .end = 2, .accuracy = 1e-12}, Lobatto{0}, options);
+    ASSERT_TRUE(s.report.converged()) << s.report.message;
+    EXPECT_LT(s.estimate.largest, 1e-12);
+    const State end = s.motion.at_end(s.motion.n_elements());
+    const double x = std::cos(4) + std::sqrt(4 - std::pow(std::sin(4), 2));
+    EXPECT_NEAR(end.X[1].column(0)[0], x, 1e-12);
 }
 
 }   // namespace

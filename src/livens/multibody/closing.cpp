@@ -257,9 +257,11 @@ RateFault worst_rate(const Model& model, const State& state, std::span<const dou
 void settle_velocities(const Model& model, StartPolicy policy, std::span<const int> independent,
                        std::span<const double> drives, State& state, std::vector<std::string>& notes)
 {
-    const double speed = largest_speed(model, state);
+    constexpr double slowest = 1e-3;   // of what weight makes along a length: below, a fault may be rounding
+    const double stated = largest_speed(model, state),
+                 speed = std::max(stated, slowest * std::sqrt(norm(model.gravity()) * model.length()));
     const bool is_driven = std::ranges::any_of(drives, [](double rate) { return rate != 0; });
-    if (speed == 0 && !is_driven) return;
+    if (stated == 0 && !is_driven) return;
     const RateFault fault = worst_rate(model, state, drives, speed);
     if (fault.relative <= 8 * eps) return;
     if (fault.relative > start_tolerance && policy == StartPolicy::check) throw InputError(fault.complaint);

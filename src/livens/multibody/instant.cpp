@@ -84,6 +84,7 @@ bool InstantSystem::prepare(InstantState& state, const std::vector<int>& rows, C
         state.basis.choose(tables_, {state.t}, state.X.data(), state.maps.data());
         hold(state, std::vector<int>(state.basis.rows));
         state.rows_chosen = true;
+        pivot_at_choice_ = state.smallest_pivot;
     }
     return tables_.regular || prepare_singular(state);
 }
@@ -119,9 +120,11 @@ void InstantSystem::add_basis(InstantState& state) const
     state.has_basis = true;
 }
 
-bool InstantSystem::rows_are_fit(const InstantState& state) const
+bool InstantSystem::rows_are_fit(const InstantState& state)
 {
-    if (!(state.smallest_pivot > 1e-6)) return false;
+    pivot_at_choice_ = pivot_at_choice_ > 0 ? pivot_at_choice_ : state.smallest_pivot;
+    // where the mechanism turns, rows that were independent grow alike: others hold better long before
+    if (!(state.smallest_pivot > std::max(1e-6, 0.1 * pivot_at_choice_))) return false;
     for (int r = 0; r < tables_.n_rows(); ++r)
         if (!(std::abs(tables_.value(r, {state.t}, state.X.data())) <= 1e-9 * tables_.rows[r].row->scale))
             return false;

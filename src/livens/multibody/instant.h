@@ -16,7 +16,7 @@ struct InstantState {
     std::vector<double> angles;     ///< of loads, see Turns
     std::vector<double> X;          ///< 12 a body
     std::vector<double> X_low;      ///< what rounding took off X, see add_increments()
-    std::vector<double> maps;     ///< of the scaled twists, 12 a body
+    std::vector<double> maps;       ///< of the scaled twists, 12 a body
     std::vector<double> velocity;   ///< twists [v, w]
     std::vector<double> p;          ///< momentum and spin of each body, tangent to the constraints; handed on
     std::vector<double> momentum;   ///< p in scaled rows
@@ -49,7 +49,8 @@ public:
 
     /// Prepares maps and what constraints hold at state.t and state.X, with the given independent rows as
     /// long as they are fit: the others hold to 1e-9 of their scale, and the smallest scaled pivot is above
-    /// 1e-6; else rows are chosen again among all (`rows_chosen`). False if a free motion carries no inertia.
+    /// 1e-6 and a tenth of what it was when they were chosen; else rows are chosen again among all
+    /// (`rows_chosen`). False if a free motion carries no inertia.
     /// `known` is exchanged with the state's basis where it serves: built for this X with all rows of the
     /// model, as are then state.maps.
     bool prepare(InstantState& state, const std::vector<int>& rows, ConstraintBasis* known = nullptr,
@@ -76,7 +77,7 @@ public:
 private:
     void give_room(ConstraintBasis& basis) const;
     void hold(InstantState& state, const std::vector<int>& rows, const NearFactor& near = {});
-    bool rows_are_fit(const InstantState& state) const;
+    bool rows_are_fit(const InstantState& state);
     bool prepare_singular(const InstantState& state);
     void apply_mass(const InstantState& state, const double* y, double* out);
     void solve(const InstantState& state, double* forces, double* y);
@@ -90,6 +91,7 @@ private:
     std::vector<double> a_, b_, V_, centripetal_, raw_, curvatures_;
     bool is_sparse_;
     std::shared_ptr<const RowPattern> pattern_;   // of the last rows
+    double pivot_at_choice_ = 0;
 };
 
 }   // namespace livens

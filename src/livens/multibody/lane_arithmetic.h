@@ -9,6 +9,7 @@
 #define LIVENS_REGISTER 2   // doubles in a register
 #endif
 #define LIVENS_INLINE inline __attribute__((always_inline))
+#define LIVENS_LAMBDA __attribute__((always_inline))
 
 namespace livens::lanes {
 namespace {
@@ -25,7 +26,7 @@ struct Register<1> {
 /// W doubles in registers.
 template <int W>
 struct Lanes {
-    static constexpr int size = W < LIVENS_REGISTER ? W : LIVENS_REGISTER, count = W / size;
+    static constexpr int width = W, size = W < LIVENS_REGISTER ? W : LIVENS_REGISTER, count = W / size;
     using Part = typename Register<size>::type;
     Part part[count];
 };

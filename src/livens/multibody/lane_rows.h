@@ -2,18 +2,10 @@
 // Constraint rows in lanes: gradients, violations, and projections by a factor of G G^T.
 #pragma once
 
-#include "livens/multibody/lane_arithmetic.h"
-#include "livens/multibody/lanes.h"
+#include "livens/multibody/lane_factor.h"
 
 namespace livens::lanes {
 namespace {
-
-/// Where number i begins. It is never negative, which saves an instruction.
-template <int W, class T>
-LIVENS_INLINE T* at(T* x, std::int32_t i)
-{
-    return x + static_cast<std::uint64_t>(static_cast<std::uint32_t>(i)) * W;
-}
 
 template <int W>
 void form_products(const Pattern& p, const Values& start, const Values& v, bool changes)
@@ -56,79 +48,127 @@ void form_violations(const Pattern& p, const double* constants, const double* nu
     }
 }
 
-/// The lower triangle of a Cholesky factor of G G^T, row by row, and its pivots over the rows' own squares.
-template <int W>
-void factorise(const Pattern& p, const Values& v)
+template <int m, bool is_start, int W, bool rows>
+LIVENS_INLINE void solve_down(const Pattern& p, const Part& part, const At<W, rows>& factor, double* x)
 {
-    Lanes<W> pivot = all<W>(1);
-    const Pair *g = p.factor.gradients, *f = p.factor.products;
-    for (int r = 0; r < p.n_rows; ++r) {
-        for (int t = p.factor.begin[r]; t < p.factor.begin[r + 1]; ++t) {
-            const Entry& entry = p.factor.entries[t];
-            Lanes<W> s = all<W>(0);
-            for (const Pair* end = p.factor.gradients + entry.gradients_end; g != end; ++g)
-                s += load<W>(at<W>(v.gradients, g->a)) * load<W>(at<W>(v.gradients, g->b));
-            const Lanes<W> own = s;
-            for (const Pair* end = p.factor.products + entry.entries_end; f != end; ++f)
-                s -= load<W>(at<W>(v.factor, f->a)) * load<W>(at<W>(v.factor, f->b));
-            if (entry.pivot >= 0) {
-                store(v.factor + t * W, s * load<W>(v.factor + entry.pivot * W));
-                continue;
-            }
-            Lanes<W> left = s / own;
-            for (int i = 0; i < left.count; ++i) {   // what is not positive, or no number, is no pivot
-                left.part[i] = s.part[i] > 0 ? left.part[i] : typename Lanes<W>::Part{};
-                pivot.part[i] = pivot.part[i] < left.part[i] ? pivot.part[i] : left.part[i];
-            }
-            store(v.factor + t * W, 1 / root(s));
+    using Some = Batch<W, m>;
+    const Group& group = part.group;
+    const int n = is_unrolled<W> ? m : group.n, first = part.first;
+    const auto entry = [&](int r, int k) LIVENS_LAMBDA {
+        return get<Some, is_start>(factor, group.diagonal + triangle(r, k));
+    };
+    Some s[m];
+    each<m>([&](auto r) LIVENS_LAMBDA { s[r.value] = get<Some, W>(x, group.first + first + r.value); });
+    for (const Block* b = p.blocks + group.blocks; b != p.blocks + (&group)[1].blocks; ++b)
+        for (int j = 0; j < b->n; ++j) {
+            const Some y = get<Some, W>(x, b->first + j);
+            each<m>([&](auto r) LIVENS_LAMBDA {
+                s[r.value] -= get<Some, is_start>(factor, b->entry + j * n + first + r.value) * y;
+            });
         }
-    }
-    store(v.pivots, pivot);
+    each<m>([&](auto r) LIVENS_LAMBDA {
+        for (int k = 0; k < first; ++k)
+            s[r.value] -= entry(first + r.value, k) * get<Some, W>(x, group.first + k);
+        each<r.value>([&](auto k) LIVENS_LAMBDA {
+            s[r.value] -= entry(first + r.value, first + k.value) * s[k.value];
+        });
+        s[r.value] = s[r.value] * entry(first + r.value, first + r.value);
+        put<W>(x, group.first + first + r.value, s[r.value]);
+    });
+}
+
+template <int m, bool is_start, int W, bool rows>
+LIVENS_INLINE void solve_up(const Pattern& p, const Part& part, const At<W, rows>& factor, double* x)
+{
+    using Some = Batch<W, m>;
+    const Group& group = part.group;
+    const int n = is_unrolled<W> ? m : group.n, first = part.first;
+    const auto entry = [&](int r, int k) LIVENS_LAMBDA {
+        return get<Some, is_start>(factor, group.diagonal + triangle(r, k));
+    };
+    Some s[m];
+    each<m>([&](auto r) LIVENS_LAMBDA { s[r.value] = get<Some, W>(x, group.first + first + r.value); });
+    each<m>([&](auto i) LIVENS_LAMBDA {
+        constexpr int r = m - 1 - i.value;
+        s[r] = s[r] * entry(first + r, first + r);
+        each<r>([&](auto k) LIVENS_LAMBDA { s[k.value] -= entry(first + r, first + k.value) * s[r]; });
+        for (int k = 0; k < first; ++k)
+            put<W>(x, group.first + k, get<Some, W>(x, group.first + k) - entry(first + r, k) * s[r]);
+        put<W>(x, group.first + first + r, s[r]);
+    });
+    for (const Block* b = p.blocks + group.blocks; b != p.blocks + (&group)[1].blocks; ++b)
+        for (int j = 0; j < b->n; ++j) {
+            Some y = get<Some, W>(x, b->first + j);
+            each<m>([&](auto r) LIVENS_LAMBDA {
+                y -= get<Some, is_start>(factor, b->entry + j * n + first + r.value) * s[r.value];
+            });
+            put<W>(x, b->first + j, y);
+        }
 }
 
 /// x <- (G G^T)^-1 x
 template <int W, bool rows>
 void solve(const Pattern& p, const At<W, rows>& factor, double* x)
 {
-    for (int r = 0; r < p.n_rows; ++r) {
-        const int last = p.factor.begin[r + 1] - 1;
-        Lanes<W> s = load<W>(x + r * W);
-        for (int t = p.factor.begin[r]; t < last; ++t) s -= factor[t] * load<W>(at<W>(x, p.factor.column[t]));
-        store(x + r * W, s * factor[last]);
-    }
-    for (int r = p.n_rows - 1; r >= 0; --r) {
-        const int last = p.factor.begin[r + 1] - 1;
-        const Lanes<W> s = load<W>(x + r * W) * factor[last];
-        store(x + r * W, s);
-        for (int t = p.factor.begin[r]; t < last; ++t) {
-            double* other = at<W>(x, p.factor.column[t]);
-            store(other, load<W>(other) - factor[t] * s);
-        }
-    }
+    for_groups<W, false>(p, [&](const Part& part, auto m, auto is_start, int l) LIVENS_LAMBDA {
+        solve_down<m.value, rows && is_start.value>(p, part, from_lane(factor, l), x + l);
+    });
+    for_groups<W, true>(p, [&](const Part& part, auto m, auto is_start, int l) LIVENS_LAMBDA {
+        solve_up<m.value, rows && is_start.value>(p, part, from_lane(factor, l), x + l);
+    });
 }
 
 /// out <- G y + rates, which may be null.
 template <int W, bool rows>
 void multiply(const Pattern& p, const At<W, rows>& G, const double* y, const double* rates, double* out)
 {
-    for (int r = 0; r < p.n_rows; ++r) {
-        Lanes<W> s = rates != nullptr ? load<W>(rates + r * W) : all<W>(0);
-        for (int e = p.row_begin[r]; e < p.row_begin[r + 1]; ++e) s += G[e] * load<W>(at<W>(y, p.twist[e]));
-        store(out + r * W, s);
-    }
+    for_groups<W, false>(p, [&](const Part& part, auto m, auto is_start, int l) LIVENS_LAMBDA {
+        using Some = Batch<W, m.value>;
+        const Group& group = part.group;
+        const int first = group.first + part.first;
+        const std::int32_t* begin = p.unit_begin + first;
+        const At<W, rows> of = from_lane(G, l);
+        Some s[m.value];
+        each<m.value>([&](auto r) LIVENS_LAMBDA {
+            s[r.value] = rates != nullptr ? get<Some, W>(rates + l, first + r.value) : all<Some::width>(0);
+            for (const Unit* u = p.units + begin[r.value]; u != p.units + begin[r.value + 1]; ++u)
+                s[r.value] += u->value * get<Some, W>(y + l, u->twist);
+        });
+        for (const Column* g = p.columns + group.columns; g != p.columns + (&group)[1].columns; ++g) {
+            const Some by = get<Some, W>(y + l, g->twist);
+            each<m.value>([&](auto r) LIVENS_LAMBDA {
+                s[r.value] += get < Some, rows && is_start.value > (of, g->entry + part.first + r.value) * by;
+            });
+        }
+        each<m.value>([&](auto r) LIVENS_LAMBDA { put<W>(out + l, first + r.value, s[r.value]); });
+    });
 }
 
 /// y <- y - G^T x
 template <int W, bool rows>
 void take_off(const Pattern& p, const At<W, rows>& G, const double* x, double* y)
 {
-    for (int r = 0; r < p.n_rows; ++r) {
-        const Lanes<W> s = load<W>(x + r * W);
-        for (int e = p.row_begin[r]; e < p.row_begin[r + 1]; ++e) {
-            double* out = at<W>(y, p.twist[e]);
-            store(out, load<W>(out) - G[e] * s);
+    for_groups<W, false>(p, [&](const Part& part, auto m, auto is_start, int l) LIVENS_LAMBDA {
+        using Some = Batch<W, m.value>;
+        const Group& group = part.group;
+        const int first = group.first + part.first;
+        const std::int32_t* begin = p.unit_begin + first;
+        const At<W, rows> of = from_lane(G, l);
+        Some s[m.value];
+        each<m.value>([&](auto r) LIVENS_LAMBDA {
+            s[r.value] = get<Some, W>(x + l, first + r.value);
+            for (const Unit* u = p.units + begin[r.value]; u != p.units + begin[r.value + 1]; ++u)
+                put<W>(y + l, u->twist, get<Some, W>(y + l, u->twist) - u->value * s[r.value]);
+        });
+        for (const Column* g = p.columns + group.columns; g != p.columns + (&group)[1].columns; ++g) {
+            Some left = get<Some, W>(y + l, g->twist);
+            each<m.value>([&](auto r) LIVENS_LAMBDA {
+                left -= get < Some,
+                    rows && is_start.value > (of, g->entry + part.first + r.value) * s[r.value];
+            });
+            put<W>(y + l, g->twist, left);
         }
-    }
+    });
 }
 
 }   // namespace

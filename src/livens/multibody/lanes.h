@@ -41,30 +41,51 @@ struct Columns {
 struct Pair {
     std::int32_t a, b;
 };
-/// An entry of the factor: products of gradients less products of entries, by the pivot of its column (-1:
-/// on the diagonal).
-struct Entry {
-    std::int32_t gradients_end, entries_end, pivot;
+/// An entry of the gradient of one row that never changes.
+struct Unit {
+    double value;
+    std::int32_t twist;
 };
-/// A lower triangle row by row; the inverse pivots, on the diagonal, end the rows.
-struct Triangle {
-    const std::int32_t* begin;
-    const std::int32_t* column;
-    const Entry* entries;
-    const Pair* gradients;   ///< pairs of the entries, one entry after the other
-    const Pair* products;
+/// Entries of the gradients of a group by one twist: of its rows, one after the other.
+struct Column {
+    std::int32_t twist, entry;
+};
+/// Products of a block with one of another group, over the n rows of a group before both.
+struct Product {
+    std::int32_t a, b, n;
+};
+/// Of the factor, at the rows of its group and the columns of a group before: column by column from `entry`.
+struct Block {
+    std::int32_t first, n;   ///< rows of the group before
+    std::int32_t diagonal;   ///< entry of that group
+    std::int32_t entry;
+    std::int32_t pairs,
+        products;   ///< from here to those of the next block: columns of both that share a twist
+};
+/// Rows of a joint that are eliminated together.
+struct Group {
+    static constexpr int most = 5;   ///< of them; four are two and two
+    std::int32_t first, n;
+    std::int32_t columns, blocks;   ///< from here to those of the next group
+    std::int32_t diagonal;          ///< lower triangle row by row; the inverse pivots end its rows
 };
 
 /// What is known before the numbers: the mechanism and which rows it has, in the order of their elimination.
+/// Of groups and blocks there is one more, behind the last.
 struct Pattern {
-    int n_bodies, n_twists, n_products, n_rows, n_entries;
+    int n_bodies, n_twists, n_products, n_rows, n_groups, n_entries;
     const Body* bodies;
     const Columns* products;
-    const std::int32_t* row_begin;   ///< of the entries of G, which is sparse, row by row
-    const std::int32_t* twist;       ///< column of each
-    Sums entries;                    ///< without terms: constant
+    const Group* groups;
+    const std::int32_t* unit_begin;   ///< of each row
+    const Unit* units;
+    const Column* columns;
+    const Block* blocks;
+    const Pair* pairs;
+    const Product* block_products;
+    const double* constants;   ///< of each entry of the factor: products of units
+    Sums entries;              ///< of the gradients; without terms: constant
     Sums violations;
-    Triangle factor;
 };
 
 /// Arrays of W lanes each; with W = 1 an instant.

@@ -2,28 +2,40 @@
 #include "livens/multibody/row_pattern.h"
 
 #include <algorithm>
-#include <map>
-#include <set>
+#include <utility>
+
+#include "livens/multibody/detail/elimination_order.h"
 
 namespace livens {
 
 /// A linear function of the numbers of a configuration.
 struct RowPattern::Sum {
     double constant = 0;
-    std::map<int, double> factors;
+    std::vector<lanes::Term> terms{};   // few: a search is all that is needed
 
+    void clear(double with)
+    {
+        constant = with;
+        terms.clear();
+    }
     void add(int number, double factor)
     {
-        if (factor != 0) factors[number] += factor;
+        if (factor == 0) return;
+        for (lanes::Term& term : terms)
+            if (term.number == number) return void(term.factor += factor);
+        terms.push_back({number, factor});
     }
 };
 
-void RowPattern::SumTable::add(const Sum& sum)
+void RowPattern::SumTable::add(double constant, std::span<const lanes::Term> sum)
 {
-    for (const auto& [number, factor] : sum.factors)
-        if (factor != 0) terms.push_back({number, factor});
+    const auto first = std::ssize(terms);
+    for (const lanes::Term& term : sum)
+        if (term.factor != 0) terms.push_back(term);
+    std::sort(terms.begin() + first, terms.end(),
+              [](const lanes::Term& a, const lanes::Term& b) { return a.number < b.number; });
     begin.push_back(static_cast<int>(terms.size()));
-    constants.push_back(sum.constant);
+    constants.push_back(constant);
 }
 
 /// 1/2 sum K_pq x_p . x_q + sum B_p . x_p + c over the columns p of both sides, four a side, the first of
@@ -54,40 +66,69 @@ struct RowPattern::Form {
     bool are_directors_of_one(int p, int q) const { return p / 4 == q / 4 && p % 4 != 0 && q % 4 != 0; }
 };
 
+namespace {
+
+/// Of rows that follow each other, those of one joint.
+std::vector<std::vector<int>> groups_of(const Tables& tables, const std::vector<int>& rows)
+{
+    std::vector<std::vector<int>> groups;
+    for (int first = 0, last = 0; first < std::ssize(rows); first = last) {
+        const int joint = tables.model->row_joint(rows[first]);
+        while (last < std::ssize(rows) && tables.model->row_joint(rows[last]) == joint) ++last;
+        for (int left = last - first; left > 0;) {
+            const int n = left == 4 ? 2 : left == 6 ? 3 : std::min(left, lanes::Group::most);
+            groups.emplace_back();
+            for (int r = last - left; n > std::ssize(groups.back()); ++r) groups.back().push_back(r);
+            left -= n;
+        }
+    }
+    return groups;
+}
+
+}   // namespace
+
 RowPattern::RowPattern(const Tables& tables, const std::vector<int>& rows) : chosen_(rows)
 {
     for (int b = 0; b < tables.n_bodies(); ++b) add_body(tables, b);
-    std::vector<std::vector<int>> twists;
-    rows_ = rows;
-    for (const int row : rows) {   // once to see which twists each has
-        clear_rows();
-        add_row(tables, row);
-        twists.emplace_back(twist_.begin(), twist_.end());
+    RowTable table;
+    Sum room;
+    for (const int row : rows) add_row(tables, row, table, room);
+    std::vector<bool> varies(tables.n_twists, false);   // some entry by this twist
+    for (int e = 0; e < std::ssize(table.twist); ++e)
+        if (!table.entries.is_constant(e)) varies[table.twist[e]] = true;
+    const Graph groups = groups_of(tables, rows);
+    Graph twists(groups.size()), arranged;
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+        for (const int r : groups[g])
+            twists[g].insert(twists[g].end(), table.twist.begin() + table.begin[r],
+                             table.twist.begin() + table.begin[r + 1]);
+        std::ranges::sort(twists[g]);
+        twists[g].erase(std::ranges::unique(twists[g]).begin(), twists[g].end());
     }
-    order_rows(twists);
-    clear_rows();
-    for (const int row : rows_) add_row(tables, row);
-    add_factor();
+    std::vector<int> sizes;
+    for (const std::vector<int>& group : groups) sizes.push_back(static_cast<int>(group.size()));
+    const std::vector<int> order = order_of_least_degree(twists, tables.n_twists, sizes);
+    arrange(groups, order, table, varies);
+    for (const int g : order) arranged.push_back(std::move(twists[g]));
+    add_factor(arranged, tables.n_twists);
     view_ = {tables.n_bodies(),
              tables.n_twists,
              static_cast<int>(products_.size()),
              static_cast<int>(rows_.size()),
-             static_cast<int>(twist_.size()),
+             static_cast<int>(order.size()),
+             static_cast<int>(entries_.constants.size()),
              bodies_.data(),
              products_.data(),
-             row_begin_.data(),
-             twist_.data(),
+             groups_.data(),
+             unit_begin_.data(),
+             units_.data(),
+             columns_.data(),
+             blocks_.data(),
+             pairs_.data(),
+             block_products_.data(),
+             constants_.data(),
              entries_.view(),
-             violations_.view(),
-             factor_.view()};
-}
-
-void RowPattern::clear_rows()
-{
-    row_begin_.assign(1, 0);
-    twist_.clear();
-    products_.clear();
-    entries_ = violations_ = {};
+             violations_.view()};
 }
 
 void RowPattern::add_body(const Tables& tables, int b)
@@ -117,20 +158,23 @@ void RowPattern::add_body(const Tables& tables, int b)
 int RowPattern::product(int x, int y)
 {
     if (x > y) std::swap(x, y);
-    const auto is_it = [=](const lanes::Columns& of) { return of.x == x && of.y == y; };
     // one of those that the last rows have, or new
-    const auto recent = products_.end() - std::min<std::ptrdiff_t>(32, std::ssize(products_));
-    auto found = std::find_if(recent, products_.end(), is_it);
-    if (found == products_.end()) found = products_.insert(found, {x, y});
-    return 12 * static_cast<int>(bodies_.size()) + static_cast<int>(found - products_.begin());
+    const auto recent = products_.rbegin() + std::min<std::ptrdiff_t>(32, std::ssize(products_));
+    const auto found = std::find_if(products_.rbegin(), recent,
+                                    [=](const lanes::Columns& of) { return of.x == x && of.y == y; });
+    if (found == recent) {
+        products_.push_back({x, y});
+        return first_product() + static_cast<int>(products_.size()) - 1;
+    }
+    return first_product() + static_cast<int>(products_.rend() - found) - 1;
 }
 
-void RowPattern::add_row(const Tables& tables, int row)
+void RowPattern::add_row(const Tables& tables, int row, RowTable& table, Sum& room)
 {
     const Form form(tables, tables.rows[row]);
-    for (int side = 0; side < form.n; side += 4) add_gradient(form, side);
-    row_begin_.push_back(static_cast<int>(twist_.size()));
-    add_violation(form);
+    for (int side = 0; side < form.n; side += 4) add_gradient(form, side, table, room);
+    table.begin.push_back(static_cast<int>(table.twist.size()));
+    add_violation(form, table, room);
 }
 
 /// sum += factor * d_at . g_p, the gradient by column p being g_p = sum_q K_pq x_q + B_p.
@@ -148,23 +192,23 @@ void RowPattern::add_moment(const Form& form, int at, int p, double factor, Sum&
 
 /// A side's gradient by scaled twists: g_0 / sqrt(M), and L^-1 t with the torque in body axes
 /// t_a = d_c . g_b - d_b . g_c.
-void RowPattern::add_gradient(const Form& form, int side)
+void RowPattern::add_gradient(const Form& form, int side, RowTable& table, Sum& sum)
 {
-    const auto add_entry = [this](const Sum& sum, int twist) {
-        const bool has_terms = std::any_of(sum.factors.begin(), sum.factors.end(),
-                                           [](const auto& term) { return term.second != 0; });
+    const auto add_entry = [&](int twist) {
+        const bool has_terms =
+            std::ranges::any_of(sum.terms, [](const auto& term) { return term.factor != 0; });
         if (!has_terms && sum.constant == 0) return;
-        entries_.add(sum);
-        twist_.push_back(twist);
+        table.entries.add(sum.constant, sum.terms);
+        table.twist.push_back(twist);
     };
     const lanes::Body& body = bodies_[form.place[side] / 12];
     for (int i = 0; i < 3; ++i) {
-        Sum sum{body.inverse_root_mass * form.B[side][i], {}};
+        sum.clear(body.inverse_root_mass * form.B[side][i]);
         for (int q = 0; q < form.n; ++q) sum.add(form.place[q] + i, body.inverse_root_mass * form.K[side][q]);
-        add_entry(sum, body.first + i);
+        add_entry(body.first + i);
     }
     for (int a = 0; body.dofs == 6 && a < 3; ++a) {
-        Sum sum;
+        sum.clear(0);
         for (int e = 0; e < 3; ++e) {
             const int b = side + 1 + (e + 1) % 3, c = side + 1 + (e + 2) % 3;
             const double s = body.spin[3 * a + e];
@@ -172,13 +216,13 @@ void RowPattern::add_gradient(const Form& form, int side)
             add_moment(form, c, b, s, sum);
             add_moment(form, b, c, -s, sum);
         }
-        add_entry(sum, body.first + 3 + a);
+        add_entry(body.first + 3 + a);
     }
 }
 
-void RowPattern::add_violation(const Form& form)
+void RowPattern::add_violation(const Form& form, RowTable& table, Sum& phi)
 {
-    Sum phi{form.c, {}};
+    phi.clear(form.c);
     for (int p = 0; p < form.n; ++p) {
         for (int i = 0; i < 3; ++i) phi.add(form.place[p] + i, form.B[p][i]);
         for (int q = 0; q <= p; ++q) {
@@ -190,79 +234,133 @@ void RowPattern::add_violation(const Form& form)
                 phi.add(product(form.place[p], form.place[q]), k);
         }
     }
-    violations_.add(phi);
+    table.violations.add(phi.constant, phi.terms);
 }
 
-/// An order of least degree on the graph of rows that share a twist; the earlier row where degrees are equal.
-void RowPattern::order_rows(const std::vector<std::vector<int>>& twists)
+/// Groups in this order, a column for each twist that varies; products are numbered as they then come.
+void RowPattern::arrange(const Graph& groups, const std::vector<int>& order, const RowTable& table,
+                         const std::vector<bool>& varies)
+{
+    const std::vector<lanes::Columns> products = std::exchange(products_, {});
+    std::vector<int> number(products.size(), -1), twists;
+    std::vector<lanes::Term> sum;
+    const auto move = [&](const SumTable& from, int i, SumTable& to) {
+        sum.assign(from.terms.begin() + from.begin[i], from.terms.begin() + from.begin[i + 1]);
+        for (lanes::Term& term : sum) {
+            if (term.number < first_product()) continue;
+            const auto m = static_cast<std::size_t>(term.number - first_product());
+            if (number[m] < 0) {
+                number[m] = first_product() + static_cast<int>(products_.size());
+                products_.push_back(products[m]);
+            }
+            term.number = number[m];
+        }
+        to.add(from.constants[i], sum);
+    };
+    for (const int g : order) {
+        groups_.push_back({static_cast<int>(rows_.size()), static_cast<int>(groups[g].size()),
+                           static_cast<int>(columns_.size()), 0, 0});
+        twists.clear();
+        for (const int r : groups[g]) {
+            rows_.push_back(chosen_[r]);
+            for (int e = table.begin[r]; e < table.begin[r + 1]; ++e)
+                if (varies[table.twist[e]])
+                    twists.push_back(table.twist[e]);
+                else
+                    units_.push_back({table.entries.constants[e], table.twist[e]});
+            unit_begin_.push_back(static_cast<int>(units_.size()));
+            move(table.violations, r, violations_);
+        }
+        std::ranges::sort(twists);
+        twists.erase(std::ranges::unique(twists).begin(), twists.end());
+        for (const int twist : twists) {
+            columns_.push_back({twist, static_cast<int>(entries_.constants.size())});
+            for (const int r : groups[g]) {
+                const auto first = table.twist.begin() + table.begin[r];
+                const auto last = table.twist.begin() + table.begin[r + 1];
+                const auto found = std::find(first, last, twist);
+                if (found == last)
+                    entries_.add(0, {});
+                else
+                    move(table.entries, static_cast<int>(found - table.twist.begin()), entries_);
+            }
+        }
+    }
+    groups_.push_back({static_cast<int>(rows_.size()), 0, static_cast<int>(columns_.size()), 0, 0});
+}
+
+/// Group by group. It has blocks at the groups on the ways from those that share a twist with it up the tree
+/// of elimination, in which the parent of a group is the first that has a block there.
+void RowPattern::add_factor(const Graph& twists, int n_twists)
 {
     const int n = static_cast<int>(twists.size());
-    std::map<int, std::vector<int>> rows_at;
-    for (int r = 0; r < n; ++r)
-        for (const int twist : twists[r]) rows_at[twist].push_back(r);
-    std::vector<std::set<int>> beside(n);
-    for (const auto& [twist, rows] : rows_at)
-        for (const int r : rows) beside[r].insert(rows.begin(), rows.end());
-    std::set<std::pair<std::size_t, int>> waiting;
-    for (int r = 0; r < n; ++r) {
-        beside[r].erase(r);
-        waiting.insert({beside[r].size(), r});
-    }
-    std::vector<int> order;
-    while (!waiting.empty()) {
-        const int r = waiting.begin()->second;
-        waiting.erase(waiting.begin());
-        order.push_back(rows_[r]);
-        for (const int s : beside[r]) {
-            waiting.erase({beside[s].size(), s});
-            beside[s].insert(beside[r].begin(), beside[r].end());
-            beside[s].erase(r);
-            beside[s].erase(s);
-            waiting.insert({beside[s].size(), s});
+    Graph groups_at(n_twists);
+    std::vector<int> parent(n, n), seen(n, -1), before;
+    for (int i = 0; i < n; ++i) {
+        before.clear();
+        seen[i] = i;
+        for (const int twist : twists[i]) {
+            for (int j : groups_at[twist])
+                for (; std::exchange(seen[j], i) != i; j = parent[j]) {
+                    before.push_back(j);
+                    parent[j] = std::min(parent[j], i);
+                }
+            groups_at[twist].push_back(i);
         }
+        std::ranges::sort(before);
+        groups_[i].blocks = static_cast<int>(blocks_.size());
+        for (const int j : before) add_block(groups_[i], j);
+        groups_[i].diagonal = n_factor();
+        constants_.resize(constants_.size() +
+                          static_cast<std::size_t>(groups_[i].n * (groups_[i].n + 1) / 2));
+        add_constants(groups_[i], groups_[i], [&](int r, int c) {
+            return c <= r ? &constants_[groups_[i].diagonal + r * (r + 1) / 2 + c] : nullptr;
+        });
     }
-    rows_ = order;
+    groups_[n].blocks = static_cast<int>(blocks_.size());
+    blocks_.push_back(
+        {0, 0, 0, 0, static_cast<int>(pairs_.size()), static_cast<int>(block_products_.size())});
 }
 
-/// Row by row: L_ij = (G_i . G_j - sum_k L_ik L_jk) / L_jj over the columns j < i that rows below share.
-void RowPattern::add_factor()
+void RowPattern::add_block(const lanes::Group& group, int j)
 {
-    const int n = static_cast<int>(rows_.size());
-    std::vector<std::map<int, int>> entries(n);   // of each row: column, place among all
-    std::vector<std::vector<int>> below(n);       // rows that have an entry in a column
-    std::map<int, std::vector<int>> rows_at;
-    const auto pair_gradients = [this](int i, int j, auto&& act) {
-        for (int a = row_begin_[i]; a < row_begin_[i + 1]; ++a)
-            for (int b = row_begin_[j]; b < row_begin_[j + 1]; ++b)
-                if (twist_[a] == twist_[b]) act(a, b);
-    };
-    for (int i = 0; i < n; ++i) {
-        std::set<int> columns{i};
-        for (int e = row_begin_[i]; e < row_begin_[i + 1]; ++e) {
-            std::vector<int>& others = rows_at[twist_[e]];
-            columns.insert(others.begin(), others.end());
-            others.push_back(i);
-        }
-        for (auto j = columns.begin(); j != columns.end(); ++j) {   // grows ahead of j
-            for (const int k : below[*j])
-                if (k < i) columns.insert(k);
-            if (*j == i) break;
-        }
-        for (const int j : columns) {
-            entries[i][j] = static_cast<int>(factor_.entries.size());
-            pair_gradients(i, j, [this](int a, int b) { factor_.gradients.push_back({a, b}); });
-            for (const auto& [k, at] : entries[j]) {
-                const auto other = entries[i].find(k);
-                if (k < j && other != entries[i].end()) factor_.products.push_back({other->second, at});
-            }
-            const int pivot = j == i ? -1 : factor_.begin[j + 1] - 1;
-            factor_.entries.push_back({static_cast<int>(factor_.gradients.size()),
-                                       static_cast<int>(factor_.products.size()), pivot});
-            factor_.column.push_back(j);
-            if (j < i) below[j].push_back(i);
-        }
-        factor_.begin.push_back(static_cast<int>(factor_.entries.size()));
+    const lanes::Group &before = groups_[j], &behind_before = groups_[j + 1];
+    const lanes::Block block{before.first,
+                             before.n,
+                             before.diagonal,
+                             n_factor(),
+                             static_cast<int>(pairs_.size()),
+                             static_cast<int>(block_products_.size())};
+    constants_.resize(constants_.size() + static_cast<std::size_t>(group.n * before.n));
+    add_constants(group, before, [&](int r, int c) { return &constants_[block.entry + c * group.n + r]; });
+    const lanes::Group& behind = (&group)[1];
+    for (int a = group.columns, b = before.columns; a < behind.columns && b < behind_before.columns;) {
+        const int k = columns_[a].twist, l = columns_[b].twist;
+        if (k == l) pairs_.push_back({columns_[a].entry, columns_[b].entry});
+        a += k <= l ? 1 : 0;
+        b += l <= k ? 1 : 0;
     }
+    for (int a = group.blocks, b = before.blocks; a < std::ssize(blocks_) && b < behind_before.blocks;) {
+        const int k = blocks_[a].first, l = blocks_[b].first;
+        if (k == l) block_products_.push_back({blocks_[a].entry, blocks_[b].entry, blocks_[a].n});
+        a += k <= l ? 1 : 0;
+        b += l <= k ? 1 : 0;
+    }
+    blocks_.push_back(block);
+}
+
+/// Products of units of the rows r and c of two groups: what their entry of the factor always has.
+template <class Place>
+void RowPattern::add_constants(const lanes::Group& group, const lanes::Group& before, const Place& place)
+{
+    for (int r = 0; r < group.n; ++r)
+        for (int c = 0; c < before.n; ++c) {
+            double* const sum = place(r, c);
+            for (int a = unit_begin_[group.first + r]; sum != nullptr && a < unit_begin_[group.first + r + 1];
+                 ++a)
+                for (int b = unit_begin_[before.first + c]; b < unit_begin_[before.first + c + 1]; ++b)
+                    if (units_[a].twist == units_[b].twist) *sum += units_[a].value * units_[b].value;
+        }
 }
 
 }   // namespace livens

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <utility>
 
 #include <Eigen/Dense>
 
@@ -74,6 +75,16 @@ public:
             bend[r] = scale_[r] > 0 ? gamma / scale_[r] : 0;
         }
         return bend;
+    }
+
+    /// What bends of a motion are compared with: they are rounding where nothing turns.
+    double least_size(const VectorXd& y) const
+    {
+        const std::vector<double> V = rates(y);
+        double rate = 0;
+        for (std::size_t i = 0; i < V.size(); ++i)
+            rate = std::max(rate, std::abs(V[i]) / (i % 12 < 3 ? tables_.length : 1));
+        return nothing * rate * y.norm();
     }
 
     /// X' of all bodies, 12 numbers each.
@@ -158,20 +169,21 @@ bool asks_nothing(const Curvatures& curvatures, const ClosedStart& closed)
     const auto project = [&](VectorXd& y) {
         return rows.project({y.data(), static_cast<std::size_t>(y.size())}, zero);
     };
-    std::vector<VectorXd> bends;
+    std::vector<std::pair<VectorXd, double>> bends;   // of motions, and their size
     Noise noise;
     for (int motion = 0; motion < 3; ++motion) {
         VectorXd y = noise.vector(n_columns);
         project(y);
-        bends.push_back(curvatures.of(y));
+        const VectorXd bend = curvatures.of(y);
+        bends.emplace_back(bend, std::max(bend.cwiseAbs().maxCoeff(), 1e3 * curvatures.least_size(y)));
     }
     for (std::size_t k = 0; k < redundant.size(); ++k) {
         VectorXd g = rest.col(static_cast<Index>(k));
         const std::vector<double> of_others = project(g);
-        for (const VectorXd& bend : bends) {
+        for (const auto& [bend, size] : bends) {
             double sum = bend[redundant[k]];
             for (std::size_t i = 0; i < independent.size(); ++i) sum -= of_others[i] * bend[independent[i]];
-            if (!(std::abs(sum) <= 1e-3 * nothing * bend.cwiseAbs().maxCoeff())) return false;
+            if (!(std::abs(sum) <= 1e-3 * nothing * size)) return false;
         }
     }
     return true;
@@ -201,7 +213,7 @@ public:
     VectorXd of(const VectorXd& y, double& size) const
     {
         const VectorXd bend = curvatures_.of(y);
-        size = std::max(size, bend.cwiseAbs().maxCoeff());
+        size = std::max({size, bend.cwiseAbs().maxCoeff(), curvatures_.least_size(y)});
         return redundant_.transpose() * bend;
     }
 

@@ -131,7 +131,7 @@ std::vector<double> growth_beside(const State& neighbour, double rate, const Mod
             return Difference(beside[0].motion.at(t), beside[1].motion.at(t));
         };
         if (first == 0) begin = size_of(model, apart_at(mesh.start()).X);
-        if (!(begin > 0)) return {};   // nothing can move
+        if (!(begin > 1e-3 * small)) return {};   // nothing can move but what is driven
         for (int e = first == 0 ? 0 : first + 1; e <= last; ++e)
             grown.push_back(so_far * size_of(model, apart_at(motion.mesh.ends[e]).X) / begin);
         // Near in positions alone is not near: where neighbours cross, their velocities differ most.

@@ -16,6 +16,10 @@ namespace {
 
 // Measured on 436 runs of twelve problems (docs/theory.md, "To an accuracy").
 constexpr double safety = 0.8, shrink = 0.3, grow = 2.5;
+/// Steps of an element that is as long as it should be; and those that cost more than shorter elements do, of
+/// which the next is at least this share.
+constexpr int most_steps = 10;
+constexpr double far_too_many = 30, least_ease = 0.5;
 constexpr double steepest = 0.5;   // of what one length is foretold to be shorter than the one before
 /// After an element that saw nothing of the motion: of its length, and by how much this regains from element
 /// to element, the faster the longer all goes well.
@@ -95,10 +99,12 @@ double Pace::trend_to(double scale)
     return std::clamp(scale / before, steepest, 1.0);
 }
 
-void Pace::accepted(double length, double jump, bool is_slow)
+void Pace::accepted(double length, double jump, int steps)
 {
     // an element that a stop cut short says as much as a whole one, but not beyond what was tried before
-    const double most = std::max((is_slow ? 1 : grow) * length, length < length_ ? length_ : 0);
+    const double tried = steps <= far_too_many && length < length_ ? length_ : 0;
+    const double ease = steps > most_steps ? std::clamp(far_too_many / steps, least_ease, 1.0) : grow;
+    const double most = std::max(ease * length, tried);
     const bool is_rounding = jump < 100 * least_jump;
     regained_ *= regain;
     blind_length_ *= regained_;

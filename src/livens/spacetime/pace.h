@@ -36,8 +36,8 @@ public:
     /// No element end must be at this stop any more, if it may be left.
     void leave(double stop);
     const std::vector<double>& left() const { return left_; }
-    /// `is_slow`: Newton's iteration took many steps, so that nothing is gained by longer elements.
-    void accepted(double length, double jump, bool is_slow);
+    /// `steps`: of the iteration.
+    void accepted(double length, double jump, int steps);
     /// The next element is as long as this, if no stop is nearer.
     void shorten(double length) { length_ = length; }
     bool is_stop(double t) const;

@@ -27,7 +27,7 @@ struct Place {
 /// (docs/theory.md, "Spurious elements").
 struct Trust {
     double velocity_jump = std::numeric_limits<double>::infinity();   ///< see velocity_jump()
-    bool turns = false;   ///< refuse also a body that turns by more than 90 degrees from node to node
+    bool turns = false;       ///< refuse also a body that turns by more than 90 degrees from node to node
     bool full_rank = false;   ///< refuse also an element with a node too near to a singular position
 };
 
@@ -35,14 +35,16 @@ struct Trust {
 /// positions").
 enum class RankLoss { none, inside, at_end };
 
-/// How many elements of a window were closed, whether the next one was refused by Trust, and the velocity
-/// jump of the last one that was looked at (infinite where a body turned too far; 0 if Trust asks for
-/// nothing, or if its rank is why it was refused).
+/// How many elements of a window were closed, whether the next one was refused by Trust or since rows that
+/// were left out as redundant do not hold at its end, and the velocity jump of the last one that was looked
+/// at (infinite where a body turned too far or rows do not hold; 0 if Trust asks for nothing, or if its rank
+/// is why it was refused).
 struct Closed {
     int n_elements = 0;
     bool is_refused = false;
     double velocity_jump = 0;
     RankLoss loss = RankLoss::none;
+    std::string contradiction{};   ///< of rows, if shorter elements do not help
 };
 
 /// A family of elements on a mesh: it states the equations of any stretch of elements, a window, and keeps
@@ -65,8 +67,8 @@ public:
     /// Newton's iteration: the same equations, to the same digits. False: nothing was found, the window is as
     /// before.
     virtual bool solve(const NewtonOptions&, NewtonReport&) { return false; }
-    /// Whether a tangent of the open window takes more than what it is worth, where solve() found nothing.
-    virtual bool is_too_large() const { return false; }
+    /// What a tangent of the open window costs, in elements that solve() solves; 0: it solves none.
+    virtual double tangent_cost() const { return 0; }
     /// The equations of the open window.
     virtual NewtonProblem& equations() = 0;
     /// The family's own guess, cheap and good for short windows. False: it has none here.

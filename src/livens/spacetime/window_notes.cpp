@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "livens/spacetime/detail/window_notes.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "livens/base/text.h"
@@ -15,6 +16,15 @@ constexpr double finest_tolerance = 1e-15;
 
 }   // namespace
 
+double distance_between(std::span<const Matrix34> X, std::span<const Matrix34> others, double length)
+{
+    double distance = 0;
+    for (std::size_t b = 0; b < X.size(); ++b)
+        for (int c = 0; c < 4; ++c)
+            distance = std::max(distance, norm(X[b].column(c) - others[b].column(c)) / (c == 0 ? length : 1));
+    return distance;
+}
+
 std::string count(int n, const char* what) { return std::to_string(n) + " " + what + (n == 1 ? "" : "s"); }
 
 std::string window_at(const TimeMesh& mesh, int first, int last)
@@ -28,6 +38,8 @@ std::string window_at(const TimeMesh& mesh, int first, int last)
 std::string of_failure(const NewtonReport& outcome, int max_iterations, const std::string& window,
                        const Place& worst, std::string advice)
 {
+    if (outcome.status == SolveStatus::cancelled)
+        return "stopped as asked in " + window + "; the motion up to there is complete";
     std::string what = "Newton's iteration found no way on after " + count(outcome.iterations, "iteration");
     std::string fitting = "more and shorter elements, or a lower degree";
     if (outcome.iterations == 0) what = "Newton's iteration found no way on from any guess";
@@ -45,6 +57,18 @@ std::string of_failure(const NewtonReport& outcome, int max_iterations, const st
     const std::string where =
         worst.name.empty() ? "" : "; worst: " + worst.name + " near t = " + to_text(worst.t, 6) + " s";
     return what + " in " + window + where + "; try: " + advice;
+}
+
+std::string of_lie(const std::string& window)
+{
+    return window + " meets its equations, but leaves the velocity that its momentum has, or turns a body by "
+                    "more than "
+                    "90 degrees between nodes; try: more and shorter elements";
+}
+
+std::string of_stop(double t)
+{
+    return "stopped at t = " + to_text(t, 6) + " s as asked; the motion up to there is complete";
 }
 
 std::string of_vanishing(double t)

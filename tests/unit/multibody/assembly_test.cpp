@@ -469,6 +469,20 @@ TEST(ClosedStart, NamesTheJointThatVelocitiesBreak)
     EXPECT_FALSE(assembly.notes.empty());
 }
 
+/// Velocities that are zero but for rounding break no joint.
+TEST(ClosedStart, TakesRoundingForRest)
+{
+    Model model({0, 0, -9.81});
+    model.add_body(brick("box"));
+    model.add_joint(spherical("ball", world, 0, frame(model, world, 0, {0, 0, 0})));
+    State start = model.start();
+    start.V[0] = rate(start.X[0], {0, 1e-16, 0}, {});
+    const ClosedStart assembly = close_start(model, start, StartPolicy::check);
+    EXPECT_LT(largest_rate(model, assembly.start), 1e-16);
+    start.V[0] = rate(start.X[0], {0, 1e-8, 0}, {});
+    EXPECT_EQ(refusal(model, start).code, "start-velocity") << "that is no rounding";
+}
+
 TEST(ClosedStart, ProjectsThePapersInconsistentDirectorRates)
 {
     // d3' = (0, 1, 0) with d2' = 0 breaks d2 . d3 and projects to half the spin.

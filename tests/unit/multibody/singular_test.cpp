@@ -131,6 +131,33 @@ TEST(Mobility, KnowsWhatIsLocked)
     EXPECT_TRUE(m.branches.empty());
 }
 
+/// Where nothing can turn, what the second order asks is rounding, however the axes lie.
+TEST(Mobility, SlidesOnParallelRailsInAnyDirection)
+{
+    for (const Vector3& axis : {Vector3{1, 0, 0}, Vector3{1, 0.2, -0.3}, Vector3{-0.7, 0.9, 0.31}}) {
+        for (const double length : {1e-3, 1.0, 1e4}) {
+            Model model({0, 0, -9.81});
+            const Matrix3 inertia{0.1, 0, 0, 0, 0.2, 0, 0, 0, 0.3};
+            model.add_body(rigid_body("carriage", {1, {}, length * length * inertia}, Placement{}));
+            const auto rail = [&](const char* name, const Vector3& at) {
+                model.add_joint(prismatic(name, world, 0,
+                                          {.point_first = length * at,
+                                           .point_second = length * at,
+                                           .axis_first = axis,
+                                           .axis_second = axis},
+                                          configuration({}, identity<3>()), model.bodies()[0].X));
+            };
+            rail("left", {0, 0.3, 0});
+            rail("right", {0.1, -0.3, 0.2});
+            const Mobility m = mobility_of(model);
+            EXPECT_EQ(m.first_order, 1);
+            EXPECT_FALSE(m.is_singular()) << axis[0] << " " << length;
+            EXPECT_NO_THROW(
+                refuse_singular_start(model, close_start(model, model.start(), StartPolicy::check)));
+        }
+    }
+}
+
 TEST(SingularStart, IsRefusedWithWhatToGive)
 {
     const Model model = Parallelograms{1, flat, 0}.model();

@@ -388,6 +388,36 @@ TEST(MarchKernel, ManyBodiesOnLongElementsNeedNoTangent)
     }
 }
 
+/// A tangent of sixty bodies costs hundreds of elements without one: elements are shortened instead, of the
+/// motion and of the second solution on its elements.
+TEST(MarchKernel, LongChainsToAnAccuracyNeedNoTangent)
+{
+    const int n = 60;
+    Model model({0, 0, -9.81});
+    Vector3 x{};
+    for (int b = 0; b < n; ++b) {   // in a zigzag
+        Placement placement;
+        placement.position = x;
+        if (b % 2 == 1) placement.directors = Matrix3{0, 1, 0, -1, 0, 0, 0, 0, 1};
+        model.add_body(
+            rigid_body(std::to_string(b), with_center(box(50, {1, 0.2, 0.1}), {0.5, 0, 0}), placement));
+        model.add_joint(spherical(std::to_string(b), b - 1, b, {.point_first = {b > 0 ? 1.0 : 0.0, 0, 0}}));
+        x = x + (b % 2 == 1 ? Vector3{0, 1, 0} : Vector3{1, 0, 0});
+    }
+    SolveOptions options;
+    options.judge = false;
+    const Solution s =
+        solve(model, {model.start()}, Span{.start = 0, .end = 1, .accuracy = 1e-4}, Lobatto{}, options);
+    ASSERT_TRUE(s.report.converged()) << s.report.message;
+    EXPECT_EQ(s.report.factorisations, 0);
+    EXPECT_LT(s.report.evaluations, 4000) << "some twenty elements of eight nodes and twenty steps";
+    TimeMesh mesh = s.motion.mesh;
+    mesh.required.clear();
+    const Solution second = solve(model, {model.start()}, mesh, Lobatto{9}, options);
+    ASSERT_TRUE(second.report.converged()) << second.report.message;
+    EXPECT_EQ(second.report.factorisations, 0);
+}
+
 // Room and work grow with the bodies: dense bases of 300 would take gigabytes at the nodes alone.
 TEST(MarchKernel, SolvesLongChains)
 {

@@ -36,7 +36,7 @@ std::vector<double> march(Pace& pace, int p, const Scale& scale, int& refused)
             if (!pace.refused(h, jump)) break;
             continue;
         }
-        pace.accepted(h, jump, false);
+        pace.accepted(h, jump, 1);
         ends.push_back(end);
     }
     return ends;
@@ -72,7 +72,7 @@ std::pair<int, int> blind_beyond(double first, double then)
             if (!pace.refused(h, std::numeric_limits<double>::infinity())) break;
             continue;
         }
-        pace.accepted(h, 1e-9, false);
+        pace.accepted(h, 1e-9, 1);
         ++accepted;
         t = end;
     }
@@ -155,11 +155,11 @@ TEST(Pace, RemembersWhatWasRefused)
     const auto jump = [](double h) { return std::pow(h / 2, 5); };
     ASSERT_TRUE(pace.refused(1, jump(1)));
     const double first = pace.next_end(0);
-    pace.accepted(first, jump(0.5 * first), false);   // the rough lies behind it
+    pace.accepted(first, jump(0.5 * first), 1);   // the rough lies behind it
     EXPECT_LE(pace.next_end(first) - first, first * (1 + 1e-12));
     for (double t = first; t < 1;) {
         const double end = pace.next_end(t);
-        pace.accepted(end - t, jump(0.5 * (end - t)), false);
+        pace.accepted(end - t, jump(0.5 * (end - t)), 1);
         t = end;
     }
     EXPECT_GT(pace.next_end(1.5) - 1.5, 1.3 * first) << "only there";

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is said of windows: of those that failed, and after all were solved.
+// What is measured and said of windows: of those that failed, and after all were solved.
 #pragma once
 
+#include <span>
 #include <string>
 
 #include "livens/solvers/newton.h"
@@ -10,6 +11,9 @@
 #include "livens/time/time_mesh.h"
 
 namespace livens {
+
+/// Largest distance of points, by the length, and of directors.
+double distance_between(std::span<const Matrix34> X, std::span<const Matrix34> others, double length);
 
 /// What the report itself does not hold.
 struct WindowCounts {
@@ -25,6 +29,12 @@ std::string window_at(const TimeMesh& mesh, int first, int last);
 /// Why Newton's iteration did not solve a window, and what to try: `advice`, or what fits the status.
 std::string of_failure(const NewtonReport& outcome, int max_iterations, const std::string& window,
                        const Place& worst, std::string advice);
+
+/// Of a window that says nothing of the motion although its equations are met.
+std::string of_lie(const std::string& window);
+
+/// As the caller asked, after a window that ends at t.
+std::string of_stop(double t);
 
 /// Why a march at a pace ends at t: elements vanish; or one must end where the joints lose rank.
 std::string of_vanishing(double t);

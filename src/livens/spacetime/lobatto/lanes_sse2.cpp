@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The march kernel on registers of two doubles, which every processor has, and on one alone.
 #define LIVENS_REGISTER 2
+#define LIVENS_UNROLLED 0   // processors without more are old: not worth the code
 #include "livens/spacetime/lobatto/lane_kernel.h"
 
 namespace livens::lanes {

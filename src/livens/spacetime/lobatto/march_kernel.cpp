@@ -15,13 +15,13 @@ namespace {
 constexpr double slow_contraction = 0.3;
 constexpr int most_slow_steps = 2, most_steps = 14;
 constexpr int many_twists = 100, most_combinations = 150, most_slow_combinations = 20;
-constexpr double hopeless_step = 10;         // lengths or radians
-constexpr double smallest_step = 1e-18;      // likewise: nothing moves
-constexpr double rounding = 1e-14;           // of the motion: what steps that shrink no more may be
-constexpr double fits_on_the_way = 1e-4;   // times the smallest pivot: motion at which a factor is still good
+constexpr double hopeless_step = 10;       // lengths or radians
+constexpr double smallest_step = 1e-18;    // likewise: nothing moves
+constexpr double rounding = 1e-14;         // of the motion: what steps that shrink no more may be
+constexpr double fits_on_the_way = 1e-2;   // times the smallest pivot: motion at which a factor is still good
 constexpr double fits_at_end = 1e-7;       // for multipliers, whose last change it takes with this error
 constexpr double fits_for_next = 1e-8;     // NearFactor
-constexpr double least_pivot = 1e-5;         // of the rows' own size
+constexpr double least_pivot = 1e-5;       // of the rows' own size
 constexpr double share_of_tolerance = 0.1;   // left after the last step, as far as contraction foretells it
 constexpr double widest_tolerance =
     1e-10;   // Newton's last step leaves less than it was allowed to, this all

@@ -19,7 +19,7 @@ public:
 
     bool open(int first, int last, SolveReport& report) override;
     bool solve(const NewtonOptions& options, NewtonReport& report) override;
-    bool is_too_large() const override;
+    double tangent_cost() const override;
     NewtonProblem& equations() override { return system_; }
     bool predict() override;
     bool start_from(const Guess& guess) override;
@@ -72,7 +72,7 @@ private:
     RankLoss rank_loss(int e) const;
     void close_element(int e);
     void record_element(int e);
-    bool rows_compatible(const InstantState& state, SolveReport& report) const;
+    std::string contradiction(const InstantState& state) const;
     bool fail(SolveReport& report, const std::string& message) const;
 
     const Tables& tables_;

@@ -96,25 +96,25 @@ bool LobattoWindow::end_element(int e, SolveReport& report)
     ConstraintBasis* known = is_free && system_.bases_fit() ? &system_.nodes().own_basis(A) : nullptr;
     if (!instant_.prepare(next, here.rows, known, kernel_.factor_at_end()))
         return fail(report, "the free motions carry no inertia at t = " + to_text(next.t, 6) + " s");
-    if (!rows_compatible(next, report)) return false;
     const double weight = stretch_.h(e) * rule.weights[p];
     instant_.from_momentum(next, work_.momentum.data(), weight, work_.end_lambda.data());
     accelerate(next);
     return true;
 }
 
-/// Rows that were left out as redundant must still hold.
-bool LobattoWindow::rows_compatible(const InstantState& state, SolveReport& report) const
+/// A row that was left out as redundant and does not hold; empty: they all do. They may be redundant no more,
+/// or others may have become so on the way: rows are chosen at element ends.
+std::string LobattoWindow::contradiction(const InstantState& state) const
 {
-    if (tables_.rank == tables_.n_rows()) return true;
+    if (tables_.rank == tables_.n_rows()) return {};
     for (int r = 0; r < tables_.n_rows(); ++r) {
         const ConstraintRow& row = *tables_.rows[r].row;
         if (std::abs(tables_.value(r, {state.t}, state.X.data())) / row.scale < 1e-8) continue;
-        return fail(report, tables_.model->row_name(r) +
-                                ": was redundant at the start and contradicts the other joints by t = " +
-                                to_text(state.t, 6) + " s");
+        return tables_.model->row_name(r) +
+               ": was redundant at the start and contradicts the other joints by t = " + to_text(state.t, 6) +
+               " s";
     }
-    return true;
+    return {};
 }
 
 }   // namespace livens

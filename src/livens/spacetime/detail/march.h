@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The driver of windows: one after the other along a mesh, or single elements whose lengths a pace finds.
+#pragma once
+
+#include <limits>
+
+#include "livens/spacetime/detail/window_notes.h"
+#include "livens/spacetime/windows.h"
+
+namespace livens {
+
+/// Counted on the way.
+struct Troubles {
+    int avoided = 0;          ///< nodes too near to a singular position, since an element was closed
+    int shortened = 0;        ///< elements, since one was solved without a tangent
+    int contradictions = 0;   ///< elements at whose ends rows contradict each other
+};
+
+class March {
+public:
+    March(Window& window, TimeMesh& mesh, const WindowOptions& options, SolveReport& report);
+    void run();
+
+private:
+    /// Of an element by which its end is moved off a singular position, and how often in succession.
+    static constexpr double shift = 0.1;
+    static constexpr int most_shifts = 3;
+
+    /// Windows of the mesh as it is.
+    void run_mesh();
+    /// One element after the other, each as long as the pace has it. An element that fails or is refused is
+    /// tried again, shorter.
+    void run_at_pace(Pace& pace);
+    /// Elements have vanished, or shorter ones do not help.
+    void give_up(int element, const Closed& closed, const NewtonReport& outcome);
+    /// Elements first..last - 1, split where they fail together.
+    bool solve(int first, int last);
+    /// Two stretches in their order. Elements that are divided in the first one move those behind it.
+    bool solve_parts(int first, int middle, int last);
+    bool may_divide(int first, int last, const NewtonReport& outcome) const;
+    /// Whether what failed may be for want of shorter elements.
+    bool may_shorten(const NewtonReport& outcome) const;
+    bool divide_element(int element, double share);
+    /// Newton's iteration from one guess after the other; all their iterations count. Where none leads to a
+    /// solution, the first and best one tells why.
+    NewtonReport attempt(int first, int last);
+    /// Whether the elements that an element of unknown solution is divided into cost less than its tangent.
+    bool is_tangent_too_costly(int first, int last, const NewtonReport& outcome) const;
+    bool accept(int first, int last, const NewtonReport& outcome);
+    /// With its end off a singular position.
+    bool solve_shorter(int element);
+    /// Closes the open window up to a node too near to a singular position; beyond that where nothing can be
+    /// done about it, or where that did not help.
+    Closed close(Trust trust, bool end_may_move, bool may_divide);
+    /// Of an element that was not solved, whose end is near a singular position.
+    RankLoss loss_of_failed(double end, bool end_may_move);
+    bool can_move(int end) const;
+    void count_shift(double t);
+    /// Counts what was closed of the elements first..last - 1.
+    bool take(int first, int last, const Closed& closed, const NewtonReport& outcome);
+    /// Of the mesh, or as many as it will be if it grows as it did.
+    int n_elements() const;
+    bool is_done() const;
+    /// The near one of the elements first..last - 1 has not seen the motion: it is solved alone, or divided.
+    bool refuse(int first, int last, const Closed& closed, NewtonReport outcome);
+    /// How far the motion has left the march from the same state, at element ends: another method's opinion
+    /// of the same window, which a wrong root does not share.
+    void compare(int first, int last);
+    bool is_contradictory(const Closed& closed);
+    bool set_contradiction(int first, int last, const Closed& closed);
+    bool set_failed(int first, int last);
+    bool explain(int first, int last, const NewtonReport& outcome);
+
+    Window& window_;
+    TimeMesh& mesh_;
+    const WindowOptions& options_;
+    SolveReport& report_;
+    Newton newton_;
+    NewtonOptions newton_options_;
+    Guess guess_;   // that the open window started from
+    bool is_march_ = false;
+    bool is_rescued_ = false;   // converged from another guess than the first
+    WindowCounts counts_;
+    int most_divisions_ = 0;   // beyond, something else is wrong
+    Troubles troubles_;
+    double singular_end_ = std::numeric_limits<double>::quiet_NaN();   // that can not move; the last one
+    int done_ = 0;                                                     // elements
+    double time_ = 0;                                                  // up to which they are solved
+};
+
+}   // namespace livens
