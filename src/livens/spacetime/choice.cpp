@@ -5,6 +5,7 @@
 
 #include "livens/base/text.h"
 #include "livens/multibody/frequencies.h"
+#include "livens/multibody/tables.h"
 #include "livens/spacetime/accuracy.h"
 #include "livens/spacetime/ends.h"
 
@@ -20,6 +21,9 @@ constexpr double fast_vibration = 50;
 constexpr int tried_after = 32;   // elements of lobatto
 constexpr double gain = 0.5;      // of lobatto's work, to be worth the change
 constexpr int highest_radau = 8;
+/// Work by evaluations leaves tangents out, which lobatto rarely forms and radau always: by freedoms, those
+/// with which they cost as much as they evaluate.
+constexpr double small_tangent = 15;
 
 class Choice {
 public:
@@ -27,7 +31,8 @@ public:
            const SolveOptions& options)
         : model_(model), problem_(problem), span_(span),
           options_(options), lobatto_{either.degree, 1}, radau_{std::min(either.degree, highest_radau)},
-          start_(close_ends(model, problem.conditions, span.start, span.end, options.initial).start),
+          ends_(close_ends(model, problem.conditions, span.start, span.end, options.initial)),
+          start_(ends_.start), freedoms_(Tables(model, ends_.independent).freedoms()),
           at_start_(highest_frequencies(model, start_)),
           length_(std::min(time_of_motion(model, start_), span.end - span.start))
     {}
@@ -57,7 +62,8 @@ private:
         if (is_tried_ || n < tried_after || vibration.rate * length_ < fast_vibration) return false;
         is_tried_ = true;
         const Span part{span_.start, look.motion.end(), span_.accuracy};
-        const double allowed = gain * static_cast<double>(look.evaluations);
+        const double tangents = std::max(1.0, freedoms_ * freedoms_ / (small_tangent * small_tangent));
+        const double allowed = gain * static_cast<double>(look.evaluations) / tangents;
         const auto spend = [&](const Look& other) {
             return static_cast<double>(other.evaluations) > allowed;
         };
@@ -109,7 +115,9 @@ private:
     const SolveOptions& options_;
     Lobatto lobatto_;
     Radau radau_;
-    State start_;
+    Ends ends_;
+    const State& start_;
+    double freedoms_;
     HighestFrequencies at_start_;
     double length_;   // of time in which the motion goes half a length
     std::string why_;

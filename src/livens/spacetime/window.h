@@ -65,8 +65,8 @@ public:
     virtual bool open(int first, int last, SolveReport& report) = 0;
     /// The family's own way to the solution of the open window, where it has one that is quicker than
     /// Newton's iteration: the same equations, to the same digits. False: nothing was found, the window is as
-    /// before.
-    virtual bool solve(const NewtonOptions&, NewtonReport&) { return false; }
+    /// before. `soon`: or nothing at all, since shorter elements are free to be tried.
+    virtual bool solve(const NewtonOptions&, bool /*soon*/, NewtonReport&) { return false; }
     /// What a tangent of the open window costs, in elements that solve() solves; 0: it solves none.
     virtual double tangent_cost() const { return 0; }
     /// The equations of the open window.

@@ -23,7 +23,7 @@ constexpr double uneven = 0.4;
 
 /// What a tangent may cost, in elements without one, before shorter elements are tried instead: where lengths
 /// are free, where they were stated, and where shorter ones did not help so often in succession.
-constexpr double costly = 4, too_costly = 500;
+constexpr double costly = 10, too_costly = 500;
 constexpr int most_shortened = 3;
 
 /// Elements whose rows contradict each other before that is believed, beside one for two that were solved.
@@ -128,7 +128,9 @@ NewtonReport March::attempt(int first, int last)
         iterations += outcome.iterations;
         report_.factorisations += outcome.factorisations;
     };
-    const bool is_solved = !options_.by_newton && window_.solve(newton_options_, outcome);
+    const bool soon = options_.pace != nullptr && troubles_.shortened < most_shortened &&
+                      is_tangent_too_costly(first, last, outcome);
+    const bool is_solved = !options_.by_newton && window_.solve(newton_options_, soon, outcome);
     if (!is_solved) outcome.status = SolveStatus::not_converged;
     if (is_solved) iterations = outcome.iterations;
     if (is_solved) troubles_.shortened = 0;

@@ -129,7 +129,7 @@ Comparison compare(const Model& model, int degree, double h, double fault = 0)
     EXPECT_TRUE(kernel.serves());
     NewtonReport report;
     Comparison found;
-    found.is_solved = kernel.solve(stretch, start, {1e-14, 30, {}}, report);
+    found.is_solved = kernel.solve(stretch, start, {1e-14, 30, {}}, false, report);
     if (!found.is_solved) return found;
     Nodes nodes(tables, kernels_rule);
     nodes.open(stretch);

@@ -322,13 +322,13 @@ bool MarchKernel::iterate(const Stretch& stretch, const InstantState& start, con
 }
 
 bool MarchKernel::solve(const Stretch& stretch, const InstantState& start, const NewtonOptions& options,
-                        NewtonReport& report)
+                        bool soon, NewtonReport& report)
 {
     is_solved_ = false;
     if (!start.by_joints) return false;
     use(start);
     scale_rule(stretch, start);
-    const bool is_large = tables_.n_twists >= many_twists && options.max_iterations >= most_steps;
+    const bool is_large = !soon && tables_.n_twists >= many_twists && options.max_iterations >= most_steps;
     if (!(is_large && was_slow_)) is_solved_ = iterate(stretch, start, options, false, report);
     if (is_large && !is_solved_) {
         is_solved_ = iterate(stretch, start, options, true, report);

@@ -27,8 +27,8 @@ public:
     bool serves() const { return functions_ != nullptr; }
     /// The element of `stretch` from `start`. False: not converged within 14 steps, steps that do not shrink
     /// to 0.3 twice, a number that is not finite, or a pivot that is nearly zero. Steps of many bodies, of
-    /// which a tangent would be large, are then combined (Acceleration).
-    bool solve(const Stretch& stretch, const InstantState& start, const NewtonOptions& options,
+    /// which a tangent would be large, are then combined (Acceleration), unless it has to be told `soon`.
+    bool solve(const Stretch& stretch, const InstantState& start, const NewtonOptions& options, bool soon,
                NewtonReport& report);
     /// The last solve() was successful, and nothing else was tried since.
     bool is_solved() const { return is_solved_; }

@@ -118,10 +118,10 @@ bool LobattoWindow::fail(SolveReport& report, const std::string& message) const
     return false;
 }
 
-bool LobattoWindow::solve(const NewtonOptions& options, NewtonReport& report)
+bool LobattoWindow::solve(const NewtonOptions& options, bool soon, NewtonReport& report)
 {
     if (!kernel_.serves() || !stretch_.is_march() || stretch_.n_elements() > 1 ||
-        !kernel_.solve(stretch_, front_.here(), options, report))
+        !kernel_.solve(stretch_, front_.here(), options, soon, report))
         return false;
     for (int B = 0; B <= stretch_.degree; ++B) {
         if (B < stretch_.degree) kernel_.impulses(B, system_.balances().own_impulses(B));

@@ -18,14 +18,18 @@ public:
     LobattoWindow(const Tables& tables, const TimeMesh& mesh, const Ends& ends, const ElementRule& rule);
 
     bool open(int first, int last, SolveReport& report) override;
-    bool solve(const NewtonOptions& options, NewtonReport& report) override;
+    bool solve(const NewtonOptions& options, bool soon, NewtonReport& report) override;
     double tangent_cost() const override;
     NewtonProblem& equations() override { return system_; }
     bool predict() override;
     bool start_from(const Guess& guess) override;
     bool near_state(State& state) const override;
     Closed close(const Trust& trust, SolveReport& report) override;
-    RankLoss rank_loss() const override { return rank_loss(0); }
+    /// Nodes that are far from their constraints say nothing of it.
+    RankLoss rank_loss() const override
+    {
+        return system_.nodes().is_near() ? rank_loss(0) : RankLoss::none;
+    }
     void divided(int element) override { record_.divided(element); }
     std::vector<Matrix34> positions(int element_end) const override;
     Place worst() const override;
