@@ -17,7 +17,8 @@ constexpr int most_slow_steps = 2, most_steps = 14;
 constexpr int many_twists = 100, most_combinations = 150, most_slow_combinations = 20;
 constexpr double hopeless_step = 10;       // lengths or radians
 constexpr double smallest_step = 1e-18;    // likewise: nothing moves
-constexpr double rounding = 1e-14;         // of the motion: what steps that shrink no more may be
+// Of the motion: what steps that shrink no more may be; also by the smallest squared pivot, and at most.
+constexpr double least_rounding = 1e-14, rounding_by_pivot = 4e-16, most_rounding = 1e-13;
 constexpr double fits_on_the_way = 1e-2;   // times the smallest pivot: motion at which a factor is still good
 constexpr double fits_at_end = 1e-7;       // for multipliers, whose last change it takes with this error
 constexpr double fits_for_next = 1e-8;     // NearFactor
@@ -48,7 +49,7 @@ struct Shrinking {
     bool has_contracted = false, is_done = false, is_rounded = false;
 
     /// False: there is no hope.
-    bool take(const lanes::Sizes& sizes)
+    bool take(const lanes::Sizes& sizes, double rounding)
     {
         const double motion = std::clamp(sizes.motion, 1e-6, 1.0), allowed = tolerance * motion,
                      before = step;
@@ -307,7 +308,8 @@ bool MarchKernel::iterate(const Stretch& stretch, const InstantState& start, con
         functions_->move(pattern, nodes, scaled_.tables, sizes);
         if (!std::isfinite(sizes.finite)) return false;
         moved += sizes.step;
-        if (!(is_accelerated ? progress.approach(left, sizes) : progress.take(sizes))) return false;
+        const double noise = std::clamp(rounding_by_pivot / pivot, least_rounding, most_rounding);
+        if (!(is_accelerated ? progress.approach(left, sizes) : progress.take(sizes, noise))) return false;
     }
     double terms = sizes.terms;
     for (const double momentum : start.momentum) terms = std::max(terms, std::abs(momentum));
