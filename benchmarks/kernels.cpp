@@ -109,7 +109,7 @@ Model brick_chain(int n, const std::string& kind)
 
 Kernel chain_kernel(int n, const std::string& kind, int n_elements)
 {
-    const double h = kind == "balls" ? 0.015 : 0.0075;
+    const double h = kind == "balls" ? 0.015 : n <= 200 ? 0.0075 : 0.0035;
     return {.name = kind,
             .model = brick_chain(n, kind),
             .mesh = make_time_mesh(0, h * n_elements, n_elements),

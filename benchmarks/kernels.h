@@ -44,7 +44,7 @@ Kernel bricks_kernel(const std::string& name, const Method& method, int n_elemen
 /// from rest on balls.
 Model brick_chain(int n, const std::string& kind);
 
-/// lobatto(8) on elements of 10 ms, which take three steps at most: what a body and an element cost.
+/// lobatto(8) on elements of 3.5 to 15 ms, which take three steps at most: what a body and an element cost.
 Kernel chain_kernel(int n, const std::string& kind, int n_elements);
 
 Solution run(const Kernel& kernel);
