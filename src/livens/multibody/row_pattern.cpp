@@ -103,7 +103,7 @@ RowPattern::RowPattern(const Tables& tables, const std::vector<int>& rows) : cho
             twists[g].insert(twists[g].end(), table.twist.begin() + table.begin[r],
                              table.twist.begin() + table.begin[r + 1]);
         std::ranges::sort(twists[g]);
-        twists[g].erase(std::ranges::unique(twists[g]).begin(), twists[g].end());
+        twists[g].erase(std::unique(twists[g].begin(), twists[g].end()), twists[g].end());
     }
     std::vector<int> sizes;
     for (const std::vector<int>& group : groups) sizes.push_back(static_cast<int>(group.size()));
@@ -272,7 +272,7 @@ void RowPattern::arrange(const Graph& groups, const std::vector<int>& order, con
             move(table.violations, r, violations_);
         }
         std::ranges::sort(twists);
-        twists.erase(std::ranges::unique(twists).begin(), twists.end());
+        twists.erase(std::unique(twists.begin(), twists.end()), twists.end());
         for (const int twist : twists) {
             columns_.push_back({twist, static_cast<int>(entries_.constants.size())});
             for (const int r : groups[g]) {
