@@ -225,7 +225,7 @@ def check_recorded(d):
     asked = sum(part["motions"] for part in parts) + accuracies["bursts"]
     d.says("docs/theory.md", f"of the {asked} motions of the scan {asked - accuracies['second tries']} need no second try")
     d.says("docs/trust.md", f"{accuracies['above six']} cost more than six times")
-    d.holds(accuracies["off"] == 0 and len(accuracies["not reached"]) == 5, "docs/trust.md: what is not reached has changed")
+    d.holds(accuracies["off"] == 0 and len(accuracies["not reached"]) == 6, "docs/trust.md: what is not reached has changed")
 
 
 def check_instructions(d):
@@ -239,9 +239,9 @@ def check_instructions(d):
     balls, hinges = sizes("balls"), sizes("hinges")
     each = [n for n, _ in balls.values()]
     d.says(page, f"takes {min(each):.0f} to {max(each):.0f} thousand instructions a body on ball joints ({min(balls)} to {max(balls)} bodies)")
-    short = [n for bodies, (n, _) in hinges.items() if bodies <= 200]
-    d.says(page, f"{min(short):.0f} to {max(short):.0f} thousand on hinges (2 to 200, at four steps {hinges[1000][0]:.0f} with 1000)")
-    d.holds(all(steps == 4 for steps in (hinges[1000][1],)), "four steps of hinges with 1000 bodies")
+    each = [n for n, _ in hinges.values()]
+    d.says(page, f"{min(each):.0f} to {max(each):.0f} thousand on hinges ({min(hinges)} to {max(hinges)})")
+    d.holds(all(steps <= 3 for _, steps in hinges.values()), "more than three steps of hinges")
 
 
 def check_allowed(d):
@@ -309,8 +309,8 @@ STALE = [("README.md", "hold to 1e-15 of", "hold to 1e-17 of"), ("README.md", "b
          ("docs/examples.md", r"\| 1e-11 \|", "| 1e-15 |"), ("docs/examples.md", r"\| 2e-7 \|", "| 1e-7 |"), ("docs/trust.md", r"\| 2415 \| 1649", "| 2415 | 1650"),
          ("docs/trust.md", r"(\d) percent", r"\g<1>5 percent"), ("docs/trust.md", r"6\.4e-2", "6.3e-2"),
          ("docs/trust.md", r"\| 1\.01, 1\.", "| 1.01, 2."),
-         ("docs/theory.md", "0\\.9 percent of all", "0.7 percent of all"), ("docs/theory.md", "251 need no", "252 need no"), ("docs/trust.md", "with bursts 5", "with bursts 4"),
-         ("changes/0006-the-fastest.md", "[\\d.]+ million instr", "8.1 million instr"), ("changes/0006-the-fastest.md", "35 to 50", "35 to 49"),
+         ("docs/theory.md", "0\\.8 percent of all", "0.7 percent of all"), ("docs/theory.md", "250 need no", "252 need no"), ("docs/trust.md", "with bursts 4", "with bursts 5"),
+         ("changes/0006-the-fastest.md", "[\\d.]+ million instr", "8.1 million instr"), ("changes/0006-the-fastest.md", "32 to 46", "32 to 45"),
          ("docs/performance.md", r"\| 1 \| 0\.\d\d \|", "| 1 | 0.25 |"), ("docs/performance.md", r"\| met \|", "| **missed** |"),
          ("docs/performance.md", r"\| 581 MiB", "| 481 MiB"), ("docs/performance.md", r"\| Pinocchio \| [\d.]+ ", "| Pinocchio | 0.01 ")]
 

@@ -48,7 +48,7 @@ LIVENS_INLINE void store(double* x, const Lanes<W>& v)
 template <int W>
 LIVENS_INLINE typename Lanes<W>::Part spread(double x)
 {
-    typename Lanes<W>::Part part;
+    typename Lanes<W>::Part part{};
     if constexpr (Lanes<W>::size == 1)
         part = x;
     else
