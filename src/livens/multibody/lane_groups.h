@@ -26,8 +26,13 @@ struct Size {
 
 /// Whether loops over the rows of a group are unrolled, so that their sums stay in registers: where it
 /// counts, since it is much code. Else rows are gone through one by one.
+#ifdef LIVENS_FEW_WIDTHS   // where size counts: the usual width
+template <int W>
+constexpr bool is_unrolled = W == 1 || W == LIVENS_UNROLLED;
+#else
 template <int W>
 constexpr bool is_unrolled = W == 1 || W <= LIVENS_UNROLLED;
+#endif
 
 /// Lanes that are gone through at a time for m rows: ten registers of sums at most.
 template <int W, int m>

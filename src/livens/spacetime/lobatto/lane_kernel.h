@@ -162,7 +162,11 @@ const Functions* functions_for(int n)
 {
     if (n <= W) return &functions_of<W>;
     // Of registers of two every other width above eight: they are for old processors, and most of the code.
+#ifdef LIVENS_FEW_WIDTHS   // where size counts: (2,) 4, 8, 12, 20
+    constexpr int step = W == 12 ? 8 : W >= 4 && LIVENS_REGISTER == 2 ? 4 : LIVENS_REGISTER;
+#else
     constexpr int step = W >= 8 && LIVENS_REGISTER == 2 ? 4 : LIVENS_REGISTER;
+#endif
     if constexpr (W < 18)
         return functions_for<W + step>(n);
     else

@@ -2,6 +2,7 @@
 // The march kernel on registers of 8 doubles; compiled for AVX512 alone, see CMakeLists.txt.
 #ifdef LIVENS_X86_SETS
 #define LIVENS_REGISTER 8
+#define LIVENS_UNROLLED 0   // nobody is given it unasked: not worth the code
 #include "livens/spacetime/lobatto/lane_kernel.h"
 
 namespace livens::lanes {
