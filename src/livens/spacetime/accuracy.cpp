@@ -24,10 +24,11 @@ constexpr double first_share = 0.03;   // of the accuracy: what the elements of 
 constexpr double target = 0.2;         // of the accuracy: what the next try aims at
 constexpr double hopeless = 30;        // times the accuracy: where a try is broken off
 constexpr int most_tries = 6;
-constexpr double well_helped = 0.5;   // error by the least before, whose elements lost three times more
+constexpr double well_helped = 0.5;    // error by the least before, whose elements lost three times more
 constexpr double finest = 1e-22;       // that an element can be asked to lose
 constexpr double blind_share = 0.01;   // of the tolerance, for the next try where the second solution failed
 constexpr int preferred_degree = 7, high_degree = 12, lowest_degree = 3;
+constexpr int quiet_degree = 9;   // rounding of an element grows with the square of its degree
 constexpr int preferred_radau = 5, high_radau = 8;
 constexpr double high_accuracy = 1e-9;   // below, the high degree
 constexpr double fit = 1.5;              // times the time between stops: longer elements are of no use
@@ -135,7 +136,11 @@ public:
             if (tries == most_tries || tolerance_ <= finest) return give_up(std::move(one));
             const double over = found.largest / span_.accuracy * (one.is_broken_off ? 3 : 1);
             const double share = over > 0 ? power(target / over, 1 + 0.5 / degree_of(method_)) : blind_share;
-            tolerance_ = std::max(finest, tolerance_ * std::min(0.3, share));
+            // shorter elements of the same degree have the same rounding
+            if (!so_far_.helps && is_free_ && highest_degree_ > quiet_degree)
+                highest_degree_ = degree_of(method_) = quiet_degree;
+            else
+                tolerance_ = std::max(finest, tolerance_ * std::min(0.3, share));
             // a degree that was too high for the stops may not be too high for shorter elements
             if (!is_free_ && highest_degree_ > 0) degree_of(method_) = fitting_degree(*one.pace);
             length_ = std::min(length_, one.pace->mean_length(degree_of(method_), tolerance_));
