@@ -75,6 +75,38 @@ std::string coordinates_of(const Model& model, const ClosedStart& assembly)
     return text + "\n";
 }
 
+std::string place_in_words(const Vector3& x)
+{
+    return fmt::format("({:.4g}, {:.4g}, {:.4g})", x[0] + 0.0, x[1] + 0.0, x[2] + 0.0);
+}
+
+/// Where rods end in the world, and how long springs are: their points are stated on the bodies.
+std::string lengths_of(const Model& model, const State& start)
+{
+    constexpr std::size_t most_told = 12;
+    const auto place = [&](int body, const Vector3& p) {
+        return body == world ? p : start.X[static_cast<std::size_t>(body)] * point(p);
+    };
+    std::vector<std::string> lines;
+    for (const Joint& joint : model.joints()) {
+        if (joint.type != "rod") continue;
+        const Vector3 a = place(joint.first, joint.point_first), b = place(joint.second, joint.point_second);
+        lines.push_back(fmt::format("    {}: {:.4g} m, from {} to {}\n", plain(joint.name), norm(b - a),
+                                    place_in_words(a), place_in_words(b)));
+    }
+    for (const Load& load : model.loads())
+        for (const LoadReading& reading : load.readings)
+            if (reading.name == "length")
+                lines.push_back(fmt::format(
+                    "    {}: {:.4g} m\n", plain(load.name),
+                    reading.value(load_arguments(load, {start.t, Side::right}, start.X, start.V))));
+    std::string text;
+    for (std::size_t i = 0; i < std::min(lines.size(), most_told); ++i) text += lines[i];
+    if (lines.size() > most_told)
+        text += fmt::format("    and {} more rods and springs\n", lines.size() - most_told);
+    return text.empty() ? text : "  rods and springs at the start:\n" + text;
+}
+
 }   // namespace
 
 int check_command(const std::string& file, const Common& common)
@@ -98,6 +130,7 @@ int check_command(const std::string& file, const Common& common)
         end_of(scenario.time), division_of(scenario), bytes_in_words(memory_needed(scenario).most()),
         std::holds_alternative<Span>(scenario.time) ? ", and what the elements take that are found" : "");
     text += coordinates_of(model, assembly);
+    text += lengths_of(model, assembly.start);
     for (const std::string& note : assembly.notes) text += "  note: " + plain(note) + "\n";
     print(text);
     return exit_ok;

@@ -195,7 +195,7 @@ class Tree(Adders):
         name = content.get("name")
         path = f"{kind}[{name if isinstance(name, str) else len(self._root.get(kind, [])) + 1}]"
         table = Table(place=user_place())
-        given = {"name": name, "type": word or None, **arranged(content)}
+        given = {"name": name, "type": word or None, **arranged(content, word)}
         for key_name, value in given.items():
             if value is None:
                 continue

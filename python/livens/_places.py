@@ -35,7 +35,7 @@ def words_in(value: Any) -> list[str]:
     return []
 
 
-def arranged(content: Mapping[str, Any]) -> dict[str, Any]:
+def arranged(content: Mapping[str, Any], kind: str = "") -> dict[str, Any]:
     """first, second -> between (or joints), and points where they are (body, point)."""
     shape = content.get("shape")
     made: dict[str, Any] = {"shape": None} if shape is not None else {}
@@ -57,6 +57,8 @@ def arranged(content: Mapping[str, Any]) -> dict[str, Any]:
                     help="" if is_joint else "the fixed world is called 'world'")
     pairs = [end if isinstance(end, (tuple, list)) and len(end) == 2 else (end, None) for end in both]
     points = [point for _, point in pairs if point is not None]
+    if points and kind in ("rod", "spring"):   # whose ends are the reference points where nothing is said
+        points = [(0.0, 0.0, 0.0) if point is None else point for _, point in pairs]
     into = "joints" if "joints" in content and "between" not in content else "between"
     if made.get(into) is not None:
         raise fault("wrong-type", f"'{into}' is given twice: in front, and by its name")

@@ -184,8 +184,17 @@ def test_points_with_bodies() -> None:
     m.add_body("a", lv.point(mass=1), position=(0, 0, -1))
     s = m.add_spring("s", ("world", (0, 0, 1)), ("a", (0, 0, 0)), stiffness="2 kN/m", free_length=1)
     assert s.between == ("world", "a") and s.points.tolist() == [[0, 0, 1], [0, 0, 0]] and s.stiffness == 2000
-    with pytest.raises(lv.InputError):
-        m.add_spring("t", ("world", (0, 0, 1)), "a", stiffness=1, free_length=1)
+
+
+def test_a_point_on_one_side_of_what_ends_at_reference_points() -> None:
+    m = lv.Model("one")
+    a = m.add_body("a", lv.box(1, 0.1, 0.1, mass=1))
+    b = m.add_body("b", lv.point(mass=1), position=(0.5, 0, -1))
+    assert m.add_rod("rod", (a, (0.5, 0, 0)), b).points.tolist() == [[0.5, 0, 0], [0, 0, 0]]
+    spring = m.add_spring("spring", "world", (a, (0.5, 0, 0)), stiffness=1, free_length=1)
+    assert spring.points.tolist() == [[0, 0, 0], [0.5, 0, 0]]
+    with pytest.raises(lv.InputError, match="on one side only"):   # a hinge would be where nobody meant it
+        m.add_revolute("hinge", "world", (a, (0.5, 0, 0)), axes=[(0, 0, 1), (0, 0, 1)])
 
 
 def test_hostile_trees_are_refused() -> None:

@@ -145,7 +145,7 @@ export class Picture {
     add(null, `grid ${number(stage.cell)} m`);
     if (this.shown.trails && stage.path_window > 0)
       add(null, `paths of the last ${number(stage.path_window, 2)} s`);
-    const kinds = new Set(run.forces.map((f) => f.kind));
+    const kinds = new Set(run.forces.filter((f) => f.largest > 0).map((f) => f.kind));
     if (this.shown.forces && run.largest_force > 0) {
       if (kinds.has("reaction")) add(theme().force, "force of a joint on its second body");
       if (kinds.has("load")) add(theme().load, "force of a load");

@@ -22,6 +22,7 @@ export interface Force {
   name: string;
   body: number;
   point: Vector3;
+  largest: number;
   at(t: number, out: Vector3): void;
 }
 
@@ -100,6 +101,7 @@ export class Run {
         name,
         body,
         point: new Vector3(...point),
+        largest: 0,
         at: (t, out) => {
           out.set(
             this.curves.at(channels[0], t),
@@ -120,13 +122,12 @@ export class Run {
     const { start, end } = this.motion,
       f = new Vector3();
     const n = Math.max(400, Math.min(4000, Math.ceil(40000 / Math.max(forces.length, 1))));
-    let largest = 0;
     for (const force of forces)
       for (let k = 0; k <= n; ++k) {
         force.at(start + (k / n) * (end - start), f);
-        if (f.length() > largest) largest = f.length();
+        force.largest = Math.max(force.largest, f.length() || 0);
       }
-    return largest;
+    return forces.reduce((most, force) => Math.max(most, force.largest), 0);
   }
 
   /** Of each body the point whose path says most: its centre, or an end that goes farther. No two the same. */
@@ -226,6 +227,10 @@ export class Run {
         ? []
         : [{ label, at: (t: number) => Math.hypot(...c.map((k) => this.curves.at(k, t))) }];
     };
+    const { start, end } = this.motion;
+    // a torque has a force that is zero, which would be a flat line
+    const is_ever = (series: { at(t: number): number }) =>
+      Array.from({ length: 401 }, (_, k) => start + (k / 400) * (end - start)).some((t) => series.at(t) > 0);
     const coordinates = (name: string) => meta.joints.flatMap((j, i) => of("joint", i, name, j.name));
     for (const [name, title, unit] of [
       ["angle", "Angles of joints", "rad"],
@@ -234,7 +239,15 @@ export class Run {
       ["displacement rate", "Rates of displacements", "m/s"],
     ])
       add(`joints ${name}`, "All joints", title, unit, many(coordinates(name)));
-    const sum = [...of("energy", 0, "kinetic", "kinetic"), ...of("energy", 0, "potential", "potential")];
+    // from that at the start, or what is exchanged would be a ripple far from zero
+    const of_start = this.curves.at(this.channel("energy", 0, "potential"), start);
+    const sum = [
+      ...of("energy", 0, "kinetic", "kinetic"),
+      ...of("energy", 0, "potential", "").map((s) => ({
+        label: "potential since the start",
+        at: (t: number) => s.at(t) - of_start,
+      })),
+    ];
     add("energy", "Energy", "Energy", "J", [
       ...sum,
       { label: "sum", at: (t) => sum[0].at(t) + sum[1].at(t) },
@@ -258,14 +271,14 @@ export class Run {
       "Loads",
       "Forces of loads",
       "N",
-      many(meta.loads.flatMap((l, i) => size("load", i, "force", l.name))),
+      many(meta.loads.flatMap((l, i) => size("load", i, "force", l.name).filter(is_ever))),
     );
     add(
       "load torques",
       "Loads",
       "Torques of loads",
       "N m",
-      many(meta.loads.flatMap((l, i) => size("load", i, "torque", l.name))),
+      many(meta.loads.flatMap((l, i) => size("load", i, "torque", l.name).filter(is_ever))),
     );
     meta.sensors.forEach((sensor, s) => {
       const units = new Map<string, string[]>();
@@ -367,6 +380,8 @@ export class Run {
       : this.meta.bodies.length === 1
         ? [...(this.travels(0) ? ["body 0 position"] : []), "body 0 spin"]
         : ["heights", "speeds"];
-    return [...sensors, ...first, ...about_bodies, "energy", "reactions", "loads"].filter(has).slice(0, 4);
+    return [...sensors, ...first, ...about_bodies, "energy", "reactions", "loads", "load torques"]
+      .filter(has)
+      .slice(0, 4);
   }
 }

@@ -135,7 +135,8 @@ void check_form(const QuadraticForm& form, int body_i, int body_j, const std::ve
         if (turns && is_point(body))
             refuse("joint-needs-directors", path,
                    "the joint needs the orientation of '" + bodies[body].name + "', a point mass",
-                   "a point mass takes spherical joints and rods at its own point");
+                   "a point mass takes spherical joints and rods at its own point, [0, 0, 0] in its "
+                   "coordinates");
 }
 
 /// A jump of the factor, or of its rate, would be a jump of positions or velocities, which no force makes.

@@ -23,12 +23,14 @@ namespace {
 constexpr double first_share = 0.03;   // of the accuracy: what the elements of the first try lose
 constexpr double target = 0.2;         // of the accuracy: what the next try aims at
 constexpr double hopeless = 30;        // times the accuracy: where a try is broken off
-constexpr int most_tries = 6;
+constexpr int most_tries = 6, most_in_vain = 2;
 constexpr double well_helped = 0.5;    // error by the least before, whose elements lost three times more
 constexpr double finest = 1e-22;       // that an element can be asked to lose
 constexpr double blind_share = 0.01;   // of the tolerance, for the next try where the second solution failed
 constexpr int preferred_degree = 7, high_degree = 12, lowest_degree = 3;
-constexpr int quiet_degree = 9;   // rounding of an element grows with the square of its degree
+// Rounding of an element grows with its degree, and elements of half the length add less of it.
+constexpr int quiet_degree = 9;
+constexpr double quieter = 3;   // by this much at most
 constexpr int preferred_radau = 5, high_radau = 8;
 constexpr double high_accuracy = 1e-9;   // below, the high degree
 constexpr double fit = 1.5;              // times the time between stops: longer elements are of no use
@@ -81,14 +83,16 @@ struct Try {
 
 /// What shorter elements brought.
 struct Tries {
-    double least = std::numeric_limits<double>::infinity();   // error
-    bool helps = true;                                        // that the last one had shorter elements
+    double least = std::numeric_limits<double>::infinity(), last = least;   // errors
+    bool helps = true;   // that the last one had shorter elements
+    int n_in_vain = 0;   // whose shorter elements did not help
 
     void count(const Try& one)
     {
-        const double error = one.solution.estimate.largest;
-        helps = one.is_broken_off || error < well_helped * least;
-        if (!one.is_broken_off) least = std::min(least, error);
+        last = one.solution.estimate.largest;
+        helps = one.is_broken_off || last < well_helped * least;
+        n_in_vain += helps ? 0 : 1;
+        if (!one.is_broken_off) least = std::min(least, last);
     }
 };
 
@@ -133,14 +137,15 @@ public:
             if (!one.is_broken_off && look_at_rounding(one.solution, tries)) return give_up(std::move(one));
             if (!one.is_broken_off && found.largest <= span_.accuracy) return std::move(one.solution);
             so_far_.count(one);
-            if (tries == most_tries || tolerance_ <= finest) return give_up(std::move(one));
+            if (tries == most_tries || is_rounding_left() || tolerance_ <= finest)
+                return give_up(std::move(one));
             const double over = found.largest / span_.accuracy * (one.is_broken_off ? 3 : 1);
             const double share = over > 0 ? power(target / over, 1 + 0.5 / degree_of(method_)) : blind_share;
-            // shorter elements of the same degree have the same rounding
-            if (!so_far_.helps && is_free_ && highest_degree_ > quiet_degree)
+            tolerance_ = std::max(finest, tolerance_ * std::min(0.3, share));
+            if (!so_far_.helps && is_noisy()) {
                 highest_degree_ = degree_of(method_) = quiet_degree;
-            else
-                tolerance_ = std::max(finest, tolerance_ * std::min(0.3, share));
+                tolerance_ = std::max(finest, tolerance_ * power(0.5, 2 * quiet_degree + 1));
+            }
             // a degree that was too high for the stops may not be too high for shorter elements
             if (!is_free_ && highest_degree_ > 0) degree_of(method_) = fitting_degree(*one.pace);
             length_ = std::min(length_, one.pace->mean_length(degree_of(method_), tolerance_));
@@ -233,6 +238,16 @@ private:
     bool is_hopeless(const Second& second) const
     {
         return !(second.so_far().largest <= hopeless * span_.accuracy);
+    }
+
+    /// A lower degree would have less rounding.
+    bool is_noisy() const { return is_free_ && highest_degree_ > quiet_degree; }
+    /// Nothing that is left to be tried makes it small enough. Solutions that differ by rounding come near
+    /// each other by chance, and of many tries one would be believed.
+    bool is_rounding_left() const
+    {
+        if (so_far_.helps) return false;
+        return is_noisy() ? so_far_.last > quieter * span_.accuracy : so_far_.n_in_vain >= most_in_vain;
     }
 
     /// The highest whose elements are not much longer than the time between stops, by what was learnt.

@@ -29,6 +29,9 @@ constexpr std::array functions{
     Function{"atan2", Operation::arc_tangent, 2}, Function{"min", Operation::least, 2},
     Function{"max", Operation::greatest, 2}};
 
+constexpr std::array<std::pair<std::string_view, std::string_view>, 6> other_names{
+    {{"time", "t"}, {"T", "t"}, {"Pi", "pi"}, {"PI", "pi"}, {"ln", "log"}, {"arctan2", "atan2"}}};
+
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 bool begins_name(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
 
@@ -63,8 +66,10 @@ private:
     [[noreturn]] void refuse_here(const std::string& expected) const
     {
         const std::string column = " at column " + std::to_string(at_ + 1);
+        const bool is_power = at_ > 0 && at_ < text_.size() && text_[at_] == '*' && text_[at_ - 1] == '*';
         refuse("expression-syntax", "an expression cannot be read",
-               (at_ < text_.size() ? "'" + character() + "'" : "it ends") + column, expected);
+               (at_ < text_.size() ? "'" + character() + "'" : "it ends") + column, expected,
+               is_power ? "a power is written x^2" : "");
     }
 
     /// UTF-8: with what continues it.
@@ -192,7 +197,10 @@ private:
         const auto symbol = std::ranges::find(symbols_, word);
         if (symbol != symbols_.end())
             return add({Operation::symbol, static_cast<int>(symbol - symbols_.begin()), -1, place});
-        std::string known = "known are t, pi";
+        std::string known;
+        for (const auto& [other, own] : other_names)
+            if (word == other) known = "did you mean '" + std::string(own) + "'? ";
+        known += "known are t, pi";
         for (const Function& f : functions) known += ", " + std::string(f.name);
         for (const std::string& symbol_name : symbols_) known += ", " + symbol_name;
         refuse("expression-name", "an expression has an unknown name",

@@ -113,8 +113,8 @@ TEST(Scenario, SpinsAreInWorldOrBodyAxesOrRaw)
     const Matrix34 world_axes = V("angular_velocity = [0, 2, 0]");
     EXPECT_LT(norm(world_axes - V("angular_velocity_body = [2, 0, 0]")), 1e-15) << "d1 lies along y";
     EXPECT_EQ(world_axes.column(0), (Vector3{1, 2, 3}));
-    const Matrix34 raw = V("director_rates = [[0, 0, 0], [0, 0, 0], [0, 1, 0]]",
-                           "[start]\ninitial = \"project\"");
+    const Matrix34 raw =
+        V("director_rates = [[0, 0, 0], [0, 0, 0], [0, 1, 0]]", "[start]\ninitial = \"project\"");
     EXPECT_EQ(raw.column(3), (Vector3{0, 1, 0})) << "rates arrive as they are; assembly projects them";
     EXPECT_EQ(raw.column(2), (Vector3{0, 0, 0}));
 }
@@ -165,8 +165,7 @@ TEST(Scenario, RodsAreAsLongAsTheyStartUnlessSaid)
     const Matrix34 a = configuration({}, identity<3>()),
                    b = configuration({2, 0, 0}, {0, 1, 0, -1, 0, 0, 0, 0, 1});
     EXPECT_NEAR(constraint_value(constant(""), std::vector{a, b}), 0, 1e-15);
-    EXPECT_NEAR(constraint_value(constant("points = [[0, 0, 0], [0, 1, 0]]"), std::vector{a, b}), 0,
-                1e-15);
+    EXPECT_NEAR(constraint_value(constant("points = [[0, 0, 0], [0, 1, 0]]"), std::vector{a, b}), 0, 1e-15);
     expect_error(two_bodies(rod + "length = 3"), "start-position", "[[joint]]");
     const Scenario to_world = good(two_bodies("[[joint]]\ntype = \"rod\"\nbetween = [\"world\", \"b\"]"));
     EXPECT_EQ(to_world.model.joints()[0].name, "rod world-b");
@@ -198,8 +197,8 @@ TEST(Scenario, WindowsAndTablesBreakTheMesh)
 TEST(Scenario, BreaksCanBeIgnored)
 {
     const std::string load = "[[load]]\ntype = \"force\"\nbody = \"b\"\nvalue = [1, 0, 0]\nfrom = 0.3\n";
-    const std::string text = replaced(one_body(given_mass, load), "elements = 4",
-                                      "elements = 4\nbreaks = \"ignore\"");
+    const std::string text =
+        replaced(one_body(given_mass, load), "elements = 4", "elements = 4\nbreaks = \"ignore\"");
     EXPECT_EQ(std::get<TimeMesh>(good(text).time).n_elements(), 4);
 }
 
@@ -280,15 +279,14 @@ TEST(Scenario, OutputTimesAreElementEndsToTheBit)
 
 TEST(Scenario, ResolvedStatesAllOptions)
 {
-    EXPECT_EQ(
-        good(valid_scenario).resolved,
-        R"({"format": 1, "title": "", "gravity": [0, 0, -9.81], )"
-        R"("time": {"start": 0, "end": 1, "elements": 10, )"
-        R"("output": "element ends", "breaks": "from_loads"}, )"
-        R"("method": {"family": "lobatto", "degree": 4, "window": 1, )"
-        R"("tolerance": 1e-14, "max_iterations": 30, "estimate": "second", )"
-        R"("growth": false, "condition": false}, )"
-        R"("start": {"given": "state", "initial": "check"}, "end": {"given": "nothing"}})");
+    EXPECT_EQ(good(valid_scenario).resolved,
+              R"({"format": 1, "title": "", "gravity": [0, 0, -9.81], )"
+              R"("time": {"start": 0, "end": 1, "elements": 10, )"
+              R"("output": "element ends", "breaks": "from_loads"}, )"
+              R"("method": {"family": "lobatto", "degree": 4, "window": 1, )"
+              R"("tolerance": 1e-14, "max_iterations": 30, "estimate": "second", )"
+              R"("growth": false, "condition": false}, )"
+              R"("start": {"given": "state", "initial": "check"}, "end": {"given": "nothing"}})");
     const Scenario midpoint = good(replaced(valid_scenario, "degree = 4", "family = \"midpoint\""));
     EXPECT_TRUE(std::holds_alternative<Midpoint>(midpoint.method));
     EXPECT_NE(midpoint.resolved.find(R"({"family": "midpoint", "tolerance")"), std::string::npos);
@@ -392,10 +390,10 @@ std::vector<Case> cases_of_bodies()
 /// What connects bodies and acts on them.
 std::vector<Case> cases_of_joints_and_loads()
 {
-    const std::string contradiction = two_bodies(
-        "[[joint]]\nname = \"one\"\ntype = \"rod\"\nbetween = [\"a\", \"b\"]\n"
-        "[[joint]]\nname = \"two\"\ntype = \"rod\"\nbetween = [\"a\", \"b\"]\nlength = 3\n"
-        "[start]\ninitial = \"project\"");
+    const std::string contradiction =
+        two_bodies("[[joint]]\nname = \"one\"\ntype = \"rod\"\nbetween = [\"a\", \"b\"]\n"
+                   "[[joint]]\nname = \"two\"\ntype = \"rod\"\nbetween = [\"a\", \"b\"]\nlength = 3\n"
+                   "[start]\ninitial = \"project\"");
     return {
         {"axes-not-perpendicular",
          joined(given_mass, "type = \"universal\"\nat = [0, 0, 0]\naxes = [[1, 0, 0], [1, 1, 0]]"),
@@ -450,8 +448,8 @@ TEST(ScenarioCodes, EachIsProvokedAtItsPlace)
 TEST(ScenarioCodes, WarningsLeaveTheScenarioAlone)
 {
     const std::string late = replaced(valid_scenario, "value = [0, 1, 0]", "value = [0, 1, 0]\nfrom = 5");
-    const std::string second = replaced(valid_scenario, "format = 1\ngravity = [0, 0, -9.81]",
-                                        "gravity = [0, 0, 1]\nformat = 1");
+    const std::string second =
+        replaced(valid_scenario, "format = 1\ngravity = [0, 0, -9.81]", "gravity = [0, 0, 1]\nformat = 1");
     const std::string missed = replaced(
         replaced(valid_scenario, "type = \"spherical\"\nbetween = [\"upper\", \"lower\"]\nat = [1, 0, 0]",
                  "type = \"spherical\"\nbetween = [\"upper\", \"lower\"]\npoints = [[0.5, 0, 1e-8], "
@@ -533,7 +531,7 @@ TEST(ScenarioCodes, AllAreProvokedByTheseTests)
                                       "window",
                                       "window-out-of-range"};
     others.insert({"format-first", "load-never-acts", "joint-fitted", "expression-kink", "start-changed",
-                   "directors-dependent", "directors-metric", "directors-nearly-orthonormal",
+                   "point-outside", "directors-dependent", "directors-metric", "directors-nearly-orthonormal",
                    "io-directory", "io-not-found", "io-unreadable"});   // here, of meshes, of hostile files
     others.insert(codes_of_meshes.begin(), codes_of_meshes.end());
     for (const Case& c : cases()) {

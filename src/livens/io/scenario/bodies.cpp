@@ -83,7 +83,9 @@ void check_mass(const Section& body)
         if (!body.has(key))
             body.error("", "mass-missing", body.label() + " has no shape and no '" + key + "'",
                        {"without a shape a body needs both 'mass' and 'inertia'",
-                        "add 'shape' with 'density' or 'mass', or 'mass' and 'inertia'"});
+                        "add 'shape' with 'density' or 'mass', 'shape = { point = true }' for a point mass, "
+                        "or 'mass' "
+                        "and 'inertia'"});
 }
 
 bool check_quaternion(const Section& body)
@@ -109,8 +111,10 @@ bool check_body(const Section& body, Findings& findings)
     const int before = findings.n_errors();
     check_name(body);
     if (const Section* shape = only_section(body, "shape")) check_shape(*shape);
-    if (is_point_mass(body)) check_point_mass(body);
-    else check_mass(body);
+    if (is_point_mass(body))
+        check_point_mass(body);
+    else
+        check_mass(body);
     check_pose(body);
     return findings.n_errors() == before && body.is_valid();
 }
@@ -274,8 +278,8 @@ Matrix3 read_orientation(const Section& body)
 
 bool check_pose(const Section& body)
 {
-    const bool is_one_spin = body.at_most_one({"angular_velocity", "angular_velocity_body", "director_rates"},
-                                              "rates-conflict");
+    const bool is_one_spin =
+        body.at_most_one({"angular_velocity", "angular_velocity_body", "director_rates"}, "rates-conflict");
     return check_orientation(body) && is_one_spin;
 }
 
@@ -300,9 +304,9 @@ void read_bodies(Builder& builder)
     for (const Section& section : builder.top().sections("body")) {
         const bool is_good = check_body(section, builder.findings());
         const Value* named = section.find("name");
-        if (named == nullptr || !claim_name(section, "body", named->text, taken,
-                                            {"joints, loads and results refer to bodies by name",
-                                             "rename one of them"}))
+        if (named == nullptr ||
+            !claim_name(section, "body", named->text, taken,
+                        {"joints, loads and results refer to bodies by name", "rename one of them"}))
             continue;
         BodyReference& body = builder.bodies()[named->text];
         const std::string path = "body[" + named->text + "]";

@@ -2,6 +2,7 @@
 // From the sections of a scenario to a model: one object that the parts of the reader fill together.
 #pragma once
 
+#include <array>
 #include <map>
 #include <string>
 #include <unordered_map>
@@ -31,7 +32,7 @@ public:
     Findings& findings() { return findings_; }
     Model& model() { return model_; }
     const Model& model() const { return model_; }
-    std::vector<Outline>& outlines() { return outlines_; }   ///< of the bodies so far
+    std::vector<Outline>& outlines() { return outlines_; }                     ///< of the bodies so far
     std::vector<std::vector<ShapePart>>& parts() { return parts_; }            ///< of the bodies so far
     std::vector<std::vector<NamedSurface>>& surfaces() { return surfaces_; }   ///< of the bodies so far
     MeshStore& meshes() { return meshes_; }
@@ -146,6 +147,8 @@ bool check_orientation(const Section& section);
 Key frames_key(const std::string& heading, const std::string& doc);
 bool check_frames(const Section& section);
 Matrix3 read_orientation(const Section& section);
+/// Where `points` of a joint or load lie outside of a body's shape, and as places in the world would not.
+void warn_of_world_points(Builder& builder, const Section& section, const std::array<int, 2>& bodies);
 
 // Position, orientation and velocities of a body, at the start ([[body]]) or at the end ([body.end]).
 bool check_pose(const Section& body);

@@ -390,6 +390,7 @@ void read_joints(Builder& builder)
             if (!check_point_masses(builder, section, first.index, second.index)) continue;
             builder.guard(path, [&] {
                 builder.model().add_joint(make_joint(builder, section, name, first.index, second.index));
+                warn_of_world_points(builder, section, {first.index, second.index});
             });
         }
 }

@@ -44,7 +44,8 @@ std::vector<Key> keys_on_body(const std::string& what, std::string_view unit, co
           interpolation_key()}});
     return joined(
         {body_key()}, more,
-        std::vector<Key>{{"value", types::vector3, "Constant; instead of `table`.", unit}, table},
+        std::vector<Key>{Key{"value", types::vector3, "Constant; instead of `table`.", unit}.or_formulas(),
+                         table},
         expression_keys(true),
         std::vector<Key>{choice("frame", {"world", "body"},
                                 "Axes of the values: fixed in the world, or turning with the body.")},
@@ -102,9 +103,10 @@ std::vector<Key> keys_of_actuator()
          "Values between the times; constant before and after.",
          {times_key(), Key{"values", types::list, "One for each time.", "N"}.or_in("N m").needed(),
           interpolation_key()}});
-    return joined({Key{"joint", types::text, "The joint."}.needed(), coordinate_key(),
-                   Key{"value", types::number, "Constant; instead of `table`.", "N"}.or_in("N m"), table},
-                  expression_keys(false), interval_keys());
+    return joined(
+        {Key{"joint", types::text, "The joint."}.needed(), coordinate_key(),
+         Key{"value", types::number, "Constant; instead of `table`.", "N"}.or_in("N m").or_formulas(), table},
+        expression_keys(false), interval_keys());
 }
 
 Key surface_key()
@@ -128,7 +130,7 @@ std::vector<Key> keys_of_pressure()
                        "it pulls.",
                        "Pa/m"};
     return joined({body_key(), surface_key(), gradient,
-                   Key{"value", types::number, "Constant; instead of `table`.", "Pa"}, table},
+                   Key{"value", types::number, "Constant; instead of `table`.", "Pa"}.or_formulas(), table},
                   expression_keys(false), interval_keys());
 }
 

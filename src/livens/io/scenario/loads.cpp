@@ -65,6 +65,7 @@ void read_load(Builder& builder, const Section& load, const std::string& name, b
     if (!find_bodies(builder, load, first, second) || !is_good) return;
     builder.guard(path, [&] {
         builder.model().add_load(kind.make({load, name, first.index, second.index, builder}));
+        warn_of_world_points(builder, load, {first.index, second.index});
     });
 }
 

@@ -32,8 +32,8 @@ enum class Form : std::uint8_t {
 struct KeyType {
     std::string_view words;   ///< "three numbers", for messages and pages
     Form form = Form::none;
-    int count = 0;              ///< 0: any number of them, at least one
-    Form other = Form::none;    ///< what may stand there instead, with as many
+    int count = 0;             ///< 0: any number of them, at least one
+    Form other = Form::none;   ///< what may stand there instead, with as many
 
     friend constexpr bool operator==(const KeyType&, const KeyType&) = default;
 };
@@ -88,14 +88,16 @@ struct Key {
     std::string_view unit = {};       ///< SI; empty: a pure number. Texts must have its dimension
     std::string_view fallback = {};   ///< as in TOML, a choice without quotes; empty: none
     bool required = false;
-    Words choices = {};   ///< where an enum says the same, in its order: see Section::pick()
-    Range range = {};     ///< for every number of the value
+    Words choices = {};                 ///< where an enum says the same, in its order: see Section::pick()
+    Range range = {};                   ///< for every number of the value
     std::string_view other_unit = {};   ///< SI; what texts may have instead, along angles
     std::shared_ptr<const Table> child = {};   ///< of a table, or tables
+    bool has_formulas = false;                 ///< `expression` may stand instead
 
     // One property each, so that an entry of a table reads as a sentence.
     Key needed() && { return required = true, std::move(*this); }
     Key or_in(std::string_view u) && { return other_unit = u, std::move(*this); }
+    Key or_formulas() && { return has_formulas = true, std::move(*this); }
     Key within(const Range& r) && { return range = r, std::move(*this); }
     Key holding(Table t) &&;
 };
@@ -110,8 +112,8 @@ inline constexpr int any_kind = -1;
 struct Table {
     std::string heading;   ///< "[[body]]"
     std::string_view doc;
-    std::vector<Key> keys;               ///< of all kinds
-    std::string_view chooser = {};       ///< the key that says the kind, "type"; empty: there are no kinds
+    std::vector<Key> keys;           ///< of all kinds
+    std::string_view chooser = {};   ///< the key that says the kind, "type"; empty: there are no kinds
     std::vector<Kind> kinds = {};
 
     /// A table with kinds: words and meanings of the chooser are theirs.

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "livens/base/text.h"
+#include "livens/io/scenario/other_words.h"
 #include "livens/io/scenario/units.h"
 
 namespace livens {
@@ -17,10 +18,7 @@ using NodeKind = Node::Kind;
 class ValueReader {
 public:
     ValueReader(Value& value, const std::string& label, Findings& findings)
-        : value_(value),
-          key_(*value.key),
-          label_(label),
-          findings_(findings)
+        : value_(value), key_(*value.key), label_(label), findings_(findings)
     {}
 
     bool read()
@@ -33,39 +31,51 @@ private:
     bool is_of_other_form(const Node& node) const
     {
         switch (key_.type.other) {
-        case Form::choice: return node.kind == NodeKind::text && index_of(key_.choices, node.text()) >= 0;
+        case Form::choice:
+            return node.kind == NodeKind::text && index_of(key_.choices, node.text()) >= 0;
         case Form::row:
         case Form::names:
             return node.kind == NodeKind::array;
         case Form::rows:
             return node.kind == NodeKind::array && !node.items().empty() &&
                    node.items().front().kind == NodeKind::array;
-        case Form::table: return node.kind == NodeKind::table;
-        default: return false;
+        case Form::table:
+            return node.kind == NodeKind::table;
+        default:
+            return false;
         }
     }
 
     bool read(Form form, const Node& node)
     {
         switch (form) {
-        case Form::flag: return read_flag(node);
-        case Form::truth: return node.kind == NodeKind::truth ? keep(node.number) : wrong_type(node);
+        case Form::flag:
+            return read_flag(node);
+        case Form::truth:
+            return node.kind == NodeKind::truth ? keep(node.number) : wrong_type(node);
         case Form::integer:
             return node.kind == NodeKind::integer ? accept(node, node.number) : wrong_type(node);
-        case Form::number: return read_number(node);
-        case Form::text: return read_text(node, value_.text);
-        case Form::choice: return read_choice(node);
+        case Form::number:
+            return read_number(node);
+        case Form::text:
+            return read_text(node, value_.text);
+        case Form::choice:
+            return read_choice(node);
         case Form::names:
             return read_each(node, key_.type.count,
                              [&](const Node& item) { return read_text(item, value_.texts.emplace_back()); });
         case Form::named_texts:
             return read_named_texts(node);
-        case Form::row: return read_row(node, key_.type.count);
+        case Form::row:
+            return read_row(node, key_.type.count);
         case Form::rows:
             return read_each(node, key_.type.count, [&](const Node& item) { return read_row(item, 3); });
-        case Form::table: return read_table(node);
-        case Form::tables: return read_tables(node);
-        case Form::none: break;
+        case Form::table:
+            return read_table(node);
+        case Form::tables:
+            return read_tables(node);
+        case Form::none:
+            break;
         }
         return false;
     }
@@ -76,8 +86,7 @@ private:
     bool wrong_type(const Node& node, std::string help = {})
     {
         return findings_.error(node.place, "wrong-type",
-                               demand() + ", not " + std::string(describe(node.kind)),
-                               {"", std::move(help)});
+                               demand() + ", not " + std::string(describe(node.kind)), {"", std::move(help)});
     }
 
     bool keep(double x)
@@ -112,9 +121,11 @@ private:
             value_.has_unit = true;
             return accept(node, quantity.value);
         }
-        return findings_.error(node.place, "unit",
-                               subject() + " cannot be \"" + node.text() + "\": " + quantity.error,
-                               {"", quantity.help});
+        return findings_.error(
+            node.place, "unit", subject() + " cannot be \"" + node.text() + "\": " + quantity.error,
+            {key_.has_formulas ? "formulas stand in 'expression', instead of '" + std::string(key_.name) + "'"
+                               : "",
+             quantity.help});
     }
 
     bool accept(const Node& node, double x)
@@ -138,9 +149,10 @@ private:
     bool read_choice(const Node& node)
     {
         if (!read_text(node, value_.text)) return false;
-        return index_of(key_.choices, value_.text) >= 0 ||
-               findings_.error(node.place, "unknown-choice", demand() + ", not \"" + value_.text + "\"",
-                               {"", suggest(value_.text, key_.choices)});
+        if (index_of(key_.choices, value_.text) >= 0) return true;
+        const std::string other = in_other_words(value_.text, key_.choices);
+        return findings_.error(node.place, "unknown-choice", demand() + ", not \"" + value_.text + "\"",
+                               {"", other.empty() ? suggest(value_.text, key_.choices) : other});
     }
 
     /// A list of so many (0: of any number but none).
@@ -176,8 +188,10 @@ private:
 
     bool read_table(const Node& node)
     {
-        if (node.kind != NodeKind::table) return wrong_type(node);
         const std::string name(key_.name);
+        if (node.kind != NodeKind::table)
+            return wrong_type(node, "a table stands in braces, as in " + name + " = { " +
+                                        std::string(key_.child->keys.front().name) + " = ... }");
         const bool is_top = find_key(root_table().keys_of(any_kind), name) == &key_;
         value_.sections.emplace_back(node, *key_.child, is_top ? "[" + name + "]" : name + " of " + label_,
                                      findings_);
@@ -195,8 +209,8 @@ private:
             if (item.kind != NodeKind::table) return wrong_type(item, help);
             const Node* title = item.find("name");
             const bool is_named = title != nullptr && title->kind == NodeKind::text && !title->text().empty();
-            const std::string label = is_named ? "'" + title->text() + "'"
-                                               : std::to_string(value_.sections.size() + 1);
+            const std::string label =
+                is_named ? "'" + title->text() + "'" : std::to_string(value_.sections.size() + 1);
             value_.sections.emplace_back(item, *key_.child, name + " " + label, findings_);
             is_valid = value_.sections.back().is_valid() && is_valid;
         }
@@ -219,13 +233,26 @@ int kind_of(const Node& node, const Table& table)
     return index_of(key.choices, given == nullptr ? key.fallback : given->text());
 }
 
+/// The one kind that has all keys of the file, as a line to write.
+std::string told_by_keys(const Node& node, const Table& table)
+{
+    const Kind* only = nullptr;
+    for (const Kind& kind : table.kinds) {
+        const std::vector<const Key*> keys = table.keys_of(static_cast<int>(&kind - table.kinds.data()));
+        const bool has_all = std::ranges::all_of(
+            node.entries(), [&](const Entry& entry) { return find_key(keys, entry.key) != nullptr; });
+        if (!has_all) continue;
+        if (only != nullptr) return {};
+        only = &kind;
+    }
+    return only == nullptr ? std::string()
+                           : "write " + std::string(table.chooser) + " = \"" + std::string(only->word) + "\"";
+}
+
 }   // namespace
 
 Section::Section(const Node& node, const Table& table, std::string label, Findings& findings)
-    : table_(&table),
-      node_(&node),
-      label_(std::move(label)),
-      findings_(&findings),
+    : table_(&table), node_(&node), label_(std::move(label)), findings_(&findings),
       kind_(kind_of(node, table))
 {
     const int errors_before = findings.n_errors();
@@ -238,7 +265,8 @@ Section::Section(const Node& node, const Table& table, std::string label, Findin
         if (!key.required || node.find(key.name) != nullptr) continue;
         const std::string name = "'" + std::string(key.name) + "'";
         findings.error(&table == &root_table() ? Place{1, 1, 1} : node.place, "missing-key",
-                       label_ + " lacks " + name, {name + ": " + key.doc, ""});
+                       label_ + " lacks " + name,
+                       {name + ": " + key.doc, key.name == table.chooser ? told_by_keys(node, table) : ""});
     }
     is_valid_ = findings.n_errors() == errors_before;
 }
@@ -271,7 +299,7 @@ void Section::report_unknown(const Entry& entry, const std::vector<const Key*>& 
         findings_->error(entry.place, "misplaced-key",
                          "'" + entry.key + "' of " + label_ + " does not belong to " +
                              std::string(table_->chooser) + " \"" + std::string(own) + "\"",
-                         {"it belongs to " + quoted_alternatives(owners), ""});
+                         {"it belongs to " + quoted_alternatives(owners), instead_of_key(own, entry.key)});
         return;
     }
     Words names;
@@ -368,9 +396,9 @@ bool Section::refuse(std::initializer_list<std::string_view> keys, std::string_v
     bool is_clean = true;
     for (const std::string_view key : keys)
         if (has(key))
-            is_clean = error(key, code,
-                             "'" + std::string(key) + "' of " + label_ + " has no meaning: " + reason,
-                             {"", "leave it out"});
+            is_clean =
+                error(key, code, "'" + std::string(key) + "' of " + label_ + " has no meaning: " + reason,
+                      {"", "leave it out"});
     return is_clean;
 }
 

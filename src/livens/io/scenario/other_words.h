@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What users of other programs write, and what it is called here.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "livens/io/scenario/schema.h"
+
+namespace livens {
+
+/// Help for a word that is none of `choices`; empty: nothing is known of it.
+std::string in_other_words(std::string_view word, const Words& choices);
+/// Help for a key that the kind does not have, though others do; empty, likewise.
+std::string instead_of_key(std::string_view kind, std::string_view key);
+
+}   // namespace livens
