@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "livens/base/text.h"
+#include "livens/spacetime/accuracy.h"
 #include "reference/shipped.h"
 #include "reference/solved.h"
 
@@ -353,6 +354,37 @@ expression = "-6*phi - 0.8*w + 0.3*psi + 0.35*v"
     EXPECT_LT(std::abs(held.coordinate("pivot", "angle", 5).value), 1e-4);
     EXPECT_NEAR(held.sensed(5)[2], 0.15 + std::hypot(0.01, 0.15), 1e-6);
     EXPECT_LT(solved(furuta + "[time]\nend = 0.6\naccuracy = 1e-7\n").sensed(0.6)[2], 0.2);   // it falls
+}
+
+/// Those who look at a march on its way find the angles of loads at the ends that there are: the motion's
+/// arrays may be longer.
+TEST(Laws, AnglesAreCountedWhileMarching)
+{
+    const ScenarioResult read = read_scenario(root / "examples/furuta_pendulum.toml");
+    ASSERT_TRUE(read.scenario.has_value());
+    const Model& model = read.scenario->model;
+    std::vector<std::pair<double, std::vector<double>>> seen;
+    const auto look = [&](const Look& at) {
+        const int last = at.motion.n_elements();
+        for (int end = 0; end <= last; end += std::max(last / 3, 1))
+            seen.emplace_back(at.motion.mesh.ends[end], at.motion.at(at.motion.mesh.ends[end]).angles);
+        return false;
+    };
+    for (const Method& method : {Method(Lobatto{4}), Method(Radau{3})}) {
+        seen.clear();
+        const Solution s = solve_to_accuracy(model, {model.start()}, Span{0, 5, 1e-4}, method, {}, look);
+        ASSERT_TRUE(s.report.converged()) << s.report.message;
+        ASSERT_GT(seen.size(), 4u);
+        std::size_t compared = 0;
+        for (const auto& [t, angles] : seen) {
+            EXPECT_EQ(angles.size(), 2u) << t;                              // of the pivot and of the motor
+            if (std::ranges::count(s.motion.mesh.ends, t) == 0) continue;   // of an earlier try
+            EXPECT_EQ(angles, s.motion.at(t).angles) << t;
+            ++compared;
+        }
+        EXPECT_GT(compared, 4u);
+        EXPECT_GT(std::abs(s.motion.at(5).angles[0]), 1e-6);
+    }
 }
 
 }   // namespace

@@ -3,6 +3,7 @@
 
     LIVENS_PROGRAM=build/release/livens python3 program_test.py [CLASS ...]
 """
+import csv
 import fcntl
 import hashlib
 import importlib.util
@@ -305,6 +306,48 @@ class Solve(ProgramTest):
         self.assertEqual(lines[0].split(",")[:2], ["t [s]", "brick.position.x [m]"])
         self.assertEqual([line.split(",")[0] for line in lines[1:]], ["0", "0.1", "0.2", "0.3", "0.4", "0.5"])
         self.assertEqual(lines[1].split(",")[17:21], [""] * 4)   # a point mass has no orientation
+
+    def test_csv_of_joints_and_sensors(self):
+        self.write("hinge.toml", """format = 1
+gravity = [0, 0, -9.81]
+[[body]]
+name = "arm"
+shape = { box = [1, 0.1, 0.1] }
+mass = 2
+position = [0.5, 0, 0]
+[[joint]]
+name = "hinge"
+type = "revolute"
+between = ["world", "arm"]
+at = [0, 0, 0]
+axis = [0, 1, 0]
+[[load]]
+name = "spring"
+type = "spring"
+joint = "hinge"
+stiffness = 3
+[[sensor]]
+name = "effort"
+type = "load"
+load = "spring"
+[time]
+end = 0.5
+output = 0.25
+""")
+        self.expect(0, "solve", "hinge.toml", "-o", "run.nc", "--csv", "run.csv")
+        with (self.folder / "run.csv").open(newline="") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual(list(rows[0])[-10:], [
+            "hinge.angle [rad]", "hinge.angle_rate [rad/s]", "hinge.force.x [N]", "hinge.force.y [N]", "hinge.force.z [N]",
+            "hinge.torque.x [N m]", "hinge.torque.y [N m]", "hinge.torque.z [N m]", "effort.force [N m]", "effort.power [W]"])
+        for row in rows:
+            at = json.loads(self.expect(0, "sample", "run.nc", "--joint", "hinge", f"--at={row['t [s]']}", "--json").out)
+            self.assertEqual(float(row["hinge.angle [rad]"]), at["angle"])
+            self.assertEqual(float(row["hinge.angle_rate [rad/s]"]), at["angle_rate"])
+            for i, x in enumerate("xyz"):
+                self.assertEqual(float(row[f"hinge.force.{x} [N]"]), at["force"][i])
+            self.assertAlmostEqual(float(row["effort.force [N m]"]), -3 * at["angle"], delta=1e-14)
+        self.assertGreater(abs(float(rows[-1]["hinge.angle [rad]"])), 0.1)
 
     def test_not_converged_writes_what_there_is(self):
         one_leap = SMALL.replace("end = 0.5\nelements = 10\noutput = 0.1", "end = 50\nelements = 1")

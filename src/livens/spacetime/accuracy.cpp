@@ -33,6 +33,7 @@ constexpr int quiet_degree = 9;
 constexpr double quieter = 3;   // by this much at most
 constexpr int preferred_radau = 5, high_radau = 8;
 constexpr double high_accuracy = 1e-9;   // below, the high degree
+constexpr double fine_accuracy = 1e-8;   // below, rounding counts
 constexpr double fit = 1.5;              // times the time between stops: longer elements are of no use
 constexpr int looked_at = 8;             // elements that tell whether they fit between stops
 constexpr int least_piece = 16;          // elements that the second solution solves together
@@ -49,8 +50,8 @@ int& degree_of(Method& method) { return const_cast<int&>(degree_of(std::as_const
 /// be shortened in vain.
 SolveOptions with_tolerance_for(double accuracy, int tries, SolveOptions options)
 {
-    constexpr double fine = 1e-8, all_digits = 1e-15;
-    if (accuracy < fine && (tries > 1 || accuracy >= high_accuracy))
+    constexpr double all_digits = 1e-15;
+    if (accuracy < fine_accuracy && (tries > 1 || accuracy >= high_accuracy))
         options.tolerance = std::min(options.tolerance, all_digits);
     return options;
 }
@@ -83,16 +84,18 @@ struct Try {
 
 /// What shorter elements brought.
 struct Tries {
-    double least = std::numeric_limits<double>::infinity(), last = least;   // errors
-    bool helps = true;   // that the last one had shorter elements
-    int n_in_vain = 0;   // whose shorter elements did not help
+    double least = std::numeric_limits<double>::infinity();   // error
+    double in_vain = 0;                                       // largest error of those below
+    bool helps = true;                                        // that the last one had shorter elements
+    bool is_once_good = false;                                // the last one, perhaps by chance
+    int n_in_vain = 0;                                        // whose shorter elements did not help
 
     void count(const Try& one)
     {
-        last = one.solution.estimate.largest;
-        helps = one.is_broken_off || last < well_helped * least;
-        n_in_vain += helps ? 0 : 1;
-        if (!one.is_broken_off) least = std::min(least, last);
+        const double error = one.solution.estimate.largest;
+        helps = one.is_broken_off || error < well_helped * least;
+        if (!helps) in_vain = std::max(in_vain, error), ++n_in_vain;
+        if (!one.is_broken_off) least = std::min(least, error);
     }
 };
 
@@ -135,17 +138,21 @@ public:
             if (!report.converged()) return std::move(one.solution);
             const ErrorEstimate& found = one.solution.estimate;
             if (!one.is_broken_off && look_at_rounding(one.solution, tries)) return give_up(std::move(one));
-            if (!one.is_broken_off && found.largest <= span_.accuracy) return std::move(one.solution);
-            so_far_.count(one);
-            if (tries == most_tries || is_rounding_left() || tolerance_ <= finest)
+            const bool is_good = !one.is_broken_off && found.largest <= span_.accuracy;
+            if (is_good && (so_far_.is_once_good || !may_be_chance())) return std::move(one.solution);
+            if (!is_good) so_far_.count(one);
+            if (!is_good && (tries >= most_tries || is_rounding_left() || tolerance_ <= finest))
                 return give_up(std::move(one));
+            so_far_.is_once_good = is_good;
             const double over = found.largest / span_.accuracy * (one.is_broken_off ? 3 : 1);
             const double share = over > 0 ? power(target / over, 1 + 0.5 / degree_of(method_)) : blind_share;
-            tolerance_ = std::max(finest, tolerance_ * std::min(0.3, share));
+            tolerance_ *= std::min(0.3, share);
             if (!so_far_.helps && is_noisy()) {
                 highest_degree_ = degree_of(method_) = quiet_degree;
-                tolerance_ = std::max(finest, tolerance_ * power(0.5, 2 * quiet_degree + 1));
+                tolerance_ *= power(0.5, 2 * quiet_degree + 1);
             }
+            if (!is_good)
+                tolerance_ = std::max(finest, tolerance_);   // good once more has to be on another mesh
             // a degree that was too high for the stops may not be too high for shorter elements
             if (!is_free_ && highest_degree_ > 0) degree_of(method_) = fitting_degree(*one.pace);
             length_ = std::min(length_, one.pace->mean_length(degree_of(method_), tolerance_));
@@ -240,15 +247,20 @@ private:
         return !(second.so_far().largest <= hopeless * span_.accuracy);
     }
 
-    /// A lower degree would have less rounding.
-    bool is_noisy() const { return is_free_ && highest_degree_ > quiet_degree; }
-    /// Nothing that is left to be tried makes it small enough. Solutions that differ by rounding come near
-    /// each other by chance, and of many tries one would be believed.
+    bool is_fine() const { return span_.accuracy < fine_accuracy; }
+    /// Another degree may have less rounding.
+    bool is_noisy() const
+    {
+        return is_fine() && is_free_ && highest_degree_ != quiet_degree &&
+               std::holds_alternative<Lobatto>(method_);
+    }
     bool is_rounding_left() const
     {
-        if (so_far_.helps) return false;
-        return is_noisy() ? so_far_.last > quieter * span_.accuracy : so_far_.n_in_vain >= most_in_vain;
+        return is_fine() && !so_far_.helps && so_far_.n_in_vain >= most_in_vain && !is_noisy();
     }
+    /// Solutions that differ by rounding alone come near each other by chance, and of many tries one would be
+    /// believed: it has to happen twice.
+    bool may_be_chance() const { return is_fine() && so_far_.in_vain > quieter * span_.accuracy; }
 
     /// The highest whose elements are not much longer than the time between stops, by what was learnt.
     int fitting_degree(const Pace& pace) const

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <limits>
+
 #include "livens/diagnostics/coordinates.h"
 #include "livens/diagnostics/sample.h"
 #include "livens/io/exports.h"
@@ -24,30 +26,56 @@ std::string header_cell(const std::string& name)
     return needs_quotes ? '"' + quoted + '"' : quoted;
 }
 
-std::string header(const Run& run)
+using Parts = std::initializer_list<const char*>;
+
+void add_header(std::string& line, const std::string& of, const char* quantity, Parts parts, const char* unit)
+{
+    for (const char* part : parts)
+        line += "," + header_cell(of + "." + quantity + "." + part + " [" + unit + "]");
+}
+
+std::string header(const Model& model, const Run& run, const JointCoordinates& coordinates,
+                   bool has_reactions)
 {
     std::string line = "t [s]";
-    const auto add = [&](const std::string& body, const char* quantity,
-                         std::initializer_list<const char*> parts, const char* unit) {
-        for (const char* part : parts)
-            line += "," + header_cell(body + "." + quantity + "." + part + " [" + unit + "]");
-    };
     for (const std::string& body : run.body_names) {
-        add(body, "position", {"x", "y", "z"}, "m");
-        add(body, "quaternion", {"w", "x", "y", "z"}, "1");
-        add(body, "velocity", {"x", "y", "z"}, "m/s");
-        add(body, "angular_velocity", {"x", "y", "z"}, "rad/s");
+        add_header(line, body, "position", {"x", "y", "z"}, "m");
+        add_header(line, body, "quaternion", {"w", "x", "y", "z"}, "1");
+        add_header(line, body, "velocity", {"x", "y", "z"}, "m/s");
+        add_header(line, body, "angular_velocity", {"x", "y", "z"}, "rad/s");
     }
-    return line + ",kinetic energy [J],potential energy [J],energy [J]\r\n";
+    line += ",kinetic energy [J],potential energy [J],energy [J]";
+    for (std::size_t i = 0; i < coordinates.places().size(); ++i) {
+        const NamedCoordinate& q = coordinates.coordinate(static_cast<int>(i));
+        const std::string name = model.joints()[coordinates.places()[i].joint].name + "." + q.name,
+                          unit = q.coordinate.is_angle() ? "rad" : "m";
+        line +=
+            "," + header_cell(name + " [" + unit + "]") + "," + header_cell(name + "_rate [" + unit + "/s]");
+    }
+    for (const Joint& joint : model.joints()) {
+        if (!has_reactions) break;
+        add_header(line, joint.name, "force", {"x", "y", "z"}, "N");
+        add_header(line, joint.name, "torque", {"x", "y", "z"}, "N m");
+    }
+    for (const Sensor& sensor : model.sensors())
+        for (const SensorComponent& c : sensor.components)
+            line += "," + header_cell(sensor.name + "." + c.name + " [" + c.unit + "]");
+    return line + "\r\n";
+}
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr Vector3 no_number{nan, nan, nan};
+
+void add_cell(std::string& line, double x)
+{
+    line += ',';
+    if (x == x) line += to_text(x);   // nan: an empty cell, which every reader takes for "none"
 }
 
 template <int Rows, int Cols>
 void add_cells(std::string& line, const Matrix<Rows, Cols>& values)
 {
-    for (const double x : values.a) {
-        line += ',';
-        if (x == x) line += to_text(x);   // nan: an empty cell, which every reader takes for "none"
-    }
+    for (const double x : values.a) add_cell(line, x);
 }
 
 /// As in the balance: where loads jump, what follows.
@@ -66,7 +94,10 @@ void add_energies(std::string& line, const Model& model, const Motion& motion, c
 void write_csv(const std::filesystem::path& file, const Model& model, const Run& run)
 {
     check_writable(file);
-    std::string text = header(run);
+    const JointCoordinates coordinates(model, run.motion);
+    const SensorReadings sensors(model, run.motion);
+    const bool has_reactions = !sample_joints(model, run.motion, run.motion.start()).empty();
+    std::string text = header(model, run, coordinates, has_reactions);
     const LoadTurns turns(model, run.motion);
     std::vector<Vector4> previous(run.body_names.size(), Vector4{1, 0, 0, 0});
     for (const double asked : run.output) {
@@ -83,6 +114,17 @@ void write_csv(const std::filesystem::path& file, const Model& model, const Run&
             add_cells(text, s.angular_velocity);
         }
         add_energies(text, model, run.motion, turns, t);
+        for (const CoordinateValue& q : coordinates.at(t)) {
+            add_cell(text, q.value);
+            add_cell(text, q.rate);
+        }
+        if (has_reactions)
+            for (const JointSample& joint : sample_joints(model, run.motion, t)) {
+                const Reaction& r = t == run.motion.end() ? joint.left : joint.right;
+                add_cells(text, joint.is_bounded ? r.force : no_number);
+                add_cells(text, joint.is_bounded ? r.torque : no_number);
+            }
+        for (const double reading : sensors.at(t)) add_cell(text, reading);
         text += "\r\n";
     }
     replace_file(file, text);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "livens/io/scenario/other_words.h"
 
+#include <algorithm>
+
 namespace livens {
 
 namespace {
@@ -77,6 +79,21 @@ std::string instead_of_key(std::string_view kind, std::string_view key)
     for (const OtherKey& other : other_keys)
         if (other.kind == kind && other.key == key) return std::string(other.help);
     return {};
+}
+
+std::string type_told_by_keys(const Node& node, const Table& table)
+{
+    const Kind* only = nullptr;
+    for (const Kind& kind : table.kinds) {
+        const std::vector<const Key*> keys = table.keys_of(static_cast<int>(&kind - table.kinds.data()));
+        const bool has_all = std::ranges::all_of(
+            node.entries(), [&](const Entry& entry) { return find_key(keys, entry.key) != nullptr; });
+        if (!has_all) continue;
+        if (only != nullptr) return {};
+        only = &kind;
+    }
+    return only == nullptr ? std::string()
+                           : "write " + std::string(table.chooser) + " = \"" + std::string(only->word) + "\"";
 }
 
 }   // namespace livens

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "livens/io/scenario/schema.h"
+#include "livens/io/scenario/document.h"
 
 namespace livens {
 
@@ -13,5 +14,8 @@ namespace livens {
 std::string in_other_words(std::string_view word, const Words& choices);
 /// Help for a key that the kind does not have, though others do; empty, likewise.
 std::string instead_of_key(std::string_view kind, std::string_view key);
+
+/// The line to write for the kind that is not stated, if only one has all keys of the node; else empty.
+std::string type_told_by_keys(const Node& node, const Table& table);
 
 }   // namespace livens

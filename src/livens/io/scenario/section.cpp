@@ -233,22 +233,6 @@ int kind_of(const Node& node, const Table& table)
     return index_of(key.choices, given == nullptr ? key.fallback : given->text());
 }
 
-/// The one kind that has all keys of the file, as a line to write.
-std::string told_by_keys(const Node& node, const Table& table)
-{
-    const Kind* only = nullptr;
-    for (const Kind& kind : table.kinds) {
-        const std::vector<const Key*> keys = table.keys_of(static_cast<int>(&kind - table.kinds.data()));
-        const bool has_all = std::ranges::all_of(
-            node.entries(), [&](const Entry& entry) { return find_key(keys, entry.key) != nullptr; });
-        if (!has_all) continue;
-        if (only != nullptr) return {};
-        only = &kind;
-    }
-    return only == nullptr ? std::string()
-                           : "write " + std::string(table.chooser) + " = \"" + std::string(only->word) + "\"";
-}
-
 }   // namespace
 
 Section::Section(const Node& node, const Table& table, std::string label, Findings& findings)
@@ -264,9 +248,9 @@ Section::Section(const Node& node, const Table& table, std::string label, Findin
         const Key& key = *keys[i];
         if (!key.required || node.find(key.name) != nullptr) continue;
         const std::string name = "'" + std::string(key.name) + "'";
-        findings.error(&table == &root_table() ? Place{1, 1, 1} : node.place, "missing-key",
-                       label_ + " lacks " + name,
-                       {name + ": " + key.doc, key.name == table.chooser ? told_by_keys(node, table) : ""});
+        findings.error(
+            &table == &root_table() ? Place{1, 1, 1} : node.place, "missing-key", label_ + " lacks " + name,
+            {name + ": " + key.doc, key.name == table.chooser ? type_told_by_keys(node, table) : ""});
     }
     is_valid_ = findings.n_errors() == errors_before;
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <type_traits>
 
 namespace livens {
 
@@ -39,13 +40,39 @@ void Record::for_sizes(int place, Action&& action)
     action(m.load_angles, (n + 1) * tables_.turns.size());
 }
 
-/// A march forwards touches its memory as it goes, so that it can begin, and be stopped, at once.
-void Record::reach(int place)
+namespace {
+
+/// Room for `n` entries at `first`. A march forwards writes one behind the other and touches its memory as it
+/// goes: much is not written twice, and little is made room for ahead, since arrays may be longer than what
+/// was written.
+template <class T>
+[[gnu::noinline]] void make_room(std::vector<T>& values, std::size_t first, std::size_t n)
 {
-    if (place <= reached_) return;
-    reached_ = std::min(2 * place + 8, mesh_.n_elements());
-    for_sizes(reached_, [](auto& values, std::size_t size) { values.resize(size); });
+    const std::size_t ahead = std::max(2 * first, first + 8 * n);
+    values.resize(values.capacity() < first + n ? ahead : std::min(ahead, values.capacity()));
 }
+
+void put(std::vector<double>& values, int place, std::size_t n, const double* from)
+{
+    constexpr std::size_t much = 64;
+    const std::size_t first = static_cast<std::size_t>(place) * n;
+    if (n >= much && first == values.size()) {
+        values.insert(values.end(), from, from + n);
+        return;
+    }
+    if (values.size() < first + n) make_room(values, first, n);
+    std::copy_n(from, n, values.data() + first);
+}
+
+/// 12 numbers a body.
+void put(std::vector<Matrix34>& values, int place, std::size_t bodies, const double* from)
+{
+    const std::size_t first = static_cast<std::size_t>(place) * bodies;
+    if (values.size() < first + bodies) make_room(values, first, bodies);
+    std::copy_n(from, 12 * bodies, values[first].a);
+}
+
+}   // namespace
 
 void Record::divided(int element)
 {
@@ -63,35 +90,32 @@ void Record::divided(int element)
     insert(m.accelerations, 2 * (e + 1) * bodies, 2 * bodies);
     insert(m.end_multipliers, 2 * (e + 1) * rows, 2 * rows);
     insert(m.load_angles, (e + 1) * tables_.turns.size(), tables_.turns.size());
-    ++first_, ++last_, ++reached_;
+    ++first_, ++last_;
 }
 
 void Record::node(int element, int A, const double* X)
 {
-    reach(A == 0 ? element : element + 1);
-    std::copy_n(X, motion_.X.n_values, motion_.X.coefficient(element, A).data());
+    put(motion_.X.values, motion_.X.index(element, A), static_cast<std::size_t>(motion_.X.n_values), X);
 }
 
 void Record::multipliers(int element, int A, const double* lambda)
 {
-    reach(element + 1);
-    if (motion_.n_rows > 0)
-        std::copy_n(lambda, motion_.n_rows, motion_.multipliers.coefficient(element, A).data());
+    put(motion_.multipliers.values, motion_.multipliers.index(element, A),
+        static_cast<std::size_t>(motion_.n_rows), lambda);
 }
 
 void Record::end(int place, const InstantState& state, const InstantSystem& system, bool two_sided)
 {
     Motion& m = motion_;
-    reach(place);
+    const auto bodies = static_cast<std::size_t>(m.n_bodies), rows = static_cast<std::size_t>(m.n_rows);
     first_ = std::min(first_, place);
     last_ = std::max(last_, place);
     node(std::min(place, mesh_.n_elements() - 1), place < mesh_.n_elements() ? 0 : degree_, state.X.data());
-    std::ranges::copy(state.angles,
-                      m.load_angles.begin() + static_cast<std::ptrdiff_t>(state.angles.size()) * place);
+    put(m.load_angles, place, state.angles.size(), state.angles.data());
     const double *V = system.rates(), *turn = system.centripetal();
     tables_.times_mass(V, 1.0, work_.data());
-    std::copy_n(V, work_.size(), m.velocities[place * m.n_bodies].a);
-    std::copy_n(work_.data(), work_.size(), m.momenta[place * m.n_bodies].a);
+    put(m.velocities, place, bodies, V);
+    put(m.momenta, place, bodies, work_.data());
     for (int side = 0; side < 2; ++side) {
         if (side == 0 || two_sided) {
             // X'' = [a, alpha x d + w x (w x d)]
@@ -99,9 +123,8 @@ void Record::end(int place, const InstantState& state, const InstantSystem& syst
             double* __restrict A = work_.data();
             for (std::size_t i = 0; i < work_.size(); ++i) A[i] += turn[i];
         }
-        std::copy_n(work_.data(), work_.size(), m.accelerations[(2 * place + side) * m.n_bodies].a);
-        std::copy_n(state.multipliers[side].data(), m.n_rows,
-                    m.end_multipliers.data() + (2 * place + side) * m.n_rows);
+        put(m.accelerations, 2 * place + side, bodies, work_.data());
+        put(m.end_multipliers, 2 * place + side, rows, state.multipliers[side].data());
     }
 }
 
@@ -124,6 +147,8 @@ void Record::cut(std::vector<T>& values, std::size_t first, std::size_t last, st
 const Motion& Record::so_far()
 {
     motion_.mesh.ends.assign(mesh_.ends.begin(), mesh_.ends.begin() + last_ + 1);
+    motion_.load_angles.resize(motion_.mesh.ends.size() *
+                               tables_.turns.size());   // its rows tell how many there are
     return motion_;
 }
 

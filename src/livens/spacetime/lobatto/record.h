@@ -37,7 +37,6 @@ public:
 private:
     template <class Action>
     void for_sizes(int place, Action&& action);
-    void reach(int place);
     void only(const State& start);
     template <class T>
     void cut(std::vector<T>& values, std::size_t first, std::size_t last, std::size_t stride) const;
@@ -46,7 +45,6 @@ private:
     const TimeMesh& mesh_;
     int degree_;
     int first_, last_;   // element ends from..to that were written
-    int reached_ = -1;   // there is room up to this element end
     Motion motion_;
     std::vector<double> work_;
 };
