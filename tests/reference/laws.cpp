@@ -6,7 +6,9 @@
 #include <numbers>
 
 #include "livens/base/text.h"
-#include "livens/spacetime/accuracy.h"
+#include "livens/spacetime/lobatto/window.h"
+#include "livens/spacetime/pace.h"
+#include "livens/spacetime/windows.h"
 #include "reference/shipped.h"
 #include "reference/solved.h"
 
@@ -363,28 +365,33 @@ TEST(Laws, AnglesAreCountedWhileMarching)
     const ScenarioResult read = read_scenario(root / "examples/furuta_pendulum.toml");
     ASSERT_TRUE(read.scenario.has_value());
     const Model& model = read.scenario->model;
+    Conditions conditions;
+    conditions.start = model.start();
+    const Ends ends = close_ends(model, conditions, 0, 5, {});
+    const Tables tables(model, ends.independent);
+    TimeMesh mesh{{0}};
+    LobattoWindow window(tables, mesh, ends, element_rule(Points::lobatto, 4));
+    Pace pace(Points::lobatto, 4, 1e-6, 0.01, {0, 5});
     std::vector<std::pair<double, std::vector<double>>> seen;
-    const auto look = [&](const Look& at) {
-        const int last = at.motion.n_elements();
-        for (int end = 0; end <= last; end += std::max(last / 3, 1))
-            seen.emplace_back(at.motion.mesh.ends[end], at.motion.at(at.motion.mesh.ends[end]).angles);
-        return false;
+    WindowOptions options;
+    options.length_of_model = model.length();
+    options.pace = &pace;
+    options.goes_on = [&] {
+        const Motion& so_far = *window.so_far();
+        for (const int end : {so_far.n_elements() / 2, so_far.n_elements()})
+            seen.emplace_back(so_far.mesh.ends[end], so_far.at(so_far.mesh.ends[end]).angles);
+        return true;
     };
-    for (const Method& method : {Method(Lobatto{4}), Method(Radau{3})}) {
-        seen.clear();
-        const Solution s = solve_to_accuracy(model, {model.start()}, Span{0, 5, 1e-4}, method, {}, look);
-        ASSERT_TRUE(s.report.converged()) << s.report.message;
-        ASSERT_GT(seen.size(), 4u);
-        std::size_t compared = 0;
-        for (const auto& [t, angles] : seen) {
-            EXPECT_EQ(angles.size(), 2u) << t;                              // of the pivot and of the motor
-            if (std::ranges::count(s.motion.mesh.ends, t) == 0) continue;   // of an earlier try
-            EXPECT_EQ(angles, s.motion.at(t).angles) << t;
-            ++compared;
-        }
-        EXPECT_GT(compared, 4u);
-        EXPECT_GT(std::abs(s.motion.at(5).angles[0]), 1e-6);
+    SolveReport report;
+    solve_windows(window, mesh, options, report);
+    ASSERT_TRUE(report.converged()) << report.message;
+    const Motion motion = window.take_motion();
+    ASSERT_GT(seen.size(), 20u);
+    for (const auto& [t, angles] : seen) {
+        EXPECT_EQ(angles.size(), 2u) << t;   // of the pivot and of the motor
+        EXPECT_EQ(angles, motion.at(t).angles) << t;
     }
+    EXPECT_GT(std::abs(seen.back().second[0]), 1e-6);
 }
 
 }   // namespace
