@@ -329,6 +329,7 @@ def plotting():
 
 
 WIDTH = 174 / 25.4   # inches: both columns of a journal's page
+TICK = 0.36          # inches: what a number at a tick takes
 
 
 def fit_to_page(figure, stretch):
@@ -377,8 +378,13 @@ def loglog(axes, rows, y="error", ylabel="Err (P26)", group="method", style=None
     axes.minorticks_off()
     low, high = axes.get_xlim()
     if high / low < 300:   # powers of ten alone would be too few
-        ticks = [a * 10.0**k for k in range(-8, 3) for a in (1, 2, 5)]
-        axes.set_xticks([t for t in ticks if low <= t <= high], [f"{t:g}" for t in ticks if low <= t <= high])
+        inches = axes.get_subplotspec().get_position(axes.figure).width * WIDTH
+        ticks = []
+        for t in (a * 10.0**k for k in range(-8, 3) for a in (1, 2, 5)):
+            is_apart = not ticks or math.log(t / ticks[-1]) / math.log(high / low) * inches > TICK
+            if low <= t <= high and is_apart:
+                ticks.append(t)
+        axes.set_xticks(ticks, [f"{t:g}" for t in ticks])
     axes.legend(**({"loc": "upper left", "bbox_to_anchor": (1.01, 1)} if beside else {}))
 
 
@@ -387,7 +393,8 @@ def slope(axes, exponent, h, value):
     ends = np.array([h / 2, h * 2])
     axes.plot(ends, value * (ends / h) ** exponent, "--", marker="", color="0.4", linewidth=0.9)
     axes.annotate(f"{exponent:g}", (h, value), textcoords="offset points",
-                  xytext=(4, -9 if exponent > 0 else 3), color="0.4", fontsize=6.5)
+                  xytext=(4, -9 if exponent > 0 else 3), color="0.4", fontsize=6.5,
+                  bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.3, "alpha": 0.8})
 
 
 def cube(centre, directors, edges):

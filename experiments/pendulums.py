@@ -243,7 +243,7 @@ def draw_energy(plt, runs, rows, long, counts):
                       label=f"{n} elements a block")
         axes.set(xlabel="time (s)", ylabel="mean of H less the energy (mJ)",
                  title=f"Linear elements, interfaces = \"{interfaces}\"")
-        axes.legend(loc="lower right" if interfaces == "carry" else "lower left")
+        axes.legend(loc="upper right")
     low, high = (f(axes.get_ylim()[k] for axes in (carry, project)) for k, f in ((0, min), (1, max)))
     for axes in (carry, project):
         axes.set_ylim(low, high)

@@ -39,8 +39,7 @@ struct Found {
     const Model& model() const { return scenario.model; }
     Vector3 turn(int b) const   // from where the scenario has the body
     {
-        return model().bodies()[b].is_point ? Vector3{}
-                                            : turn_between(model().bodies()[b].X, at.state.X[b]);
+        return model().bodies()[b].is_point ? Vector3{} : turn_between(model().bodies()[b].X, at.state.X[b]);
     }
     Reaction reaction(int j) const { return joint_reaction(now, j, at.state.X, at.multipliers); }
 };
@@ -68,8 +67,8 @@ void add_joints(JsonWriter& json, const Found& found)
         const Joint& joint = found.model().joints()[j];
         const Reaction reaction = found.reaction(j);
         json.begin_object().member("name", joint.name);
-        for (const NamedCoordinate& q : joint.coordinates)
-            json.member(q.name, coordinate_at(found.model(), q, found.at.state));
+        for (std::size_t k = 0; k < joint.coordinates.size(); ++k)
+            json.member(joint.coordinates[k].name, found.at.coordinates[j][k]);
         json.key("force").value(numbers(reaction.force));
         json.key("torque").value(numbers(reaction.torque));
         json.member("unique", static_cast<bool>(found.at.joint_is_unique[j])).end_object();
@@ -114,11 +113,12 @@ std::string words_of_joint(const Found& found, int j)
 {
     const Joint& joint = found.model().joints()[j];
     std::string text;
-    for (const NamedCoordinate& q : joint.coordinates)
-        text += fmt::format("{} {} {}, ", q.name,
-                            shown(coordinate_at(found.model(), q, found.at.state),
-                                  q.coordinate.is_angle() ? 1 : found.model().length()),
-                            q.coordinate.is_angle() ? "rad" : "m");
+    for (std::size_t k = 0; k < joint.coordinates.size(); ++k) {
+        const bool is_angle = joint.coordinates[k].coordinate.is_angle();
+        text += fmt::format("{} {} {}, ", joint.coordinates[k].name,
+                            shown(found.at.coordinates[j][k], is_angle ? 1 : found.model().length()),
+                            is_angle ? "rad" : "m");
+    }
     const Reaction reaction = found.reaction(j);
     const double force = norm(reaction.force), torque = norm(reaction.torque),
                  size = std::max(force, torque / found.model().length());

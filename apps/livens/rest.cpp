@@ -40,11 +40,6 @@ void add_stability(Summary& summary, const StabilityReport& report, int degrees_
     }
 }
 
-double coordinate_at(const Model& model, const NamedCoordinate& q, const State& state)
-{
-    return q.at_stated + coordinate_change(q.coordinate, model.start().X, state.X);
-}
-
 std::string shown(double x, double size)
 {
     return std::abs(x) <= 1e-12 * size ? "0" : fmt::format("{:.6g}", x);

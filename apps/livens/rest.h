@@ -17,9 +17,6 @@ Equilibrium equilibrium_of(const Scenario& scenario);
 /// The verdict as a headline.
 void add_stability(Summary& summary, const StabilityReport& stability, int degrees_of_freedom);
 
-/// A coordinate of a joint as the joint counts it, less than half a turn from where the model has its bodies.
-double coordinate_at(const Model& model, const NamedCoordinate& q, const State& state);
-
 /// For people: six digits, and 0 for what is rounding of `size`.
 std::string shown(double x, double size);
 std::string shown(const Vector3& v, double size);

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from ._entries import Entry, unknown_name
 from ._parts import Floats, Parts
-from ._values import Condition, state
+from ._values import Condition
 
 if TYPE_CHECKING:
     from typing_extensions import TypeAlias
@@ -184,7 +184,9 @@ class Equilibrium(_ByName):
             if not np.isnan(body.quaternion[0]):
                 kept.update(quaternion=tuple(body.quaternion.tolist()), angular_velocity=(0, 0, 0))
             return kept
-        return state({name: keys(body) for name, body in self.bodies.items()})
+        turned = tuple({"joint": joint, "coordinate": word, "value": value}
+                       for joint, word, value in self._found["turned"])
+        return Condition("state", {name: keys(body) for name, body in self.bodies.items()}, turned)
 
     def __repr__(self) -> str:
         rows = [f"\n  {name:<18}at {np.array2string(body.position, precision=6, suppress_small=True)} m"

@@ -34,6 +34,7 @@ ProgressArgument: TypeAlias = Union[bool, Callable[[int, int, float], Any]]
 what it raises ends the solution."""
 
 _ORIENTATIONS = ("directors", "quaternion", "rotation_vector")
+_SPINS = ("angular_velocity", "angular_velocity_body")
 
 
 def solve(model: Model, time: Time = None, *, accuracy: Number | None = None, elements: int | None = None,
@@ -227,6 +228,10 @@ def _overrides(model: Model, time: Time, of_time: dict[str, Any], method: Method
     if start is not None:
         condition = _condition(start, "start")
         made["start"] = _given(model, "start", condition.given)
+        if condition.bodies:   # where coordinates of the model's own [start] would lead away from
+            made["start"].pop("coordinates", None)
+        if condition.coordinates:
+            made["start"]["coordinates"] = [dict(one) for one in condition.coordinates]
         if condition.bodies:
             made["body"] = _moved(model._root.get("body", []), condition, "start")
     if end is not None:
@@ -320,19 +325,18 @@ def _moved(bodies: list[Table], condition: Condition, at: str) -> list[Table]:
         keys = condition.bodies.get(str(body.get("name")))
         body = Table(body, body.place, body.places)
         if keys is not None:
-            into = body if at == "start" else Table(place=user_place())
-            if any(word in keys for word in _ORIENTATIONS):
-                for word in _ORIENTATIONS:
-                    into.pop(word, None)
-            child = schema().children["body"]
-            if at == "end":
-                child = schema().tables[schema().keys(child)["end"]["child"]]
+            before = body.get("start") if at == "start" else None   # what is left out is as it was
+            into = Table(before or {}, user_place(), before.places if isinstance(before, Table) else {})
+            for words in (_ORIENTATIONS, _SPINS):
+                if any(word in keys for word in words):
+                    for word in words:
+                        into.pop(word, None)
+            child = schema().tables[schema().keys(schema().children["body"])[at]["child"]]
             for word, value in keys.items():
-                into[word] = plain(value, schema().keys(child).get(word), f"body[{body.get('name')}].{word}")
+                into[word] = plain(value, schema().keys(child).get(word), f"body[{body.get('name')}].{at}.{word}")
                 into.places[word] = user_place()
-            if at == "end":
-                body["end"] = into
-                body.places["end"] = into.place
+            body[at] = into
+            body.places[at] = into.place
         moved.append(body)
     return moved
 

@@ -85,6 +85,8 @@ class Condition:
     """The word of the scenario."""
     bodies: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     """Keys of each body there."""
+    coordinates: Sequence[Mapping[str, Any]] = ()
+    """At the start: coordinates of joints that have turned farther than bodies tell."""
 
 
 def positions(bodies: Mapping[str, Mapping[str, Any]] | None = None) -> Condition:

@@ -100,10 +100,17 @@ nb::dict found(const Model& model, const Equilibrium& at)
         quaternions.insert(quaternions.end(), q.a, q.a + 4);
     }
     const Model now = frozen(model, {at.state.t});
-    nb::list unique;
+    nb::list unique, turned;
     for (std::size_t j = 0; j < model.joints().size(); ++j) {
-        for (const NamedCoordinate& q : model.joints()[j].coordinates)
-            coordinates.push_back(q.at_stated + coordinate_change(q.coordinate, model.start().X, at.state.X));
+        const Joint& joint = model.joints()[j];
+        for (std::size_t k = 0; k < joint.coordinates.size(); ++k) {
+            const NamedCoordinate& q = joint.coordinates[k];
+            const double value = at.coordinates[j][k];
+            coordinates.push_back(value);
+            if (std::abs(value - q.at_stated - coordinate_change(q.coordinate, model.start().X, at.state.X)) >
+                1)
+                turned.append(nb::make_tuple(joint.name, q.name, value));   // bodies do not tell its turns
+        }
         Reaction reaction{{nan, nan, nan}, {nan, nan, nan}};
         if (at.is_found) reaction = joint_reaction(now, static_cast<int>(j), at.state.X, at.multipliers);
         append(forces, reaction.force);
@@ -120,6 +127,7 @@ nb::dict found(const Model& model, const Equilibrium& at)
     d["force"] = array(std::move(forces), {n_joints, 3});
     d["torque"] = array(std::move(torques), {n_joints, 3});
     d["unique"] = unique;
+    d["turned"] = turned;
     return d;
 }
 

@@ -54,6 +54,25 @@ def test_what_starts_there_stays_there(rod: lv.Model) -> None:
     assert abs(sol["rod"].velocity).max() > 1
 
 
+def test_what_starts_there_is_the_same_mechanism() -> None:
+    m = lv.Model("two", gravity=(0, 0, -9.81))   # joints by `at`: places in the world where bodies are stated
+    a = m.add_body("a", lv.box(1, 0.1, 0.1, mass=1), position=(0.5, 0, 0))
+    b = m.add_body("b", lv.box(1, 0.1, 0.1, mass=1), position=(1.5, 0, 0))
+    m.add_revolute("h", "world", a, at=(0, 0, 0), axis=(0, 1, 0))
+    m.add_revolute("k", a, b, at=(1, 0, 0), axis=(0, 1, 0))
+    for angle in (0.5, 6.5, -9):   # where the spring has no torque, also behind whole turns
+        spring = m.add_spring("s", joint="h", stiffness=400, damping=50, rest=angle)
+        m.add_spring("t", joint="k", stiffness=400, damping=50)
+        rest = m.find_equilibrium()
+        assert rest.success and abs(rest["h"].angle - angle) < 0.1
+        sol = lv.solve(m, 1, start=rest.state, elements=5)
+        assert abs(sol["h"].angle - rest["h"].angle).max() < 1e-9 and abs(sol["b"].velocity).max() < 1e-9
+        m.remove(spring)
+        m.remove("t")
+    sol = lv.solve(m, 1, start=lv.state({"b": {"velocity": (0, 0, 0)}}), elements=20)   # what is left out is as stated
+    assert sol["a"].position[0].tolist() == [0.5, 0, 0]
+
+
 def test_modes_of_a_damped_pendulum(rod: lv.Model) -> None:
     modes = rod.vibration_modes()
     s = np.roots([INERTIA, DAMPING, STIFFNESS])[:1]

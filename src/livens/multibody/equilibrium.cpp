@@ -4,12 +4,14 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <numbers>
 #include <utility>
 
 #include <Eigen/Dense>
 
 #include "livens/base/text.h"
 #include "livens/multibody/body.h"
+#include "livens/multibody/joint_coordinates.h"
 #include "livens/multibody/projection.h"
 #include "livens/multibody/reactions.h"
 #include "livens/multibody/rows.h"
@@ -51,6 +53,11 @@ public:
     {
         state_.resize(tables_);
         state_.angles = tables_.turns.begin(closed.start);
+        const std::vector<Matrix34> stated = model.start().X;
+        for (const Joint& joint : model.joints())
+            for (const NamedCoordinate& q : joint.coordinates)
+                counted_.push_back(
+                    {&q, coordinate_value(q.coordinate, stated), coordinate_value(q.coordinate, stated)});
     }
 
     const Tables& tables() const { return tables_; }
@@ -63,6 +70,7 @@ public:
         std::copy_n(point.X.data()->data(), state_.X.size(), state_.X.begin());
         std::fill(state_.velocity.begin(), state_.velocity.end(), 0.0);
         tables_.turns.follow(point.X, state_.angles);
+        follow_joints(point.X);
         if (!instant_.prepare(state_, tables_.independent)) return false;
         instant_.accelerate(state_, Side::right);
         acceleration_ = state_.acceleration[1];
@@ -70,6 +78,17 @@ public:
         point.maps = state_.maps;
         point.statics = std::make_unique<const Statics>(tables_, state_, Side::right);
         return std::isfinite(point.residual());
+    }
+
+    /// Coordinates of each joint where it looked last, with the turns on the way there.
+    std::vector<std::vector<double>> coordinates() const
+    {
+        std::vector<std::vector<double>> all(model_.joints().size());
+        auto next = counted_.begin();
+        for (std::size_t j = 0; j < all.size(); ++j)
+            for (const NamedCoordinate& q : model_.joints()[j].coordinates)
+                all[j].push_back(q.at_stated + next->value - next->stated), ++next;
+        return all;
     }
 
     /// Principal stiffnesses, at the configuration that was looked at last.
@@ -154,12 +173,27 @@ public:
     }
 
 private:
+    struct Counted {
+        const NamedCoordinate* q;
+        double stated, value;
+    };
+    /// Each angle the shorter way.
+    void follow_joints(std::span<const Matrix34> X)
+    {
+        constexpr double turn = 2 * std::numbers::pi;
+        for (Counted& one : counted_) {
+            const double x = coordinate_value(one.q->coordinate, X);
+            one.value = one.q->coordinate.is_angle() ? x + turn * std::round((one.value - x) / turn) : x;
+        }
+    }
+
     const Model& model_;
     Tables tables_;
     InstantSystem instant_;
     InstantState state_;
     std::vector<int> rows_;
     std::vector<double> acceleration_;
+    std::vector<Counted> counted_;   // of all joints
     double t_;
 };
 
@@ -347,6 +381,7 @@ Equilibrium find_equilibrium(const Model& the_model, const State& start, const E
     describe_worst(search, here, result);
     result.state.X = here.X;
     result.state.angles = search.state().angles;
+    result.coordinates = search.coordinates();
     result.is_found = outcome == Outcome::balanced;
     const UniqueReactions least =
         least_reactions(model, here.X, search.state().multipliers[1], search.tables().independent);

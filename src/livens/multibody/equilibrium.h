@@ -29,8 +29,9 @@ struct Equilibrium {
     double acceleration = 0, angular_acceleration = 0;   ///< of that body's reference point, from rest
     std::vector<double> multipliers;                     ///< of all rows, least where joints are redundant
     std::vector<bool> joint_is_unique;
-    std::vector<std::string> notes;   ///< of close_start()
-    StabilityReport stability;        ///< where it was found
+    std::vector<std::vector<double>> coordinates;   ///< of each joint, as it counts them: turns included
+    std::vector<std::string> notes;                 ///< of close_start()
+    StabilityReport stability;                      ///< where it was found
 };
 
 /// The equilibrium that a search from the start leads to: V = 0, drives and loads as they are at start.t,
@@ -51,4 +52,4 @@ struct Equilibrium {
 /// `start-singular` where the joints hold less at the rest than beside it.
 Equilibrium find_equilibrium(const Model& model, const State& start, const EquilibriumOptions& options = {});
 
-}   // namespace livens
+}   // namespace gnu::visibility("default")]]livens

@@ -10,6 +10,7 @@
 
 #include "livens/base/error.h"
 #include "livens/base/text.h"
+#include "livens/multibody/body.h"
 #include "livens/multibody/drives.h"
 #include "livens/multibody/projection.h"
 #include "livens/multibody/rank.h"
@@ -24,6 +25,7 @@ namespace {
 constexpr double step = 0.1;   // of a coordinate, rad or lengths of the model
 constexpr double farthest = 2000 * std::numbers::pi;
 constexpr int most_halvings = 12;
+constexpr double same_angle = 1e-6;   // rad
 constexpr double noticed = 1e-9;      // change of a stated velocity, of the largest
 constexpr double held_below = 1e-6;   // part of a coordinate's row, of norm one, that is free
 
@@ -252,13 +254,6 @@ Way lead(const Model& led, const std::vector<Led>& all, const Model& model, cons
            "", "state a value that the joints admit, or the bodies nearer to it");
 }
 
-Vector3 spin_of(const Matrix34& X, const Matrix34& V)
-{
-    Vector3 w{};
-    for (int i = 1; i < 4; ++i) w += 0.5 * cross(X.column(i), V.column(i));
-    return w;
-}
-
 /// The model with its bodies in another state; joints are data of the bodies, coordinates count on.
 Model restated(const Model& model, const State& state, const std::vector<Led>& all)
 {
@@ -328,7 +323,7 @@ MovedStart move_start(const Model& model, const std::vector<StartCoordinate>& wa
     for (std::size_t b = 0; b < V.size(); ++b)
         state.V.push_back(model.bodies()[b].is_point
                               ? V[b]
-                              : rate(way.X[b], V[b].column(0), spin_of(model.bodies()[b].X, V[b])));
+                              : rate(way.X[b], V[b].column(0), angular_velocity(model.bodies()[b].X, V[b])));
     for (std::size_t i = 0; i < all.size(); ++i) {
         Led& one = all[i];
         const NamedCoordinate& q = named(model, one);
@@ -351,6 +346,24 @@ IndependentCoordinates independent_coordinates(const Model& model, const State& 
     for (const std::size_t i : chosen.kept) found.names.push_back(name_of(model, all[i]));
     found.left_free = freedoms(model) - static_cast<int>(chosen.rows.size());
     return found;
+}
+
+Model restated(const Model& model, const State& state, const std::vector<StartCoordinate>& counted)
+{
+    constexpr double turn = 2 * std::numbers::pi;
+    std::vector<Led> all = all_coordinates(model, {});
+    const std::vector<Matrix34> stated = model.start().X;
+    for (Led& led : all) {
+        const JointCoordinate& q = named(model, led).coordinate;
+        led.to = led.from + coordinate_change(q, stated, state.X);
+        for (const StartCoordinate& one : counted) {
+            const bool is_this = one.joint == led.joint && one.coordinate == led.coordinate;
+            if (!is_this || !one.value || !q.is_angle()) continue;
+            const double turned = led.to + turn * std::round((*one.value - led.to) / turn);
+            if (std::abs(*one.value - turned) <= same_angle) led.to = turned;
+        }
+    }
+    return restated(model, state, all);
 }
 
 }   // namespace livens

@@ -37,6 +37,10 @@ struct MovedStart {
 MovedStart move_start(const Model& model, const std::vector<StartCoordinate>& wanted, StartPolicy policy,
                       double t = 0);
 
+/// The model with its bodies in another state: joints remain where they are on the bodies, and coordinates
+/// count on, angles by the shorter way unless one of `counted` has the same angle after more turns.
+Model restated(const Model& model, const State& state, const std::vector<StartCoordinate>& counted = {});
+
 /// Coordinates of joints that are independent of each other and of all rows in a state, in their order: they
 /// tell the configuration, but for `left_free` freedoms.
 struct IndependentCoordinates {
@@ -45,4 +49,4 @@ struct IndependentCoordinates {
 };
 IndependentCoordinates independent_coordinates(const Model& model, const State& state);
 
-}   // namespace livens
+}   // namespace gnu::visibility("default")]]livens

@@ -50,6 +50,51 @@ TEST(MechanismScenario, FramesArePointsAndAxes)
     EXPECT_GT(std::abs(constraint_value(held.rows[3], std::vector<Matrix34>{world_configuration})), 0.5);
 }
 
+/// Two rods on hinges that are stated stretched out along x and start hanging: the mechanism remains the
+/// same.
+TEST(MechanismScenario, BodiesStartWhereTheyAreNotStated)
+{
+    const std::string hanging = "[body.start]\nrotation_vector = [0, \"90 deg\", 0]\n";
+    const auto rod = [](const std::string& name, double x, const std::string& start) {
+        return "[[body]]\nname = \"" + name + "\"\nshape = { box = [1, 0.1, 0.1] }\nmass = 1\nposition = [" +
+               std::to_string(x) + ", 0, 0]\n" + start;
+    };
+    const auto text = [&](const std::string& upper, const std::string& lower, const std::string& rest = "") {
+        return "format = 1\ngravity = [0, 0, -9.81]\n" + rod("a", 0.5, upper) + rod("b", 1.5, lower) +
+               "[[joint]]\nname = \"h\"\ntype = \"revolute\"\nbetween = [\"world\", \"a\"]\nat = [0, 0, 0]\n"
+               "axis = [0, 1, 0]\n[[joint]]\nname = \"k\"\ntype = \"revolute\"\nbetween = [\"a\", \"b\"]\n"
+               "at = [1, 0, 0]\naxis = [0, 1, 0]\n" +
+               rest + "[time]\nend = 1\n";
+    };
+    const std::string upper = hanging + "position = [0, 0, -0.5]\n",
+                      lower = hanging + "position = [0, 0, -1.5]\n";
+    const ScenarioResult result = read(text(upper, lower));
+    ASSERT_TRUE(result.scenario.has_value()) << shown(result);
+    const Model& model = result.scenario->model;
+    EXPECT_LT(norm(model.bodies()[1].X.column(0) - Vector3{0, 0, -1.5}), 1e-15);
+    EXPECT_EQ(model.joints()[1].point_first, (Vector3{0.5, 0, 0})) << "on the body as it was stated";
+    EXPECT_NEAR(model.joints()[0].coordinates[0].at_stated, std::acos(-1.0) / 2, 1e-15);
+    EXPECT_NEAR(model.joints()[1].coordinates[0].at_stated, 0, 1e-15);
+    // a whole turn more, which bodies do not tell
+    const ScenarioResult turned =
+        read(text(upper, lower, "[start]\ncoordinates = [{ joint = \"h\", value = \"450 deg\" }]\n"));
+    ASSERT_TRUE(turned.scenario.has_value()) << shown(turned);
+    EXPECT_NEAR(turned.scenario->model.joints()[0].coordinates[0].at_stated, 2.5 * std::acos(-1.0), 1e-14);
+    EXPECT_LT(norm(turned.scenario->model.bodies()[1].X - model.bodies()[1].X), 1e-15);
+    // what is left out is as stated; velocities too
+    const ScenarioResult moving =
+        read(text("velocity = [0, 0, 0.5]\nangular_velocity = [0, -1, 0]\n[body.start]\n",
+                  "velocity = [0, 0, 1.5]\nangular_velocity = [0, -1, 0]\n"));
+    ASSERT_TRUE(moving.scenario.has_value()) << shown(moving);
+    EXPECT_LT(norm(moving.scenario->model.bodies()[0].V.column(0) - Vector3{0, 0, 0.5}), 1e-15);
+    // a start that the joints do not allow is refused by name
+    const ScenarioResult apart = read(text(upper, hanging + "position = [0, 0, -1.4]\n"));
+    ASSERT_FALSE(apart.scenario.has_value());
+    EXPECT_NE(shown(apart).find("'k'"), std::string::npos) << shown(apart);
+    expect_error(text(hanging + "quaternion = [1, 0, 0, 0]\n", lower), "orientation-conflict",
+                 "[0, \"90 deg\"");
+}
+
 /// The drive begins where the bodies were led, and the file's coordinate counts from there.
 TEST(MechanismScenario, StartsByCoordinates)
 {

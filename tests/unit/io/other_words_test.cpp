@@ -71,6 +71,20 @@ TEST(OtherWords, AForgottenTypeIsToldByTheOtherKeys)
     EXPECT_EQ(help(replaced(valid_scenario, "type = \"spherical\"\n", ""), "missing-key"), "");
 }
 
+TEST(OtherWords, WhatIsThereAndFaultyIsNotUnknown)
+{
+    const std::string spring =
+        "[[load]]\nname = \"s\"\ntype = \"spring\"\nbetween = [\"world\", \"upper\"]\n"
+        "stiffness = 1\nlength = 1\n[[sensor]]\nname = \"force\"\ntype = \"load\"\nload = \"s\"\n\n[time]";
+    const ScenarioResult faulty = read(replaced(valid_scenario, "[time]", spring));
+    ASSERT_NE(find(faulty, "unknown-key"), nullptr) << shown(faulty);
+    EXPECT_EQ(find(faulty, "unknown-key")->help, "its length without force is 'free_length'");
+    EXPECT_EQ(find(faulty, "load-unknown"), nullptr) << shown(faulty);
+    EXPECT_NE(find(read(replaced(valid_scenario, "[time]", replaced(spring, "load = \"s\"", "load = \"t\""))),
+                   "load-unknown"),
+              nullptr);
+}
+
 /// Numbers of a rod's end that are those of a place in the world, and make another mechanism.
 TEST(OtherWords, PointsThatAreMeantInTheWorldAreToldApart)
 {

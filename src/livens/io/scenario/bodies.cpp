@@ -14,13 +14,13 @@ namespace {
 constexpr double quaternion_slack = 1e-6;   // | |q| - 1 |: more than printed digits lose
 constexpr double symmetry_slack = 1e-12;    // of the size of a matrix: what rounding loses
 
-/// Keys of the start and of the end alike.
-std::vector<Key> pose_keys()
+/// Keys of a body as it is stated, at the start and at the end alike.
+std::vector<Key> pose_keys(std::string_view otherwise)
 {
     std::vector<Key> keys{
-        {"position", types::vector3, "Of the reference point, in the world.", "m", "[0, 0, 0]"}};
+        {"position", types::vector3, "Of the reference point, in the world.", "m", otherwise}};
     for (const Key& key : orientation_keys()) keys.push_back(key);
-    keys.push_back({"velocity", types::vector3, "Of the reference point, world axes.", "m/s", "[0, 0, 0]"});
+    keys.push_back({"velocity", types::vector3, "Of the reference point, world axes.", "m/s", otherwise});
     keys.push_back({"angular_velocity", types::vector3, "World axes.", "rad/s"});
     keys.push_back({"angular_velocity_body", types::vector3, "Body axes.", "rad/s"});
     return keys;
@@ -210,7 +210,14 @@ Table body_table()
     Table end{"[body.end]",
               "The body at the end of time, below its `[[body]]`; needed for all bodies if `given` of "
               "`[end]` is not `nothing`. Momenta are those of the positions and velocities stated here.",
-              pose_keys()};
+              pose_keys("[0, 0, 0]")};
+    Table start{
+        "[body.start]",
+        "The body at the start of time, below its `[[body]]`, where it is not as stated there: joints, "
+        "`at`, default lengths of rods and what coordinates count from refer to `[[body]]`. What is "
+        "left out is as stated. Angles count on by the shorter way; "
+        "`[[start.coordinates]]` leads on from there.",
+        pose_keys({})};
     Table body{
         "[[body]]",
         "A rigid body or a point mass. Body coordinates have their origin at the reference point and their "
@@ -246,6 +253,8 @@ Table body_table()
              "Time derivatives of the directors, [d1', d2', d3'], as they are. Rates that deform the triad "
              "need `initial = \"project\"`.",
              "1/s"},
+         Key{"start", types::table, "The body at the start of time, if that is another place."}.holding(
+             start),
          Key{"end", types::table, "The body at the end of time."}.holding(end)}};
     body.keys.insert(body.keys.begin() + 6, end.keys.begin(), end.keys.end());
     return body;

@@ -13,22 +13,22 @@ Key given(std::string_view otherwise, const std::string& doc)
     return {"given", types::choice, doc, "", otherwise, false, {"nothing", "positions", "momenta", "state"}};
 }
 
-bool check_end_of(const Section& end, bool is_point)
+bool check_pose_of(const Section& pose, bool is_point)
 {
-    if (!end.is_valid() || !check_pose(end)) return false;
-    return !is_point || end.refuse({"directors", "quaternion", "rotation_vector", "angular_velocity",
-                                    "angular_velocity_body"},
-                                   "point-mass", "a point mass has no orientation");
+    if (!pose.is_valid() || !check_pose(pose)) return false;
+    return !is_point || pose.refuse({"directors", "quaternion", "rotation_vector", "angular_velocity",
+                                     "angular_velocity_body"},
+                                    "point-mass", "a point mass has no orientation");
 }
 
-/// The core knows one state of a body: what it says of `body[a].directors` is meant for the end.
-InputError at_the_end(const InputError& error)
+/// The core knows one state of a body: what it says of `body[a].directors` is meant for `when`.
+InputError at_the(const std::string& when, const InputError& error)
 {
     Complaint complaint = error.complaint();
     const std::size_t close = complaint.path.find(']');
     if (complaint.path.starts_with("body[") && close != std::string::npos)
-        complaint.path.insert(close + 1, ".end");
-    complaint.message += ", at the end of time";
+        complaint.path.insert(close + 1, "." + when);
+    complaint.message += ", at the " + when + " of time";
     return InputError(std::move(complaint));
 }
 
@@ -45,32 +45,49 @@ Matrix3 straightened(const Matrix3& directors, const Matrix3& stretch, const std
     return triad;
 }
 
-/// X and V of a body at the end of time.
-void read_end_of(Builder& builder, const std::string& name, const Section& end, State& state)
+/// What a pose leaves out is as it is in the state.
+Placement completed(Placement given, const Section& pose, const Matrix34& X, const Matrix34& V)
+{
+    if (!pose.has("position")) given.position = X.column(0);
+    if (!pose.has("velocity")) given.velocity = V.column(0);
+    if (!pose.has("directors") && !pose.has("quaternion") && !pose.has("rotation_vector"))
+        given.directors = directors(X);
+    if (pose.has("angular_velocity_body"))
+        given.angular_velocity = given.directors * pose.vector("angular_velocity_body");
+    else if (!pose.has("angular_velocity"))
+        given.angular_velocity = angular_velocity(X, V);
+    return given;
+}
+
+}   // namespace
+
+void read_pose_of(Builder& builder, const std::string& name, const Section& pose, const std::string& when,
+                  State& state)
 {
     const int index = builder.bodies()[name].index;
     const Matrix3& stretch = builder.stretch(index);
     const bool is_point = builder.is_point(index);
-    if (!check_end_of(end, is_point)) return;
-    const std::string path = "body[" + name + "].end";
-    builder.remember(path, end);
+    if (!check_pose_of(pose, is_point)) return;
+    const std::string path = "body[" + name + "]." + when;
+    builder.remember(path, pose);
     builder.guard(path, [&] {
         try {
-            Placement placement = read_placement(end, stretch);
+            Matrix34 &X = state.X[static_cast<std::size_t>(index)],
+                     &V = state.V[static_cast<std::size_t>(index)];
+            Placement placement = read_placement(pose, stretch);
             if (!(stretch == identity<3>()))
                 placement.directors = straightened(placement.directors, stretch, name);
+            if (when == "start") placement = completed(placement, pose, X, V);
             // Masses do not matter here, so any that are possible will do.
             const Body body = is_point ? point_mass(name, 1, placement.position, placement.velocity)
                                        : rigid_body(name, {1, {}, identity<3>()}, placement);
-            state.X[static_cast<std::size_t>(index)] = body.X;
-            state.V[static_cast<std::size_t>(index)] = body.V;
+            X = body.X;
+            V = body.V;
         } catch (const InputError& error) {
-            throw at_the_end(error);
+            throw at_the(when, error);
         }
     });
 }
-
-}   // namespace
 
 Table start_table()
 {
@@ -141,7 +158,7 @@ void read_boundary(Builder& builder, Conditions& boundary)
         const Value* name = body.find("name");
         if (name == nullptr || !builder.bodies()[name->text].is_usable) continue;   // told already
         for (const Section& at_end : body.sections("end"))
-            read_end_of(builder, name->text, at_end, boundary.end);
+            read_pose_of(builder, name->text, at_end, "end", boundary.end);
     }
 }
 
@@ -161,7 +178,7 @@ void check_ends(Builder& builder, const Conditions& boundary, StartPolicy policy
         try {
             close(boundary.end, boundary.at_end);
         } catch (const InputError& error) {
-            throw at_the_end(error);
+            throw at_the("end", error);
         }
     });
 }

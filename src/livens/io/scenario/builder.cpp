@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "livens/io/scenario/builder.h"
 
+#include <algorithm>
+
 namespace livens {
 
 namespace {
@@ -91,8 +93,20 @@ Place Builder::find_place(std::string path, const std::string& context) const
     return found != places_.end() ? found->second : Place{};
 }
 
+InputError Builder::unknown_name(const std::string& kind, const std::string& name, const std::string& path,
+                                 const std::vector<std::string_view>& known) const
+{
+    const auto is_it = [&](const Section& one) {
+        return (one.has("name") ? one.text("name") : default_name(one)) == name;
+    };
+    const bool is_told = findings_.n_errors() > 0 && std::ranges::any_of(top_.sections(kind), is_it);
+    return InputError({is_told ? "" : kind + "-unknown", path + "." + kind,
+                       "there is no " + kind + " '" + name + "'", "", "", "", suggest(name, known)});
+}
+
 void Builder::report(const Complaint& complaint, const std::string& path)
 {
+    if (complaint.code.empty()) return;   // unknown_name()
     const bool is_whole = complaint.path.find('[') != std::string::npos || is_of_table(complaint.path);
     const std::string subject = spoken(is_whole ? complaint.path : path);
     const bool is_named = complaint.message.find('\'') != std::string::npos;

@@ -64,6 +64,11 @@ public:
     bool find_pair(const Section& section, std::string_view self, BodyReference& first,
                    BodyReference& second);
 
+    /// That nothing of a kind ("joint", "load") has the name. Of one that is there and faulty, which was
+    /// told, no more is said.
+    InputError unknown_name(const std::string& kind, const std::string& name, const std::string& path,
+                            const std::vector<std::string_view>& known) const;
+
     /// X of a body at the start, or of the world.
     const Matrix34& start_configuration(int body) const;
     /// From components along a body's directors, as its coordinates are stated, to those of its orthonormal
@@ -155,6 +160,10 @@ bool check_pose(const Section& body);
 /// Throws InputError. Of `director_rates` it knows nothing.
 /// `stretch`: of a body whose orientation may be told by others than its directors.
 Placement read_placement(const Section& body, const Matrix3& stretch = identity<3>());
+
+/// X and V of a body at the "start" or "end" of time; at the start what is left out is as in `state`.
+void read_pose_of(Builder& builder, const std::string& name, const Section& pose, const std::string& when,
+                  State& state);
 
 // The parts of the reader. Each reports all it finds.
 void read_bodies(Builder& builder);

@@ -303,9 +303,7 @@ JointReference find_coordinate(const Builder& builder, const Section& section, c
         if (one.name == wanted) joint = &one;
         known.push_back(one.name);
     }
-    if (joint == nullptr)
-        throw InputError({"joint-unknown", path + ".joint", "there is no joint '" + wanted + "'", "", "", "",
-                          suggest(wanted, known)});
+    if (joint == nullptr) throw builder.unknown_name("joint", wanted, path, known);
     const bool is_said = section.has("coordinate");
     if (!is_said && joint->coordinates.size() > 1)
         throw InputError({"joint-coordinate", path + ".joint",

@@ -218,7 +218,8 @@ bool check_spring(const Section& load)
     const bool is_placed =
         load.has("joint")
             ? load.refuse({"points", "free_length"}, "spring-place", "it acts on a joint: give 'rest'")
-            : load.refuse({"rest", "coordinate"}, "spring-place", "it acts between two points") &&
+            : load.refuse({"rest", "coordinate"}, "spring-place",
+                          "it acts between two points, and its length without force is 'free_length'") &&
                   (load.has("free_length") ||
                    load.error("", "spring-place", load.label() + " lacks 'free_length'",
                               {"", "give the length at which it has no force"}));

@@ -60,6 +60,11 @@ constexpr OtherKey other_keys[] = {
     {"torque", "between", along_a_joint},
     {"force", "between", along_a_joint},
     {"force", "points", "one body, one 'point' in its coordinates"},
+    {"spring", "length", "its length without force is 'free_length'"},
+    {"spring", "rest_length", "its length without force is 'free_length'"},
+    {"spring", "natural_length", "its length without force is 'free_length'"},
+    {"spring", "k", "'stiffness'"},
+    {"spring", "c", "'damping'"},
     {"spherical", "axis", "a ball joint has no axis; what turns about one is \"revolute\""},
 };
 

@@ -12,7 +12,7 @@ namespace livens {
 
 /// Help for a word that is none of `choices`; empty: nothing is known of it.
 std::string in_other_words(std::string_view word, const Words& choices);
-/// Help for a key that the kind does not have, though others do; empty, likewise.
+/// Help for a key that the kind does not have; empty, likewise.
 std::string instead_of_key(std::string_view kind, std::string_view key);
 
 /// The line to write for the kind that is not stated, if only one has all keys of the node; else empty.

@@ -289,8 +289,11 @@ void Section::report_unknown(const Entry& entry, const std::vector<const Key*>& 
     Words names;
     for (const Key* key : keys)
         if (key->type != types::later) names.push_back(key->name);
+    const std::string other =
+        kind_ == any_kind ? ""
+                          : instead_of_key(table_->kinds[static_cast<std::size_t>(kind_)].word, entry.key);
     findings_->error(entry.place, "unknown-key", "unknown key '" + entry.key + "' in " + label_,
-                     {"", suggest(entry.key, names)});
+                     {"", other.empty() ? suggest(entry.key, names) : other});
 }
 
 const Value* Section::value(std::string_view key) const

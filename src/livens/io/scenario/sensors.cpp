@@ -41,9 +41,7 @@ std::size_t find_named(const std::vector<Item>& items, const SensorSources& s, c
     for (const Item& item : items) known.push_back(item.name);
     const auto found = std::ranges::find(known, wanted);
     if (found != known.end()) return static_cast<std::size_t>(found - known.begin());
-    throw InputError({std::string(key) + "-unknown", "sensor[" + s.name + "]." + key,
-                      "there is no " + std::string(key) + " '" + wanted + "'", "", "", "",
-                      suggest(wanted, known)});
+    throw s.builder.unknown_name(key, wanted, "sensor[" + s.name + "]", known);
 }
 
 Sensor make_joint_sensor(const SensorSources& s)

@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `coordinates` of [start], and `rate` of joints: the bodies are led there before anything refers to them.
+// [body.start], `coordinates` of [start], and `rate` of joints: the bodies are led there, with the joints
+// that they have where they are stated, before anything else refers to them.
+#include <algorithm>
+#include <cmath>
+
 #include "livens/io/scenario/builder.h"
 #include "livens/multibody/start_coordinates.h"
 
@@ -58,13 +62,35 @@ bool read_wanted(Builder& builder, std::vector<StartCoordinate>& wanted)
     return builder.findings().n_errors() == before;
 }
 
+/// Bodies where [body.start] has them; false after an error. Of `wanted` goes what tells turns alone.
+bool restate_bodies(Builder& builder, std::vector<StartCoordinate>& wanted)
+{
+    const int before = builder.findings().n_errors();
+    State state = builder.model().start();
+    bool is_other = false;
+    for (const Section& body : builder.top().sections("body"))
+        for (const Section& start : body.sections("start")) {
+            read_pose_of(builder, body.text("name"), start, "start", state);
+            is_other = true;
+        }
+    if (builder.findings().n_errors() > before) return false;
+    if (!is_other) return true;
+    builder.model() = restated(builder.model(), state, wanted);
+    std::erase_if(wanted, [&](const StartCoordinate& one) {
+        const Joint& joint = builder.model().joints()[static_cast<std::size_t>(one.joint)];
+        const double now = joint.coordinates[static_cast<std::size_t>(one.coordinate)].at_stated;
+        return !one.rate && std::abs(*one.value - now) <= 1e-6;
+    });
+    return true;
+}
+
 }   // namespace
 
 void move_bodies(Builder& builder)
 {
     if (builder.findings().n_errors() > 0) return;
     std::vector<StartCoordinate> wanted;
-    if (!read_wanted(builder, wanted) || wanted.empty()) return;
+    if (!read_wanted(builder, wanted) || !restate_bodies(builder, wanted) || wanted.empty()) return;
     const Section* start = only_section(builder.top(), "start");
     const Section* time = only_section(builder.top(), "time");
     const bool projects = start != nullptr && start->text("initial") == "project";
