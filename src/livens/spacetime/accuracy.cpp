@@ -23,7 +23,7 @@ namespace {
 constexpr double first_share = 0.03;   // of the accuracy: what the elements of the first try lose
 constexpr double target = 0.2;         // of the accuracy: what the next try aims at
 constexpr double hopeless = 30;        // times the accuracy: where a try is broken off
-constexpr int most_tries = 6, most_in_vain = 2;
+constexpr int most_tries = 6;
 constexpr double well_helped = 0.5;    // error by the least before, whose elements lost three times more
 constexpr double finest = 1e-22;       // that an element can be asked to lose
 constexpr double blind_share = 0.01;   // of the tolerance, for the next try where the second solution failed
@@ -88,13 +88,12 @@ struct Tries {
     double in_vain = 0;                                       // largest error of those below
     bool helps = true;                                        // that the last one had shorter elements
     bool is_once_good = false;                                // the last one, perhaps by chance
-    int n_in_vain = 0;                                        // whose shorter elements did not help
 
     void count(const Try& one)
     {
         const double error = one.solution.estimate.largest;
         helps = one.is_broken_off || error < well_helped * least;
-        if (!helps) in_vain = std::max(in_vain, error), ++n_in_vain;
+        if (!helps) in_vain = std::max(in_vain, error);
         if (!one.is_broken_off) least = std::min(least, error);
     }
 };
@@ -141,8 +140,7 @@ public:
             const bool is_good = !one.is_broken_off && found.largest <= span_.accuracy;
             if (is_good && (so_far_.is_once_good || !may_be_chance())) return std::move(one.solution);
             if (!is_good) so_far_.count(one);
-            if (!is_good && (tries >= most_tries || is_rounding_left() || tolerance_ <= finest))
-                return give_up(std::move(one));
+            if (!is_good && (tries >= most_tries || tolerance_ <= finest)) return give_up(std::move(one));
             so_far_.is_once_good = is_good;
             const double over = found.largest / span_.accuracy * (one.is_broken_off ? 3 : 1);
             const double share = over > 0 ? power(target / over, 1 + 0.5 / degree_of(method_)) : blind_share;
@@ -254,10 +252,6 @@ private:
         return is_fine() && is_free_ && highest_degree_ != quiet_degree &&
                std::holds_alternative<Lobatto>(method_);
     }
-    bool is_rounding_left() const
-    {
-        return is_fine() && !so_far_.helps && so_far_.n_in_vain >= most_in_vain && !is_noisy();
-    }
     /// Solutions that differ by rounding alone come near each other by chance, and of many tries one would be
     /// believed: it has to happen twice.
     bool may_be_chance() const { return is_fine() && so_far_.in_vain > quieter * span_.accuracy; }
@@ -266,6 +260,7 @@ private:
     int fitting_degree(const Pace& pace) const
     {
         int degree = highest_degree_;
+        if (!pace.tells_length() && !model_.load_breaks().empty()) return degree;   // calm before what comes
         while (degree > lowest_degree && pace.mean_length(degree, tolerance_) > fit * pace.mean_stop())
             --degree;
         return degree;

@@ -50,6 +50,8 @@ public:
     /// another degree and tolerance (geometric means); 0: nothing was accepted yet.
     double mean_length() const { return mean_length(degree_, tolerance_); }
     double mean_length(int degree, double tolerance) const;
+    /// By some jump above rounding, not lower bounds alone.
+    bool tells_length() const { return tells_length_; }
     /// Of the time between stops.
     double mean_stop() const;
 

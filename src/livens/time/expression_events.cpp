@@ -62,7 +62,8 @@ double root(const std::function<double(double)>& f, double a, double b)
     return b;
 }
 
-/// Ends and middles of stretches that hold much of all that changes: of a pulse.
+/// Ends and middles of stretches that hold much of all that changes: of a pulse, and beside it, so that no
+/// long element ends in its foot.
 void add_pulses(const std::vector<double>& looks, double from, double length, std::vector<double>& events)
 {
     constexpr int width = n_looks / 100;
@@ -79,8 +80,32 @@ void add_pulses(const std::vector<double>& looks, double from, double length, st
         const auto peak =
             std::max_element(first, last, [](double l, double r) { return std::abs(l) < std::abs(r); });
         const int middle = static_cast<int>(peak - looks.begin());
-        for (const int k : {i, middle - 1, middle, middle + 1, i + width})
+        for (const int k : {i - 2 * width, i - width, i - width / 2, i, middle - 1, middle, middle + 1,
+                            i + width, i + width + width / 2, i + 2 * width, i + 3 * width})
             if (k > 0 && k < n_looks) events.push_back(at(k));
+    }
+}
+
+/// Where stretches end in which nothing changes: an element that begins there sees what follows, and one that
+/// goes on from there, grown long in the calm, would step into the rise of a pulse and see its foot at best.
+void add_calm(const std::vector<double>& looks, double from, double length, std::vector<double>& events)
+{
+    constexpr int shortest = n_looks / 200;
+    constexpr double nothing = 1e-13;   // of the largest change between two looks
+    const auto change = [&](int i) {
+        const double d =
+            std::abs(looks[static_cast<std::size_t>(i)] - looks[static_cast<std::size_t>(i - 1)]);
+        return std::isfinite(d) ? d : 0;
+    };
+    double largest = 0;
+    for (int i = 1; i <= n_looks; ++i) largest = std::max(largest, change(i));
+    for (int i = 1, begin = 0; i <= n_looks + 1; ++i) {
+        const bool is_calm = i <= n_looks && change(i) <= nothing * largest;
+        if (is_calm) continue;
+        for (const int end : {begin, i - 1})
+            if (i - 1 - begin >= shortest && end > 0 && end < n_looks)
+                events.push_back(from + length * end / n_looks);
+        begin = i;
     }
 }
 
@@ -118,6 +143,7 @@ std::vector<double> Expression::events(double from, double until) const
         std::vector<double> looks;
         for (const std::vector<TimeValue>& values : all) looks.push_back(values.back().value);
         add_pulses(looks, from, length, events);
+        add_calm(looks, from, length, events);
     }
     if (events.size() > most_events) return {};
     std::ranges::sort(events);

@@ -39,7 +39,8 @@ void warn_of_world_points(Builder& builder, const Section& section, const std::a
         const Vector3 stated = section.row("points", i), p = builder.in_axes(body, stated),
                       center = (1 / mass(0, 0)) * Vector3{mass(0, 1), mass(0, 2), mass(0, 3)},
                       as_place = transpose(directors(X)) * (p - X.column(0));
-        if (norm(p - center) <= reach || !(norm(as_place - center) <= reach)) continue;
+        const bool is_reference = stated == Vector3{};   // is meant
+        if (is_reference || norm(p - center) <= reach || !(norm(as_place - center) <= reach)) continue;
         const Vector3 lies = X * point(p);
         builder.findings().warning(
             given->node->items()[static_cast<std::size_t>(i)].place, "point-outside",

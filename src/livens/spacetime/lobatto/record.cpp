@@ -81,6 +81,7 @@ void Record::divided(int element)
     const auto e = static_cast<std::size_t>(element), p = static_cast<std::size_t>(degree_);
     const auto bodies = static_cast<std::size_t>(m.n_bodies), rows = static_cast<std::size_t>(m.n_rows);
     const auto insert = [](auto& values, std::size_t at, std::size_t count) {
+        values.resize(std::max(values.size(), at));   // against time some are empty up to here
         values.insert(values.begin() + static_cast<std::ptrdiff_t>(at), count, {});
     };
     insert(m.X.values, (e * p + 1) * 12 * bodies, p * 12 * bodies);
