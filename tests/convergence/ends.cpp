@@ -11,7 +11,10 @@ namespace livens::tests {
 namespace {
 
 template <typename L>
-constexpr bool has_windows = requires(L method) { method.window; };
+constexpr bool has_windows = requires(L method)
+{
+    method.window;
+};
 
 /// lobatto(degree) in windows of so many elements; 0: all.
 template <typename L = Lobatto>
@@ -123,17 +126,37 @@ void expect_recovered(const Forward& run, Known at_start, Known at_end, double V
 
 TEST(LobattoEnds, TheStateAtTheEndLeadsBack)
 {
-    for (const Forward& run : {forward("box", free_box(), 0.5, 1, 20),
-                           forward("two bricks", two_bricks(), 0.2, 1, 50),
-                           forward("offset pendulum", cubes_on_rods(0.1), 0.3, 1, 40),
-                           forward("four-bar", four_bar(), 0.2, 1, 40),
-                           forward("hinged links", hinged_links(), 0.2, 1, 40)})
+    for (const Forward& run :
+         {forward("box", free_box(), 0.5, 1, 20), forward("two bricks", two_bricks(), 0.2, 1, 50),
+          forward("offset pendulum", cubes_on_rods(0.1), 0.3, 1, 40),
+          forward("four-bar", four_bar(), 0.2, 1, 40), forward("hinged links", hinged_links(), 0.2, 1, 40)})
         for (const int window : {0, 1}) {
             const Solution s = recover(run, Known::nothing, Known::state, lobatto(degree, window), run.n);
             ASSERT_TRUE(s.report.converged()) << run.name << ": " << s.report.message;
             EXPECT_LE(largest_difference(s.motion, run.motion), 1e-11) << run.name << " " << window;
             EXPECT_LE(distance(s.motion.at_end(0), run.start).V, 1e-9) << run.name << " " << window;
         }
+}
+
+/// The element that is solved first lies last: of what is known behind it some is written, some is not.
+TEST(LobattoEnds, AgainstTimeTheFirstElementMayBeDivided)
+{
+    const Model model = hinged_brick();
+    Conditions back;
+    back.at_start = Known::nothing;
+    back.at_end = Known::state;
+    back.end = model.start();
+    back.end.t = 1;
+    back.end.V[0] = rate(back.end.X[0], {}, {0, 0, 30});
+    const Solution fine = solve(model, {back}, make_time_mesh(0, 1, 80), lobatto(8, 1));
+    ASSERT_TRUE(fine.report.converged()) << fine.report.message;
+    for (const int window : {1, 2, 0}) {
+        const Solution s = solve(model, {back}, make_time_mesh(0, 1, 3), lobatto(8, window));
+        ASSERT_EQ(s.report.status, SolveStatus::converged) << window << ": " << s.report.message;
+        EXPECT_GT(s.report.divided, 0) << window;
+        EXPECT_LT(norm(s.motion.at(0).X[0] - fine.motion.at(0).X[0]), 1e-3) << window;
+        EXPECT_LT(norm(s.motion.at(0.9).X[0] - fine.motion.at(0.9).X[0]), 1e-3) << window;
+    }
 }
 
 TEST(LobattoEnds, PositionsAtBothEndsFindTheMotion)
@@ -199,16 +222,16 @@ TEST(LobattoEnds, MomentaMayBeStatedWithAnyPositions)
     SolveOptions options;
     options.tolerance = 1e-14;
     const TimeMesh mesh = make_time_mesh(0, 1, 20);
-    const Solution forth = solve(run.model,
-                                 {faster(run.start, 1.1), Known::positions, displaced(run.model, run.finish),
-                                  Known::momenta},
-                                 mesh, lobatto(degree), options);
+    const Solution forth =
+        solve(run.model,
+              {faster(run.start, 1.1), Known::positions, displaced(run.model, run.finish), Known::momenta},
+              mesh, lobatto(degree), options);
     ASSERT_TRUE(forth.report.converged()) << forth.report.message;
     EXPECT_LE(largest_difference(forth.motion, run.motion), 1e-11);
-    const Solution back = solve(run.model,
-                                {displaced(run.model, run.start), Known::momenta, faster(run.finish, 0.9),
-                                 Known::positions},
-                                mesh, lobatto(degree), options);
+    const Solution back =
+        solve(run.model,
+              {displaced(run.model, run.start), Known::momenta, faster(run.finish, 0.9), Known::positions},
+              mesh, lobatto(degree), options);
     ASSERT_TRUE(back.report.converged()) << back.report.message;
     EXPECT_LE(largest_difference(back.motion, run.motion), 1e-11);
 }
@@ -218,9 +241,11 @@ TEST(LobattoEnds, MomentaMayBeStatedWithAnyPositions)
 TEST(LobattoWindows, OfAnyLengthGiveTheMarch)
 {
     EXPECT_TRUE(has_windows<Lobatto>);
-    for (const auto& [name, model] :
-         {std::pair{"box", free_box()}, {"two bricks", two_bricks()}, {"offset pendulum", cubes_on_rods(0.1)},
-          {"four-bar", four_bar()}, {"hinged links", hinged_links()}}) {
+    for (const auto& [name, model] : {std::pair{"box", free_box()},
+                                      {"two bricks", two_bricks()},
+                                      {"offset pendulum", cubes_on_rods(0.1)},
+                                      {"four-bar", four_bar()},
+                                      {"hinged links", hinged_links()}}) {
         const Forward run = forward(name, model, 0.2, 1, 50);
         for (const int window : {0, 4, 8, 50, 64}) {
             const Solution s = recover(run, Known::state, Known::nothing, lobatto(degree, window), 50);
@@ -383,9 +408,8 @@ std::string refusal_of_spin(double end)
     spinning.angular_velocity = {0, 0, 2 * std::numbers::pi};
     Model model;
     model.add_body(rigid_body("ball", sphere(1, 0.5), spinning));
-    State finish{end,
-                 {configuration({}, directors_from_rotation_vector({0, 0, 2 * std::numbers::pi * end}))},
-                 {}};
+    State finish{
+        end, {configuration({}, directors_from_rotation_vector({0, 0, 2 * std::numbers::pi * end}))}, {}};
     finish.V = {rate(finish.X[0], {}, spinning.angular_velocity)};
     return refusal(model, {model.start(), Known::positions, finish, Known::positions}, end);
 }

@@ -286,6 +286,24 @@ TEST(Laws, JumpsAndPulsesOfExpressionsAreSeen)
     EXPECT_NEAR(wheel_after("50*exp(-((t-1.237)*2000)^2)"), 4 + bell * (4 - 1.237), 1e-5);
 }
 
+/// A bell on what is at rest: elements have grown long in the calm before it, and neither solution sees more
+/// than its foot if one of them ends there.
+TEST(Laws, PulsesOnWhatIsAtRestAreSeen)
+{
+    for (const double accuracy : {1e-3, 1e-6, 1e-8})
+        for (const double width : {0.01, 0.03, 0.063, 0.2})
+            for (const double at : {3.1, 5.136, 6.796}) {
+                const Solved s = solved(slide +
+                                        "[[load]]\ntype = \"actuator\"\njoint = \"slide\"\nexpression = "
+                                        "\"200*exp(-((t-" +
+                                        to_text(at) + ")/" + to_text(width) +
+                                        ")^2)\"\n[time]\nend = 10\naccuracy = " + to_text(accuracy) + "\n");
+                const double x = 200 * width * std::sqrt(pi) / 2 * (10 - at);
+                EXPECT_NEAR(s.coordinate("slide", "displacement", 10).value, x, 3 * accuracy)
+                    << accuracy << ' ' << width << ' ' << at;
+            }
+}
+
 // Angles of motor and pivot and their rates, from Lagrange's equations in these two angles by DOP853 to
 // 3e-14.
 struct FurutaRow {
