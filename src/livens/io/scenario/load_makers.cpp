@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "livens/base/text.h"
 #include "livens/multibody/surface_loads.h"
 #include "livens/time/time_laws.h"
 
@@ -160,14 +161,34 @@ const NamedCoordinate& coordinate_of(const LoadSources& p)
     return coordinate;
 }
 
-SpringLaw read_law(const Section& load)
+/// Straight lines bend where they meet, which happens when the motion is there.
+void warn_of_kinks(const LoadSources& p, const std::vector<double>& x, const std::vector<double>& y)
 {
+    for (std::size_t i = 2; i < std::min(x.size(), y.size()); ++i) {
+        const double before = (y[i - 1] - y[i - 2]) / (x[i - 1] - x[i - 2]),
+                     after = (y[i] - y[i - 1]) / (x[i] - x[i - 1]);
+        if (!(std::abs(after - before) > 1e-9 * (std::abs(after) + std::abs(before)))) continue;
+        p.builder.findings().warning(
+            p.section.place("table"), "spring-kink",
+            p.section.label() + " bends where the lines of its table meet, at " + to_text(x[i - 1]),
+            {"an element sees such a place at its points only, and so does the estimated error",
+             "interpolation = \"spline\" in the table has no such places; or compare with more elements"});
+        return;
+    }
+}
+
+SpringLaw read_law(const LoadSources& p)
+{
+    const Section& load = p.section;
     const std::string law = load.text("law");
     if (law == "progressive") return progressive_spring(load.number("stiffness"), load.number("cubic"));
     if (law == "linear") return nullptr;
     const Section& table = *only_section(load, "table");
-    return tabulated_spring(table.find("elongations")->numbers, table.find("forces")->numbers,
-                            table.text("interpolation") == "spline");
+    const std::vector<double>&x = table.find("elongations")->numbers, &y = table.find("forces")->numbers;
+    const bool is_smooth = table.text("interpolation") == "spline";
+    SpringLaw made = tabulated_spring(x, y, is_smooth);
+    if (!is_smooth) warn_of_kinks(p, x, y);
+    return made;
 }
 
 }   // namespace
@@ -336,12 +357,12 @@ Load make_spring(const LoadSources& p)
     if (s.has("joint")) {
         const NamedCoordinate& coordinate = coordinate_of(p);
         const JointSpring law{s.number("stiffness"), s.number("damping"), s.number("rest"),
-                              s.number("preload"), read_law(s)};
+                              s.number("preload"), read_law(p)};
         return joint_spring(p.name, coordinate, law, places(p.builder));
     }
     check_units(s, false, p.path());
     const SpringDamper law{s.number("stiffness"), s.number("damping"), s.number("free_length"),
-                           s.number("preload"), read_law(s)};
+                           s.number("preload"), read_law(p)};
     return spring_damper(p.name, p.first, p.builder.in_axes(p.first, s.row("points", 0)), p.second,
                          p.builder.in_axes(p.second, s.row("points", 1)), law);
 }
