@@ -95,7 +95,7 @@ public:
     virtual void describe(SolveReport& report) const = 0;
     /// Condition numbers of the open window's matrix at the current point; 0 once `goes_on` says false.
     virtual void measure_condition(SolveReport& report, const std::function<bool()>& goes_on) = 0;
-    /// What was closed so far of a march forwards, in arrays that may be longer; null: the family cannot say.
+    /// What was closed so far of a march forwards; null: the family cannot say.
     virtual const Motion* so_far() { return nullptr; }
     /// Everything closed so far.
     virtual Motion take_motion() = 0;

@@ -148,8 +148,8 @@ void Record::cut(std::vector<T>& values, std::size_t first, std::size_t last, st
 const Motion& Record::so_far()
 {
     motion_.mesh.ends.assign(mesh_.ends.begin(), mesh_.ends.begin() + last_ + 1);
-    motion_.load_angles.resize(motion_.mesh.ends.size() *
-                               tables_.turns.size());   // its rows tell how many there are
+    // sizes tell how many there are
+    for_sizes(std::max(last_, 0), [](auto& values, std::size_t size) { values.resize(size); });
     return motion_;
 }
 

@@ -29,7 +29,7 @@ public:
     void note_redundant(const std::vector<int>& rows) { motion_.redundant_rows = rows; }
     const TimeMesh& mesh() const { return mesh_; }
 
-    /// What is written of a march forwards, in arrays that may be longer.
+    /// What is written of a march forwards.
     const Motion& so_far();
     /// `start`: what is left where no element end was written.
     Motion take(const State& start);
