@@ -228,10 +228,13 @@ def _overrides(model: Model, time: Time, of_time: dict[str, Any], method: Method
     if start is not None:
         condition = _condition(start, "start")
         made["start"] = _given(model, "start", condition.given)
-        if condition.bodies:   # where coordinates of the model's own [start] would lead away from
+        if condition.coordinates is not None:
             made["start"].pop("coordinates", None)
-        if condition.coordinates:
-            made["start"]["coordinates"] = [dict(one) for one in condition.coordinates]
+            if condition.coordinates:
+                made["start"]["coordinates"] = [dict(one) for one in condition.coordinates]
+            joints = model._root.get("joint", [])
+            if any("rate" in joint for joint in joints):
+                made["joint"] = [_without(joint, "rate") for joint in joints]
         if condition.bodies:
             made["body"] = _moved(model._root.get("body", []), condition, "start")
     if end is not None:
@@ -245,6 +248,10 @@ def _overrides(model: Model, time: Time, of_time: dict[str, Any], method: Method
                         f"end=lv.{condition.given}({{{lacking[0]!r}: {{'position': (0, 0, 0)}}}})",
                         "what is known at the end concerns every body")
     return made
+
+
+def _without(table: Table, name: str) -> Table:
+    return Table({key: value for key, value in table.items() if key != name}, table.place, table.places)
 
 
 def _base(model: Model, name: str) -> Table:

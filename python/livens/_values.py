@@ -85,8 +85,9 @@ class Condition:
     """The word of the scenario."""
     bodies: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     """Keys of each body there."""
-    coordinates: Sequence[Mapping[str, Any]] = ()
-    """At the start: coordinates of joints that have turned farther than bodies tell."""
+    coordinates: Sequence[Mapping[str, Any]] | None = None
+    """At the start, instead of what the model states of coordinates and their rates: those of joints that have
+    turned farther than bodies tell. None: the model's lead on from where the bodies are."""
 
 
 def positions(bodies: Mapping[str, Mapping[str, Any]] | None = None) -> Condition:

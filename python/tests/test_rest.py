@@ -69,6 +69,14 @@ def test_what_starts_there_is_the_same_mechanism() -> None:
         assert abs(sol["h"].angle - rest["h"].angle).max() < 1e-9 and abs(sol["b"].velocity).max() < 1e-9
         m.remove(spring)
         m.remove("t")
+    m["h"].rate = 3   # of the stated start, not of that rest
+    sol = lv.solve(m, 1, start=m.find_equilibrium().state, elements=5)
+    assert abs(sol["b"].velocity).max() < 1e-9
+    m["h"].rate = None
+    m.start.coordinates = [{"joint": "h", "value": 0.25}]
+    sol = lv.solve(m, 0.1, start=lv.state({"b": {"velocity": (0, 0, 0)}}), elements=2)   # the model's own lead on
+    assert sol["h"].angle[0] == 0.25
+    m.start.coordinates = None
     sol = lv.solve(m, 1, start=lv.state({"b": {"velocity": (0, 0, 0)}}), elements=20)   # what is left out is as stated
     assert sol["a"].position[0].tolist() == [0.5, 0, 0]
 

@@ -50,7 +50,7 @@ TIES = [
      r"(?=.*?fine_accuracy = ([^;]+);)(?=.*?all_digits = ([^;]+);).*?preferred_degree = (\d+),"),
     ("So for accuracies below $«10^{-8}»$, where a try with a third of $\\tau$ was not twice as good as the best before, and the degree is not stated, the next one takes degree «9»",
      f"{TIME}/accuracy.cpp", r"(?=.*?fine_accuracy = ([^;]+);).*?quiet_degree = (\d+);"),
-    ("more than «3» times the accuracy off", f"{TIME}/accuracy.cpp", r"quieter = (\d+);"),
+    ("more than «3» times the accuracy off", f"{TIME}/accuracy.cpp", r"far_off = (\d+);"),
     ("is multiplied by $s/s'$, at least «0.5» and", f"{TIME}/pace.cpp", r"steepest = ([^;]+);"),
     ("above degree «10» every second node", f"{TIME}/lobatto/extrapolation.cpp", r"highest_degree = (\d+);"),
     ("(from «100» twists on", f"{TIME}/lobatto/march_kernel.cpp", r"many_twists = (\d+)"),

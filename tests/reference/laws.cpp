@@ -376,6 +376,27 @@ expression = "-6*phi - 0.8*w + 0.3*psi + 0.35*v"
     EXPECT_LT(solved(furuta + "[time]\nend = 0.6\naccuracy = 1e-7\n").sensed(0.6)[2], 0.2);   // it falls
 }
 
+/// Likewise where the motion decides the rest of the formula: here it is damped.
+TEST(Laws, PulsesBesideTheMotionAreSeen)
+{
+    for (const double accuracy : {1e-4, 1e-7})
+        for (const double width : {0.005, 0.01, 0.03})
+            for (const double at : {5.136, 6.796}) {
+                const Solved s =
+                    solved(slide +
+                           "[[load]]\ntype = \"actuator\"\njoint = \"slide\"\ninputs = { v = "
+                           "\"slide.displacement_rate\" }\nexpression = \"200*exp(-((t-" +
+                           to_text(at) + ")/" + to_text(width) +
+                           ")^2) - 0.2*v\"\n[time]\nend = 10\naccuracy = " + to_text(accuracy) + "\n");
+                // m x'' + c x' = f, m = 2, c = 0.2: x(T) = int f (1 - exp(-(T - s) c / m)) / c ds
+                const double impulse = 200 * width * std::sqrt(pi), rate = 0.1;
+                const double left = std::exp(-rate * (10 - at) + rate * rate * width * width / 4);
+                EXPECT_NEAR(s.coordinate("slide", "displacement", 10).value, impulse * (1 - left) / 0.2,
+                            3 * accuracy)
+                    << accuracy << ' ' << width << ' ' << at;
+            }
+}
+
 /// Those who look at a march on its way find the angles of loads at the ends that there are: the motion's
 /// arrays may be longer.
 TEST(Laws, AnglesAreCountedWhileMarching)

@@ -43,12 +43,11 @@ FollowedCoordinates::FollowedCoordinates(const Model& model, const Motion& motio
 std::vector<double> FollowedCoordinates::turned(std::span<const Matrix34> X,
                                                 std::span<const double> near) const
 {
-    constexpr double turn = 2 * std::numbers::pi;
     std::vector<double> all;
     for (std::size_t i = 0; i < coordinates_.size(); ++i) {
         const JointCoordinate& q = coordinates_[i].coordinate;
         const double value = coordinate_change(q, stated_, X);
-        all.push_back(q.is_angle() ? value + turn * std::round((near[i] - value) / turn) : value);
+        all.push_back(q.is_angle() ? turned_to(value, near[i]) : value);
     }
     return all;
 }

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <numbers>
 #include <utility>
 
 #include <Eigen/Dense>
@@ -55,9 +54,10 @@ public:
         state_.angles = tables_.turns.begin(closed.start);
         const std::vector<Matrix34> stated = model.start().X;
         for (const Joint& joint : model.joints())
-            for (const NamedCoordinate& q : joint.coordinates)
-                counted_.push_back(
-                    {&q, coordinate_value(q.coordinate, stated), coordinate_value(q.coordinate, stated)});
+            for (const NamedCoordinate& q : joint.coordinates) {
+                const double value = coordinate_value(q.coordinate, stated);
+                counted_.push_back({&q, value, value});
+            }
     }
 
     const Tables& tables() const { return tables_; }
@@ -180,10 +180,9 @@ private:
     /// Each angle the shorter way.
     void follow_joints(std::span<const Matrix34> X)
     {
-        constexpr double turn = 2 * std::numbers::pi;
         for (Counted& one : counted_) {
             const double x = coordinate_value(one.q->coordinate, X);
-            one.value = one.q->coordinate.is_angle() ? x + turn * std::round((one.value - x) / turn) : x;
+            one.value = one.q->coordinate.is_angle() ? turned_to(x, one.value) : x;
         }
     }
 

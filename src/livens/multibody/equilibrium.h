@@ -52,4 +52,4 @@ struct Equilibrium {
 /// `start-singular` where the joints hold less at the rest than beside it.
 Equilibrium find_equilibrium(const Model& model, const State& start, const EquilibriumOptions& options = {});
 
-}   // namespace gnu::visibility("default")]]livens
+}   // namespace livens

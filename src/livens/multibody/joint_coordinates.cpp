@@ -232,6 +232,12 @@ double coordinate_change(const JointCoordinate& q, std::span<const Matrix34> fro
     return arc_tangent(c0 * s - s0 * c, c0 * c + s0 * s);
 }
 
+double turned_to(double angle, double near)
+{
+    constexpr double turn = 2 * std::numbers::pi;
+    return angle + turn * std::round((near - angle) / turn);
+}
+
 ConstraintRow coupling_row(const std::vector<CoupledCoordinate>& coupled, double constant, double scale,
                            const std::string& label)
 {

@@ -36,6 +36,9 @@ double coordinate_rate(const JointCoordinate& coordinate, std::span<const Matrix
 double coordinate_change(const JointCoordinate& coordinate, std::span<const Matrix34> from,
                          std::span<const Matrix34> to);
 
+/// The angle with whole turns added, such that it is nearest to `near`.
+double turned_to(double angle, double near);
+
 /// A coordinate and what it is multiplied by.
 struct CoupledCoordinate {
     double factor;

@@ -98,9 +98,7 @@ CoordinateState LoadCoordinate::look(const LoadArguments& arguments) const
     const RowGradient gradient = constraint_gradient(row_, X);
     CoordinateState seen{offset_ + constraint_value(row_, X), 0};
     if (angle_ >= 0 && !arguments.angles.empty()) {
-        constexpr double turn = 2 * std::numbers::pi;
-        const double near = offset_ + arguments.angles[static_cast<std::size_t>(angle_)];
-        seen.value += turn * std::round((near - seen.value) / turn);
+        seen.value = turned_to(seen.value, offset_ + arguments.angles[static_cast<std::size_t>(angle_)]);
     } else if (angle_ >= 0 && std::abs(seen.value - at_start_) > widest_angle) {
         seen.value = std::numeric_limits<double>::quiet_NaN();
     }

@@ -25,7 +25,6 @@ namespace {
 constexpr double step = 0.1;   // of a coordinate, rad or lengths of the model
 constexpr double farthest = 2000 * std::numbers::pi;
 constexpr int most_halvings = 12;
-constexpr double same_angle = 1e-6;   // rad
 constexpr double noticed = 1e-9;      // change of a stated velocity, of the largest
 constexpr double held_below = 1e-6;   // part of a coordinate's row, of norm one, that is free
 
@@ -350,7 +349,6 @@ IndependentCoordinates independent_coordinates(const Model& model, const State& 
 
 Model restated(const Model& model, const State& state, const std::vector<StartCoordinate>& counted)
 {
-    constexpr double turn = 2 * std::numbers::pi;
     std::vector<Led> all = all_coordinates(model, {});
     const std::vector<Matrix34> stated = model.start().X;
     for (Led& led : all) {
@@ -359,7 +357,7 @@ Model restated(const Model& model, const State& state, const std::vector<StartCo
         for (const StartCoordinate& one : counted) {
             const bool is_this = one.joint == led.joint && one.coordinate == led.coordinate;
             if (!is_this || !one.value || !q.is_angle()) continue;
-            const double turned = led.to + turn * std::round((*one.value - led.to) / turn);
+            const double turned = turned_to(led.to, *one.value);
             if (std::abs(*one.value - turned) <= same_angle) led.to = turned;
         }
     }

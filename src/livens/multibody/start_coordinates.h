@@ -37,6 +37,7 @@ struct MovedStart {
 MovedStart move_start(const Model& model, const std::vector<StartCoordinate>& wanted, StartPolicy policy,
                       double t = 0);
 
+inline constexpr double same_angle = 1e-6;   ///< rad: two that are meant to be one
 /// The model with its bodies in another state: joints remain where they are on the bodies, and coordinates
 /// count on, angles by the shorter way unless one of `counted` has the same angle after more turns.
 Model restated(const Model& model, const State& state, const std::vector<StartCoordinate>& counted = {});
@@ -49,4 +50,4 @@ struct IndependentCoordinates {
 };
 IndependentCoordinates independent_coordinates(const Model& model, const State& state);
 
-}   // namespace gnu::visibility("default")]]livens
+}   // namespace livens

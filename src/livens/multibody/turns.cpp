@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "livens/multibody/turns.h"
 
-#include <cmath>
-#include <numbers>
-
 #include "livens/base/elementary.h"
 
 namespace livens {
@@ -18,12 +15,11 @@ Turns::Turns(const Model& model) : first_{0}
 
 void Turns::follow(const Configurations& X, std::span<double> row) const
 {
-    constexpr double turn = 2 * std::numbers::pi;
     for (std::size_t i = 0; i < row.size(); ++i) {
         const PairForm &c = angles_[i].forms[0], &s = angles_[i].forms[1];
         const double angle =
             arc_tangent(form_value(s, s.body_i, s.body_j, X), form_value(c, c.body_i, c.body_j, X));
-        row[i] = angle + turn * std::round((row[i] - angle) / turn);
+        row[i] = turned_to(angle, row[i]);
     }
 }
 

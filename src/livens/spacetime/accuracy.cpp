@@ -30,7 +30,7 @@ constexpr double blind_share = 0.01;   // of the tolerance, for the next try whe
 constexpr int preferred_degree = 7, high_degree = 12, lowest_degree = 3;
 // Rounding of an element grows with its degree, and elements of half the length add less of it.
 constexpr int quiet_degree = 9;
-constexpr double quieter = 3;   // by this much at most
+constexpr double far_off = 3;   // accuracies of a try in vain, after which another may be good by chance
 constexpr int preferred_radau = 5, high_radau = 8;
 constexpr double high_accuracy = 1e-9;   // below, the high degree
 constexpr double fine_accuracy = 1e-8;   // below, rounding counts
@@ -254,7 +254,7 @@ private:
     }
     /// Solutions that differ by rounding alone come near each other by chance, and of many tries one would be
     /// believed: it has to happen twice.
-    bool may_be_chance() const { return is_fine() && so_far_.in_vain > quieter * span_.accuracy; }
+    bool may_be_chance() const { return is_fine() && so_far_.in_vain > far_off * span_.accuracy; }
 
     /// The highest whose elements are not much longer than the time between stops, by what was learnt.
     int fitting_degree(const Pace& pace) const
@@ -298,10 +298,11 @@ private:
         if (grown_ > span_.accuracy)
             report.message += "; the rounding of numbers at the start grows to " + to_text(grown_, 3);
         else
-            report.message += tolerance_ <= finest ? ", where rounding alone is left"
-                              : so_far_.helps      ? ", with ever shorter elements"
-                                                   : ", with ever shorter elements, which help no more: "
-                                                     "rounding is left";
+            report.message += so_far_.helps && tolerance_ > finest
+                                  ? ", with ever shorter elements"
+                                  : std::string(", with ever shorter elements, which help no more: ") +
+                                        (is_fine() ? "rounding is left, or a law bends inside them"
+                                                   : "a law may bend or jump inside them");
         report.message += "); try: an earlier end of time, or a larger error in accuracy";
         return std::move(last.solution);
     }

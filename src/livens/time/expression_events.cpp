@@ -109,6 +109,28 @@ void add_calm(const std::vector<double>& looks, double from, double length, std:
     }
 }
 
+/// The largest parts without symbols, numbers and time itself apart.
+std::vector<std::size_t> parts_of_time(const std::vector<Expression::Step>& steps,
+                                       const std::vector<bool>& has_symbols)
+{
+    std::vector<bool> is_part(steps.size(), false);
+    is_part.back() = !has_symbols.back();
+    const auto is_leaf = [&](int k) {
+        return steps[static_cast<std::size_t>(k)].operation == Operation::number ||
+               steps[static_cast<std::size_t>(k)].operation == Operation::time;
+    };
+    for (std::size_t k = 0; k < steps.size(); ++k) {
+        if (!has_symbols[k] || steps[k].operation == Operation::symbol) continue;
+        for (const int of : {steps[k].first, steps[k].second})
+            if (of >= 0 && !has_symbols[static_cast<std::size_t>(of)] && !is_leaf(of))
+                is_part[static_cast<std::size_t>(of)] = true;
+    }
+    std::vector<std::size_t> parts;
+    for (std::size_t k = 0; k < steps.size(); ++k)
+        if (is_part[k]) parts.push_back(k);
+    return parts;
+}
+
 }   // namespace
 
 std::vector<bool> Expression::steps_with_symbols() const
@@ -139,9 +161,10 @@ std::vector<double> Expression::events(double from, double until) const
             if ((switching(steps_[k], all[i]) > 0) != (switching(steps_[k], all[i + 1]) > 0))
                 events.push_back(root(f, from + length * i / n_looks, from + length * (i + 1) / n_looks));
     }
-    if (!has_symbols.back()) {
+    // of every part that time alone decides: beside the motion it acts as well
+    for (const std::size_t k : parts_of_time(steps_, has_symbols)) {
         std::vector<double> looks;
-        for (const std::vector<TimeValue>& values : all) looks.push_back(values.back().value);
+        for (const std::vector<TimeValue>& values : all) looks.push_back(values[k].value);
         add_pulses(looks, from, length, events);
         add_calm(looks, from, length, events);
     }

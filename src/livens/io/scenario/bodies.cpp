@@ -84,8 +84,7 @@ void check_mass(const Section& body)
             body.error("", "mass-missing", body.label() + " has no shape and no '" + key + "'",
                        {"without a shape a body needs both 'mass' and 'inertia'",
                         "add 'shape' with 'density' or 'mass', 'shape = { point = true }' for a point mass, "
-                        "or 'mass' "
-                        "and 'inertia'"});
+                        "or 'mass' and 'inertia'"});
 }
 
 bool check_quaternion(const Section& body)

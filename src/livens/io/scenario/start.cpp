@@ -79,7 +79,7 @@ bool restate_bodies(Builder& builder, std::vector<StartCoordinate>& wanted)
     std::erase_if(wanted, [&](const StartCoordinate& one) {
         const Joint& joint = builder.model().joints()[static_cast<std::size_t>(one.joint)];
         const double now = joint.coordinates[static_cast<std::size_t>(one.coordinate)].at_stated;
-        return !one.rate && std::abs(*one.value - now) <= 1e-6;
+        return !one.rate && std::abs(*one.value - now) <= same_angle;
     });
     return true;
 }
