@@ -21,10 +21,9 @@ using Doubt = std::function<bool(const Look&)>;
 double time_of_motion(const Model& model, const State& state);
 
 /// Marches with elements as long as their local errors allow, with a second solution beside, and again with
-/// shorter ones until the global estimate is within the accuracy: six times at most, and once more where that may
-/// be chance. What comes back is not
-/// judged. The method is nodal, the state given at the start; degree
-/// 0 is chosen.
+/// shorter ones until the global estimate is within the accuracy: six times at most, and once more where that
+/// may be chance. What comes back is not judged. The method is nodal, the state given at the start; degree 0
+/// is chosen.
 Solution solve_to_accuracy(const Model& model, const Problem& problem, const Span& span, const Method& method,
                            const SolveOptions& options, const Doubt& doubt = {});
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <iterator>
 
 #include "livens/time/expression.h"
 
@@ -162,12 +163,21 @@ std::vector<double> Expression::events(double from, double until) const
                 events.push_back(root(f, from + length * i / n_looks, from + length * (i + 1) / n_looks));
     }
     // of every part that time alone decides: beside the motion it acts as well
+    std::vector<double> fences;
     for (const std::size_t k : parts_of_time(steps_, has_symbols)) {
         std::vector<double> looks;
         for (const std::vector<TimeValue>& values : all) looks.push_back(values[k].value);
-        add_pulses(looks, from, length, events);
-        add_calm(looks, from, length, events);
+        add_pulses(looks, from, length, fences);
+        add_calm(looks, from, length, fences);
     }
+    // the instants of jumps and bends are known to the last digit: no element of a look's length beside them
+    std::ranges::sort(events);
+    const std::vector<double> exact = events;
+    const double look = length / n_looks;
+    std::ranges::copy_if(fences, std::back_inserter(events), [&](double t) {
+        const auto after = std::ranges::lower_bound(exact, t - look);
+        return after == exact.end() || *after > t + look;
+    });
     if (events.size() > most_events) return {};
     std::ranges::sort(events);
     const double apart = 1e-9 * length;   // nearer ones are one: no element is so short
