@@ -122,6 +122,10 @@ Load modulated(const std::string& name, const std::string& type, const LoadParts
     };
     for (const LawReading& reading : parts.readings)
         load.readings.push_back({reading.name, reading.unit, energy(reading.value)});
+    if (parts.piece)
+        load.piece = [all](const LoadArguments& arguments) {
+            return all.parts.piece(all.look(arguments).arguments(arguments.at));
+        };
     load.potential = energy(parts.potential);
     load.power = energy(parts.power);
     return load;

@@ -2,6 +2,7 @@
 // Loads whose size is a law of coordinates and their rates, also of bodies on which they do not act.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <span>
 #include <string>
@@ -31,6 +32,9 @@ using LoadLaw = std::function<void(const LawArguments&, std::span<double> factor
 /// A number made of these: J, W.
 using LawEnergy = std::function<double(const LawArguments&)>;
 
+/// See Load::piece.
+using LawPiece = std::function<std::uint64_t(const LawArguments&)>;
+
 /// What a load reports of itself.
 struct LawReading {
     std::string name, unit;   ///< "x", "N"
@@ -44,6 +48,7 @@ struct LoadParts {
     bool depends_on_rates = false;
     LawEnergy potential = nullptr;   ///< empty: it has none
     LawEnergy power = nullptr;       ///< of the rest; see Load::power
+    LawPiece piece = nullptr;
     std::vector<double> breaks{};
     std::string domain{};
     std::vector<LawReading> readings{};

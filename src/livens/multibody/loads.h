@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <functional>
 #include <limits>
 #include <span>
@@ -81,8 +82,8 @@ struct Load {
     std::string type;
     /// Two that it acts on, the second the world for a load on one body; then those that it only looks at.
     std::vector<int> bodies{world, world};
-    bool depends_on_X = false;                 ///< dF/dX may differ from zero
-    bool depends_on_V = false;                 ///< dF/dV may differ from zero
+    bool depends_on_X = false;   ///< dF/dX may differ from zero
+    bool depends_on_V = false;   ///< dF/dV may differ from zero
     std::array<bool, 2>
         needs_directors{};        ///< F is not zero outside the first column: refused on a point mass
     std::vector<double> breaks;   ///< instants where F jumps or bends; they become element ends
@@ -94,6 +95,8 @@ struct Load {
     std::function<void(const LoadArguments&, LoadForces&)> forces;
     /// dF/dX and dF/dV; required if one of the flags is set. The tangent arrives as zero.
     std::function<void(const LoadArguments&, LoadTangent&)> tangent;
+    /// Which of its smooth pieces F is on, a number for each; empty: it has but one, breaks apart.
+    std::function<std::uint64_t(const LoadArguments&)> piece{};
     /// Potential energy in J of the conservative part; empty if the load has none.
     std::function<double(const LoadArguments&)> potential;
     /// Power in W of the part without potential. If empty: tr(F^T V) for a load without potential, else 0.
@@ -121,6 +124,7 @@ struct SpringValue {
     double force = 0;       ///< N, or N m for e in rad; positive where it pulls back
     double stiffness = 0;   ///< by m or rad
     double energy = 0;      ///< J, 0 for e = 0
+    int piece = 0;          ///< another one where stiffness has jumped
 };
 /// Forces of springs that are not linear; continuous, but stiffness may jump.
 using SpringLaw = std::function<SpringValue(double e)>;
@@ -147,10 +151,10 @@ Load spring_damper(const std::string& name, int first, const Vector3& point_firs
                    const Vector3& point_second, const SpringDamper& spring);
 
 struct JointSpring {
-    double stiffness = 0;   ///< N/m or N m/rad
-    double damping = 0;     ///< N s/m or N m s/rad
-    double rest = 0;        ///< m or rad: the coordinate without force but the preload
-    double preload = 0;     ///< N or N m, against the coordinate, wherever it is
+    double stiffness = 0;      ///< N/m or N m/rad
+    double damping = 0;        ///< N s/m or N m s/rad
+    double rest = 0;           ///< m or rad: the coordinate without force but the preload
+    double preload = 0;        ///< N or N m, against the coordinate, wherever it is
     SpringLaw law = nullptr;   ///< instead of `stiffness`, of q - rest
 };
 

@@ -20,6 +20,19 @@ double integral(const TimeFunction& f, double from, double until)
     return half * (f({middle - s}).value + f({middle + s}).value);
 }
 
+/// Where straight lines meet at an angle.
+std::vector<double> bends_of(const std::vector<double>& x, const std::vector<double>& y)
+{
+    std::vector<double> bends;
+    for (std::size_t i = 2; i < x.size(); ++i) {
+        const double before = (y[i - 1] - y[i - 2]) / (x[i - 1] - x[i - 2]),
+                     after = (y[i] - y[i - 1]) / (x[i] - x[i - 1]);
+        if (std::abs(after - before) > 1e-12 * (std::abs(after) + std::abs(before)))
+            bends.push_back(x[i - 1]);
+    }
+    return bends;
+}
+
 }   // namespace
 
 SpringLaw progressive_spring(double stiffness, double cubic)
@@ -31,7 +44,7 @@ SpringLaw progressive_spring(double stiffness, double cubic)
     return [=](double e) {
         const double e2 = e * e;
         return SpringValue{(stiffness + cubic * e2) * e, stiffness + 3 * cubic * e2,
-                           (0.5 * stiffness + 0.25 * cubic * e2) * e2};
+                           (0.5 * stiffness + 0.25 * cubic * e2) * e2, 0};
     };
 }
 
@@ -53,9 +66,11 @@ SpringLaw tabulated_spring(const std::vector<double>& elongations, const std::ve
         return energies[row] + integral(force, elongations[row], e);
     };
     const double at_rest = energy(0);
-    return [force, energy, at_rest](double e) {
+    const std::vector<double> bends = is_spline ? std::vector<double>() : bends_of(elongations, forces);
+    return [force, energy, at_rest, bends](double e) {
         const TimeValue f = force({e});
-        return SpringValue{f.value, f.first, energy(e) - at_rest};
+        const auto piece = std::ranges::upper_bound(bends, e) - bends.begin();
+        return SpringValue{f.value, f.first, energy(e) - at_rest, static_cast<int>(piece)};
     };
 }
 

@@ -49,6 +49,7 @@ Second::Second(const Model& model, const Problem& problem, const Method& method,
 {
     problem_.guess = [&first](double t) { return first.at(t); };
     options_.condition = options_.judge = false;
+    options_.end_at_bends = false;   // within its error it does where the first one's elements end
     options_.meeting = std::numeric_limits<double>::infinity();   // both meet it within their errors
     // Errors of degrees p and p + 1 are at times alike, above all in elements too long for their degree.
     if (auto* lobatto = std::get_if<Lobatto>(&method_)) lobatto->degree += lobatto->degree < 4 ? 1 : 2;

@@ -2,6 +2,7 @@
 // Elements that are found while marching.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "livens/spacetime/detail/march.h"
 
@@ -17,13 +18,17 @@ constexpr double unseen = std::numeric_limits<double>::infinity();
 void March::run_at_pace(Pace& pace)
 {
     while (time_ < pace.end()) {
-        const double start = time_, end = pace.next_end(start), length = end - start;
+        const double start = time_, end = bends_.end(start, pace.next_end(start)), length = end - start;
         const double most = pace.largest_jump(start, end);
         mesh_.ends.push_back(end);
         const int e = mesh_.n_elements() - 1;
         if (!window_.open(e, e + 1, report_)) return void(set_failed(e, e + 1));
         const NewtonReport outcome = attempt(e, e + 1);
         Closed closed{0, outcome.status != SolveStatus::converged, unseen};
+        if (!closed.is_refused && options_.ends_at_bends && bends_.moves(window_, start, end)) {
+            mesh_.ends.pop_back();
+            continue;
+        }
         const bool end_may_move = !pace.is_stop(end) || pace.may_leave(end);
         if (!closed.is_refused)
             closed = close({most, true, true}, end_may_move, true);
@@ -38,6 +43,7 @@ void March::run_at_pace(Pace& pace)
         }
         if (closed.n_elements > 0) {
             pace.accepted(length, closed.velocity_jump, outcome.iterations);
+            if (bends_.accepted(start, end)) ++counts_.bends;
             if (!take(e, e + 1, closed, outcome) || (options_.goes_on && !options_.goes_on())) return;
             continue;
         }

@@ -30,6 +30,9 @@ struct SolveOptions {
     /// Elements of lobatto that fail, or meet a root of their equations that is none, are divided into two
     /// (from a state).
     bool divide = true;
+    /// Elements of lobatto and radau end, beside their mesh, where the law of a load bends or jumps on the
+    /// way (marches forwards).
+    bool end_at_bends = true;
     /// Every window by Newton's iteration with its tangent: the reference for quicker ways to the same
     /// motion.
     bool by_newton = false;

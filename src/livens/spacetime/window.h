@@ -85,6 +85,9 @@ public:
     /// Where the only element of the open window, as iterations left it, is too near to a singular position:
     /// at one Newton's iteration converges by chance.
     virtual RankLoss rank_loss() const { return RankLoss::none; }
+    /// The first share of the only open element's length, up to `until`, at which a law of a load bends on
+    /// the way of the solution at hand; infinite: none.
+    virtual double bend(double /*until*/) { return std::numeric_limits<double>::infinity(); }
     /// The mesh has one element more: `element`, which is not closed, was divided in two.
     virtual void divided(int) {}
     /// X of all bodies at an end of an element of the open window.

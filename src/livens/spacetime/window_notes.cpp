@@ -95,6 +95,9 @@ void add_notes(SolveReport& report, const WindowCounts& counts)
     if (counts.splits > 0)
         report.notes.push_back(count(counts.splits, "window") +
                                " failed as a whole and were solved in halves");
+    if (counts.bends > 0)
+        report.notes.push_back("elements end at " + count(counts.bends, "instant") +
+                               " where a law of a load bends or jumps");
     if (report.divided > 0)
         report.notes.push_back(
             count(report.divided, "element") +

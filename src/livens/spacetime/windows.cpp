@@ -32,7 +32,8 @@ constexpr int most_contradictions = 12;
 }   // namespace
 
 March::March(Window& window, TimeMesh& mesh, const WindowOptions& options, SolveReport& report)
-    : window_(window), mesh_(mesh), options_(options), report_(report)
+    : window_(window), mesh_(mesh), options_(options), report_(report),
+      bends_((options.pace != nullptr ? options.pace->end() : mesh.end()) - mesh.start())
 {
     newton_options_.tolerance = options.tolerance;
     newton_options_.max_iterations = options.max_iterations;
@@ -56,7 +57,7 @@ void March::run_mesh()
     const std::vector<int> division = divide(mesh_.n_elements(), options_.length, options_.shortest);
     const int n = static_cast<int>(division.size()) - 1;
     const int given = mesh_.n_elements();
-    most_divisions_ = 200 + 4 * given;
+    troubles_.most_divisions = 200 + 4 * given;
     for (int i = 0; i < n; ++i) {
         const int at = options_.direction > 0 ? i : n - 1 - i;
         const int more = options_.direction > 0 ? mesh_.n_elements() - given : 0;
@@ -68,7 +69,11 @@ bool March::solve(int first, int last)
 {
     if (!window_.open(first, last, report_)) return set_failed(first, last);
     NewtonReport outcome = attempt(first, last);
-    if (outcome.status == SolveStatus::converged) return accept(first, last, outcome);
+    if (outcome.status == SolveStatus::converged) {
+        const int elements = end_at_bend(first, last);
+        if (elements == 1) return solve(first, last);
+        return elements == 2 ? solve_parts(first, last, last + 1) : accept(first, last, outcome);
+    }
     if (may_divide(first, last, outcome)) {
         const int end = options_.direction > 0 ? last : first;
         const bool is_singular = window_.rank_loss() == RankLoss::at_end &&
@@ -94,7 +99,7 @@ bool March::solve_parts(int first, int middle, int last)
 
 bool March::may_divide(int first, int last, const NewtonReport& outcome) const
 {
-    return options_.may_divide && report_.divided < most_divisions_ && last - first == 1 &&
+    return options_.may_divide && report_.divided < troubles_.most_divisions && last - first == 1 &&
            may_shorten(outcome) && mesh_.length(first) > shortest_element * (mesh_.end() - mesh_.start());
 }
 
@@ -114,6 +119,23 @@ bool March::divide_element(int element, double share)
     mesh_.ends.insert(mesh_.ends.begin() + element + 1, start + share * (end - start));
     window_.divided(element);
     return solve_parts(element, element + 1, element + 2);
+}
+
+int March::end_at_bend(int first, int last)
+{
+    if (!options_.ends_at_bends || options_.direction < 0 || last - first > 1) return 0;
+    const double start = mesh_.ends[first], end = mesh_.ends[last];
+    const bool was_found = bends_.is_found(end) && last < mesh_.n_elements();
+    const double wanted = bends_.end(start, was_found ? mesh_.ends[last + 1] : end);
+    const bool is_long = !was_found && wanted < end;
+    if (!is_long && !bends_.moves(window_, start, end)) return 0;
+    if (was_found) {
+        mesh_.ends[last] = bends_.found();
+        return 1;
+    }
+    mesh_.ends.insert(mesh_.ends.begin() + last, is_long ? wanted : bends_.found());
+    window_.divided(first);
+    return 2;
 }
 
 NewtonReport March::attempt(int first, int last)
@@ -173,6 +195,8 @@ bool March::accept(int first, int last, const NewtonReport& outcome)
     const bool is_single = last - first == 1;
     const Closed closed =
         close(options_.trust, !is_single || can_move(end), !is_single || may_divide(first, last, outcome));
+    if (closed.n_elements == 1 && is_single && bends_.accepted(mesh_.ends[first], mesh_.ends[last]))
+        ++counts_.bends;
     if (!is_single || closed.loss == RankLoss::none) return take(first, last, closed, outcome);
     if (closed.loss == RankLoss::inside) return divide_element(first, uneven);
     return solve_shorter(first);

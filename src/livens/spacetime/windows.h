@@ -22,6 +22,7 @@ struct WindowOptions {
     bool by_newton = false;       ///< whatever quicker way the window has
     bool may_split = true;        ///< a window that fails is solved in two halves
     bool may_divide = false;      ///< an element that fails or is refused is divided into two
+    bool ends_at_bends = false;   ///< elements end where laws of loads bend, if forwards and alone
     Trust trust{};
     double length_of_model = 1;   ///< m, what distances are relative to
     std::string advice{};         ///< what may help a window that failed; empty: what helps a march

@@ -45,6 +45,8 @@ public:
     /// division by what passes zero), and around what comes and goes faster than a hundredth of the time: an
     /// element that steps over these sees nothing of them. Pulses shorter than a 4096th may be overlooked.
     std::vector<double> events(double from, double until) const;
+    /// A number for the smooth piece that it is on where symbols decide.
+    std::uint64_t piece(double t, std::span<const double> symbols) const;
     /// "max at column 5": the first operation that may jump or bend where symbols decide; empty: none does.
     std::string kink_by_symbols() const;
 

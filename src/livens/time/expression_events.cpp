@@ -51,6 +51,13 @@ const char* word_of(Operation operation)
     }
 }
 
+/// On which side of where the operation jumps or bends; atan2 does beyond the negative half of its axis only.
+bool is_beyond(const Expression::Step& step, const std::vector<TimeValue>& values)
+{
+    const double side = switching(step, values);
+    return step.operation == Operation::arc_tangent ? side < 0 && values[step.second].value < 0 : side > 0;
+}
+
 /// Where a function changes its sign, to the last digit.
 double root(const std::function<double(double)>& f, double a, double b)
 {
@@ -185,6 +192,18 @@ std::vector<double> Expression::events(double from, double until) const
         std::unique(events.begin(), events.end(), [apart](double a, double b) { return b - a < apart; });
     events.erase(repeated, events.end());
     return events;
+}
+
+std::uint64_t Expression::piece(double t, std::span<const double> symbols) const
+{
+    constexpr std::uint64_t odd = 0x9e3779b97f4a7c15;   // the golden ratio: sides mix well
+    const std::vector<bool> has_symbols = steps_with_symbols();
+    const std::vector<TimeValue> values = evaluate(t, symbols, -1);
+    std::uint64_t piece = 0;
+    for (std::size_t k = 0; k < steps_.size(); ++k)
+        if (has_symbols[k] && *word_of(steps_[k].operation) != 0)
+            piece = odd * piece + (is_beyond(steps_[k], values) ? 1 : 0);
+    return piece;
 }
 
 std::string Expression::kink_by_symbols() const

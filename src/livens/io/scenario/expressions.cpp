@@ -153,21 +153,47 @@ std::vector<double> breaks_of(const Builder& builder, const Section& section,
     return breaks;
 }
 
+namespace {
+
+/// What the symbols of expressions stand for.
+std::vector<double> numbers_of(const Inputs& inputs, const LawArguments& at)
+{
+    std::vector<double> numbers;
+    for (const Inputs::Read& read : inputs.reads)
+        numbers.push_back((read.is_rate ? at.rates : at.values)[read.coordinate]);
+    return numbers;
+}
+
+}   // namespace
+
 LoadLaw law_of(const std::vector<Expression>& expressions, const Inputs& inputs,
                const std::vector<double>& breaks)
 {
     return [expressions, inputs, breaks](const LawArguments& at, std::span<double> factors,
                                          std::span<double> slopes) {
         const std::size_t m = inputs.coordinates.size(), n = inputs.reads.size();
-        std::vector<double> numbers(n), by(slopes.empty() ? 0 : n);
-        for (std::size_t k = 0; k < n; ++k)
-            numbers[k] = (inputs.reads[k].is_rate ? at.rates : at.values)[inputs.reads[k].coordinate];
+        const std::vector<double> numbers = numbers_of(inputs, at);
+        std::vector<double> by(slopes.empty() ? 0 : n);
         std::ranges::fill(slopes, 0.0);
         for (std::size_t i = 0; i < expressions.size(); ++i) {
             factors[i] = expressions[i](beside_breaks(at.at, breaks), numbers, by);
             for (std::size_t k = 0; k < by.size(); ++k)
                 slopes[2 * m * i + (inputs.reads[k].is_rate ? m : 0) + inputs.reads[k].coordinate] += by[k];
         }
+    };
+}
+
+LawPiece piece_of(const std::vector<Expression>& expressions, const Inputs& inputs)
+{
+    const bool has_pieces = std::ranges::any_of(
+        expressions, [](const Expression& one) { return !one.kink_by_symbols().empty(); });
+    if (!has_pieces) return nullptr;
+    return [expressions, inputs](const LawArguments& at) {
+        constexpr std::uint64_t odd = 0xbf58476d1ce4e5b9;
+        const std::vector<double> numbers = numbers_of(inputs, at);
+        std::uint64_t piece = 0;
+        for (const Expression& one : expressions) piece = odd * piece + one.piece(at.at.t, numbers);
+        return piece;
     };
 }
 

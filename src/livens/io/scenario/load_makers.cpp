@@ -69,6 +69,20 @@ std::vector<Matrix34> places(const Builder& builder)
     return X;
 }
 
+/// Whether elements end where laws bend: not those of other families, nor of those that are solved together
+/// or against time.
+bool ends_at_bends(const Builder& builder)
+{
+    const Section* const method = only_section(builder.top(), "method");
+    const Section* const time = only_section(builder.top(), "time");
+    const Section* const end = only_section(builder.top(), "end");
+    const std::string family = method != nullptr ? method->text("family") : "lobatto";
+    const bool is_nodal = family == "lobatto" || family == "radau" || family == "auto";
+    const bool is_march = end == nullptr || end->pick<Known>("given") == Known::nothing;
+    return is_nodal && is_march && !(method != nullptr && method->has("window")) &&
+           !(time != nullptr && time->text("breaks") == "ignore");
+}
+
 /// By formulas that look at the motion: what units are multiplied by.
 Load by_formula(const LoadSources& p, const std::string& type, const std::string& unit,
                 std::vector<Load> units, const Inputs& inputs)
@@ -87,6 +101,7 @@ Load by_formula(const LoadSources& p, const std::string& type, const std::string
         std::ranges::fill(slopes, 0.0);
     };
     for (const Inputs::Read& read : inputs.reads) parts.depends_on_rates |= read.is_rate;
+    parts.piece = piece_of(expressions, inputs);
     parts.breaks = acts.breaks();
     for (std::size_t k = 0; k < parts.units.size(); ++k) {
         const std::string name = parts.units.size() == 1 ? "force" : std::string(1, "xyz"[k]);
@@ -96,13 +111,13 @@ Load by_formula(const LoadSources& p, const std::string& type, const std::string
     parts.domain =
         "its expression has no value there, or reads an angle more than 175 degrees from its start";
     for (const Expression& one : expressions)
-        if (const std::string kink = one.kink_by_symbols(); !kink.empty())
+        if (const std::string kink = one.kink_by_symbols(); !kink.empty() && !ends_at_bends(p.builder))
             p.builder.findings().warning(
                 p.section.place("expression"), "expression-kink",
                 p.section.label() + " may jump or bend where the motion decides: " + kink,
-                {"an element sees such a place at its points only, and so does the estimated "
-                 "error",
-                 "compare with more elements, or with a smooth law such as tanh"});
+                {"no element ends there but of lobatto and radau, forwards one after the other, so that the "
+                 "estimated error may miss it as well",
+                 "take the family lobatto, or a smooth law such as tanh"});
     return modulated(p.name, type, parts, places(p.builder));
 }
 
@@ -171,8 +186,9 @@ void warn_of_kinks(const LoadSources& p, const std::vector<double>& x, const std
         p.builder.findings().warning(
             p.section.place("table"), "spring-kink",
             p.section.label() + " bends where the lines of its table meet, at " + to_text(x[i - 1]),
-            {"an element sees such a place at its points only, and so does the estimated error",
-             "interpolation = \"spline\" in the table has no such places; or compare with more elements"});
+            {"no element ends there but of lobatto and radau, forwards one after the other, so that the "
+             "estimated error may miss it as well",
+             "take the family lobatto, or interpolation = \"spline\" in the table"});
         return;
     }
 }
@@ -187,7 +203,7 @@ SpringLaw read_law(const LoadSources& p)
     const std::vector<double>&x = table.find("elongations")->numbers, &y = table.find("forces")->numbers;
     const bool is_smooth = table.text("interpolation") == "spline";
     SpringLaw made = tabulated_spring(x, y, is_smooth);
-    if (!is_smooth) warn_of_kinks(p, x, y);
+    if (!is_smooth && !ends_at_bends(p.builder)) warn_of_kinks(p, x, y);
     return made;
 }
 

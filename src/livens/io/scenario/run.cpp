@@ -149,6 +149,7 @@ void read_run(Builder& builder, Scenario& scenario)
     if (method != nullptr) scenario.options.estimate = method->pick<SolveOptions::Estimate>("estimate");
     if (start != nullptr && start->text("initial") == "project")
         scenario.options.initial = StartPolicy::project;
+    if (time != nullptr) scenario.options.end_at_bends = time->text("breaks") != "ignore";
     read_boundary(builder, scenario.conditions);
     remember_defaults(builder);
     if (time == nullptr) return;

@@ -129,6 +129,11 @@ Load spring_damper(const std::string& name, int first, const Vector3& point_firs
     load.tangent = [law](const LoadArguments& arguments, LoadTangent& tangent) {
         law.tangent(arguments, tangent);
     };
+    if (spring.law)
+        load.piece = [law](const LoadArguments& arguments) {
+            const double stretch = law.line(arguments).l - law.law.free_length;
+            return static_cast<std::uint64_t>(law.law.law(stretch).piece);
+        };
     load.potential = [law](const LoadArguments& arguments) { return law.potential(arguments); };
     load.power = [law](const LoadArguments& arguments) { return law.damper_power(arguments); };
     load.readings = {

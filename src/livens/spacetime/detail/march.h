@@ -4,6 +4,7 @@
 
 #include <limits>
 
+#include "livens/spacetime/detail/ends_at_bends.h"
 #include "livens/spacetime/detail/window_notes.h"
 #include "livens/spacetime/windows.h"
 
@@ -14,6 +15,7 @@ struct Troubles {
     int avoided = 0;          ///< nodes too near to a singular position, since an element was closed
     int shortened = 0;        ///< elements, since one was solved without a tangent
     int contradictions = 0;   ///< elements at whose ends rows contradict each other
+    int most_divisions = 0;   ///< beyond, something else is wrong
 };
 
 class March {
@@ -41,6 +43,9 @@ private:
     /// Whether what failed may be for want of shorter elements.
     bool may_shorten(const NewtonReport& outcome) const;
     bool divide_element(int element, double share);
+    /// If what was solved steps over a bend of a law, the mesh ends an element there (2: in how many the
+    /// window is to be solved anew), or moves that end (1); else 0.
+    int end_at_bend(int first, int last);
     /// Newton's iteration from one guess after the other; all their iterations count. Where none leads to a
     /// solution, the first and best one tells why.
     NewtonReport attempt(int first, int last);
@@ -81,7 +86,7 @@ private:
     bool is_march_ = false;
     bool is_rescued_ = false;   // converged from another guess than the first
     WindowCounts counts_;
-    int most_divisions_ = 0;   // beyond, something else is wrong
+    EndsAtBends bends_;
     Troubles troubles_;
     double singular_end_ = std::numeric_limits<double>::quiet_NaN();   // that can not move; the last one
     int done_ = 0;                                                     // elements

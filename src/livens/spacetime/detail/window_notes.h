@@ -20,6 +20,7 @@ struct WindowCounts {
     double tolerance = 0;
     int rounded = 0;   ///< windows that ended by rounding, short of the tolerance
     int splits = 0;    ///< windows that were solved in halves
+    int bends = 0;     ///< element ends where a law of a load bends
 };
 void add_notes(SolveReport& report, const WindowCounts& counts);
 

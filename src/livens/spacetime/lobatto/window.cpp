@@ -24,7 +24,8 @@ LobattoWindow::LobattoWindow(const Tables& tables, const TimeMesh& mesh, const E
                              const ElementRule& rule)
     : tables_(tables), ends_(ends), system_(tables, rule), series_(tables, system_.rule()),
       kernel_(tables, system_.rule()), instant_(tables, kernel_.serves() && ends.has_state()),
-      record_(tables, mesh, system_.rule()), front_(tables)
+      record_(tables, mesh, system_.rule()),
+      front_(tables), breaks_{tables.model->load_breaks(), Bends(tables, rule)}
 {
     record_.note_redundant(ends.redundant);
     work_.lambda.assign(tables.rows.size(), 0.0);
@@ -33,10 +34,9 @@ LobattoWindow::LobattoWindow(const Tables& tables, const TimeMesh& mesh, const E
     work_.momentum.assign(static_cast<std::size_t>(tables.n_twists), 0.0);
     work_.wrench = work_.momentum;
     work_.raw.assign(12 * tables.bodies.size(), 0.0);
-    jumps_ = tables.model->load_breaks();
 }
 
-bool LobattoWindow::is_jump(double t) const { return std::binary_search(jumps_.begin(), jumps_.end(), t); }
+bool LobattoWindow::is_jump(double t) const { return std::ranges::binary_search(breaks_.jumps, t); }
 
 /// The mesh's number of the stretch's element end.
 int LobattoWindow::mesh_end(int end) const { return ends_.is_backwards() ? last_ - end : first_ + end; }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "livens/spacetime/ends.h"
+#include "livens/spacetime/lobatto/bends.h"
 #include "livens/spacetime/lobatto/march_kernel.h"
 #include "livens/spacetime/lobatto/record.h"
 #include "livens/spacetime/lobatto/series.h"
@@ -26,9 +27,11 @@ public:
     bool near_state(State& state) const override;
     Closed close(const Trust& trust, SolveReport& report) override;
     /// Nodes that are far from their constraints say nothing of it.
-    RankLoss rank_loss() const override
+    RankLoss rank_loss() const override { return system_.nodes().is_near() ? rank_loss(0) : RankLoss::none; }
+    double bend(double until) override
     {
-        return system_.nodes().is_near() ? rank_loss(0) : RankLoss::none;
+        return breaks_.bends.empty() ? Window::bend(until)
+                                     : breaks_.bends.first(stretch_, system_.nodes(), until);
     }
     void divided(int element) override { record_.divided(element); }
     std::vector<Matrix34> positions(int element_end) const override;
@@ -51,6 +54,11 @@ private:
         InstantState& here() { return states[now]; }
         const InstantState& here() const { return states[now]; }
         InstantState& next() { return states[1 - now]; }
+    };
+    /// Of loads.
+    struct Breaks {
+        std::vector<double> jumps;   // instants
+        Bends bends;
     };
     struct Work {
         std::vector<double> lambda, end_lambda;   // all rows of the model
@@ -91,7 +99,7 @@ private:
     InstantState far_;   // where X is known at the far end
     int first_ = 0, last_ = 0;
     Work work_;
-    std::vector<double> jumps_;
+    Breaks breaks_;
     double smallest_pivot_ = 1;   // of all closed elements
 };
 

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Element ends where laws of loads bend or jump, found by elements that step over them.
+#pragma once
+
+#include <limits>
+
+#include "livens/spacetime/window.h"
+
+namespace livens {
+
+/// Of a march forwards. An element that was solved over a bend is solved again up to there, and once or twice
+/// more until that is where it bends: what comes before is then smooth, and so is what comes behind
+/// (docs/theory.md, "Laws that bend").
+class EndsAtBends {
+public:
+    explicit EndsAtBends(double duration) : shortest_(shortest * duration) {}
+
+    /// Where the element from `start` ends that would end at `wanted`.
+    double end(double start, double wanted);
+    /// Whether an element end is where a bend was found.
+    bool is_found(double end) const { return end == at_; }
+    /// True: the solution of the element tells a better end, found().
+    bool moves(Window& window, double start, double end);
+    double found() const { return at_; }
+    /// True: it ends at a bend.
+    bool accepted(double start, double end);
+
+private:
+    static constexpr double infinite = std::numeric_limits<double>::infinity();
+    /// Of the duration: shorter elements are none.
+    static constexpr double shortest = 1e-9;
+    /// Of the element's length: nearer is met, and how far beyond its end a bend may lie that it ends short
+    /// of.
+    static constexpr double near = 1e-12, beyond = 1.5;
+    /// Ends lie so far before a bend that their states are on the near side: radau's last load point is
+    /// there, and a law like x/abs(x) has no value in between.
+    static constexpr double before = 2e-13;
+    static constexpr int most_moves = 8;
+    /// Ends in succession that leave elements less than a share of the length that they might have: the
+    /// motion slides along the place, or rests there.
+    static constexpr double crowded = 0.01;
+    static constexpr int most_crowded = 12;
+
+    double shortest_;
+    double at_ = -infinite, wanted_ = 0, longest_ = infinite;
+    int n_moves_ = 0, n_crowded_ = 0;
+    bool is_met_ = false;
+};
+
+}   // namespace livens

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "livens/spacetime/detail/ends_at_bends.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace livens {
+
+double EndsAtBends::end(double start, double wanted)
+{
+    wanted_ = std::min(wanted, start + longest_);
+    return at_ > start && at_ < wanted_ ? at_ : wanted_;
+}
+
+bool EndsAtBends::moves(Window& window, double start, double end)
+{
+    if (n_crowded_ >= most_crowded) return false;
+    const bool was_found = is_found(end);
+    const double reach = was_found ? beyond : 1 - near, length = end - start;
+    const double share = window.bend(was_found ? beyond : 1);
+    is_met_ = was_found && std::abs(share - 1) <= near;
+    if (is_met_ || !(share < reach) || share * length < shortest_) return false;
+    n_moves_ = was_found ? n_moves_ + 1 : 0;
+    if (n_moves_ > most_moves) return false;
+    at_ = start + (share - before) * length;
+    return at_ < wanted_;
+}
+
+bool EndsAtBends::accepted(double start, double end)
+{
+    const bool was_found = is_found(end);
+    n_crowded_ = was_found && end - start < crowded * (wanted_ - start) ? n_crowded_ + 1 : 0;
+    if (!was_found)
+        longest_ *= 2;
+    else   // what is not met there lies ahead, and long elements would see it too early again
+        longest_ = is_met_ ? infinite : 2 * (end - start);
+    return was_found && is_met_;
+}
+
+}   // namespace livens

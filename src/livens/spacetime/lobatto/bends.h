@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Where on the way of an element a law of a load goes on to another of its smooth pieces.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "livens/spacetime/lobatto/nodes.h"
+
+namespace livens {
+
+/// Looks along the polynomials of an element that was solved as if no law bent there: what comes before the
+/// first bend is about right, so that an element that ends there is smooth (docs/theory.md, "Laws that
+/// bend").
+class Bends {
+public:
+    /// References must outlive it.
+    Bends(const Tables& tables, const ElementRule& rule);
+
+    /// No law of the model has pieces.
+    bool empty() const { return loads_.empty(); }
+    /// The first share of the only element's length, up to `until` (beyond 1: as it goes on), from which on
+    /// loads are on other pieces than just behind its start; infinite: none.
+    double first(const Stretch& stretch, const Nodes& nodes, double until);
+
+private:
+    struct Look {
+        double share = 0;
+        std::vector<std::uint64_t> pieces;   // of each load
+        std::vector<double> angles;          // see Turns
+    };
+
+    Look look(const Stretch& stretch, const Nodes& nodes, double share, const Look& from);
+
+    const Tables& tables_;
+    LagrangeBasis basis_;
+    std::vector<int> loads_;   // that have pieces
+    std::vector<double> X_, V_, values_, slopes_;
+};
+
+}   // namespace livens

@@ -1,0 +1,275 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Laws that bend or jump where the motion decides, against solutions piece by piece.
+#include <cmath>
+#include <functional>
+#include <random>
+
+#include "livens/base/text.h"
+#include "reference/solved.h"
+
+namespace livens::tests {
+namespace {
+
+using Real = long double;
+
+/// x'' = pull - stiffness x - damping x' on a piece: by mass.
+struct Piece {
+    Real pull = 0, stiffness = 0, damping = 0;
+};
+
+struct State1 {
+    Real x = 0, v = 0;
+};
+
+/// By the Taylor series of a linear equation, whose terms follow from each other.
+State1 after(const Piece& piece, const State1& s, Real h)
+{
+    Real x = s.x, v = s.v, power = 1;
+    Real derivative[2] = {s.v, piece.pull - piece.stiffness * s.x - piece.damping * s.v};
+    for (int n = 1; n < 30; ++n) {
+        power *= h / n;
+        x += derivative[0] * power;
+        v += derivative[1] * power;
+        const Real next = -piece.stiffness * derivative[0] - piece.damping * derivative[1];
+        derivative[0] = derivative[1];
+        derivative[1] = next;
+    }
+    return {x, v};
+}
+
+struct Oscillator {
+    std::string load;
+    std::function<int(const State1&)> piece_at;
+    std::vector<Piece> pieces;
+    double x = 0, v = 0, end = 0;
+
+    /// Steps of 0.2 ms; one in which the piece changes is divided where it does, to the last digit.
+    State1 at_end() const
+    {
+        constexpr Real step = 2e-4L;
+        State1 s{x, v};
+        int piece = piece_at(s);
+        for (Real t = 0; t < end;) {
+            Real h = std::min(step, end - t);
+            State1 next = after(pieces[piece], s, h);
+            if (piece_at(next) != piece) {
+                Real before = 0;
+                for (int i = 0; i < 80; ++i) {
+                    const Real middle = 0.5L * (before + h);
+                    const bool is_same = piece_at(after(pieces[piece], s, middle)) == piece;
+                    (is_same ? before : h) = middle;
+                }
+                next = after(pieces[piece], s, h);
+                piece = piece_at(next);
+            }
+            s = next;
+            t += h;
+        }
+        return s;
+    }
+
+    std::string scenario(const std::string& time) const
+    {
+        return "[[body]]\nname = \"b\"\nmass = 2\ninertia = [1, 1, 1]\nposition = [0, 0, 0]\n"
+               "[[joint]]\nname = \"slide\"\ntype = \"prismatic\"\nbetween = [\"world\", \"b\"]\n"
+               "at = [0, 0, 0]\naxis = [1, 0, 0]\n[start]\ncoordinates = [{ joint = \"slide\", coordinate = "
+               "\"displacement\", value = " +
+               to_text(x) + ", rate = " + to_text(v) + " }]\n" + load + "[time]\nend = " + to_text(end) +
+               "\n" + time;
+    }
+};
+
+constexpr double mass = 2;
+
+std::string actuator(const std::string& expression)
+{
+    const std::string rate =
+        expression.find('v') == std::string::npos ? "" : ", v = \"slide.displacement_rate\"";
+    return "[[load]]\ntype = \"actuator\"\njoint = \"slide\"\ninputs = { x = \"slide.displacement\"" + rate +
+           " }\nexpression = \"" + expression + "\"\n";
+}
+
+/// One of each kind in turn, with data that are rounded so that texts hold them.
+class Oscillators {
+public:
+    explicit Oscillators(unsigned seed) : random_(seed) {}
+
+    Oscillator next(int kind)
+    {
+        Oscillator o;
+        const double k = any(1, 30), c = any(0.5, 20), at = any(-0.4, 0.4);
+        const std::string by_k = "-" + to_text(k) + "*x";
+        switch (kind) {
+        case 0: {   // a stop
+            const double stop = std::round(std::pow(10, any(1, 4)));
+            o.load = actuator(by_k + " - " + to_text(stop) + "*max(0, x - (" + to_text(at) + "))");
+            o.piece_at = [at](const State1& s) { return s.x > at ? 1 : 0; };
+            o.pieces = {{0, k, 0}, {stop * at, k + stop, 0}};
+            break;
+        }
+        case 1:   // a damper of one direction
+            o.load = actuator(by_k + " - " + to_text(c) + "*max(0, v)");
+            o.piece_at = [](const State1& s) { return s.v > 0 ? 1 : 0; };
+            o.pieces = {{0, k, 0}, {0, k, c}};
+            break;
+        case 2:   // a force that jumps
+            o.load = actuator(by_k + " - " + to_text(c) + "*x/abs(x)");
+            o.piece_at = [](const State1& s) { return s.x > 0 ? 1 : 0; };
+            o.pieces = {{c, k, 0}, {-c, k, 0}};
+            break;
+        case 3: {   // a saturated spring
+            const double most = any(0.5, 4);
+            o.load = actuator("min(" + to_text(most) + ", max(-" + to_text(most) + ", " + by_k + "))");
+            o.piece_at = [=](const State1& s) { return k * s.x > most ? 2 : k * s.x < -most ? 0 : 1; };
+            o.pieces = {{most, 0, 0}, {0, k, 0}, {-most, 0, 0}};
+            break;
+        }
+        default: {   // a table of three lines through the origin
+            const double a = any(-0.4, -0.1), b = any(0.1, 0.4), left = any(1, 600), right = any(1, 600);
+            const double f_a = k * a, f_b = k * b;
+            o.load =
+                "[[load]]\ntype = \"spring\"\njoint = \"slide\"\nlaw = \"table\"\ntable = { elongations = [" +
+                to_text(a - 1) + ", " + to_text(a) + ", " + to_text(b) + ", " + to_text(b + 1) +
+                "], forces = [" + to_text(f_a - left) + ", " + to_text(f_a) + ", " + to_text(f_b) + ", " +
+                to_text(f_b + right) + "] }\n";
+            o.piece_at = [=](const State1& s) { return s.x > b ? 2 : s.x < a ? 0 : 1; };
+            o.pieces = {{left * a - f_a, left, 0}, {0, k, 0}, {right * b - f_b, right, 0}};
+        }
+        }
+        for (Piece& piece : o.pieces)
+            piece = {piece.pull / mass, piece.stiffness / mass, piece.damping / mass};
+        o.x = any(0.01, 1) * (any(-1, 1) < 0 ? -1 : 1);   // not where a force jumps
+        o.v = any(-3, 3);
+        o.end = any(2, 8);
+        return o;
+    }
+
+private:
+    double any(double from, double until)
+    {
+        return std::round(1000 * std::uniform_real_distribution<double>(from, until)(random_)) / 1000;
+    }
+
+    std::mt19937 random_;
+};
+
+constexpr int n_kinds = 5;
+
+struct Seen {
+    SolveStatus status;
+    double error, estimate;
+};
+
+Seen seen(const Oscillator& o, const std::string& time, bool end_at_bends = true)
+{
+    const ScenarioResult read = parse_scenario("format = 1\n" + o.scenario(time), "test.toml");
+    for (const Diagnostic& d : read.diagnostics) EXPECT_EQ(d.message, "");
+    const Scenario& s = read.scenario.value();
+    SolveOptions options = s.options;
+    options.end_at_bends = end_at_bends;
+    const Solution solution = solve(s.model, {s.model.start()}, s.time, s.method, options);
+    const double x = solution.motion.at_end(solution.motion.n_elements()).X[0](0, 0);
+    return {solution.report.status, static_cast<double>(std::abs(x - o.at_end().x)) / s.model.length(),
+            solution.estimate.largest};
+}
+
+/// Twelve of each kind to five accuracies: all are reached, and hold.
+TEST(Bends, AnyAccuracyIsReached)
+{
+    Oscillators oscillators(11);
+    for (int i = 0; i < 12 * n_kinds; ++i) {
+        const Oscillator o = oscillators.next(i % n_kinds);
+        for (const double accuracy : {1e-3, 1e-4, 1e-6, 1e-8, 1e-10}) {
+            const Seen s = seen(o, "accuracy = " + to_text(accuracy) + "\n");
+            EXPECT_EQ(s.status, SolveStatus::converged) << o.scenario("") << accuracy;
+            EXPECT_LT(s.error, accuracy) << o.scenario("") << accuracy;
+        }
+    }
+}
+
+/// On stated elements what is good is off by no more than ten estimates, and short elements of a high degree
+/// have all digits.
+TEST(Bends, OnStatedElementsTheEstimateHolds)
+{
+    Oscillators oscillators(12);
+    for (int i = 0; i < 8 * n_kinds; ++i) {
+        const Oscillator o = oscillators.next(i % n_kinds);
+        for (const char* elements : {"elements = 15\n", "elements = 40\n"}) {
+            const Seen s = seen(o, elements);
+            if (s.status == SolveStatus::converged) {
+                EXPECT_LT(s.error, 10 * s.estimate + 1e-9) << o.scenario(elements);
+            }
+        }
+        EXPECT_LT(seen(o, "elements = 400\n[method]\ndegree = 8\n").error, 1e-11) << o.scenario("");
+    }
+}
+
+/// Likewise with radau, but for forces that jump: its last load point lies at the bend, which the second
+/// solution may pass there, so that some are refused.
+TEST(Bends, ElementsOfRadauEndThere)
+{
+    Oscillators oscillators(13);
+    for (int i = 0; i < 2 * n_kinds; ++i) {
+        const Oscillator o = oscillators.next(i % n_kinds);
+        const Seen s = seen(o, "accuracy = 1e-8\n[method]\nfamily = \"radau\"\n");
+        const bool is_refused = s.status == SolveStatus::inaccurate && i % n_kinds == 2;
+        EXPECT_TRUE(is_refused || s.status == SolveStatus::converged) << o.scenario("");
+        EXPECT_LT(is_refused ? 0 : s.error, 1e-8) << o.scenario("");
+    }
+}
+
+/// Elements that step over bends are wrong by more than they say, or refused: what the tests above would
+/// miss.
+TEST(Bends, ElementsThatStepOverThemAreSeenToBeWrong)
+{
+    Oscillators oscillators(11);
+    int n_refused = 0, n_wrong = 0;
+    for (int i = 0; i < 12 * n_kinds; ++i) {
+        const Oscillator o = oscillators.next(i % n_kinds);
+        for (const double accuracy : {1e-4, 1e-8}) {
+            const Seen s = seen(o, "accuracy = " + to_text(accuracy) + "\n", false);
+            if (s.status != SolveStatus::converged)
+                ++n_refused;
+            else if (s.error > accuracy)
+                ++n_wrong;
+        }
+    }
+    EXPECT_GT(n_refused + n_wrong, 40) << "of 120";
+    EXPECT_GT(n_wrong, 2);
+    RecordProperty("refused", n_refused);
+    RecordProperty("wrong", n_wrong);
+}
+
+/// A rod against a stop after one and a half turns: angles of springs are counted while looking for the bend.
+TEST(Bends, AnglesAreCountedOnTheWay)
+{
+    // phi'' = 0 up to 10 rad, then -k (phi - 10): the rod comes back to 10 rad after half a period
+    const Solved s = solved(R"(
+[[body]]
+name = "wheel"
+mass = 1
+inertia = [1, 1, 1]
+position = [0, 0, 0]
+[[joint]]
+name = "hub"
+type = "revolute"
+between = ["world", "wheel"]
+at = [0, 0, 0]
+axis = [0, 0, 1]
+rate = 4
+[[load]]
+type = "spring"
+joint = "hub"
+law = "table"
+table = { elongations = [0, 10, 11], forces = [0, 0, 25] }
+[time]
+end = 4
+accuracy = 1e-10
+)");
+    const double hit = 2.5, back = hit + std::acos(-1.0) / 5;
+    EXPECT_NEAR(s.coordinate("hub", "angle", 4).value, 10 - 4 * (4 - back), 1e-10);
+    EXPECT_NEAR(s.coordinate("hub", "angle", 4).rate, -4, 1e-10);
+}
+
+}   // namespace
+}   // namespace livens::tests
