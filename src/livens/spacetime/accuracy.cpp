@@ -51,7 +51,7 @@ int& degree_of(Method& method) { return const_cast<int&>(degree_of(std::as_const
 SolveOptions with_tolerance_for(double accuracy, int tries, SolveOptions options)
 {
     constexpr double all_digits = 1e-15;
-    if (accuracy < fine_accuracy && (tries > 1 || accuracy >= high_accuracy))
+    if (accuracy <= fine_accuracy && (tries > 1 || accuracy >= high_accuracy))
         options.tolerance = std::min(options.tolerance, all_digits);
     return options;
 }
