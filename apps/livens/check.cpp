@@ -122,12 +122,19 @@ int check_command(const std::string& file, const Common& common)
         return exit_ok;
     }
     if (common.quiet) return exit_ok;
+    const auto counted = [](std::size_t n, const char* one, const char* many) {
+        return fmt::format("{} {}", n, n == 1 ? one : many);
+    };
     std::string text = fmt::format(
-        "{}: no errors\n  {} bodies, {} joints with {} rows, {} loads, {} degrees of freedom\n"
+        "{}: no errors\n  {}, {} with {}, {}, {} of freedom\n"
         "  {:.6g} s to {:.6g} s {}\n  {} of memory at least{}\n",
-        plain(file), scenario.model.n_bodies(), scenario.model.joints().size(), scenario.model.n_rows(),
-        scenario.model.loads().size(), assembly.degrees_of_freedom, start_of(scenario.time),
-        end_of(scenario.time), division_of(scenario), bytes_in_words(memory_needed(scenario).most()),
+        plain(file), counted(scenario.model.bodies().size(), "body", "bodies"),
+        counted(scenario.model.joints().size(), "joint", "joints"),
+        counted(static_cast<std::size_t>(scenario.model.n_rows()), "row", "rows"),
+        counted(scenario.model.loads().size(), "load", "loads"),
+        counted(static_cast<std::size_t>(assembly.degrees_of_freedom), "degree", "degrees"),
+        start_of(scenario.time), end_of(scenario.time), division_of(scenario),
+        bytes_in_words(memory_needed(scenario).most()),
         std::holds_alternative<Span>(scenario.time) ? ", and what the elements take that are found" : "");
     text += coordinates_of(model, assembly);
     text += lengths_of(model, assembly.start);

@@ -147,10 +147,12 @@ void add_figures(Summary& summary, const Run& run, bool verbose)
         fmt::format("violated by {} at most{}, their rates by {} 1/s", number(s.max_constraint_violation),
                     is_weak ? " (they hold in the mean, within " + number(s.max_weak_violation) + ")" : "",
                     number(s.max_velocity_violation)));
-    summary.figure("energy", fmt::format("off its balance by {} of the largest that moves or is stored",
-                                         number(s.energy_drift)));
-    summary.figure("angular momentum", fmt::format("off its balance by {} of its largest value",
-                                                   number(s.angular_momentum_drift)));
+    const auto balance = [&](const char* what, double drift, const char* of) {
+        summary.figure(what, drift == 0 ? std::string("balances to rounding")
+                                        : fmt::format("off its balance by {} of {}", number(drift), of));
+    };
+    balance("energy", s.energy_drift, "the largest that moves or is stored");
+    balance("angular momentum", s.angular_momentum_drift, "its largest value");
     if (verbose) {
         summary.figure("zig-zag",
                        fmt::format("{} in positions, {} in momenta (0: smooth, 1: from node to node)",

@@ -240,6 +240,18 @@ TEST(Laws, ATableOfAStraightLineIsALinearSpring)
                     x, 1e-9);
 }
 
+/// A damper has neither a length nor a stiffness: v = exp(-c t / m), between points and along a joint.
+TEST(Laws, ADamperAloneTakesAnExponential)
+{
+    for (const std::string where :
+         {"between = [\"world\", \"b\"]\npoints = [[-3, 0, 0], [0, 0, 0]]\n", "joint = \"slide\"\n"}) {
+        const Solved s = solved(moving(slide, "[1, 0, 0]") + "[[load]]\ntype = \"spring\"\ndamping = 1.5\n" +
+                                where + "[time]\nend = 2\naccuracy = 1e-10\n");
+        EXPECT_NEAR(s.coordinate("slide", "displacement", 2).value, 2 / 1.5 * (1 - std::exp(-1.5)), 1e-10)
+            << where;
+    }
+}
+
 /// A wheel under an expression of time.
 double wheel_after(const std::string& expression, const std::string& more = "")
 {

@@ -10,6 +10,7 @@
 #include "livens/base/elementary.h"
 #include "livens/base/error.h"
 #include "livens/base/text.h"
+#include "livens/multibody/detail/rate_changes.h"
 #include "livens/multibody/detail/wording.h"
 #include "livens/multibody/projection.h"
 #include "livens/multibody/rank.h"
@@ -265,11 +266,13 @@ void settle_velocities(const Model& model, StartPolicy policy, std::span<const i
     const RateFault fault = worst_rate(model, state, drives, speed);
     if (fault.relative <= 8 * eps) return;
     if (fault.relative > start_tolerance && policy == StartPolicy::check) throw InputError(fault.complaint);
+    const std::vector<Matrix34> before = state.V;
     state.V = nearest_rates(model, state.X, state.V, independent, drives);
-    if (fault.relative > start_tolerance) {
-        notes.push_back("the velocities at the start were projected: " + fault.complaint.message + " (" +
-                        fault.complaint.value + ")");
-    }
+    if (fault.relative <= start_tolerance) return;
+    const std::string changes = rate_changes(model, state.X, before, state.V);
+    notes.push_back("the velocities at the start were projected: " + fault.complaint.message + " (" +
+                    fault.complaint.value + ")" +
+                    (changes.empty() ? "" : "; by the least that fits, rates became " + changes));
 }
 
 // --- inertia

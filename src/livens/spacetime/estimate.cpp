@@ -41,12 +41,6 @@ double order_factor(const Method& method)
 
 }   // namespace
 
-namespace {
-
-constexpr double all_digits = 1e-15;   // of an iteration: less is below rounding
-
-}   // namespace
-
 Second::Second(const Model& model, const Problem& problem, const Method& method, const SolveOptions& options,
                const Motion& first)
     : model_(model), problem_(problem), method_(method), options_(options), first_(first),
@@ -56,8 +50,6 @@ Second::Second(const Model& model, const Problem& problem, const Method& method,
     problem_.guess = [&first](double t) { return first.at(t); };
     options_.condition = options_.judge = false;
     options_.end_at_bends = false;   // within its error it does where the first one's elements end
-    // what the first one's iteration leaves is part of its error, and must not be in both
-    options_.tolerance = std::min(options_.tolerance, all_digits);
     options_.meeting = std::numeric_limits<double>::infinity();   // both meet it within their errors
     // Errors of degrees p and p + 1 are at times alike, above all in elements too long for their degree.
     if (auto* lobatto = std::get_if<Lobatto>(&method_)) lobatto->degree += lobatto->degree < 4 ? 1 : 2;

@@ -28,7 +28,7 @@ TEST(OtherWords, AreAnsweredWithThoseOfScenarios)
                     "unknown-choice");
     };
     EXPECT_EQ(load("moment"), "here it is \"torque\"");
-    EXPECT_EQ(load("damper"), "here it is \"spring\" with 'stiffness = 0' and 'damping'");
+    EXPECT_EQ(load("damper"), "here it is \"spring\" with 'damping' alone");
     EXPECT_EQ(load("torsion_spring"), "here it is \"spring\" with 'joint', the hinge that it is wound about");
     // no word of joints for a load
     EXPECT_EQ(load("ball").find("known here: force, torque"), 0u) << load("ball");

@@ -458,7 +458,7 @@ TEST(ScenarioCodes, WarningsLeaveTheScenarioAlone)
     const std::string kinked = replaced(
         valid_scenario, "[time]",
         "[[load]]\ntype = \"actuator\"\njoint = \"shoulder\"\ninputs = { w = \"shoulder.angle_rate\" }\n"
-        "expression = \"-max(w, 0)\"\n\n[time]");
+        "expression = \"-max(w, 0)\"\n\n[time]\nbreaks = \"ignore\"");
     const std::string hurried =
         replaced(replaced(valid_scenario, "name = \"shoulder\"", "name = \"shoulder\"\nrate = 1"),
                  "name = \"lower\"", "name = \"lower\"\nvelocity = [0, 0, 1]");

@@ -284,10 +284,12 @@ Table drive_table()
              "start.",
              "s"},
          Key{"until", types::number, "When it lets go: velocities go on. Default: never.", "s"},
-         Key{"value", numbers, "Constant."},
+         Key{"value", numbers, "Constant."}.or_formulas("formulas stand in 'expression', instead of 'value'"),
          Key{"rate", numbers,
              "Constant rate, from what the coordinate is at the start of the motion, beginning with the "
-             "drive; rad/s or m/s."},
+             "drive; rad/s or m/s. A rate over time is an `expression` of its integral."}
+             .or_formulas("a rate over time is said by 'expression', a formula of its integral: the angle or "
+                          "displacement itself"),
          wave, step,
          Key{"expression", types::text_or_list,
              "A formula of t, in rad or m: `0.1*sin(2*pi*t)`; without kinks."},

@@ -7,6 +7,8 @@ namespace livens {
 
 namespace {
 
+constexpr std::string_view formulas = "formulas stand in 'expression', instead of 'value'";
+
 Key body_key() { return Key{"body", types::text, "On which body it acts."}.needed(); }
 
 Key interpolation_key()
@@ -44,8 +46,8 @@ std::vector<Key> keys_on_body(const std::string& what, std::string_view unit, co
           interpolation_key()}});
     return joined(
         {body_key()}, more,
-        std::vector<Key>{Key{"value", types::vector3, "Constant; instead of `table`.", unit}.or_formulas(),
-                         table},
+        std::vector<Key>{
+            Key{"value", types::vector3, "Constant; instead of `table`.", unit}.or_formulas(formulas), table},
         expression_keys(true),
         std::vector<Key>{choice("frame", {"world", "body"},
                                 "Axes of the values: fixed in the world, or turning with the body.")},
@@ -76,7 +78,10 @@ std::vector<Key> keys_of_spring()
             "law", {"linear", "progressive", "table"},
             "Force by elongation e, from `free_length` or `rest`: stiffness e, stiffness e + cubic e^3, or "
             "`table`."),
-        Key{"stiffness", types::number, "Force for each metre of elongation, or torque for each radian.",
+        Key{"stiffness", types::number,
+            "Force for each metre of elongation, or torque for each radian; needed but by the law `table` "
+            "and "
+            "by what has `damping` or `preload` alone.",
             "N/m"}
             .or_in("N m/rad")
             .within(not_negative),
@@ -88,7 +93,8 @@ std::vector<Key> keys_of_spring()
             "0"}
             .or_in("N m s/rad")
             .within(not_negative),
-        Key{"free_length", types::number, "With `between`, and needed there: length without force.", "m"}
+        Key{"free_length", types::number,
+            "With `between`, and needed there if there is a stiffness or a law: length without force.", "m"}
             .within(not_negative),
         Key{"rest", types::number, "With `joint`: the coordinate without force.", "m", "0"}.or_in("rad"),
         Key{"preload", types::number, "A constant force or torque, which pulls back at any elongation.", "N",
@@ -105,7 +111,8 @@ std::vector<Key> keys_of_actuator()
           interpolation_key()}});
     return joined(
         {Key{"joint", types::text, "The joint."}.needed(), coordinate_key(),
-         Key{"value", types::number, "Constant; instead of `table`.", "N"}.or_in("N m").or_formulas(), table},
+         Key{"value", types::number, "Constant; instead of `table`.", "N"}.or_in("N m").or_formulas(formulas),
+         table},
         expression_keys(false), interval_keys());
 }
 
@@ -130,7 +137,8 @@ std::vector<Key> keys_of_pressure()
                        "it pulls.",
                        "Pa/m"};
     return joined({body_key(), surface_key(), gradient,
-                   Key{"value", types::number, "Constant; instead of `table`.", "Pa"}.or_formulas(), table},
+                   Key{"value", types::number, "Constant; instead of `table`.", "Pa"}.or_formulas(formulas),
+                   table},
                   expression_keys(false), interval_keys());
 }
 

@@ -227,7 +227,8 @@ Table method_table()
         {Key{"family", types::choice, "", "", "lobatto"},
          Key{"tolerance", types::number,
              "Newton stops when its estimated error is below this fraction of the motion in the element; "
-             "mixed: of the model's length. With an accuracy of 1e-9 to 1e-8 it is 1e-15 at most, and with a smaller one from the second try on.",
+             "mixed: of the model's length. With an accuracy of 1e-9 to 1e-8 it is 1e-15 at most, and with a "
+             "smaller one from the second try on.",
              "", "1e-14"}
              .within({0, 0.1, true}),
          Key{"max_iterations", types::integer, "Of Newton in one element; mixed: in one block.", "", "30"}

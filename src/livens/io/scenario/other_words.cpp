@@ -32,8 +32,8 @@ constexpr OtherWord other_words[] = {
     // loads
     {"moment", "torque"},
     {"point_force", "force"},
-    {"damper", "spring", "with 'stiffness = 0' and 'damping'"},
-    {"dashpot", "spring", "with 'stiffness = 0' and 'damping'"},
+    {"damper", "spring", "with 'damping' alone"},
+    {"dashpot", "spring", "with 'damping' alone"},
     {"spring_damper", "spring", "with 'damping'"},
     {"torsion_spring", "spring", "with 'joint', the hinge that it is wound about"},
     {"torsional_spring", "spring", "with 'joint', the hinge that it is wound about"},

@@ -92,12 +92,12 @@ struct Key {
     Range range = {};                   ///< for every number of the value
     std::string_view other_unit = {};   ///< SI; what texts may have instead, along angles
     std::shared_ptr<const Table> child = {};   ///< of a table, or tables
-    bool has_formulas = false;                 ///< `expression` may stand instead
+    std::string_view formulas = {};            ///< where formulas stand instead; empty: nowhere
 
     // One property each, so that an entry of a table reads as a sentence.
     Key needed() && { return required = true, std::move(*this); }
     Key or_in(std::string_view u) && { return other_unit = u, std::move(*this); }
-    Key or_formulas() && { return has_formulas = true, std::move(*this); }
+    Key or_formulas(std::string_view where) && { return formulas = where, std::move(*this); }
     Key within(const Range& r) && { return range = r, std::move(*this); }
     Key holding(Table t) &&;
 };

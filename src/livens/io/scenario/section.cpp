@@ -85,8 +85,9 @@ private:
 
     bool wrong_type(const Node& node, std::string help = {})
     {
-        return findings_.error(node.place, "wrong-type",
-                               demand() + ", not " + std::string(describe(node.kind)), {"", std::move(help)});
+        return findings_.error(
+            node.place, "wrong-type", demand() + ", not " + std::string(describe(node.kind)),
+            {node.kind == NodeKind::text ? std::string(key_.formulas) : "", std::move(help)});
     }
 
     bool keep(double x)
@@ -121,11 +122,9 @@ private:
             value_.has_unit = true;
             return accept(node, quantity.value);
         }
-        return findings_.error(
-            node.place, "unit", subject() + " cannot be \"" + node.text() + "\": " + quantity.error,
-            {key_.has_formulas ? "formulas stand in 'expression', instead of '" + std::string(key_.name) + "'"
-                               : "",
-             quantity.help});
+        return findings_.error(node.place, "unit",
+                               subject() + " cannot be \"" + node.text() + "\": " + quantity.error,
+                               {std::string(key_.formulas), quantity.help});
     }
 
     bool accept(const Node& node, double x)
