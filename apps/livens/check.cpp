@@ -80,7 +80,7 @@ std::string place_in_words(const Vector3& x)
     return fmt::format("({:.4g}, {:.4g}, {:.4g})", x[0] + 0.0, x[1] + 0.0, x[2] + 0.0);
 }
 
-/// Where rods end in the world, and how long springs are: their points are stated on the bodies.
+/// Where rods and springs end in the world: their points are stated on the bodies.
 std::string lengths_of(const Model& model, const State& start)
 {
     constexpr std::size_t most_told = 12;
@@ -88,18 +88,17 @@ std::string lengths_of(const Model& model, const State& start)
         return body == world ? p : start.X[static_cast<std::size_t>(body)] * point(p);
     };
     std::vector<std::string> lines;
-    for (const Joint& joint : model.joints()) {
-        if (joint.type != "rod") continue;
-        const Vector3 a = place(joint.first, joint.point_first), b = place(joint.second, joint.point_second);
-        lines.push_back(fmt::format("    {}: {:.4g} m, from {} to {}\n", plain(joint.name), norm(b - a),
+    const auto add = [&](const std::string& name, const std::vector<int>& bodies,
+                         const std::vector<Vector3>& points) {
+        const Vector3 a = place(bodies[0], points[0]), b = place(bodies[1], points[1]);
+        lines.push_back(fmt::format("    {}: {:.4g} m, from {} to {}\n", plain(name), norm(b - a),
                                     place_in_words(a), place_in_words(b)));
-    }
+    };
+    for (const Joint& joint : model.joints())
+        if (joint.type == "rod")
+            add(joint.name, {joint.first, joint.second}, {joint.point_first, joint.point_second});
     for (const Load& load : model.loads())
-        for (const LoadReading& reading : load.readings)
-            if (reading.name == "length")
-                lines.push_back(fmt::format(
-                    "    {}: {:.4g} m\n", plain(load.name),
-                    reading.value(load_arguments(load, {start.t, Side::right}, start.X, start.V))));
+        if (load.points.size() == 2) add(load.name, load.bodies, load.points);
     std::string text;
     for (std::size_t i = 0; i < std::min(lines.size(), most_told); ++i) text += lines[i];
     if (lines.size() > most_told)

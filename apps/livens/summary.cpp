@@ -137,7 +137,8 @@ void add_figures(Summary& summary, const Run& run, bool verbose)
     if (run.report.n_elements == 0) return;   // there is nothing to measure
     if (std::isfinite(s.estimated_error))
         summary.figure("estimated error",
-                       fmt::format("{} at most (of the model's length, or rad), at {:.6g} s; by {}{}",
+                       fmt::format("{} at most at element ends (of the model's length, or rad), at {:.6g} s; "
+                                   "by {}{}",
                                    number(s.estimated_error), s.estimated_error_time, witness_of(run),
                                    report.converged() || !(s.good_digits > 0)
                                        ? ""

@@ -240,6 +240,35 @@ TEST(Bends, ElementsThatStepOverThemAreSeenToBeWrong)
     RecordProperty("wrong", n_wrong);
 }
 
+/// Dry friction that stops what it brakes: no law says what it holds then, and elements would vanish.
+TEST(Bends, WhatRestsOnAJumpIsRefusedByName)
+{
+    const std::string text =
+        "format = 1\n" +
+        Oscillator{actuator("-40*x - 12*v/abs(v)"), nullptr, {}, 0.5, 0.1, 6}.scenario("accuracy = 1e-6\n");
+    const ScenarioResult read = parse_scenario(text, "test.toml");
+    const Scenario& s = read.scenario.value();
+    const Solution solution = solve(s.model, {s.model.start()}, s.time, s.method, s.options);
+    EXPECT_EQ(solution.report.status, SolveStatus::not_converged);
+    EXPECT_NE(solution.report.message.find("the law of load 'actuator on slide' jumps"), std::string::npos)
+        << solution.report.message;
+    EXPECT_LT(solution.report.n_elements, 5000);
+}
+
+/// What comes to rest at a bend does not: its elements grow.
+TEST(Bends, WhatRestsOnAStopIsSolved)
+{
+    const std::string text =
+        "format = 1\n" +
+        Oscillator{actuator("-5 + 400*max(0, 0 - x) - 30*v"), nullptr, {}, 0.5, 0.1, 20}.scenario(
+            "accuracy = 1e-8\n");
+    const ScenarioResult read = parse_scenario(text, "test.toml");
+    const Scenario& s = read.scenario.value();
+    const Solution solution = solve(s.model, {s.model.start()}, s.time, s.method, s.options);
+    ASSERT_TRUE(solution.report.converged()) << solution.report.message;
+    EXPECT_NEAR(solution.motion.at_end(solution.motion.n_elements()).X[0](0, 0), -5.0 / 400, 1e-8);
+}
+
 /// A rod against a stop after one and a half turns: angles of springs are counted while looking for the bend.
 TEST(Bends, AnglesAreCountedOnTheWay)
 {

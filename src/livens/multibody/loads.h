@@ -103,6 +103,8 @@ struct Load {
     std::function<double(const LoadArguments&)> power;
     /// For sensors and people.
     std::vector<LoadReading> readings;
+    /// For people: where it acts on its two bodies, in their coordinates; empty: not along a line.
+    std::vector<Vector3> points{};
 };
 
 enum class Frame { inertial, body_fixed };

@@ -13,9 +13,7 @@ namespace livens {
 namespace {
 
 struct Change {
-    std::string name;
-    double before, after;
-    bool is_angle;
+    std::string text;
     double speed;   // m/s, or what it is at the model's length
 };
 
@@ -23,6 +21,14 @@ Vector3 spin_of(const Model& model, int body, std::span<const Matrix34> X, std::
 {
     if (body == world || model.bodies()[body].is_point) return {};
     return angular_velocity(X[body], V[body]);
+}
+
+/// Joints that hold points together have no coordinate for how their bodies turn.
+bool turns_unnamed(const Model& model, const Joint& joint)
+{
+    const auto is_point = [&](int body) { return body != world && model.bodies()[body].is_point; };
+    return joint.coordinates.empty() && joint.type != "drive" && joint.type != "rod" &&
+           !is_point(joint.first) && !is_point(joint.second);
 }
 
 }   // namespace
@@ -33,28 +39,39 @@ std::string rate_changes(const Model& model, std::span<const Matrix34> X, std::s
     constexpr double least = 1e-6;   // of the fastest change
     constexpr std::size_t most = 3;
     std::vector<Change> changes;
-    const auto add = [&](const std::string& name, double from, double to, bool is_angle) {
-        changes.push_back({name, from, to, is_angle, std::abs(to - from) * (is_angle ? model.length() : 1)});
-    };
     for (const Joint& joint : model.joints()) {
-        for (const NamedCoordinate& one : joint.coordinates)
-            add(joint.name + "." + one.name, coordinate_rate(one.coordinate, X, before),
-                coordinate_rate(one.coordinate, X, after), one.coordinate.is_angle());
-        if (!joint.coordinates.empty() || joint.type == "drive") continue;
+        for (const NamedCoordinate& one : joint.coordinates) {
+            const double from = coordinate_rate(one.coordinate, X, before),
+                         to = coordinate_rate(one.coordinate, X, after);
+            const bool is_angle = one.coordinate.is_angle();
+            changes.push_back({joint.name + "." + one.name + " " + to_text(from, 3) + " -> " +
+                                   to_text(to, 3) + (is_angle ? " rad/s" : " m/s"),
+                               std::abs(to - from) * (is_angle ? model.length() : 1)});
+        }
+        if (!turns_unnamed(model, joint)) continue;
         const auto turning = [&](std::span<const Matrix34> V) {
-            return norm(spin_of(model, joint.second, X, V) - spin_of(model, joint.first, X, V));
+            return spin_of(model, joint.second, X, V) - spin_of(model, joint.first, X, V);
         };
-        add("turning at '" + joint.name + "'", turning(before), turning(after), true);
+        const double by = norm(turning(after) - turning(before));
+        changes.push_back(
+            {"turning at '" + joint.name + "' by " + to_text(by, 3) + " rad/s", by * model.length()});
     }
     std::ranges::stable_sort(changes, std::greater(), &Change::speed);
     std::string text;
     for (std::size_t i = 0; i < std::min(most, changes.size()); ++i) {
-        const Change& one = changes[i];
-        if (!(one.speed > least * changes[0].speed)) break;
-        text += (text.empty() ? "" : ", ") + one.name + " " + to_text(one.before, 3) + " -> " +
-                to_text(one.after, 3) + (one.is_angle ? " rad/s" : " m/s");
+        if (!(changes[i].speed > least * changes[0].speed)) break;
+        text += (text.empty() ? "" : ", ") + changes[i].text;
     }
     return text;
+}
+
+std::string velocity_change(const Body& body, const Matrix34& X, const Matrix34& before,
+                            const Matrix34& after)
+{
+    const double speed = norm(after.column(0) - before.column(0));
+    if (body.is_point) return to_text(speed, 2) + " m/s";
+    const double spin = norm(angular_velocity(X, after) - angular_velocity(X, before));
+    return to_text(speed, 2) + " m/s and " + to_text(spin, 2) + " rad/s";
 }
 
 }   // namespace livens

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "livens/multibody/start_coordinates.h"
+#include "livens/multibody/detail/rate_changes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,6 +12,7 @@
 #include "livens/base/error.h"
 #include "livens/base/text.h"
 #include "livens/multibody/body.h"
+#include "livens/multibody/detail/rate_changes.h"
 #include "livens/multibody/drives.h"
 #include "livens/multibody/projection.h"
 #include "livens/multibody/rank.h"
@@ -283,7 +285,8 @@ void settle_rates(const Model& model, const std::vector<Led>& all, State& state,
         const double change = norm(V[b] - state.V[b]);
         if (norm(state.V[b]) > 0 && change > noticed * fastest)
             moved.changed.push_back("the velocities stated of body '" + model.bodies()[b].name +
-                                    "' were changed by " + to_text(change, 2) +
+                                    "' were changed by " +
+                                    velocity_change(model.bodies()[b], state.X[b], state.V[b], V[b]) +
                                     " to fit the coordinates of the start");
     }
     state.V = V;

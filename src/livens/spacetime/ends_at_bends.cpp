@@ -29,6 +29,8 @@ bool EndsAtBends::moves(Window& window, double start, double end)
 bool EndsAtBends::accepted(double start, double end)
 {
     const bool was_found = is_found(end);
+    longest_so_far_ = std::max(longest_so_far_, end - start);
+    n_tiny_ = end - start < tiny * longest_so_far_ ? n_tiny_ + 1 : 0;
     n_crowded_ = was_found && end - start < crowded * (wanted_ - start) ? n_crowded_ + 1 : 0;
     if (!was_found)
         longest_ *= 2;

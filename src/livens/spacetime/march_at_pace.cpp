@@ -45,6 +45,8 @@ void March::run_at_pace(Pace& pace)
             pace.accepted(length, closed.velocity_jump, outcome.iterations);
             if (bends_.accepted(start, end)) ++counts_.bends;
             if (!take(e, e + 1, closed, outcome) || (options_.goes_on && !options_.goes_on())) return;
+            if (bends_.is_stuck() && !window_.jumping_load().empty())
+                return stop_at_jump(window_.jumping_load());
             continue;
         }
         ++report_.refused;
@@ -66,6 +68,13 @@ void March::give_up(int element, const Closed& closed, const NewtonReport& outco
     set_failed(element, element + 1);
     report_.status = SolveStatus::not_converged;
     report_.message = is_singular ? of_singular_end(singular_end_) : of_vanishing(mesh_.ends[element]);
+}
+
+void March::stop_at_jump(const std::string& load)
+{
+    report_.status = SolveStatus::not_converged;
+    report_.failed_at = time_;
+    report_.message = of_sticking(load, time_);
 }
 
 int March::n_elements() const

@@ -88,6 +88,8 @@ public:
     /// The first share of the only open element's length, up to `until`, at which a law of a load bends on
     /// the way of the solution at hand; infinite: none.
     virtual double bend(double /*until*/) { return std::numeric_limits<double>::infinity(); }
+    /// The load whose force jumps there; empty: none was found so far, or it bends.
+    virtual std::string jumping_load() const { return ""; }
     /// The mesh has one element more: `element`, which is not closed, was divided in two.
     virtual void divided(int) {}
     /// X of all bodies at an end of an element of the open window.

@@ -78,6 +78,13 @@ std::string of_vanishing(double t)
            "look for a load that jumps there";
 }
 
+std::string of_sticking(const std::string& load, double t)
+{
+    return "the motion rests near t = " + to_text(t, 6) + " s where the law of load '" + load +
+           "' jumps, or slides along that, as dry friction lets it, and no law says what the force is then; "
+           "try: a smooth law, such as tanh(w/0.001) for the sign of w";
+}
+
 std::string of_singular_end(double t)
 {
     return "the joints lose rank at t = " + to_text(t, 6) +

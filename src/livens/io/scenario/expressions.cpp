@@ -92,8 +92,8 @@ std::vector<Key> expression_keys(bool is_vector)
 {
     static constexpr KeyType three{"three texts", Form::names, 3};
     return {Key{"expression", is_vector ? three : types::text,
-                is_vector ? "Instead of `value`: a formula for each component, see below."
-                          : "Instead of `value`: a formula, see below."},
+                is_vector ? "Instead of `value`: a formula for each component ([how](joints.md#expressions))."
+                          : "Instead of `value`: a formula ([how](joints.md#expressions))."},
             Key{"inputs", types::named_texts,
                 "What the symbols of `expression` stand for: coordinates of joints and their rates, and what "
                 "sensors read, as in `{ phi = \"pivot.angle\", w = \"pivot.angle_rate\", x = \"tip.x\" }`, "

@@ -109,7 +109,8 @@ Load by_formula(const LoadSources& p, const std::string& type, const std::string
     }
     parts.breaks.insert(parts.breaks.end(), breaks.begin(), breaks.end());
     parts.domain =
-        "its expression has no value there, or reads an angle more than 175 degrees from its start";
+        "its expression has no value there (0/0, as w/abs(w) at rest), or reads an angle more than 175 "
+        "degrees from its start";
     for (const Expression& one : expressions)
         if (const std::string kink = one.kink_by_symbols(); !kink.empty() && !ends_at_bends(p.builder))
             p.builder.findings().warning(

@@ -9,10 +9,14 @@
 
 namespace livens {
 
-/// "slider.displacement 0 -> 0.218 m/s, turning at 'ball' 0 -> 7.06 rad/s": the three rates of joints that
-/// changed most, those of two bodies without a coordinate by how fast they turn against each other. Empty:
-/// none did.
+/// "slider.displacement 0 -> 0.218 m/s, turning at 'ball' by 7.06 rad/s": the three rates of joints that
+/// changed most, those of two bodies that turn against each other without a coordinate by how much that did.
+/// Empty: none.
 std::string rate_changes(const Model& model, std::span<const Matrix34> X, std::span<const Matrix34> before,
                          std::span<const Matrix34> after);
+
+/// "0.3 m/s and 2 rad/s": by how much the velocities of a body changed.
+std::string velocity_change(const Body& body, const Matrix34& X, const Matrix34& before,
+                            const Matrix34& after);
 
 }   // namespace livens

@@ -110,11 +110,13 @@ Load spring_damper(const std::string& name, int first, const Vector3& point_firs
                    const Vector3& point_second, const SpringDamper& spring)
 {
     Spring law{{point(point_first), point(point_second)}, spring};
-    if (first == world) {   // the load's first place is a body's
+    const bool is_swapped = first == world;   // the load's first place is a body's
+    if (is_swapped) {
         std::swap(first, second);
         std::swap(law.points[0], law.points[1]);
     }
     Load load = start_load(name, "spring_damper", {first, second});
+    load.points = {is_swapped ? point_second : point_first, is_swapped ? point_first : point_second};
     check_load_vector(load, point_first, "the point on the first body");
     check_load_vector(load, point_second, "the point on the second body");
     check_not_negative(load, spring.stiffness, "stiffness");

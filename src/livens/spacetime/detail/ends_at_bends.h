@@ -24,6 +24,9 @@ public:
     double found() const { return at_; }
     /// True: it ends at a bend.
     bool accepted(double start, double end);
+    /// Elements have been short for so long that the motion rests on a jump or slides along it, if that is
+    /// what bends.
+    bool is_stuck() const { return n_tiny_ > most_tiny; }
 
 private:
     static constexpr double infinite = std::numeric_limits<double>::infinity();
@@ -41,9 +44,13 @@ private:
     static constexpr double crowded = 0.01;
     static constexpr int most_crowded = 12;
 
-    double shortest_;
+    /// Of the longest element so far, and how many in succession.
+    static constexpr double tiny = 1e-3;
+    static constexpr int most_tiny = 300;
+
+    double shortest_, longest_so_far_ = 0;
     double at_ = -infinite, wanted_ = 0, longest_ = infinite;
-    int n_moves_ = 0, n_crowded_ = 0;
+    int n_moves_ = 0, n_crowded_ = 0, n_tiny_ = 0;
     bool is_met_ = false;
 };
 

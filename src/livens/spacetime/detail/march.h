@@ -35,6 +35,8 @@ private:
     void run_at_pace(Pace& pace);
     /// Elements have vanished, or shorter ones do not help.
     void give_up(int element, const Closed& closed, const NewtonReport& outcome);
+    /// The motion rests where the law of a load jumps, or slides along it.
+    void stop_at_jump(const std::string& load);
     /// Elements first..last - 1, split where they fail together.
     bool solve(int first, int last);
     /// Two stretches in their order. Elements that are divided in the first one move those behind it.

@@ -41,6 +41,9 @@ std::string of_stop(double t);
 std::string of_vanishing(double t);
 std::string of_singular_end(double t);
 
+/// Why a march ends at t, where elements have become next to nothing.
+std::string of_sticking(const std::string& load, double t);
+
 /// "1 element", "2 elements".
 std::string count(int n, const char* what);
 

@@ -48,6 +48,28 @@ Bends::Look Bends::look(const Stretch& stretch, const Nodes& nodes, double share
     return look;
 }
 
+LoadForces Bends::forces(const Stretch& stretch, const Nodes& nodes, int load, const Look& at)
+{
+    look(stretch, nodes, at.share, at);   // X_ and V_ there
+    const Instant instant{stretch.times[0] + at.share * stretch.h(0), Side::middle};
+    LoadForces F{};
+    tables_.model->loads()[load].forces(tables_.arguments(load, instant, X_.data(), V_.data(), at.angles), F);
+    return F;
+}
+
+int Bends::find_jump(const Stretch& stretch, const Nodes& nodes, const Look& before, const Look& after)
+{
+    constexpr double jump = 1e-6;   // of the force: what bends changes by rounding in between
+    for (std::size_t i = 0; i < loads_.size(); ++i) {
+        if (before.pieces[i] == after.pieces[i]) continue;
+        const LoadForces a = forces(stretch, nodes, loads_[i], before),
+                         b = forces(stretch, nodes, loads_[i], after);
+        for (std::size_t side = 0; side < 2; ++side)
+            if (norm(b[side] - a[side]) > jump * std::max(norm(a[side]), norm(b[side]))) return loads_[i];
+    }
+    return -1;
+}
+
 double Bends::first(const Stretch& stretch, const Nodes& nodes, double until)
 {
     Look start;
@@ -66,6 +88,7 @@ double Bends::first(const Stretch& stretch, const Nodes& nodes, double until)
             Look between = look(stretch, nodes, middle, before);
             (between.pieces == wanted ? before : after) = std::move(between);
         }
+        jumping_ = find_jump(stretch, nodes, before, after);
         return after.share;
     }
     return std::numeric_limits<double>::infinity();

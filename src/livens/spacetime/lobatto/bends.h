@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "livens/spacetime/lobatto/nodes.h"
@@ -22,6 +23,8 @@ public:
     /// The first share of the only element's length, up to `until` (beyond 1: as it goes on), from which on
     /// loads are on other pieces than just behind its start; infinite: none.
     double first(const Stretch& stretch, const Nodes& nodes, double until);
+    /// The load whose force jumped there, when a bend was found last; empty: none was, or none jumps.
+    std::string jumping_load() const { return jumping_ < 0 ? "" : tables_.model->loads()[jumping_].name; }
 
 private:
     struct Look {
@@ -30,11 +33,15 @@ private:
         std::vector<double> angles;          // see Turns
     };
 
+    /// Of the loads that are on other pieces after than before.
+    int find_jump(const Stretch& stretch, const Nodes& nodes, const Look& before, const Look& after);
+    LoadForces forces(const Stretch& stretch, const Nodes& nodes, int load, const Look& at);
     Look look(const Stretch& stretch, const Nodes& nodes, double share, const Look& from);
 
     const Tables& tables_;
     LagrangeBasis basis_;
     std::vector<int> loads_;   // that have pieces
+    int jumping_ = -1;
     std::vector<double> X_, V_, values_, slopes_;
 };
 

@@ -33,6 +33,7 @@ public:
         return breaks_.bends.empty() ? Window::bend(until)
                                      : breaks_.bends.first(stretch_, system_.nodes(), until);
     }
+    std::string jumping_load() const override { return breaks_.bends.jumping_load(); }
     void divided(int element) override { record_.divided(element); }
     std::vector<Matrix34> positions(int element_end) const override;
     Place worst() const override;
