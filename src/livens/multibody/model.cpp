@@ -256,6 +256,7 @@ int Model::add_load(Load load)
             refuse("load-needs-directors", path,
                    "the load needs the orientation of '" + bodies_[load.bodies[b]].name + "', a point mass",
                    "a point mass takes forces in world axes at its own point");
+    has_pieces_ = has_pieces_ || load.piece;
     loads_.push_back(std::move(load));
     return static_cast<int>(loads_.size()) - 1;
 }

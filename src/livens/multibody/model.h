@@ -63,6 +63,8 @@ public:
     State start() const;
     /// Whether rows depend on time.
     bool has_drives() const { return has_drives_; }
+    /// Whether the law of a load bends or jumps where the motion decides; see Load::piece.
+    bool has_pieces() const { return has_pieces_; }
     /// Whether joints act for a part of the time; these are what solve() divides it by, see acting_at().
     bool has_events() const { return has_events_; }
     /// When joints begin or end to act, ascending, without repetition.
@@ -90,7 +92,7 @@ private:
     std::vector<RowPlace> rows_;
     std::vector<int> first_rows_;
     bool has_drives_ = false;
-    bool has_events_ = false;
+    bool has_events_ = false, has_pieces_ = false;
 
     friend Model frozen(const Model& model, Instant at);
 };

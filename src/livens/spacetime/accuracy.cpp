@@ -176,7 +176,7 @@ private:
         w.progress = options_.progress;
         w.length_of_model = model_.length();
         w.pace = &pace;
-        w.ends_at_bends = options_.end_at_bends;
+        w.ends_at_bends = options_.end_at_bends && model_.has_pieces();
         w.goes_on = [&] {
             const int n = mesh.n_elements();
             if (is_free_ && n == looked_at) {

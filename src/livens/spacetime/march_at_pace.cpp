@@ -43,9 +43,9 @@ void March::run_at_pace(Pace& pace)
         }
         if (closed.n_elements > 0) {
             pace.accepted(length, closed.velocity_jump, outcome.iterations);
-            if (bends_.accepted(start, end)) ++counts_.bends;
+            if (options_.ends_at_bends && bends_.accepted(start, end)) ++counts_.bends;
             if (!take(e, e + 1, closed, outcome) || (options_.goes_on && !options_.goes_on())) return;
-            if (bends_.is_stuck() && !window_.jumping_load().empty())
+            if (options_.ends_at_bends && bends_.is_stuck() && !window_.jumping_load().empty())
                 return stop_at_jump(window_.jumping_load());
             continue;
         }

@@ -105,7 +105,7 @@ WindowOptions window_options(const Model& model, const Ends& ends, const Method&
     } else {
         if (const auto* lobatto = std::get_if<Lobatto>(&method)) w.length = lobatto->window;
         w.may_divide = options.divide && ends.has_state();
-        w.ends_at_bends = options.end_at_bends;
+        w.ends_at_bends = options.end_at_bends && model.has_pieces();
         if (w.may_divide) w.trust = {acceptable_velocity_jump, true, true};
     }
     if (!ends.has_state()) {

@@ -195,7 +195,8 @@ bool March::accept(int first, int last, const NewtonReport& outcome)
     const bool is_single = last - first == 1;
     const Closed closed =
         close(options_.trust, !is_single || can_move(end), !is_single || may_divide(first, last, outcome));
-    if (closed.n_elements == 1 && is_single && bends_.accepted(mesh_.ends[first], mesh_.ends[last]))
+    if (options_.ends_at_bends && closed.n_elements == 1 && is_single &&
+        bends_.accepted(mesh_.ends[first], mesh_.ends[last]))
         ++counts_.bends;
     if (!is_single || closed.loss == RankLoss::none) return take(first, last, closed, outcome);
     if (closed.loss == RankLoss::inside) return divide_element(first, uneven);

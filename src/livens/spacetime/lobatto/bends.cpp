@@ -16,24 +16,25 @@ constexpr int looks_a_degree = 4;
 
 }   // namespace
 
-Bends::Bends(const Tables& tables, const ElementRule& rule)
-    : tables_(tables), basis_(basis_on(rule.points, rule.degree)), values_(rule.nodes.size()),
-      slopes_(rule.nodes.size())
+Bends::Bends(const Tables& tables, const ElementRule& rule) : tables_(tables)
 {
+    if (!tables.model->has_pieces()) return;
     for (std::size_t l = 0; l < tables.model->loads().size(); ++l)
         if (tables.model->loads()[l].piece) loads_.push_back(static_cast<int>(l));
-    if (loads_.empty()) return;
+    basis_ = basis_on(rule.points, rule.degree);
+    values_.assign(rule.nodes.size(), 0.0);
+    slopes_ = values_;
     X_.assign(12 * tables.bodies.size(), 0.0);
     V_ = X_;
 }
 
 Bends::Look Bends::look(const Stretch& stretch, const Nodes& nodes, double share, const Look& from)
 {
-    basis_.values(share, values_);
-    basis_.derivatives(share, slopes_);
+    basis_->values(share, values_);
+    basis_->derivatives(share, slopes_);
     std::copy_n(nodes.X(0), X_.size(), X_.begin());
     std::ranges::fill(V_, 0.0);
-    for (int A = 1; A < basis_.size(); ++A)
+    for (int A = 1; A < basis_->size(); ++A)
         for (std::size_t i = 0; i < X_.size(); ++i) {
             X_[i] += values_[A] * nodes.dX(0, A)[i];
             V_[i] += slopes_[A] / stretch.h(0) * nodes.dX(0, A)[i];
@@ -76,7 +77,7 @@ double Bends::first(const Stretch& stretch, const Nodes& nodes, double until)
     start.angles = stretch.angles;
     Look before = look(stretch, nodes, behind_start, start);
     const std::vector<std::uint64_t> wanted = before.pieces;
-    const int n = looks_a_degree * basis_.size();
+    const int n = looks_a_degree * basis_->size();
     for (int i = 1; before.share < until; ++i) {
         Look after = look(stretch, nodes, i <= n ? static_cast<double>(i) / n : until, before);
         if (after.pieces == wanted) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -39,8 +40,8 @@ private:
     Look look(const Stretch& stretch, const Nodes& nodes, double share, const Look& from);
 
     const Tables& tables_;
-    LagrangeBasis basis_;
-    std::vector<int> loads_;   // that have pieces
+    std::vector<int> loads_;   // that have pieces; if there are none nothing else is made
+    std::optional<LagrangeBasis> basis_;
     int jumping_ = -1;
     std::vector<double> X_, V_, values_, slopes_;
 };
