@@ -240,6 +240,53 @@ TEST(Bends, ElementsThatStepOverThemAreSeenToBeWrong)
     RecordProperty("wrong", n_wrong);
 }
 
+/// Two bodies between stops, one of them of two bends: an end that is found by an element which is refused
+/// afterwards is found anew by the next. The angle is that of 600 elements of degree 8.
+TEST(Bends, EndsAreFoundAnewByShorterElements)
+{
+    const Solved s = solved(R"toml(
+gravity = [0, 0, -9.81]
+[[body]]
+name = "a"
+shape = { box = [1, 0.1, 0.1] }
+mass = 0.86
+position = [0.5, 0, 0]
+[[body]]
+name = "b"
+shape = { box = [1, 0.1, 0.1] }
+mass = 0.66
+position = [1.5, 0, 0]
+[[joint]]
+name = "j"
+type = "revolute"
+between = ["world", "a"]
+at = [0, 0, 0]
+axis = [0, 1, 0]
+rate = -1.19
+[[joint]]
+name = "k"
+type = "revolute"
+between = ["a", "b"]
+at = [1, 0, 0]
+axis = [0, 1, 0]
+rate = 0.62
+[[load]]
+type = "spring"
+joint = "k"
+law = "table"
+table = { elongations = [-2, -1, 0.71, 3], forces = [-47.4, 0, 0, 41.7] }
+[[load]]
+type = "actuator"
+joint = "j"
+inputs = { q = "j.angle", v = "j.angle_rate" }
+expression = "-1112.5*max(0, q - 1.03) - 1.02*max(0, -v)"
+[time]
+end = 3
+accuracy = 1e-10
+)toml");
+    EXPECT_NEAR(s.coordinate("k", "angle", 3).value, 1.950857204111968, 3e-10);
+}
+
 /// Dry friction that stops what it brakes: no law says what it holds then, and elements would vanish.
 TEST(Bends, WhatRestsOnAJumpIsRefusedByName)
 {

@@ -20,7 +20,8 @@ bool EndsAtBends::moves(Window& window, double start, double end)
     const double share = window.bend(was_found ? beyond : 1);
     is_met_ = was_found && std::abs(share - 1) <= near;
     if (is_met_ || !(share < reach) || share * length < shortest_) return false;
-    n_moves_ = was_found ? n_moves_ + 1 : 0;
+    n_moves_ = was_found && start == moved_from_ ? n_moves_ + 1 : 0;
+    moved_from_ = start;
     if (n_moves_ > most_moves) return false;
     at_ = start + (share - before) * length;
     return at_ < wanted_;

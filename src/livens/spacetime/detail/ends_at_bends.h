@@ -50,6 +50,7 @@ private:
 
     double shortest_, longest_so_far_ = 0;
     double at_ = -infinite, wanted_ = 0, longest_ = infinite;
+    double moved_from_ = -infinite;   // start of the element whose end was moved last
     int n_moves_ = 0, n_crowded_ = 0, n_tiny_ = 0;
     bool is_met_ = false;
 };
