@@ -133,6 +133,8 @@ using SpringLaw = std::function<SpringValue(double e)>;
 
 /// stiffness e + cubic e^3. Throws InputError (`load-negative`).
 SpringLaw progressive_spring(double stiffness, double cubic);
+/// Where straight lines through these points meet at an angle.
+std::vector<double> bends_of_lines(const std::vector<double>& x, const std::vector<double>& y);
 /// Through forces at ascending elongations: straight lines, or a cubic spline; straight on outside. Throws
 /// InputError as linear_table() does.
 SpringLaw tabulated_spring(const std::vector<double>& elongations, const std::vector<double>& forces,

@@ -20,11 +20,12 @@ double integral(const TimeFunction& f, double from, double until)
     return half * (f({middle - s}).value + f({middle + s}).value);
 }
 
-/// Where straight lines meet at an angle.
-std::vector<double> bends_of(const std::vector<double>& x, const std::vector<double>& y)
+}   // namespace
+
+std::vector<double> bends_of_lines(const std::vector<double>& x, const std::vector<double>& y)
 {
     std::vector<double> bends;
-    for (std::size_t i = 2; i < x.size(); ++i) {
+    for (std::size_t i = 2; i < std::min(x.size(), y.size()); ++i) {
         const double before = (y[i - 1] - y[i - 2]) / (x[i - 1] - x[i - 2]),
                      after = (y[i] - y[i - 1]) / (x[i] - x[i - 1]);
         if (std::abs(after - before) > 1e-12 * (std::abs(after) + std::abs(before)))
@@ -32,8 +33,6 @@ std::vector<double> bends_of(const std::vector<double>& x, const std::vector<dou
     }
     return bends;
 }
-
-}   // namespace
 
 SpringLaw progressive_spring(double stiffness, double cubic)
 {
@@ -66,7 +65,7 @@ SpringLaw tabulated_spring(const std::vector<double>& elongations, const std::ve
         return energies[row] + integral(force, elongations[row], e);
     };
     const double at_rest = energy(0);
-    const std::vector<double> bends = is_spline ? std::vector<double>() : bends_of(elongations, forces);
+    const std::vector<double> bends = is_spline ? std::vector<double>() : bends_of_lines(elongations, forces);
     return [force, energy, at_rest, bends](double e) {
         const TimeValue f = force({e});
         const auto piece = std::ranges::upper_bound(bends, e) - bends.begin();

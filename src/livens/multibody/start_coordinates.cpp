@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "livens/multibody/start_coordinates.h"
-#include "livens/multibody/detail/rate_changes.h"
 
 #include <algorithm>
 #include <cmath>

@@ -15,15 +15,17 @@ double EndsAtBends::end(double start, double wanted)
 bool EndsAtBends::moves(Window& window, double start, double end)
 {
     if (n_crowded_ >= most_crowded) return false;
+    constexpr double spacings = 4 * std::numeric_limits<double>::epsilon();
     const bool was_found = is_found(end);
-    const double reach = was_found ? beyond : 1 - near, length = end - start;
-    const double share = window.bend(was_found ? beyond : 1);
-    is_met_ = was_found && std::abs(share - 1) <= near;
-    if (is_met_ || !(share < reach) || share * length < shortest_) return false;
+    const double length = end - start, margin = std::max(before * length, spacings * std::abs(end));
+    const double bend = start + length * window.bend(was_found ? beyond : 1);
+    is_met_ = was_found && std::abs(bend - end) <= 3 * margin;
+    if (is_met_ || std::isinf(bend) || (!was_found && end - bend <= margin) || bend - start < shortest_)
+        return false;
     n_moves_ = was_found && start == moved_from_ ? n_moves_ + 1 : 0;
     moved_from_ = start;
     if (n_moves_ > most_moves) return false;
-    at_ = start + (share - before) * length;
+    at_ = bend - margin;
     return at_ < wanted_;
 }
 

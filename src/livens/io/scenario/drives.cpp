@@ -284,7 +284,7 @@ Table drive_table()
              "start.",
              "s"},
          Key{"until", types::number, "When it lets go: velocities go on. Default: never.", "s"},
-         Key{"value", numbers, "Constant."}.or_formulas("formulas stand in 'expression', instead of 'value'"),
+         Key{"value", numbers, "Constant."}.or_formulas(formulas_for_value),
          Key{"rate", numbers,
              "Constant rate, from what the coordinate is at the start of the motion, beginning with the "
              "drive; rad/s or m/s. A rate over time is an `expression` of its integral."}

@@ -7,8 +7,6 @@ namespace livens {
 
 namespace {
 
-constexpr std::string_view formulas = "formulas stand in 'expression', instead of 'value'";
-
 Key body_key() { return Key{"body", types::text, "On which body it acts."}.needed(); }
 
 Key interpolation_key()
@@ -46,8 +44,9 @@ std::vector<Key> keys_on_body(const std::string& what, std::string_view unit, co
           interpolation_key()}});
     return joined(
         {body_key()}, more,
-        std::vector<Key>{
-            Key{"value", types::vector3, "Constant; instead of `table`.", unit}.or_formulas(formulas), table},
+        std::vector<Key>{Key{"value", types::vector3, "Constant; instead of `table`.", unit}.or_formulas(
+                             formulas_for_value),
+                         table},
         expression_keys(true),
         std::vector<Key>{choice("frame", {"world", "body"},
                                 "Axes of the values: fixed in the world, or turning with the body.")},
@@ -109,11 +108,11 @@ std::vector<Key> keys_of_actuator()
          "Values between the times; constant before and after.",
          {times_key(), Key{"values", types::list, "One for each time.", "N"}.or_in("N m").needed(),
           interpolation_key()}});
-    return joined(
-        {Key{"joint", types::text, "The joint."}.needed(), coordinate_key(),
-         Key{"value", types::number, "Constant; instead of `table`.", "N"}.or_in("N m").or_formulas(formulas),
-         table},
-        expression_keys(false), interval_keys());
+    return joined({Key{"joint", types::text, "The joint."}.needed(), coordinate_key(),
+                   Key{"value", types::number, "Constant; instead of `table`.", "N"}.or_in("N m").or_formulas(
+                       formulas_for_value),
+                   table},
+                  expression_keys(false), interval_keys());
 }
 
 Key surface_key()
@@ -136,10 +135,11 @@ std::vector<Key> keys_of_pressure()
                        "water, `[0, 0, -9810]`. There is no surface of the water: where the sum is negative, "
                        "it pulls.",
                        "Pa/m"};
-    return joined({body_key(), surface_key(), gradient,
-                   Key{"value", types::number, "Constant; instead of `table`.", "Pa"}.or_formulas(formulas),
-                   table},
-                  expression_keys(false), interval_keys());
+    return joined(
+        {body_key(), surface_key(), gradient,
+         Key{"value", types::number, "Constant; instead of `table`.", "Pa"}.or_formulas(formulas_for_value),
+         table},
+        expression_keys(false), interval_keys());
 }
 
 std::vector<Key> keys_of_bushing()

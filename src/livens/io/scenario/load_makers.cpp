@@ -178,20 +178,15 @@ const NamedCoordinate& coordinate_of(const LoadSources& p)
 }
 
 /// Straight lines bend where they meet, which happens when the motion is there.
-void warn_of_kinks(const LoadSources& p, const std::vector<double>& x, const std::vector<double>& y)
+void warn_of_kinks(const LoadSources& p, const std::vector<double>& bends)
 {
-    for (std::size_t i = 2; i < std::min(x.size(), y.size()); ++i) {
-        const double before = (y[i - 1] - y[i - 2]) / (x[i - 1] - x[i - 2]),
-                     after = (y[i] - y[i - 1]) / (x[i] - x[i - 1]);
-        if (!(std::abs(after - before) > 1e-9 * (std::abs(after) + std::abs(before)))) continue;
-        p.builder.findings().warning(
-            p.section.place("table"), "spring-kink",
-            p.section.label() + " bends where the lines of its table meet, at " + to_text(x[i - 1]),
-            {"no element ends there but of lobatto and radau, forwards one after the other, so that the "
-             "estimated error may miss it as well",
-             "take the family lobatto, or interpolation = \"spline\" in the table"});
-        return;
-    }
+    if (bends.empty()) return;
+    p.builder.findings().warning(
+        p.section.place("table"), "spring-kink",
+        p.section.label() + " bends where the lines of its table meet, at " + to_text(bends[0]),
+        {"no element ends there but of lobatto and radau, forwards one after the other, so that the "
+         "estimated error may miss it as well",
+         "take the family lobatto, or interpolation = \"spline\" in the table"});
 }
 
 SpringLaw read_law(const LoadSources& p)
@@ -204,7 +199,7 @@ SpringLaw read_law(const LoadSources& p)
     const std::vector<double>&x = table.find("elongations")->numbers, &y = table.find("forces")->numbers;
     const bool is_smooth = table.text("interpolation") == "spline";
     SpringLaw made = tabulated_spring(x, y, is_smooth);
-    if (!is_smooth && !ends_at_bends(p.builder)) warn_of_kinks(p, x, y);
+    if (!is_smooth && !ends_at_bends(p.builder)) warn_of_kinks(p, bends_of_lines(x, y));
     return made;
 }
 

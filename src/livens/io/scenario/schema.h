@@ -81,6 +81,9 @@ inline constexpr Range not_negative{.low = 0};
 using Words = std::vector<std::string_view>;
 struct Table;
 
+inline constexpr std::string_view formulas_for_value =
+    "formulas stand in 'expression', instead of 'value'";
+
 struct Key {
     std::string_view name;
     KeyType type;

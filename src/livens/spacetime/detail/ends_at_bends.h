@@ -32,12 +32,12 @@ private:
     static constexpr double infinite = std::numeric_limits<double>::infinity();
     /// Of the duration: shorter elements are none.
     static constexpr double shortest = 1e-9;
-    /// Of the element's length: nearer is met, and how far beyond its end a bend may lie that it ends short
-    /// of.
-    static constexpr double near = 1e-12, beyond = 1.5;
-    /// Ends lie so far before a bend that their states are on the near side: radau's last load point is
-    /// there, and a law like x/abs(x) has no value in between.
-    static constexpr double before = 2e-13;
+    /// Ends lie so far before a bend, as a share of the element's length but at least some spacings of
+    /// numbers, that their states are on the near side: radau's last load point is there, and a law like
+    /// x/abs(x) has no value in between. What is within three times as much is met.
+    static constexpr double before = 2e-14;
+    /// Of the length: how far beyond an end a bend may lie that it falls short of.
+    static constexpr double beyond = 1.5;
     static constexpr int most_moves = 8;
     /// Ends in succession that leave elements less than a share of the length that they might have: the
     /// motion slides along the place, or rests there.

@@ -58,15 +58,18 @@ LoadForces Bends::forces(const Stretch& stretch, const Nodes& nodes, int load, c
     return F;
 }
 
-int Bends::find_jump(const Stretch& stretch, const Nodes& nodes, const Look& before, const Look& after)
+int Bends::find_jump(const Stretch& stretch, const Nodes& nodes, const Look& before, const Look& after,
+                     const Look& end)
 {
-    constexpr double jump = 1e-6;   // of the force: what bends changes by rounding in between
+    constexpr double jump = 1e-6;   // of the force where the look ends: at a bend it may be none
     for (std::size_t i = 0; i < loads_.size(); ++i) {
         if (before.pieces[i] == after.pieces[i]) continue;
         const LoadForces a = forces(stretch, nodes, loads_[i], before),
-                         b = forces(stretch, nodes, loads_[i], after);
+                         b = forces(stretch, nodes, loads_[i], after),
+                         c = forces(stretch, nodes, loads_[i], end);
         for (std::size_t side = 0; side < 2; ++side)
-            if (norm(b[side] - a[side]) > jump * std::max(norm(a[side]), norm(b[side]))) return loads_[i];
+            if (norm(b[side] - a[side]) > jump * std::max({norm(a[side]), norm(b[side]), norm(c[side])}))
+                return loads_[i];
     }
     return -1;
 }
@@ -79,17 +82,18 @@ double Bends::first(const Stretch& stretch, const Nodes& nodes, double until)
     const std::vector<std::uint64_t> wanted = before.pieces;
     const int n = looks_a_degree * basis_->size();
     for (int i = 1; before.share < until; ++i) {
-        Look after = look(stretch, nodes, i <= n ? static_cast<double>(i) / n : until, before);
+        Look after = look(stretch, nodes, std::min(static_cast<double>(i) / n, until), before);
         if (after.pieces == wanted) {
             before = std::move(after);
             continue;
         }
+        const Look end = after;
         for (double middle = 0; middle = before.share + 0.5 * (after.share - before.share),
                     middle > before.share && middle < after.share;) {
             Look between = look(stretch, nodes, middle, before);
             (between.pieces == wanted ? before : after) = std::move(between);
         }
-        jumping_ = find_jump(stretch, nodes, before, after);
+        jumping_ = find_jump(stretch, nodes, before, after, end);
         return after.share;
     }
     return std::numeric_limits<double>::infinity();

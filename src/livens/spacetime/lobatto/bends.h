@@ -34,8 +34,9 @@ private:
         std::vector<double> angles;          // see Turns
     };
 
-    /// Of the loads that are on other pieces after than before.
-    int find_jump(const Stretch& stretch, const Nodes& nodes, const Look& before, const Look& after);
+    /// Of the loads that are on other pieces after than before, one whose force jumps; -1: none.
+    int find_jump(const Stretch& stretch, const Nodes& nodes, const Look& before, const Look& after,
+                  const Look& end);
     LoadForces forces(const Stretch& stretch, const Nodes& nodes, int load, const Look& at);
     Look look(const Stretch& stretch, const Nodes& nodes, double share, const Look& from);
 
