@@ -80,27 +80,41 @@ std::string place_in_words(const Vector3& x)
     return fmt::format("({:.4g}, {:.4g}, {:.4g})", x[0] + 0.0, x[1] + 0.0, x[2] + 0.0);
 }
 
-/// Where rods and springs end in the world: their points are stated on the bodies.
-std::string lengths_of(const Model& model, const State& start)
+/// What a spring or actuator pulls with; empty: no such load.
+std::string force_of(const Load& load, const State& start)
+{
+    if (load.readings.empty() || load.readings[0].name != "force") return {};
+    const LoadArguments arguments = load_arguments(load, {start.t, Side::right}, start.X, start.V, {});
+    return fmt::format("force {:.4g} {}", load.readings[0].value(arguments) + 0.0, load.readings[0].unit);
+}
+
+/// Where rods and springs end in the world, since their points are stated on the bodies; and forces, which
+/// tell what was taken for the place without any.
+std::string springs_of(const Model& model, const State& start)
 {
     constexpr std::size_t most_told = 12;
     const auto place = [&](int body, const Vector3& p) {
         return body == world ? p : start.X[static_cast<std::size_t>(body)] * point(p);
     };
-    std::vector<std::string> lines;
-    const auto add = [&](const std::string& name, const std::vector<int>& bodies,
-                         const std::vector<Vector3>& points) {
+    const auto line = [&](const std::vector<int>& bodies, const std::vector<Vector3>& points) {
         const Vector3 a = place(bodies[0], points[0]), b = place(bodies[1], points[1]);
-        lines.push_back(fmt::format("    {}: {:.4g} m, from {} to {}\n", plain(name), norm(b - a),
-                                    place_in_words(a), place_in_words(b)));
+        return fmt::format("{:.4g} m, from {} to {}", norm(b - a), place_in_words(a), place_in_words(b));
     };
+    std::vector<std::string> lines;
     for (const Joint& joint : model.joints())
         if (joint.type == "rod")
-            add(joint.name, {joint.first, joint.second}, {joint.point_first, joint.point_second});
-    for (const Load& load : model.loads())
-        if (load.points.size() == 2) add(load.name, load.bodies, load.points);
+            lines.push_back(plain(joint.name) + ": " +
+                            line({joint.first, joint.second}, {joint.point_first, joint.point_second}));
+    for (const Load& load : model.loads()) {
+        const std::string force = force_of(load, start);
+        if (load.points.size() == 2)
+            lines.push_back(plain(load.name) + ": " + line(load.bodies, load.points) +
+                            (force.empty() ? "" : ", ") + force);
+        else if (!force.empty())
+            lines.push_back(plain(load.name) + ": " + force);
+    }
     std::string text;
-    for (std::size_t i = 0; i < std::min(lines.size(), most_told); ++i) text += lines[i];
+    for (std::size_t i = 0; i < std::min(lines.size(), most_told); ++i) text += "    " + lines[i] + "\n";
     if (lines.size() > most_told)
         text += fmt::format("    and {} more rods and springs\n", lines.size() - most_told);
     return text.empty() ? text : "  rods and springs at the start:\n" + text;
@@ -136,7 +150,7 @@ int check_command(const std::string& file, const Common& common)
         bytes_in_words(memory_needed(scenario).most()),
         std::holds_alternative<Span>(scenario.time) ? ", and what the elements take that are found" : "");
     text += coordinates_of(model, assembly);
-    text += lengths_of(model, assembly.start);
+    text += springs_of(model, assembly.start);
     for (const std::string& note : assembly.notes) text += "  note: " + plain(note) + "\n";
     print(text);
     return exit_ok;

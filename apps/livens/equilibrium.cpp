@@ -71,7 +71,8 @@ void add_joints(JsonWriter& json, const Found& found)
             json.member(joint.coordinates[k].name, found.at.coordinates[j][k]);
         json.key("force").value(numbers(reaction.force));
         json.key("torque").value(numbers(reaction.torque));
-        json.member("unique", static_cast<bool>(found.at.joint_is_unique[j])).end_object();
+        json.member("unique", static_cast<bool>(found.at.joint_is_unique[j]));
+        json.member("shared", in_words(found.at.shared[j])).end_object();
     }
     json.end_array();
 }
@@ -124,7 +125,7 @@ std::string words_of_joint(const Found& found, int j)
                  size = std::max(force, torque / found.model().length());
     return text + "force " + shown(reaction.force, size) + " N, torque " +
            shown(reaction.torque, size * found.model().length()) + " N m" +
-           (found.at.joint_is_unique[j] ? "" : " (not unique)");
+           (found.at.joint_is_unique[j] ? "" : " (not unique: " + in_words(found.at.shared[j]) + ")");
 }
 
 std::string text_of(const Found& found, const std::string& file)

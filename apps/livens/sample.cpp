@@ -225,6 +225,7 @@ void joint_members(JsonWriter& json, const Query& q, double t)
     horizon_member(json, q, t);
     json.member("source", source_of(q, s, t));
     json.member("unique", s.is_unique);
+    json.member("shared", in_words(s.shared));
     json.member("bounded", s.is_bounded);
     for (const auto& [name, of, value] : coordinates_at(q, t)) {
         json.member(name, value.value);
@@ -291,7 +292,7 @@ std::string text_of(const Query& q, double t)
             add_row(out, "torque before", "N m", s.left.torque);
         }
         if (!s.is_unique)
-            out += "  (not unique: other joints of the loop could carry part of it; these are the least)\n";
+            out += "  (not unique: other joints could carry part of " + in_words(s.shared) + ")\n";
         if (const double error = joint_error(q, t) * q.run.estimate.largest_reaction; std::isfinite(error))
             out += fmt::format("  {:<22} {:.1e} N, {:.1e} N m\n", "estimated error", error,
                                error * q.run.estimate.length);

@@ -132,7 +132,9 @@ class Series:
         if len(found) == 1:
             return found[0][word]
         if found:
-            raise KeyError(f"several parts are called '{word}'; write .bodies['{word}'], .joints['{word}'], ..")
+            ways = [f".{kind}['{word}']" for kind, group in zip(("bodies", "joints", "loads", "sensors"), groups)
+                    if word in group]
+            raise KeyError(f"several parts are called '{word}'; write {' or '.join(ways)}")
         raise unknown_name("part", word, [known for group in groups for known in group])
 
     @property

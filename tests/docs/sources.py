@@ -43,7 +43,7 @@ TIES = [
     ("too long), «14» steps", f"{TIME}/lobatto/march_kernel.cpp", r"most_steps = (\d+)"),
     ("or a pivot below «1e-5» leave the element", f"{TIME}/lobatto/march_kernel.cpp", r"least_pivot = ([^;]+);"),
     ("So a factor is kept up to $\\varepsilon = «10^{-2}»$ while steps shrink (by less than that, they would not be steps of the method), up to $«10^{-7}»$ for the evaluation that ends the element and "
-     "gives its multipliers, and up to $«10^{-8}»$ its part", f"{TIME}/lobatto/march_kernel.cpp",
+     "gives its multipliers (whose last change is of the size of the last step), and up to $«10^{-8}»$ its part", f"{TIME}/lobatto/march_kernel.cpp",
      r"fits_on_the_way = ([^;]+);.*?fits_at_end = ([^;]+);.*?fits_for_next = ([^;]+);"),
     ("by a pivot below $«10^{-4}»$; those joints", "src/livens/diagnostics/sample.cpp", r"double lost = ([^;]+);"),
     ("For $\\varepsilon < «10^{-8}»$ the tolerance is $«10^{-15}»$ (degree «7»)", f"{TIME}/accuracy.cpp",
@@ -82,7 +82,7 @@ TIES = [
     ("columns: above «1e-3» a row is new", f"{BODIES}/rank.cpp", r"well_held = ([^;]+);"),
     ("which is why the factor is trusted down to «1e-5»", f"{BODIES}/sparse_rows.h", r"well_held = ([^;]+);"),
     ("pivots below «1e-9» are zero", f"{BODIES}/rank.cpp", r"setThreshold\(([^)]+)\)"),
-    ("has a part above «1e-9» in it", f"{BODIES}/reactions.cpp", r"part <= (\S+)\) continue"),
+    ("has a part above «1e-9» in it", f"{BODIES}/reactions.cpp", r"least_part = (\S+);"),
     ("Tests hold it to a factor of «5» of the true error over degrees «1» to «5»", "tests/convergence/mixed_estimates.cpp",
      r"told, (\d) \* error\).*?int p = (\d); p <= (\d);"),
     ("| torn | «5» | «7» | «5» | «7» | «4» |", "tests/convergence/mixed_loads.cpp",

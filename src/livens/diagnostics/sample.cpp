@@ -170,10 +170,12 @@ std::vector<JointSample> reactions_of(const Model& model, const State& state, st
     const std::vector<bool> is_bounded = bounded_joints(model, left, right);
     std::vector<double> both = numbers_of(left, right);
     std::vector<bool> is_unique(model.joints().size(), true);
+    std::vector<SharedComponents> shared(model.joints().size(), SharedComponents{});
     if (static_cast<int>(independent.size()) < model.n_rows()) {
         UniqueReactions least = least_reactions(now, state.X, both, independent);
         both = std::move(least.multipliers);
         is_unique = std::move(least.joint_is_unique);
+        shared = std::move(least.shared);
     }
     const std::span<const double> before(both.data(), left.size()),
         after(both.data() + left.size(), right.size());
@@ -183,6 +185,7 @@ std::vector<JointSample> reactions_of(const Model& model, const State& state, st
     for (int j = 0; j < static_cast<int>(model.joints().size()); ++j) {
         JointSample& sample = samples.emplace_back();
         sample.is_unique = is_unique[j];
+        sample.shared = shared[j];
         sample.is_bounded = is_bounded[j];
         sample.left = sample.right = unknown;
         if (!sample.is_bounded) continue;
@@ -284,6 +287,7 @@ std::vector<JointSample> sample_joints(const Model& model, const Motion& motion,
         for (std::size_t j = 0; j < samples.size(); ++j) {
             samples[j].right = after[j].right;
             samples[j].is_unique = samples[j].is_unique && after[j].is_unique;
+            for (std::size_t i = 0; i < 6; ++i) samples[j].shared[i] |= after[j].shared[i];
             samples[j].is_bounded = samples[j].is_bounded && after[j].is_bounded;
         }
     }

@@ -6,6 +6,7 @@
 
 #include "livens/multibody/model.h"
 #include "livens/multibody/motion.h"
+#include "livens/multibody/reactions.h"
 
 namespace [[gnu::visibility("default")]] livens {
 
@@ -33,10 +34,11 @@ struct JointSample {
     Reaction left;
     Reaction right;
     bool is_acceleration_level =
-        false;   ///< from the end multipliers; else interpolated between the elements' nodes
+        false;               ///< from the end multipliers; else interpolated between the elements' nodes
     bool is_unique = true;   ///< false: other joints of a closed loop could carry part of it; then it is the
                              ///< least, see least_reactions()
-    bool is_bounded = true;   ///< false: the joints lose rank there; forces and torques are not numbers
+    SharedComponents shared{};   ///< then: in which components
+    bool is_bounded = true;      ///< false: the joints lose rank there; forces and torques are not numbers
 };
 
 /// `t`, or the element end that differs from it by no more than the rounding of decimal text and sums of

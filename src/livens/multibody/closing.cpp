@@ -330,7 +330,7 @@ void note_redundancy(const Model& model, ClosedStart& assembly)
         assembly.notes.push_back(
             "joint '" + model.joints()[joint].name + "': row" + (count == 1 ? " " : "s ") + rows +
             (count == 1 ? " is" : " are") +
-            " implied by the other rows; reactions of the joints in this loop are not unique");
+            " implied by the other rows; reactions of the joints in this loop are not all unique");
     }
 }
 

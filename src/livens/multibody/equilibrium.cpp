@@ -386,6 +386,7 @@ Equilibrium find_equilibrium(const Model& the_model, const State& start, const E
         least_reactions(model, here.X, search.state().multipliers[1], search.tables().independent);
     result.multipliers = least.multipliers;
     result.joint_is_unique = least.joint_is_unique;
+    result.shared = least.shared;
     if (!result.is_found) {
         result.message = why_not(model, search, here, outcome, result);
         return result;

@@ -8,6 +8,7 @@
 
 #include "livens/multibody/closing.h"
 #include "livens/multibody/linearisation.h"
+#include "livens/multibody/reactions.h"
 
 namespace [[gnu::visibility("default")]] livens {
 
@@ -29,6 +30,7 @@ struct Equilibrium {
     double acceleration = 0, angular_acceleration = 0;   ///< of that body's reference point, from rest
     std::vector<double> multipliers;                     ///< of all rows, least where joints are redundant
     std::vector<bool> joint_is_unique;
+    std::vector<SharedComponents> shared;           ///< of each joint that is not
     std::vector<std::vector<double>> coordinates;   ///< of each joint, as it counts them: turns included
     std::vector<std::string> notes;                 ///< of close_start()
     StabilityReport stability;                      ///< where it was found

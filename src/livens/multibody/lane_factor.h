@@ -31,10 +31,10 @@ LIVENS_INLINE void factorise_block(const Pattern& p, const Values& v, int rows, 
     const Product* end = p.block_products + (&block)[1].products;
     for (const Product* f = p.block_products + block.products; f != end; ++f) {
         const double *a = at<W>(factor, f->a + r), *b = at<W>(factor, f->b + first);
-        for (int k = 0; k < f->n; ++k, a += rows * W, b += n * W) {
-            const Some of_row = load<Some::width>(a);
-            each<m>([&](auto j) LIVENS_LAMBDA { s[j.value] -= of_row * get<Some, W>(b, j.value); });
-        }
+        count_to<m>(f->n, [&](int k) LIVENS_LAMBDA {
+            const Some of_row = load<Some::width>(a + k * rows * W);
+            each<m>([&](auto j) LIVENS_LAMBDA { s[j.value] -= of_row * get<Some, W>(b, k * n + j.value); });
+        });
     }
     each<m>([&](auto j) LIVENS_LAMBDA {
         for (int k = 0; k < first; ++k)
@@ -79,10 +79,12 @@ LIVENS_INLINE void factorise_row(const Pattern& p, const Values& v, const Group&
     const Some own = s[m - 1];
     for (const Block* b = p.blocks + group.blocks; b != p.blocks + (&group)[1].blocks; ++b) {
         const double* column = at<W>(v.factor, b->entry) + l;
-        for (int k = 0; k < b->n; ++k, column += group.n * W) {
-            const Some a = get<Some, W>(column, r);
-            each<m>([&](auto c) LIVENS_LAMBDA { s[c.value] -= a * get<Some, W>(column, first + c.value); });
-        }
+        count_to<m>(b->n, [&](int k) LIVENS_LAMBDA {
+            const Some a = get<Some, W>(column, k * group.n + r);
+            each<m>([&](auto c) LIVENS_LAMBDA {
+                s[c.value] -= a * get<Some, W>(column, k * group.n + first + c.value);
+            });
+        });
     }
     for (int k = 0; k < first; ++k) {
         const Some a = get<Some, W>(diagonal, triangle(r, k));

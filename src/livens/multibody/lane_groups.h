@@ -76,6 +76,16 @@ LIVENS_INLINE void each(const Act& act)
     }
 }
 
+/// act(0) .. act(n - 1), unrolled where n is m, as it is for joints of one kind in a row.
+template <int m, class Act>
+LIVENS_INLINE void count_to(int n, const Act& act)
+{
+    if (m > 1 && n == m)
+        each<m>([&](auto j) LIVENS_LAMBDA { act(j.value); });
+    else
+        for (int j = 0; j < n; ++j) act(j);
+}
+
 /// Quantity i, of which `Some` takes as many lanes as it has; where rows are, lane 0 is the start.
 template <class Some, int W>
 LIVENS_INLINE Some get(const double* x, std::int32_t i)

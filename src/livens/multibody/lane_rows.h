@@ -60,12 +60,12 @@ LIVENS_INLINE void solve_down(const Pattern& p, const Part& part, const At<W, ro
     Some s[m];
     each<m>([&](auto r) LIVENS_LAMBDA { s[r.value] = get<Some, W>(x, group.first + first + r.value); });
     for (const Block* b = p.blocks + group.blocks; b != p.blocks + (&group)[1].blocks; ++b)
-        for (int j = 0; j < b->n; ++j) {
+        count_to<m>(b->n, [&](int j) LIVENS_LAMBDA {
             const Some y = get<Some, W>(x, b->first + j);
             each<m>([&](auto r) LIVENS_LAMBDA {
                 s[r.value] -= get<Some, is_start>(factor, b->entry + j * n + first + r.value) * y;
             });
-        }
+        });
     each<m>([&](auto r) LIVENS_LAMBDA {
         for (int k = 0; k < first; ++k)
             s[r.value] -= entry(first + r.value, k) * get<Some, W>(x, group.first + k);
@@ -97,13 +97,13 @@ LIVENS_INLINE void solve_up(const Pattern& p, const Part& part, const At<W, rows
         put<W>(x, group.first + first + r, s[r]);
     });
     for (const Block* b = p.blocks + group.blocks; b != p.blocks + (&group)[1].blocks; ++b)
-        for (int j = 0; j < b->n; ++j) {
+        count_to<m>(b->n, [&](int j) LIVENS_LAMBDA {
             Some y = get<Some, W>(x, b->first + j);
             each<m>([&](auto r) LIVENS_LAMBDA {
                 y -= get<Some, is_start>(factor, b->entry + j * n + first + r.value) * s[r.value];
             });
             put<W>(x, b->first + j, y);
-        }
+        });
 }
 
 /// x <- (G G^T)^-1 x

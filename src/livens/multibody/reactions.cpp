@@ -46,7 +46,19 @@ MatrixXd root_metric(const MatrixXd& A, const Eigen::Map<const VectorXd>& sizes)
     return qr.matrixQR().topRows(A.cols()).triangularView<Eigen::Upper>();
 }
 
+constexpr double least_part = 1e-9;   // of a null vector
+
 }   // namespace
+
+std::string in_words(const SharedComponents& shared)
+{
+    constexpr std::array<const char*, 6> names{"force x",  "force y",  "force z",
+                                               "torque x", "torque y", "torque z"};
+    std::string text;
+    for (std::size_t i = 0; i < names.size(); ++i)
+        if (shared[i]) text += (text.empty() ? "" : ", ") + std::string(names[i]);
+    return text;
+}
 
 /// In the coordinates rho = R lambda, joint by joint, least is what is perpendicular to all null vectors.
 UniqueReactions least_reactions(const Model& model, std::span<const Matrix34> X,
@@ -54,7 +66,10 @@ UniqueReactions least_reactions(const Model& model, std::span<const Matrix34> X,
 {
     const Index n = model.n_rows(), n_null = n - static_cast<Index>(independent.size());
     const int n_joints = static_cast<int>(model.joints().size());
-    UniqueReactions result{{multipliers.begin(), multipliers.end()}, std::vector<bool>(n_joints, true), 0};
+    UniqueReactions result{{multipliers.begin(), multipliers.end()},
+                           std::vector<bool>(n_joints, true),
+                           std::vector<SharedComponents>(n_joints, SharedComponents{}),
+                           0};
     if (n_null <= 0) return result;
 
     const Dependencies known = dependencies(model, X, independent);
@@ -85,8 +100,9 @@ UniqueReactions least_reactions(const Model& model, std::span<const Matrix34> X,
         const MatrixXd parts = A[j] * solver.solve(null.middleRows(at, m));
         const double part = Eigen::JacobiSVD<MatrixXd>(parts).singularValues()[0];
         result.largest_null = std::max(result.largest_null, part);
-        if (part <= 1e-9) continue;
+        if (part <= least_part) continue;
         result.joint_is_unique[j] = false;
+        for (Index i = 0; i < 6; ++i) result.shared[j][i] = parts.row(i).norm() > least_part / 3;   // one is
         for (Index set = 0; set < rho.cols(); ++set) {
             const VectorXd lambda = solver.solve(rho.col(set).segment(at, m));
             std::copy(lambda.begin(), lambda.end(), result.multipliers.begin() + set * n + at);

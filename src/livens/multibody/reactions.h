@@ -2,17 +2,27 @@
 // Reactions where joints are redundant: of all that move the bodies alike, the least.
 #pragma once
 
+#include <array>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "livens/multibody/model.h"
 
 namespace [[gnu::visibility("default")]] livens {
 
+/// Which components of force (x, y, z) and torque (likewise) in world axes other joints of a closed loop
+/// could carry part of.
+using SharedComponents = std::array<bool, 6>;
+
+/// "force z, torque x"; empty if none is shared.
+std::string in_words(const SharedComponents& shared);
+
 struct UniqueReactions {
-    std::vector<double> multipliers;     ///< of all rows of the model, as many sets as were given
-    std::vector<bool> joint_is_unique;   ///< no null vector has a part above 1e-9 in it
-    double largest_null = 0;             ///< largest of these parts in any joint; 0 if no row is redundant
+    std::vector<double> multipliers;        ///< of all rows of the model, as many sets as were given
+    std::vector<bool> joint_is_unique;      ///< no null vector has a part above 1e-9 in it
+    std::vector<SharedComponents> shared;   ///< of each joint: in which of them null vectors have such a part
+    double largest_null = 0;                ///< largest of these parts in any joint; 0 if no row is redundant
 };
 
 /// Of all multipliers with the same G^T lambda in twists those with the least sum over joints of

@@ -11,6 +11,7 @@
 #include "livens/base/elementary.h"
 #include "livens/base/text.h"
 #include "livens/multibody/body.h"
+#include "livens/spacetime/detail/window_notes.h"
 #include "livens/spacetime/lobatto/window.h"
 #include "livens/spacetime/second.h"
 #include "livens/spacetime/windows.h"
@@ -176,6 +177,7 @@ private:
         w.progress = options_.progress;
         w.length_of_model = model_.length();
         w.pace = &pace;
+        w.locking = [this](const State& first, const State& last) { return of_locking(model_, first, last); };
         w.ends_at_bends = options_.end_at_bends && model_.has_pieces();
         w.goes_on = [&] {
             const int n = mesh.n_elements();

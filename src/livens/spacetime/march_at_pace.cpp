@@ -18,6 +18,7 @@ constexpr double unseen = std::numeric_limits<double>::infinity();
 void March::run_at_pace(Pace& pace)
 {
     while (time_ < pace.end()) {
+        if (!pace.is_long_enough()) return stop_vanishing();
         const double start = time_, end = bends_.end(start, pace.next_end(start)), length = end - start;
         const double most = pace.largest_jump(start, end);
         mesh_.ends.push_back(end);
@@ -61,13 +62,22 @@ void March::give_up(int element, const Closed& closed, const NewtonReport& outco
 {
     if (!closed.is_refused) return void(set_failed(element, element + 1));   // the report says why
     if (!closed.contradiction.empty()) return void(set_contradiction(element, element + 1, closed));
-    const bool is_singular =
-        std::abs(mesh_.ends[element] - singular_end_) < 1e-3 * (options_.pace->end() - mesh_.start());
-    if (outcome.status != SolveStatus::converged && !(is_singular && may_shorten(outcome)))
+    if (outcome.status != SolveStatus::converged && !(is_near_singular_end() && may_shorten(outcome)))
         return void(explain(element, element + 1, outcome));
-    set_failed(element, element + 1);
+    stop_vanishing();
+}
+
+bool March::is_near_singular_end() const
+{
+    return std::abs(time_ - singular_end_) < 1e-3 * (options_.pace->end() - mesh_.start());
+}
+
+void March::stop_vanishing()
+{
     report_.status = SolveStatus::not_converged;
-    report_.message = is_singular ? of_singular_end(singular_end_) : of_vanishing(mesh_.ends[element]);
+    report_.failed_at = time_;
+    report_.message = is_near_singular_end() ? of_singular_end(singular_end_) : locking_in_words();
+    if (report_.message.empty()) report_.message = of_vanishing(time_);
 }
 
 void March::stop_at_jump(const std::string& load)

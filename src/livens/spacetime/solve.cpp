@@ -12,6 +12,7 @@
 #include "livens/diagnostics/coordinates.h"
 #include "livens/multibody/singular.h"
 #include "livens/spacetime/accuracy.h"
+#include "livens/spacetime/detail/window_notes.h"
 #include "livens/spacetime/guess.h"
 #include "livens/spacetime/lobatto/window.h"
 #include "livens/spacetime/mixed/window.h"
@@ -97,6 +98,7 @@ WindowOptions window_options(const Model& model, const Ends& ends, const Method&
     w.max_iterations = options.max_iterations;
     w.progress = options.progress;
     w.length_of_model = model.length();
+    w.locking = [&model](const State& first, const State& last) { return of_locking(model, first, last); };
     if (const auto* mixed = std::get_if<Mixed>(&method)) {
         w.length = mixed->window;
         w.shortest = shortest_block(*mixed);

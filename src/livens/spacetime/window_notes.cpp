@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "livens/base/text.h"
+#include "livens/multibody/locking.h"
 
 namespace livens {
 
@@ -13,6 +14,15 @@ namespace {
 /// Below, a tolerance that rounding did not let be met deserves a word; down to here it asks for all digits
 /// that there are, as an accuracy of many digits does.
 constexpr double finest_tolerance = 1e-15;
+
+/// "joints 'A', 'B' and 'C'"
+std::string named(const std::string& kind, const std::vector<std::string>& names)
+{
+    std::string text = kind + (names.size() == 1 ? " " : "s ");
+    for (std::size_t i = 0; i < names.size(); ++i)
+        text += (i == 0 ? "" : i + 1 == names.size() ? " and " : ", ") + names[i];
+    return text;
+}
 
 }   // namespace
 
@@ -90,6 +100,24 @@ std::string of_singular_end(double t)
     return "the joints lose rank at t = " + to_text(t, 6) +
            " s, where an element must end, for time does or a load jumps: velocities and reactions are not "
            "determined there; try: that instant a little earlier or later";
+}
+
+std::string of_locking(const Model& model, const State& first, const State& last)
+{
+    const std::vector<int> joints = joints_that_lock(model, first, last);
+    if (joints.empty()) return {};
+    std::vector<std::string> driven, held;
+    for (const int j : joints)
+        (model.joints()[j].type == "drive" ? driven : held).push_back("'" + model.joints()[j].name + "'");
+    const std::string when = " near t = " + to_text(last.t, 6) + " s",
+                      by = held.empty() ? "" : named("joint", held) + " lose rank there";
+    if (driven.empty())
+        return "the mechanism locks, or runs away, or its motion parts into branches" + when + ": " + by +
+               "; try: an earlier end, or lengths, loads or starts that keep away from that position";
+    return "the mechanism locks" + when + ": what " + named("drive", driven) +
+           (driven.size() == 1 ? " asks for is" : " ask for is") + " beyond what can be reached" +
+           (by.empty() ? "" : " (" + by + ")") +
+           "; try: another course of the drive, other lengths, or an earlier end";
 }
 
 void add_notes(SolveReport& report, const WindowCounts& counts)

@@ -280,7 +280,8 @@ bool March::refuse(int first, int last, const Closed& closed, NewtonReport outco
     if (!closed.contradiction.empty()) return set_contradiction(first, last, closed);
     set_failed(first, last);
     report_.status = SolveStatus::not_converged;
-    report_.message = of_lie(window_at(mesh_, first, last));
+    report_.message = locking_in_words();
+    if (report_.message.empty()) report_.message = of_lie(window_at(mesh_, first, last));
     return false;
 }
 
@@ -318,9 +319,20 @@ bool March::explain(int first, int last, const NewtonReport& outcome)
 {
     set_failed(first, last);
     report_.status = outcome.status;
-    report_.message = of_failure(outcome, options_.max_iterations, window_at(mesh_, first, last),
-                                 window_.worst(), options_.advice);
+    const bool may_lock =
+        outcome.status == SolveStatus::not_converged || outcome.status == SolveStatus::singular;
+    report_.message = may_lock ? locking_in_words() : "";
+    if (report_.message.empty())
+        report_.message = of_failure(outcome, options_.max_iterations, window_at(mesh_, first, last),
+                                     window_.worst(), options_.advice);
     return false;
+}
+
+std::string March::locking_in_words() const
+{
+    const Motion* motion = options_.locking ? window_.so_far() : nullptr;
+    const bool is_long_enough = motion != nullptr && motion->n_elements() > 0;
+    return is_long_enough ? options_.locking(motion->at_end(0), motion->at_end(motion->n_elements())) : "";
 }
 
 std::vector<int> divide(int n_elements, int length, int shortest)

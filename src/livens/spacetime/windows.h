@@ -34,6 +34,9 @@ struct WindowOptions {
         bool is_march = false;
     };
     std::function<Proposal(int first, int last, int attempt)> propose{};
+    /// Why a motion that went from the first of these states to the second goes no further, if the joints are
+    /// to blame; else empty.
+    std::function<std::string(const State& first, const State& last)> locking{};
     ProgressCallback progress{};
     /// Set: the mesh begins with the start alone and grows, one element a window, as the pace has it.
     Pace* pace = nullptr;

@@ -103,17 +103,17 @@ Model four_bar(const Matrix3& Q)
         placement.directors.set_column(0, Q * along[b]);
         placement.directors.set_column(1, Q * Vector3{0, 1, 0});
         placement.directors.set_column(2, Q * cross(along[b], {0, 1, 0}));
-        model.add_body(rigid_body(
-            "b" + std::to_string(b),
-            with_center(box(7850, {lengths[b], 0.04, 0.02}), {0.5 * lengths[b], 0, 0}), placement));
+        model.add_body(rigid_body("b" + std::to_string(b),
+                                  with_center(box(7850, {lengths[b], 0.04, 0.02}), {0.5 * lengths[b], 0, 0}),
+                                  placement));
     }
     const int pairs[4][2] = {{world, 0}, {0, 1}, {1, 2}, {world, 2}};
     for (int k = 0; k < 4; ++k) {
         const auto [first, second] = pairs[k];
         const Matrix34& X = first == world ? world_configuration : model.bodies()[first].X;
-        model.add_joint(revolute(
-            "j" + std::to_string(k), first, second,
-            joint_frame(X, model.bodies()[second].X, Q * points[k], Q * Vector3{0, 1, 0})));
+        model.add_joint(
+            revolute("j" + std::to_string(k), first, second,
+                     joint_frame(X, model.bodies()[second].X, Q * points[k], Q * Vector3{0, 1, 0})));
     }
     return model;
 }
@@ -142,6 +142,8 @@ TEST(LeastReactions, DoNotDependOnTheChosenRows)
     EXPECT_LT(largest_difference(a.multipliers, b.multipliers), 1e-12);
     EXPECT_LT(largest_difference(pushes(model, a.multipliers), push), 1e-12);
     EXPECT_EQ(a.joint_is_unique, std::vector<bool>(4, false));
+    for (const SharedComponents& shared : a.shared)   // what is across the plane
+        EXPECT_EQ(in_words(shared), "force y, torque x, torque z");
     EXPECT_GT(a.largest_null, 0.1);
 }
 
@@ -225,6 +227,8 @@ TEST(LeastReactions, TwoEqualJointsCarryHalfEachAndLeaveTheOthersAlone)
     const UniqueReactions least =
         least_reactions(l.model, places(l.model), given, std::vector{0, 1, 2, 3, 4, 5});
     EXPECT_EQ(least.joint_is_unique, (std::vector{true, false, false}));
+    EXPECT_EQ(in_words(least.shared[0]), "");
+    EXPECT_EQ(in_words(least.shared[1]), "force x, force y, force z");
     EXPECT_NEAR(least.largest_null, std::sqrt(0.5), 1e-9);
     for (int r = 0; r < 3; ++r) {
         EXPECT_EQ(least.multipliers[r], given[r]);

@@ -100,6 +100,12 @@ InputError Builder::unknown_name(const std::string& kind, const std::string& nam
         return (one.has("name") ? one.text("name") : default_name(one)) == name;
     };
     const bool is_told = findings_.n_errors() > 0 && std::ranges::any_of(top_.sections(kind), is_it);
+    for (const char* other : {"body", "joint", "drive", "load", "sensor"})
+        if (!is_told && kind != other && std::ranges::any_of(top_.sections(other), is_it))
+            return InputError(
+                {kind + "-unknown", path + "." + kind, "'" + name + "' is a " + other + ", not a " + kind, "",
+                 "", "",
+                 known.empty() ? "" : "known here: " + quoted_alternatives({known.begin(), known.end()})});
     return InputError({is_told ? "" : kind + "-unknown", path + "." + kind,
                        "there is no " + kind + " '" + name + "'", "", "", "", suggest(name, known)});
 }

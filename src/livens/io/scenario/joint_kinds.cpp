@@ -19,7 +19,8 @@ const Key points{"points", types::pair,
 const Key axes{
     "axes", types::pair,
     "One direction for each body, of any length, in its coordinates, or with `at` in the world: the "
-    "common axis (with `points`), or two axes."};
+    "common axis (with `points`), or the two axes of joints that have one on each body: a universal joint "
+    "turns about both, which stand at right angles."};
 const Key line{
     "axis", types::vector3,
     "Direction of the line, or normal of the plane, on the first body, of any length: with `at` in the "
@@ -154,7 +155,8 @@ std::vector<JointKind> kinds_of_points_and_axes()
          Location::along_two_axes,
          make_constant_angle},
         {{"slot",
-          "a point of the second body on a curve of the first (2)",
+          "a point of the second body on a curve of the first (2); for a straight one point_on_line, or "
+          "point_in_plane where nothing has to hold it sideways",
           {Key{"curve", types::table, "Where the point slides."}.needed().holding(
                {"curve of a slot",
                 "A cubic spline through points, straight on beyond its ends.",

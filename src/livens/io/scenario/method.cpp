@@ -57,8 +57,14 @@ Method make_mixed(const Section& section)
 /// Number of elements solved together.
 Key window(std::string_view otherwise, const std::string& doc)
 {
-    return {"window", types::integer_or_choice, "Number of elements that are solved together" + doc, "",
-            otherwise, false, {"all"}, {1, max_elements}};
+    return {"window",
+            types::integer_or_choice,
+            "Number of elements that are solved together" + doc,
+            "",
+            otherwise,
+            false,
+            {"all"},
+            {1, max_elements}};
 }
 
 Key basis()
@@ -125,7 +131,7 @@ const std::vector<MethodKind>& kinds()
          make_radau},
         {{"auto",
           "lobatto, or radau where fast decays, or vibrations that do not matter, would rule its elements; "
-          "with an accuracy only, and then the default",
+          "with an `accuracy` only",
           {Key{"degree", types::integer,
                "Of the polynomial in each element; radau takes 8 of it at most. Default: as the accuracy has "
                "it."}
@@ -224,7 +230,8 @@ Table method_table()
     return Table{
         "[method]",
         "How it is solved.",
-        {Key{"family", types::choice, "", "", "lobatto"},
+        {Key{"family", types::choice, "With an `accuracy` auto, unless something else stands here", "",
+             "lobatto"},
          Key{"tolerance", types::number,
              "Newton stops when its estimated error is below this fraction of the motion in the element; "
              "mixed: of the model's length. With an accuracy of 1e-9 to 1e-8 it is 1e-15 at most, and with a "
@@ -276,11 +283,10 @@ bool check_size(const Model& model, const Method& method, double n_elements, con
     const std::string what = std::to_string(static_cast<long long>(n_elements)) + " time elements for " +
                              std::to_string(model.n_bodies()) + " bodies";
     const auto fits = [&](const char* thing, double bytes, double most, const char* help) {
-        return bytes <= most ||
-               findings.error(place, "resource-limit",
-                              std::string(thing) + " would take " + gibibytes(bytes) + ", more than " +
-                                  gibibytes(most),
-                              {what, help});
+        return bytes <= most || findings.error(place, "resource-limit",
+                                               std::string(thing) + " would take " + gibibytes(bytes) +
+                                                   ", more than " + gibibytes(most),
+                                               {what, help});
     };
     return fits("the motion", motion_bytes(model, method, n_elements), max_motion_bytes,
                 "use fewer elements; a higher degree makes up for it") &&

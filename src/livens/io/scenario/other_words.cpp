@@ -47,6 +47,9 @@ struct OtherKey {
     std::string_view kind, key, help;
 };
 
+constexpr std::string_view straight_slot = "a straight slot along an axis is \"point_on_line\"; "
+                                           "\"point_in_plane\", where nothing has to hold the pin "
+                                           "sideways";
 constexpr std::string_view two_points =
     "its ends are 'points', one on each body in that body's own coordinates (on the world: in the world)";
 constexpr std::string_view along_a_joint =
@@ -65,6 +68,8 @@ constexpr OtherKey other_keys[] = {
     {"spring", "natural_length", "its length without force is 'free_length'"},
     {"spring", "k", "'stiffness'"},
     {"spring", "c", "'damping'"},
+    {"slot", "at", straight_slot},
+    {"slot", "axis", straight_slot},
     {"spherical", "axis", "a ball joint has no axis; what turns about one is \"revolute\""},
 };
 

@@ -37,6 +37,9 @@ private:
     void give_up(int element, const Closed& closed, const NewtonReport& outcome);
     /// The motion rests where the law of a load jumps, or slides along it.
     void stop_at_jump(const std::string& load);
+    void stop_vanishing();
+    bool is_near_singular_end() const;
+    std::string locking_in_words() const;
     /// Elements first..last - 1, split where they fail together.
     bool solve(int first, int last);
     /// Two stretches in their order. Elements that are divided in the first one move those behind it.

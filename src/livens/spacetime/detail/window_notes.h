@@ -41,7 +41,8 @@ std::string of_stop(double t);
 std::string of_vanishing(double t);
 std::string of_singular_end(double t);
 
-/// Why a march ends at t, where elements have become next to nothing.
+/// See WindowOptions::locking.
+std::string of_locking(const Model& model, const State& first, const State& last);
 std::string of_sticking(const std::string& load, double t);
 
 /// "1 element", "2 elements".

@@ -15,13 +15,14 @@ namespace {
 constexpr double slow_contraction = 0.3;
 constexpr int most_slow_steps = 2, most_steps = 14;
 constexpr int many_twists = 100, most_combinations = 150, most_slow_combinations = 20;
-constexpr double hopeless_step = 10;       // lengths or radians
-constexpr double smallest_step = 1e-18;    // likewise: nothing moves
+constexpr double hopeless_step = 10;      // lengths or radians
+constexpr double smallest_step = 1e-18;   // likewise: nothing moves
 // Of the motion: what steps that shrink no more may be; also by the smallest squared pivot, and at most.
 constexpr double least_rounding = 1e-14, rounding_by_pivot = 4e-16, most_rounding = 1e-13;
 constexpr double fits_on_the_way = 1e-2;   // times the smallest pivot: motion at which a factor is still good
-constexpr double fits_at_end = 1e-7;       // for multipliers, whose last change it takes with this error
+constexpr double fits_at_end = 1e-5;       // for multipliers, whose last change it takes with this error
 constexpr double fits_for_next = 1e-8;     // NearFactor
+constexpr double much_nearer = 4;          // a series costs a quarter of a step
 constexpr double least_pivot = 1e-5;       // of the rows' own size
 constexpr double share_of_tolerance = 0.1;   // left after the last step, as far as contraction foretells it
 constexpr double widest_tolerance =
@@ -173,8 +174,8 @@ void MarchKernel::place_series(const TwistSeries& series, double tau, const Inst
     }
 }
 
-/// Places of all nodes: from the series at the start, or by the polynomial of the element before, whichever
-/// was nearer to the end of the last element.
+/// Places of all nodes: by the polynomial of the element before, or from the series at the start where that
+/// was much nearer to the end of the last element.
 void MarchKernel::guess(const Stretch& stretch, const InstantState& start)
 {
     const double h = stretch.h(0);
@@ -215,7 +216,7 @@ void MarchKernel::compare_guesses()
             }
         return std::max(far / tables_.length, 2 * wide);
     };
-    guess_.is_polynomial = distance(guess_.by_polynomial) < distance(guess_.by_series);
+    guess_.is_polynomial = distance(guess_.by_polynomial) < much_nearer * distance(guess_.by_series);
 }
 
 /// Loads at their points, and the sum of their wrenches about the centres of mass.
