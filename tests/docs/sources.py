@@ -39,6 +39,7 @@ TIES = [
     ("below a tenth of the tolerance, or when steps that have shrunk stop doing so below it, or below $«10^{-14}»$ of the motion",
      f"{TIME}/lobatto/march_kernel.cpp", r"least_rounding = ([^,]+),"),
     ("(up to $«10^{-13}»$ where a squared pivot", f"{TIME}/lobatto/march_kernel.cpp", r"most_rounding = ([^;]+);"),
+    ("(where the polynomial was within $«10^{-6}»$, it is taken", f"{TIME}/lobatto/march_kernel.cpp", r"near_enough = ([^,]+),"),
     ("Steps that shrink by less than «0.3» twice", f"{TIME}/lobatto/march_kernel.cpp", r"slow_contraction = ([^;]+);"),
     ("too long), «14» steps", f"{TIME}/lobatto/march_kernel.cpp", r"most_steps = (\d+)"),
     ("or a pivot below «1e-5» leave the element", f"{TIME}/lobatto/march_kernel.cpp", r"least_pivot = ([^;]+);"),

@@ -20,10 +20,11 @@ constexpr double smallest_step = 1e-18;   // likewise: nothing moves
 // Of the motion: what steps that shrink no more may be; also by the smallest squared pivot, and at most.
 constexpr double least_rounding = 1e-14, rounding_by_pivot = 4e-16, most_rounding = 1e-13;
 constexpr double fits_on_the_way = 1e-2;   // times the smallest pivot: motion at which a factor is still good
-constexpr double fits_at_end = 1e-5;       // for multipliers, whose last change it takes with this error
+constexpr double fits_at_end = 1e-4;       // for multipliers, whose last change it takes with this error
 constexpr double fits_for_next = 1e-8;     // NearFactor
-constexpr double much_nearer = 4;          // a series costs a quarter of a step
-constexpr double least_pivot = 1e-5;       // of the rows' own size
+// Lengths or radians; below, the series, which costs a quarter of a step, has to be nearer by a factor.
+constexpr double near_enough = 1e-6, much_nearer = 4;
+constexpr double least_pivot = 1e-5;         // of the rows' own size
 constexpr double share_of_tolerance = 0.1;   // left after the last step, as far as contraction foretells it
 constexpr double widest_tolerance =
     1e-10;   // Newton's last step leaves less than it was allowed to, this all
@@ -174,8 +175,8 @@ void MarchKernel::place_series(const TwistSeries& series, double tau, const Inst
     }
 }
 
-/// Places of all nodes: by the polynomial of the element before, or from the series at the start where that
-/// was much nearer to the end of the last element.
+/// Places of all nodes: from the series at the start, or by the polynomial of the element before, whichever
+/// was nearer to the end of the last element.
 void MarchKernel::guess(const Stretch& stretch, const InstantState& start)
 {
     const double h = stretch.h(0);
@@ -216,7 +217,8 @@ void MarchKernel::compare_guesses()
             }
         return std::max(far / tables_.length, 2 * wide);
     };
-    guess_.is_polynomial = distance(guess_.by_polynomial) < much_nearer * distance(guess_.by_series);
+    const double polynomial = distance(guess_.by_polynomial), series = distance(guess_.by_series);
+    guess_.is_polynomial = polynomial < (polynomial < near_enough ? much_nearer : 1) * series;
 }
 
 /// Loads at their points, and the sum of their wrenches about the centres of mass.
