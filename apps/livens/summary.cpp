@@ -136,13 +136,13 @@ void add_figures(Summary& summary, const Run& run, bool verbose)
     const bool is_weak = s.max_weak_violation > 0;
     if (run.report.n_elements == 0) return;   // there is nothing to measure
     if (std::isfinite(s.estimated_error))
-        summary.figure("estimated error",
-                       fmt::format("{} at most at element ends (of the model's length, or rad), at {:.6g} s; "
-                                   "by {}{}",
-                                   number(s.estimated_error), s.estimated_error_time, witness_of(run),
-                                   report.converged() || !(s.good_digits > 0)
-                                       ? ""
-                                       : "; " + until(s.good_digits, s.good_until)));
+        summary.figure(
+            "estimated error",
+            fmt::format(
+                "{} at most at element ends (of the model's length, {:.3g} m, or rad), at "
+                "{:.6g} s; by {}{}",
+                number(s.estimated_error), run.estimate.length, s.estimated_error_time, witness_of(run),
+                report.converged() || !(s.good_digits > 0) ? "" : "; " + until(s.good_digits, s.good_until)));
     summary.figure(
         "constraints",
         fmt::format("violated by {} at most{}, their rates by {} 1/s", number(s.max_constraint_violation),

@@ -39,6 +39,8 @@ TIES = [
     ("below a tenth of the tolerance, or when steps that have shrunk stop doing so below it, or below $«10^{-14}»$ of the motion",
      f"{TIME}/lobatto/march_kernel.cpp", r"least_rounding = ([^,]+),"),
     ("(up to $«10^{-13}»$ where a squared pivot", f"{TIME}/lobatto/march_kernel.cpp", r"most_rounding = ([^;]+);"),
+    ("is open or bent by more than $«10^{-10}»$ between the nodes in question, is refused, and so is one whose joints are open by more than $«10^{-9}»$",
+     f"{TIME}/lobatto/branches.cpp", r"(?=.*?open_between = ([^;]+);).*?open_at_end = ([^,]+),"),
     ("(where the polynomial was within $«10^{-6}»$, it is taken", f"{TIME}/lobatto/march_kernel.cpp", r"near_enough = ([^,]+),"),
     ("Steps that shrink by less than «0.3» twice", f"{TIME}/lobatto/march_kernel.cpp", r"slow_contraction = ([^;]+);"),
     ("too long), «14» steps", f"{TIME}/lobatto/march_kernel.cpp", r"most_steps = (\d+)"),

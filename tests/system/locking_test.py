@@ -63,6 +63,31 @@ TIMES = ("end = 3", "end = 3\nelements = 300", "end = 3\naccuracy = 1e-9\noutput
 # coupler and rocker on one line: |(cos a, sin a) - (2, 0)| = 1 + sqrt 2, a = 90 deg + t^2
 DEAD = math.sqrt(math.acos((5 - (1 + math.sqrt(2)) ** 2) / 4) - math.pi / 2)
 
+# Held where it stands, it makes a five-bar of the four-bar.
+POST = """[[body]]
+name = "post"
+shape = { box = [1, 0.05, 0.05] }
+mass = 1
+position = [2, -0.5, 0]
+rotation_vector = [0, 0, "90 deg"]
+[[joint]]
+name = "E"
+type = "revolute"
+between = ["world", "post"]
+at = [2, -1, 0]
+axis = [0, 0, 1]
+[[drive]]
+name = "mover"
+type = "joint"
+joint = "A"
+expression = "t^2"
+[[drive]]
+name = "holder"
+type = "joint"
+joint = "E"
+expression = "0"
+"""
+
 # A slot on the crank, a pin on the yoke: x = 0.1 / cos(12 t).
 YOKE = """format = 1
 [[body]]
@@ -147,6 +172,25 @@ class Locking(ProgramTest):
             message = self.why(f"{YOKE}[time]\n{time}\n")
             self.assertIn("the mechanism locks near t = 0.1309 s", message.replace("0.130899", "0.1309"))
             self.assertIn("'pin'", message)
+
+    def test_one_that_turns_back_shortly_before_stays_on_its_branch(self):
+        """Down to a millionth of the way: the four-bar has no freedom, so it ends where it began."""
+        for gap in (1e-3, 1e-5, 1e-6):
+            for method in ("", '[method]\nfamily = "radau"\n', "output = 0.05\n"):
+                with self.subTest(gap=gap, method=method):
+                    law = f"{0.5 * (1 - gap) * DEAD ** 2!r}*(1 - cos(2*pi*t/3))"
+                    self.why(FOUR_BAR.replace('"t^2"', f'"{law}"') + f"[time]\nend = 3\n{method}", code=0)
+                    for body in ("coupler", "rocker"):
+                        at = [json.loads(self.expect(0, "sample", "run.nc", "--body", body, "--at", t, "--json").out)
+                              ["position"] for t in ("0", "3")]
+                        self.assertLess(math.dist(*at), 1e-6)
+
+    def test_a_drive_that_rests_is_not_to_blame(self):
+        """A five-bar, one crank held, the other turned until the distal links are on one line."""
+        five = FOUR_BAR[:FOUR_BAR.index("[[drive]]")].replace('between = ["rocker", "world"]', 'between = ["rocker", "post"]')
+        message = self.why(f"{five}{POST}[time]\nend = 3\n")
+        self.assertIn("what drive 'mover' asks for", message)
+        self.assertNotIn("holder", message)
 
     def test_others_are_not_blamed_on_their_joints(self):
         self.why(FOUR_BAR.replace('"t^2"', '"0.1*t^2"') + "[time]\nend = 1\n", code=0)

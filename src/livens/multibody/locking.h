@@ -8,10 +8,17 @@
 
 namespace livens {
 
-/// Joints and drives, ascending, that hold together less `now` than `before`: those with a part of a fiftieth
-/// and more in the combination of rows that is nearest to nothing, if it is nearer by a hundred times than
-/// any was before. Empty: there are none, or too many rows to tell (400), or joints act for a part of the
-/// time.
-std::vector<int> joints_that_lock(const Model& model, const State& before, const State& now);
+/// What holds less together than it did.
+struct Lock {
+    std::vector<int> joints;   ///< with a part of a fiftieth and more in the combination nearest to nothing
+    std::vector<int> drives;   ///< without which the others hold; those that move, if there are any
+
+    bool empty() const { return joints.empty() && drives.empty(); }
+};
+
+/// Of a motion from one state to another: the combination of rows that is nearest to nothing is nearer by a
+/// hundred times than any was before. Empty if none is, if rows are too many to tell (400), or if joints act
+/// for a part of the time.
+Lock joints_that_lock(const Model& model, const State& before, const State& now);
 
 }   // namespace livens

@@ -49,8 +49,6 @@ Eigen::Matrix3d central_moments(const Matrix4& m)
     return whole.bottomRightCorner<3, 3>() - whole.block<3, 1>(1, 0) * whole.block<1, 3>(0, 1) / whole(0, 0);
 }
 
-Vector3 center_of_mass(const Body& body) { return (1 / body.mass(0, 0)) * (body.X * body.mass.column(0)); }
-
 bool uses_directors(const Matrix34& m)
 {
     return std::any_of(m.a + 3, m.a + 12, [](double entry) { return entry != 0; });
@@ -327,28 +325,6 @@ std::vector<double> Model::load_breaks() const
         for (const ConstraintRow& row : joint.rows)
             for (const Drive& drive : row.drives) add(drive.factor.breaks());
     return ascending(std::move(all));
-}
-
-double Model::length() const
-{
-    double length = 0;
-    Vector3 middle{};
-    for (const Body& body : bodies_) {
-        const double square = central_moments(body.mass).trace() / body.mass(0, 0);
-        length = std::max(length, std::sqrt(std::max(square, 0.0)));
-        middle += (1.0 / n_bodies()) * center_of_mass(body);
-    }
-    for (const Body& body : bodies_) length = std::max(length, 2 * norm(center_of_mass(body) - middle));
-    for (const Joint& joint : joints_) {
-        const Body& second = bodies_[joint.second];
-        const Vector3 place = second.X * point(joint.point_second);
-        const Matrix34& X_first = joint.first == world ? world_configuration : bodies_[joint.first].X;
-        const Vector3 other = X_first * point(joint.point_first);
-        length = std::max({length, norm(place - center_of_mass(second)), norm(place - other)});
-        if (joint.first != world)
-            length = std::max(length, norm(other - center_of_mass(bodies_[joint.first])));
-    }
-    return length > 0 ? length : 1;
 }
 
 Model frozen(const Model& model, Instant at)

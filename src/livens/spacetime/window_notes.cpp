@@ -104,11 +104,11 @@ std::string of_singular_end(double t)
 
 std::string of_locking(const Model& model, const State& first, const State& last)
 {
-    const std::vector<int> joints = joints_that_lock(model, first, last);
-    if (joints.empty()) return {};
+    const Lock lock = joints_that_lock(model, first, last);
+    if (lock.empty()) return {};
     std::vector<std::string> driven, held;
-    for (const int j : joints)
-        (model.joints()[j].type == "drive" ? driven : held).push_back("'" + model.joints()[j].name + "'");
+    for (const int j : lock.drives) driven.push_back("'" + model.joints()[j].name + "'");
+    for (const int j : lock.joints) held.push_back("'" + model.joints()[j].name + "'");
     const std::string when = " near t = " + to_text(last.t, 6) + " s",
                       by = held.empty() ? "" : named("joint", held) + " lose rank there";
     if (driven.empty())

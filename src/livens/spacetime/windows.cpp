@@ -305,7 +305,11 @@ bool March::is_contradictory(const Closed& closed)
 bool March::set_contradiction(int first, int last, const Closed& closed)
 {
     report_.status = SolveStatus::singular;
-    report_.message = closed.contradiction;
+    report_.message = locking_in_words();   // rows that were redundant give way there, too
+    if (report_.message.empty())
+        report_.message = closed.contradiction;
+    else
+        report_.status = SolveStatus::not_converged;
     return set_failed(first, last);
 }
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "livens/multibody/load_laws.h"
 #include "livens/multibody/model.h"
 
 #include <gtest/gtest.h>
@@ -230,6 +231,21 @@ TEST(Model, LengthIsPositiveAndMovesWithTheModel)
     Model cube;
     cube.add_body(rigid_body("c", box(1, {6, 6, 6})));
     EXPECT_DOUBLE_EQ(cube.length(), 3) << "radius of gyration about the centre: three times 36 / 12, rooted";
+
+    // Arms and centres of mass that are rounding: a bead that a joint holds where it is.
+    for (const double mass : {0.9, 0.3, 1.3, 1.0000001}) {
+        Model bead;
+        bead.add_body(point_mass("bead", mass, {0.5, 0.1, -0.3}));
+        JointFrame frame;
+        frame.point_first = {0.5, 0.1, -0.3};
+        bead.add_joint(spherical("held", world, 0, frame, 1));
+        EXPECT_EQ(bead.length(), 1) << mass;
+    }
+
+    Model orbit;
+    orbit.add_body(point_mass("moon", 0.7, {3e-6, 0, 4e-6}));
+    orbit.add_load(attraction("pull", 0, orbit.bodies()[0], {{}, 1e-12}, Configurations(orbit.start().X)));
+    EXPECT_NEAR(orbit.length(), 5e-6, 1e-20);
 
     Random random(2);
     const Matrix3 R = random.rotation();

@@ -26,10 +26,8 @@ std::vector<Row> rows_of(const Table& table)
                 return row.key->name == key.name && row.key->doc == key.doc && row.key->unit == key.unit &&
                        row.key->type == key.type;
             });
-            if (same == rows.end())
-                rows.push_back({&key, {kind.word}});
-            else
-                same->kinds.push_back(kind.word);
+            if (same == rows.end()) rows.push_back({&key, {kind.word}});
+            else same->kinds.push_back(kind.word);
         }
     return rows;
 }
@@ -75,46 +73,26 @@ void write_list(JsonWriter& json, const Key& key, Form of, int count)
 void write_form(JsonWriter& json, const Key& key, Form form, int count)
 {
     switch (form) {
-    case Form::none:
-        json.begin_object().end_object();
-        break;
-    case Form::flag:
-        json.begin_object().member("const", true).end_object();
-        break;
-    case Form::truth:
-        json.begin_object().member("type", "boolean").end_object();
-        break;
-    case Form::integer:
-        write_range(json, key, true);
-        break;
-    case Form::number:
-        write_number(json, key);
-        break;
-    case Form::text:
-        json.begin_object().member("type", "string").end_object();
-        break;
+    case Form::none: json.begin_object().end_object(); break;
+    case Form::flag: json.begin_object().member("const", true).end_object(); break;
+    case Form::truth: json.begin_object().member("type", "boolean").end_object(); break;
+    case Form::integer: write_range(json, key, true); break;
+    case Form::number: write_number(json, key); break;
+    case Form::text: json.begin_object().member("type", "string").end_object(); break;
     case Form::choice:
         json.begin_object().key("enum").begin_array();
         for (const std::string_view choice : key.choices) json.value(choice);
         json.end_array().end_object();
         break;
-    case Form::names:
-        write_list(json, key, Form::text, count);
-        break;
+    case Form::names: write_list(json, key, Form::text, count); break;
     case Form::named_texts:
         json.begin_object().member("type", "object").key("additionalProperties");
         write_form(json, key, Form::text, 0);
         json.end_object();
         break;
-    case Form::row:
-        write_list(json, key, Form::number, count);
-        break;
-    case Form::rows:
-        write_list(json, key, Form::row, count);
-        break;
-    case Form::table:
-        write_table(json, *key.child);
-        break;
+    case Form::row: write_list(json, key, Form::number, count); break;
+    case Form::rows: write_list(json, key, Form::row, count); break;
+    case Form::table: write_table(json, *key.child); break;
     case Form::tables:
         write_array(json, key.required ? 1 : 0, max_bodies, [&] { write_table(json, *key.child); });
         break;
@@ -282,10 +260,8 @@ std::string schema_markdown()
         section += "| key | value | default | meaning |\n| --- | --- | --- | --- |\n";
         std::string later;
         for (const Row& row : rows_of(*table))
-            if (row.key->type != types::later)
-                section += markdown_row(row);
-            else
-                later += (later.empty() ? "`" : ", `") + std::string(row.key->name) + "`";
+            if (row.key->type != types::later) section += markdown_row(row);
+            else later += (later.empty() ? "`" : ", `") + std::string(row.key->name) + "`";
         if (!later.empty()) section += "\nNot part of this version: " + later + ".\n";
         if (out.find(section) == std::string::npos) out += section;   // tables that several kinds have
     }

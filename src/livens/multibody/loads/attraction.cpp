@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "livens/base/elementary.h"
 #include "livens/base/error.h"
@@ -93,7 +94,10 @@ Load attraction(const std::string& name, int body, const Body& properties, const
     for (int k = 0; k < 3; ++k) parts.readings.push_back({std::string(1, "xyz"[k]), "N", force(k)});
     parts.potential = [at](const LawArguments& arguments) { return at(arguments).energy; };
     parts.domain = "it has no size at the attracting point";
-    return modulated(name, "attraction", parts, X);
+    Load load = modulated(name, "attraction", parts, X);
+    load.points = {law.point, mass.center_of_mass};
+    if (load.bodies[0] != world) std::swap(load.points[0], load.points[1]);
+    return load;
 }
 
 }   // namespace livens

@@ -25,7 +25,8 @@ LobattoWindow::LobattoWindow(const Tables& tables, const TimeMesh& mesh, const E
     : tables_(tables), ends_(ends), system_(tables, rule), series_(tables, system_.rule()),
       kernel_(tables, system_.rule()), instant_(tables, kernel_.serves() && ends.has_state()),
       record_(tables, mesh, system_.rule()),
-      front_(tables), breaks_{tables.model->load_breaks(), Bends(tables, rule)}
+      front_(tables), breaks_{tables.model->load_breaks(), Bends(tables, rule)}, rank_{Branches(
+                                                                                     tables, system_.rule())}
 {
     record_.note_redundant(ends.redundant);
     work_.lambda.assign(tables.rows.size(), 0.0);
@@ -259,12 +260,14 @@ Closed LobattoWindow::close(const Trust& trust, SolveReport& report)
             return closed;
         }
         if (is_watched) closed.velocity_jump = velocity_jump(e, trust.turns);
+        if (is_watched && rank_.branches.leaves(stretch_, system_.nodes(), front_.here().rows, e))
+            closed.velocity_jump = std::numeric_limits<double>::infinity();
         closed.is_refused = !(closed.velocity_jump <= trust.velocity_jump);
         if (closed.is_refused) return closed;
         close_element(e);
         ++closed.n_elements;
         for (int A = e * system_.rule().degree; A <= (e + 1) * system_.rule().degree; ++A)
-            smallest_pivot_ = std::min(smallest_pivot_, system_.nodes().pivot(A));
+            rank_.smallest_pivot = std::min(rank_.smallest_pivot, system_.nodes().pivot(A));
     }
     front_.is_ready = true;
     return closed;

@@ -4,6 +4,7 @@
 
 #include "livens/spacetime/ends.h"
 #include "livens/spacetime/lobatto/bends.h"
+#include "livens/spacetime/lobatto/branches.h"
 #include "livens/spacetime/lobatto/march_kernel.h"
 #include "livens/spacetime/lobatto/record.h"
 #include "livens/spacetime/lobatto/series.h"
@@ -61,6 +62,10 @@ private:
         std::vector<double> jumps;   // instants
         Bends bends;
     };
+    struct Rank {
+        Branches branches;
+        double smallest_pivot = 1;   // of all closed elements
+    };
     struct Work {
         std::vector<double> lambda, end_lambda;   // all rows of the model
         std::vector<double> impulse;              // h w_0 lambda of the element's first node, in its basis
@@ -101,7 +106,7 @@ private:
     int first_ = 0, last_ = 0;
     Work work_;
     Breaks breaks_;
-    double smallest_pivot_ = 1;   // of all closed elements
+    Rank rank_;
 };
 
 }   // namespace livens

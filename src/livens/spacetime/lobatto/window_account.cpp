@@ -112,7 +112,7 @@ RankLoss LobattoWindow::rank_loss(int e) const
 void LobattoWindow::describe(SolveReport& report) const
 {
     report.unknowns = std::max(report.unknowns, static_cast<int>(system_.balances().reduced().size()));
-    report.smallest_pivot = std::min(report.smallest_pivot, smallest_pivot_);
+    report.smallest_pivot = std::min(report.smallest_pivot, rank_.smallest_pivot);
     report.guess_factorisations = series_.factorisations();
     report.evaluations = system_.evaluations() + series_.evaluations() + kernel_.evaluations();
     if (system_.elimination() != nullptr) system_.elimination()->describe(report);

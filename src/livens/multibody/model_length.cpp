@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cmath>
+
+#include "livens/multibody/model.h"
+
+namespace livens {
+
+namespace {
+
+Vector3 center_of_mass(const Body& body) { return (1 / body.mass(0, 0)) * (body.X * body.mass.column(0)); }
+
+/// The distance of two points, unless it is the rounding of their places.
+double told_distance(const Vector3& a, const Vector3& b)
+{
+    const double distance = norm(a - b);
+    return distance > 1e-13 * (norm(a) + norm(b)) ? distance : 0;
+}
+
+}   // namespace
+
+double Model::length() const
+{
+    double length = 0;
+    Vector3 middle{};
+    for (const Body& body : bodies_) {
+        double square = 0;   // of the radius of gyration
+        for (int i = 1; i < 4; ++i) {
+            const double offset = body.mass(i, 0) / body.mass(0, 0);
+            square += body.mass(i, i) / body.mass(0, 0) - offset * offset;
+        }
+        length = std::max(length, std::sqrt(std::max(square, 0.0)));
+        middle += (1.0 / n_bodies()) * center_of_mass(body);
+    }
+    for (const Body& body : bodies_)
+        length = std::max(length, 2 * told_distance(center_of_mass(body), middle));
+    for (const Joint& joint : joints_) {
+        const Body& second = bodies_[joint.second];
+        const Vector3 place = second.X * point(joint.point_second);
+        const Matrix34& X_first = joint.first == world ? world_configuration : bodies_[joint.first].X;
+        const Vector3 other = X_first * point(joint.point_first);
+        length =
+            std::max({length, told_distance(place, center_of_mass(second)), told_distance(place, other)});
+        if (joint.first != world)
+            length = std::max(length, told_distance(other, center_of_mass(bodies_[joint.first])));
+    }
+    for (const Load& load : loads_) {
+        if (load.type != "attraction") continue;
+        const auto place = [&](std::size_t i) {
+            const int body = load.bodies[i];
+            return body == world ? load.points[i] : bodies_[body].X * point(load.points[i]);
+        };
+        length = std::max(length, told_distance(place(0), place(1)));
+    }
+    return length > 0 ? length : 1;
+}
+
+}   // namespace livens
