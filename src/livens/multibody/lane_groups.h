@@ -76,11 +76,11 @@ LIVENS_INLINE void each(const Act& act)
     }
 }
 
-/// act(0) .. act(n - 1), unrolled where n is m, as it is for joints of one kind in a row.
+/// act(0) .. act(n - 1), unrolled for balls in a row, where counting costs most; more is too much code.
 template <int m, class Act>
 LIVENS_INLINE void count_to(int n, const Act& act)
 {
-    if (m > 1 && n == m)
+    if (m == 3 && n == m)
         each<m>([&](auto j) LIVENS_LAMBDA { act(j.value); });
     else
         for (int j = 0; j < n; ++j) act(j);

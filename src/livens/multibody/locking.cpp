@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "livens/multibody/locking.h"
 
-#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
 
 #include "livens/multibody/rank.h"
 #include "livens/multibody/rows.h"
+#include "livens/solvers/dense.h"
 
 namespace livens {
 
 namespace {
-
-using Eigen::Index;
-using Eigen::MatrixXd;
 
 constexpr std::size_t most_rows = 400;   // their matrix is dense
 constexpr double much_nearer = 1e-2, least_part = 0.02;
@@ -21,15 +20,44 @@ Model as_at(const Model& model, const State& state)
     return model.has_drives() ? frozen(model, {state.t}) : model;
 }
 
-/// Products of the rows, each of norm 1.
-MatrixXd products(const Model& model, const State& state, const std::vector<int>& rows)
+/// What is nearest to nothing among combinations of rows, each of norm 1.
+struct Nearest {
+    double square = 1;             // of its size: the smallest eigenvalue of J J^T
+    std::vector<double> factors;   // of the rows, of norm 1
+};
+
+Nearest nearest_to_nothing(const Model& model, const State& state, const std::vector<int>& rows)
 {
+    constexpr double shift = 1e-18;   // so that there is an inverse
+    constexpr int iterations = 12;
+    const std::size_t m = rows.size();
+    if (m == 0) return {};
     const TwistRows twists = twist_rows(as_at(model, state), state.X, rows);
-    MatrixXd J = MatrixXd::Zero(static_cast<Index>(rows.size()), 6 * model.n_bodies());
-    for (std::size_t r = 0; r < rows.size(); ++r)
-        for (const BodyRow::Part& part : twists.rows[r].parts)
-            for (int i = 0; i < 6; ++i) J(static_cast<Index>(r), 6 * part.body + i) += part.entries[i];
-    return J * J.transpose();
+    const auto product = [&](const BodyRow& a, const BodyRow& b) {
+        double sum = 0;
+        for (const BodyRow::Part& p : a.parts)
+            for (const BodyRow::Part& q : b.parts)
+                for (int i = 0; p.body == q.body && i < 6; ++i) sum += p.entries[i] * q.entries[i];
+        return sum;
+    };
+    DenseLU lu;
+    lu.resize(static_cast<int>(m));
+    for (std::size_t i = 0; i < m; ++i)
+        for (std::size_t j = 0; j < m; ++j)
+            lu.row(static_cast<int>(i))[j] = product(twists.rows[i], twists.rows[j]) + (i == j ? shift : 0);
+    Nearest nearest{0, std::vector<double>(m)};
+    for (std::size_t i = 0; i < m; ++i)   // in no direction of symmetry
+        nearest.factors[i] = 1 + 0.1 * static_cast<double>(i % 7);
+    if (!lu.factorise()) return nearest;
+    for (int k = 0; k < iterations; ++k) {
+        lu.solve(nearest.factors.data());
+        double size = 0;
+        for (const double x : nearest.factors) size += x * x;
+        size = std::sqrt(size);
+        nearest.square = std::max(1 / size - shift, 0.0);   // once the vector before had norm 1
+        for (double& x : nearest.factors) x /= size;
+    }
+    return nearest;
 }
 
 /// Whether no row of a drive moves at any of some instants.
@@ -51,13 +79,12 @@ Lock joints_that_lock(const Model& model, const State& before, const State& now)
     if (model.n_rows() == 0 || model.has_events() || static_cast<std::size_t>(model.n_rows()) > most_rows)
         return {};
     const std::vector<int> rows = row_rank(as_at(model, before), before.X, all_rows(model)).independent;
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> held(products(model, before, rows), Eigen::EigenvaluesOnly),
-        left(products(model, now, rows));
-    const double nearest = left.eigenvalues()[0];
-    if (!(nearest < much_nearer * much_nearer * held.eigenvalues()[0])) return {};
+    const Nearest nearest = nearest_to_nothing(model, now, rows);
+    if (!(nearest.square < much_nearer * much_nearer * nearest_to_nothing(model, before, rows).square))
+        return {};
     std::vector<double> parts(model.joints().size(), 0.0);
     for (std::size_t r = 0; r < rows.size(); ++r) {
-        const double part = left.eigenvectors()(static_cast<Index>(r), 0);
+        const double part = nearest.factors[r];
         parts[static_cast<std::size_t>(model.row_joint(rows[r]))] += part * part;
     }
     Lock lock;
@@ -71,9 +98,7 @@ Lock joints_that_lock(const Model& model, const State& before, const State& now)
         for (const int r : rows)
             if (model.row_joint(r) != j) others.push_back(r);
         if (others.size() == rows.size()) continue;
-        const Eigen::SelfAdjointEigenSolver<MatrixXd> alone(products(model, now, others),
-                                                            Eigen::EigenvaluesOnly);
-        if (alone.eigenvalues().size() == 0 || nearest < much_nearer * alone.eigenvalues()[0])
+        if (nearest.square < much_nearer * nearest_to_nothing(model, now, others).square)
             lock.drives.push_back(j);
     }
     std::erase_if(lock.drives, [&](int j) {   // what stands still asks for nothing new
