@@ -37,7 +37,7 @@ install(DIRECTORY src/livens DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} ${dev} FILE
         EXCLUDE PATTERN "window.h" EXCLUDE PATTERN "windows.h" EXCLUDE PATTERN "accuracy.h" EXCLUDE
         PATTERN "pace.h" EXCLUDE PATTERN "phases.h" EXCLUDE PATTERN "second.h" EXCLUDE PATTERN "largest.h" EXCLUDE
         PATTERN "acceptance_bounds.h" EXCLUDE PATTERN "surface.h" EXCLUDE
-        PATTERN "aligned_doubles.h" EXCLUDE PATTERN "forest.h" EXCLUDE PATTERN "joint_factor.h" EXCLUDE PATTERN "row_pattern.h" EXCLUDE PATTERN "sparse_rows.h" EXCLUDE
+        PATTERN "aligned_doubles.h" EXCLUDE PATTERN "forest.h" EXCLUDE PATTERN "locking.h" EXCLUDE PATTERN "orientation.h" EXCLUDE PATTERN "joint_factor.h" EXCLUDE PATTERN "row_pattern.h" EXCLUDE PATTERN "sparse_rows.h" EXCLUDE
         PATTERN "small_motions.h" EXCLUDE PATTERN "statics.h" EXCLUDE
         PATTERN "lanes.h" EXCLUDE PATTERN "lane_*.h" EXCLUDE)
 install(EXPORT livens-targets NAMESPACE livens:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/livens ${dev})
