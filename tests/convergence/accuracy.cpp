@@ -170,6 +170,8 @@ TEST(Accuracy, FollowsAGyroscopeOfTenThousandRadiansPerSecond)
                         0.27544214561372116, -0.9521438820925948,  -0.1324901966688573,
                         0.4471874779283171,  0.004906292842423702, 0.8944267929096574};
     const double error = norm(directors(X) - exact) / std::sqrt(2.0);
+    tell("gyroscope of 1e4 rad/s after 1 s, rad", error);
+    tell("of which it says, rad", s.estimate.largest);
     EXPECT_LT(error, 1e-6);
     EXPECT_LT(norm(X.column(0) - Vector3{0.09999415993343803, 0.0010970804312500026, 0.19999991098431333}),
               1e-6);

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The family that is taken for an accuracy, and what radau takes from vibrations that it does not resolve.
+#include <sstream>
+
 #include "convergence/studies.h"
 #include "livens/base/error.h"
 
@@ -45,6 +47,7 @@ TEST(Auto, StopsAMassByAStrongDamperWithoutBeingTold)
     const Solution s = to_accuracy(slug(), 1, 1e-6);
     ASSERT_TRUE(s.report.converged()) << s.report.message;
     ASSERT_TRUE(is_radau(s));
+    tell("v(1 s), m/s", s.motion.at(1).V[0](0, 0));
     EXPECT_LT(std::abs(s.motion.at(1).V[0](0, 0)), 1e-9);   // exp(-1e6)
     EXPECT_NEAR(s.motion.at(1).X[0](0, 0), 1 + 1e-6, 1e-9);
     const auto names = [](const std::string& note) {
@@ -74,6 +77,40 @@ TEST(Auto, TakesRadauForDecaysAndLobattoForVibrationsThatMatter)
         ASSERT_TRUE(fine.report.converged()) << fine.report.message;
         EXPECT_LE(gap(s.motion.at(0.5), fine.motion.at(0.5)), 1e-6) << k << ' ' << zeta;
     }
+}
+
+/// k, damping by the critical one, and where the bob is after 0.5 s, by DOP853 and Radau IIA of another
+/// package, whose two tolerances agree to 1e-13.
+struct Elastic {
+    double k, zeta, x, z;
+};
+constexpr Elastic elastic_pendulums[] = {
+    {1e4, 0, 0.0151841942256, -1.0002742784603},  {1e4, 1, 0.0152089187468, -1.0011017131453},
+    {1e4, 20, 0.0150191823437, -1.0006579403327}, {1e6, 0, 0.0146744291406, -0.9999121411493},
+    {1e6, 1, 0.0146743254399, -0.9999045347029},  {1e6, 20, 0.0146746136757, -0.9999044010005},
+    {1e8, 0, 0.0146691472886, -0.9998925110457},  {1e8, 1, 0.0146691474782, -0.9998925243659},
+    {1e8, 20, 0.0146691478607, -0.9998925243236}};
+
+TEST(Auto, FollowsElasticPendulumsOrRefusesThemByName)
+{
+    int n_right = 0;
+    for (const Elastic& one : elastic_pendulums)
+        for (const double accuracy : {1e-4, 1e-6, 1e-8}) {
+            const Solution s =
+                to_accuracy(elastic_pendulum(one.k, 2 * std::sqrt(one.k) * one.zeta), 0.5, accuracy);
+            if (!s.report.converged()) {
+                EXPECT_NE(s.report.message.find("'bob'"), std::string::npos) << s.report.message;
+                continue;
+            }
+            ++n_right;
+            const Vector3 off = s.motion.at(0.5).X[0].column(0) - Vector3{one.x, 0, one.z};
+            std::ostringstream what;
+            what << "k = " << one.k << " N/m, zeta = " << one.zeta << ", to " << accuracy << ", m";
+            tell(what.str(), norm(off));
+            EXPECT_LE(norm(off), 3 * accuracy) << what.str();
+        }
+    tell("of 27 were solved", n_right);
+    EXPECT_GE(n_right, 20);
 }
 
 TEST(Auto, TakesRadauWhereLobattoDoesNotFollowAVibrationThatDoesNotMatter)

@@ -64,7 +64,8 @@ TEST(Estimates, OfReactionsDoNotDependOnTheUnitOfLength)
         place.position = {size, 0, 0};
         place.velocity = {0, 0, -2 * size};
         place.angular_velocity = {0, 2, 0};
-        model.add_body(rigid_body("door", box(1000 / (unit * unit * unit), {2 * size, 0.1 * size, size}), place));
+        model.add_body(
+            rigid_body("door", box(1000 / (unit * unit * unit), {2 * size, 0.1 * size, size}), place));
         JointFrame hinge;
         hinge.axis_first = hinge.axis_second = {0, 1, 0};
         hinge.point_second = {-size, 0, 0};
@@ -227,6 +228,36 @@ TEST(Refusals, DivideElementsThatMeetARootThatIsNone)
         }
     EXPECT_GE(divided, 5);
     EXPECT_GE(wrong, 5) << "negative control: nothing was there to be refused";
+}
+
+/// A ball about its own axis, 5 rad an element: whoever takes the elements that are given does not see it, or
+/// has to say so.
+TEST(Estimate, OfABallThatSpinsFiveRadiansAnElementIsNeverGoodAndWrong)
+{
+    Model model;
+    Placement placement;
+    placement.angular_velocity = {0, 0, 50};
+    model.add_body(rigid_body("ball", {1, {}, 0.004 * identity<3>()}, placement));
+    std::vector<Method> methods{Midpoint{}, Endpoint{}};
+    for (int degree = 1; degree <= 16; ++degree) methods.emplace_back(Lobatto{degree});
+    for (int degree = 1; degree <= 8; ++degree) methods.emplace_back(Radau{degree});
+    int n_good = 0;
+    for (const Method& method : methods)
+        for (const bool divide : {true, false}) {
+            SolveOptions options;
+            options.divide = divide;
+            const Solution s = solve(model, {model.start()}, make_time_mesh(0, 2, 20), method, options);
+            if (!s.report.converged()) continue;
+            ++n_good;
+            const double c = std::cos(100.0), d = std::sin(100.0);
+            const double off =
+                norm(directors(s.motion.at(2).X[0]) - Matrix3{c, d, 0, -d, c, 0, 0, 0, 1}) / std::sqrt(2.0);
+            EXPECT_LE(off, 10 * s.estimate.largest + 1e-9) << n_good;
+            EXPECT_LE(off, 2e-2) << n_good;
+        }
+    tell("methods that were called good, and were, of 52", n_good);
+    EXPECT_GT(n_good, 0);
+    EXPECT_LT(n_good, 52);
 }
 
 }   // namespace

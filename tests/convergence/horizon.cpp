@@ -18,8 +18,10 @@ Solution with_growth(const Model& model, double end, int n, const Method& method
 TEST(Horizon, OfTheDoublePendulumsIsWhereTwoIntegrationsPart)
 {
     const Solution centred = with_growth(cubes_on_rods(0), 60, 720, Lobatto{8});
+    tell("horizon of the centred pendulum, s", centred.verdict.horizon);
     EXPECT_NEAR(centred.verdict.horizon, 50, 5);
     const Solution offset = with_growth(cubes_on_rods(0.1), 35, 420, Lobatto{8});
+    tell("horizon of the offset pendulum, s", offset.verdict.horizon);
     EXPECT_NEAR(offset.verdict.horizon, 26, 4);
 }
 

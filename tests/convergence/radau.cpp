@@ -20,6 +20,8 @@ void expect_order(const Model& model, double end, const Fine& reference, int deg
 {
     const Study s = radau_study(model, end, reference.end, degree, n);
     const double X = 50 * reference.floor.X, V = 50 * reference.floor.V;
+    tell("radau(" + std::to_string(degree) + "), order of positions", last_rate(s, &Distance::X, X));
+    tell("radau(" + std::to_string(degree) + "), order of velocities", last_rate(s, &Distance::V, V));
     EXPECT_GE(n_above(s, &Distance::X, X), 5u) << degree;
     EXPECT_GE(n_above(s, &Distance::V, V), 5u) << degree;
     EXPECT_NEAR(last_rate(s, &Distance::X, X), 2 * degree - 1, 0.2) << "position, radau(" << degree << ")";
@@ -72,10 +74,12 @@ TEST(Radau, TakesLoadsAtItsNodesFromTheElementsSide)
 
 TEST(Radau, HoldsConstraintsAtItsNodesToRounding)
 {
+    double largest = 0;
     for (const Model& model : {two_bricks(), hinged_links(), four_bar(), cubes_on_rods(0.1), medley()})
         for (const int degree : {1, 2, 3, 5, 8}) {
             const Solution s = solve_radau(model, 0.5, 40, degree, undivided());
             const ViolationReport v = violations(model, s.motion, 1, false);
+            largest = std::max({largest, v.joints_at_nodes, v.rigidity_at_nodes});
             EXPECT_LE(v.joints_at_nodes, 2e-14) << degree;
             EXPECT_LE(v.rigidity_at_nodes, 2e-14) << degree;
             EXPECT_LE(v.velocity_level, 1e-12) << degree;
@@ -84,6 +88,7 @@ TEST(Radau, HoldsConstraintsAtItsNodesToRounding)
                 EXPECT_GT(v.joints_between + v.rigidity_between, 1e-8);
             }
         }
+    tell("largest violation at nodes, of five mechanisms and degrees", largest);
 }
 
 TEST(Radau, BalancesLinearMomentumWithItsMultipliers)
@@ -123,6 +128,7 @@ TEST(Radau, DampsWhatItDoesNotResolve)
 {
     for (int degree = 1; degree <= 8; ++degree) {
         const double radius = radius_of_a_stiff_spring(degree);
+        tell("spectral radius of radau(" + std::to_string(degree) + ") at h omega = 1e4", radius);
         EXPECT_LT(radius, 1e-3) << degree;
         EXPECT_NEAR(radius, degree / 1e4, 0.02 * degree / 1e4) << degree;   // |R(iy)| -> p / y
     }
@@ -136,6 +142,7 @@ TEST(Radau, StopsAMassByAStrongDamper)
     for (int degree = 1; degree <= 8; ++degree) {
         const Solution s = solve_radau(model, 1, 10, degree);   // judged, and not suspect
         EXPECT_EQ(s.report.divided, 0);
+        tell("v(1 s) of radau(" + std::to_string(degree) + "), m/s", last(s).V[0](0, 0));
         EXPECT_LE(std::abs(last(s).V[0](0, 0)), 1e-9) << degree;
         EXPECT_NEAR(last(s).X[0](0, 0), 1 + 1e-6, 1e-9) << degree;
         EXPECT_TRUE(std::ranges::any_of(s.verdict.remarks, [](const std::string& remark) {
@@ -158,6 +165,8 @@ TEST(Radau, FollowsAStiffElasticPendulum)
         return last(solve(model, {model.start()}, make_time_mesh(0, 1, n), method, undivided()));
     };
     const State reference = at(Lobatto{4}, 8000);
+    for (const int n : {20, 40, 80})
+        tell("radau(4) with " + std::to_string(n) + " elements, m", distance(at(Radau{4}, n), reference).X);
     EXPECT_LE(distance(at(Lobatto{5}, 6000), reference).X, 2e-11);
     EXPECT_LE(distance(at(Radau{4}, 20), reference).X, 1e-6);
     EXPECT_LE(distance(at(Radau{4}, 40), reference).X, 4e-8);
@@ -189,6 +198,9 @@ TEST(Radau, SwingsALightHookUnderAHeavyLoad)
     EXPECT_GT(distance(at(Radau{3}, 6), reference).X, 1e-2);
     const Solution divided = solve_radau(model, 1, 6, 3);
     EXPECT_GT(divided.report.divided, 0);
+    tell("hook, 40 elements, m", distance(at(Radau{3}, 40), reference).X);
+    tell("hook, 6 elements, some divided, m", distance(last(divided), reference).X);
+    tell("of which it says, m", model.length() * divided.estimate.largest);
     EXPECT_LE(distance(last(divided), reference).X, 1e-5);
     EXPECT_LE(distance(last(divided), reference).X, 3 * model.length() * divided.estimate.largest);
 }
@@ -255,6 +267,8 @@ void check_calibration(const Model& model, Points points, int degree, const std:
     SCOPED_TRACE(degree);
     const double q = (2.0 * degree + (points == Points::radau ? 0 : 1)) / (degree + 1);
     const Calibration c = calibrate(model, points == Points::radau ? 1 : 2, points, degree, meshes);
+    tell("degree " + std::to_string(degree) + ", exponent by the expected one", c.slope / q);
+    tell("degree " + std::to_string(degree) + ", median of error by C_p J^q", c.median);
     EXPECT_GE(c.n, 8);
     EXPECT_NEAR(c.slope / q, 1, 0.26);
     EXPECT_GE(c.median, 1.0 / 5);

@@ -3,11 +3,19 @@
 #pragma once
 
 #include <functional>
+#include <iostream>
+#include <string>
 #include <vector>
 
 #include "mechanisms.h"
 
 namespace livens::tests {
+
+/// A figure that a test has found, for those who ask for its output (ctest -V).
+inline void tell(const std::string& what, double value)
+{
+    std::cout << "    " << what << ": " << value << '\n';
+}
 
 /// Errors at the end of a motion for meshes of n equal elements, each at most 1.25 times as fine as the one
 /// before.

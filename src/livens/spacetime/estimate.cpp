@@ -48,6 +48,7 @@ Second::Second(const Model& model, const Problem& problem, const Method& method,
       at_(is_backwards_ ? first.n_elements() : 0)
 {
     problem_.guess = [&first](double t) { return first.at(t); };
+    problem_.near = &first;
     options_.condition = options_.judge = false;
     options_.end_at_bends = false;   // within its error it does where the first one's elements end
     options_.meeting = std::numeric_limits<double>::infinity();   // both meet it within their errors

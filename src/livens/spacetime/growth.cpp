@@ -120,7 +120,7 @@ std::vector<double> growth_beside(const State& neighbour, double rate, const Mod
         Solution beside[2];
         for (int k = 0; k < 2; ++k) {
             try {
-                beside[k] = solve(model, {{sides[k]}}, mesh, method, quiet);
+                beside[k] = solve(model, {{sides[k]}, {}, &motion}, mesh, method, quiet);
             } catch (const InputError& error) {   // the motion has come to a singular position
                 if (error.complaint().code != "start-singular") throw;
                 return grown;

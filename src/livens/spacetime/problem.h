@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "livens/multibody/model.h"
+#include "livens/multibody/motion.h"
 
 namespace [[gnu::visibility("default")]] livens {
 
@@ -34,6 +35,9 @@ struct Problem {
     Conditions conditions;
     /// A motion that is about right, for conditions at both ends; empty: one is made from the conditions.
     std::function<State(double t)> guess{};
+    /// A motion of the same bodies that is near: marches of lobatto(p) take it as their guess where their
+    /// elements are its own. Must outlive the solution. Null: there is none.
+    const Motion* near = nullptr;
 };
 
 }   // namespace livens

@@ -29,11 +29,13 @@ namespace {
 constexpr double undetermined = 1e11;
 
 std::unique_ptr<Window> make_window(const Tables& tables, const TimeMesh& mesh, const Ends& ends,
-                                    const Method& method)
+                                    const Method& method, const Motion* near = nullptr)
 {
     if (const auto* mixed = std::get_if<Mixed>(&method))
         return std::make_unique<MixedWindow>(tables, mesh, ends, *mixed);
-    return std::make_unique<LobattoWindow>(tables, mesh, ends, rule_of(method));
+    auto window = std::make_unique<LobattoWindow>(tables, mesh, ends, rule_of(method));
+    if (near != nullptr) window->follow(*near);
+    return window;
 }
 
 /// Instants in the direction of solution: the ends of elements first..last - 1, each divided into `pieces`.
@@ -168,7 +170,7 @@ Solution solve_by_windows(const Model& model, const Problem& problem, const Time
     const bool is_mixed = std::holds_alternative<Mixed>(method);
     const Ends ends = close_ends(model, problem.conditions, mesh.start(), mesh.end(), options.initial);
     const Tables tables(model, ends.independent, is_mixed);
-    const std::unique_ptr<Window> window = make_window(tables, mesh, ends, method);
+    const std::unique_ptr<Window> window = make_window(tables, mesh, ends, method, problem.near);
     Solution solution;
     solution.method = method;
     SolveReport& report = solution.report;

@@ -22,10 +22,11 @@ constexpr double least_rounding = 1e-14, rounding_by_pivot = 4e-16, most_roundin
 constexpr double fits_on_the_way = 1e-2;   // times the smallest pivot: motion at which a factor is still good
 constexpr double fits_at_end = 1e-4;       // for multipliers, whose last change it takes with this error
 constexpr double fits_for_next = 1e-8;     // NearFactor
-// Lengths or radians; below, the series, which costs a quarter of a step, has to be nearer by a factor.
-constexpr double near_enough = 1e-6, much_nearer = 4;
-constexpr double least_pivot = 1e-5;         // of the rows' own size
+constexpr double least_pivot = 1e-5;       // of the rows' own size
 constexpr double share_of_tolerance = 0.1;   // left after the last step, as far as contraction foretells it
+// Lengths or radians from a motion nearby, beyond which it is not followed: it may have met a root that is
+// none.
+constexpr double farthest_parting = 1e-3;
 constexpr double widest_tolerance =
     1e-10;   // Newton's last step leaves less than it was allowed to, this all
 
@@ -46,9 +47,10 @@ const lanes::Functions* functions_for(int n_lanes)
 /// How steps shrink, and whether what is left is small enough.
 struct Shrinking {
     double tolerance;
+    bool has_contracted;   // at first: the guess may be right to rounding
     int n_steps = 0, n_slow = 0;
     double step = 0, contraction = 0;
-    bool has_contracted = false, is_done = false, is_rounded = false;
+    bool is_done = false, is_rounded = false;
 
     /// False: there is no hope.
     bool take(const lanes::Sizes& sizes, double rounding)
@@ -150,77 +152,6 @@ void MarchKernel::use(const InstantState& start)
     for (const int row : chosen) place_.push_back(places[row]);
 }
 
-/// Places of a node, tau after the start, from the series there; 7 numbers a body, `stride` apart.
-void MarchKernel::place_series(const TwistSeries& series, double tau, const InstantState& start, int stride,
-                               double* place)
-{
-    series.at(tau, work_.twist.data());
-    for (int b = 0; b < tables_.n_bodies(); ++b, place += 7 * stride) {
-        const Tables::BodyTable& body = tables_.bodies[b];
-        const double *t = work_.twist.data() + body.first, *w = t + 3, *d = start.X.data() + 12 * b + 3;
-        double dX[12];
-        for (int i = 0; i < 3; ++i) place[i * stride] = t[i];
-        if (body.dofs == 3) continue;
-        const double angle = std::sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]);
-        const SineCosine half = sine_cosine(0.5 * angle);
-        const double factor = angle > 1e-8 ? half.sine / angle : 0.5;
-        place[3 * stride] = half.cosine;
-        for (int a = 0; a < 3; ++a)
-            place[(4 + a) * stride] = factor * (d[3 * a] * w[0] + d[3 * a + 1] * w[1] + d[3 * a + 2] * w[2]);
-        if (!body.offset) continue;
-        twist::displacement(t, d - 3, dX);
-        for (int i = 0; i < 3; ++i)
-            place[i * stride] +=
-                dX[3 + i] * body.center[0] + dX[6 + i] * body.center[1] + dX[9 + i] * body.center[2];
-    }
-}
-
-/// Places of all nodes: from the series at the start, or by the polynomial of the element before, whichever
-/// was nearer to the end of the last element.
-void MarchKernel::guess(const Stretch& stretch, const InstantState& start)
-{
-    const double h = stretch.h(0);
-    const TwistSeries series(tables_, start, h);
-    double* place = nodes_.values().place;
-    const int W = functions_->width;
-    const std::size_t n = guess_.by_series.place.size();
-    const auto keep_end = [&](Guess::End& end) {
-        for (std::size_t i = 0; i < n; ++i) end.place[i] = place[i * W];
-    };
-    guess_.by_polynomial.is_known = start.has_past && guess_.polynomial.follows(stretch.times.front(), h);
-    guess_.by_series.is_known = guess_.by_polynomial.is_known;   // else there is nothing to compare
-    if (guess_.by_polynomial.is_known && guess_.is_polynomial) {
-        place_series(series, h, start, 1, guess_.by_series.place.data());
-        guess_.polynomial.place(h, place);
-        return keep_end(guess_.by_polynomial);
-    }
-    if (guess_.by_polynomial.is_known) {
-        guess_.polynomial.place(h, place);
-        keep_end(guess_.by_polynomial);
-    }
-    for (int l = 0; l < rule_.degree; ++l)
-        place_series(series, rule_.nodes[node_of(l)] * h, start, W, place + l);
-    if (guess_.by_series.is_known) keep_end(guess_.by_series);
-}
-
-/// Where the element has ended now.
-void MarchKernel::compare_guesses()
-{
-    if (!guess_.by_polynomial.is_known) return;
-    const double* place = nodes_.values().place;
-    const auto distance = [&](const Guess::End& end) {
-        double far = 0, wide = 0;
-        for (int b = 0; b < tables_.n_bodies(); ++b)
-            for (int i = 0; i < (tables_.bodies[b].dofs == 6 ? 7 : 3); ++i) {
-                const double gap = std::abs(end.place[7 * b + i] - place[(7 * b + i) * functions_->width]);
-                (i < 3 ? far : wide) = std::max(i < 3 ? far : wide, gap);
-            }
-        return std::max(far / tables_.length, 2 * wide);
-    };
-    const double polynomial = distance(guess_.by_polynomial), series = distance(guess_.by_series);
-    guess_.is_polynomial = polynomial < (polynomial < near_enough ? much_nearer : 1) * series;
-}
-
 /// Loads at their points, and the sum of their wrenches about the centres of mass.
 void MarchKernel::evaluate_loads(const Stretch& stretch)
 {
@@ -281,14 +212,16 @@ double MarchKernel::size_of_proposal() const
 }
 
 bool MarchKernel::iterate(const Stretch& stretch, const InstantState& start, const NewtonOptions& options,
-                          bool is_accelerated, NewtonReport& report)
+                          bool is_accelerated, bool may_follow, NewtonReport& report)
 {
-    guess(stretch, start);
+    const bool follows = may_follow && follow(stretch);
+    if (!follows) guess(stretch, start);
+    guess_.was_followed = follows;
     const lanes::Pattern& pattern = pattern_->view();
     const lanes::Values &nodes = nodes_.values(), &from = start_->values();
     const int most = is_accelerated ? most_combinations : std::min(most_steps, options.max_iterations);
     lanes::Sizes sizes;
-    Shrinking progress{std::min(options.tolerance, widest_tolerance)};
+    Shrinking progress{std::min(options.tolerance, widest_tolerance), follows};
     if (is_accelerated) acceleration_.begin(static_cast<std::size_t>(pattern.n_twists * functions_->width));
     double moved = 0, pivot = 0;   // since the factor was made, lengths and radians; its own, squared
     for (int steps = 0;; ++steps) {
@@ -309,6 +242,8 @@ bool MarchKernel::iterate(const Stretch& stretch, const InstantState& start, con
         const double left = is_accelerated ? size_of_proposal() : 0;
         if (is_accelerated) acceleration_.apply(nodes.step);
         functions_->move(pattern, nodes, scaled_.tables, sizes);
+        if (follows && steps == 0 && !(sizes.step <= farthest_parting))
+            return iterate(stretch, start, options, is_accelerated, false, report);
         if (!std::isfinite(sizes.finite)) return false;
         moved += sizes.step;
         const double noise = std::clamp(rounding_by_pivot / pivot, least_rounding, most_rounding);
@@ -334,9 +269,9 @@ bool MarchKernel::solve(const Stretch& stretch, const InstantState& start, const
     use(start);
     scale_rule(stretch, start);
     const bool is_large = !soon && tables_.n_twists >= many_twists && options.max_iterations >= most_steps;
-    if (!(is_large && was_slow_)) is_solved_ = iterate(stretch, start, options, false, report);
+    if (!(is_large && was_slow_)) is_solved_ = iterate(stretch, start, options, false, true, report);
     if (is_large && !is_solved_) {
-        is_solved_ = iterate(stretch, start, options, true, report);
+        is_solved_ = iterate(stretch, start, options, true, true, report);
         was_slow_ = is_solved_ && report.iterations > most_steps;
     }
     if (is_solved_ && guess_.polynomial.serves()) {

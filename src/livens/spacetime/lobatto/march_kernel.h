@@ -7,6 +7,7 @@
 #include "livens/solvers/newton.h"
 #include "livens/spacetime/lobatto/acceleration.h"
 #include "livens/spacetime/lobatto/extrapolation.h"
+#include "livens/spacetime/lobatto/following.h"
 #include "livens/spacetime/lobatto/kernel_functions.h"
 #include "livens/spacetime/lobatto/series.h"
 
@@ -25,6 +26,11 @@ public:
 
     /// Whether there are lanes for the rule, and JointFactor serves.
     bool serves() const { return functions_ != nullptr; }
+    /// A motion nearby, which has to outlive the kernel, as the guess where its elements are the same.
+    void follow(const Motion& motion)
+    {
+        if (serves()) guess_.following = Following(motion, tables_, rule_, *functions_);
+    }
     /// The element of `stretch` from `start`. False: not converged within 14 steps, steps that do not shrink
     /// to 0.3 twice, a number that is not finite, or a pivot that is nearly zero. Steps of many bodies, of
     /// which a tangent would be large, are then combined (Acceleration), unless it has to be told `soon`.
@@ -32,6 +38,8 @@ public:
                NewtonReport& report);
     /// The last solve() was successful, and nothing else was tried since.
     bool is_solved() const { return is_solved_; }
+    /// And it was found near the element of the motion that is followed, on whose branch it is.
+    bool has_followed() const { return is_solved_ && guess_.was_followed; }
     void forget()
     {
         is_solved_ = guess_.is_polynomial = false;
@@ -76,6 +84,8 @@ private:
             bool is_known = false;
         } by_series, by_polynomial;
         Extrapolation polynomial;
+        Following following;
+        bool was_followed = false;
         bool is_polynomial = false;   // as that was nearer to the end of the last element
     };
 
@@ -83,12 +93,15 @@ private:
     void make_rule();
     void scale_rule(const Stretch& stretch, const InstantState& start);
     void guess(const Stretch& stretch, const InstantState& start);
+    bool follow(const Stretch& stretch);
+    void keep_end(Guess::End& end) const;
+    double moved_from(const Guess::End& end) const;
     void place_series(const TwistSeries& series, double tau, const InstantState& start, int stride,
                       double* place);
     void compare_guesses();
     void evaluate_loads(const Stretch& stretch);
     bool iterate(const Stretch& stretch, const InstantState& start, const NewtonOptions& options,
-                 bool is_accelerated, NewtonReport& report);
+                 bool is_accelerated, bool may_follow, NewtonReport& report);
     double size_of_proposal() const;
     int lane_of(int B) const { return B == rule_.degree ? 0 : B; }
     int node_of(int lane) const { return lane == 0 ? rule_.degree : lane; }

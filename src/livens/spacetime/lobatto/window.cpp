@@ -260,7 +260,8 @@ Closed LobattoWindow::close(const Trust& trust, SolveReport& report)
             return closed;
         }
         if (is_watched) closed.velocity_jump = velocity_jump(e, trust.turns);
-        if (is_watched && rank_.branches.leaves(stretch_, system_.nodes(), front_.here().rows, e))
+        if (is_watched && !kernel_.has_followed() &&
+            rank_.branches.leaves(stretch_, system_.nodes(), front_.here().rows, e))
             closed.velocity_jump = std::numeric_limits<double>::infinity();
         closed.is_refused = !(closed.velocity_jump <= trust.velocity_jump);
         if (closed.is_refused) return closed;

@@ -19,6 +19,8 @@ public:
     /// References must outlive the window.
     LobattoWindow(const Tables& tables, const TimeMesh& mesh, const Ends& ends, const ElementRule& rule);
 
+    /// A motion nearby, which has to outlive the window, as the guess where its elements are the same.
+    void follow(const Motion& motion) { kernel_.follow(motion); }
     bool open(int first, int last, SolveReport& report) override;
     bool solve(const NewtonOptions& options, bool soon, NewtonReport& report) override;
     double tangent_cost() const override;
