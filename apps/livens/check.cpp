@@ -106,6 +106,7 @@ std::string springs_of(const Model& model, const State& start)
             lines.push_back(plain(joint.name) + ": " +
                             line({joint.first, joint.second}, {joint.point_first, joint.point_second}));
     for (const Load& load : model.loads()) {
+        if (load.type == "attraction") continue;   // between places that are told already
         const std::string force = force_of(load, start);
         if (load.points.size() == 2)
             lines.push_back(plain(load.name) + ": " + line(load.bodies, load.points) +
@@ -116,8 +117,8 @@ std::string springs_of(const Model& model, const State& start)
     std::string text;
     for (std::size_t i = 0; i < std::min(lines.size(), most_told); ++i) text += "    " + lines[i] + "\n";
     if (lines.size() > most_told)
-        text += fmt::format("    and {} more rods and springs\n", lines.size() - most_told);
-    return text.empty() ? text : "  rods and springs at the start:\n" + text;
+        text += fmt::format("    and {} more\n", lines.size() - most_told);
+    return text.empty() ? text : "  rods, springs and actuators at the start:\n" + text;
 }
 
 }   // namespace

@@ -302,7 +302,8 @@ class Solution(Series):
         span = f"{self.t[0]:.6g} s to {self.t[-1]:.6g} s"
         rows.append(("method", f"{self.method}, {self.n_elements} elements, {span}"
                      + (f", in {self.seconds:.3g} s" if self.seconds else "")))
-        words = (("estimated_error", "estimated error", f"of the model's length, {f['model_length'] or float('nan'):.3g} m, or rad"),
+        length = f["model_length"] or float("nan")
+        words = (("estimated_error", "estimated error", f"of the model's length, {length:.3g} m, or rad"),
                  ("max_constraint_violation", "constraints", "violated at most, relative"),
                  ("energy_drift", "energy", "off its balance, relative"),
                  ("angular_momentum_drift", "angular momentum", "off its balance, relative"),

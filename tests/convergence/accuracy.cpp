@@ -179,6 +179,16 @@ TEST(Accuracy, FollowsAGyroscopeOfTenThousandRadiansPerSecond)
     EXPECT_LT(s.estimate.largest, 1e-6);
 }
 
+/// Elements begin with less than a billionth of the whole time.
+TEST(Accuracy, BeginsWithElementsThatAreShortForTheWholeTime)
+{
+    Model coast;
+    coast.add_body(point_mass("probe", 1, {}, {7700, 0, 0}));
+    const Solution flown = solve(coast, {coast.start()}, Span{0, 1e5, 1e-6}, Auto{});
+    ASSERT_TRUE(flown.report.converged()) << flown.report.message;
+    EXPECT_NEAR(flown.motion.at(1e5).X[0](0, 0), 7.7e8, 7.7e8 * 1e-14);
+}
+
 TEST(Accuracy, WorksAboutAsMuchAsTheBestUniformMesh)
 {
     // evaluations of the accepted march with its refused elements, for the same true error

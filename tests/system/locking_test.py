@@ -185,6 +185,56 @@ class Locking(ProgramTest):
                               ["position"] for t in ("0", "3")]
                         self.assertLess(math.dist(*at), 1e-6)
 
+    def comes_home(self, others):
+        """The four-bar turns back a hundred-thousandth before it locks, beside others."""
+        law = f"{0.5 * (1 - 1e-5) * DEAD ** 2!r}*(1 - cos(2*pi*t/3))"
+        self.why(FOUR_BAR.replace('"t^2"', f'"{law}"') + others.replace('"t^2"', f'"{law}"') + "[time]\nend = 3\n", code=0)
+        at = [json.loads(self.expect(0, "sample", "run.nc", "--body", "rocker", "--at", t, "--json").out)["position"]
+              for t in ("0", "3")]
+        self.assertLess(math.dist(*at), 1e-6)
+
+    def test_other_bodies_hide_nothing_of_a_mechanism(self):
+        free = "".join(f"""[[body]]
+name = "free {i}"
+shape = {{ sphere = 0.1 }}
+mass = 1
+position = [{3 + i}, 0, 0]
+[body.start]
+velocity = [0.1, 0, 0]
+""" for i in range(3))
+        welded = "".join(f"""[[body]]
+name = "post {i}"
+shape = {{ sphere = 0.1 }}
+mass = 1
+position = [{3 + i}, 0, 0]
+[[joint]]
+name = "foot {i}"
+type = "weld"
+between = ["world", "post {i}"]
+at = [{3 + i}, 0, 0]
+""" for i in range(12))
+        twin = FOUR_BAR[FOUR_BAR.index("[[body]]"):]
+        for name in ("crank", "coupler", "rocker", "A", "B", "C", "D", "motor"):
+            twin = twin.replace(f'"{name}"', f'"{name}2"')
+        for others in (free, welded, twin):
+            with self.subTest(others=others[:40]):
+                self.comes_home(others)
+
+    def test_marches_against_time_tell_locks(self):
+        """The same way, as it is at the end: from 3 s back until the links are on one line."""
+        placed = re.sub(r"(?m)^(position = .*\n(?:rotation_vector = .*\n)?)(?=\[\[)", r"\1[body.end]\n\1", FOUR_BAR)
+        message = self.why(f"""{placed.replace('"t^2"', '"(3 - t)^2"')}[time]
+end = 3
+elements = 30
+[start]
+given = "nothing"
+[end]
+given = "state"
+""")
+        self.assertIn("the mechanism locks near t = ", message)
+        self.assertAlmostEqual(float(re.search(r"t = ([0-9.]+) s", message)[1]), 3 - DEAD, delta=1e-5)
+        self.assertIn("drive 'motor' asks for", message)
+
     def test_a_drive_that_rests_is_not_to_blame(self):
         """A five-bar, one crank held, the other turned until the distal links are on one line."""
         five = FOUR_BAR[:FOUR_BAR.index("[[drive]]")].replace('between = ["rocker", "world"]', 'between = ["rocker", "post"]')

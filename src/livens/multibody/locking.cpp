@@ -28,7 +28,7 @@ struct Nearest {
 
 Nearest nearest_to_nothing(const Model& model, const State& state, const std::vector<int>& rows)
 {
-    constexpr double shift = 1e-18;   // so that there is an inverse
+    constexpr double shift = 1e-15;   // so that there is an inverse; below rounding nothing is told anyway
     constexpr int iterations = 12;
     const std::size_t m = rows.size();
     if (m == 0) return {};
@@ -48,7 +48,7 @@ Nearest nearest_to_nothing(const Model& model, const State& state, const std::ve
     Nearest nearest{0, std::vector<double>(m)};
     for (std::size_t i = 0; i < m; ++i)   // in no direction of symmetry
         nearest.factors[i] = 1 + 0.1 * static_cast<double>(i % 7);
-    if (!lu.factorise()) return nearest;
+    if (!lu.factorise()) return {};   // no numbers
     for (int k = 0; k < iterations; ++k) {
         lu.solve(nearest.factors.data());
         double size = 0;
@@ -101,9 +101,10 @@ Lock joints_that_lock(const Model& model, const State& before, const State& now)
         if (nearest.square < much_nearer * nearest_to_nothing(model, now, others).square)
             lock.drives.push_back(j);
     }
-    std::erase_if(lock.drives, [&](int j) {   // what stands still asks for nothing new
-        return lock.drives.size() > 1 && is_at_rest(model, j, before.t, now.t);
-    });
+    std::vector<int> moving;   // what stands still asks for nothing new
+    for (const int j : lock.drives)
+        if (!is_at_rest(model, j, before.t, now.t)) moving.push_back(j);
+    if (!moving.empty()) lock.drives = moving;
     return lock;
 }
 

@@ -21,15 +21,15 @@ double told_distance(const Vector3& a, const Vector3& b)
 
 double Model::length() const
 {
-    double length = 0;
+    double length = 0, radius = 0;   // of gyration, the largest
     Vector3 middle{};
     for (const Body& body : bodies_) {
-        double square = 0;   // of the radius of gyration
+        double square = 0;
         for (int i = 1; i < 4; ++i) {
             const double offset = body.mass(i, 0) / body.mass(0, 0);
             square += body.mass(i, i) / body.mass(0, 0) - offset * offset;
         }
-        length = std::max(length, std::sqrt(std::max(square, 0.0)));
+        radius = std::max(radius, std::sqrt(std::max(square, 0.0)));
         middle += (1.0 / n_bodies()) * center_of_mass(body);
     }
     for (const Body& body : bodies_)
@@ -44,7 +44,8 @@ double Model::length() const
         if (joint.first != world)
             length = std::max(length, told_distance(other, center_of_mass(bodies_[joint.first])));
     }
-    for (const Load& load : loads_) {
+    if (length > 0) return std::max(length, radius);
+    for (const Load& load : loads_) {   // an orbit is told by what attracts, but not a mechanism in one
         if (load.type != "attraction") continue;
         const auto place = [&](std::size_t i) {
             const int body = load.bodies[i];
@@ -52,6 +53,7 @@ double Model::length() const
         };
         length = std::max(length, told_distance(place(0), place(1)));
     }
+    length = std::max(length, radius);
     return length > 0 ? length : 1;
 }
 

@@ -11,15 +11,21 @@ namespace livens {
 /// The gradients G of some rows at one place, by scaled twists, each of norm 1.
 class Orientation {
 public:
-    /// X: 12 numbers a body.
+    /// X: 12 numbers for each body of the model, of which those of the rows' bodies are read.
     void place(const Tables& tables, const std::vector<int>& rows, Instant at, const double* X);
-    /// Against a place nearby: the determinant of G G_before^T is negative, since what passed zero on the way
-    /// has changed its sign. Two that pass together are not seen.
-    bool is_turned_over(const Orientation& before) const;
+    /// Against another place of the same rows: the determinant of G G_before^T is negative, since what passed
+    /// zero on the way has changed its sign. Two that pass together are not seen.
+    bool is_turned_over(const Orientation& before);
 
 private:
-    int n_rows_ = 0, n_twists_ = 0;
-    std::vector<double> gradients_, maps_, one_;   // row by row
+    struct Side {
+        int body, row;   // the latter by its place in the rows
+        double entries[6];
+    };
+
+    int n_rows_ = 0;
+    std::vector<Side> sides_;   // body by body
+    std::vector<double> gradient_, product_;
 };
 
 }   // namespace livens

@@ -73,7 +73,7 @@ struct Tables {
     int n_twists = 0;
     std::vector<int> independent;   ///< rows that are solved for, until choose_rows() finds them unfit
     int rank = 0;                   ///< how many they are
-    bool regular = true;   ///< every inertia is definite; else L is that of a slightly larger one
+    bool regular = true;            ///< every inertia is definite; else L is that of a slightly larger one
 
     int n_bodies() const { return n_bodies_; }
     int n_rows() const { return model->n_rows(); }
@@ -84,6 +84,8 @@ struct Tables {
     void gradient(int r, Instant at, const double* X, double* g) const;
     /// Force and moment about the centre of mass of one side's gradient, 6 numbers.
     void wrench(int r, int side, const double* X, const double* maps, const double* g, double* q) const;
+    /// The same as a row of scaled twists, 6 numbers (0 for what a point has not).
+    void scaled_wrench(int r, int side, const double* X, const double* g, double* y) const;
     /// q += factor times these of all sides, n_twists numbers.
     void add_wrenches(int r, const double* X, const double* maps, const double* g, double factor,
                       double* q) const;
@@ -129,6 +131,9 @@ struct Tables {
     void times_mass(const double* Y, double factor, double* out) const;
 
 private:
+    void map_twist(int body, const double* X, double* map) const;
+    void plain_wrench(int r, int side, const double* X, const double* g, double* q) const;
+
     int n_bodies_;   // the size of `bodies`, which every loop would divide for
 };
 

@@ -26,21 +26,23 @@ void multiply_transposed(const double* l, const double* r, double* out)
 
 }   // namespace
 
+inline void Tables::map_twist(int b, const double* X, double* f) const
+{
+    if (bodies[b].dofs == 3) return;
+    const double* R = X + 12 * b + 3;
+    const double *c = bodies[b].center, *l = bodies[b].spin;
+    if (bodies[b].principal)
+        for (int a = 0; a < 3; ++a)
+            for (int i = 0; i < 3; ++i) f[3 * a + i] = l[4 * a] * R[3 * a + i];
+    else
+        multiply(R, l, f);
+    if (!bodies[b].offset) return;   // the maps start as zero
+    for (int i = 0; i < 3; ++i) f[9 + i] = R[i] * c[0] + R[3 + i] * c[1] + R[6 + i] * c[2];
+}
+
 void Tables::map_twists(const double* X, double* maps) const
 {
-    for (int b = 0; b < n_bodies(); ++b) {
-        if (bodies[b].dofs == 3) continue;
-        const double* R = X + 12 * b + 3;
-        const double *c = bodies[b].center, *l = bodies[b].spin;
-        double* f = maps + 12 * b;
-        if (bodies[b].principal)
-            for (int a = 0; a < 3; ++a)
-                for (int i = 0; i < 3; ++i) f[3 * a + i] = l[4 * a] * R[3 * a + i];
-        else
-            multiply(R, l, f);
-        if (!bodies[b].offset) continue;   // the maps start as zero
-        for (int i = 0; i < 3; ++i) f[9 + i] = R[i] * c[0] + R[3 + i] * c[1] + R[6 + i] * c[2];
-    }
+    for (int b = 0; b < n_bodies(); ++b) map_twist(b, X, maps + 12 * b);
 }
 
 void Tables::to_twist(const double* maps, const double* y, double* xi) const
@@ -92,13 +94,11 @@ void Tables::to_scaled_rows(const double* maps, const double* q, double* y) cons
         scale_row(bodies[b], maps + 12 * b, q + bodies[b].first, y + bodies[b].first);
 }
 
-/// The rows of twist::rows, of the columns that are touched.
-void Tables::wrench(int r, int side, const double* X, const double* maps, const double* g,
-                       double* q) const
+/// The rows of twist::rows, of the columns that are touched: about the reference point.
+inline void Tables::plain_wrench(int r, int side, const double* X, const double* g, double* q) const
 {
     const RowTable& t = rows[r];
-    const int body = t.bodies[side];
-    const double *x = X + 12 * body, *load = g + 12 * side;
+    const double *x = X + 12 * t.bodies[side], *load = g + 12 * side;
     std::fill(q, q + 6, 0.0);
     for (const int a : t.columns[side]) {
         if (a == 0) {
@@ -109,7 +109,24 @@ void Tables::wrench(int r, int side, const double* X, const double* maps, const 
         q[4] += x[a + 2] * load[a] - x[a] * load[a + 2];
         q[5] += x[a] * load[a + 1] - x[a + 1] * load[a];
     }
+}
+
+void Tables::wrench(int r, int side, const double* X, const double* maps, const double* g, double* q) const
+{
+    const int body = rows[r].bodies[side];
+    plain_wrench(r, side, X, g, q);
     if (bodies[body].offset) to_centre(maps + 12 * body, q);
+}
+
+void Tables::scaled_wrench(int r, int side, const double* X, const double* g, double* y) const
+{
+    const int body = rows[r].bodies[side];
+    double map[12] = {}, q[6];
+    map_twist(body, X, map);
+    plain_wrench(r, side, X, g, q);
+    if (bodies[body].offset) to_centre(map, q);
+    std::fill(y, y + 6, 0.0);
+    scale_row(bodies[body], map, q, y);
 }
 
 void Tables::add_wrenches(int r, const double* X, const double* maps, const double* g, double factor,
@@ -123,8 +140,7 @@ void Tables::add_wrenches(int r, const double* X, const double* maps, const doub
     }
 }
 
-void Tables::scaled_gradient(int r, const double* X, const double* maps, const double* g,
-                                double* out) const
+void Tables::scaled_gradient(int r, const double* X, const double* maps, const double* g, double* out) const
 {
     std::fill(out, out + n_twists, 0.0);
     for (int side = 0; side < rows[r].n_sides; ++side) {

@@ -18,7 +18,7 @@ constexpr double unseen = std::numeric_limits<double>::infinity();
 void March::run_at_pace(Pace& pace)
 {
     while (time_ < pace.end()) {
-        if (!pace.is_long_enough()) return stop_vanishing();
+        if (!pace.ascends()) return stop_vanishing();
         const double start = time_, end = bends_.end(start, pace.next_end(start)), length = end - start;
         const double most = pace.largest_jump(start, end);
         mesh_.ends.push_back(end);

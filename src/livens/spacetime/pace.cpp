@@ -133,14 +133,13 @@ bool Pace::refused(double length, double jump, double most)
     length_ = is_lie ? 0.5 * length : std::clamp(whole, shrink * length, 0.9 * length);
     last_refused_.first = length;
     last_refused_.second = length_;
-    return is_long_enough();
+    return ascends() && length_ > shortest * (stops_.back() - stops_.front());
 }
 
-bool Pace::is_long_enough() const
+bool Pace::ascends() const
 {
-    const double spacing =
-        std::numeric_limits<double>::epsilon() * std::max(std::abs(stops_.front()), std::abs(stops_.back()));
-    return length_ > std::max(shortest * (stops_.back() - stops_.front()), 4 * spacing);
+    const double latest = std::max(std::abs(stops_.front()), std::abs(stops_.back()));
+    return length_ > 4 * std::numeric_limits<double>::epsilon() * latest;
 }
 
 double Pace::mean_length(int degree, double tolerance) const

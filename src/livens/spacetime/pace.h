@@ -40,8 +40,8 @@ public:
     void accepted(double length, double jump, int steps);
     /// The next element is as long as this, if no stop is nearer.
     void shorten(double length) { length_ = length; }
-    /// Else the next element would be none.
-    bool is_long_enough() const;
+    /// Else the next element would end where it begins.
+    bool ascends() const;
     bool is_stop(double t) const;
     /// Whether shorter elements may help; if not they vanish.
     /// `most`: the jump it might have had; 0: largest_jump().

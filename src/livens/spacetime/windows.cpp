@@ -5,6 +5,7 @@
 #include <string>
 
 #include "livens/base/text.h"
+#include "livens/diagnostics/sample.h"
 #include "livens/spacetime/detail/march.h"
 
 namespace livens {
@@ -335,8 +336,10 @@ bool March::explain(int first, int last, const NewtonReport& outcome)
 std::string March::locking_in_words() const
 {
     const Motion* motion = options_.locking ? window_.so_far() : nullptr;
-    const bool is_long_enough = motion != nullptr && motion->n_elements() > 0;
-    return is_long_enough ? options_.locking(motion->at_end(0), motion->at_end(motion->n_elements())) : "";
+    if (motion == nullptr || motion->n_elements() <= 0) return "";
+    const int n = motion->n_elements(), start = options_.direction > 0 ? 0 : n,
+              now = options_.direction > 0 ? n : element_end_at(motion->mesh, time_);
+    return now == start ? "" : options_.locking(motion->at_end(start), motion->at_end(now));
 }
 
 std::vector<int> divide(int n_elements, int length, int shortest)

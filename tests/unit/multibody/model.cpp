@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "livens/multibody/load_laws.h"
 #include "livens/multibody/model.h"
+#include "livens/multibody/load_laws.h"
 
 #include <gtest/gtest.h>
 
@@ -246,6 +246,14 @@ TEST(Model, LengthIsPositiveAndMovesWithTheModel)
     orbit.add_body(point_mass("moon", 0.7, {3e-6, 0, 4e-6}));
     orbit.add_load(attraction("pull", 0, orbit.bodies()[0], {{}, 1e-12}, Configurations(orbit.start().X)));
     EXPECT_NEAR(orbit.length(), 5e-6, 1e-20);
+    // Two on a tether in an orbit: what they do to each other is not measured by what attracts both.
+    Model tethered;
+    for (const double x : {7e6, 7e6 + 12}) {
+        const int one = tethered.add_body(point_mass("one " + std::to_string(x), 1, {x, 0, 0}));
+        tethered.add_load(attraction("pull " + std::to_string(one), one, tethered.bodies()[one], {{}, 4e14},
+                                     Configurations(tethered.start().X)));
+    }
+    EXPECT_NEAR(tethered.length(), 12, 1e-8);
 
     Random random(2);
     const Matrix3 R = random.rotation();

@@ -43,6 +43,7 @@ std::string of_singular_end(double t);
 
 /// See WindowOptions::locking.
 std::string of_locking(const Model& model, const State& first, const State& last);
+/// Where the motion stays at a jump of this load.
 std::string of_sticking(const std::string& load, double t);
 
 /// "1 element", "2 elements".

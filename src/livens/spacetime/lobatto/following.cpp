@@ -109,7 +109,8 @@ void Following::follow_body(int body, int element, bool is_backwards)
 bool Following::place(const Stretch& stretch, double* place)
 {
     if (motion_ == nullptr || motion_->X.points != Points::lobatto || !motion_->X.denominators.empty() ||
-        motion_->X.degree < lowest_degree || motion_->X.degree >= functions_->width)
+        motion_->X.degree < lowest_degree || motion_->X.degree >= functions_->width ||
+        motion_->X.n_values != 12 * tables_->n_bodies())
         return false;
     const auto [start, end] = std::minmax(stretch.times.front(), stretch.times.back());
     const std::vector<double>& ends = motion_->mesh.ends;

@@ -242,8 +242,7 @@ bool MarchKernel::iterate(const Stretch& stretch, const InstantState& start, con
         const double left = is_accelerated ? size_of_proposal() : 0;
         if (is_accelerated) acceleration_.apply(nodes.step);
         functions_->move(pattern, nodes, scaled_.tables, sizes);
-        if (follows && steps == 0 && !(sizes.step <= farthest_parting))
-            return iterate(stretch, start, options, is_accelerated, false, report);
+        if (follows && steps == 0 && !(sizes.step <= farthest_parting)) return false;
         if (!std::isfinite(sizes.finite)) return false;
         moved += sizes.step;
         const double noise = std::clamp(rounding_by_pivot / pivot, least_rounding, most_rounding);
@@ -269,9 +268,13 @@ bool MarchKernel::solve(const Stretch& stretch, const InstantState& start, const
     use(start);
     scale_rule(stretch, start);
     const bool is_large = !soon && tables_.n_twists >= many_twists && options.max_iterations >= most_steps;
-    if (!(is_large && was_slow_)) is_solved_ = iterate(stretch, start, options, false, true, report);
+    const auto iterates = [&](bool is_accelerated) {   // what is followed may lead nowhere
+        return iterate(stretch, start, options, is_accelerated, true, report) ||
+               (guess_.was_followed && iterate(stretch, start, options, is_accelerated, false, report));
+    };
+    if (!(is_large && was_slow_)) is_solved_ = iterates(false);
     if (is_large && !is_solved_) {
-        is_solved_ = iterate(stretch, start, options, true, true, report);
+        is_solved_ = iterates(true);
         was_slow_ = is_solved_ && report.iterations > most_steps;
     }
     if (is_solved_ && guess_.polynomial.serves()) {
