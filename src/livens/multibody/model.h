@@ -74,9 +74,9 @@ public:
     std::vector<double> load_breaks() const;
     /// A length typical of the model (m), at the start: the largest of the bodies' radii of gyration, twice
     /// the distances of their centres of mass from the mean of these, the arms from centres of mass to joint
-    /// points, the lengths between the two points of a joint, and distances from what attracts. Always
-    /// positive: 1 if there is nothing to measure but rounding. Tolerances are relative to it. Moving and
-    /// turning the model changes it by rounding only.
+    /// points, the lengths between the two points of a joint; if there are no distances, those from what
+    /// attracts. Always positive: 1 if there is nothing to measure but rounding. Tolerances are relative to
+    /// it. Moving and turning the model changes it by rounding only.
     double length() const;
 
 private:

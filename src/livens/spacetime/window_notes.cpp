@@ -84,8 +84,9 @@ std::string of_stop(double t)
 std::string of_vanishing(double t)
 {
     return "the elements vanish near t = " + to_text(t, 6) +
-           " s: however short they are, each loses more than it may; try: a larger error in accuracy, or "
-           "look for a load that jumps there";
+           " s: however short they are, each loses more than it may; try: a larger error in accuracy, an "
+           "earlier end (none is shorter than a billionth of the whole time), or look for a load that jumps "
+           "there";
 }
 
 std::string of_sticking(const std::string& load, double t)
