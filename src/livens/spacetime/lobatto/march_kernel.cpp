@@ -27,6 +27,7 @@ constexpr double share_of_tolerance = 0.1;   // left after the last step, as far
 // Lengths or radians from a motion nearby, beyond which it is not followed: it may have met a root that is
 // none.
 constexpr double farthest_parting = 1e-3;
+constexpr int elements_alone = 16;   // behind one that was not found so
 constexpr double widest_tolerance =
     1e-10;   // Newton's last step leaves less than it was allowed to, this all
 
@@ -268,9 +269,13 @@ bool MarchKernel::solve(const Stretch& stretch, const InstantState& start, const
     use(start);
     scale_rule(stretch, start);
     const bool is_large = !soon && tables_.n_twists >= many_twists && options.max_iterations >= most_steps;
-    const auto iterates = [&](bool is_accelerated) {   // what is followed may lead nowhere
-        return iterate(stretch, start, options, is_accelerated, true, report) ||
-               (guess_.was_followed && iterate(stretch, start, options, is_accelerated, false, report));
+    const auto iterates = [&](bool is_accelerated) {
+        if (guess_.n_alone > 0) --guess_.n_alone;
+        const bool may_follow = guess_.n_alone == 0;
+        if (iterate(stretch, start, options, is_accelerated, may_follow, report)) return true;
+        if (!guess_.was_followed) return false;
+        guess_.n_alone = elements_alone;   // too near for steps that shrink fast, or too far
+        return iterate(stretch, start, options, is_accelerated, false, report);
     };
     if (!(is_large && was_slow_)) is_solved_ = iterates(false);
     if (is_large && !is_solved_) {

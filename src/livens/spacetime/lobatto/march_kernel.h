@@ -86,6 +86,7 @@ private:
         Extrapolation polynomial;
         Following following;
         bool was_followed = false;
+        int n_alone = 0;   // elements for which nothing is followed
         bool is_polynomial = false;   // as that was nearer to the end of the last element
     };
 
