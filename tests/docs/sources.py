@@ -60,7 +60,7 @@ TIES = [
     ("more than «3» times the accuracy off", f"{TIME}/accuracy.cpp", r"far_off = (\d+);"),
     ("is multiplied by $s/s'$, at least «0.5» and", f"{TIME}/pace.cpp", r"steepest = ([^;]+);"),
     ("above degree «10» every second node", f"{TIME}/lobatto/extrapolation.cpp", r"highest_degree = (\d+);"),
-    ("(from «100» twists on", f"{TIME}/lobatto/march_kernel.cpp", r"many_twists = (\d+)"),
+    ("(from «100» twists on", f"{TIME}/lobatto/march_kernel.h", r"many_twists = (\d+)"),
     ("after «150» steps, or «20» without a smaller one", f"{TIME}/lobatto/march_kernel.cpp",
      r"most_combinations = (\d+), most_slow_combinations = (\d+)"),
     ("and above «1e11» the conditions are said", f"{TIME}/solve.cpp", r"undetermined = ([^;]+);"),

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double slow_contraction = 0.3;
 constexpr int most_slow_steps = 2, most_steps = 14;
-constexpr int many_twists = 100, most_combinations = 150, most_slow_combinations = 20;
+constexpr int most_combinations = 150, most_slow_combinations = 20;
 constexpr double hopeless_step = 10;      // lengths or radians
 constexpr double smallest_step = 1e-18;   // likewise: nothing moves
 // Of the motion: what steps that shrink no more may be; also by the smallest squared pivot, and at most.
@@ -269,17 +269,16 @@ bool MarchKernel::solve(const Stretch& stretch, const InstantState& start, const
     use(start);
     scale_rule(stretch, start);
     const bool is_large = !soon && tables_.n_twists >= many_twists && options.max_iterations >= most_steps;
-    const auto iterates = [&](bool is_accelerated) {
+    const auto iterates = [&] {
         if (guess_.n_alone > 0) --guess_.n_alone;
-        const bool may_follow = guess_.n_alone == 0;
-        if (iterate(stretch, start, options, is_accelerated, may_follow, report)) return true;
+        if (iterate(stretch, start, options, false, guess_.n_alone == 0, report)) return true;
         if (!guess_.was_followed) return false;
         guess_.n_alone = elements_alone;   // too near for steps that shrink fast, or too far
-        return iterate(stretch, start, options, is_accelerated, false, report);
+        return iterate(stretch, start, options, false, false, report);
     };
-    if (!(is_large && was_slow_)) is_solved_ = iterates(false);
+    if (!(is_large && was_slow_)) is_solved_ = iterates();
     if (is_large && !is_solved_) {
-        is_solved_ = iterates(true);
+        is_solved_ = iterate(stretch, start, options, true, false, report);
         was_slow_ = is_solved_ && report.iterations > most_steps;
     }
     if (is_solved_ && guess_.polynomial.serves()) {

@@ -26,10 +26,12 @@ public:
 
     /// Whether there are lanes for the rule, and JointFactor serves.
     bool serves() const { return functions_ != nullptr; }
-    /// A motion nearby, which has to outlive the kernel, as the guess where its elements are the same.
+    /// A motion nearby, which has to outlive the kernel, as the guess where its elements are the same; not of
+    /// large mechanisms, whose iteration it was not seen to shorten.
     void follow(const Motion& motion)
     {
-        if (serves()) guess_.following = Following(motion, tables_, rule_, *functions_);
+        if (serves() && tables_.n_twists < many_twists)
+            guess_.following = Following(motion, tables_, rule_, *functions_);
     }
     /// The element of `stretch` from `start`. False: not converged within 14 steps, steps that do not shrink
     /// to 0.3 twice, a number that is not finite, or a pivot that is nearly zero. Steps of many bodies, of
@@ -67,6 +69,8 @@ public:
     void momentum(const Stretch& stretch, const InstantState& start, double* p);
 
 private:
+    static constexpr int many_twists = 100;
+
     struct ScaledRule {   // tables for an element of length 1, then for the one at hand, of length h
         AlignedDoubles numbers;
         lanes::Rule tables{};
@@ -86,7 +90,7 @@ private:
         Extrapolation polynomial;
         Following following;
         bool was_followed = false;
-        int n_alone = 0;   // elements for which nothing is followed
+        int n_alone = 0;              // elements for which nothing is followed
         bool is_polynomial = false;   // as that was nearer to the end of the last element
     };
 
