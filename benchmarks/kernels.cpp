@@ -121,6 +121,7 @@ Solution run(const Kernel& kernel)
 {
     SolveOptions options;
     options.judge = options.divide = false;   // what is counted is the solution
+    options.estimate = SolveOptions::Estimate::none;
     options.tolerance = kernel.tolerance;
     return solve(kernel.model, {kernel.model.start()}, kernel.mesh, kernel.method, options);
 }

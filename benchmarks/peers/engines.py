@@ -59,8 +59,8 @@ def prefixed(names, values):
 
 
 def lobatto(n_bodies):
-    degrees = (2, 3, 4, 5, 6, 8, 10, 12) if n_bodies < 10 else (2, 3, 4, 6, 8) if n_bodies < 50 else (3, 4, 6, 8)
-    ratio, nodes, fewest = (1.15, 60, 4) if n_bodies < 10 else (1.3, 0, 5 if n_bodies < 50 else 10)
+    degrees = (2, 3, 4, 5, 6, 8, 10, 12) if n_bodies < 10 else (3, 4, 5, 6, 7, 8)
+    ratio, nodes, fewest = (1.15, 60, 4) if n_bodies < 10 else (1.15, 0, 5 if n_bodies < 50 else 10)
     return [[f"{p}:{n}" for n in counts(max(fewest, nodes // p), 20000, ratio)] for p in degrees]
 
 
@@ -95,7 +95,7 @@ ENGINES = {
                                        tolerances(2, 13, COARSE)),
                     "continuous MultibodyPlant (scheme, accuracy)", modules=("drake",)),
     "mujoco": Engine("MuJoCo", "peer_mujoco.py",
-                     lambda n: prefixed(["RK4"], counts(40, 3e6, 1.5)) + prefixed(["implicitfast"],
+                     lambda n: prefixed(["RK4"], counts(40, 3e6, 1.25)) + prefixed(["implicitfast"],
                                                                                   counts(40, 3e6, 4)),
                      "integrator, steps", modules=("mujoco",)),
     "exudyn": Engine("Exudyn", "peer_exudyn.py",

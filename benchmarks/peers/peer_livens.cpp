@@ -60,6 +60,7 @@ Run run_of(const Mechanism& m, const std::vector<std::string>& setting)
     }
     run.method = Lobatto{std::stoi(setting[0])};
     run.time = make_time_mesh(0, m.end, std::stoi(setting.at(1)));
+    run.options.estimate = SolveOptions::Estimate::none;
     if (setting.size() > 2) run.options.tolerance = std::stod(setting[2]);
     return run;
 }

@@ -21,6 +21,7 @@ struct Body {
     double euler[9] = {};       ///< E about the centre of mass, column by column
     double spin[9] = {};        ///< L^-T, column by column
     double root_spin[9] = {};   ///< L, column by column
+    double still[9] = {};       ///< - L^T E / det L, column by column: see docs/theory.md, "Still axes"
 };
 
 struct Term {

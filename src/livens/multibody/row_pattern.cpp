@@ -150,6 +150,10 @@ void RowPattern::add_body(const Tables& tables, int b)
         std::copy_n(table.spin, 9, spin.a);
         const Matrix3 L = transpose(inverse(spin));
         std::copy_n(L.a, 9, body.root_spin);
+        Matrix3 E{};
+        std::copy_n(table.euler, 9, E.a);
+        const Matrix3 still = -determinant(spin) * (transpose(L) * E);
+        std::copy_n(still.a, 9, body.still);
     }
     bodies_.push_back(body);
 }

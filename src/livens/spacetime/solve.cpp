@@ -90,13 +90,20 @@ private:
     const Window& window_;
 };
 
+/// What an iteration leaves has to be far below the errors that two motions are compared for.
+double compared_tolerance(const SolveOptions& options)
+{
+    const bool is_compared = options.growth || options.estimate != SolveOptions::Estimate::none;
+    return is_compared ? std::min(options.tolerance, 1e-10) : options.tolerance;
+}
+
 WindowOptions window_options(const Model& model, const Ends& ends, const Method& method,
                              const SolveOptions& options)
 {
     WindowOptions w;
     w.by_newton = options.by_newton;
     w.direction = ends.is_backwards() ? -1 : 1;
-    w.tolerance = options.tolerance;
+    w.tolerance = is_nodal(method) ? compared_tolerance(options) : options.tolerance;
     w.max_iterations = options.max_iterations;
     w.progress = options.progress;
     w.length_of_model = model.length();

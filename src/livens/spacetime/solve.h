@@ -16,6 +16,7 @@ namespace [[gnu::visibility("default")]] livens {
 struct SolveOptions {
     /// Newton stops when the estimated error of the scaled increment is below this (relative to the motion
     /// inside the element, at least to 1e-6 of the model's length), or at the rounding level of the residual.
+    /// Elements of lobatto and radau: at 1e-10 at the latest where an estimate or a growth compares motions.
     double tolerance = 1e-14;
     int max_iterations = 30;
     StartPolicy initial = StartPolicy::check;

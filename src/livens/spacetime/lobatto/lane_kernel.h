@@ -121,10 +121,63 @@ void balance(const Pattern& p, const Values& start, const Values& v, const Rule&
 }
 
 template <int W>
+LIVENS_INLINE Lanes<W> cross(const Three<W>& a, const Three<W>& b, int i)
+{
+    const int j = (i + 1) % 3, k = (i + 2) % 3;
+    return a.x[j] * b.x[k] - a.x[k] * b.x[j];
+}
+
+template <int W, int B>
+LIVENS_INLINE Three<B> three(const double* x)
+{
+    return {{load<B>(x), load<B>(x + W), load<B>(x + 2 * W)}};
+}
+
+/// One register: more would not stay in registers.
+template <int W>
+constexpr int one = W < LIVENS_REGISTER ? W : LIVENS_REGISTER;
+
+/// y, three numbers W apart: from still axes into those of the body, or rows from these into still axes.
+template <int W, bool are_rows, int B = one<W>>
+LIVENS_INLINE void change_axes(const Body& body, const double* place, bool is_first, double* y)
+{
+    constexpr double at_start[4] = {};   // nothing is turned there
+    const Three<B> q = three<W, B>(place + 4 * W), v = three<W, B>(y);
+    Three<B> g, once;   // the tangent of half the turn, along its axis
+    for (int i = 0; i < 3; ++i) {
+        const double* s = body.still + i;
+        if (body.principal)
+            g.x[i] = (are_rows ? -s[3 * i] : s[3 * i]) * q.x[i];
+        else
+            g.x[i] = (are_rows ? -1.0 : 1.0) * (s[0] * q.x[0] + s[3] * q.x[1] + s[6] * q.x[2]);
+        if (are_rows && is_first) g.x[i] = with_start(g.x[i], at_start);
+    }
+    const Lanes<B> twice = 2 / (1 + dot(g, g));
+    for (int i = 0; i < 3; ++i) once.x[i] = v.x[i] + cross(g, v, i);
+    for (int i = 0; i < 3; ++i) store(y + i * W, v.x[i] + twice * cross(g, once, i));
+}
+
+/// - h sum_A (K^-1)_BA r_A, turns in still axes, where this is nearest to what inertia asks for. Leaves rows
+/// in these axes.
+template <int W>
+void form_step(const Body& body, const double* place, const Rule& rule, double* rows, double* step)
+{
+    const bool changes = body.dofs == 6 && rule.in_still_axes;
+    for (int l = 0; changes && l < W; l += one<W>)
+        change_axes<W, true>(body, place + l, l == 0, rows + 3 * W + l);
+    for (int i = 0; i < body.dofs; ++i) store(step + i * W, times<W>(rows + i * W, rule.inverse));
+    for (int l = 0; changes && l < W; l += one<W>)
+        change_axes<W, false>(body, place + l, l == 0, step + 3 * W + l);
+}
+
+template <int W>
 void propose(const Pattern& p, const Values& v, const Rule& rule)
 {
     const At<W, false> G{v.gradients, nullptr}, factor{v.factor, nullptr};
-    for (int i = 0; i < p.n_twists; ++i) store(v.step + i * W, times<W>(v.rows + i * W, rule.inverse));
+    for (int b = 0; b < p.n_bodies; ++b) {
+        const int first = p.bodies[b].first * W;
+        form_step<W>(p.bodies[b], v.place + 7 * b * W, rule, v.rows + first, v.step + first);
+    }
     multiply(p, G, v.step, v.violations, v.work);
     solve(p, factor, v.work);
     take_off(p, G, v.work, v.step);

@@ -13,7 +13,7 @@ namespace livens {
 namespace {
 
 constexpr double slow_contraction = 0.3;
-constexpr int most_slow_steps = 2, most_steps = 14;
+constexpr int most_slow_steps = 2, most_steps = 14, few_steps = 3;
 constexpr int most_combinations = 150, most_slow_combinations = 20;
 constexpr double hopeless_step = 10;      // lengths or radians
 constexpr double smallest_step = 1e-18;   // likewise: nothing moves
@@ -28,8 +28,19 @@ constexpr double share_of_tolerance = 0.1;   // left after the last step, as far
 // none.
 constexpr double farthest_parting = 1e-3;
 constexpr int elements_alone = 16;   // behind one that was not found so
-constexpr double widest_tolerance =
-    1e-10;   // Newton's last step leaves less than it was allowed to, this all
+constexpr double widest_tolerance = 1e-5;    // beyond, two steps hardly tell how they shrink
+
+/// Whether some body's axis of turning turns itself. Where none does, as in a plane, nothing is gyroscopic.
+bool turns_in_space(const Tables& tables, const InstantState& start, double h)
+{
+    const std::vector<double>& accelerations = start.acceleration[h > 0 ? 1 : 0];
+    return std::ranges::any_of(tables.bodies, [&](const Tables::BodyTable& body) {
+        const double *w = start.velocity.data() + body.first + 3, *a = accelerations.data() + body.first + 3;
+        if (body.dofs == 3) return false;
+        const Vector3 turn{w[0], w[1], w[2]}, change{a[0], a[1], a[2]}, across = cross(turn, change);
+        return dot(across, across) > 1e-16 * dot(turn, turn) * dot(change, change);
+    });
+}
 
 const lanes::Functions* functions_for(int n_lanes)
 {
@@ -119,12 +130,15 @@ void MarchKernel::make_rule()
             M_rows[A * W + l] = rule_.M[static_cast<std::size_t>(A * n + l)];
         }
     }
-    scaled_.tables = {scaled_k, scaled_inverse, weights, M, scaled_dM, M_rows, nullptr, tables_.length};
+    scaled_.tables = {.k = scaled_k, .inverse = scaled_inverse, .weights = weights, .M = M, .dM = scaled_dM,
+                      .M_rows = M_rows, .momentum = nullptr, .length = tables_.length, .in_still_axes = false};
 }
 
 void MarchKernel::scale_rule(const Stretch& stretch, const InstantState& start)
 {
     scaled_.tables.momentum = start.momentum.data();
+    const int few = scaled_.tables.in_still_axes ? few_steps - 1 : few_steps;   // which they made so few
+    scaled_.tables.in_still_axes = last_steps_ > few && turns_in_space(tables_, start, stretch.h(0));
     if (stretch.h(0) == scaled_.h) return;
     scaled_.h = stretch.h(0);
     const int W = functions_->width, block = W * W;
@@ -276,11 +290,9 @@ bool MarchKernel::solve(const Stretch& stretch, const InstantState& start, const
         guess_.n_alone = elements_alone;   // too near for steps that shrink fast, or too far
         return iterate(stretch, start, options, false, false, report);
     };
-    if (!(is_large && was_slow_)) is_solved_ = iterates();
-    if (is_large && !is_solved_) {
-        is_solved_ = iterate(stretch, start, options, true, false, report);
-        was_slow_ = is_solved_ && report.iterations > most_steps;
-    }
+    if (!(is_large && last_steps_ > most_steps)) is_solved_ = iterates();
+    if (is_large && !is_solved_) is_solved_ = iterate(stretch, start, options, true, false, report);
+    last_steps_ = is_solved_ ? report.iterations : most_steps;
     if (is_solved_ && guess_.polynomial.serves()) {
         compare_guesses();
         nodes_.swap_places();

@@ -122,7 +122,7 @@ private:
     Work work_;
     Guess guess_;
     Acceleration acceleration_;
-    bool was_slow_ = false;   // the last element
+    int last_steps_ = 0;   // for the last element
     long long evaluations_ = 0;
     bool is_solved_ = false, has_near_factor_ = false;
 };
