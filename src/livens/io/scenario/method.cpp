@@ -228,8 +228,8 @@ Table method_table()
              "lobatto"},
          Key{"tolerance", types::number,
              "The iteration stops when its estimated error is below this fraction of the motion in the element, "
-             "at 1e-10 at the latest (lobatto, radau) unless `estimate` is \"none\" and `growth` is off; "
-             "mixed: of the model's length. With an accuracy of 1e-9 to 1e-8 it is 1e-15 at most, and with a "
+             "at 1e-10 at the latest (lobatto, radau) unless `estimate` is \"none\" and `growth` is off; mixed: "
+             "of the model's length. With an accuracy of 1e-9 to 1e-8 it is 1e-15 at most, and with a "
              "smaller one from the second try on.",
              "", "1e-14"}
              .within({0, 0.1, true}),

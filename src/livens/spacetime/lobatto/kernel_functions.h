@@ -16,7 +16,7 @@ struct Rule {
     const double* M_rows;     ///< M_A(s_c), one for each load point
     const double* momentum;   ///< at the start, n_twists scalars
     double length;
-    bool in_still_axes;   ///< turns, on the way from rows to a step
+    bool in_still_axes = false;   ///< turns, on the way from rows to a step
 };
 
 struct Sizes {

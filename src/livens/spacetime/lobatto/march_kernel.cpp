@@ -130,8 +130,7 @@ void MarchKernel::make_rule()
             M_rows[A * W + l] = rule_.M[static_cast<std::size_t>(A * n + l)];
         }
     }
-    scaled_.tables = {.k = scaled_k, .inverse = scaled_inverse, .weights = weights, .M = M, .dM = scaled_dM,
-                      .M_rows = M_rows, .momentum = nullptr, .length = tables_.length, .in_still_axes = false};
+    scaled_.tables = {scaled_k, scaled_inverse, weights, M, scaled_dM, M_rows, nullptr, tables_.length};
 }
 
 void MarchKernel::scale_rule(const Stretch& stretch, const InstantState& start)
