@@ -26,7 +26,7 @@ struct Matrix {
     constexpr double* data() { return a; }
     constexpr const double* data() const { return a; }
 
-    constexpr Matrix<Rows, 1> column(int j) const
+    [[gnu::always_inline]] constexpr Matrix<Rows, 1> column(int j) const   // three loads
     {
         Matrix<Rows, 1> c{};
         for (int i = 0; i < Rows; ++i) c[i] = (*this)(i, j);

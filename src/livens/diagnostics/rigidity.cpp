@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <span>
 
 #include "livens/base/error.h"
 #include "livens/diagnostics/diagnostics.h"
@@ -99,30 +100,44 @@ struct SideOfRigidity {
 struct Balanced {
     Instant at;
     const std::vector<Matrix34>&X, &V, &A;
-    std::span<const double> multipliers, angles;
-    std::span<const int> independent;
+    std::span<const double> angles;
 };
 
-SideOfRigidity rigidity_of(const Model& model, const Balanced& b)
+bool are_numbers(std::span<const double> multipliers)
+{
+    return std::ranges::none_of(multipliers, [](double x) { return std::isnan(x); });
+}
+
+/// Of one set of multipliers or more, with drives as they are at an instant.
+UniqueReactions least_at(const Model& model, Instant at, const std::vector<Matrix34>& X,
+                         std::span<const double> multipliers, std::span<const int> independent)
+{
+    if (!model.has_drives()) return least_reactions(model, X, multipliers, independent);
+    return least_reactions(frozen(model, at), X, multipliers, independent);
+}
+
+SideOfRigidity rigidity_of(const Model& model, const Balanced& b, std::span<const double> multipliers,
+                           const std::vector<bool>& joint_is_unique)
 {
     SideOfRigidity all(b.X.size());
-    all.is_bounded = std::ranges::none_of(b.multipliers, [](double x) { return std::isnan(x); });
-    if (!all.is_bounded) return all;
-    std::optional<Model> frozen_now;
-    if (model.has_drives()) frozen_now = frozen(model, b.at);
-    const UniqueReactions least =
-        least_reactions(frozen_now ? *frozen_now : model, b.X, b.multipliers, b.independent);
-    for (std::size_t j = 0; j < least.joint_is_unique.size(); ++j) {
-        if (least.joint_is_unique[j]) continue;
+    for (std::size_t j = 0; j < joint_is_unique.size(); ++j) {
+        if (joint_is_unique[j]) continue;
         for (const ConstraintRow& row : model.joints()[j].rows)
             for (const int body : row_bodies(row)) all.is_unique[static_cast<std::size_t>(body)] = false;
     }
     const std::vector<Matrix34> rest =
-        forces_less_inertia(model, b.at, b.X, b.V, b.A, least.multipliers, b.angles);
+        forces_less_inertia(model, b.at, b.X, b.V, b.A, multipliers, b.angles);
     for (std::size_t i = 0; i < b.X.size(); ++i)
         if (!model.bodies()[i].is_point)
             all.multipliers[i] = as_stated(model.bodies()[i], along_directors(rest[i], b.X[i]));
     return all;
+}
+
+SideOfRigidity unbounded(std::size_t n)
+{
+    SideOfRigidity none(n);
+    none.is_bounded = false;
+    return none;
 }
 
 /// By the equations of motion, solved in a state that need not be closed.
@@ -134,11 +149,7 @@ SideOfRigidity rigidity_on(const Model& model, const State& state, Side side)
         prepared.emplace(model, state, side, false);
     } catch (const InputError&) {   // it is too far from any that the joints allow
     }
-    if (!prepared || !prepared->is_fit) {
-        SideOfRigidity none(n);
-        none.is_bounded = false;
-        return none;
-    }
+    if (!prepared || !prepared->is_fit || !are_numbers(prepared->state.multipliers[s])) return unbounded(n);
     const InstantState& at = prepared->state;
     std::vector<Matrix34> X(n), V(n), A(n);
     for (std::size_t b = 0; b < n; ++b) {
@@ -150,7 +161,8 @@ SideOfRigidity rigidity_on(const Model& model, const State& state, Side side)
         A[b] = acceleration(X[b], twist, rates);
         V[b] = rate(X[b], {rates[0], rates[1], rates[2]}, {rates[3], rates[4], rates[5]});
     }
-    return rigidity_of(model, {{state.t, side}, X, V, A, at.multipliers[s], at.angles, at.rows});
+    const UniqueReactions least = least_at(model, {state.t, side}, X, at.multipliers[s], at.rows);
+    return rigidity_of(model, {{state.t, side}, X, V, A, at.angles}, least.multipliers, least.joint_is_unique);
 }
 
 std::vector<RigiditySample> of_both_sides(const SideOfRigidity& left, const SideOfRigidity& right)
@@ -180,7 +192,8 @@ std::vector<RigiditySample> Rigidity::at(double t) const
 {
     const State state = sample_state(motion_, t);
     const int end = element_end_at(motion_.mesh, state.t);
-    const bool is_held = !motion_.accelerations.empty() && !motion_.end_multipliers.empty();
+    const bool is_held =
+        !motion_.accelerations.empty() && (motion_.n_rows == 0 || !motion_.end_multipliers.empty());
     return end >= 0 && is_held && !model_.has_events() ? at_end(state, end) : at(state);
 }
 
@@ -205,14 +218,23 @@ std::vector<RigiditySample> Rigidity::at_end(const State& state, int end) const
     });
     const std::size_t n = static_cast<std::size_t>(motion_.n_bodies),
                       n_rows = static_cast<std::size_t>(motion_.n_rows);
+    const std::span<const double> both =
+        std::span(motion_.end_multipliers).subspan(2 * static_cast<std::size_t>(end) * n_rows, 2 * n_rows);
+    if (!are_numbers(both)) return of_both_sides(unbounded(n), unbounded(n));
+    UniqueReactions least;   // rows that do not move are the same on both sides: looked at once
+    if (!model_.has_drives()) least = least_at(model_, {state.t}, state.X, both, independent);
     const auto side = [&](Side of) {
-        const std::size_t place = 2 * static_cast<std::size_t>(end) + (of == Side::left ? 0 : 1);
-        const auto first = motion_.accelerations.begin() + static_cast<std::ptrdiff_t>(place * n);
+        const std::size_t s = of == Side::left ? 0 : 1;
+        const auto first = motion_.accelerations.begin() +
+                           static_cast<std::ptrdiff_t>((2 * static_cast<std::size_t>(end) + s) * n);
         const std::vector<Matrix34> A(first, first + motion_.n_bodies);
-        const std::span<const double> all(motion_.end_multipliers);
-        return rigidity_of(
-            model_,
-            {{state.t, of}, state.X, state.V, A, all.subspan(place * n_rows, n_rows), angles, independent});
+        const Balanced b{{state.t, of}, state.X, state.V, A, angles};
+        if (!model_.has_drives())
+            return rigidity_of(model_, b, std::span(least.multipliers).subspan(s * n_rows, n_rows),
+                               least.joint_is_unique);
+        const UniqueReactions own =
+            least_at(model_, b.at, state.X, both.subspan(s * n_rows, n_rows), independent);
+        return rigidity_of(model_, b, own.multipliers, own.joint_is_unique);
     };
     return of_both_sides(side(Side::left), side(Side::right));
 }

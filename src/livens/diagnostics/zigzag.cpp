@@ -25,10 +25,16 @@ constexpr int fewest_samples = 6;
 
 using Bodies = std::vector<Matrix34>;
 
+/// Of symmetric metrics, of whose entries many are zero.
 double square(const std::vector<Matrix4>& metric, const Bodies& g)
 {
     double sum = 0;
-    for (std::size_t b = 0; b < g.size(); ++b) sum += dot(g[b] * metric[b], g[b]);
+    for (std::size_t b = 0; b < g.size(); ++b)
+        for (int p = 0; p < 4; ++p)
+            for (int q = 0; q <= p; ++q) {
+                const double m = metric[b](p, q);
+                if (m != 0) sum += (p == q ? m : 2 * m) * dot(g[b].column(p), g[b].column(q));
+            }
     return sum;
 }
 

@@ -159,8 +159,10 @@ Reaction joint_reaction(const Model& model, int joint, std::span<const Matrix34>
 {
     const Joint& j = model.joints()[joint];
     Matrix34 F{};
-    for (int k = 0; k < static_cast<int>(j.rows.size()); ++k)
-        F -= multipliers[model.first_row(joint) + k] * constraint_gradient(j.rows[k], X).of(j.second);
+    for (int k = 0; k < static_cast<int>(j.rows.size()); ++k) {
+        const double multiplier = multipliers[model.first_row(joint) + k];
+        if (multiplier != 0) F -= multiplier * constraint_gradient(j.rows[k], X).of(j.second);
+    }
     const Matrix34& X_second = X[j.second];
     Reaction reaction;
     reaction.force = F.column(0);

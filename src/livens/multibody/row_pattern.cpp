@@ -43,7 +43,8 @@ void RowPattern::SumTable::add(double constant, std::span<const lanes::Term> sum
 struct RowPattern::Form {
     static constexpr int size = 8;
     double K[size][size] = {}, B[size][3] = {}, c = 0;
-    int place[size] = {};   // of each column among the numbers
+    int place[size] = {};                          // of each column among the numbers
+    bool has_B[size] = {}, has_K[size] = {};   // a joint's row knows few columns
     int n = 0;
 
     Form(const Tables& tables, const Tables::RowTable& row) : c(row.row->c), n(4 * row.n_sides)
@@ -57,10 +58,15 @@ struct RowPattern::Form {
             const double* center = tables.bodies[row.bodies[side / 4]].center;
             for (int a = 0; a < 3; ++a) {
                 const double shift = center[a];
+                if (shift == 0) continue;
                 for (int i = 0; i < 3; ++i) B[side + 1 + a][i] -= shift * B[side][i];
                 for (int q = 0; q < n; ++q) K[side + 1 + a][q] -= shift * K[side][q];
                 for (int q = 0; q < n; ++q) K[q][side + 1 + a] -= shift * K[q][side];
             }
+        }
+        for (int p = 0; p < n; ++p) {
+            has_B[p] = B[p][0] != 0 || B[p][1] != 0 || B[p][2] != 0;
+            has_K[p] = std::any_of(K[p], K[p] + n, [](double k) { return k != 0; });
         }
     }
     bool are_directors_of_one(int p, int q) const { return p / 4 == q / 4 && p % 4 != 0 && q % 4 != 0; }
@@ -152,8 +158,8 @@ void RowPattern::add_body(const Tables& tables, int b)
         std::copy_n(L.a, 9, body.root_spin);
         Matrix3 E{};
         std::copy_n(table.euler, 9, E.a);
-        const Matrix3 still = -determinant(spin) * (transpose(L) * E);
-        std::copy_n(still.a, 9, body.still);
+        const Matrix3 still = -determinant(spin) * (transpose(L) * E);   // of norm one but for rounding
+        if (norm(still) < 2) std::copy_n(still.a, 9, body.still);
     }
     bodies_.push_back(body);
 }
@@ -184,8 +190,8 @@ void RowPattern::add_row(const Tables& tables, int row, RowTable& table, Sum& ro
 /// sum += factor * d_at . g_p, the gradient by column p being g_p = sum_q K_pq x_q + B_p.
 void RowPattern::add_moment(const Form& form, int at, int p, double factor, Sum& sum)
 {
-    for (int i = 0; i < 3; ++i) sum.add(form.place[at] + i, factor * form.B[p][i]);
-    for (int q = 0; q < form.n; ++q) {
+    for (int i = 0; form.has_B[p] && i < 3; ++i) sum.add(form.place[at] + i, factor * form.B[p][i]);
+    for (int q = 0; form.has_K[p] && q < form.n; ++q) {
         if (form.K[p][q] == 0) continue;
         if (form.are_directors_of_one(at, q))
             sum.constant += at == q ? factor * form.K[p][q] : 0;
@@ -208,7 +214,8 @@ void RowPattern::add_gradient(const Form& form, int side, RowTable& table, Sum& 
     const lanes::Body& body = bodies_[form.place[side] / 12];
     for (int i = 0; i < 3; ++i) {
         sum.clear(body.inverse_root_mass * form.B[side][i]);
-        for (int q = 0; q < form.n; ++q) sum.add(form.place[q] + i, body.inverse_root_mass * form.K[side][q]);
+        for (int q = 0; form.has_K[side] && q < form.n; ++q)
+            sum.add(form.place[q] + i, body.inverse_root_mass * form.K[side][q]);
         add_entry(body.first + i);
     }
     for (int a = 0; body.dofs == 6 && a < 3; ++a) {
@@ -228,8 +235,8 @@ void RowPattern::add_violation(const Form& form, RowTable& table, Sum& phi)
 {
     phi.clear(form.c);
     for (int p = 0; p < form.n; ++p) {
-        for (int i = 0; i < 3; ++i) phi.add(form.place[p] + i, form.B[p][i]);
-        for (int q = 0; q <= p; ++q) {
+        for (int i = 0; form.has_B[p] && i < 3; ++i) phi.add(form.place[p] + i, form.B[p][i]);
+        for (int q = 0; form.has_K[p] && q <= p; ++q) {
             const double k = p == q ? 0.5 * form.K[p][q] : form.K[p][q];
             if (k == 0) continue;
             if (form.are_directors_of_one(p, q))

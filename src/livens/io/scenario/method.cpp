@@ -227,10 +227,10 @@ Table method_table()
         {Key{"family", types::choice, "With an `accuracy` auto, unless something else stands here", "",
              "lobatto"},
          Key{"tolerance", types::number,
-             "The iteration stops when its estimated error is below this fraction of the motion in the element, "
-             "at 1e-10 at the latest (lobatto, radau) unless `estimate` is \"none\" and `growth` is off; mixed: "
-             "of the model's length. With an accuracy of 1e-9 to 1e-8 it is 1e-15 at most, and with a "
-             "smaller one from the second try on.",
+             "The iteration stops when its estimated error is below this fraction of the motion in the "
+             "element, at 1e-10 at the latest (lobatto, radau) unless `estimate` is \"none\" and `growth` is "
+             "off; mixed: of the model's length. With an accuracy of 1e-9 to 1e-8 it is 1e-15 at most, and "
+             "with a smaller one from the second try on.",
              "", "1e-14"}
              .within({0, 0.1, true}),
          Key{"max_iterations", types::integer, "Of Newton in one element; mixed: in one block.", "", "30"}
