@@ -30,21 +30,17 @@ struct Supply {
     void add_force(const Matrix34& X, const Matrix34& F, double length)
     {
         linear += F.column(0);
-        for (int c = 0; c < 4; ++c) {
-            const Vector3 f = F.column(c);
-            if (f != Vector3{}) angular += cross(X.column(c), f);
-        }
+        for (int c = 0; c < 4; ++c)   // most forces have one column or two
+            if (const Vector3 f = F.column(c); f != Vector3{}) angular += cross(X.column(c), f);
         add_size(X, F, length);
     }
 
     void add_size(const Matrix34& X, const Matrix34& F, double length)
     {
-        for (int c = 0; c < 4; ++c) {   // most forces have one column or two
-            const double size = norm(F.column(c));
-            if (size == 0) continue;
-            if (c == 0) gross += size;
-            gross_moment += ((c == 0 ? length : 0) + norm(X.column(c))) * size;
-        }
+        gross += norm(F.column(0));
+        gross_moment += norm(F.column(0)) * length;
+        for (int c = 0; c < 4; ++c)
+            if (const double size = norm(F.column(c)); size != 0) gross_moment += norm(X.column(c)) * size;
     }
 
     void add(double weight, const Supply& other)

@@ -139,7 +139,7 @@ constexpr int one = W < LIVENS_REGISTER ? W : LIVENS_REGISTER;
 
 /// y, three numbers W apart: from still axes into those of the body, or rows from these into still axes.
 template <int W, bool are_rows, int B = one<W>>
-LIVENS_INLINE void change_axes(const Body& body, const double* place, bool is_first, double* y)
+LIVENS_INLINE void change_axes_here(const Body& body, const double* place, bool is_first, double* y)
 {
     constexpr double at_start[4] = {};   // nothing is turned there
     const Three<B> q = three<W, B>(place + 4 * W), v = three<W, B>(y);
@@ -155,6 +155,20 @@ LIVENS_INLINE void change_axes(const Body& body, const double* place, bool is_fi
     const Lanes<B> twice = 2 / (1 + dot(g, g));
     for (int i = 0; i < 3; ++i) once.x[i] = v.x[i] + cross(g, v, i);
     for (int i = 0; i < 3; ++i) store(y + i * W, v.x[i] + twice * cross(g, once, i));
+}
+
+template <int W, bool are_rows>
+__attribute__((noinline)) void change_axes_apart(const Body& body, const double* place, bool is_first, double* y)
+{
+    change_axes_here<W, are_rows>(body, place, is_first, y);
+}
+template <int W, bool are_rows>
+LIVENS_INLINE void change_axes(const Body& body, const double* place, bool is_first, double* y)
+{
+    if constexpr (W > 8)   // as for times(): in one place
+        change_axes_apart<W, are_rows>(body, place, is_first, y);
+    else
+        change_axes_here<W, are_rows>(body, place, is_first, y);
 }
 
 /// - h sum_A (K^-1)_BA r_A, turns in still axes, where this is nearest to what inertia asks for. Leaves rows
