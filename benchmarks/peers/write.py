@@ -100,7 +100,8 @@ def target_rows(results):
                     yield [*row, "–", "", "only livens is there" if ours else "livens is not there"]
                     continue
                 ratio = ours[0] / theirs[0]
-                word = f"{ratio:.2f}" if ratio >= 0.2 else f"1/{1 / ratio:.0f}"
+                close = 0.95 < ratio / target.ratio < 1.05   # a digit more than tells which it was
+                word = f"{ratio:.{3 if close else 2}f}" if ratio >= 0.2 else f"1/{1 / ratio:.{2 if close else 0}f}"
                 sides = f"{engines.ENGINES[ours[1]].title} {ours[3]}, {engines.ENGINES[theirs[1]].title} {theirs[3]}"
                 yield [*row, word, sides, "met" if ratio <= target.ratio else "**missed**"]
 
