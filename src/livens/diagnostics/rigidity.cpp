@@ -125,8 +125,7 @@ SideOfRigidity rigidity_of(const Model& model, const Balanced& b, std::span<cons
         for (const ConstraintRow& row : model.joints()[j].rows)
             for (const int body : row_bodies(row)) all.is_unique[static_cast<std::size_t>(body)] = false;
     }
-    const std::vector<Matrix34> rest =
-        forces_less_inertia(model, b.at, b.X, b.V, b.A, multipliers, b.angles);
+    const std::vector<Matrix34> rest = forces_less_inertia(model, b.at, b.X, b.V, b.A, multipliers, b.angles);
     for (std::size_t i = 0; i < b.X.size(); ++i)
         if (!model.bodies()[i].is_point)
             all.multipliers[i] = as_stated(model.bodies()[i], along_directors(rest[i], b.X[i]));

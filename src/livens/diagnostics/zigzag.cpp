@@ -152,8 +152,7 @@ public:
         if (n < fewest_samples) return result;
         const std::array<double, 2> means{mean(parts_[0]), mean(parts_[1])};
         for (std::size_t p = 0; p < 2; ++p) {
-            const double floor =
-                std::max(means[p], smallest_part * smallest_part * (means[0] + means[1]));
+            const double floor = std::max(means[p], smallest_part * smallest_part * (means[0] + means[1]));
             for (std::size_t first = 0; first + n <= times_.size(); ++first) {
                 const double value = parts_[p].alternation(first, n, std::max(floor, noise_square(first, n)));
                 if (raise_to(result.value, value))

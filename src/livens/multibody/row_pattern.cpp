@@ -43,7 +43,7 @@ void RowPattern::SumTable::add(double constant, std::span<const lanes::Term> sum
 struct RowPattern::Form {
     static constexpr int size = 8;
     double K[size][size] = {}, B[size][3] = {}, c = 0;
-    int place[size] = {};                          // of each column among the numbers
+    int place[size] = {};                      // of each column among the numbers
     bool has_B[size] = {}, has_K[size] = {};   // a joint's row knows few columns
     int n = 0;
 

@@ -377,8 +377,7 @@ int steps_of_bricks(const Matrix3& R, int degree)
     model.add_joint(spherical("elbow", 0, 1, {.point_first = tip, .point_second = {}}));
     SolveOptions options;
     options.judge = false;
-    const Solution s =
-        solve(model, {model.start()}, make_time_mesh(0, 2, 80), Lobatto{degree}, options);
+    const Solution s = solve(model, {model.start()}, make_time_mesh(0, 2, 80), Lobatto{degree}, options);
     EXPECT_TRUE(s.report.converged()) << s.report.message;
     EXPECT_EQ(s.report.factorisations, 0);
     return std::accumulate(s.report.iterations.begin(), s.report.iterations.end(), 0);

@@ -158,7 +158,8 @@ LIVENS_INLINE void change_axes_here(const Body& body, const double* place, bool 
 }
 
 template <int W, bool are_rows>
-__attribute__((noinline)) void change_axes_apart(const Body& body, const double* place, bool is_first, double* y)
+__attribute__((noinline)) void change_axes_apart(const Body& body, const double* place, bool is_first,
+                                                 double* y)
 {
     change_axes_here<W, are_rows>(body, place, is_first, y);
 }
@@ -174,7 +175,8 @@ LIVENS_INLINE void change_axes(const Body& body, const double* place, bool is_fi
 /// - h sum_A (K^-1)_BA r_A, turns in still axes, where this is nearest to what inertia asks for. Leaves rows
 /// in these axes.
 template <int W>
-void form_step(const Body& body, const double* place, const Rule& rule, double* rows, double* step)
+LIVENS_INLINE void form_step(const Body& body, const double* place, const Rule& rule, double* rows,
+                             double* step)
 {
     const bool changes = body.dofs == 6 && rule.in_still_axes;
     for (int l = 0; changes && l < W; l += one<W>)
