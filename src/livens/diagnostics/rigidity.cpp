@@ -220,20 +220,21 @@ std::vector<RigiditySample> Rigidity::at_end(const State& state, int end) const
                       n_rows = static_cast<std::size_t>(motion_.n_rows);
     const std::span<const double> both =
         std::span(motion_.end_multipliers).subspan(2 * static_cast<std::size_t>(end) * n_rows, 2 * n_rows);
-    if (!are_numbers(both)) return of_both_sides(unbounded(n), unbounded(n));
-    UniqueReactions least;   // rows that do not move are the same on both sides: looked at once
-    if (!model_.has_drives()) least = least_at(model_, {state.t}, state.X, both, independent);
+    const bool is_shared = !model_.has_drives() && are_numbers(both);   // rows that do not move
+    UniqueReactions least;
+    if (is_shared) least = least_at(model_, {state.t}, state.X, both, independent);
     const auto side = [&](Side of) {
         const std::size_t s = of == Side::left ? 0 : 1;
         const auto first = motion_.accelerations.begin() +
                            static_cast<std::ptrdiff_t>((2 * static_cast<std::size_t>(end) + s) * n);
         const std::vector<Matrix34> A(first, first + motion_.n_bodies);
         const Balanced b{{state.t, of}, state.X, state.V, A, angles};
-        if (!model_.has_drives())
+        const std::span<const double> multipliers = both.subspan(s * n_rows, n_rows);
+        if (!are_numbers(multipliers)) return unbounded(n);
+        if (is_shared)
             return rigidity_of(model_, b, std::span(least.multipliers).subspan(s * n_rows, n_rows),
                                least.joint_is_unique);
-        const UniqueReactions own =
-            least_at(model_, b.at, state.X, both.subspan(s * n_rows, n_rows), independent);
+        const UniqueReactions own = least_at(model_, b.at, state.X, multipliers, independent);
         return rigidity_of(model_, b, own.multipliers, own.joint_is_unique);
     };
     return of_both_sides(side(Side::left), side(Side::right));
