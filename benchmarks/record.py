@@ -86,7 +86,9 @@ def meshes(folder):
             "runs": len(part), "converged": ends.count(0), "suspect": ends.count(7), "not converged": ends.count(4),
             "wrong": seen[f"{kind}: called converged, and off by more than ten estimates or 0.02"],
             "false alarms": round(seen[f"{kind}: false alarms, of all runs"] * len(part)),
-            "wrong by a thousandth": seen[f"{kind}: wrong ones that would be seen, were estimates a thousandth"]}
+            "wrong by a thousandth": seen[f"{kind}: wrong ones that would be seen, were estimates a thousandth"],
+            "resolved": seen[f"{kind}: resolved"],
+            "resolved, in estimates": round(seen[f"{kind}: resolved, the largest error in estimates"], 3)}
     record["pass without an estimate"] = round(seen["wrong runs that would pass without an estimate, of all"], 3)
     record["coarse"] = {row["mechanism"]: [float(f"{float(row[key]):.2g}") for key in ("error", "estimate")] for row in rows
                         if (row["mechanism"], int(row["degree"]), int(row["elements"])) in COARSE}

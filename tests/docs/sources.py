@@ -45,6 +45,8 @@ TIES = [
     ("A gap of $«10^{-10}»$ of the mechanism and less", f"{TIME}/lobatto/branches.cpp", r"open_between = ([^;]+);"),
     ("Mechanisms of more than «120» rows", f"{TIME}/lobatto/branches.cpp", r"few_rows = (\d+)"),
     ("of more than «300» they are not", f"{TIME}/lobatto/branches.cpp", r"most_rows = (\d+)"),
+    ("Up to $\\rho = «0.3»$ in all elements one degree", f"{TIME}/estimate.cpp", r"small = ([^;]+);"),
+    ("no true error of such a run is more than «1.15» estimates", "experiments/scan_meshes/expected.json", r'examples: resolved, the largest error in estimates": \{"below": ([\d.]+)'),
     ("Where the first step is longer than $«10^{-3}»$ lengths", f"{TIME}/lobatto/march_kernel.cpp", r"farthest_parting = ([^;]+);"),
     ("Steps that shrink by less than «0.3» twice", f"{TIME}/lobatto/march_kernel.cpp", r"slow_contraction = ([^;]+);"),
     ("too long), «14» steps", f"{TIME}/lobatto/march_kernel.cpp", r"most_steps = (\d+)"),

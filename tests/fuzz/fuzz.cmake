@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Hostile files. `fuzz_mutations` is deterministic; `fuzz.scenario` and `fuzz.result` are libFuzzer for a minute, `fuzz.mesh_*` for half a minute each,
+# Hostile files. `fuzz_mutations` is deterministic; `fuzz.scenario` and `fuzz.result` are libFuzzer for twenty seconds, `fuzz.mesh_*` for ten each,
 # in the preset clang. For longer runs:
 #   cmake --preset clang -DLIVENS_SLOW_TESTS=ON && cmake --build --preset clang
 #   cd build/clang/tests && ./fuzz_scenario -max_total_time=3600 corpus-scenario ../../../tests/fuzz/corpus
@@ -20,7 +20,7 @@ if(LIVENS_FUZZ)
         set(found ${CMAKE_CURRENT_BINARY_DIR}/corpus-${target})
         file(MAKE_DIRECTORY ${found})
         add_test(NAME fuzz.${target}
-                 COMMAND fuzz_${target} -max_total_time=60 -timeout=20 -rss_limit_mb=4096 -max_len=40000
+                 COMMAND fuzz_${target} -max_total_time=20 -timeout=20 -rss_limit_mb=4096 -max_len=40000
                          -artifact_prefix=${CMAKE_CURRENT_BINARY_DIR}/ -print_final_stats=1 ${found}
                          ${seeds_${target}})
         set_tests_properties(fuzz.${target} PROPERTIES LABELS fuzz TIMEOUT 600 COST 200)
@@ -33,7 +33,7 @@ if(LIVENS_FUZZ)
         set(found ${CMAKE_CURRENT_BINARY_DIR}/corpus-mesh-${format})
         file(MAKE_DIRECTORY ${found})
         add_test(NAME fuzz.mesh_${format}
-                 COMMAND fuzz_mesh_${format} -max_total_time=30 -timeout=20 -rss_limit_mb=4096 -max_len=50000
+                 COMMAND fuzz_mesh_${format} -max_total_time=10 -timeout=20 -rss_limit_mb=4096 -max_len=50000
                          -artifact_prefix=${CMAKE_CURRENT_BINARY_DIR}/ -print_final_stats=1 ${found}
                          ${CMAKE_CURRENT_SOURCE_DIR}/fuzz/corpus_meshes ${CMAKE_CURRENT_SOURCE_DIR}/unit/geometry/data)
         set_tests_properties(fuzz.mesh_${format} PROPERTIES LABELS fuzz TIMEOUT 600 COST 200)

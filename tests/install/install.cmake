@@ -53,12 +53,13 @@ if(LIVENS_BUILD_PROGRAM AND LIVENS_HARDENING AND CMAKE_BUILD_TYPE MATCHES "^Rel"
     set_tests_properties(install.program_is_hardened PROPERTIES LABELS fast TIMEOUT 60 SKIP_RETURN_CODE 77)
 endif()
 
-# Shared libraries, from a build of their own.
+# Shared libraries, from a build of their own; by the flags of this one, so that a compiler's cache has the objects.
 if(LIVENS_SLOW_TESTS AND LIVENS_BUILD_PROGRAM)
     set(shared ${CMAKE_CURRENT_BINARY_DIR}/install/shared_libraries)   # not the folder of a test below
     add_test(NAME install.shared_libraries
              COMMAND ${CMAKE_COMMAND} -DSOURCE=${PROJECT_SOURCE_DIR} -DBUILD=${shared}/build -DPREFIX=${shared}/prefix
                      -DCOMPILER=${CMAKE_CXX_COMPILER} -DGENERATOR=${CMAKE_GENERATOR}
+                     -DWARNINGS_AS_ERRORS=${LIVENS_WARNINGS_AS_ERRORS}
                      -P ${CMAKE_CURRENT_LIST_DIR}/install_shared.cmake)
     set_tests_properties(install.shared_libraries PROPERTIES
                          FIXTURES_SETUP livens_installed_shared LABELS slow TIMEOUT 3600)

@@ -152,6 +152,24 @@ livens_mutant(NAME axes_that_run_ahead
               TESTS_OF unit_spacetime
               MUST_FAIL MarchKernel.GyroscopicTermsCostNoSteps)
 
+# A load that comes later finds the mechanism as it was solved without it.
+livens_mutant(NAME load_comes_unnoticed
+              FILE multibody/model.cpp
+              OLD [[    loads_.push_back(std::move(load));
+    changed();]]
+              NEW [[    loads_.push_back(std::move(load));]]
+              TESTS_OF unit_spacetime
+              MUST_FAIL Solve.ChangesOfAModelThatWasSolvedCount)
+
+# One start taken for another that was closed before.
+livens_mutant(NAME any_start_is_the_last
+              FILE multibody/detail/from_model.h
+              OLD [[same(closed_->state.X, state.X) &&]]
+              NEW [[true &&]]
+              RECOMPILE multibody/closing.cpp
+              TESTS_OF unit_spacetime
+              MUST_FAIL Solve.EveryStartIsCheckedAndClosed)
+
 # Angles followed from node to node by increments since the first node of the element.
 livens_mutant(NAME turns_of_an_element
               FILE spacetime/lobatto/nodes.cpp

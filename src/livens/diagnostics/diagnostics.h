@@ -140,8 +140,9 @@ struct VelocityJump {
     double time = 0;   ///< end of the worst element, s
 };
 VelocityJump velocity_jump(const Model& model, const Motion& motion);
-/// Of every element, of its worst body.
+/// Of every element, of its worst body; of elements first to last - 1.
 std::vector<double> velocity_jumps(const Model& model, const Motion& motion);
+std::vector<double> velocity_jumps(const Model& model, const Motion& motion, int first, int last);
 
 /// What an element with such a velocity jump J adds to the error of X, in lengths of the model or rad:
 ///

@@ -13,7 +13,12 @@ namespace livens {
 
 std::vector<double> velocity_jumps(const Model& model, const Motion& motion)
 {
-    std::vector<double> jumps(static_cast<std::size_t>(motion.n_elements()), 0.0);
+    return velocity_jumps(model, motion, 0, motion.n_elements());
+}
+
+std::vector<double> velocity_jumps(const Model& model, const Motion& motion, int first, int last)
+{
+    std::vector<double> jumps(static_cast<std::size_t>(last - first), 0.0);
     const double length = model.length();
     const bool at_start = motion.X.points == Points::radau;
     const ElementSampler ends(motion, {at_start ? 0.0 : 1.0});
@@ -21,14 +26,15 @@ std::vector<double> velocity_jumps(const Model& model, const Motion& motion)
     for (const Body& body : model.bodies())
         centres.push_back(point(body.is_point ? Vector3{} : mass_properties(body.mass).center_of_mass));
     std::vector<Matrix34> slopes(model.bodies().size());
-    for (int e = 0; e < motion.n_elements(); ++e) {
+    for (int e = first; e < last; ++e) {
+        double& jump = jumps[e - first];
         const double h = motion.mesh.length(e);
         const std::span<const Matrix34> V = velocities_at_end(motion, at_start ? e : e + 1);
         ends.velocities(e, 0, slopes);
         for (std::size_t b = 0; b < slopes.size(); ++b) {
             const Matrix34 gap = h * (V[b] - slopes[b]);
-            raise_to(jumps[e], norm(gap * centres[b]) / length);
-            for (int a = 1; a < 4; ++a) raise_to(jumps[e], norm(gap.column(a)) / std::sqrt(2.0));
+            raise_to(jump, norm(gap * centres[b]) / length);
+            for (int a = 1; a < 4; ++a) raise_to(jump, norm(gap.column(a)) / std::sqrt(2.0));
         }
     }
     return jumps;

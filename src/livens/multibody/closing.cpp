@@ -10,6 +10,7 @@
 #include "livens/base/elementary.h"
 #include "livens/base/error.h"
 #include "livens/base/text.h"
+#include "livens/multibody/detail/from_model.h"
 #include "livens/multibody/detail/rate_changes.h"
 #include "livens/multibody/detail/wording.h"
 #include "livens/multibody/projection.h"
@@ -180,28 +181,33 @@ void settle_positions(const Model& model, StartPolicy policy, State& state, std:
 
 // --- velocities
 
-Vector3 center(const Model& model, int b) { return mass_properties(model.bodies()[b].mass).center_of_mass; }
+std::vector<Vector3> centers_of_mass(const Model& model)
+{
+    std::vector<Vector3> centers;
+    for (const Body& body : model.bodies()) centers.push_back(mass_properties(body.mass).center_of_mass);
+    return centers;
+}
 
 /// Of centres of mass, and of directors times the model's length.
-double largest_speed(const Model& model, const State& state)
+double largest_speed(const Model& model, const State& state, std::span<const Vector3> centers)
 {
     const double length = model.length();
     double speed = 0;
     for (int b = 0; b < model.n_bodies(); ++b) {
         const Matrix34& V = state.V[b];
-        speed = std::max(speed, norm(V * point(center(model, b))));
+        speed = std::max(speed, norm(V * point(centers[b])));
         for (int i = 1; i < 4; ++i) speed = std::max(speed, norm(V.column(i)) * length);
     }
     return speed;
 }
 
 /// Largest |dPhi/dt| of a row that these speeds can make.
-double rate_bound(const Model& model, const State& state, std::span<const Wrench> row, double speed,
-                  double length)
+double rate_bound(const State& state, std::span<const Wrench> row, std::span<const Vector3> centers,
+                  double speed, double length)
 {
     double bound = 0;
     for (const Wrench& w : row) {
-        const Vector3 moment = moment_about(w, state.X[w.body], center(model, w.body));
+        const Vector3 moment = moment_about(w, state.X[w.body], centers[w.body]);
         bound += norm(w.force) * speed + norm(moment) * speed / length;
     }
     return bound;
@@ -215,7 +221,8 @@ struct RateFault {
 
 /// `drives`: drive_rates(). The bound is of G V alone: a drive that is slower than bodies move does not
 /// matter, and one that is faster is a fault.
-RateFault worst_rate(const Model& model, const State& state, std::span<const double> drives, double speed)
+RateFault worst_rate(const Model& model, const State& state, const RowWrenches& wrenches,
+                     std::span<const Vector3> centers, std::span<const double> drives, double speed)
 {
     RateFault fault;
     const double length = model.length();
@@ -236,9 +243,8 @@ RateFault worst_rate(const Model& model, const State& state, std::span<const dou
                            project_help};
     }
     const std::vector<double> rates = joint_rates(model, state.X, state.V);
-    const RowWrenches wrenches = row_wrenches(model, state.X);
     for (int r = 0; r < model.n_rows(); ++r) {
-        const double bound = rate_bound(model, state, wrenches[r], speed, length);
+        const double bound = rate_bound(state, wrenches[r], centers, speed, length);
         const double rate = rates[r] + drives[r];
         const double relative = bound > 0 ? std::abs(rate) / bound : drives[r] != 0 ? 1 : 0;
         if (relative <= fault.relative) continue;
@@ -255,15 +261,17 @@ RateFault worst_rate(const Model& model, const State& state, std::span<const dou
     return fault;
 }
 
-void settle_velocities(const Model& model, StartPolicy policy, std::span<const int> independent,
-                       std::span<const double> drives, State& state, std::vector<std::string>& notes)
+void settle_velocities(const Model& model, StartPolicy policy, const RowWrenches& wrenches,
+                       std::span<const int> independent, std::span<const double> drives, State& state,
+                       std::vector<std::string>& notes)
 {
     constexpr double slowest = 1e-3;   // of what weight makes along a length: below, a fault may be rounding
-    const double stated = largest_speed(model, state),
+    const std::vector<Vector3> centers = centers_of_mass(model);
+    const double stated = largest_speed(model, state, centers),
                  speed = std::max(stated, slowest * std::sqrt(norm(model.gravity()) * model.length()));
     const bool is_driven = std::ranges::any_of(drives, [](double rate) { return rate != 0; });
     if (stated == 0 && !is_driven) return;
-    const RateFault fault = worst_rate(model, state, drives, speed);
+    const RateFault fault = worst_rate(model, state, wrenches, centers, drives, speed);
     if (fault.relative <= 8 * eps) return;
     if (fault.relative > start_tolerance && policy == StartPolicy::check) throw InputError(fault.complaint);
     const std::vector<Matrix34> before = state.V;
@@ -334,9 +342,7 @@ void note_redundancy(const Model& model, ClosedStart& assembly)
     }
 }
 
-}   // namespace
-
-ClosedStart close_start(const Model& the_model, const State& start, StartPolicy policy)
+ClosedStart close_anew(const Model& the_model, const State& start, StartPolicy policy)
 {
     ClosedStart assembly;
     assembly.start = start;
@@ -349,7 +355,10 @@ ClosedStart close_start(const Model& the_model, const State& start, StartPolicy 
 
     refuse_opposite_axes(model, assembly.start);
 
-    const RowRank rank = row_rank(model, assembly.start.X, all_rows(model));
+    const std::vector<int> rows = all_rows(model);
+    const RowWrenches wrenches = row_wrenches(model, assembly.start.X);
+    const RowRank rank =
+        row_rank(twist_rows(model, assembly.start.X, rows, wrenches), model.n_bodies(), rows);
     refuse_weightless_spin(model, assembly.start.X);
     assembly.independent = rank.independent;
     for (const Body& body : model.bodies()) assembly.degrees_of_freedom += body.is_point ? 3 : 6;
@@ -361,8 +370,23 @@ ClosedStart close_start(const Model& the_model, const State& start, StartPolicy 
                                  number(rank.smallest_pivot) + ")");
     }
     const std::vector<double> drives = drive_rates(the_model, {start.t}, assembly.start.X);
-    settle_velocities(model, policy, assembly.independent, drives, assembly.start, assembly.notes);
+    settle_velocities(model, policy, wrenches, assembly.independent, drives, assembly.start, assembly.notes);
     return assembly;
+}
+
+}   // namespace
+
+ClosedStart close_start(const Model& model, const State& start, StartPolicy policy)
+{
+    FromModel* const known = FromModel::of(model);
+    if (known == nullptr) return close_anew(model, start, policy);
+    auto closed = known->closed(start, policy);
+    if (closed == nullptr) {
+        closed = std::make_shared<const FromModel::Closed>(
+            FromModel::Closed{start, policy, close_anew(model, start, policy)});
+        known->keep(closed);
+    }
+    return closed->closed;
 }
 
 }   // namespace livens

@@ -5,9 +5,25 @@
 #include <cmath>
 #include <utility>
 
+#include "livens/multibody/detail/from_model.h"
 #include "livens/multibody/twist.h"
 
 namespace livens {
+
+namespace {
+
+/// The one that the model has, if it is of these rows.
+std::shared_ptr<const RowPattern> pattern_of(const Tables& tables, const std::vector<int>& rows)
+{
+    FromModel* const known = FromModel::of(*tables.model);
+    auto pattern = known != nullptr ? known->pattern(rows) : nullptr;
+    if (pattern != nullptr) return pattern;
+    pattern = std::make_shared<const RowPattern>(tables, rows);
+    if (known != nullptr) known->keep(pattern);
+    return pattern;
+}
+
+}   // namespace
 
 void InstantState::resize(const Tables& tables)
 {
@@ -100,8 +116,7 @@ void InstantSystem::hold(InstantState& state, const std::vector<int>& rows, cons
 {
     state.rows = rows;
     if (is_sparse_) {
-        if (pattern_ == nullptr || pattern_->chosen() != rows)
-            pattern_ = std::make_shared<const RowPattern>(tables_, rows);
+        if (pattern_ == nullptr || pattern_->chosen() != rows) pattern_ = pattern_of(tables_, rows);
         state.joints.use(pattern_);
         state.smallest_pivot = state.joints.prepare(tables_, state.X.data(), near);
         state.by_joints = state.smallest_pivot > JointFactor::well_held;

@@ -8,6 +8,7 @@
 
 #include "livens/base/error.h"
 #include "livens/multibody/detail/directors.h"
+#include "livens/multibody/detail/from_model.h"
 #include "livens/multibody/detail/wording.h"
 
 namespace livens {
@@ -197,12 +198,17 @@ void check_row(const ConstraintRow& row, const Joint& joint, const std::vector<B
 
 }   // namespace
 
+Model::Model(const Vector3& gravity) : gravity_(gravity) { changed(); }
+
+void Model::changed() { from_this_ = std::make_shared<FromModel>(); }
+
 int Model::add_body(Body body)
 {
     check_name(bodies_, body.name, "body");
     require_finite(gravity_, "gravity", "gravity");
     check_body(body, "body[" + body.name + "]");
     bodies_.push_back(std::move(body));
+    changed();
     return n_bodies() - 1;
 }
 
@@ -231,6 +237,7 @@ int Model::add_joint(Joint joint)
     for (int k = 0; k < static_cast<int>(joint.rows.size()); ++k) rows_.push_back({index, k});
     for (const ConstraintRow& row : joint.rows) has_drives_ = has_drives_ || !row.drives.empty();
     joints_.push_back(std::move(joint));
+    changed();
     return index;
 }
 
@@ -256,6 +263,7 @@ int Model::add_load(Load load)
                    "a point mass takes forces in world axes at its own point");
     has_pieces_ = has_pieces_ || load.piece;
     loads_.push_back(std::move(load));
+    changed();
     return static_cast<int>(loads_.size()) - 1;
 }
 
@@ -273,6 +281,7 @@ int Model::add_sensor(Sensor sensor)
             check_body_index(form.body_j, n_bodies(), path);
         }
     sensors_.push_back(std::move(sensor));
+    changed();
     return static_cast<int>(sensors_.size()) - 1;
 }
 
@@ -334,6 +343,7 @@ Model frozen(const Model& model, Instant at)
     for (Joint& joint : now.joints_)
         for (auto* rows : {&joint.rows, &joint.branches})
             for (ConstraintRow& row : *rows) row = frozen(row, at);
+    now.changed();
     return now;
 }
 

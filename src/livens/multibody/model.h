@@ -2,6 +2,7 @@
 // The mechanism: bodies, joints, loads and gravity.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,8 @@
 #include "livens/multibody/sensors.h"
 
 namespace [[gnu::visibility("default")]] livens {
+
+class FromModel;   // inside of the engine
 
 /// Positions and their rates of all bodies at one instant.
 struct State {
@@ -24,7 +27,7 @@ struct State {
 /// A mechanism is built by the add_ functions and constant from then on; all others take it const.
 class Model {
 public:
-    explicit Model(const Vector3& gravity = {0, 0, 0}) : gravity_(gravity) {}
+    explicit Model(const Vector3& gravity = {0, 0, 0});
 
     /// Each returns the index of what was added. They throw InputError: a name given twice, empty or "world";
     /// an index of a body that does not exist; a body that no MassProperties describe; a joint without rows
@@ -94,8 +97,11 @@ private:
     std::vector<int> first_rows_;
     bool has_drives_ = false;
     bool has_events_ = false, has_pieces_ = false;
+    std::shared_ptr<FromModel> from_this_;   // of these members alone: new with each change of them
 
+    void changed();
     friend Model frozen(const Model& model, Instant at);
+    friend class FromModel;
 };
 
 /// The model with all rows as they are at an instant, without drives: for what is asked of positions alone.

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "livens/multibody/detail/from_model.h"
 #include "livens/multibody/model.h"
 
 namespace livens {
@@ -17,44 +18,53 @@ double told_distance(const Vector3& a, const Vector3& b)
     return distance > 1e-13 * (norm(a) + norm(b)) ? distance : 0;
 }
 
-}   // namespace
-
-double Model::length() const
+double length_of(const Model& model)
 {
     double length = 0, radius = 0;   // of gyration, the largest
     Vector3 middle{};
-    for (const Body& body : bodies_) {
+    const std::vector<Body>& bodies = model.bodies();
+    for (const Body& body : bodies) {
         double square = 0;
         for (int i = 1; i < 4; ++i) {
             const double offset = body.mass(i, 0) / body.mass(0, 0);
             square += body.mass(i, i) / body.mass(0, 0) - offset * offset;
         }
         radius = std::max(radius, std::sqrt(std::max(square, 0.0)));
-        middle += (1.0 / n_bodies()) * center_of_mass(body);
+        middle += (1.0 / model.n_bodies()) * center_of_mass(body);
     }
-    for (const Body& body : bodies_)
+    for (const Body& body : bodies)
         length = std::max(length, 2 * told_distance(center_of_mass(body), middle));
-    for (const Joint& joint : joints_) {
-        const Body& second = bodies_[joint.second];
+    for (const Joint& joint : model.joints()) {
+        const Body& second = bodies[joint.second];
         const Vector3 place = second.X * point(joint.point_second);
-        const Matrix34& X_first = joint.first == world ? world_configuration : bodies_[joint.first].X;
+        const Matrix34& X_first = joint.first == world ? world_configuration : bodies[joint.first].X;
         const Vector3 other = X_first * point(joint.point_first);
         length =
             std::max({length, told_distance(place, center_of_mass(second)), told_distance(place, other)});
         if (joint.first != world)
-            length = std::max(length, told_distance(other, center_of_mass(bodies_[joint.first])));
+            length = std::max(length, told_distance(other, center_of_mass(bodies[joint.first])));
     }
     if (length > 0) return std::max(length, radius);
-    for (const Load& load : loads_) {   // an orbit is told by what attracts, but not a mechanism in one
+    for (const Load& load : model.loads()) {   // what attracts tells an orbit, but not a mechanism in one
         if (load.type != "attraction") continue;
         const auto place = [&](std::size_t i) {
             const int body = load.bodies[i];
-            return body == world ? load.points[i] : bodies_[body].X * point(load.points[i]);
+            return body == world ? load.points[i] : bodies[body].X * point(load.points[i]);
         };
         length = std::max(length, told_distance(place(0), place(1)));
     }
     length = std::max(length, radius);
     return length > 0 ? length : 1;
+}
+
+}   // namespace
+
+double Model::length() const
+{
+    FromModel* const known = FromModel::of(*this);
+    if (known == nullptr) return length_of(*this);
+    if (known->length == 0) known->length = length_of(*this);
+    return known->length;
 }
 
 }   // namespace livens

@@ -12,7 +12,6 @@
 #include <Eigen/Dense>
 
 #include "livens/multibody/forest.h"
-#include "livens/multibody/rows.h"
 #include "livens/multibody/sparse_rows.h"
 
 namespace livens {
@@ -148,7 +147,12 @@ void scale_to_one(BodyRow& row)
 
 TwistRows twist_rows(const Model& model, std::span<const Matrix34> X, std::span<const int> rows)
 {
-    const RowWrenches wrenches = row_wrenches(model, X);
+    return twist_rows(model, X, rows, row_wrenches(model, X));
+}
+
+TwistRows twist_rows(const Model& model, std::span<const Matrix34> X, std::span<const int> rows,
+                     const RowWrenches& wrenches)
+{
     const std::vector<Pole> poles = poles_of(model, X, wrenches);
     TwistRows twists;
     for (const Pole& pole : poles) twists.doubt = std::max(twists.doubt, 8 * eps * pole.reach / pole.length);
@@ -239,14 +243,18 @@ void part(std::span<const int> rows, const std::vector<int>& dependent, RowRank&
 
 RowRank row_rank(const Model& model, std::span<const Matrix34> X, std::span<const int> rows, double threshold)
 {
+    if (rows.empty()) return {};
+    return row_rank(twist_rows(model, X, rows), model.n_bodies(), rows, threshold);
+}
+
+RowRank row_rank(const TwistRows& twists, int n_bodies, std::span<const int> rows, double threshold)
+{
     RowRank rank;
     if (rows.empty()) return rank;
-    const TwistRows twists = twist_rows(model, X, rows);
     threshold = std::max(threshold, std::min(twists.doubt, 1e-4));
     part(rows,
          judge(
-             twists, model.n_bodies(), threshold, rank.smallest_pivot,
-             [](const std::vector<int>&) { return true; },
+             twists, n_bodies, threshold, rank.smallest_pivot, [](const std::vector<int>&) { return true; },
              [threshold](Index, double ratio) { return ratio > threshold; }),
          rank);
     return rank;

@@ -10,6 +10,7 @@
 
 #include "livens/multibody/forest.h"
 #include "livens/multibody/model.h"
+#include "livens/multibody/rows.h"
 
 namespace livens {
 
@@ -24,6 +25,8 @@ struct TwistRows {
     double doubt = 0;   ///< 8 eps times the largest of these distances over lengths, or that of the forces
 };
 TwistRows twist_rows(const Model& model, std::span<const Matrix34> X, std::span<const int> rows);
+TwistRows twist_rows(const Model& model, std::span<const Matrix34> X, std::span<const int> rows,
+                     const RowWrenches& wrenches);
 
 /// Clear cases are judged along the joints, at a cost that grows with the bodies: rows of a spanning forest
 /// by single joints, rows that close loops by what is new in them beside the forest; independent above 1e-3,
@@ -38,6 +41,7 @@ struct RowRank {
 /// positions and joint points to arms, or to lengths of rods. So 1e-9 bears distances of 5e5 arms.
 RowRank row_rank(const Model& model, std::span<const Matrix34> X, std::span<const int> rows,
                  double threshold = 1e-9);
+RowRank row_rank(const TwistRows& twists, int n_bodies, std::span<const int> rows, double threshold = 1e-9);
 
 /// Of all rows of the model.
 struct Dependencies {
@@ -53,9 +57,9 @@ Dependencies dependencies(const Model& model, std::span<const Matrix34> X, std::
 /// A spin about an axis through the centre of mass, alone or together with such spins of other bodies, that
 /// no row holds and that carries no inertia.
 struct WeightlessSpin {
-    int body = 0;            ///< that turns most
-    Vector3 axis{};          ///< world axes, norm 1
-    bool by_digits = false;  ///< there may be an inertia, but M |c|^2 takes all its digits
+    int body = 0;             ///< that turns most
+    Vector3 axis{};           ///< world axes, norm 1
+    bool by_digits = false;   ///< there may be an inertia, but M |c|^2 takes all its digits
 };
 /// Without inertia are the principal axes of the body with J <= 16 eps tr E, the rounding level of
 /// J = (tr E - M |c|^2) 1 - (E - M c c^T), known to an angle u = 16 eps tr E / J of the next axis. A row with

@@ -41,7 +41,7 @@ struct Wrench {
     double doubt = 0;   ///< rounding error of the force, relative to it
 };
 
-/// On the bodies of every row.
+/// On the bodies of every row of the model.
 using RowWrenches = std::vector<std::vector<Wrench>>;
 RowWrenches row_wrenches(const Model& model, std::span<const Matrix34> X);
 

@@ -100,7 +100,7 @@ void check_accuracy(const Conditions& given, const Span& span, const Method& met
     const int degree = lobatto != nullptr  ? lobatto->degree
                        : either != nullptr ? either->degree
                                            : std::get<Radau>(method).degree;
-    if (degree != 0) rule_of(either != nullptr ? Lobatto{degree} : method);   // throws
+    if (degree != 0) check_degree(either != nullptr ? Lobatto{degree} : method, false);
     make_time_mesh(span.start, span.end, 1, span.output);   // throws
 }
 
@@ -180,7 +180,7 @@ void check_method(const Model& model, const Problem& problem, const Time& time, 
                           "name the family, or give accuracy instead of elements"});
     if (const auto* mixed = std::get_if<Mixed>(&method))
         check_mixed(model, problem.conditions, *mesh, *mixed);
-    if (is_nodal(method)) rule_of(method);   // throws
+    if (is_nodal(method)) check_degree(method, problem.near != nullptr);
     if (const auto* lobatto = std::get_if<Lobatto>(&method); lobatto != nullptr && lobatto->window < 0)
         throw InputError({"window-out-of-range", "method.window", "a window has at least one element",
                           std::to_string(lobatto->window), "1 to all", "", ""});

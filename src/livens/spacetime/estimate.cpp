@@ -6,8 +6,10 @@
 #include <limits>
 #include <variant>
 
+#include "livens/base/elementary.h"
 #include "livens/base/error.h"
 #include "livens/base/text.h"
+#include "livens/diagnostics/diagnostics.h"
 #include "livens/diagnostics/largest.h"
 #include "livens/multibody/frequencies.h"
 #include "livens/spacetime/phases.h"
@@ -19,6 +21,15 @@ namespace {
 
 /// Elements of a second solution that are kept in memory together.
 constexpr int elements_at_once = 4096;
+
+/// The degree whose distance from a degree p of lobatto tells the error of elements with such a velocity jump
+/// J = rho^(p + 1). From degree to degree errors fall by rho^2; where rho is not small, in stairs, and those
+/// of p and p + 1 may be alike (docs/theory.md, "The estimated error").
+int finer_degree(int degree, double jump)
+{
+    constexpr double small = 0.3;   // rho
+    return degree < 4 || jump <= power(small, degree + 1) ? degree + 1 : degree + 2;
+}
 
 TimeMesh halved(const TimeMesh& mesh)
 {
@@ -45,15 +56,13 @@ Second::Second(const Model& model, const Problem& problem, const Method& method,
                const Motion& first)
     : model_(model), problem_(problem), method_(method), options_(options), first_(first),
       meter_(model, first, order_factor(method)), is_backwards_(problem.conditions.at_end == Known::state),
-      at_(is_backwards_ ? first.n_elements() : 0)
+      is_lobatto_(std::holds_alternative<Lobatto>(method)), at_(is_backwards_ ? first.n_elements() : 0)
 {
     problem_.guess = [&first](double t) { return first.at(t); };
     problem_.near = &first;
     options_.condition = options_.judge = false;
     options_.end_at_bends = false;   // within its error it does where the first one's elements end
     options_.meeting = std::numeric_limits<double>::infinity();   // both meet it within their errors
-    // Errors of degrees p and p + 1 are at times alike, above all in elements too long for their degree.
-    if (auto* lobatto = std::get_if<Lobatto>(&method_)) lobatto->degree += lobatto->degree < 4 ? 1 : 2;
     if (auto* radau = std::get_if<Radau>(&method_)) ++radau->degree;
     if (const auto* mixed = std::get_if<Mixed>(&method)) {
         method_ = mixed->witness();
@@ -64,6 +73,12 @@ Second::Second(const Model& model, const Problem& problem, const Method& method,
 bool Second::advance(int end)
 {
     const int first = std::min(at_, end), last = std::max(at_, end);
+    if (is_lobatto_) {
+        double jump = 0;
+        for (const double of_element : velocity_jumps(model_, first_, first, last))
+            raise_to(jump, of_element);
+        std::get<Lobatto>(method_).degree = finer_degree(first_.X.degree, jump);
+    }
     TimeMesh mesh{{first_.mesh.ends.begin() + first, first_.mesh.ends.begin() + last + 1}};
     mesh.required = mesh.ends;
     for (const double t : missed(mesh, model_.load_breaks()))   // what one solution missed, two would

@@ -6,9 +6,9 @@
 
 namespace livens {
 
-/// The same problem with one or two degrees more (lobatto from degree 4: two; the classical methods: with
-/// half the steps) on the same elements, of which it may divide some. It goes on from its own end states, so
-/// what it finds are global errors. Nothing of it is kept but these.
+/// The same problem with one or two degrees more (two: lobatto from degree 4 in elements that hardly resolve
+/// the motion; the classical methods: with half the steps) on the same elements, of which it may divide some.
+/// It goes on from its own end states, so what it finds are global errors. Nothing of it is kept but these.
 class Second {
 public:
     /// References must outlive it; the motion may grow. `method` is that of the first solution.
@@ -32,7 +32,7 @@ private:
     SolveOptions options_;
     const Motion& first_;
     ErrorMeter meter_;
-    bool is_backwards_;
+    bool is_backwards_, is_lobatto_;
     int at_;
     SolveReport report_;
     long long evaluations_ = 0;

@@ -2,10 +2,13 @@
 // What the one entry refuses, and how it says so.
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <string>
+#include <utility>
 
 #include "livens/base/error.h"
 #include "livens/spacetime/solve.h"
+#include "unit/spacetime/mechanisms.h"
 
 namespace livens {
 namespace {
@@ -34,8 +37,8 @@ TEST(Solve, NamesSmallNumbersToTheLastDigit)
     const Model model = stone();
     SolveOptions options;
     options.tolerance = -1e-9;
-    const Complaint refused = complaint_of(
-        [&] { solve(model, {model.start()}, make_time_mesh(0, 1, 2), Lobatto{1}, options); });
+    const Complaint refused =
+        complaint_of([&] { solve(model, {model.start()}, make_time_mesh(0, 1, 2), Lobatto{1}, options); });
     EXPECT_EQ(refused.code, "tolerance-out-of-range");
     EXPECT_EQ(refused.value, "-1e-09");
 
@@ -84,11 +87,76 @@ TEST(Solve, AdvisesInConceptsAndNotInTheKeysOfFiles)
 {
     const Model model = stone();
     const Problem problem{{model.start(), Known::positions, model.start(), Known::momenta}};
-    const Complaint refused = complaint_of(
-        [&] { solve(model, problem, make_time_mesh(0, 1, 2), Midpoint{}); });
+    const Complaint refused =
+        complaint_of([&] { solve(model, problem, make_time_mesh(0, 1, 2), Midpoint{}); });
     EXPECT_EQ(refused.code, "boundary-method");
     for (const std::string& text : {refused.message, refused.bound, refused.note, refused.help})
         EXPECT_EQ(text.find(" = "), std::string::npos) << text;
+}
+
+/// The end of the motion of 0.2 s.
+State end_of(const Model& model, const State& start)
+{
+    SolveOptions options;
+    options.judge = false;
+    const Solution solution = solve(model, {start}, make_time_mesh(0, 0.2, 4), Lobatto{4}, options);
+    EXPECT_TRUE(solution.report.converged()) << solution.report.message;
+    return solution.motion.at_end(solution.motion.n_elements());
+}
+
+bool are_alike(const State& a, const State& b) { return a.X == b.X && a.V == b.V; }
+
+// A model keeps what was found out about it, until it changes.
+TEST(Solve, ChangesOfAModelThatWasSolvedCount)
+{
+    const std::function<void(Model&)> changes[] = {
+        [](Model& m) {
+            m.add_load(point_force("push", 1, {}, {0.0, 3.0, 1.0}, Frame::inertial));
+        },
+        [](Model& m) {
+            m.add_joint(
+                rod("tie", world, 1, {.point_first = {1, -1, 1}, .point_second = {}}, std::sqrt(2.0)));
+        },
+        [](Model& m) {
+            m.add_body(rigid_body("far", box(1, {1, 2, 3}), {.position = {50, 0, 0}}));
+        }};
+    for (const auto& change : changes) {
+        Model solved = testing_models::two_bricks(), fresh = testing_models::two_bricks();
+        const State before = end_of(solved, solved.start());
+        const Model copy = solved;
+        change(solved);
+        change(fresh);
+        EXPECT_TRUE(are_alike(end_of(solved, solved.start()), end_of(fresh, fresh.start())));
+        EXPECT_EQ(solved.length(), fresh.length());
+        EXPECT_TRUE(are_alike(end_of(copy, copy.start()), before)) << "a copy is a model of its own";
+        EXPECT_EQ(copy.length(), testing_models::two_bricks().length());
+    }
+}
+
+TEST(Solve, EveryStartIsCheckedAndClosed)
+{
+    const Model model = testing_models::two_bricks();
+    State open = model.start();
+    open.X[1] += configuration({0, 0, 1e-3}, Matrix3{});
+    SolveOptions project;
+    project.judge = false;
+    project.initial = StartPolicy::project;
+    const auto solved = [&](const State& start, const SolveOptions& options) {
+        return solve(model, {start}, make_time_mesh(0, 0.1, 2), Lobatto{4}, options);
+    };
+    for (int i = 0; i < 2; ++i) {   // what one of them was found to be is nothing to the others
+        end_of(model, model.start());
+        EXPECT_EQ(complaint_of([&] { solved(open, {}); }).code, "start-position");
+        const Solution moved = solved(open, project);
+        EXPECT_TRUE(moved.report.converged());
+        EXPECT_FALSE(moved.report.notes.empty()) << "says what it moved";
+        EXPECT_EQ(complaint_of([&] { solved(open, {}); }).code, "start-position");
+    }
+    Model left = testing_models::two_bricks();
+    const Model taken = std::move(left);
+    EXPECT_TRUE(are_alike(end_of(taken, taken.start()), end_of(model, model.start())));
+    left = testing_models::two_bricks();
+    EXPECT_TRUE(are_alike(end_of(left, left.start()), end_of(model, model.start())));
 }
 
 }   // namespace

@@ -28,7 +28,7 @@ constexpr double share_of_tolerance = 0.1;   // left after the last step, as far
 // none.
 constexpr double farthest_parting = 1e-3;
 constexpr int elements_alone = 16;          // behind one that was not found so
-constexpr double widest_tolerance = 1e-5;   // beyond, two steps hardly tell how they shrink
+constexpr double widest_tolerance = 1e-4;   // beyond, two steps hardly tell how they shrink
 
 /// Whether some body's axis of turning turns itself. Where none does, as in a plane, nothing is gyroscopic.
 bool turns_in_space(const Tables& tables, const InstantState& start, double h)

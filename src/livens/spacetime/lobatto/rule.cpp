@@ -48,11 +48,12 @@ void balance_row(const ElementRule& rule, double* x, double value)
     }
 }
 
-void check_degree(Points points, int degree)
+void check_degree(Points points, int degree, bool is_second)
 {
-    const int most = points == Points::lobatto ? 18 : 9;
-    if (degree >= 1 && degree <= most) return;
-    const std::string last = std::to_string(points == Points::lobatto ? 16 : 8);
+    const bool is_lobatto = points == Points::lobatto;
+    const int most = is_lobatto ? 16 : 8, more = is_lobatto ? 2 : 1;
+    if (degree >= 1 && degree <= most + (is_second ? more : 0)) return;
+    const std::string last = std::to_string(most);
     throw InputError(
         {"degree-out-of-range", "method.degree",
          std::string(points == Points::lobatto ? "lobatto" : "radau") + " elements have degree 1 to " + last,
@@ -105,7 +106,7 @@ void fill_radau(ElementRule& rule)
 
 ElementRule element_rule(Points points, int degree)
 {
-    check_degree(points, degree);
+    check_degree(points, degree, true);
     const LagrangeBasis basis = basis_on(points, degree);
     ElementRule rule;
     rule.points = points;
@@ -124,6 +125,14 @@ ElementRule element_rule(Points points, int degree)
         basis.derivatives(rule.loads.points[c], std::span(rule.dM).subspan(c * size, size));
     }
     return rule;
+}
+
+void check_degree(const Method& method, bool is_second)
+{
+    if (const auto* radau = std::get_if<Radau>(&method))
+        check_degree(Points::radau, radau->degree, is_second);
+    else
+        check_degree(Points::lobatto, std::get<Lobatto>(method).degree, is_second);
 }
 
 ElementRule rule_of(const Method& method)
