@@ -66,7 +66,7 @@ def lobatto(n_bodies):
 
 def stopped_early(setting):
     """The iteration stops at 1e-14 by default."""
-    return [f"{setting}:{tolerance}" for tolerance in ("1e-11", "1e-8", "1e-5")]
+    return [f"{setting}:{tolerance}" for tolerance in ("1e-11", "1e-8", "1e-5", "1e-4")]
 
 
 def livens(title, word, needs="", like=""):

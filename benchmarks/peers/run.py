@@ -157,7 +157,7 @@ def best_at(rows, level, how_many):
 def near_best(rows):
     """Those of one of the levels, and of each half decade, that narrower instructions may favour."""
     levels = [10 ** (-k / 2) for k in range(4, 26)]
-    chosen = {tuple(row) for level in levels for row in best_at(rows, level, 3)}
+    chosen = {tuple(row) for level in levels for row in best_at(rows, level, 6)}
     return sorted(chosen)
 
 
