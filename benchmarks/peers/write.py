@@ -33,7 +33,8 @@ one where it takes more than 20 ms) are timed again, engines taking turns, {roun
 counts. A sweep ends where one solution takes 0.3 s (0.5 s from 10 bodies on, 1.5 s from 50), or where the error gets
 no smaller; "best" is how far an engine came. A cell has milliseconds of processor time and the setting. Only the
 solution is timed: models are made before, and livens, too, does without its estimate of the error, but for the row
-that says otherwise.
+that says otherwise. What livens finds at the first solution of a model (its joints' pattern, its start once closed) others do
+when they compile theirs; it is not timed either, and takes up to a quarter of the shortest runs of hinged chains.
 
 **Errors.** The largest distance (m) of the compared points at the end from the reference: minimal coordinates derived on paper
 ([peer_hand.cpp](../benchmarks/peers/peer_hand.cpp), [chain_by_hand.h](../benchmarks/peers/chain_by_hand.h)), integrated by
