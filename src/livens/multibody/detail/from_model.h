@@ -45,7 +45,8 @@ public:
     {
         const std::lock_guard lock(mutex_);
         const auto same = [](const auto& a, const auto& b) {   // to the signs of zeros
-            return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(a[0])) == 0;
+            const bool are_equal = a.size() == b.size();
+            return are_equal && (a.empty() || std::memcmp(&a[0], &b[0], a.size() * sizeof(a[0])) == 0);
         };
         const bool is_known = closed_ != nullptr && closed_->policy == policy &&
                               closed_->state.t == state.t && same(closed_->state.X, state.X) &&
