@@ -208,7 +208,7 @@ def check_recorded(d):
            + " converged runs would be found wrong")
     d.says("docs/trust.md", f"without estimates {100 * meshes['pass without an estimate']:.0f} percent of the runs")
     counts, largest = zip(*((meshes[k]["resolved"], meshes[k]["resolved, in estimates"]) for k in ("examples", "others")))
-    d.says("docs/trust.md", "In {} and {} such runs the largest true error was {:.2f} and {:.2f} estimates".format(*counts, *largest))
+    d.says("docs/trust.md", "Of all {} and {} resolved runs the largest true error was {:.2f} and {:.2f} estimates".format(*counts, *largest))
     for name, (error, estimate) in meshes["coarse"].items():
         d.holds(re.search(rf"`{name}` with [^`]*?{error:.1e} (?:off and estimated|and) {estimate:.1e}".replace("e-0", "e-"),
                           d.texts["docs/trust.md"]), f"docs/trust.md: {name} is {error:.1e} off, estimated {estimate:.1e}")

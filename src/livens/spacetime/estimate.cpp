@@ -31,6 +31,16 @@ int finer_degree(int degree, double jump)
     return degree < 4 || jump <= power(small, degree + 1) ? degree + 1 : degree + 2;
 }
 
+/// The largest of these elements; infinite where laws of loads and drives may bend inside of one, of which J
+/// tells nothing.
+double telling_jump(const Model& model, const Motion& motion, int first, int last)
+{
+    if (!model.loads().empty() || model.has_drives()) return std::numeric_limits<double>::infinity();
+    double jump = 0;
+    for (const double of_element : velocity_jumps(model, motion, first, last)) raise_to(jump, of_element);
+    return jump;
+}
+
 TimeMesh halved(const TimeMesh& mesh)
 {
     TimeMesh finer;
@@ -73,12 +83,9 @@ Second::Second(const Model& model, const Problem& problem, const Method& method,
 bool Second::advance(int end)
 {
     const int first = std::min(at_, end), last = std::max(at_, end);
-    if (is_lobatto_) {
-        double jump = 0;
-        for (const double of_element : velocity_jumps(model_, first_, first, last))
-            raise_to(jump, of_element);
-        std::get<Lobatto>(method_).degree = finer_degree(first_.X.degree, jump);
-    }
+    if (is_lobatto_)
+        std::get<Lobatto>(method_).degree =
+            finer_degree(first_.X.degree, telling_jump(model_, first_, first, last));
     TimeMesh mesh{{first_.mesh.ends.begin() + first, first_.mesh.ends.begin() + last + 1}};
     mesh.required = mesh.ends;
     for (const double t : missed(mesh, model_.load_breaks()))   // what one solution missed, two would

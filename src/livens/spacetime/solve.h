@@ -44,8 +44,9 @@ struct SolveOptions {
     bool judge = true;   ///< false: the caller asks estimate() and judge() himself, or does without
     /// What tells the error of the motion, where it is judged.
     enum class Estimate {
-        second,   ///< a second solution on the same mesh, of degree + 1 (lobatto from degree 4 in elements
-                  ///< that hardly resolve the motion: + 2) or with half the steps; mixed: its witness
+        second,   ///< a second solution on the same mesh, of degree + 1 (lobatto from degree 4, under loads
+                  ///< or in elements that hardly resolve the motion: + 2) or with half the steps; mixed: its
+                  ///< witness
         local,    ///< what every element loses by its velocity jump, grown as neighbouring motions part: one
                   ///< number for all bodies, good to a factor of ten or so; nothing of velocities and
                   ///< reactions (lobatto and radau on a mesh, state at the start)

@@ -32,7 +32,7 @@ struct ElementRule {
 ElementRule element_rule(Points points, int degree);
 /// Throws InputError for a degree out of range, and std::bad_variant_access for a method that is not nodal.
 ElementRule rule_of(const Method& method);
-/// Throws what rule_of() throws, for all but a second solution beyond 16 (lobatto) or 8 (radau), too.
+/// Throws what rule_of() throws, unless `is_second` beyond 16 (lobatto) or 8 (radau), too.
 void check_degree(const Method& method, bool is_second);
 inline ElementRule lobatto_rule(int degree) { return element_rule(Points::lobatto, degree); }
 
