@@ -1182,14 +1182,16 @@ class Signals(ProgramTest):
         self.write("other.toml", text.replace("[1, 0, 0]", "[2, 0, 0]"))
         self.expect(0, "solve", "other.toml", "-o", "new.nc")
         new = (self.folder / "new.nc").read_bytes()
-        begin = time.monotonic()
-        self.expect(0, "solve", "other.toml", "-o", "run.nc")
-        whole = time.monotonic() - begin
+        times = []
+        for _ in range(3):   # of which one may have shared the machine
+            begin = time.monotonic()
+            self.expect(0, "solve", "other.toml", "-o", "run.nc")
+            times.append(time.monotonic() - begin)
         seen = set()
-        for k in range(15):
+        for k in range(18):
             (self.folder / "run.nc").write_bytes(old)
             program = self.start("solve", "other.toml", "-o", "run.nc", "-q")
-            time.sleep(whole * (0.3 + 0.8 * k / 14))
+            time.sleep(min(times) * (0.1 + 1.0 * k / 17))
             program.kill()
             program.communicate()
             now = (self.folder / "run.nc").read_bytes()

@@ -24,8 +24,8 @@ struct State {
     std::vector<double> angles{};   ///< of loads, see Turns; empty: no turns since the bodies were stated
 };
 
-/// A mechanism is built by the add_ functions and constant from then on; all others take it const. Functions in
-/// it (laws of loads, drives, rows) depend on their arguments alone: what was found with them once is kept.
+/// A mechanism is built by the add_ functions and constant from then on; all others take it const. Functions
+/// in it (laws of loads, drives, rows) depend on their arguments alone: what was found with them is kept.
 class Model {
 public:
     explicit Model(const Vector3& gravity = {0, 0, 0});
