@@ -52,11 +52,17 @@ public:
     void error(const ErrorEstimate& estimate, const Model& model, double bound)
     {
         if (estimate.largest <= bound) return;
+        const bool is_law = estimate.unseen_load >= 0 && !(estimate.unseen < 0.5 * estimate.largest);
         reasons_.push_back(
             "its estimated error is " + to_text(estimate.largest, 3) +
             " (lengths of the model, or rad), of body '" + model.body_name(estimate.body) + "' at " +
             to_text(estimate.time, 6) +
-            " s, by a second, finer solution; more elements or a higher degree may help");
+            " s, by " +
+            (is_law ? "what the law of load '" + model.loads()[static_cast<std::size_t>(estimate.unseen_load)].name +
+                          "' does inside of the element that ends at " + to_text(estimate.unseen_time, 6) +
+                          " s, between the points at which it is evaluated; shorter elements there, or an "
+                          "accuracy instead of elements, may help"
+                    : std::string("a second, finer solution; more elements or a higher degree may help")));
     }
     void unsure(double error, double jump, double drift)
     {

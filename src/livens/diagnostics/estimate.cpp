@@ -64,16 +64,36 @@ void ErrorMeter::compare(const Motion& finer, int first, int last)
 {
     estimate_.n_joints = motion_.end_multipliers.empty() ? 0 : static_cast<int>(model_.joints().size());
     reach(last);
+    std::vector<int> missing;
     for (int end = first; end <= last; ++end) {
         const int there = element_end_at(finer.mesh, motion_.mesh.ends[end]);
-        if (there < 0) continue;
+        if (there < 0) {
+            missing.push_back(end);
+            continue;
+        }
         compare_states(end, motion_.at_end(end), finer.at_end(there));
         if (estimate_.n_joints == 0 || finer.end_multipliers.empty()) continue;
         // where a piece begins or ends, the other side is that of another one
         const bool begins = end == first && first > 0, ends = end == last && last < motion_.n_elements();
         compare_reactions(end, finer, begins ? Side::right : ends ? Side::left : Side::middle);
     }
+    for (auto end = missing.rbegin(); end != missing.rend(); ++end) fill(*end);   // the one behind is known
     estimate_.find_largest(motion_.mesh);
+}
+
+void ErrorMeter::fill(int end)
+{
+    if (end == 0 || end + 1 >= static_cast<int>(motion_.mesh.ends.size())) return;
+    const auto of = [end](std::vector<double>& errors, int n) {
+        for (int k = 0; k < n; ++k) {
+            const auto at = static_cast<std::size_t>(end * n + k), step = static_cast<std::size_t>(n);
+            if (at + step < errors.size()) errors[at] = std::fmax(errors[at - step], errors[at + step]);
+        }
+    };
+    of(estimate_.position, estimate_.n_bodies);
+    of(estimate_.orientation, estimate_.n_bodies);
+    of(estimate_.velocity, estimate_.n_bodies);
+    of(estimate_.reaction, estimate_.n_joints);
 }
 
 void ErrorMeter::compare_states(int end, const State& a, const State& b)
@@ -102,6 +122,39 @@ void ErrorMeter::compare_reactions(int end, const Motion& finer, Side side)
         error = side != Side::middle && error > gap ? error : gap;
         raise_to(estimate_.largest_reaction, size_of(a[j], estimate_.length));
     }
+}
+
+void ErrorMeter::add(const std::vector<Unseen>& unseen, int first, int last)
+{
+    const auto n = static_cast<std::size_t>(estimate_.n_bodies);
+    shifts_.resize(n);
+    turns_.resize(n);
+    std::size_t next = 0;
+    for (int end = first + 1; end <= last; ++end) {
+        const double t = motion_.mesh.ends[static_cast<std::size_t>(end)];
+        for (; next < unseen.size() && unseen[next].t <= t; ++next) {
+            const Unseen& one = unseen[next];
+            const double since = one.t - one.duration, kick = one.error / one.duration;
+            for (std::size_t b = 0; b < n; ++b) {
+                shifts_[b].rate += one.shift[b], shifts_[b].moment += one.shift[b] * since;
+                turns_[b].rate += one.turn[b], turns_[b].moment += one.turn[b] * since;
+            }
+            if (!(kick > largest_kick_)) continue;
+            largest_kick_ = kick;
+            estimate_.unseen_load = one.load;
+            estimate_.unseen_time = one.t;
+        }
+        for (std::size_t b = 0; b < n; ++b) {
+            const std::size_t at = static_cast<std::size_t>(end) * n + b;
+            const double shift = shifts_[b].rate * t - shifts_[b].moment,
+                         turn = turns_[b].rate * t - turns_[b].moment;
+            estimate_.position[at] += shift;
+            estimate_.orientation[at] += turn;
+            estimate_.velocity[at] += shifts_[b].rate * estimate_.length;
+            raise_to(estimate_.unseen, std::max(shift, turn));
+        }
+    }
+    estimate_.find_largest(motion_.mesh);
 }
 
 ErrorEstimate ErrorMeter::take(int last)

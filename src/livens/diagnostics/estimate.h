@@ -23,6 +23,17 @@ BodyGap gap_between(const State& a, const State& b, const Body& body, int index,
 double gap_between(const JointSample& a, const JointSample& b, double length);
 double size_of(const JointSample& joint, double length);
 
+/// What the laws of loads did inside of an element that its load points did not see: both solutions may miss
+/// it alike (docs/theory.md, "Looks at laws").
+struct Unseen {
+    double t = 0;          ///< element end, s
+    double duration = 0;   ///< of the element, s
+    double error = 0;      ///< how far bodies may be off at the end: in lengths of the model, or rad
+    int load = -1;         ///< that does most; -1: all was seen
+    /// What each body is kicked by: lengths of the model by s, and rad/s.
+    std::vector<double> shift{}, turn{};
+};
+
 /// Estimated errors at the element ends of a motion; empty where there is none.
 ///
 /// They are global: what was lost in one element is carried on, and grows, as in the motion itself.
@@ -41,6 +52,11 @@ struct ErrorEstimate {
     double largest = std::numeric_limits<double>::quiet_NaN();   ///< of all positions and orientations
     double time = 0;                                             ///< of that, s
     int body = -1;                                               ///< likewise
+    /// Of `largest`, what the laws of loads did unseen inside of elements; and the load that did most of it,
+    /// and where.
+    double unseen = 0;
+    int unseen_load = -1;
+    double unseen_time = 0;
 
     bool empty() const { return position.empty(); }
     /// The largest of all bodies' positions and orientations at an element end.
@@ -69,8 +85,11 @@ public:
     /// method of order p with half the steps. References must outlive the meter.
     ErrorMeter(const Model& model, const Motion& motion, double factor = 1);
 
-    /// At the element ends first..last of the motion, all of which `finer` has.
+    /// At the element ends first..last of the motion, of which `finer` has these two. Where it has one of its
+    /// own instead, since a law bends there, the larger error of the two beside it stands.
     void compare(const Motion& finer, int first, int last);
+    /// Adds what the laws of loads did unseen in the finer motion between these element ends of this one.
+    void add(const std::vector<Unseen>& unseen, int first, int last);
     /// The largest error so far, when, and of which body.
     const ErrorEstimate& so_far() const { return estimate_; }
     /// Up to an element end of the motion. What was not compared is not a number.
@@ -80,11 +99,18 @@ private:
     void reach(int end);
     void compare_states(int end, const State& a, const State& b);
     void compare_reactions(int end, const Motion& finer, Side side);
+    void fill(int end);
 
     const Model& model_;
     const Motion& motion_;
     double factor_;
     ErrorEstimate estimate_;
+    // Kicks so far, and their sums with the instants from which they count.
+    struct Kicks {
+        double rate = 0, moment = 0;
+    };
+    std::vector<Kicks> shifts_, turns_;
+    double largest_kick_ = 0;
 };
 
 }   // namespace livens

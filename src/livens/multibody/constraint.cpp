@@ -72,6 +72,14 @@ void refuse_drives(const ConstraintRow& row)
 
 }   // namespace
 
+SmoothFunction::Point function_point(const ConstraintRow& row, const Configurations& X)
+{
+    SmoothFunction::Point q{};
+    for (std::size_t k = 0; k < row.coordinates.size(); ++k)
+        q[k] = form_value(row.coordinates[k], row.coordinates[k].body_i, row.coordinates[k].body_j, X);
+    return q;
+}
+
 double form_value(const QuadraticForm& f, int i, int j, const Configurations& X)
 {
     const Matrix34 X_j = X[j];

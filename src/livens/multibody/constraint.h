@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "livens/base/linear.h"
+#include "livens/time/guard.h"
 #include "livens/time/time_function.h"
 
 namespace [[gnu::visibility("default")]] livens {
@@ -59,6 +60,12 @@ struct SmoothFunction {
     std::function<double(const Point& from, const Point& step)> change;
 };
 
+/// Where a smooth function of q is smooth piece by piece only, as a spline is.
+struct FunctionGuard {
+    Guard guard;
+    std::function<double(const SmoothFunction::Point& q)> value;
+};
+
 /// One scalar constraint, Phi(t, X) = form + sum_k f_k(t) form_k + F(q_1, q_2, ..): a quadratic form, whose
 /// C, B and c may depend on time, and a smooth function of forms q_k, which may have bodies of their own.
 struct ConstraintRow : PairForm {
@@ -67,6 +74,7 @@ struct ConstraintRow : PairForm {
     std::vector<Drive> drives{};                ///< on the bodies of the form
     std::vector<PairForm> coordinates{};        ///< q_k, at most SmoothFunction::most
     std::optional<SmoothFunction> function{};   ///< F
+    std::optional<FunctionGuard> guard{};       ///< of F; one row of a joint has it for all
 
     /// Whether the row is a quadratic form alone.
     bool is_quadratic() const { return drives.empty() && !function; }
@@ -147,6 +155,8 @@ ConstraintRow frozen(const ConstraintRow& row, Instant at);
 double constraint_value(const ConstraintRow& row, const Configurations& X);
 RowGradient constraint_gradient(const ConstraintRow& row, const Configurations& X);
 
+/// The numbers q_k of a row's function.
+SmoothFunction::Point function_point(const ConstraintRow& row, const Configurations& X);
 /// The value of a form.
 double form_value(const QuadraticForm& form, int body_i, int body_j, const Configurations& X);
 
@@ -190,10 +200,7 @@ void for_each_form(const ConstraintRow& row, Instant at, const Configurations& X
     act(row, row.body_i, row.body_j, 1.0);
     for (const Drive& drive : row.drives) act(drive.form, row.body_i, row.body_j, drive.factor(at).value);
     if (!row.function) return;
-    SmoothFunction::Point q{};
-    for (std::size_t k = 0; k < row.coordinates.size(); ++k)
-        q[k] = form_value(row.coordinates[k], row.coordinates[k].body_i, row.coordinates[k].body_j, X);
-    const SmoothFunction::Value F = row.function->at(q);
+    const SmoothFunction::Value F = row.function->at(function_point(row, X));
     for (std::size_t k = 0; k < row.coordinates.size(); ++k)
         act(row.coordinates[k], row.coordinates[k].body_i, row.coordinates[k].body_j, F.gradient[k]);
 }

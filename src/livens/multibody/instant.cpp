@@ -306,6 +306,22 @@ std::vector<int> InstantSystem::weak_rows(InstantState& state) const
     return rows;
 }
 
+void InstantSystem::respond(InstantState& state, const double* raw, double* acceleration)
+{
+    double *y = a_.data(), *forces = b_.data();
+    tables_.twist_rows(state.X.data(), state.maps.data(), raw, y);
+    tables_.to_scaled_rows(state.maps.data(), y, forces);
+    if (state.by_joints) {
+        std::swap(y, forces);
+        std::ranges::fill(curvatures_, 0.0);
+        state.joints.project(y, curvatures_.data(), forces);
+    } else {
+        std::fill(y, y + tables_.rank, 0.0);
+        solve(state, forces, y);
+    }
+    tables_.to_twist(state.maps.data(), y, acceleration);
+}
+
 void InstantSystem::accelerate(InstantState& state, Side side)
 {
     const double* X = state.X.data();

@@ -63,6 +63,9 @@ public:
     void from_momentum(InstantState& state, const double* p, double weight, double* lambda);
     /// momentum <- that of state.velocity, which is consistent.
     void from_velocity(InstantState& state);
+    /// acceleration <- what generalised forces alone, 12 numbers a body, would accelerate: a twist, with what
+    /// the constraints of the prepared state do to it.
+    void respond(InstantState& state, const double* raw, double* acceleration);
     /// Accelerations and multipliers on one side.
     void accelerate(InstantState& state, Side side);
 

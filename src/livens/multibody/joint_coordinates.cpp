@@ -294,6 +294,9 @@ std::vector<ConstraintRow> curve_rows(const Curve& curve, int body_i, int body_j
         };
         rows.push_back(row_of(place, {at, change}, scale, k == 0 ? "curve, normal 1" : "curve, normal 2"));
     }
+    if (!curve.knots.empty())
+        rows[0].guard = {{curve.knots, curve.is_closed ? curve.last - curve.first : 0},
+                         [sampled](const Point& q) { return sampled->nearest(place_of(q)); }};
     return rows;
 }
 

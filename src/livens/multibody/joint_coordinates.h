@@ -72,6 +72,7 @@ struct Curve {
     double last = 1;
     bool is_closed = false;
     std::function<CurvePoint(double s)> without_normals = nullptr;   ///< the same, where that is cheaper
+    std::vector<double> knots{};   ///< parameters, ascending, where higher derivatives jump; of one round
 };
 
 /// The point b of body j slides along a curve in body i, whose coordinates are (1, x) of its frame: two rows

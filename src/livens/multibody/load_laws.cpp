@@ -45,6 +45,28 @@ struct Modulated {
         }
     }
 
+    LawInside inside() const
+    {
+        const std::size_t m = coordinates.size();
+        LawInside law;
+        law.n_numbers = 2 * m;
+        law.n_factors = parts.units.size();
+        law.numbers = [all = *this, m](const LoadArguments& arguments, std::span<double> numbers) {
+            const Seen seen = all.look(arguments);
+            std::ranges::copy(seen.values, numbers.begin());
+            std::ranges::copy(seen.rates, numbers.begin() + static_cast<std::ptrdiff_t>(m));
+        };
+        law.factors = [of = parts.law, m](Instant at, std::span<const double> numbers,
+                                          std::span<double> factors) {
+            of({at, numbers.first(m), numbers.subspan(m)}, factors, {});
+        };
+        law.unit = [units = parts.units](const LoadArguments& arguments, std::size_t k, LoadForces& F) {
+            units[k].forces(arguments, F);
+        };
+        law.steepest = parts.steepest;
+        return law;
+    }
+
     /// dF_b/dX_c = sum_k f_k dF_bk/dX_c + F_bk df_k/dX_c, and dF_b/dV_c likewise.
     void tangent(const LoadArguments& arguments, LoadTangent& tangent) const
     {
@@ -122,9 +144,16 @@ Load modulated(const std::string& name, const std::string& type, const LoadParts
     };
     for (const LawReading& reading : parts.readings)
         load.readings.push_back({reading.name, reading.unit, energy(reading.value)});
-    if (parts.piece)
-        load.piece = [all](const LoadArguments& arguments) {
-            return all.parts.piece(all.look(arguments).arguments(arguments.at));
+    load.is_smooth = parts.is_smooth;
+    if (!load.is_smooth) load.inside = all.inside();
+    load.guards = parts.guards.guards;
+    if (parts.guards.values)
+        load.guarded = [all](const LoadArguments& arguments, std::span<double> numbers) {
+            all.parts.guards.values(all.look(arguments).arguments(arguments.at), numbers);
+        };
+    if (parts.guards.centre)
+        load.centre = [all](const LoadArguments& arguments) {
+            return all.parts.guards.centre(all.look(arguments).arguments(arguments.at));
         };
     load.potential = energy(parts.potential);
     load.power = energy(parts.power);

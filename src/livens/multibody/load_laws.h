@@ -2,7 +2,6 @@
 // Loads whose size is a law of coordinates and their rates, also of bodies on which they do not act.
 #pragma once
 
-#include <cstdint>
 #include <functional>
 #include <span>
 #include <string>
@@ -32,8 +31,17 @@ using LoadLaw = std::function<void(const LawArguments&, std::span<double> factor
 /// A number made of these: J, W.
 using LawEnergy = std::function<double(const LawArguments&)>;
 
-/// See Load::piece.
-using LawPiece = std::function<std::uint64_t(const LawArguments&)>;
+/// See Load::guards and Load::centre.
+struct LawGuards {
+    std::vector<Guard> guards{};
+    std::function<void(const LawArguments&, std::span<double>)> values = nullptr;
+    std::function<Vector3(const LawArguments&)> centre = nullptr;
+};
+
+/// Bounds of |df_k/ds| for all factors, on a piece of a way s: of what LawArguments holds, first the values
+/// of all coordinates, then their rates.
+using LawSteepness = std::function<void(const EnclosedValue& t, std::span<const EnclosedValue> numbers,
+                                        std::span<double> bounds)>;
 
 /// What a load reports of itself.
 struct LawReading {
@@ -48,7 +56,10 @@ struct LoadParts {
     bool depends_on_rates = false;
     LawEnergy potential = nullptr;   ///< empty: it has none
     LawEnergy power = nullptr;       ///< of the rest; see Load::power
-    LawPiece piece = nullptr;
+    LawGuards guards{};
+    /// The law is linear, or as smooth as the motion for other reasons; see Load::is_smooth.
+    bool is_smooth = false;
+    LawSteepness steepest = nullptr;   ///< if not
     std::vector<double> breaks{};
     std::string domain{};
     std::vector<LawReading> readings{};

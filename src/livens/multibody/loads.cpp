@@ -20,6 +20,7 @@ Load start_load(const std::string& name, const char* type, const std::array<int,
     load.name = name;
     load.type = type;
     load.bodies = {bodies[0], bodies[1]};
+    load.is_smooth = true;   // what is not says so
     return load;
 }
 

@@ -3,15 +3,17 @@
 #pragma once
 
 #include <array>
-#include <cstdint>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "livens/base/linear.h"
 #include "livens/multibody/joints.h"
+#include "livens/time/guard.h"
+#include "livens/time/enclosure.h"
 #include "livens/time/time_function.h"
 
 namespace [[gnu::visibility("default")]] livens {
@@ -76,6 +78,22 @@ struct LoadReading {
     std::function<double(const LoadArguments&)> value;
 };
 
+/// F = sum_k f_k(t, numbers) times unit k, for who looks at f between the points where F is evaluated
+/// (docs/theory.md, "Looks at laws").
+struct LawInside {
+    std::size_t n_numbers = 0, n_factors = 0;
+    /// What f looks at.
+    std::function<void(const LoadArguments&, std::span<double> numbers)> numbers;
+    std::function<void(Instant at, std::span<const double> numbers, std::span<double> factors)> factors;
+    /// Adds a unit.
+    std::function<void(const LoadArguments&, std::size_t k, LoadForces&)> unit;
+    /// Bounds of |df_k/ds| on a piece of a way s; empty: nobody knows.
+    std::function<void(const EnclosedValue& t, std::span<const EnclosedValue> numbers, std::span<double> bounds)>
+        steepest = nullptr;
+    /// Smooth but where Load::centre comes near zero.
+    bool only_at_centre = false;
+};
+
 /// A load is data and functions; a new one is a new maker.
 struct Load {
     std::string name;
@@ -95,8 +113,16 @@ struct Load {
     std::function<void(const LoadArguments&, LoadForces&)> forces;
     /// dF/dX and dF/dV; required if one of the flags is set. The tangent arrives as zero.
     std::function<void(const LoadArguments&, LoadTangent&)> tangent;
-    /// Which of its smooth pieces F is on, a number for each; empty: it has but one, breaks apart.
-    std::function<std::uint64_t(const LoadArguments&)> piece{};
+    /// What decides on which of its smooth pieces F is, a number for each guard; none: it has but one, breaks
+    /// apart.
+    std::vector<Guard> guards{};
+    std::function<void(const LoadArguments&, std::span<double>)> guarded{};
+    /// F is as smooth as the motion, but at its guards: nobody needs to look at it inside of elements.
+    bool is_smooth = false;
+    /// Else, what to look at; none: F itself.
+    std::optional<LawInside> inside{};
+    /// A vector at whose zero F is not smooth: the velocity of what drags, the line of a spring.
+    std::function<Vector3(const LoadArguments&)> centre{};
     /// Potential energy in J of the conservative part; empty if the load has none.
     std::function<double(const LoadArguments&)> potential;
     /// Power in W of the part without potential. If empty: tr(F^T V) for a load without potential, else 0.
@@ -126,10 +152,15 @@ struct SpringValue {
     double force = 0;       ///< N, or N m for e in rad; positive where it pulls back
     double stiffness = 0;   ///< by m or rad
     double energy = 0;      ///< J, 0 for e = 0
-    int piece = 0;          ///< another one where stiffness has jumped
 };
-/// Forces of springs that are not linear; continuous, but stiffness may jump.
-using SpringLaw = std::function<SpringValue(double e)>;
+/// Forces of springs that are not linear; continuous, but stiffness or its slopes may jump at `bends`.
+struct SpringLaw {
+    std::function<SpringValue(double e)> at = nullptr;
+    std::vector<double> bends{};   ///< ascending
+
+    explicit operator bool() const { return at != nullptr; }
+    SpringValue operator()(double e) const { return at(e); }
+};
 
 /// stiffness e + cubic e^3. Throws InputError (`load-negative`).
 SpringLaw progressive_spring(double stiffness, double cubic);
@@ -145,7 +176,7 @@ struct SpringDamper {
     double damping = 0;        ///< N s/m
     double free_length = 0;    ///< m
     double preload = 0;        ///< N, pulls wherever the ends are
-    SpringLaw law = nullptr;   ///< instead of `stiffness`, of length - free_length
+    SpringLaw law{};           ///< instead of `stiffness`, of length - free_length
 };
 
 /// Spring and damper between a point of one body and a point of another or of the world; the force acts along
@@ -159,7 +190,7 @@ struct JointSpring {
     double damping = 0;        ///< N s/m or N m s/rad
     double rest = 0;           ///< m or rad: the coordinate without force but the preload
     double preload = 0;        ///< N or N m, against the coordinate, wherever it is
-    SpringLaw law = nullptr;   ///< instead of `stiffness`, of q - rest
+    SpringLaw law{};           ///< instead of `stiffness`, of q - rest
 };
 
 // Loads along a coordinate of a joint: a force that does the work Q dq, between its two bodies. X is the

@@ -235,7 +235,10 @@ int Model::add_joint(Joint joint)
     has_events_ = has_events_ || std::isfinite(joint.from) || std::isfinite(joint.until);
     first_rows_.push_back(n_rows());
     for (int k = 0; k < static_cast<int>(joint.rows.size()); ++k) rows_.push_back({index, k});
-    for (const ConstraintRow& row : joint.rows) has_drives_ = has_drives_ || !row.drives.empty();
+    for (const ConstraintRow& row : joint.rows) {
+        has_drives_ = has_drives_ || !row.drives.empty();
+        has_pieces_ = has_pieces_ || row.guard;
+    }
     joints_.push_back(std::move(joint));
     changed();
     return index;
@@ -261,7 +264,7 @@ int Model::add_load(Load load)
             refuse("load-needs-directors", path,
                    "the load needs the orientation of '" + bodies_[load.bodies[b]].name + "', a point mass",
                    "a point mass takes forces in world axes at its own point");
-    has_pieces_ = has_pieces_ || load.piece;
+    has_pieces_ = has_pieces_ || !load.guards.empty() || load.centre;
     loads_.push_back(std::move(load));
     changed();
     return static_cast<int>(loads_.size()) - 1;

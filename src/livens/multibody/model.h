@@ -67,7 +67,7 @@ public:
     State start() const;
     /// Whether rows depend on time.
     bool has_drives() const { return has_drives_; }
-    /// Whether the law of a load bends or jumps where the motion decides; see Load::piece.
+    /// Whether the law of a load or row bends or jumps where the motion decides; see Load::guards.
     bool has_pieces() const { return has_pieces_; }
     /// Whether joints act for a part of the time; these are what solve() divides it by, see acting_at().
     bool has_events() const { return has_events_; }

@@ -10,6 +10,7 @@
 #include "livens/base/error.h"
 #include "livens/base/text.h"
 #include "livens/time/quadrature.h"
+#include "livens/time/time_function.h"
 #include "livens/time/time_laws.h"
 
 namespace livens {
@@ -52,6 +53,7 @@ public:
         for (double& knot : knots) knot -= begin;
         first_ = 0;
         last_ = knots[static_cast<std::size_t>(n_knots - 1 - around)];
+        keep_knots(knots, around);
         for (std::size_t c = 0; c < 3; ++c) {
             std::vector<double> values;
             for (int k = 0; k < n_knots; ++k) values.push_back(point(k)[static_cast<int>(c)]);
@@ -65,6 +67,8 @@ public:
     }
 
     double last() const { return last_; }
+    /// Of one round, or with both ends.
+    const std::vector<double>& knots() const { return knots_; }
 
     /// The parameter on this round.
     double inside(double s) const { return is_closed_ ? s - last_ * std::floor(s / last_) : s; }
@@ -119,6 +123,15 @@ private:
         return cosine * there.a + sine * there.b;
     }
 
+    void keep_knots(const std::vector<double>& knots, int around)
+    {
+        if (!is_closed_) {
+            knots_ = knots_of_spline(knots);
+            return;
+        }
+        knots_.assign(knots.begin() + around, knots.end() - around - 1);   // the seam is its first
+    }
+
     /// The first normal lies in the plane of the curve where it has one.
     void carry_normals()
     {
@@ -149,6 +162,7 @@ private:
     Quadrature rule_ = gauss(5);
     bool is_closed_;
     double first_ = 0, last_ = 0;
+    std::vector<double> knots_;
     std::vector<double> places_;
     std::vector<Vector3> normals_;   ///< there
 };
@@ -159,7 +173,7 @@ Curve spline_curve(const std::vector<Vector3>& points, bool is_closed)
 {
     const auto spline = std::make_shared<const Spline>(points, is_closed);
     return {[spline](double s) { return spline->at(s); }, 0, spline->last(), is_closed,
-            [spline](double s) { return spline->shape(spline->inside(s)); }};
+            [spline](double s) { return spline->shape(spline->inside(s)); }, spline->knots()};
 }
 
 }   // namespace livens

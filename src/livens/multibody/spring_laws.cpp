@@ -40,11 +40,11 @@ SpringLaw progressive_spring(double stiffness, double cubic)
         if (!(value >= 0) || !std::isfinite(value))
             throw InputError({"load-negative", key, std::string(key) + " must not be negative",
                               to_text(value), ">= 0", "", ""});
-    return [=](double e) {
+    return {[=](double e) {
         const double e2 = e * e;
         return SpringValue{(stiffness + cubic * e2) * e, stiffness + 3 * cubic * e2,
-                           (0.5 * stiffness + 0.25 * cubic * e2) * e2, 0};
-    };
+                           (0.5 * stiffness + 0.25 * cubic * e2) * e2};
+    }};
 }
 
 SpringLaw tabulated_spring(const std::vector<double>& elongations, const std::vector<double>& forces,
@@ -65,12 +65,11 @@ SpringLaw tabulated_spring(const std::vector<double>& elongations, const std::ve
         return energies[row] + integral(force, elongations[row], e);
     };
     const double at_rest = energy(0);
-    const std::vector<double> bends = is_spline ? std::vector<double>() : bends_of_lines(elongations, forces);
-    return [force, energy, at_rest, bends](double e) {
-        const TimeValue f = force({e});
-        const auto piece = std::ranges::upper_bound(bends, e) - bends.begin();
-        return SpringValue{f.value, f.first, energy(e) - at_rest, static_cast<int>(piece)};
-    };
+    return {[force, energy, at_rest](double e) {
+                const TimeValue f = force({e});
+                return SpringValue{f.value, f.first, energy(e) - at_rest};
+            },
+            is_spline ? knots_of_spline(elongations) : bends_of_lines(elongations, forces)};
 }
 
 }   // namespace livens

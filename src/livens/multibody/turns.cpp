@@ -15,7 +15,17 @@ Turns::Turns(const Model& model) : first_{0}
 
 void Turns::follow(const Configurations& X, std::span<double> row) const
 {
-    for (std::size_t i = 0; i < row.size(); ++i) {
+    follow_some(X, row, 0, static_cast<int>(row.size()));
+}
+
+void Turns::follow_of(int load, const Configurations& X, std::span<double> row) const
+{
+    if (!row.empty()) follow_some(X, row, first_[load], first_[load + 1]);
+}
+
+void Turns::follow_some(const Configurations& X, std::span<double> row, int from, int until) const
+{
+    for (int i = from; i < until; ++i) {
         const PairForm &c = angles_[i].forms[0], &s = angles_[i].forms[1];
         const double angle =
             arc_tangent(form_value(s, s.body_i, s.body_j, X), form_value(c, c.body_i, c.body_j, X));

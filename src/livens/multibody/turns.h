@@ -24,6 +24,8 @@ public:
     }
     /// Goes on to X, each angle the shorter way.
     void follow(const Configurations& X, std::span<double> row) const;
+    /// The same of the angles of one load, for which X of its bodies is enough.
+    void follow_of(int load, const Configurations& X, std::span<double> row) const;
     /// The part of a load; of an empty row nothing.
     std::span<const double> of(int load, std::span<const double> row) const
     {
@@ -33,6 +35,8 @@ public:
     }
 
 private:
+    void follow_some(const Configurations& X, std::span<double> row, int from, int until) const;
+
     std::vector<JointCoordinate> angles_;
     std::vector<int> first_;   ///< of each load, and their number
 };

@@ -34,6 +34,7 @@ struct SolveReport {
     double divided_at = 0;           ///< near end of the first of them, s
     int shifted = 0;                 ///< element ends put elsewhere, off singular positions of the joints
     double shifted_at = 0;           ///< where the first of them was to be, s
+    std::string steep_load;          ///< whose law most elements were refused or divided for; empty: none
     int refused = 0;                 ///< elements that were solved again, shorter, for the accuracy asked for
     double accuracy = 0;             ///< that was asked for; 0: none
     int tries = 0;                   ///< motions until it was reached

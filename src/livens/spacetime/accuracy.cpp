@@ -166,6 +166,7 @@ private:
         SolveReport& report = one.solution.report;
         TimeMesh mesh{{span_.start}};
         LobattoWindow window(tables_, mesh, ends_, rule_of(method_));
+        if (!options_.look_at_laws) window.ignore_laws();
         Second second(model_, problem_, method_, options_, *window.so_far());
         const ElementRule rule = rule_of(method_);
         Pace pace(rule.points, rule.degree, tolerance_, length_, stops_);
@@ -203,6 +204,7 @@ private:
         solve_windows(window, mesh, w, report);
         one.pace = std::move(pace);
         finish(one, second, window.so_far()->n_elements());
+        one.solution.unseen = window.take_unseen();
         one.solution.motion = window.take_motion();
         one.solution.method = method_;
         if (report.converged() && !one.is_broken_off) {
@@ -304,8 +306,11 @@ private:
             report.message += so_far_.helps && tolerance_ > finest
                                   ? ", with ever shorter elements"
                                   : std::string(", with ever shorter elements, which help no more: ") +
-                                        (is_fine() ? "rounding is left, or a law bends inside them"
-                                                   : "a law may bend or jump inside them");
+                                        (!report.steep_load.empty()
+                                             ? "the law of load '" + report.steep_load +
+                                                   "' changes too fast inside them"
+                                         : is_fine() ? "rounding is left, or a law bends inside them"
+                                                     : "a law may bend or jump inside them");
         report.message += "); try: an earlier end of time, or a larger error in accuracy";
         return std::move(last.solution);
     }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace livens {
 
@@ -10,6 +11,12 @@ double EndsAtBends::end(double start, double wanted)
 {
     wanted_ = std::min(wanted, start + longest_);
     return at_ > start && at_ < wanted_ ? at_ : wanted_;
+}
+
+void EndsAtBends::expect(double end)
+{
+    at_ = end;
+    is_expected_ = true;
 }
 
 bool EndsAtBends::moves(Window& window, double start, double end)
@@ -20,6 +27,7 @@ bool EndsAtBends::moves(Window& window, double start, double end)
     const double length = end - start, margin = std::max(before * length, spacings * std::abs(end));
     const double bend = start + length * window.bend(was_found ? beyond : 1);
     is_met_ = was_found && std::abs(bend - end) <= 3 * margin;
+    if (std::isinf(bend) && std::exchange(is_expected_, false)) at_ = -infinite;   // an end like others
     if (is_met_ || std::isinf(bend) || (!was_found && end - bend <= margin) || bend - start < shortest_)
         return false;
     n_moves_ = was_found && start == moved_from_ ? n_moves_ + 1 : 0;

@@ -41,6 +41,12 @@ double telling_jump(const Model& model, const Motion& motion, int first, int las
     return jump;
 }
 
+/// Whether an element end that is neither the first nor the last is where a law bends.
+bool has_bend(const Motion& motion, const TimeMesh& mesh, double end)
+{
+    return end > mesh.start() && end < mesh.end() && std::ranges::binary_search(motion.mesh.bends, end);
+}
+
 TimeMesh halved(const TimeMesh& mesh)
 {
     TimeMesh finer;
@@ -71,7 +77,6 @@ Second::Second(const Model& model, const Problem& problem, const Method& method,
     problem_.guess = [&first](double t) { return first.at(t); };
     problem_.near = &first;
     options_.condition = options_.judge = false;
-    options_.end_at_bends = false;   // within its error it does where the first one's elements end
     options_.meeting = std::numeric_limits<double>::infinity();   // both meet it within their errors
     if (auto* radau = std::get_if<Radau>(&method_)) ++radau->degree;
     if (const auto* mixed = std::get_if<Mixed>(&method)) {
@@ -87,7 +92,8 @@ bool Second::advance(int end)
         std::get<Lobatto>(method_).degree =
             finer_degree(first_.X.degree, telling_jump(model_, first_, first, last));
     TimeMesh mesh{{first_.mesh.ends.begin() + first, first_.mesh.ends.begin() + last + 1}};
-    mesh.required = mesh.ends;
+    for (const double t : mesh.ends)   // it bends at instants of its own, near those of the first
+        (has_bend(first_, mesh, t) ? mesh.bends : mesh.required).push_back(t);
     for (const double t : missed(mesh, model_.load_breaks()))   // what one solution missed, two would
         mesh.ends.insert(std::ranges::upper_bound(mesh.ends, t), t);
     if (!is_nodal(method_)) mesh = halved(mesh);
@@ -106,6 +112,7 @@ bool Second::advance(int end)
     evaluations_ += report_.evaluations;
     if (!report_.converged()) return false;
     meter_.compare(second.motion, first, last);
+    if (!is_backwards_) meter_.add(second.unseen, first, last);
     (is_backwards_ ? problem_.conditions.end : problem_.conditions.start) =
         second.motion.at_end(is_backwards_ ? 0 : second.motion.n_elements());
     options_.initial = StartPolicy::project;   // an end state holds its constraints to rounding

@@ -155,7 +155,7 @@ std::vector<double> growth(const Model& model, const Problem& problem, const Met
     std::vector<double> grown;
     if (problem.conditions.at_start != Known::state || motion.n_elements() == 0) return grown;
     SolveOptions quiet = options;
-    quiet.condition = quiet.judge = quiet.end_at_bends = false;
+    quiet.condition = quiet.judge = quiet.end_at_bends = quiet.look_at_laws = false;
     quiet.meeting = std::numeric_limits<double>::infinity();   // neighbours are beside it
     quiet.initial = StartPolicy::project;
     const State start = motion.at_end(0);

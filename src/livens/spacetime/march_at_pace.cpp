@@ -44,18 +44,25 @@ void March::run_at_pace(Pace& pace)
         }
         if (closed.n_elements > 0) {
             pace.accepted(length, closed.velocity_jump, outcome.iterations);
-            if (options_.ends_at_bends && bends_.accepted(start, end)) ++counts_.bends;
+            if (options_.ends_at_bends && bends_.accepted(start, end)) count_bend(end);
             if (!take(e, e + 1, closed, outcome) || (options_.goes_on && !options_.goes_on())) return;
             if (options_.ends_at_bends && bends_.is_stuck() && !window_.jumping_load().empty())
                 return stop_at_jump(window_.jumping_load());
             continue;
         }
         ++report_.refused;
+        blame(closed);
         const bool can_help = closed.is_refused && may_shorten(outcome) && !is_contradictory(closed);
         if (!can_help || !pace.refused(length, closed.velocity_jump, most))
             return give_up(e, closed, outcome);
         mesh_.ends.pop_back();
     }
+}
+
+void March::blame(const Closed& closed)
+{
+    blamed_ = closed.load;
+    if (!blamed_.empty()) report_.steep_load = blamed_;
 }
 
 void March::give_up(int element, const Closed& closed, const NewtonReport& outcome)
@@ -77,7 +84,7 @@ void March::stop_vanishing()
     report_.status = SolveStatus::not_converged;
     report_.failed_at = time_;
     report_.message = is_near_singular_end() ? of_singular_end(singular_end_) : locking_in_words();
-    if (report_.message.empty()) report_.message = of_vanishing(time_);
+    if (report_.message.empty()) report_.message = of_vanishing(time_, blamed_);
 }
 
 void March::stop_at_jump(const std::string& load)

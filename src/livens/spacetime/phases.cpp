@@ -105,6 +105,7 @@ void join(Motion& whole, Motion&& next)
                rows = static_cast<std::size_t>(whole.n_rows);
     append(whole.mesh.ends, next.mesh.ends, 1);
     append(whole.mesh.required, next.mesh.required, 0);
+    append(whole.mesh.bends, next.mesh.bends, 0);
     append(whole.X.values, next.X.values, static_cast<std::size_t>(whole.X.n_values));
     append(whole.multipliers.values, next.multipliers.values, 0);
     append(whole.velocities, next.velocities, bodies);

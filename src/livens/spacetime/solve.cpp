@@ -29,12 +29,13 @@ namespace {
 constexpr double undetermined = 1e11;
 
 std::unique_ptr<Window> make_window(const Tables& tables, const TimeMesh& mesh, const Ends& ends,
-                                    const Method& method, const Motion* near = nullptr)
+                                    const Method& method, bool look_at_laws, const Motion* near)
 {
     if (const auto* mixed = std::get_if<Mixed>(&method))
         return std::make_unique<MixedWindow>(tables, mesh, ends, *mixed);
     auto window = std::make_unique<LobattoWindow>(tables, mesh, ends, rule_of(method));
     if (near != nullptr) window->follow(*near);
+    if (!look_at_laws) window->ignore_laws();
     return window;
 }
 
@@ -177,7 +178,7 @@ Solution solve_by_windows(const Model& model, const Problem& problem, const Time
     const bool is_mixed = std::holds_alternative<Mixed>(method);
     const Ends ends = close_ends(model, problem.conditions, mesh.start(), mesh.end(), options.initial);
     const Tables tables(model, ends.independent, is_mixed);
-    const std::unique_ptr<Window> window = make_window(tables, mesh, ends, method, problem.near);
+    const std::unique_ptr<Window> window = make_window(tables, mesh, ends, method, options.look_at_laws, problem.near);
     Solution solution;
     solution.method = method;
     SolveReport& report = solution.report;
@@ -192,6 +193,7 @@ Solution solve_by_windows(const Model& model, const Problem& problem, const Time
                           w.length >= mesh.n_elements();   // else the last window is all there is
     if (options.condition && report.converged() && is_whole)
         window->measure_condition(report, patience.goes_on());
+    solution.unseen = window->take_unseen();
     solution.motion = window->take_motion();
     if (options.condition && report.converged() && !is_whole) {
         // the march's equations as one window of all elements, at the solution

@@ -34,6 +34,9 @@ struct SolveOptions {
     /// Elements of lobatto and radau end, beside their mesh, where the law of a load bends or jumps on the
     /// way (marches forwards).
     bool end_at_bends = true;
+    /// Laws of loads that need not be smooth are compared inside of elements with what their load points have
+    /// of them; false: as if they were smooth, for comparison.
+    bool look_at_laws = true;
     /// Every window by Newton's iteration with its tangent: the reference for quicker ways to the same
     /// motion.
     bool by_newton = false;
@@ -65,6 +68,7 @@ struct Solution {
     /// By how much a perturbation of the start has grown, at element ends, in lengths and rad by lengths and
     /// rad at the start; empty if nobody asked, as far as the neighbouring motion came if it failed.
     std::vector<double> growth{};
+    std::vector<Unseen> unseen{};   ///< what laws of loads did inside of elements, see Unseen
     double estimate_seconds = 0;   ///< that the second solution and the neighbouring motion took
 };
 

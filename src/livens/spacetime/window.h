@@ -6,6 +6,7 @@
 #include <limits>
 #include <string>
 
+#include "livens/diagnostics/estimate.h"
 #include "livens/multibody/model.h"
 #include "livens/multibody/motion.h"
 #include "livens/solvers/newton.h"
@@ -45,6 +46,9 @@ struct Closed {
     double velocity_jump = 0;
     RankLoss loss = RankLoss::none;
     std::string contradiction{};   ///< of rows, if shorter elements do not help
+    /// The load whose law decided about the velocity jump: as large as one that goes with what the law did
+    /// inside of the element unseen; empty: none.
+    std::string load{};
 };
 
 /// A family of elements on a mesh: it states the equations of any stretch of elements, a window, and keeps
@@ -100,6 +104,8 @@ public:
     virtual void describe(SolveReport& report) const = 0;
     /// Condition numbers of the open window's matrix at the current point; 0 once `goes_on` says false.
     virtual void measure_condition(SolveReport& report, const std::function<bool()>& goes_on) = 0;
+    /// What laws of loads did unseen inside of the elements closed so far, in the order of their solution.
+    virtual std::vector<Unseen> take_unseen() { return {}; }
     /// What was closed so far of a march forwards; null: the family cannot say.
     virtual const Motion* so_far() { return nullptr; }
     /// Everything closed so far.

@@ -81,8 +81,12 @@ std::string of_stop(double t)
     return "stopped at t = " + to_text(t, 6) + " s as asked; the motion up to there is complete";
 }
 
-std::string of_vanishing(double t)
+std::string of_vanishing(double t, const std::string& load)
 {
+    if (!load.empty())
+        return "the elements vanish near t = " + to_text(t, 6) + " s: the law of load '" + load +
+               "' changes there faster than the shortest of them, or jumps; try: a law that is less steep, a "
+               "larger error in accuracy, or an earlier end";
     return "the elements vanish near t = " + to_text(t, 6) +
            " s: however short they are, each loses more than it may; try: a larger error in accuracy, an "
            "earlier end (none is shorter than a billionth of the whole time), or look for a load that jumps "

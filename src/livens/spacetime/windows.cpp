@@ -36,6 +36,7 @@ March::March(Window& window, TimeMesh& mesh, const WindowOptions& options, Solve
     : window_(window), mesh_(mesh), options_(options), report_(report),
       bends_((options.pace != nullptr ? options.pace->end() : mesh.end()) - mesh.start())
 {
+    expected_.swap(mesh.bends);
     newton_options_.tolerance = options.tolerance;
     newton_options_.max_iterations = options.max_iterations;
     if (options.progress)
@@ -126,6 +127,7 @@ int March::end_at_bend(int first, int last)
 {
     if (!options_.ends_at_bends || options_.direction < 0 || last - first > 1) return 0;
     const double start = mesh_.ends[first], end = mesh_.ends[last];
+    if (std::ranges::binary_search(expected_, end) && !bends_.is_found(end)) bends_.expect(end);
     const bool was_found = bends_.is_found(end) && last < mesh_.n_elements();
     const double wanted = bends_.end(start, was_found ? mesh_.ends[last + 1] : end);
     const bool is_long = !was_found && wanted < end;
@@ -198,7 +200,7 @@ bool March::accept(int first, int last, const NewtonReport& outcome)
         close(options_.trust, !is_single || can_move(end), !is_single || may_divide(first, last, outcome));
     if (options_.ends_at_bends && closed.n_elements == 1 && is_single &&
         bends_.accepted(mesh_.ends[first], mesh_.ends[last]))
-        ++counts_.bends;
+        count_bend(mesh_.ends[last]);
     if (!is_single || closed.loss == RankLoss::none) return take(first, last, closed, outcome);
     if (closed.loss == RankLoss::inside) return divide_element(first, uneven);
     return solve_shorter(first);
@@ -233,6 +235,12 @@ bool March::can_move(int end) const
 {
     return end > 0 && end < mesh_.n_elements() &&
            !std::binary_search(mesh_.required.begin(), mesh_.required.end(), mesh_.ends[end]);
+}
+
+void March::count_bend(double t)
+{
+    ++counts_.bends;
+    mesh_.bends.push_back(t);
 }
 
 void March::count_shift(double t)
@@ -276,6 +284,7 @@ bool March::refuse(int first, int last, const Closed& closed, NewtonReport outco
         return options_.direction > 0 ? solve_parts(first, first + 1, last)
                                       : solve_parts(first, last - 1, last);
     outcome.status = SolveStatus::not_converged;
+    blame(closed);
     const bool is_hopeless = is_contradictory(closed);
     if (!is_hopeless && may_divide(first, last, outcome)) return divide_element(first, 0.5);
     if (!closed.contradiction.empty()) return set_contradiction(first, last, closed);

@@ -148,6 +148,7 @@ std::string describe(const Expression::Step& step, const TimeValue& a, const Tim
 Expression::Expression(std::string_view text, std::vector<std::string> symbols)
     : text_(text), steps_(read_expression(text, symbols))
 {
+    find_guards();
     // What depends on nothing has its value now, or never.
     std::vector<bool> is_constant;
     const std::vector<double> none(symbols.size());

@@ -8,6 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "livens/time/guard.h"
+#include "livens/time/enclosure.h"
 #include "livens/time/time_function.h"
 
 namespace [[gnu::visibility("default")]] livens {
@@ -45,8 +47,16 @@ public:
     /// division by what passes zero), and around what comes and goes faster than a hundredth of the time: an
     /// element that steps over these sees nothing of them. Pulses shorter than a 4096th may be overlooked.
     std::vector<double> events(double from, double until) const;
-    /// A number for the smooth piece that it is on where symbols decide.
-    std::uint64_t piece(double t, std::span<const double> symbols) const;
+    /// Of operations that jump or bend where symbols decide: abs at 0, min and max where both are alike,
+    /// atan2 at half a turn.
+    const std::vector<Guard>& guards() const { return guards_; }
+    /// Their numbers.
+    void guarded(double t, std::span<const double> symbols, std::span<double> numbers) const;
+    /// Where time and symbols are within ranges, and their slopes by the share of a way: bounds of the value
+    /// and of its slope, wider than they are where a symbol stands more than once.
+    EnclosedValue over(const EnclosedValue& t, std::span<const EnclosedValue> symbols) const;
+    /// A sum of numbers times symbols, and of what time alone decides.
+    bool is_affine() const;
     /// "max at column 5": the first operation that may jump or bend where symbols decide; empty: none does.
     std::string kink_by_symbols() const;
 
@@ -82,10 +92,13 @@ public:
 
 private:
     std::vector<bool> steps_with_symbols() const;
+    void find_guards();
     std::vector<TimeValue> evaluate(double t, std::span<const double> symbols, int direction) const;
 
     std::string text_;
     std::vector<Step> steps_;   ///< the last is the value
+    std::vector<int> guarded_;   ///< of these, which jump or bend where symbols decide
+    std::vector<Guard> guards_;
 };
 
 /// A function of time alone; `breaks` are instants where it jumps or bends, on either side of which it has

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <iterator>
+#include <numbers>
 
 #include "livens/time/expression.h"
 
@@ -49,13 +50,6 @@ const char* word_of(Operation operation)
     default:
         return "";
     }
-}
-
-/// On which side of where the operation jumps or bends; atan2 does beyond the negative half of its axis only.
-bool is_beyond(const Expression::Step& step, const std::vector<TimeValue>& values)
-{
-    const double side = switching(step, values);
-    return step.operation == Operation::arc_tangent ? side < 0 && values[step.second].value < 0 : side > 0;
 }
 
 /// Where a function changes its sign, to the last digit.
@@ -194,16 +188,25 @@ std::vector<double> Expression::events(double from, double until) const
     return events;
 }
 
-std::uint64_t Expression::piece(double t, std::span<const double> symbols) const
+void Expression::find_guards()
 {
-    constexpr std::uint64_t odd = 0x9e3779b97f4a7c15;   // the golden ratio: sides mix well
     const std::vector<bool> has_symbols = steps_with_symbols();
+    for (std::size_t k = 0; k < steps_.size(); ++k) {
+        if (!has_symbols[k] || *word_of(steps_[k].operation) == 0) continue;
+        guarded_.push_back(static_cast<int>(k));
+        const bool is_angle = steps_[k].operation == Operation::arc_tangent;
+        guards_.push_back(is_angle ? Guard{{std::numbers::pi}, 2 * std::numbers::pi} : Guard{});
+    }
+}
+
+void Expression::guarded(double t, std::span<const double> symbols, std::span<double> numbers) const
+{
     const std::vector<TimeValue> values = evaluate(t, symbols, -1);
-    std::uint64_t piece = 0;
-    for (std::size_t k = 0; k < steps_.size(); ++k)
-        if (has_symbols[k] && *word_of(steps_[k].operation) != 0)
-            piece = odd * piece + (is_beyond(steps_[k], values) ? 1 : 0);
-    return piece;
+    for (std::size_t k = 0; k < guarded_.size(); ++k) {
+        const auto step = static_cast<std::size_t>(guarded_[k]);
+        const bool is_angle = steps_[step].operation == Operation::arc_tangent;
+        numbers[k] = is_angle ? values[step].value : switching(steps_[step], values);
+    }
 }
 
 std::string Expression::kink_by_symbols() const

@@ -204,4 +204,12 @@ TimeFunction spline_table(std::vector<double> times, std::vector<double> values)
     return {[table](Instant at) { return evaluate_spline(*table, at); }, std::move(breaks)};
 }
 
+std::vector<double> knots_of_spline(std::vector<double> rows)
+{
+    if (rows.size() < 4) return rows;
+    rows.erase(rows.end() - 2);
+    rows.erase(rows.begin() + 1);
+    return rows;
+}
+
 }   // namespace livens

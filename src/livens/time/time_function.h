@@ -47,5 +47,8 @@ TimeFunction linear_table(std::vector<double> times, std::vector<double> values)
 /// Cubic spline, twice continuously differentiable, not-a-knot ends (natural below 4 rows), constant outside;
 /// breaks at the first and last row. Times must ascend strictly. Throws InputError as above.
 TimeFunction spline_table(std::vector<double> times, std::vector<double> values);
+/// Where a higher derivative of it jumps, if it goes straight on outside: at all rows but the second from
+/// either end, which are no knots from 4 rows on.
+std::vector<double> knots_of_spline(std::vector<double> rows);
 
 }   // namespace livens

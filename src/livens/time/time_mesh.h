@@ -21,6 +21,8 @@ struct TimeMesh {
     std::vector<double> ends;
     /// Of these, the ones that must stay where they are beside the first and the last; ascending.
     std::vector<double> required{};
+    /// Of these, where a law bends or jumps (docs/theory.md, "Laws that bend"); ascending.
+    std::vector<double> bends{};
 
     int n_elements() const { return static_cast<int>(ends.size()) - 1; }
     double start() const { return ends.front(); }

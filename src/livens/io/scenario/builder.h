@@ -144,8 +144,10 @@ std::vector<double> breaks_of(const Builder& builder, const Section& section,
 /// One factor for each expression.
 LoadLaw law_of(const std::vector<Expression>& expressions, const Inputs& inputs,
                const std::vector<double>& breaks);
-/// On which smooth pieces they are; empty: they have but one.
-LawPiece piece_of(const std::vector<Expression>& expressions, const Inputs& inputs);
+/// How steep they may be.
+LawSteepness steepness_of(const std::vector<Expression>& expressions, const Inputs& inputs);
+/// What decides on which smooth pieces they are; empty: they have but one.
+LawGuards guards_of(const std::vector<Expression>& expressions, const Inputs& inputs);
 
 /// `directors`, `quaternion`, `rotation_vector`: of a body or a joint's frame.
 std::vector<Key> orientation_keys();

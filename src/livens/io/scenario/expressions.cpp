@@ -183,18 +183,32 @@ LoadLaw law_of(const std::vector<Expression>& expressions, const Inputs& inputs,
     };
 }
 
-LawPiece piece_of(const std::vector<Expression>& expressions, const Inputs& inputs)
+LawSteepness steepness_of(const std::vector<Expression>& expressions, const Inputs& inputs)
 {
-    const bool has_pieces = std::ranges::any_of(
-        expressions, [](const Expression& one) { return !one.kink_by_symbols().empty(); });
-    if (!has_pieces) return nullptr;
-    return [expressions, inputs](const LawArguments& at) {
-        constexpr std::uint64_t odd = 0xbf58476d1ce4e5b9;
-        const std::vector<double> numbers = numbers_of(inputs, at);
-        std::uint64_t piece = 0;
-        for (const Expression& one : expressions) piece = odd * piece + one.piece(at.at.t, numbers);
-        return piece;
+    return [expressions, inputs](const EnclosedValue& t, std::span<const EnclosedValue> numbers,
+                                 std::span<double> bounds) {
+        std::vector<EnclosedValue> symbols;
+        for (const Inputs::Read& read : inputs.reads)
+            symbols.push_back(numbers[read.coordinate + (read.is_rate ? inputs.coordinates.size() : 0)]);
+        for (std::size_t k = 0; k < expressions.size(); ++k)
+            bounds[k] = expressions[k].over(t, symbols).slope.size();
     };
+}
+
+LawGuards guards_of(const std::vector<Expression>& expressions, const Inputs& inputs)
+{
+    std::vector<Guard> guards;
+    for (const Expression& one : expressions)
+        guards.insert(guards.end(), one.guards().begin(), one.guards().end());
+    if (guards.empty()) return {};
+    const auto values = [expressions, inputs](const LawArguments& at, std::span<double> found) {
+        const std::vector<double> numbers = numbers_of(inputs, at);
+        for (const Expression& one : expressions) {
+            one.guarded(at.at.t, numbers, found);
+            found = found.subspan(one.guards().size());
+        }
+    };
+    return {guards, values};
 }
 
 }   // namespace livens

@@ -101,7 +101,9 @@ Load by_formula(const LoadSources& p, const std::string& type, const std::string
         std::ranges::fill(slopes, 0.0);
     };
     for (const Inputs::Read& read : inputs.reads) parts.depends_on_rates |= read.is_rate;
-    parts.piece = piece_of(expressions, inputs);
+    parts.guards = guards_of(expressions, inputs);
+    parts.is_smooth = std::ranges::all_of(expressions, [](const Expression& e) { return e.is_affine(); });
+    parts.steepest = steepness_of(expressions, inputs);
     parts.breaks = acts.breaks();
     for (std::size_t k = 0; k < parts.units.size(); ++k) {
         const std::string name = parts.units.size() == 1 ? "force" : std::string(1, "xyz"[k]);
@@ -194,7 +196,7 @@ SpringLaw read_law(const LoadSources& p)
     const Section& load = p.section;
     const std::string law = load.text("law");
     if (law == "progressive") return progressive_spring(load.number("stiffness"), load.number("cubic"));
-    if (law == "linear") return nullptr;
+    if (law == "linear") return {};
     const Section& table = *only_section(load, "table");
     const std::vector<double>&x = table.find("elongations")->numbers, &y = table.find("forces")->numbers;
     const bool is_smooth = table.text("interpolation") == "spline";

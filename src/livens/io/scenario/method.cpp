@@ -251,6 +251,10 @@ Table method_table()
              "Whether two pairs of neighbouring motions tell how perturbations of the start grow, and the "
              "horizon beyond which double precision says nothing; about four times as costly as the motion. "
              "Default: true with `accuracy` of `[time]`, else false."},
+         Key{"looks", types::truth,
+             "Whether laws of loads are looked at inside of elements, between the points at which they are "
+             "evaluated; `false` takes all laws for smooth, and is there for comparison.",
+             "", "true"},
          Key{"condition", types::truth,
              "Whether condition numbers are computed: of the whole matrix of the last block (mixed), of that "
              "of all elements, reduced to the free motions (lobatto), of that of the last element likewise "

@@ -93,7 +93,8 @@ std::string resolve(const Builder& builder, const Section& time, const Scenario&
     json.member("tolerance", options.tolerance).member("max_iterations", options.max_iterations);
     constexpr const char* of_estimate[] = {"second", "local", "none"};
     json.member("estimate", of_estimate[static_cast<int>(options.estimate)]);
-    json.member("growth", options.growth).member("condition", options.condition).end_object();
+    json.member("growth", options.growth).member("looks", options.look_at_laws);
+    json.member("condition", options.condition).end_object();
     json.key("start").begin_object().member("given", word(scenario.conditions.at_start));
     json.member("initial", options.initial == StartPolicy::check ? "check" : "project").end_object();
     json.key("end").begin_object().member("given", word(scenario.conditions.at_end)).end_object();
@@ -146,6 +147,7 @@ void read_run(Builder& builder, Scenario& scenario)
     if (method != nullptr && method->has("max_iterations"))
         scenario.options.max_iterations = method->integer("max_iterations");
     if (method != nullptr) scenario.options.condition = method->truth("condition");
+    if (method != nullptr) scenario.options.look_at_laws = method->truth("looks");
     if (method != nullptr) scenario.options.estimate = method->pick<SolveOptions::Estimate>("estimate");
     if (start != nullptr && start->text("initial") == "project")
         scenario.options.initial = StartPolicy::project;

@@ -77,6 +77,7 @@ Load attraction(const std::string& name, int body, const Body& properties, const
     const auto at = [of](const LawArguments& arguments) {
         return of({arguments.values[0], arguments.values[1], arguments.values[2]});
     };
+    parts.is_smooth = true;   // the nearer the faster: elements see it by the motion
     parts.law = [at](const LawArguments& arguments, std::span<double> factors, std::span<double> slopes) {
         const Potential::Value V = at(arguments);
         for (int k = 0; k < 3; ++k) {

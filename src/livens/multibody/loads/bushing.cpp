@@ -266,6 +266,7 @@ Load bushing(const std::string& name, int first, const BodyFrame& frame_first, i
     }
     const BushingLaw at{law};
     parts.law = at;
+    parts.is_smooth = true;   // up to half a turn, where it ends
     parts.depends_on_rates = law.damping != Matrix<6, 6>{};
     parts.potential = [at](const LawArguments& q) { return at.potential(q); };
     parts.power = [at](const LawArguments& q) { return at.power(q); };

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <cmath>
 
 #include "livens/multibody/detail/load_values.h"
@@ -35,6 +36,22 @@ Load drag(const std::string& name, int body, const Vector3& point, const Drag& l
             }
         }
     };
+    // |d(|v| v)/ds| <= 2 |v| |dv/ds|
+    parts.steepest = [law](const EnclosedValue&, std::span<const EnclosedValue> numbers, std::span<double> bounds) {
+        double speed = 0, change = 0;
+        for (int k = 0; k < 3; ++k) {
+            const EnclosedValue& v = numbers[3 + k];
+            speed += square(v.value - Enclosure::of(law.medium[k])).high;
+            change += square(v.slope).high;
+        }
+        const double steepest = (law.linear + 2 * law.quadratic * std::sqrt(speed)) * std::sqrt(change);
+        std::ranges::fill(bounds, steepest);
+    };
+    parts.is_smooth = law.quadratic == 0;
+    if (law.quadratic > 0)
+        parts.guards.centre = [law](const LawArguments& at) {
+            return Vector3{at.rates[0], at.rates[1], at.rates[2]} - law.medium;
+        };
     for (std::size_t k = 0; k < 3; ++k)
         parts.readings.push_back(factor_reading(std::string(1, "xyz"[k]), "N", parts.law, k, 3));
     return modulated(name, "drag", parts, X);

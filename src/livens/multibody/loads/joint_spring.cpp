@@ -14,7 +14,7 @@ struct AlongJoint {
     {
         const double e = value - spring.rest;
         if (spring.law) return spring.law(e);
-        return {spring.stiffness * e, spring.stiffness, 0.5 * spring.stiffness * e * e, 0};
+        return {spring.stiffness * e, spring.stiffness, 0.5 * spring.stiffness * e * e};
     }
     bool is_elastic() const { return spring.law || spring.stiffness != 0; }
     LawValue force(const CoordinateState& q) const
@@ -57,10 +57,12 @@ Load joint_spring(const std::string& name, const NamedCoordinate& coordinate, co
     load.tangent = [of](const LoadArguments& arguments, LoadTangent& tangent) {
         of.along.add_tangent(arguments, of.force(of.along.look(arguments)), tangent);
     };
-    if (spring.law)
-        load.piece = [of](const LoadArguments& arguments) {
-            return static_cast<std::uint64_t>(of.elastic(of.along.look(arguments).value).piece);
+    if (!spring.law.bends.empty()) {
+        load.guards = {{spring.law.bends}};
+        load.guarded = [of](const LoadArguments& arguments, std::span<double> e) {
+            e[0] = of.along.look(arguments).value - of.spring.rest;
         };
+    }
     load.potential = [of](const LoadArguments& arguments) { return of.potential(of.along.look(arguments)); };
     load.power = [of](const LoadArguments& arguments) { return of.power(of.along.look(arguments)); };
     load.readings = {{"force", is_angle ? "N m" : "N", [of](const LoadArguments& arguments) {

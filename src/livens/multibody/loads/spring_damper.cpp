@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "livens/base/elementary.h"
@@ -23,9 +25,13 @@ struct Spring {
 
     Line line(const LoadArguments& arguments) const
     {
-        Line line;
-        line.r = arguments.X[1] * points[1] - arguments.X[0] * points[0];
-        line.w = arguments.V[1] * points[1] - arguments.V[0] * points[0];
+        return line_of(arguments.X[1] * points[1] - arguments.X[0] * points[0],
+                       arguments.V[1] * points[1] - arguments.V[0] * points[0]);
+    }
+
+    static Line line_of(const Vector3& r, const Vector3& w)
+    {
+        Line line{r, w, {}, 0, 0};
         line.l = hypotenuse(line.r[0], line.r[1], line.r[2]);
         if (line.l > 0)
             for (int i = 0; i < 3; ++i) line.u[i] = line.r[i] / line.l;
@@ -90,6 +96,61 @@ struct Spring {
             }
     }
 
+    /// The pull in world axes, by r and w.
+    LawInside inside() const
+    {
+        LawInside inside;
+        inside.n_numbers = 6;
+        inside.n_factors = 3;
+        inside.only_at_centre = true;
+        inside.numbers = [*this](const LoadArguments& arguments, std::span<double> numbers) {
+            const Line at = line(arguments);
+            for (int k = 0; k < 3; ++k) {
+                numbers[k] = at.r[k];
+                numbers[3 + k] = at.w[k];
+            }
+        };
+        inside.factors = [*this](Instant, std::span<const double> numbers, std::span<double> factors) {
+            const Vector3 f = pull(line_of({numbers[0], numbers[1], numbers[2]},
+                                           {numbers[3], numbers[4], numbers[5]}));
+            for (int k = 0; k < 3; ++k) factors[k] = f[k];
+        };
+        inside.unit = [*this](const LoadArguments&, std::size_t k, LoadForces& F) {
+            Vector3 one{};
+            one[static_cast<int>(k)] = 1;
+            F[0] = outer(one, points[0]);
+            F[1] = -outer(one, points[1]);
+        };
+        inside.steepest = [*this](const EnclosedValue&, std::span<const EnclosedValue> numbers,
+                                  std::span<double> bounds) {
+            std::ranges::fill(bounds, steepest(numbers));
+        };
+        return inside;
+    }
+
+    /// |d pull/ds| <= k |r'| + |tension| |r'| / |r| + |tension'|.
+    double steepest(std::span<const EnclosedValue> numbers) const
+    {
+        double least = 0, longest = 0, change = 0, speed = 0, speed_change = 0;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const EnclosedValue &r = numbers[k], &w = numbers[3 + k];
+            least += square(r.value).low, longest += square(r.value).high, change += square(r.slope).high;
+            speed += square(w.value).high, speed_change += square(w.slope).high;
+        }
+        least = std::sqrt(least), longest = std::sqrt(longest), change = std::sqrt(change);
+        speed = std::sqrt(speed), speed_change = std::sqrt(speed_change);
+        const double turn = change / least;
+        double slope = law.stiffness;
+        double tension = std::abs(law.preload) + law.damping * speed + law.stiffness * law.free_length;
+        for (const double l : {least, 0.5 * (least + longest), longest}) {
+            if (!law.law) break;
+            const SpringValue at = law.law(l - law.free_length);
+            slope = std::max(slope, std::abs(at.stiffness));
+            tension = std::max(tension, std::abs(law.preload) + law.damping * speed + std::abs(at.force));
+        }
+        return slope * change + tension * turn + law.damping * (speed_change + speed * turn);
+    }
+
     double potential(const LoadArguments& arguments) const
     {
         const double stretch = line(arguments).l - law.free_length;
@@ -131,11 +192,18 @@ Load spring_damper(const std::string& name, int first, const Vector3& point_firs
     load.tangent = [law](const LoadArguments& arguments, LoadTangent& tangent) {
         law.tangent(arguments, tangent);
     };
-    if (spring.law)
-        load.piece = [law](const LoadArguments& arguments) {
-            const double stretch = law.line(arguments).l - law.law.free_length;
-            return static_cast<std::uint64_t>(law.law.law(stretch).piece);
+    if (!spring.law.bends.empty()) {
+        load.guards = {{spring.law.bends}};
+        load.guarded = [law](const LoadArguments& arguments, std::span<double> e) {
+            e[0] = law.line(arguments).l - law.law.free_length;
         };
+    }
+    load.inside = law.inside();
+    // the force turns round where the points meet, unless it is linear in the way between them
+    if (spring.free_length > 0 || spring.damping > 0 || spring.preload != 0 || spring.law) {
+        load.centre = [law](const LoadArguments& arguments) { return law.line(arguments).r; };
+        load.is_smooth = false;
+    }
     load.potential = [law](const LoadArguments& arguments) { return law.potential(arguments); };
     load.power = [law](const LoadArguments& arguments) { return law.damper_power(arguments); };
     load.readings = {

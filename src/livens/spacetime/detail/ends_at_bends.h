@@ -17,6 +17,8 @@ public:
 
     /// Where the element from `start` ends that would end at `wanted`.
     double end(double start, double wanted);
+    /// An element end is about where a motion nearby has a bend: it moves to its own.
+    void expect(double end);
     /// Whether an element end is where a bend was found.
     bool is_found(double end) const { return end == at_; }
     /// True: the solution of the element tells a better end, found().
@@ -52,7 +54,7 @@ private:
     double at_ = -infinite, wanted_ = 0, longest_ = infinite;
     double moved_from_ = -infinite;   // start of the element whose end was moved last
     int n_moves_ = 0, n_crowded_ = 0, n_tiny_ = 0;
-    bool is_met_ = false;
+    bool is_met_ = false, is_expected_ = false;
 };
 
 }   // namespace livens

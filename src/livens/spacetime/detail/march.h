@@ -38,6 +38,8 @@ private:
     /// The motion rests where the law of a load jumps, or slides along it.
     void stop_at_jump(const std::string& load);
     void stop_vanishing();
+    /// Remembers the load whose law an element was refused for, if it was.
+    void blame(const Closed& closed);
     bool is_near_singular_end() const;
     std::string locking_in_words() const;
     /// Elements first..last - 1, split where they fail together.
@@ -66,6 +68,7 @@ private:
     RankLoss loss_of_failed(double end, bool end_may_move);
     bool can_move(int end) const;
     void count_shift(double t);
+    void count_bend(double t);
     /// Counts what was closed of the elements first..last - 1.
     bool take(int first, int last, const Closed& closed, const NewtonReport& outcome);
     /// Of the mesh, or as many as it will be if it grows as it did.
@@ -92,6 +95,8 @@ private:
     bool is_rescued_ = false;   // converged from another guess than the first
     WindowCounts counts_;
     EndsAtBends bends_;
+    std::vector<double> expected_;   // element ends of a motion nearby at which laws bend there
+    std::string blamed_;
     Troubles troubles_;
     double singular_end_ = std::numeric_limits<double>::quiet_NaN();   // that can not move; the last one
     int done_ = 0;                                                     // elements

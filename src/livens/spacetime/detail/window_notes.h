@@ -37,8 +37,9 @@ std::string of_lie(const std::string& window);
 /// As the caller asked, after a window that ends at t.
 std::string of_stop(double t);
 
-/// Why a march at a pace ends at t: elements vanish; or one must end where the joints lose rank.
-std::string of_vanishing(double t);
+/// Why a march at a pace ends at t: elements vanish (for the law of this load); or one must end where the
+/// joints lose rank.
+std::string of_vanishing(double t, const std::string& load);
 std::string of_singular_end(double t);
 
 /// See WindowOptions::locking.

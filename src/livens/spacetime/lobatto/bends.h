@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where on the way of an element a law of a load goes on to another of its smooth pieces.
+// Where on the way of an element a law of a load or row goes on to another of its smooth pieces.
 #pragma once
 
-#include <cstdint>
-#include <optional>
+#include <limits>
 #include <string>
 #include <vector>
 
-#include "livens/spacetime/lobatto/nodes.h"
+#include "livens/spacetime/lobatto/way.h"
 
 namespace livens {
 
@@ -20,31 +19,57 @@ public:
     Bends(const Tables& tables, const ElementRule& rule);
 
     /// No law of the model has pieces.
-    bool empty() const { return loads_.empty(); }
+    bool empty() const { return watches_.empty(); }
     /// The first share of the only element's length, up to `until` (beyond 1: as it goes on), from which on
-    /// loads are on other pieces than just behind its start; infinite: none.
+    /// laws are on other pieces than just behind its start; infinite: none.
     double first(const Stretch& stretch, const Nodes& nodes, double until);
     /// The load whose force jumped there, when a bend was found last; empty: none was, or none jumps.
     std::string jumping_load() const { return jumping_ < 0 ? "" : tables_.model->loads()[jumping_].name; }
 
 private:
+    /// A load, or a row, whose guards and centre are looked at.
+    struct Watch {
+        int load = -1, row = -1;
+        std::vector<int> bodies;
+        std::vector<Guard> guards;
+        bool has_centre = false;
+    };
     struct Look {
         double share = 0;
-        std::vector<std::uint64_t> pieces;   // of each load
-        std::vector<double> angles;          // see Turns
+        std::vector<double> numbers;   // of the guards
+        Vector3 centre{};
+        std::vector<double> angles;   // see Turns
+    };
+    /// The piece of each guard that the element begins on.
+    using Pieces = std::vector<Guard::Piece>;
+    /// A law goes on between two looks that are as near as numbers are; `end` is some way behind.
+    struct Passage {
+        double share = std::numeric_limits<double>::infinity();
+        Look before, after, end;
     };
 
-    /// Of the loads that are on other pieces after than before, one whose force jumps; -1: none.
-    int find_jump(const Stretch& stretch, const Nodes& nodes, const Look& before, const Look& after,
-                  const Look& end);
-    LoadForces forces(const Stretch& stretch, const Nodes& nodes, int load, const Look& at);
-    Look look(const Stretch& stretch, const Nodes& nodes, double share, const Look& from);
+    void watch(int load, int row);
+    Passage first_of(const Watch& watch, double until);
+    /// Not even near: by a few looks.
+    bool is_calm(const Watch& watch, const Pieces& pieces, const Look& start, double until);
+    Look look(const Watch& watch, double share, const Look& from);
+    /// Where the pieces are left for good between an inside and an outside look.
+    Passage bisect(const Watch& watch, const Pieces& pieces, Look inside, Look outside);
+    /// A guard that comes nearest to leaving its piece at the middle one of three looks may have left it
+    /// between them.
+    Passage graze(const Watch& watch, const Pieces& pieces, const Look* three);
+    /// Where the centre passes through zero between two looks.
+    Passage through_centre(const Watch& watch, const Look& from, const Look& to);
+    bool is_jump(const Watch& watch, const Passage& passage);
+    LoadForces forces(const Watch& watch, const Look& at);
 
     const Tables& tables_;
-    std::vector<int> loads_;   // that have pieces; if there are none nothing else is made
-    std::optional<LagrangeBasis> basis_;
+    std::vector<Watch> watches_;
+    Way way_;
+    std::vector<double> shares_;   // of looks
+    const Stretch* stretch_ = nullptr;
+    const Nodes* nodes_ = nullptr;
     int jumping_ = -1;
-    std::vector<double> X_, V_, values_, slopes_;
 };
 
 }   // namespace livens

@@ -147,6 +147,7 @@ void Record::cut(std::vector<T>& values, std::size_t first, std::size_t last, st
 const Motion& Record::so_far()
 {
     motion_.mesh.ends.assign(mesh_.ends.begin(), mesh_.ends.begin() + last_ + 1);
+    motion_.mesh.bends = mesh_.bends;
     // sizes tell how many there are
     for_sizes(std::max(last_, 0), [](auto& values, std::size_t size) { values.resize(size); });
     return motion_;
@@ -174,6 +175,7 @@ Motion Record::take(const State& start)
     const auto p = static_cast<std::size_t>(degree_), bodies = static_cast<std::size_t>(m.n_bodies);
     const auto rows = static_cast<std::size_t>(m.n_rows);
     m.mesh.ends.assign(mesh_.ends.begin() + first_, mesh_.ends.begin() + last_ + 1);
+    m.mesh.bends = mesh_.bends;
     cut(m.X.values, first * p, last * p + 1, 12 * bodies);
     cut(m.multipliers.values, first * (p + 1), last * (p + 1), rows);
     cut(m.velocities, first, last + 1, bodies);

@@ -7,8 +7,10 @@
 #include <utility>
 
 #include "livens/base/text.h"
+#include "livens/diagnostics/largest.h"
 #include "livens/multibody/body.h"
 #include "livens/multibody/twist.h"
+#include "livens/spacetime/pace.h"
 
 namespace livens {
 
@@ -25,8 +27,8 @@ LobattoWindow::LobattoWindow(const Tables& tables, const TimeMesh& mesh, const E
     : tables_(tables), ends_(ends), system_(tables, rule), series_(tables, system_.rule()),
       kernel_(tables, system_.rule()), instant_(tables, kernel_.serves() && ends.has_state()),
       record_(tables, mesh, system_.rule()),
-      front_(tables), breaks_{tables.model->load_breaks(), Bends(tables, rule)}, rank_{Branches(
-                                                                                     tables, system_.rule())}
+      front_(tables), breaks_{tables.model->load_breaks(), Bends(tables, rule)},
+      laws_{InsideLaws(tables, system_.rule()), false, {}}, rank_{Branches(tables, system_.rule())}
 {
     record_.note_redundant(ends.redundant);
     work_.lambda.assign(tables.rows.size(), 0.0);
@@ -263,8 +265,10 @@ Closed LobattoWindow::close(const Trust& trust, SolveReport& report)
         if (is_watched && !kernel_.has_followed() &&
             rank_.branches.leaves(stretch_, system_.nodes(), front_.here().rows, e))
             closed.velocity_jump = std::numeric_limits<double>::infinity();
+        Unseen unseen = look_at_laws(e, closed);
         closed.is_refused = !(closed.velocity_jump <= trust.velocity_jump);
         if (closed.is_refused) return closed;
+        if (unseen.load >= 0) laws_.unseen.push_back(std::move(unseen));
         close_element(e);
         ++closed.n_elements;
         for (int A = e * system_.rule().degree; A <= (e + 1) * system_.rule().degree; ++A)
@@ -272,6 +276,18 @@ Closed LobattoWindow::close(const Trust& trust, SolveReport& report)
     }
     front_.is_ready = true;
     return closed;
+}
+
+/// What a law did unseen counts as the velocity jump that goes with such an error.
+Unseen LobattoWindow::look_at_laws(int e, Closed& closed)
+{
+    if (laws_.is_ignored || laws_.inside.empty()) return {};
+    Unseen unseen = laws_.inside.look(stretch_, system_.nodes(), e, front_.here().angles, instant_,
+                                      front_.next());
+    if (!(unseen.error > 0)) return unseen;
+    const double jump = velocity_jump_of(stretch_.points, stretch_.degree, unseen.error);
+    if (raise_to(closed.velocity_jump, jump)) closed.load = tables_.model->loads()[static_cast<std::size_t>(unseen.load)].name;
+    return unseen;
 }
 
 /// The nodes and multipliers of a believed element into the motion, its end as the start of the next.

@@ -5,6 +5,7 @@
 #include "livens/spacetime/ends.h"
 #include "livens/spacetime/lobatto/bends.h"
 #include "livens/spacetime/lobatto/branches.h"
+#include "livens/spacetime/lobatto/inside.h"
 #include "livens/spacetime/lobatto/march_kernel.h"
 #include "livens/spacetime/lobatto/record.h"
 #include "livens/spacetime/lobatto/series.h"
@@ -19,6 +20,8 @@ public:
     /// References must outlive the window.
     LobattoWindow(const Tables& tables, const TimeMesh& mesh, const Ends& ends, const ElementRule& rule);
 
+    /// Nobody asks what laws of loads do inside of elements.
+    void ignore_laws() { laws_.is_ignored = true; }
     /// A motion nearby, which has to outlive the window, as the guess where its elements are the same.
     void follow(const Motion& motion) { kernel_.follow(motion); }
     bool open(int first, int last, SolveReport& report) override;
@@ -42,6 +45,7 @@ public:
     Place worst() const override;
     void describe(SolveReport& report) const override;
     void measure_condition(SolveReport& report, const std::function<bool()>& goes_on) override;
+    std::vector<Unseen> take_unseen() override { return std::move(laws_.unseen); }
     const Motion* so_far() override { return &record_.so_far(); }
     Motion take_motion() override { return record_.take(ends_.start); }
 
@@ -63,6 +67,11 @@ private:
     struct Breaks {
         std::vector<double> jumps;   // instants
         Bends bends;
+    };
+    struct Laws {
+        InsideLaws inside;
+        bool is_ignored = false;
+        std::vector<Unseen> unseen;
     };
     struct Rank {
         Branches branches;
@@ -88,6 +97,7 @@ private:
     void take_spin_of_polynomial(int e);
     bool end_element(int e, SolveReport& report);
     double velocity_jump(int e, bool refuse_turns) const;
+    Unseen look_at_laws(int e, Closed& closed);
     double rank_left(int e, int first, int last) const;
     RankLoss rank_loss(int e) const;
     void close_element(int e);
@@ -108,6 +118,7 @@ private:
     int first_ = 0, last_ = 0;
     Work work_;
     Breaks breaks_;
+    Laws laws_;
     Rank rank_;
 };
 
