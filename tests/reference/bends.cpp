@@ -166,7 +166,7 @@ Seen seen(const Oscillator& o, const std::string& time, bool end_at_bends = true
     for (const Diagnostic& d : read.diagnostics) EXPECT_EQ(d.message, "");
     const Scenario& s = read.scenario.value();
     SolveOptions options = s.options;
-    options.end_at_bends = end_at_bends;
+    options.end_at_bends = options.look_at_laws = end_at_bends;
     const Solution solution = solve(s.model, {s.model.start()}, s.time, s.method, options);
     const double x = solution.motion.at_end(solution.motion.n_elements()).X[0](0, 0);
     return {solution.report.status, static_cast<double>(std::abs(x - o.at_end().x)) / s.model.length(),

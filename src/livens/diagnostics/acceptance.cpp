@@ -46,8 +46,7 @@ public:
                            " s (indicator " + to_text(value, 3) +
                            "): the elements are too long to see the motion, or this is a solution of the "
                            "equations that is none; " +
-                           (has_blocks ? "smaller blocks or more elements" : "more elements") +
-                           " may help");
+                           (has_blocks ? "smaller blocks or more elements" : "more elements") + " may help");
     }
     void error(const ErrorEstimate& estimate, const Model& model, double bound)
     {
@@ -56,9 +55,9 @@ public:
         reasons_.push_back(
             "its estimated error is " + to_text(estimate.largest, 3) +
             " (lengths of the model, or rad), of body '" + model.body_name(estimate.body) + "' at " +
-            to_text(estimate.time, 6) +
-            " s, by " +
-            (is_law ? "what the law of load '" + model.loads()[static_cast<std::size_t>(estimate.unseen_load)].name +
+            to_text(estimate.time, 6) + " s, by " +
+            (is_law ? "what the law of load '" +
+                          model.loads()[static_cast<std::size_t>(estimate.unseen_load)].name +
                           "' does inside of the element that ends at " + to_text(estimate.unseen_time, 6) +
                           " s, between the points at which it is evaluated; shorter elements there, or an "
                           "accuracy instead of elements, may help"

@@ -113,4 +113,4 @@ private:
     double largest_kick_ = 0;
 };
 
-}   // namespace livens
+}   // namespace gnu::visibility("default")]]livens

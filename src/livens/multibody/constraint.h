@@ -205,4 +205,4 @@ void for_each_form(const ConstraintRow& row, Instant at, const Configurations& X
         act(row.coordinates[k], row.coordinates[k].body_i, row.coordinates[k].body_j, F.gradient[k]);
 }
 
-}   // namespace livens
+}   // namespace gnu::visibility("default")]]livens

@@ -83,4 +83,4 @@ struct Curve {
 std::vector<ConstraintRow> curve_rows(const Curve& curve, int body_i, int body_j, const Vector4& b,
                                       double scale);
 
-}   // namespace livens
+}   // namespace gnu::visibility("default")]]livens

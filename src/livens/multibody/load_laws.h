@@ -118,4 +118,4 @@ struct Attraction {
 Load attraction(const std::string& name, int body, const Body& properties, const Attraction& law,
                 const Configurations& X);
 
-}   // namespace livens
+}   // namespace gnu::visibility("default")]]livens

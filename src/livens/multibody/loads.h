@@ -12,8 +12,8 @@
 
 #include "livens/base/linear.h"
 #include "livens/multibody/joints.h"
-#include "livens/time/guard.h"
 #include "livens/time/enclosure.h"
+#include "livens/time/guard.h"
 #include "livens/time/time_function.h"
 
 namespace [[gnu::visibility("default")]] livens {
@@ -88,7 +88,8 @@ struct LawInside {
     /// Adds a unit.
     std::function<void(const LoadArguments&, std::size_t k, LoadForces&)> unit;
     /// Bounds of |df_k/ds| on a piece of a way s; empty: nobody knows.
-    std::function<void(const EnclosedValue& t, std::span<const EnclosedValue> numbers, std::span<double> bounds)>
+    std::function<void(const EnclosedValue& t, std::span<const EnclosedValue> numbers,
+                       std::span<double> bounds)>
         steepest = nullptr;
     /// Smooth but where Load::centre comes near zero.
     bool only_at_centre = false;
@@ -172,11 +173,11 @@ SpringLaw tabulated_spring(const std::vector<double>& elongations, const std::ve
                            bool is_spline);
 
 struct SpringDamper {
-    double stiffness = 0;      ///< N/m
-    double damping = 0;        ///< N s/m
-    double free_length = 0;    ///< m
-    double preload = 0;        ///< N, pulls wherever the ends are
-    SpringLaw law{};           ///< instead of `stiffness`, of length - free_length
+    double stiffness = 0;     ///< N/m
+    double damping = 0;       ///< N s/m
+    double free_length = 0;   ///< m
+    double preload = 0;       ///< N, pulls wherever the ends are
+    SpringLaw law{};          ///< instead of `stiffness`, of length - free_length
 };
 
 /// Spring and damper between a point of one body and a point of another or of the world; the force acts along
@@ -186,11 +187,11 @@ Load spring_damper(const std::string& name, int first, const Vector3& point_firs
                    const Vector3& point_second, const SpringDamper& spring);
 
 struct JointSpring {
-    double stiffness = 0;      ///< N/m or N m/rad
-    double damping = 0;        ///< N s/m or N m s/rad
-    double rest = 0;           ///< m or rad: the coordinate without force but the preload
-    double preload = 0;        ///< N or N m, against the coordinate, wherever it is
-    SpringLaw law{};           ///< instead of `stiffness`, of q - rest
+    double stiffness = 0;   ///< N/m or N m/rad
+    double damping = 0;     ///< N s/m or N m s/rad
+    double rest = 0;        ///< m or rad: the coordinate without force but the preload
+    double preload = 0;     ///< N or N m, against the coordinate, wherever it is
+    SpringLaw law{};        ///< instead of `stiffness`, of q - rest
 };
 
 // Loads along a coordinate of a joint: a force that does the work Q dq, between its two bodies. X is the
@@ -217,4 +218,4 @@ double load_power(const Load& load, const LoadArguments& arguments);
 /// What changes the mechanism's energy: `power` by the rule stated there.
 double power_without_potential(const Load& load, const LoadArguments& arguments);
 
-}   // namespace livens
+}   // namespace gnu::visibility("default")]]livens

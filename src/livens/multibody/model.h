@@ -118,4 +118,4 @@ ActingModel acting_at(const Model& model, double t);
 /// Weight of a body: F = g (m e_0)^T.
 Matrix34 weight(const Body& body, const Vector3& gravity);
 
-}   // namespace livens
+}   // namespace gnu::visibility("default")]]livens

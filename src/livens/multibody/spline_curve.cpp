@@ -172,8 +172,12 @@ private:
 Curve spline_curve(const std::vector<Vector3>& points, bool is_closed)
 {
     const auto spline = std::make_shared<const Spline>(points, is_closed);
-    return {[spline](double s) { return spline->at(s); }, 0, spline->last(), is_closed,
-            [spline](double s) { return spline->shape(spline->inside(s)); }, spline->knots()};
+    return {[spline](double s) { return spline->at(s); },
+            0,
+            spline->last(),
+            is_closed,
+            [spline](double s) { return spline->shape(spline->inside(s)); },
+            spline->knots()};
 }
 
 }   // namespace livens

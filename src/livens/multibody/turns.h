@@ -41,4 +41,4 @@ private:
     std::vector<int> first_;   ///< of each load, and their number
 };
 
-}   // namespace livens
+}   // namespace gnu::visibility("default")]]livens

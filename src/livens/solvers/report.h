@@ -22,12 +22,12 @@ const char* to_string(SolveStatus status);
 
 struct SolveReport {
     SolveStatus status = SolveStatus::converged;
-    std::string message;          ///< one line for a person: which joint or body, when, what to try
-    int n_elements = 0;           ///< solved
-    int unknowns = 0;             ///< of one window, after elimination
-    long newton_iterations = 0;   ///< over all windows, all guesses counted
-    int most_iterations = 0;      ///< in one window
-    long factorisations = 0;      ///< of the tangent of a window
+    std::string message;             ///< one line for a person: which joint or body, when, what to try
+    int n_elements = 0;              ///< solved
+    int unknowns = 0;                ///< of one window, after elimination
+    long newton_iterations = 0;      ///< over all windows, all guesses counted
+    int most_iterations = 0;         ///< in one window
+    long factorisations = 0;         ///< of the tangent of a window
     long guess_factorisations = 0;   ///< of the smaller tangents behind first guesses
     int rescued = 0;                 ///< windows that converged only from another guess than the first
     int divided = 0;                 ///< elements that were too long and were divided into two
@@ -40,16 +40,16 @@ struct SolveReport {
     int tries = 0;                   ///< motions until it was reached
     long long evaluations = 0;       ///< of the equations at a node of an element, in the motion
     long long evaluations_in_all = 0;   ///< of all tries and their second solutions
-    double residual_norm = 0;        ///< largest scaled residual at acceptance
-    double smallest_pivot = 1;       ///< of the scaled constraint Jacobian; below 1e-6 deserves a look
-    double failed_at = 0;            ///< near end of the failed window, s; only if not converged
-    std::vector<int> iterations;     ///< per window; stepping: per element
-    std::vector<std::string> notes;   ///< redundant rows, projections, ...
-    std::string estimate_failed;      ///< why nothing tells the error: "the second solution failed: ..."
-    double condition_1 = 0;           ///< of the whole matrix in the 1-norm, if asked for
-    double condition_2 = 0;           ///< and in the 2-norm
-    double scaled_condition = 0;      ///< in the 1-norm, as it is factorised: rows and columns scaled
-    long long factor_entries = 0;     ///< stored numbers of a window's sparse factors; 0: dense
+    double residual_norm = 0;           ///< largest scaled residual at acceptance
+    double smallest_pivot = 1;          ///< of the scaled constraint Jacobian; below 1e-6 deserves a look
+    double failed_at = 0;               ///< near end of the failed window, s; only if not converged
+    std::vector<int> iterations;        ///< per window; stepping: per element
+    std::vector<std::string> notes;     ///< redundant rows, projections, ...
+    std::string estimate_failed;        ///< why nothing tells the error: "the second solution failed: ..."
+    double condition_1 = 0;             ///< of the whole matrix in the 1-norm, if asked for
+    double condition_2 = 0;             ///< and in the 2-norm
+    double scaled_condition = 0;        ///< in the 1-norm, as it is factorised: rows and columns scaled
+    long long factor_entries = 0;       ///< stored numbers of a window's sparse factors; 0: dense
     double guess_distance = 0;        ///< largest distance of the motion from the march it was guessed by: of
                                       ///< points by the model's length, of directors; 0: not guessed so
     double guess_distance_time = 0;   ///< when it first exceeds 0.05, else when it is largest, s
@@ -61,12 +61,12 @@ struct SolveReport {
 /// Called after each window, and between Newton's iterations on one (`done` and `t` are then as before it);
 /// return false to stop. After the last window only the computation of condition numbers is left to stop.
 struct Progress {
-    int done = 0;          ///< elements solved so far, 0..n_elements, in either direction of time
+    int done = 0;   ///< elements solved so far, 0..n_elements, in either direction of time
     int n_elements = 0;
-    double t = 0;          ///< s, up to where the motion is solved
-    int iterations = 0;    ///< of the window at hand
+    double t = 0;         ///< s, up to where the motion is solved
+    int iterations = 0;   ///< of the window at hand
     double residual = 0;
 };
 using ProgressCallback = std::function<bool(const Progress&)>;
 
-}   // namespace livens
+}   // namespace gnu::visibility("default")]]livens

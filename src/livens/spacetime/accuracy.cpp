@@ -303,14 +303,14 @@ private:
         if (grown_ > span_.accuracy)
             report.message += "; the rounding of numbers at the start grows to " + to_text(grown_, 3);
         else
-            report.message += so_far_.helps && tolerance_ > finest
-                                  ? ", with ever shorter elements"
-                                  : std::string(", with ever shorter elements, which help no more: ") +
-                                        (!report.steep_load.empty()
-                                             ? "the law of load '" + report.steep_load +
-                                                   "' changes too fast inside them"
-                                         : is_fine() ? "rounding is left, or a law bends inside them"
-                                                     : "a law may bend or jump inside them");
+            report.message +=
+                so_far_.helps && tolerance_ > finest
+                    ? ", with ever shorter elements"
+                    : std::string(", with ever shorter elements, which help no more: ") +
+                          (!report.steep_load.empty()
+                               ? "the law of load '" + report.steep_load + "' changes too fast inside them"
+                           : is_fine() ? "rounding is left, or a law bends inside them"
+                                       : "a law may bend or jump inside them");
         report.message += "); try: an earlier end of time, or a larger error in accuracy";
         return std::move(last.solution);
     }

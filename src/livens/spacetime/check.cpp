@@ -74,6 +74,20 @@ void refuse_special_rows(const Model& model, const Method& method)
                               "use lobatto for screws, gears and slots"});
 }
 
+/// The velocity jump of an element is that of the smooth part of its motion.
+void refuse_laws_that_bend(const Model& model)
+{
+    for (const Load& load : model.loads())
+        if (!load.is_smooth || !load.guards.empty() || load.centre)
+            throw InputError({"estimate-method", "method.estimate",
+                              "the errors of elements do not tell that of the motion here", "local",
+                              "second or none",
+                              "the law of load '" + load.name +
+                                  "' may bend inside of elements, of which their "
+                                  "velocity jumps tell nothing",
+                              "let a second solution tell it"});
+}
+
 /// What finds its elements itself can only march.
 void check_accuracy(const Conditions& given, const Span& span, const Method& method,
                     const SolveOptions& options)
@@ -172,6 +186,7 @@ void check_method(const Model& model, const Problem& problem, const Time& time, 
                           is_nodal(method) ? "how they grow is told by neighbours of a state at the start"
                                            : "those of " + name_of(method) + " are not known one by one",
                           "let a second solution tell it"});
+    if (options.estimate == SolveOptions::Estimate::local) refuse_laws_that_bend(model);
     if (mesh == nullptr) return check_accuracy(problem.conditions, std::get<Span>(time), method, options);
     if (std::holds_alternative<Auto>(method))
         throw InputError({"accuracy-elements", "method.family",

@@ -13,8 +13,9 @@ double EndsAtBends::end(double start, double wanted)
     return at_ > start && at_ < wanted_ ? at_ : wanted_;
 }
 
-void EndsAtBends::expect(double end)
+void EndsAtBends::begin(double end)
 {
+    if (is_found(end) || !std::ranges::binary_search(expected_, end)) return;
     at_ = end;
     is_expected_ = true;
 }

@@ -12,6 +12,7 @@
 #include "livens/diagnostics/diagnostics.h"
 #include "livens/diagnostics/largest.h"
 #include "livens/multibody/frequencies.h"
+#include "livens/spacetime/accuracy.h"
 #include "livens/spacetime/phases.h"
 #include "livens/spacetime/second.h"
 
@@ -252,6 +253,22 @@ void count_rounding(const Model& model, std::span<const double> growth, const Ti
 
 namespace {
 
+/// Where what a law did unseen in the first solution makes much of the error, the estimate has its name.
+void name_law(const Solution& solution, ErrorEstimate& found)
+{
+    constexpr double much = 0.3;
+    double most = much * found.largest;
+    for (const Unseen& one : solution.unseen) {
+        double kick = 0;
+        for (std::size_t b = 0; b < one.shift.size(); ++b)
+            raise_to(kick, std::max(one.shift[b], one.turn[b]));
+        if (!raise_to(most, kick * (solution.motion.end() - one.t + one.duration))) continue;
+        raise_to(found.unseen, most);
+        found.unseen_load = one.load;
+        found.unseen_time = one.t;
+    }
+}
+
 void measure_error(const Model& model, const Problem& problem, const Method& method,
                    const SolveOptions& options, Solution& solution)
 {
@@ -273,14 +290,17 @@ void measure_error(const Model& model, const Problem& problem, const Method& met
         if (done == n) break;
     }
     solution.estimate = second.take(n);
+    name_law(solution, solution.estimate);
     add_lost_vibrations(model, solution.motion, solution.estimate);
     add_events(model, solution.motion, solution.estimate);
 }
 
 /// E_e = E_(e-1) g_e / g_(e-1) + 20 C_p J^q + rounding, with the largest growth g that there was by then. On
 /// mechanisms that did not calibrate C_p elements lose up to 35 times as much in the median.
-ErrorEstimate grown_errors(const Model& model, const Motion& motion, const std::vector<double>& growth)
+ErrorEstimate grown_errors(const Model& model, const Solution& solution)
 {
+    const Motion& motion = solution.motion;
+    const std::vector<double>& growth = solution.growth;
     constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
     ErrorEstimate found;
     if (growth.size() != motion.mesh.ends.size()) return found;
@@ -288,10 +308,21 @@ ErrorEstimate grown_errors(const Model& model, const Motion& motion, const std::
     found.n_bodies = model.n_bodies();
     found.length = model.length();
     double error = 0, largest = growth[0];
+    std::size_t next = 0;   // of what laws did unseen
+    const double time = time_of_motion(model, motion.at_end(0));
     for (std::size_t end = 0; end < growth.size(); ++end) {
         if (end > 0) {
             error *= std::max(1.0, growth[end] / largest);
             error += 20 * local_error(motion.X.points, motion.X.degree, jumps[end - 1]) + 1e-16;
+            for (; next < solution.unseen.size() && solution.unseen[next].t <= motion.mesh.ends[end];
+                 ++next) {
+                const Unseen& one = solution.unseen[next];   // a kick goes on as long as the motion has time
+                error += one.error * std::max(1.0, time / one.duration);
+                if (!(one.error > found.unseen)) continue;
+                found.unseen = one.error;
+                found.unseen_load = one.load;
+                found.unseen_time = one.t;
+            }
         }
         raise_to(largest, growth[end]);
         for (const Body& body : model.bodies()) {
@@ -320,7 +351,7 @@ void estimate(const Model& model, const Problem& problem, const Method& method, 
     if (solution.growth.empty())
         solution.growth = growth(model, problem, solution.method, options, solution.motion);
     if (is_local) {
-        solution.estimate = grown_errors(model, solution.motion, solution.growth);
+        solution.estimate = grown_errors(model, solution);
         if (solution.estimate.empty())
             solution.report.estimate_failed = "no neighbouring motion tells to the end how errors grow";
     }

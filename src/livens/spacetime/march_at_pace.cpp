@@ -61,8 +61,8 @@ void March::run_at_pace(Pace& pace)
 
 void March::blame(const Closed& closed)
 {
-    blamed_ = closed.load;
-    if (!blamed_.empty()) report_.steep_load = blamed_;
+    troubles_.load = closed.load;
+    if (!closed.load.empty()) report_.steep_load = closed.load;
 }
 
 void March::give_up(int element, const Closed& closed, const NewtonReport& outcome)
@@ -84,7 +84,7 @@ void March::stop_vanishing()
     report_.status = SolveStatus::not_converged;
     report_.failed_at = time_;
     report_.message = is_near_singular_end() ? of_singular_end(singular_end_) : locking_in_words();
-    if (report_.message.empty()) report_.message = of_vanishing(time_, blamed_);
+    if (report_.message.empty()) report_.message = of_vanishing(time_, troubles_.load);
 }
 
 void March::stop_at_jump(const std::string& load)

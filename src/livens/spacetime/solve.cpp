@@ -178,7 +178,8 @@ Solution solve_by_windows(const Model& model, const Problem& problem, const Time
     const bool is_mixed = std::holds_alternative<Mixed>(method);
     const Ends ends = close_ends(model, problem.conditions, mesh.start(), mesh.end(), options.initial);
     const Tables tables(model, ends.independent, is_mixed);
-    const std::unique_ptr<Window> window = make_window(tables, mesh, ends, method, options.look_at_laws, problem.near);
+    const std::unique_ptr<Window> window =
+        make_window(tables, mesh, ends, method, options.look_at_laws, problem.near);
     Solution solution;
     solution.method = method;
     SolveReport& report = solution.report;

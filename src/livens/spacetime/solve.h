@@ -69,7 +69,7 @@ struct Solution {
     /// rad at the start; empty if nobody asked, as far as the neighbouring motion came if it failed.
     std::vector<double> growth{};
     std::vector<Unseen> unseen{};   ///< what laws of loads did inside of elements, see Unseen
-    double estimate_seconds = 0;   ///< that the second solution and the neighbouring motion took
+    double estimate_seconds = 0;    ///< that the second solution and the neighbouring motion took
 };
 
 /// Throws InputError for wrong input (degree out of range, a start that does not fit, see close_start(),
@@ -109,4 +109,4 @@ struct ExactSample {
 ExactSample sample_exactly(const Model& model, const Motion& motion, const Method& method, double t,
                            const SolveOptions& options = {});
 
-}   // namespace livens
+}   // namespace gnu::visibility("default")]]livens

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 
 #include "livens/base/text.h"
 #include "livens/diagnostics/sample.h"
@@ -36,7 +37,7 @@ March::March(Window& window, TimeMesh& mesh, const WindowOptions& options, Solve
     : window_(window), mesh_(mesh), options_(options), report_(report),
       bends_((options.pace != nullptr ? options.pace->end() : mesh.end()) - mesh.start())
 {
-    expected_.swap(mesh.bends);
+    bends_.expect(std::exchange(mesh.bends, {}));
     newton_options_.tolerance = options.tolerance;
     newton_options_.max_iterations = options.max_iterations;
     if (options.progress)
@@ -127,7 +128,7 @@ int March::end_at_bend(int first, int last)
 {
     if (!options_.ends_at_bends || options_.direction < 0 || last - first > 1) return 0;
     const double start = mesh_.ends[first], end = mesh_.ends[last];
-    if (std::ranges::binary_search(expected_, end) && !bends_.is_found(end)) bends_.expect(end);
+    bends_.begin(end);
     const bool was_found = bends_.is_found(end) && last < mesh_.n_elements();
     const double wanted = bends_.end(start, was_found ? mesh_.ends[last + 1] : end);
     const bool is_long = !was_found && wanted < end;

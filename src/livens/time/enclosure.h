@@ -34,15 +34,22 @@ inline Enclosure hull(const Enclosure& a, const Enclosure& b)
     return {std::min(a.low, b.low), std::max(a.high, b.high)};
 }
 inline Enclosure operator-(const Enclosure& a) { return {-a.high, -a.low}; }
-inline Enclosure operator+(const Enclosure& a, const Enclosure& b) { return checked(a.low + b.low, a.high + b.high); }
-inline Enclosure operator-(const Enclosure& a, const Enclosure& b) { return checked(a.low - b.high, a.high - b.low); }
+inline Enclosure operator+(const Enclosure& a, const Enclosure& b)
+{
+    return checked(a.low + b.low, a.high + b.high);
+}
+inline Enclosure operator-(const Enclosure& a, const Enclosure& b)
+{
+    return checked(a.low - b.high, a.high - b.low);
+}
 /// Zero times anything is zero.
 inline Enclosure operator*(const Enclosure& a, const Enclosure& b)
 {
     const auto product = [](double x, double y) { return x == 0 || y == 0 ? 0 : x * y; };
     const double ll = product(a.low, b.low), lh = product(a.low, b.high), hl = product(a.high, b.low),
                  hh = product(a.high, b.high);
-    return checked(std::min(std::min(ll, lh), std::min(hl, hh)), std::max(std::max(ll, lh), std::max(hl, hh)));
+    return checked(std::min(std::min(ll, lh), std::min(hl, hh)),
+                   std::max(std::max(ll, lh), std::max(hl, hh)));
 }
 inline Enclosure inverse(const Enclosure& a)
 {
@@ -55,4 +62,4 @@ struct EnclosedValue {
     Enclosure value, slope;
 };
 
-}   // namespace livens
+}   // namespace gnu::visibility("default")]]livens

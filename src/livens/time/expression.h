@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
-#include "livens/time/guard.h"
 #include "livens/time/enclosure.h"
+#include "livens/time/guard.h"
 #include "livens/time/time_function.h"
 
 namespace [[gnu::visibility("default")]] livens {
@@ -96,7 +96,7 @@ private:
     std::vector<TimeValue> evaluate(double t, std::span<const double> symbols, int direction) const;
 
     std::string text_;
-    std::vector<Step> steps_;   ///< the last is the value
+    std::vector<Step> steps_;    ///< the last is the value
     std::vector<int> guarded_;   ///< of these, which jump or bend where symbols decide
     std::vector<Guard> guards_;
 };
@@ -107,4 +107,4 @@ TimeFunction expression_of_time(const Expression& expression, std::vector<double
 /// The instant that an expression is asked with: beside a break, on the side that is meant.
 double beside_breaks(Instant at, const std::vector<double>& breaks);
 
-}   // namespace livens
+}   // namespace gnu::visibility("default")]]livens

@@ -191,8 +191,9 @@ EnclosedValue Expression::over(const EnclosedValue& t, std::span<const EnclosedV
         else if (step.operation == Operation::symbol)
             values[i] = symbols[static_cast<std::size_t>(step.first)];
         else
-            values[i] = apply(step.operation, values[static_cast<std::size_t>(step.first)],
-                              step.second < 0 ? EnclosedValue{} : values[static_cast<std::size_t>(step.second)]);
+            values[i] =
+                apply(step.operation, values[static_cast<std::size_t>(step.first)],
+                      step.second < 0 ? EnclosedValue{} : values[static_cast<std::size_t>(step.second)]);
     }
     return values.back();
 }

@@ -36,12 +36,16 @@ struct Guard {
         const double round = period > 0 ? period * std::floor((value - places.front()) / period) : 0;
         const auto next = std::lower_bound(places.begin(), places.end(), value - round);
         Piece piece;
-        if (next != places.begin()) piece.low = *(next - 1) + round;
-        else if (period > 0) piece.low = places.back() + round - period;
-        if (next != places.end()) piece.high = *next + round;
-        else if (period > 0) piece.high = places.front() + round + period;
+        if (next != places.begin())
+            piece.low = *(next - 1) + round;
+        else if (period > 0)
+            piece.low = places.back() + round - period;
+        if (next != places.end())
+            piece.high = *next + round;
+        else if (period > 0)
+            piece.high = places.front() + round + period;
         return piece;
     }
 };
 
-}   // namespace livens
+}   // namespace gnu::visibility("default")]]livens

@@ -51,4 +51,4 @@ TimeFunction spline_table(std::vector<double> times, std::vector<double> values)
 /// either end, which are no knots from 4 rows on.
 std::vector<double> knots_of_spline(std::vector<double> rows);
 
-}   // namespace livens
+}   // namespace gnu::visibility("default")]]livens

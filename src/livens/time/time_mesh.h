@@ -63,4 +63,4 @@ std::vector<double> missed(const TimeMesh& mesh, std::span<const double> instant
 /// doubles.
 TimeMesh make_time_mesh(double start, double end, int n_elements, std::span<const double> required = {});
 
-}   // namespace livens
+}   // namespace gnu::visibility("default")]]livens

@@ -57,8 +57,14 @@ Method make_mixed(const Section& section)
 /// Number of elements solved together.
 Key window(std::string_view otherwise, const std::string& doc)
 {
-    return {"window", types::integer_or_choice, "Number of elements that are solved together" + doc, "",
-            otherwise, false, {"all"}, {1, max_elements}};
+    return {"window",
+            types::integer_or_choice,
+            "Number of elements that are solved together" + doc,
+            "",
+            otherwise,
+            false,
+            {"all"},
+            {1, max_elements}};
 }
 
 Key basis()
@@ -283,11 +289,10 @@ bool check_size(const Model& model, const Method& method, double n_elements, con
     const std::string what = std::to_string(static_cast<long long>(n_elements)) + " time elements for " +
                              std::to_string(model.n_bodies()) + " bodies";
     const auto fits = [&](const char* thing, double bytes, double most, const char* help) {
-        return bytes <= most ||
-               findings.error(place, "resource-limit",
-                              std::string(thing) + " would take " + gibibytes(bytes) + ", more than " +
-                                  gibibytes(most),
-                              {what, help});
+        return bytes <= most || findings.error(place, "resource-limit",
+                                               std::string(thing) + " would take " + gibibytes(bytes) +
+                                                   ", more than " + gibibytes(most),
+                                               {what, help});
     };
     return fits("the motion", motion_bytes(model, method, n_elements), max_motion_bytes,
                 "use fewer elements; a higher degree makes up for it") &&

@@ -10,10 +10,14 @@ namespace {
 const char* word(Known given)
 {
     switch (given) {
-    case Known::nothing: return "nothing";
-    case Known::positions: return "positions";
-    case Known::momenta: return "momenta";
-    case Known::state: break;
+    case Known::nothing:
+        return "nothing";
+    case Known::positions:
+        return "positions";
+    case Known::momenta:
+        return "momenta";
+    case Known::state:
+        break;
     }
     return "state";
 }
@@ -21,8 +25,10 @@ const char* word(Known given)
 void write_window(JsonWriter& json, int window)
 {
     json.key("window");
-    if (window > 0) json.value(window);
-    else json.value("all");
+    if (window > 0)
+        json.value(window);
+    else
+        json.value("all");
 }
 
 void write_mixed(JsonWriter& json, const Mixed& mixed)
@@ -32,11 +38,12 @@ void write_mixed(JsonWriter& json, const Mixed& mixed)
     json.member("degree", mixed.degree);
     json.member("momentum", mixed.start == Mixed::Start::natural ? "natural" : "strong");
     json.member("multipliers", mixed.multipliers == Mixed::Multipliers::equal ? "equal" : "lower");
-    json.member("end_multiplier",
-                mixed.end_multiplier == Mixed::EndMultiplier::smooth ? "smooth" : "zero");
+    json.member("end_multiplier", mixed.end_multiplier == Mixed::EndMultiplier::smooth ? "smooth" : "zero");
     json.key("gauss_points");
-    if (mixed.gauss_points > 0) json.value(mixed.gauss_points);
-    else json.value("exact");
+    if (mixed.gauss_points > 0)
+        json.value(mixed.gauss_points);
+    else
+        json.value("exact");
     write_window(json, mixed.window);
     json.member("interfaces", mixed.interfaces == Mixed::Interfaces::carry ? "carry" : "project");
     json.member("first_guess", mixed.first_guess == Mixed::FirstGuess::march ? "march" : "steady");
@@ -48,13 +55,16 @@ void write_mixed(JsonWriter& json, const Mixed& mixed)
 void write_degree(JsonWriter& json, int degree)
 {
     json.key("degree");
-    if (degree > 0) json.value(degree);
-    else json.value("by accuracy");
+    if (degree > 0)
+        json.value(degree);
+    else
+        json.value("by accuracy");
 }
 
 void write_method(JsonWriter& json, const Method& method)
 {
-    if (const Mixed* mixed = std::get_if<Mixed>(&method)) write_mixed(json, *mixed);
+    if (const Mixed* mixed = std::get_if<Mixed>(&method))
+        write_mixed(json, *mixed);
     else if (const Lobatto* lobatto = std::get_if<Lobatto>(&method)) {
         json.member("family", "lobatto");
         write_degree(json, lobatto->degree);
@@ -84,9 +94,12 @@ std::string resolve(const Builder& builder, const Section& time, const Scenario&
         json.member("accuracy", std::get<Span>(scenario.time).accuracy);
     json.key("output");
     const Value* output = time.find("output");
-    if (output == nullptr) json.value("element ends");
-    else if (output->n_rows == 1) json.value(std::span<const double>(output->numbers));
-    else json.value(output->numbers.front());
+    if (output == nullptr)
+        json.value("element ends");
+    else if (output->n_rows == 1)
+        json.value(std::span<const double>(output->numbers));
+    else
+        json.value(output->numbers.front());
     json.member("breaks", time.text("breaks")).end_object();
     json.key("method").begin_object();
     write_method(json, scenario.method);
@@ -147,7 +160,7 @@ void read_run(Builder& builder, Scenario& scenario)
     if (method != nullptr && method->has("max_iterations"))
         scenario.options.max_iterations = method->integer("max_iterations");
     if (method != nullptr) scenario.options.condition = method->truth("condition");
-    if (method != nullptr) scenario.options.look_at_laws = method->truth("looks");
+    if (states("looks")) scenario.options.look_at_laws = method->truth("looks");
     if (method != nullptr) scenario.options.estimate = method->pick<SolveOptions::Estimate>("estimate");
     if (start != nullptr && start->text("initial") == "project")
         scenario.options.initial = StartPolicy::project;

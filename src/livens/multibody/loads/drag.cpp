@@ -37,7 +37,8 @@ Load drag(const std::string& name, int body, const Vector3& point, const Drag& l
         }
     };
     // |d(|v| v)/ds| <= 2 |v| |dv/ds|
-    parts.steepest = [law](const EnclosedValue&, std::span<const EnclosedValue> numbers, std::span<double> bounds) {
+    parts.steepest = [law](const EnclosedValue&, std::span<const EnclosedValue> numbers,
+                           std::span<double> bounds) {
         double speed = 0, change = 0;
         for (int k = 0; k < 3; ++k) {
             const EnclosedValue& v = numbers[3 + k];

@@ -111,8 +111,8 @@ struct Spring {
             }
         };
         inside.factors = [*this](Instant, std::span<const double> numbers, std::span<double> factors) {
-            const Vector3 f = pull(line_of({numbers[0], numbers[1], numbers[2]},
-                                           {numbers[3], numbers[4], numbers[5]}));
+            const Vector3 f =
+                pull(line_of({numbers[0], numbers[1], numbers[2]}, {numbers[3], numbers[4], numbers[5]}));
             for (int k = 0; k < 3; ++k) factors[k] = f[k];
         };
         inside.unit = [*this](const LoadArguments&, std::size_t k, LoadForces& F) {
@@ -122,9 +122,7 @@ struct Spring {
             F[1] = -outer(one, points[1]);
         };
         inside.steepest = [*this](const EnclosedValue&, std::span<const EnclosedValue> numbers,
-                                  std::span<double> bounds) {
-            std::ranges::fill(bounds, steepest(numbers));
-        };
+                                  std::span<double> bounds) { std::ranges::fill(bounds, steepest(numbers)); };
         return inside;
     }
 

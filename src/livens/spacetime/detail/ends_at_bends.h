@@ -3,6 +3,8 @@
 #pragma once
 
 #include <limits>
+#include <utility>
+#include <vector>
 
 #include "livens/spacetime/window.h"
 
@@ -17,8 +19,10 @@ public:
 
     /// Where the element from `start` ends that would end at `wanted`.
     double end(double start, double wanted);
-    /// An element end is about where a motion nearby has a bend: it moves to its own.
-    void expect(double end);
+    /// Element ends at which a motion nearby has bends: this one's own are near.
+    void expect(std::vector<double> ends) { expected_ = std::move(ends); }
+    /// Of an element that ends there: if that is about where a bend is, it moves to its own.
+    void begin(double end);
     /// Whether an element end is where a bend was found.
     bool is_found(double end) const { return end == at_; }
     /// True: the solution of the element tells a better end, found().
@@ -50,6 +54,7 @@ private:
     static constexpr double tiny = 1e-3;
     static constexpr int most_tiny = 300;
 
+    std::vector<double> expected_;   // ascending
     double shortest_, longest_so_far_ = 0;
     double at_ = -infinite, wanted_ = 0, longest_ = infinite;
     double moved_from_ = -infinite;   // start of the element whose end was moved last

@@ -16,6 +16,7 @@ struct Troubles {
     int shortened = 0;        ///< elements, since one was solved without a tangent
     int contradictions = 0;   ///< elements at whose ends rows contradict each other
     int most_divisions = 0;   ///< beyond, something else is wrong
+    std::string load{};       ///< for whose law the last element was refused; empty: for something else
 };
 
 class March {
@@ -95,8 +96,6 @@ private:
     bool is_rescued_ = false;   // converged from another guess than the first
     WindowCounts counts_;
     EndsAtBends bends_;
-    std::vector<double> expected_;   // element ends of a motion nearby at which laws bend there
-    std::string blamed_;
     Troubles troubles_;
     double singular_end_ = std::numeric_limits<double>::quiet_NaN();   // that can not move; the last one
     int done_ = 0;                                                     // elements

@@ -58,8 +58,7 @@ Bends::Look Bends::look(const Watch& watch, double share, const Look& from)
     Look look{share, std::vector<double>(watch.guards.size()), {}, from.angles};
     if (watch.load >= 0) {
         const Load& load = tables_.model->loads()[static_cast<std::size_t>(watch.load)];
-        if (!load.angles.empty())
-            tables_.turns.follow_of(watch.load, Configurations(way_.X()), look.angles);
+        if (!load.angles.empty()) tables_.turns.follow_of(watch.load, Configurations(way_.X()), look.angles);
         const LoadArguments arguments =
             tables_.arguments(watch.load, way_.at(), way_.X(), way_.V(), look.angles);
         if (load.guarded) load.guarded(arguments, look.numbers);

@@ -68,7 +68,8 @@ InsideLaws::InsideLaws(const Tables& tables, const ElementRule& rule)
     const std::vector<Load>& loads = tables.model->loads();
     for (std::size_t l = 0; l < loads.size(); ++l) {
         if (loads[l].is_smooth) continue;
-        Law law{static_cast<int>(l), loads[l].bodies, loads[l].inside ? *loads[l].inside : whole(loads[l]), {}};
+        Law law{
+            static_cast<int>(l), loads[l].bodies, loads[l].inside ? *loads[l].inside : whole(loads[l]), {}};
         std::erase(law.bodies, world);
         weigh(law);
         laws_.push_back(std::move(law));
@@ -172,7 +173,8 @@ EnclosedValue InsideLaws::range(std::size_t number, std::size_t n, const Panel& 
 {
     const auto size = static_cast<std::size_t>(basis_.size());
     const double width = panel.last - panel.first, eighth = 0.125 * width * width;
-    EnclosedValue range{{Enclosure::infinite, -Enclosure::infinite}, {Enclosure::infinite, -Enclosure::infinite}};
+    EnclosedValue range{{Enclosure::infinite, -Enclosure::infinite},
+                        {Enclosure::infinite, -Enclosure::infinite}};
     const auto meet = [&](const double* weights) {
         double value = 0, slope = 0;
         for (std::size_t A = 0; A < size; ++A) {
@@ -201,7 +203,8 @@ double InsideLaws::steepness_doubt(const Law& law, const Panel& panel, const std
     std::vector<EnclosedValue> numbers;
     for (std::size_t k = 0; k < n; ++k) numbers.push_back(range(k, n, panel));
     const double width = panel.last - panel.first;
-    const Enclosure t = hull(Enclosure::of(start_ + panel.first * h_), Enclosure::of(start_ + panel.last * h_));
+    const Enclosure t =
+        hull(Enclosure::of(start_ + panel.first * h_), Enclosure::of(start_ + panel.last * h_));
     std::vector<double> bounds(m);
     law.inside.steepest({t, Enclosure::of(h_)}, numbers, bounds);
     double doubt = 0;

@@ -10,8 +10,7 @@ Way::Way(const Tables& tables, const ElementRule& rule)
       values_(rule.nodes.size()), slopes_(values_)
 {}
 
-void Way::go(const Stretch& stretch, const Nodes& nodes, int e, double share,
-             const std::vector<int>& bodies)
+void Way::go(const Stretch& stretch, const Nodes& nodes, int e, double share, const std::vector<int>& bodies)
 {
     at_ = {stretch.times[static_cast<std::size_t>(e)] + share * stretch.h(e), Side::middle};
     basis_.values(share, values_);

@@ -26,9 +26,12 @@ LobattoWindow::LobattoWindow(const Tables& tables, const TimeMesh& mesh, const E
                              const ElementRule& rule)
     : tables_(tables), ends_(ends), system_(tables, rule), series_(tables, system_.rule()),
       kernel_(tables, system_.rule()), instant_(tables, kernel_.serves() && ends.has_state()),
-      record_(tables, mesh, system_.rule()),
-      front_(tables), breaks_{tables.model->load_breaks(), Bends(tables, rule)},
-      laws_{InsideLaws(tables, system_.rule()), false, {}}, rank_{Branches(tables, system_.rule())}
+      record_(tables, mesh, system_.rule()), front_(tables), breaks_{tables.model->load_breaks(),
+                                                                     Bends(tables, rule),
+                                                                     InsideLaws(tables, system_.rule()),
+                                                                     false,
+                                                                     {}},
+      rank_{Branches(tables, system_.rule())}
 {
     record_.note_redundant(ends.redundant);
     work_.lambda.assign(tables.rows.size(), 0.0);
@@ -268,7 +271,7 @@ Closed LobattoWindow::close(const Trust& trust, SolveReport& report)
         Unseen unseen = look_at_laws(e, closed);
         closed.is_refused = !(closed.velocity_jump <= trust.velocity_jump);
         if (closed.is_refused) return closed;
-        if (unseen.load >= 0) laws_.unseen.push_back(std::move(unseen));
+        if (unseen.load >= 0) breaks_.unseen.push_back(std::move(unseen));
         close_element(e);
         ++closed.n_elements;
         for (int A = e * system_.rule().degree; A <= (e + 1) * system_.rule().degree; ++A)
@@ -281,12 +284,13 @@ Closed LobattoWindow::close(const Trust& trust, SolveReport& report)
 /// What a law did unseen counts as the velocity jump that goes with such an error.
 Unseen LobattoWindow::look_at_laws(int e, Closed& closed)
 {
-    if (laws_.is_ignored || laws_.inside.empty()) return {};
-    Unseen unseen = laws_.inside.look(stretch_, system_.nodes(), e, front_.here().angles, instant_,
-                                      front_.next());
+    if (breaks_.is_ignored || breaks_.inside.empty()) return {};
+    Unseen unseen =
+        breaks_.inside.look(stretch_, system_.nodes(), e, front_.here().angles, instant_, front_.next());
     if (!(unseen.error > 0)) return unseen;
     const double jump = velocity_jump_of(stretch_.points, stretch_.degree, unseen.error);
-    if (raise_to(closed.velocity_jump, jump)) closed.load = tables_.model->loads()[static_cast<std::size_t>(unseen.load)].name;
+    if (raise_to(closed.velocity_jump, jump))
+        closed.load = tables_.model->loads()[static_cast<std::size_t>(unseen.load)].name;
     return unseen;
 }
 

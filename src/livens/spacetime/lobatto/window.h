@@ -21,7 +21,7 @@ public:
     LobattoWindow(const Tables& tables, const TimeMesh& mesh, const Ends& ends, const ElementRule& rule);
 
     /// Nobody asks what laws of loads do inside of elements.
-    void ignore_laws() { laws_.is_ignored = true; }
+    void ignore_laws() { breaks_.is_ignored = true; }
     /// A motion nearby, which has to outlive the window, as the guess where its elements are the same.
     void follow(const Motion& motion) { kernel_.follow(motion); }
     bool open(int first, int last, SolveReport& report) override;
@@ -45,7 +45,7 @@ public:
     Place worst() const override;
     void describe(SolveReport& report) const override;
     void measure_condition(SolveReport& report, const std::function<bool()>& goes_on) override;
-    std::vector<Unseen> take_unseen() override { return std::move(laws_.unseen); }
+    std::vector<Unseen> take_unseen() override { return std::move(breaks_.unseen); }
     const Motion* so_far() override { return &record_.so_far(); }
     Motion take_motion() override { return record_.take(ends_.start); }
 
@@ -67,10 +67,8 @@ private:
     struct Breaks {
         std::vector<double> jumps;   // instants
         Bends bends;
-    };
-    struct Laws {
         InsideLaws inside;
-        bool is_ignored = false;
+        bool is_ignored = false;   // what laws do inside
         std::vector<Unseen> unseen;
     };
     struct Rank {
@@ -118,7 +116,6 @@ private:
     int first_ = 0, last_ = 0;
     Work work_;
     Breaks breaks_;
-    Laws laws_;
     Rank rank_;
 };
 
