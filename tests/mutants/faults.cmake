@@ -522,3 +522,39 @@ livens_mutant(NAME report_free_directors
               NEW [[orthonormal = 1e-2]]
               TESTS_OF livens
               MUST_FAIL report_test.Report.test_directors_that_are_free_are_kept_whole)
+
+# The attracting point, which is the world's, sent through the axes of a skew body.
+livens_mutant(NAME attraction_in_the_body
+              FILE io/scenario/load_makers.cpp
+              OLD [[{p.section.vector("point"), p.section.number("mu")]]
+              NEW [[{point_of(p), p.section.number("mu")]]
+              TESTS_OF livens
+              MUST_FAIL skew_test.Skew.test_places_of_the_body_and_of_the_world)
+
+# All of the potential in axes of the body: forces of mu m / r on the directors, which have to cancel.
+livens_mutant(NAME attraction_pulls_at_directors
+              FILE multibody/loads/attraction.cpp
+              OLD [[for (const PairForm& row : coincidence_rows(world, there, body, centre, 1)) add(row);]]
+              NEW [[for (int k = 0; k < 3; ++k) {
+        Vector3 unit{};
+        unit[k] = 1;
+        add(plane_row(body, direction(unit), centre, world, there, 0, 1));
+    }]]
+              TESTS_OF unit_multibody
+              MUST_FAIL Attraction.PullsAtTheDirectorsByItsGradientAlone)
+
+# tr J left out: the couple is right, and the pull is not.
+livens_mutant(NAME attraction_without_trace
+              FILE multibody/loads/attraction.cpp
+              OLD [[V.add(-0.5 * mu * trace(J), y, -3, 1, {}, {});]]
+              NEW [[V.add(-0.0 * mu * trace(J), y, -3, 1, {}, {});]]
+              TESTS_OF unit_multibody
+              MUST_FAIL Attraction.WithItsGradientIsThatOfABodysParts)
+
+# Rounding of a large load taken for a vibration.
+livens_mutant(NAME frequency_of_rounding
+              FILE multibody/frequencies.cpp
+              OLD [[return value <= rounding * size;]]
+              NEW [[return value <= 0 * rounding * size;]]
+              TESTS_OF unit_multibody
+              MUST_FAIL Frequencies.AreNotMadeOfTheRoundingOfLargeLoads)
