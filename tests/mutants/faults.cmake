@@ -558,3 +558,19 @@ livens_mutant(NAME frequency_of_rounding
               NEW [[return value <= 0 * rounding * size;]]
               TESTS_OF unit_multibody
               MUST_FAIL Frequencies.AreNotMadeOfTheRoundingOfLargeLoads)
+
+# A driven angle as the sine of what it is off: beyond a quarter of a turn that leads away.
+livens_mutant(NAME driven_angle_by_its_sine
+              FILE multibody/reach.cpp
+              OLD [[is_driven_angle(joint) ? by_angle(joint) : joint]]
+              NEW [[joint]]
+              TESTS_OF unit_multibody
+              MUST_FAIL ClosedStart.LeadsADrivenAngleBackFromAnywhere)
+
+# One try: bodies that stand at one place are told that they cannot be joined.
+livens_mutant(NAME one_start_alone
+              FILE multibody/reach.cpp
+              OLD [[for (const double size : disturbances) {]]
+              NEW [[for (const double size : {0.0}) {]]
+              TESTS_OF unit_multibody
+              MUST_FAIL ClosedStart.ClosesBodiesThatStandAtOnePlace)

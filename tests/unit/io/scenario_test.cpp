@@ -531,7 +531,7 @@ TEST(ScenarioCodes, AllAreProvokedByTheseTests)
                                       "window",
                                       "window-out-of-range"};
     others.insert({"format-first", "load-never-acts", "joint-fitted", "expression-kink", "start-changed",
-                   "point-outside", "spring-kink", "directors-dependent", "directors-metric",
+                   "drive-turns", "point-outside", "spring-kink", "directors-dependent", "directors-metric",
                    "directors-nearly-orthonormal", "io-directory", "io-not-found",
                    "io-unreadable"});   // here, of meshes, of hostile files
     others.insert(codes_of_meshes.begin(), codes_of_meshes.end());

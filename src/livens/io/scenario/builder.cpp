@@ -16,6 +16,7 @@ struct Spelling {
 constexpr Spelling spellings[] = {
     {"boundary-conditions", "the state at one end", R"(given = "state")"},
     {"boundary-method", "lobatto or mixed", R"(family = "lobatto" in [method])"},
+    {"joint-branch", "projected", R"(initial = "project" in [start])"},
     {"joint-time-mesh", "elements end there", R"(breaks = "from_loads" in [time])"},
     {"mixed-block", "all elements together", R"(leave `window` out)"},
     {"mixed-pairing", "equal multipliers", R"(multipliers = "equal")"},
