@@ -574,3 +574,11 @@ livens_mutant(NAME one_start_alone
               NEW [[for (const double size : {0.0}) {]]
               TESTS_OF unit_multibody
               MUST_FAIL ClosedStart.ClosesBodiesThatStandAtOnePlace)
+
+# atan2(y, x) taken to jump wherever y passes zero.
+livens_mutant(NAME cut_on_both_sides
+              FILE time/expression_events.cpp
+              OLD [[return step.operation != Operation::arc_tangent || !(values[step.second].value > 0);]]
+              NEW [[return step.operation != Operation::arc_tangent || values[step.second].value > -1e9;]]
+              TESTS_OF unit_time
+              MUST_FAIL Expression.KnowsWhereTimeAloneMakesItJumpOrBend)

@@ -156,8 +156,9 @@ gradient = )" + gradient +
 }
 
 /// A satellite on a circle librates about the way to the centre: phi = 2 theta has phi'' = -3 n^2 s sin(phi),
-/// s = (J_y - J_x) / J_z, so that from rest theta is zero after K(sin(theta_0)) / (n sqrt(3 s)), when the body
-/// has turned as far as its orbit. In true units: mu of the Earth, where mu m / r is 1e10 times the couple.
+/// s = (J_y - J_x) / J_z, so that from rest theta is zero after K(sin(theta_0)) / (n sqrt(3 s)), when the
+/// body has turned as far as its orbit. In true units: mu of the Earth, where mu m / r is 1e10 times the
+/// couple.
 TEST(Laws, ASatelliteLibratesInTrueUnitsToTheAccuracyAsked)
 {
     const double mu = 3.986004418e14, tilt = pi / 9, ratio = (1250.0 - 100) / 1300;
@@ -166,13 +167,13 @@ TEST(Laws, ASatelliteLibratesInTrueUnitsToTheAccuracyAsked)
             const double n = std::sqrt(mu / (r * r * r)),
                          end = std::comp_ellint_1(std::sin(tilt)) / n / std::sqrt(3 * ratio);
             const auto run = [&](const std::string& gradient) {
-                return solved("[[body]]\nname = \"b\"\nmass = 500\ninertia = [100, 1250, 1300]\nposition = [" +
-                              to_text(r) + ", 0, 0]\nvelocity = [0, " + to_text(n * r) +
-                              ", 0]\nrotation_vector = [0, 0, " + to_text(tilt) +
-                              "]\nangular_velocity = [0, 0, " + to_text(n) +
-                              "]\n[[load]]\ntype = \"attraction\"\nbody = \"b\"\nmu = " + to_text(mu) +
-                              "\ngradient = " + gradient + "\n[time]\nend = " + to_text(end) +
-                              "\naccuracy = " + to_text(accuracy) + "\n");
+                return solved(
+                    "[[body]]\nname = \"b\"\nmass = 500\ninertia = [100, 1250, 1300]\nposition = [" +
+                    to_text(r) + ", 0, 0]\nvelocity = [0, " + to_text(n * r) +
+                    ", 0]\nrotation_vector = [0, 0, " + to_text(tilt) + "]\nangular_velocity = [0, 0, " +
+                    to_text(n) + "]\n[[load]]\ntype = \"attraction\"\nbody = \"b\"\nmu = " + to_text(mu) +
+                    "\ngradient = " + gradient + "\n[time]\nend = " + to_text(end) +
+                    "\naccuracy = " + to_text(accuracy) + "\n");
             };
             const auto turned = [&](const Solved& s) {
                 const BodySample b = sample_bodies(s.model, s.solution.motion, end)[0];

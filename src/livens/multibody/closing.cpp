@@ -147,10 +147,11 @@ void settle_positions(const Model& model, StartPolicy policy, State& state, std:
         if (projects && !other.how.empty()) notes.push_back(other.how);
     }
     if (!gap.near && !projects) {
-        throw InputError({"start-position", joint_path(model, gap.row),
-                          model.row_name(gap.row) + " is open at the start" + drive_words(model, gap.row, state.X),
-                          "violation " + number(gap.violation), number(start_tolerance), "",
-                          drive_help(model, gap.row, state.X) + project_help});
+        throw InputError(
+            {"start-position", joint_path(model, gap.row),
+             model.row_name(gap.row) + " is open at the start" + drive_words(model, gap.row, state.X),
+             "violation " + number(gap.violation), number(start_tolerance), "",
+             drive_help(model, gap.row, state.X) + project_help});
     }
     note_moves(model, state.X, closing.X, notes);
     for (int b = 0; b < model.n_bodies(); ++b) {

@@ -139,14 +139,17 @@ void check_form(const QuadraticForm& form, int body_i, int body_j, const std::ve
 }
 
 /// A jump of the factor, or of its rate, would be a jump of positions or velocities, which no force makes.
-void check_drive(const Drive& drive, const std::string& path)
+/// Both sides of a break lie some digits of t apart, by which a smooth law changes as well; what is no more
+/// than rounding of the row (unit and `scale`: of Phi) is no jump.
+void check_drive(const Drive& drive, double scale, const std::string& path)
 {
     for (const double t : drive.factor.breaks()) {
         const TimeValue before = drive.factor({t, Side::left}), after = drive.factor({t, Side::right});
-        const double level = 1e-9 * std::max(std::abs(before.value), std::abs(after.value));
-        const double level_of_rates = 1e-9 * std::max(std::abs(before.first), std::abs(after.first));
-        if (std::abs(after.value - before.value) <= level &&
-            std::abs(after.first - before.first) <= level_of_rates)
+        const auto larger = [](double a, double b) { return std::max(std::abs(a), std::abs(b)); };
+        const double apart = 1e-14 * std::abs(t), value = larger(before.value, after.value),
+                     rate = larger(before.first, after.first), bend = larger(before.second, after.second);
+        if (std::abs(after.value - before.value) <= std::max({1e-9 * value, apart * rate, 1e-13 * scale}) &&
+            std::abs(after.first - before.first) <= std::max(1e-9 * rate, apart * bend))
             continue;
         throw InputError({"drive-jumps", path, "a drive jumps, or its rate does",
                           "at t = " + to_text(t) + " s", "", "bodies would need an infinite force to follow",
@@ -192,7 +195,7 @@ void check_row(const ConstraintRow& row, const Joint& joint, const std::vector<B
     check_form(row, row.body_i, row.body_j, bodies, path);
     for (const Drive& drive : row.drives) {
         check_form(drive.form, row.body_i, row.body_j, bodies, path);
-        check_drive(drive, path);
+        check_drive(drive, row.scale, path);
     }
 }
 

@@ -35,7 +35,8 @@ Model by_angles(const Model& model)
 {
     Model made(model.gravity());
     for (const Body& body : model.bodies()) made.add_body(body);
-    for (const Joint& joint : model.joints()) made.add_joint(is_driven_angle(joint) ? by_angle(joint) : joint);
+    for (const Joint& joint : model.joints())
+        made.add_joint(is_driven_angle(joint) ? by_angle(joint) : joint);
     return made;
 }
 
@@ -64,9 +65,8 @@ public:
         for (std::size_t b = 0; b < X.size(); ++b) {
             const Vector3 shift = size * length * vector(), turn = size * vector();
             const Matrix3 turned = directors_from_rotation_vector(turn) * directors(X[b]);
-            moved.push_back(model.bodies()[b].is_point
-                                ? configuration(X[b].column(0) + shift, Matrix3{})
-                                : configuration(X[b].column(0) + shift, turned));
+            moved.push_back(model.bodies()[b].is_point ? configuration(X[b].column(0) + shift, Matrix3{})
+                                                       : configuration(X[b].column(0) + shift, turned));
         }
         return moved;
     }
@@ -84,7 +84,9 @@ private:
 };
 
 constexpr double disturbances[] = {0.03, 0.1, 0.3, 0.3, 1, 1, 1, 2, 2, 2, 3, 3};   // rad, lengths
-constexpr int most_work = 2000;   // bodies times tries
+
+/// Bodies times tries.
+constexpr int most_work = 2000;
 
 /// Nearest to X on the rows, beginning with what fulfils them.
 Closing nearest_from(const Model& model, Closing found, std::span<const Matrix34> X,
@@ -137,14 +139,15 @@ void refuse_other_branches(const Model& model, std::span<const Matrix34> X)
         if (const ConstraintRow* row = other_branch(joint, X))
             throw InputError(
                 {"joint-branch", "joint[" + joint.name + "]." + row->label,
-                 "the " + row->label + " of joint '" + joint.name + "' is off by half a turn at the start", "",
-                 "", "its rows would hold, but in another branch",
+                 "the " + row->label + " of joint '" + joint.name + "' is off by half a turn at the start",
+                 "", "", "its rows would hold, but in another branch",
                  drive_help(model, model.first_row(j), X) + "turn one of the bodies"});
         if (has_opposite_axes(joint, X))
-            throw InputError({"joint-branch", "joint[" + joint.name + "].axes",
-                              "the axes of joint '" + joint.name + "' point in opposite directions at the start",
-                              "", "", "its rows would hold, but turned by half a turn",
-                              "reverse one of the two axes, or turn one of the bodies"});
+            throw InputError(
+                {"joint-branch", "joint[" + joint.name + "].axes",
+                 "the axes of joint '" + joint.name + "' point in opposite directions at the start", "", "",
+                 "its rows would hold, but turned by half a turn",
+                 "reverse one of the two axes, or turn one of the bodies"});
     }
 }
 
@@ -218,7 +221,7 @@ std::string drive_help(const Model& model, int row, std::span<const Matrix34> X)
     const std::string law =
         by ? "add " + to_text(*by) + (is_angle ? " rad" : " m") + " to its law" : "let its law begin there";
     const bool is_of_joint = is_angle || model.row(row).label == "driven displacement";
-    return law + (is_of_joint ? ", lead its joint there by 'coordinates' of [start], or " : ", or ");
+    return law + (is_of_joint ? ", lead its joint there by coordinates of the start, or " : ", or ");
 }
 
 }   // namespace livens

@@ -161,8 +161,8 @@ TEST(Frequencies, OfManyBodiesAreThoseOfADenseSolver)
     }
 }
 
-/// A torque about an axis of the world does no work on a symmetric motion: what its tangent leaves is rounding
-/// of entries as large as the torque. A spring beside it is seen none the less.
+/// A torque about an axis of the world does no work on a symmetric motion: what its tangent leaves is
+/// rounding of entries as large as the torque. A spring beside it is seen none the less.
 TEST(Frequencies, AreNotMadeOfTheRoundingOfLargeLoads)
 {
     for (const double stiffness : {0.0, 9.0}) {

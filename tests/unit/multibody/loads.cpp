@@ -278,7 +278,8 @@ TEST(Attraction, WithItsGradientIsThatOfABodysParts)
             const Matrix34 F = forces(load, at)[0];
             const Vector3 pulls = F.column(0), turns = moment(X, F) - cross(middle - X.column(0), pulls);
             EXPECT_EQ(norm(pulls - force) < 0.01 * small, has_gradient) << norm(pulls - force) / small;
-            EXPECT_EQ(norm(turns - couple) < 0.01 * small * r, has_gradient) << norm(turns - couple) / small / r;
+            EXPECT_EQ(norm(turns - couple) < 0.01 * small * r, has_gradient)
+                << norm(turns - couple) / small / r;
             for (int k = 0; k < 3; ++k) EXPECT_EQ(load.readings[k].value(at), pulls[k]);
         }
     }

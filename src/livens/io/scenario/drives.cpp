@@ -159,8 +159,8 @@ std::array<TimeFunction, 3> read_path(const Section& drive, const Duration& duri
             read_law(drive, 2, 3, 0, during)};
 }
 
-/// Positions do not tell whole turns: a joint that stands further than half a turn from where its drive begins
-/// is led there by the shorter way, and counts on from where it is said to stand.
+/// Positions do not tell whole turns: a joint that stands further than half a turn from where its drive
+/// begins is led there by the shorter way, and counts on from where it is said to stand.
 void warn_of_turns(Builder& builder, const Section& drive, const std::string& name,
                    const NamedCoordinate& coordinate, const TimeFunction& law, const Duration& during)
 {
@@ -175,7 +175,8 @@ void warn_of_turns(Builder& builder, const Section& drive, const std::string& na
             to_text(coordinate.at_stated, 4) + " rad, half a turn away or more",
         {"positions do not tell whole turns: the joint counts on from where it stands, and may read " +
              to_text(turns) + (turns == 1 ? " turn" : " turns") + " more or less than the drive",
-         "give the joint a 'coordinate' within half a turn of where the drive begins, or the drive an offset"});
+         "give the joint a 'coordinate' within half a turn of where the drive begins, or the drive an "
+         "offset"});
 }
 
 Joint make_on_joint(Builder& builder, const Section& drive, const std::string& name, const Duration& during,

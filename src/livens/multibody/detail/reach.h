@@ -21,9 +21,9 @@ bool drives_are_turned(const Model& model, std::span<const Matrix34> X);
 void refuse_other_branches(const Model& model, std::span<const Matrix34> X);
 
 struct Reach {
-    Closing closing;    ///< closed: in its branch
-    int n_tries = 0;    ///< disturbed starts that it took
-    std::string how;    ///< for the notes; empty: from the start itself
+    Closing closing;   ///< closed: in its branch
+    int n_tries = 0;   ///< disturbed starts that it took
+    std::string how;   ///< for the notes; empty: from the start itself
 };
 
 /// Begins at X with driven angles as angles, not as their sines, and then at starts that are disturbed more

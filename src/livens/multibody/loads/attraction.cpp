@@ -117,18 +117,16 @@ Load attraction(const std::string& name, int body, const Body& properties, const
         parts.units.push_back(unit_along(name, {{form}}, X));
     };
     for (const PairForm& row : coincidence_rows(world, there, body, centre, 1)) add(row);
-    std::vector<Term> terms{{0, [mu = law.mu, m = mass.mass](const Vector3& y) {
-                                 return of_the_centre(mu, m, y);
-                             }}};
+    std::vector<Term> terms{
+        {0, [mu = law.mu, m = mass.mass](const Vector3& y) { return of_the_centre(mu, m, y); }}};
     if (law.has_gradient && !properties.is_point) {
         for (int k = 0; k < 3; ++k) {
             Vector3 unit{};
             unit[k] = 1;
             add(plane_row(body, direction(unit), centre, world, there, 0, 1));
         }
-        terms.push_back({3, [mu = law.mu, J = mass.inertia](const Vector3& y) {
-                             return of_the_extent(mu, J, y);
-                         }});
+        terms.push_back(
+            {3, [mu = law.mu, J = mass.inertia](const Vector3& y) { return of_the_extent(mu, J, y); }});
     }
     parts.is_smooth = true;   // the nearer the faster: elements see it by the motion
     parts.law = law_of(terms);
