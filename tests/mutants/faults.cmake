@@ -582,3 +582,11 @@ livens_mutant(NAME cut_on_both_sides
               NEW [[return step.operation != Operation::arc_tangent || values[step.second].value > -1e9;]]
               TESTS_OF unit_time
               MUST_FAIL Expression.KnowsWhereTimeAloneMakesItJumpOrBend)
+
+# Rounding measured by what is stated alone: at rest everything breaks a joint.
+livens_mutant(NAME rounding_is_no_rest
+              FILE multibody/closing.cpp
+              OLD [[if (least > speed) fault]]
+              NEW [[if (least > 1e99) fault]]
+              TESTS_OF unit_multibody
+              MUST_FAIL StartSpeeds.OfRoundingAreRest)

@@ -13,6 +13,7 @@
 #include "livens/multibody/detail/from_model.h"
 #include "livens/multibody/detail/rate_changes.h"
 #include "livens/multibody/detail/reach.h"
+#include "livens/multibody/detail/start_speeds.h"
 #include "livens/multibody/detail/wording.h"
 #include "livens/multibody/projection.h"
 #include "livens/multibody/rank.h"
@@ -170,38 +171,6 @@ void settle_positions(const Model& model, StartPolicy policy, State& state, std:
 
 // --- velocities
 
-std::vector<Vector3> centers_of_mass(const Model& model)
-{
-    std::vector<Vector3> centers;
-    for (const Body& body : model.bodies()) centers.push_back(mass_properties(body.mass).center_of_mass);
-    return centers;
-}
-
-/// Of centres of mass, and of directors times the model's length.
-double largest_speed(const Model& model, const State& state, std::span<const Vector3> centers)
-{
-    const double length = model.length();
-    double speed = 0;
-    for (int b = 0; b < model.n_bodies(); ++b) {
-        const Matrix34& V = state.V[b];
-        speed = std::max(speed, norm(V * point(centers[b])));
-        for (int i = 1; i < 4; ++i) speed = std::max(speed, norm(V.column(i)) * length);
-    }
-    return speed;
-}
-
-/// Largest |dPhi/dt| of a row that these speeds can make.
-double rate_bound(const State& state, std::span<const Wrench> row, std::span<const Vector3> centers,
-                  double speed, double length)
-{
-    double bound = 0;
-    for (const Wrench& w : row) {
-        const Vector3 moment = moment_about(w, state.X[w.body], centers[w.body]);
-        bound += norm(w.force) * speed + norm(moment) * speed / length;
-    }
-    return bound;
-}
-
 /// Largest inconsistency relative to what the largest speed can make; names what it is.
 struct RateFault {
     double relative = 0;
@@ -250,18 +219,22 @@ RateFault worst_rate(const Model& model, const State& state, const RowWrenches& 
     return fault;
 }
 
-void settle_velocities(const Model& model, StartPolicy policy, const RowWrenches& wrenches,
-                       std::span<const int> independent, std::span<const double> drives, State& state,
-                       std::vector<std::string>& notes)
+/// `model`: of positions, frozen; `the_model`: with its drives.
+void settle_velocities(const Model& model, const Model& the_model, StartPolicy policy,
+                       const RowWrenches& wrenches, std::span<const int> independent,
+                       std::span<const double> drives, State& state, std::vector<std::string>& notes)
 {
-    constexpr double slowest = 1e-3;   // of what weight makes along a length: below, a fault may be rounding
     const std::vector<Vector3> centers = centers_of_mass(model);
     const double stated = largest_speed(model, state, centers),
-                 speed = std::max(stated, slowest * std::sqrt(norm(model.gravity()) * model.length()));
+                 speed = std::max(stated, speed_by_weight(model));
     const bool is_driven = std::ranges::any_of(drives, [](double rate) { return rate != 0; });
     if (stated == 0 && !is_driven) return;
-    const RateFault fault = worst_rate(model, state, wrenches, centers, drives, speed);
+    RateFault fault = worst_rate(model, state, wrenches, centers, drives, speed);
     if (fault.relative <= 8 * eps) return;
+    if (fault.relative > start_tolerance) {
+        const double least = speed_of_rounding(the_model, state, wrenches, centers);
+        if (least > speed) fault = worst_rate(model, state, wrenches, centers, drives, least);
+    }
     if (fault.relative > start_tolerance && policy == StartPolicy::check) throw InputError(fault.complaint);
     const std::vector<Matrix34> before = state.V;
     state.V = nearest_rates(model, state.X, state.V, independent, drives);
@@ -337,7 +310,8 @@ ClosedStart close_anew(const Model& the_model, const State& start, StartPolicy p
                                  number(rank.smallest_pivot) + ")");
     }
     const std::vector<double> drives = drive_rates(the_model, {start.t}, assembly.start.X);
-    settle_velocities(model, policy, wrenches, assembly.independent, drives, assembly.start, assembly.notes);
+    settle_velocities(model, the_model, policy, wrenches, assembly.independent, drives, assembly.start,
+                      assembly.notes);
     return assembly;
 }
 
