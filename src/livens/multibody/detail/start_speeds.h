@@ -22,9 +22,9 @@ double rate_bound(const State& state, std::span<const Wrench> row, std::span<con
 /// A thousandth of what weight makes along a length of the model: below, a fault of 1e-9 may be rounding.
 double speed_by_weight(const Model& model);
 
-/// The same of whatever moves the mechanism: loads, and drives by how their laws bend. A millionth of a length
-/// in a second at least: 1e-9 of that is the rounding of lengths a second. Rates that are zero but for rounding
-/// were computed from such speeds, which nobody states.
+/// The same of whatever moves the mechanism: loads, and drives by how their laws bend. A millionth of a
+/// length in a second at least: 1e-9 of that is the rounding of lengths a second. Rates that are zero but for
+/// rounding were computed from such speeds, which nobody states.
 double speed_of_rounding(const Model& model, const State& state, const RowWrenches& wrenches,
                          std::span<const Vector3> centers);
 
