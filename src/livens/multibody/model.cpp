@@ -235,7 +235,10 @@ int Model::add_joint(Joint joint)
         refuse("joint-time", path, "a joint must begin to act before it ends", "exchange 'from' and 'until'");
 
     const int index = static_cast<int>(joints_.size());
-    has_events_ = has_events_ || std::isfinite(joint.from) || std::isfinite(joint.until);
+    const bool has_events = std::isfinite(joint.from) || std::isfinite(joint.until);
+    has_events_ = has_events_ || has_events;
+    for (NamedCoordinate& one : joint.coordinates)
+        if (has_events && !one.apart.forms.empty()) one.coordinate = one.apart;
     first_rows_.push_back(n_rows());
     for (int k = 0; k < static_cast<int>(joint.rows.size()); ++k) rows_.push_back({index, k});
     for (const ConstraintRow& row : joint.rows) {
