@@ -590,3 +590,19 @@ livens_mutant(NAME rounding_is_no_rest
               NEW [[if (least > 1e99) fault]]
               TESTS_OF unit_multibody
               MUST_FAIL StartSpeeds.OfRoundingAreRest)
+
+# Momenta that were stated and are not there: nobody looks.
+livens_mutant(NAME ends_not_compared
+              FILE spacetime/met_ends.cpp
+              OLD [[if (c.off <= 1 || (worst]]
+              NEW [[if (c.off <= 1e99 || (worst]]
+              TESTS_OF convergence
+              MUST_FAIL LobattoEnds.MomentaThatJointsDoNotLetTheMotionHaveAreSuspect)
+
+# An angle behind its hinge by directions across the axis that nobody stated.
+livens_mutant(NAME angle_apart_by_one_direction
+              FILE multibody/model.cpp
+              OLD [[if (has_events && !one.apart.forms.empty())]]
+              NEW [[if (false)]]
+              TESTS_OF unit_multibody
+              MUST_FAIL Joints.AnAngleThatLetsGoNeedsNoDirectionsAcrossItsAxis)

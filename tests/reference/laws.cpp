@@ -188,6 +188,31 @@ TEST(Laws, ASatelliteLibratesInTrueUnitsToTheAccuracyAsked)
     }
 }
 
+/// Beyond half a turn the rotation vector of a bushing changes its sign: the run says so, whatever it ends with.
+TEST(Laws, ABushingThatReachesHalfATurnIsNamed)
+{
+    const auto run = [](double spin, const std::string& time) {
+        const ScenarioResult read = parse_scenario(
+            "format = 1\n[[body]]\nname = \"b\"\nmass = 1\ninertia = [0.01, 0.01, 0.01]\nangular_velocity = "
+            "[0, 0, " +
+                to_text(spin) +
+                "]\n[[load]]\nname = \"bush\"\ntype = \"bushing\"\nbetween = [\"world\", \"b\"]\nat = [0, 0, "
+                "0]\nstiffness = [10, 10, 10, 0.01, 0.01, 0.01]\n[time]\nend = 1\n" +
+                time,
+            "test.toml");
+        const Scenario& s = read.scenario.value();
+        return solve(s.model, {s.model.start()}, s.time, s.method, s.options).report;
+    };
+    // q = spin sin(t): half a turn is reached at asin(pi / spin), where the torque jumps.
+    for (const std::string time : {"", "elements = 20\n", "elements = 3\n"}) {
+        const SolveReport report = run(10, time);
+        EXPECT_NE(report.status, SolveStatus::converged);
+        EXPECT_NE(report.message.find("bushing 'bush' reaches half a turn at t = 0.3"), std::string::npos)
+            << report.message;
+    }
+    EXPECT_EQ(run(3, "").status, SolveStatus::converged) << "by 3 sin(1) = 2.52 rad";
+}
+
 TEST(Laws, ABushingTurnsHarmonicallyHoweverFar)
 {
     // About one axis the rotation vector is the angle itself, so that 2 rad are no more than 0.02.
