@@ -208,7 +208,7 @@ std::string drive_words(const Model& model, int row, std::span<const Matrix34> X
     if (joint.type != "drive") return "";
     const std::optional<double> by = missing(model, row, X);
     const char* const unit = is_driven_angle(joint) ? " rad" : " m";
-    return ": its law begins " + (by ? to_text(std::abs(*by), 4) + unit + " from" : "elsewhere than") +
+    return ": its law is " + (by ? to_text(std::abs(*by), 4) + unit + " from" : "elsewhere, not") +
            " where the bodies stand";
 }
 

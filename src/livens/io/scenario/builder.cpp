@@ -16,6 +16,8 @@ struct Spelling {
 constexpr Spelling spellings[] = {
     {"boundary-conditions", "the state at one end", R"(given = "state")"},
     {"boundary-method", "lobatto or mixed", R"(family = "lobatto" in [method])"},
+    {"end-position", "projected", R"(initial = "project" in [start])"},
+    {"end-velocity", "projected", R"(initial = "project" in [start])"},
     {"joint-branch", "coordinates of the start", "`coordinates` in [start]"},
     {"joint-contradiction", "coordinates of the start", "`coordinates` in [start]"},
     {"joint-time-mesh", "elements end there", R"(breaks = "from_loads" in [time])"},
