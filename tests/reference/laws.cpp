@@ -204,11 +204,11 @@ TEST(Laws, ABushingThatReachesHalfATurnIsNamed)
         return solve(s.model, {s.model.start()}, s.time, s.method, s.options).report;
     };
     // q = spin sin(t): half a turn is reached at asin(pi / spin), where the torque jumps.
-    for (const std::string time : {"", "elements = 20\n", "elements = 3\n"}) {
+    for (const std::string time : {"", "elements = 20\n", "elements = 40\n"}) {
         const SolveReport report = run(10, time);
         EXPECT_NE(report.status, SolveStatus::converged);
         EXPECT_NE(report.message.find("bushing 'bush' reaches half a turn at t = 0.3"), std::string::npos)
-            << report.message;
+            << time << report.message;
     }
     EXPECT_EQ(run(3, "").status, SolveStatus::converged) << "by 3 sin(1) = 2.52 rad";
 }

@@ -297,7 +297,8 @@ void judge(const Model& model, const Problem& problem, const SolveOptions& optio
     std::string limit = turned_too_far(model, solution.motion, 175 * degree);
     if (limit.empty() && !is_solved)   // which may break off before it
         limit = turned_too_far(model, solution.motion, 165 * degree);
-    if (!limit.empty() && is_solved) solution.verdict.reasons.push_back(limit);
+    if (!limit.empty() && is_solved)   // first, as the others may follow from it
+        solution.verdict.reasons.insert(solution.verdict.reasons.begin(), limit);
     if (!limit.empty() && !is_solved) solution.report.message += "; " + limit;
     if (solution.verdict.reasons.empty()) return;
     solution.report.status = SolveStatus::suspect;
