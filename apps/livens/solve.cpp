@@ -144,7 +144,7 @@ Solved solve_scenario(Job& job, double share, ProgressLine& line)
     begin = Clock::now();
     reserve.give_back();
     try {
-        judge(scenario.model, solution);
+        judge(scenario.model, {scenario.conditions}, options, solution);
     } catch (const std::bad_alloc&) {
         if (solution.report.converged()) solution.report.status = SolveStatus::suspect;
         solution.report.message = "memory ended before the motion was checked";

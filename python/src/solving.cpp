@@ -125,7 +125,7 @@ Result judged(Unjudged&& motion)
     Solution& solution = motion.solution;
     const double estimate_seconds = solution.estimate_seconds;
     try {
-        judge(scenario.model, solution);
+        judge(scenario.model, {scenario.conditions}, scenario.options, solution);
     } catch (const std::bad_alloc&) {
         if (solution.report.converged()) solution.report.status = SolveStatus::suspect;
         solution.report.message = "memory ended before the motion was checked";

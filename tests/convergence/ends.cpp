@@ -236,6 +236,36 @@ TEST(LobattoEnds, MomentaMayBeStatedWithAnyPositions)
     EXPECT_LE(largest_difference(back.motion, run.motion), 1e-11);
 }
 
+// Of six momenta a body only as many can be chosen as the joints leave free at the place that is found: those
+// of a faster motion make another one, which has some of them and not the rest. That is no solution.
+TEST(LobattoEnds, MomentaThatJointsDoNotLetTheMotionHaveAreSuspect)
+{
+    for (const Forward& run : {forward("hinged brick", hinged_brick(), 0.2, 0.4, 10),
+                               forward("four-bar", four_bar(), 0.2, 0.25, 10)}) {
+        for (const bool at_start : {false, true}) {
+            const State asked = faster(at_start ? run.start : run.finish, 1.1);
+            Conditions given{run.start, Known::positions, asked, Known::momenta};
+            if (at_start) given = {asked, Known::momenta, run.finish, Known::positions};
+            const Solution s =
+                solve(run.model, {given}, make_time_mesh(0, run.end, run.n), lobatto(degree), {});
+            ASSERT_EQ(s.report.status, SolveStatus::suspect) << run.name << s.report.message;
+            const State found = s.motion.at_end(at_start ? 0 : run.n);
+            double off = 0;
+            for (int b = 0; b < run.model.n_bodies(); ++b) {
+                const Matrix4& mass = run.model.bodies()[b].mass;
+                const Numbers p = momentum_of(mass, asked.X[b], asked.V[b]),
+                              q = momentum_of(mass, found.X[b], found.V[b]);
+                for (std::size_t k = 0; k < 6; ++k) off = std::max(off, std::abs(p[k] - q[k]));
+            }
+            EXPECT_GT(off, 1e-3) << run.name;
+            const std::string where = at_start ? "start" : "end", &words = s.report.message;
+            EXPECT_EQ(words.rfind("what is stated at the " + where + " is not met: body '", 0), 0u) << words;
+            EXPECT_NE(words.find("stated is "), std::string::npos) << words;
+            EXPECT_NE(words.find("its joints hold this direction"), std::string::npos) << words;
+        }
+    }
+}
+
 // Windows.
 
 TEST(LobattoWindows, OfAnyLengthGiveTheMarch)

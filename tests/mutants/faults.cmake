@@ -522,3 +522,87 @@ livens_mutant(NAME report_free_directors
               NEW [[orthonormal = 1e-2]]
               TESTS_OF livens
               MUST_FAIL report_test.Report.test_directors_that_are_free_are_kept_whole)
+
+# The attracting point, which is the world's, sent through the axes of a skew body.
+livens_mutant(NAME attraction_in_the_body
+              FILE io/scenario/load_makers.cpp
+              OLD [[{p.section.vector("point"), p.section.number("mu")]]
+              NEW [[{point_of(p), p.section.number("mu")]]
+              TESTS_OF livens
+              MUST_FAIL skew_test.Skew.test_places_of_the_body_and_of_the_world)
+
+# All of the potential in axes of the body: forces of mu m / r on the directors, which have to cancel.
+livens_mutant(NAME attraction_pulls_at_directors
+              FILE multibody/loads/attraction.cpp
+              OLD [[for (const PairForm& row : coincidence_rows(world, there, body, centre, 1)) add(row);]]
+              NEW [[for (int k = 0; k < 3; ++k) {
+        Vector3 unit{};
+        unit[k] = 1;
+        add(plane_row(body, direction(unit), centre, world, there, 0, 1));
+    }]]
+              TESTS_OF unit_multibody
+              MUST_FAIL Attraction.PullsAtTheDirectorsByItsGradientAlone)
+
+# tr J left out: the couple is right, and the pull is not.
+livens_mutant(NAME attraction_without_trace
+              FILE multibody/loads/attraction.cpp
+              OLD [[V.add(-0.5 * mu * trace(J), y, -3, 1, {}, {});]]
+              NEW [[V.add(-0.0 * mu * trace(J), y, -3, 1, {}, {});]]
+              TESTS_OF unit_multibody
+              MUST_FAIL Attraction.WithItsGradientIsThatOfABodysParts)
+
+# Rounding of a large load taken for a vibration.
+livens_mutant(NAME frequency_of_rounding
+              FILE multibody/frequencies.cpp
+              OLD [[return value <= rounding * size;]]
+              NEW [[return value <= 0 * rounding * size;]]
+              TESTS_OF unit_multibody
+              MUST_FAIL Frequencies.AreNotMadeOfTheRoundingOfLargeLoads)
+
+# A driven angle as the sine of what it is off: beyond a quarter of a turn that leads away.
+livens_mutant(NAME driven_angle_by_its_sine
+              FILE multibody/reach.cpp
+              OLD [[is_driven_angle(joint) ? by_angle(joint) : joint]]
+              NEW [[joint]]
+              TESTS_OF unit_multibody
+              MUST_FAIL ClosedStart.LeadsADrivenAngleBackFromAnywhere)
+
+# One try: bodies that stand at one place are told that they cannot be joined.
+livens_mutant(NAME one_start_alone
+              FILE multibody/reach.cpp
+              OLD [[for (const double size : disturbances) {]]
+              NEW [[for (const double size : {0.0}) {]]
+              TESTS_OF unit_multibody
+              MUST_FAIL ClosedStart.ClosesBodiesThatStandAtOnePlace)
+
+# atan2(y, x) taken to jump wherever y passes zero.
+livens_mutant(NAME cut_on_both_sides
+              FILE time/expression_events.cpp
+              OLD [[return step.operation != Operation::arc_tangent || !(values[step.second].value > 0);]]
+              NEW [[return step.operation != Operation::arc_tangent || values[step.second].value > -1e9;]]
+              TESTS_OF unit_time
+              MUST_FAIL Expression.KnowsWhereTimeAloneMakesItJumpOrBend)
+
+# Rounding measured by what is stated alone: at rest everything breaks a joint.
+livens_mutant(NAME rounding_is_no_rest
+              FILE multibody/closing.cpp
+              OLD [[if (least > speed) fault]]
+              NEW [[if (least > 1e99) fault]]
+              TESTS_OF unit_multibody
+              MUST_FAIL StartSpeeds.OfRoundingAreRest)
+
+# Momenta that were stated and are not there: nobody looks.
+livens_mutant(NAME ends_not_compared
+              FILE spacetime/met_ends.cpp
+              OLD [[if (c.off <= 1 || (worst]]
+              NEW [[if (c.off <= 1e99 || (worst]]
+              TESTS_OF convergence
+              MUST_FAIL LobattoEnds.MomentaThatJointsDoNotLetTheMotionHaveAreSuspect)
+
+# An angle behind its hinge by directions across the axis that nobody stated.
+livens_mutant(NAME angle_apart_by_one_direction
+              FILE multibody/model.cpp
+              OLD [[if (has_events && !one.apart.forms.empty())]]
+              NEW [[if (false)]]
+              TESTS_OF unit_multibody
+              MUST_FAIL Joints.AnAngleThatLetsGoNeedsNoDirectionsAcrossItsAxis)

@@ -110,5 +110,35 @@ TEST(EveryDrive, HasOrder2pAndItsPowerInTheBalance)
     }
 }
 
+/// What looks like a jump where it passes zero, and is none; beside it what is one.
+TEST(EveryDrive, MayPassZeroWhereOperationsJumpElsewhereOnly)
+{
+    const auto led = [](const std::string& law) {
+        return on_rail.substr(0, on_rail.find("[[drive]]")) +
+               "[[body]]\nname = \"cart\"\nmass = 3\ninertia = [1, 1, 1]\n[[drive]]\ntype = \"joint\"\njoint "
+               "= "
+               "\"rail\"\nexpression = \"" +
+               law + "\"\n[start]\ninitial = \"project\"\n[time]\nend = 1\naccuracy = 1e-12\n";
+    };
+    const double at = 0.9, before = at - 0.5;
+    const auto atan = [](double t) { return std::asin(0.1 * std::sin(10 * t)); };
+    const std::pair<std::string, double> laws[] = {
+        {"atan2(0.1*sin(10*t), sqrt(1 - 0.01*sin(10*t)^2))", atan(at)},
+        {"0.2*atan2(sin(6*t), 3 + cos(6*t))", 0.2 * std::atan2(std::sin(6 * at), 3 + std::cos(6 * at))},
+        {"max(0, t - 0.5)^2", before * before},
+        {"max(0, t - 0.5)^3", before * before * before},
+        {"0.3 + (t - 0.5)*abs(t - 0.5)", 0.3 + before * before},
+        {"1 - cos(max(0, t - 0.5))", 1 - std::cos(before)}};
+    for (const auto& [law, value] : laws)
+        EXPECT_NEAR(solved(led(law)).coordinate("rail", "displacement", at).value, value, 1e-12) << law;
+    for (const std::string law :
+         {"max(0, t - 0.5)", "0.1*abs(t - 0.5)", "atan2(t - 0.5, -1)", "1e-6*max(0, t - 0.5)",
+          "1e-6*abs(t - 0.5)/(t - 0.5)", "atan2(sin(10*t), cos(10*t))"}) {
+        const ScenarioResult read = parse_scenario("format = 1\n" + led(law), "test.toml");
+        ASSERT_EQ(read.diagnostics.size(), 1u) << law;
+        EXPECT_EQ(read.diagnostics[0].code, "drive-jumps") << law;
+    }
+}
+
 }   // namespace
 }   // namespace livens::tests

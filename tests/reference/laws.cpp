@@ -155,6 +155,64 @@ gradient = )" + gradient +
     EXPECT_NEAR(held("false").coordinate("axle", "angle", t).value, phi, 1e-15);
 }
 
+/// A satellite on a circle librates about the way to the centre: phi = 2 theta has phi'' = -3 n^2 s sin(phi),
+/// s = (J_y - J_x) / J_z, so that from rest theta is zero after K(sin(theta_0)) / (n sqrt(3 s)), when the
+/// body has turned as far as its orbit. In true units: mu of the Earth, where mu m / r is 1e10 times the
+/// couple.
+TEST(Laws, ASatelliteLibratesInTrueUnitsToTheAccuracyAsked)
+{
+    const double mu = 3.986004418e14, tilt = pi / 9, ratio = (1250.0 - 100) / 1300;
+    for (const double r : {1e5, 1e6, 7e6, 4.2e7, 1e8}) {
+        for (const double accuracy : {1e-6, 1e-10}) {
+            const double n = std::sqrt(mu / (r * r * r)),
+                         end = std::comp_ellint_1(std::sin(tilt)) / n / std::sqrt(3 * ratio);
+            const auto run = [&](const std::string& gradient) {
+                return solved(
+                    "[[body]]\nname = \"b\"\nmass = 500\ninertia = [100, 1250, 1300]\nposition = [" +
+                    to_text(r) + ", 0, 0]\nvelocity = [0, " + to_text(n * r) +
+                    ", 0]\nrotation_vector = [0, 0, " + to_text(tilt) + "]\nangular_velocity = [0, 0, " +
+                    to_text(n) + "]\n[[load]]\ntype = \"attraction\"\nbody = \"b\"\nmu = " + to_text(mu) +
+                    "\ngradient = " + gradient + "\n[time]\nend = " + to_text(end) +
+                    "\naccuracy = " + to_text(accuracy) + "\n");
+            };
+            const auto turned = [&](const Solved& s) {
+                const BodySample b = sample_bodies(s.model, s.solution.motion, end)[0];
+                return std::remainder(std::atan2(b.directors(1, 0), b.directors(0, 0)) - n * end, 2 * pi);
+            };
+            const Solved s = run("true");
+            EXPECT_LT(std::abs(turned(s)), accuracy) << r;
+            EXPECT_LT(s.solution.motion.n_elements(), 40) << r;
+            EXPECT_TRUE(s.solution.report.notes.empty()) << s.solution.report.notes.front();
+            EXPECT_NEAR(turned(run("false")), tilt, 1e-6) << r;
+        }
+    }
+}
+
+/// Beyond half a turn the rotation vector of a bushing changes its sign: the run says so, whatever it ends with.
+TEST(Laws, ABushingThatReachesHalfATurnIsNamed)
+{
+    const auto run = [](double spin, const std::string& time) {
+        const ScenarioResult read = parse_scenario(
+            "format = 1\n[[body]]\nname = \"b\"\nmass = 1\ninertia = [0.01, 0.01, 0.01]\nangular_velocity = "
+            "[0, 0, " +
+                to_text(spin) +
+                "]\n[[load]]\nname = \"bush\"\ntype = \"bushing\"\nbetween = [\"world\", \"b\"]\nat = [0, 0, "
+                "0]\nstiffness = [10, 10, 10, 0.01, 0.01, 0.01]\n[time]\nend = 1\n" +
+                time,
+            "test.toml");
+        const Scenario& s = read.scenario.value();
+        return solve(s.model, {s.model.start()}, s.time, s.method, s.options).report;
+    };
+    // q = spin sin(t): half a turn is reached at asin(pi / spin), where the torque jumps.
+    for (const std::string time : {"", "elements = 20\n", "elements = 40\n"}) {
+        const SolveReport report = run(10, time);
+        EXPECT_NE(report.status, SolveStatus::converged);
+        EXPECT_NE(report.message.find("bushing 'bush' reaches half a turn at t = 0.3"), std::string::npos)
+            << time << report.message;
+    }
+    EXPECT_EQ(run(3, "").status, SolveStatus::converged) << "by 3 sin(1) = 2.52 rad";
+}
+
 TEST(Laws, ABushingTurnsHarmonicallyHoweverFar)
 {
     // About one axis the rotation vector is the angle itself, so that 2 rad are no more than 0.02.

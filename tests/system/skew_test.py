@@ -324,6 +324,57 @@ expression = [{', '.join(f'"{float(v)!r} * x"' for v in place([1, 2, 3]))}]
                 self.assertLess(difference, 1e-11 if kind == "slot" else 1e-12, kind + key)
         self.assertGreater(abs(states[0]["position"][0] - HELD[0]), 0)
 
+    def test_places_of_the_body_and_of_the_world(self):
+        """What is said in coordinates of the body is, and what is the world's stays where it is."""
+        there, tip = [0.2, 0.3, 0.1], [0.4, -0.1, 0.3]
+        world = numbers([1.5, -0.4, 0.7])
+        sensor = '[[sensor]]\nname = "tip"\ntype = "{}"\n'
+
+        def words(place):
+            at = numbers(place(there))
+            pair = f"points = [{world}, {at}]"
+            formula = ", ".join(f'"{float(v)!r} * x"' for v in place([1, 2, 3]))
+            turning = f'frame = "body"\ninputs = {{ x = "tip.x" }}\nexpression = [{formula}]\n'
+            point = sensor.format("point") + f'body = "box"\npoint = {at}\n'
+            pull = f'[[load]]\ntype = "attraction"\nbody = "box"\npoint = {world}\nmu = 3\n'
+            frames = f"frames = [{{ point = {world} }}, {{ point = {at} }}]"
+            axes = f"axes = [{world}, {numbers(place(tip))}]"
+            return {
+                "attraction": pull, "attraction with gradient": pull + "gradient = true\n",
+                "drag": f'[[load]]\ntype = "drag"\nbody = "box"\npoint = {at}\nquadratic = 2\nmedium = {world}\n',
+                "torque": point + '[[load]]\ntype = "torque"\nbody = "box"\n' + turning,
+                "body force": point + '[[load]]\ntype = "body_force"\nbody = "box"\n' + turning,
+                "spring": f'[[load]]\ntype = "spring"\nbetween = ["world", "box"]\n{pair}\nstiffness = 70\nfree_length = 0.4\n',
+                "relative sensor": sensor.format("relative") + f'between = ["world", "box"]\n{pair}\n'
+                                   + '[[load]]\ntype = "torque"\nbody = "box"\n' + turning,
+                "bushing": f'[[load]]\ntype = "bushing"\nbetween = ["world", "box"]\n{frames}\n'
+                           "stiffness = [9, 8, 7, 0, 0, 0]\n",
+                "rod": f'[[joint]]\nname = "rod"\ntype = "rod"\nbetween = ["world", "box"]\n{pair}\n',
+                "plane": '[[joint]]\nname = "plane"\ntype = "point_in_plane"\nbetween = ["box", "world"]\n'
+                         f"points = [{at}, {world}]\naxis = {numbers(place(self.across()))}\n",
+                "axes": f'[[joint]]\nname = "axes"\ntype = "constant_angle"\nbetween = ["world", "box"]\n{axes}\n',
+                "distance": f'[[drive]]\ntype = "distance"\nbetween = ["world", "box"]\n{pair}\nrate = 0.1\n'}
+
+        for word in words(list):
+            states = [self.end_state(scenario(skew, "degree = 4", elements=60,
+                                              more=words(along_skew if skew else list)[word]
+                                              + '[start]\ninitial = "project"\n')) for skew in (False, True)]
+            for key in ("position", "velocity", "angular_velocity"):
+                size = max(1, *(abs(x) for x in states[0][key]))
+                difference = max(abs(x - y) for x, y in zip(states[0][key], states[1][key]))
+                self.assertLess(difference, 1e-11 * size, word + ": " + key)
+            self.assertNotAlmostEqual(states[0]["angular_velocity"][0], self.alone()["angular_velocity"][0], 4, word)
+
+    @staticmethod
+    def across():
+        """A normal, along E, of a plane through the point of the box that passes through the world's."""
+        at = add(add(HELD, times(-1, [dot(row, POINT) for row in E])), [dot(row, [0.2, 0.3, 0.1]) for row in E])
+        away = [dot(column, add([1.5, -0.4, 0.7], times(-1, at))) for column in transpose(E)]
+        return cross(away, [0.3, 0.5, -0.2])
+
+    def alone(self):
+        return self.end_state(scenario(False, "degree = 4", elements=60))
+
     def test_rates_in_any_words(self):
         text = scenario(True, "degree = 4")
         expected = self.end_state(text)

@@ -12,6 +12,8 @@
 #include "livens/base/text.h"
 #include "livens/multibody/detail/from_model.h"
 #include "livens/multibody/detail/rate_changes.h"
+#include "livens/multibody/detail/reach.h"
+#include "livens/multibody/detail/start_speeds.h"
 #include "livens/multibody/detail/wording.h"
 #include "livens/multibody/projection.h"
 #include "livens/multibody/rank.h"
@@ -116,27 +118,6 @@ void settle_directors(const Model& model, StartPolicy policy, State& state, std:
 
 // --- positions
 
-/// Why closing failed, as an error: rows that exclude each other, or a mechanism that does not reach.
-[[noreturn]] void explain_open(const Model& model, const Closing& open)
-{
-    const RowRank rank = row_rank(model, open.X, all_rows(model));
-    const Closing rest = close_rows(model, open.X, rank.independent, false);
-    if (rest.closed) {
-        const Gap worst = widest_gap(model, rest.X, rank.dependent);
-        if (worst.violation > start_tolerance) {
-            complain("joint-contradiction", joint_path(model, worst.row),
-                     model.row_name(worst.row) + " cannot be fulfilled together with the other joints",
-                     "violation " + number(worst.violation),
-                     "remove this joint, or make its points and axes fit the others");
-        }
-    }
-    const Gap worst = widest_gap(model, open.X, all_rows(model));
-    complain("start-position", joint_path(model, worst.row),
-             model.row_name(worst.row) + " stays open: the joints cannot be closed from this start",
-             "violation " + number(worst.violation),
-             "check lengths and joint points, or start nearer to the closed mechanism");
-}
-
 void note_moves(const Model& model, std::span<const Matrix34> before, std::span<const Matrix34> after,
                 std::vector<std::string>& notes)
 {
@@ -154,15 +135,24 @@ void note_moves(const Model& model, std::span<const Matrix34> before, std::span<
 
 void settle_positions(const Model& model, StartPolicy policy, State& state, std::vector<std::string>& notes)
 {
-    const std::vector<int> rows = all_rows(model);
-    const Gap gap = widest_gap(model, state.X, rows);
-    if (gap.level <= 1) return;
-    const Closing closing = close_rows(model, state.X, rows, !gap.near);
-    if (!closing.closed && !gap.near) explain_open(model, closing);
-    if (!gap.near && policy == StartPolicy::check) {
-        complain("start-position", joint_path(model, gap.row),
-                 model.row_name(gap.row) + " is open at the start", "violation " + number(gap.violation),
-                 project_help);
+    const Gap gap = widest_gap(model, state.X, all_rows(model));
+    const bool projects = policy == StartPolicy::project;
+    if (gap.level <= 1 && !(projects && drives_are_turned(model, state.X))) return;
+    const bool is_open = !gap.near || gap.level <= 1;
+    Closing closing = close_rows(model, state.X, all_rows(model), is_open);
+    const bool is_other = projects && closing.closed && !is_in_its_branch(model, closing.X);
+    if (is_open && (!closing.closed || is_other)) {
+        Reach other = reach(model, state.X);
+        if (!other.closing.closed && !closing.closed) refuse_open(model, closing, state.X, other.n_tries);
+        if (other.closing.closed) closing = std::move(other.closing);
+        if (projects && !other.how.empty()) notes.push_back(other.how);
+    }
+    if (!gap.near && !projects) {
+        throw InputError(
+            {"start-position", joint_path(model, gap.row),
+             model.row_name(gap.row) + " is open at the start" + drive_words(model, gap.row, state.X),
+             "violation " + number(gap.violation), number(start_tolerance), "",
+             drive_help(model, gap.row, state.X) + project_help});
     }
     note_moves(model, state.X, closing.X, notes);
     for (int b = 0; b < model.n_bodies(); ++b) {
@@ -180,38 +170,6 @@ void settle_positions(const Model& model, StartPolicy policy, State& state, std:
 }
 
 // --- velocities
-
-std::vector<Vector3> centers_of_mass(const Model& model)
-{
-    std::vector<Vector3> centers;
-    for (const Body& body : model.bodies()) centers.push_back(mass_properties(body.mass).center_of_mass);
-    return centers;
-}
-
-/// Of centres of mass, and of directors times the model's length.
-double largest_speed(const Model& model, const State& state, std::span<const Vector3> centers)
-{
-    const double length = model.length();
-    double speed = 0;
-    for (int b = 0; b < model.n_bodies(); ++b) {
-        const Matrix34& V = state.V[b];
-        speed = std::max(speed, norm(V * point(centers[b])));
-        for (int i = 1; i < 4; ++i) speed = std::max(speed, norm(V.column(i)) * length);
-    }
-    return speed;
-}
-
-/// Largest |dPhi/dt| of a row that these speeds can make.
-double rate_bound(const State& state, std::span<const Wrench> row, std::span<const Vector3> centers,
-                  double speed, double length)
-{
-    double bound = 0;
-    for (const Wrench& w : row) {
-        const Vector3 moment = moment_about(w, state.X[w.body], centers[w.body]);
-        bound += norm(w.force) * speed + norm(moment) * speed / length;
-    }
-    return bound;
-}
 
 /// Largest inconsistency relative to what the largest speed can make; names what it is.
 struct RateFault {
@@ -261,18 +219,22 @@ RateFault worst_rate(const Model& model, const State& state, const RowWrenches& 
     return fault;
 }
 
-void settle_velocities(const Model& model, StartPolicy policy, const RowWrenches& wrenches,
-                       std::span<const int> independent, std::span<const double> drives, State& state,
-                       std::vector<std::string>& notes)
+/// `model`: of positions, frozen; `the_model`: with its drives.
+void settle_velocities(const Model& model, const Model& the_model, StartPolicy policy,
+                       const RowWrenches& wrenches, std::span<const int> independent,
+                       std::span<const double> drives, State& state, std::vector<std::string>& notes)
 {
-    constexpr double slowest = 1e-3;   // of what weight makes along a length: below, a fault may be rounding
     const std::vector<Vector3> centers = centers_of_mass(model);
     const double stated = largest_speed(model, state, centers),
-                 speed = std::max(stated, slowest * std::sqrt(norm(model.gravity()) * model.length()));
+                 speed = std::max(stated, speed_by_weight(model));
     const bool is_driven = std::ranges::any_of(drives, [](double rate) { return rate != 0; });
     if (stated == 0 && !is_driven) return;
-    const RateFault fault = worst_rate(model, state, wrenches, centers, drives, speed);
+    RateFault fault = worst_rate(model, state, wrenches, centers, drives, speed);
     if (fault.relative <= 8 * eps) return;
+    if (fault.relative > start_tolerance) {
+        const double least = speed_of_rounding(the_model, state, wrenches, centers);
+        if (least > speed) fault = worst_rate(model, state, wrenches, centers, drives, least);
+    }
     if (fault.relative > start_tolerance && policy == StartPolicy::check) throw InputError(fault.complaint);
     const std::vector<Matrix34> before = state.V;
     state.V = nearest_rates(model, state.X, state.V, independent, drives);
@@ -304,28 +266,6 @@ void refuse_weightless_spin(const Model& model, std::span<const Matrix34> X)
                            "mass"});
 }
 
-/// Rows a . b = 0 hold for an axis turned end for end as well; a start in that branch was not meant.
-void refuse_opposite_axes(const Model& model, const State& state)
-{
-    for (const Joint& joint : model.joints()) {
-        for (const ConstraintRow& row : joint.branches) {
-            if (constraint_value(row, state.X) > 0) continue;
-            throw InputError(
-                {"joint-branch", "joint[" + joint.name + "]." + row.label,
-                 "the " + row.label + " of joint '" + joint.name + "' is off by half a turn at the start", "",
-                 "", "its rows would hold, but in another branch", "turn one of the bodies"});
-        }
-        if (dot(joint.axis_first, joint.axis_first) == 0) continue;
-        const Matrix34& X = joint.first == world ? world_configuration : state.X[joint.first];
-        if (dot(X * direction(joint.axis_first), state.X[joint.second] * direction(joint.axis_second)) > 0)
-            continue;
-        throw InputError({"joint-branch", "joint[" + joint.name + "].axes",
-                          "the axes of joint '" + joint.name + "' point in opposite directions at the start",
-                          "", "", "its rows would hold, but turned by half a turn",
-                          "reverse one of the two axes, or turn one of the bodies"});
-    }
-}
-
 /// One sentence a joint on its redundant rows, which ascend.
 void note_redundancy(const Model& model, ClosedStart& assembly)
 {
@@ -353,7 +293,7 @@ ClosedStart close_anew(const Model& the_model, const State& start, StartPolicy p
     settle_directors(model, policy, assembly.start, assembly.notes);
     settle_positions(model, policy, assembly.start, assembly.notes);
 
-    refuse_opposite_axes(model, assembly.start);
+    refuse_other_branches(model, assembly.start.X);
 
     const std::vector<int> rows = all_rows(model);
     const RowWrenches wrenches = row_wrenches(model, assembly.start.X);
@@ -370,7 +310,8 @@ ClosedStart close_anew(const Model& the_model, const State& start, StartPolicy p
                                  number(rank.smallest_pivot) + ")");
     }
     const std::vector<double> drives = drive_rates(the_model, {start.t}, assembly.start.X);
-    settle_velocities(model, policy, wrenches, assembly.independent, drives, assembly.start, assembly.notes);
+    settle_velocities(model, the_model, policy, wrenches, assembly.independent, drives, assembly.start,
+                      assembly.notes);
     return assembly;
 }
 

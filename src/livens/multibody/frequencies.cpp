@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <random>
 #include <vector>
@@ -24,10 +25,11 @@ struct Mode {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-Eigen::Map<const Eigen::Matrix<double, 6, 6>> block(const TwistTerm& term)
+Eigen::Map<const Eigen::Matrix<double, 6, 6>> block(const Matrix<6, 6>& K)
 {
-    return Eigen::Map<const Eigen::Matrix<double, 6, 6>>(term.K.data());
+    return Eigen::Map<const Eigen::Matrix<double, 6, 6>>(K.data());
 }
+Eigen::Map<const Eigen::Matrix<double, 6, 6>> block(const TwistTerm& term) { return block(term.K); }
 
 /// Terms on the free motions: by a basis of these, or by what projects onto them.
 class Spectrum {
@@ -66,13 +68,13 @@ public:
         return found;
     }
 
-    /// The largest eigenvalue, if it is positive.
+    /// The largest eigenvalue, if it is positive and no rounding.
     Mode highest(const TwistTerms& terms) const
     {
         Mode mode;
         if (terms.empty() || tables_.freedoms() == 0) return mode;
         const auto [value, y] = state_.by_joints ? by_lanczos(terms) : by_basis(terms);
-        if (!(value > 0)) return mode;
+        if (!(value > 0) || is_rounding(value, y, terms)) return mode;
         mode.value = value;
         double most = 0;
         for (int b = 0; b < tables_.n_bodies(); ++b) {
@@ -94,7 +96,23 @@ private:
     {
         const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> solver(on_free_motions(terms), mass_);
         if (solver.info() != Eigen::Success) return {};
-        return {solver.eigenvalues().tail(1)(0), z_ * solver.eigenvectors().rightCols(1)};
+        for (int i = static_cast<int>(z_.cols()) - 1; i >= 0; --i) {
+            const Pair found{solver.eigenvalues()(i), z_ * solver.eigenvectors().col(i)};
+            if (!(found.value > 0) || !is_rounding(found.value, found.y, terms)) return found;
+        }
+        return {};
+    }
+
+    /// Whether y^T K y, y^T M y = 1, is no more than the rounding of what is summed to it.
+    bool is_rounding(double value, const VectorXd& y, const TwistTerms& terms) const
+    {
+        constexpr double rounding = 32 * std::numeric_limits<double>::epsilon();   // of sums of 144 products
+        double size = 0;
+        for (const TwistTerm& t : terms) {
+            const VectorXd left = part(y, t.i).cwiseAbs(), right = part(y, t.j).cwiseAbs();
+            size += left.dot(block(t.size).topLeftCorner(left.size(), right.size()) * right);
+        }
+        return value <= rounding * size;
     }
 
     /// Lanczos' iteration on P K P, each vector orthogonal to all before it; the mass is the identity there.

@@ -11,7 +11,7 @@ namespace [[gnu::visibility("default")]] livens {
 
 /// A rate, and who makes it.
 struct Frequency {
-    double rate = 0;         ///< 0: there is none
+    double rate = 0;         ///< 0: there is none, or none above the rounding of what it is made of
     int body = -1;           ///< which has the largest part of its kinetic energy
     std::string name = "";   ///< the load or joint that does most of the work; empty: the body's own rigidity
 

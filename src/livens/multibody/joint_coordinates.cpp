@@ -210,6 +210,19 @@ JointCoordinate angle_between(int body_i, const Vector4& a1, const Vector4& a2, 
     return {{inner_product_row(body_i, a1, body_j, b, 0, 1), inner_product_row(body_i, a2, body_j, b, 0, 1)}};
 }
 
+JointCoordinate turn_between(int body_i, const Vector4& a1, const Vector4& a2, int body_j, const Vector4& b1,
+                             const Vector4& b2)
+{
+    const auto sum = [](PairForm form, const PairForm& other, double sign) {
+        form.c_ij += sign * other.c_ij;   // products of two directions: of the world they are in b_j alone
+        form.b_j += sign * other.b_j;
+        return form;
+    };
+    const JointCoordinate one = angle_between(body_i, a1, a2, body_j, b1),
+                          two = angle_between(body_i, a1, a2, body_j, b2);
+    return {{sum(one.forms[0], two.forms[1], 1), sum(one.forms[1], two.forms[0], -1)}};
+}
+
 double coordinate_value(const JointCoordinate& q, std::span<const Matrix34> X)
 {
     return q.is_angle() ? arc_tangent(value_of(q.forms[1], X), value_of(q.forms[0], X))

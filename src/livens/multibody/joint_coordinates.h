@@ -26,6 +26,11 @@ JointCoordinate displacement_along(int body_i, const Vector4& n, const Vector4& 
 /// How far the direction b of body j is turned from the direction a1 of body i towards its direction a2, in
 /// rad; right-handed about a1 x a2 where these are perpendicular unit vectors.
 JointCoordinate angle_between(int body_i, const Vector4& a1, const Vector4& a2, int body_j, const Vector4& b);
+/// How far two triads are turned about their third axes, by their first two: cosine a1 . b1 + a2 . b2 and
+/// sine a2 . b1 - a1 . b2, both 1 + (cosine of the angle between the third axes) times those of the turn that
+/// is left when the shortest one from axis to axis is taken off.
+JointCoordinate turn_between(int body_i, const Vector4& a1, const Vector4& a2, int body_j, const Vector4& b1,
+                             const Vector4& b2);
 
 /// A coordinate in one configuration: an angle from -pi to pi, with no turns.
 double coordinate_value(const JointCoordinate& coordinate, std::span<const Matrix34> X);

@@ -40,12 +40,22 @@ void check_principal_moments(const Matrix3& inertia, const std::string& path)
     if (j[0] < -slack)
         throw InputError({"inertia-negative", path, "a principal moment of inertia is negative", moments,
                           ">= 0", "the moment about an axis is the sum of m r^2 over the body", ""});
-    if (j[0] + j[1] < j[2] - slack)
-        throw InputError(
-            {"inertia-triangle", path, "the largest principal moment exceeds the sum of the other two",
-             moments, "J1 + J2 >= J3",
-             "principal moments of inertia satisfy the triangle inequality for every distribution of mass",
-             "the inertia is taken about the centre of mass, in body axes"});
+    if (j[0] + j[1] < j[2] - slack) {
+        const double sum = j[0] + j[1], missing = j[2] - sum;
+        constexpr double rounded = 2e-3;   // of moments with three digits or more
+        const std::string help =
+            missing < rounded * j[2]
+                ? "of a flat body that was rounded: write the sum of the other two for the largest, " +
+                      to_text(sum, 12) + ", or all of them with more digits"
+                : "the inertia is taken about the centre of mass, in body axes";
+        throw InputError({"inertia-triangle", path,
+                          "the largest principal moment exceeds the sum of the other two by " +
+                              to_text(missing, 3) + " (" + to_text(100 * missing / j[2], 2) + " percent)",
+                          moments, "J1 + J2 >= J3",
+                          "principal moments of inertia satisfy the triangle inequality for every "
+                          "distribution of mass",
+                          help});
+    }
 }
 
 }   // namespace

@@ -139,14 +139,17 @@ void check_form(const QuadraticForm& form, int body_i, int body_j, const std::ve
 }
 
 /// A jump of the factor, or of its rate, would be a jump of positions or velocities, which no force makes.
-void check_drive(const Drive& drive, const std::string& path)
+/// Both sides of a break lie some digits of t apart, by which a smooth law changes as well; what is no more
+/// than rounding of the row (unit and `scale`: of Phi) is no jump.
+void check_drive(const Drive& drive, double scale, const std::string& path)
 {
     for (const double t : drive.factor.breaks()) {
         const TimeValue before = drive.factor({t, Side::left}), after = drive.factor({t, Side::right});
-        const double level = 1e-9 * std::max(std::abs(before.value), std::abs(after.value));
-        const double level_of_rates = 1e-9 * std::max(std::abs(before.first), std::abs(after.first));
-        if (std::abs(after.value - before.value) <= level &&
-            std::abs(after.first - before.first) <= level_of_rates)
+        const auto larger = [](double a, double b) { return std::max(std::abs(a), std::abs(b)); };
+        const double apart = 1e-14 * std::abs(t), value = larger(before.value, after.value),
+                     rate = larger(before.first, after.first), bend = larger(before.second, after.second);
+        if (std::abs(after.value - before.value) <= std::max({1e-9 * value, apart * rate, 1e-13 * scale}) &&
+            std::abs(after.first - before.first) <= std::max(1e-9 * rate, apart * bend))
             continue;
         throw InputError({"drive-jumps", path, "a drive jumps, or its rate does",
                           "at t = " + to_text(t) + " s", "", "bodies would need an infinite force to follow",
@@ -192,7 +195,7 @@ void check_row(const ConstraintRow& row, const Joint& joint, const std::vector<B
     check_form(row, row.body_i, row.body_j, bodies, path);
     for (const Drive& drive : row.drives) {
         check_form(drive.form, row.body_i, row.body_j, bodies, path);
-        check_drive(drive, path);
+        check_drive(drive, row.scale, path);
     }
 }
 
@@ -232,7 +235,10 @@ int Model::add_joint(Joint joint)
         refuse("joint-time", path, "a joint must begin to act before it ends", "exchange 'from' and 'until'");
 
     const int index = static_cast<int>(joints_.size());
-    has_events_ = has_events_ || std::isfinite(joint.from) || std::isfinite(joint.until);
+    const bool has_events = std::isfinite(joint.from) || std::isfinite(joint.until);
+    has_events_ = has_events_ || has_events;
+    for (NamedCoordinate& one : joint.coordinates)
+        if (has_events && !one.apart.forms.empty()) one.coordinate = one.apart;
     first_rows_.push_back(n_rows());
     for (int k = 0; k < static_cast<int>(joint.rows.size()); ++k) rows_.push_back({index, k});
     for (const ConstraintRow& row : joint.rows) {

@@ -152,14 +152,15 @@ void set_reference(const Inertia& inertia, const Vector3& of_center, Matrix34& d
 /// One closing of the given rows with one threshold for their pivots.
 class Closer {
 public:
-    Closer(const Model& model, std::span<const Matrix34> X_given, std::span<const int> rows)
-        : model_(model), inertias_(model.bodies().begin(), model.bodies().end()), given_(X_given),
-          rows_(rows), length_(model.length())
+    Closer(const Model& model, std::span<const Matrix34> X_from, std::span<const Matrix34> X_given,
+           std::span<const int> rows)
+        : model_(model), inertias_(model.bodies().begin(), model.bodies().end()), from_(X_from),
+          given_(X_given), rows_(rows), length_(model.length())
     {}
 
     Closing run(bool nearest, double threshold) const
     {
-        Closing best{false, {given_.begin(), given_.end()}};
+        Closing best{false, {from_.begin(), from_.end()}};
         std::vector<Matrix34> X = best.X;
         Gap least = widest_gap(model_, X, rows_);
         int since_best = 0;
@@ -211,7 +212,7 @@ private:
 
     const Model& model_;
     std::vector<Inertia> inertias_;
-    std::span<const Matrix34> given_;
+    std::span<const Matrix34> from_, given_;
     std::span<const int> rows_;
     double length_;
 };
@@ -221,7 +222,13 @@ private:
 Closing close_rows(const Model& model, std::span<const Matrix34> X_given, std::span<const int> rows,
                    bool nearest)
 {
-    const Closer closer(model, X_given, rows);
+    return close_rows_from(model, X_given, X_given, rows, nearest);
+}
+
+Closing close_rows_from(const Model& model, std::span<const Matrix34> X_from,
+                        std::span<const Matrix34> X_given, std::span<const int> rows, bool nearest)
+{
+    const Closer closer(model, X_from, X_given, rows);
     Closing closing;
     // A start far away may spoil the pull towards the nearest configuration, and rows that are all but
     // redundant need a smaller threshold; each attempt starts afresh.

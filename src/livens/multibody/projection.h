@@ -24,6 +24,9 @@ struct Closing {
 /// (X - X_given)^T) -> min; otherwise, and in the end, g = 0. Zeros of planar data stay exactly zero.
 Closing close_rows(const Model& model, std::span<const Matrix34> X_given, std::span<const int> rows,
                    bool nearest);
+/// The same from another place, nearest to X_given none the less.
+Closing close_rows_from(const Model& model, std::span<const Matrix34> X_from,
+                        std::span<const Matrix34> X_given, std::span<const int> rows, bool nearest);
 
 /// The rates [v, w x d_i] nearest to V in the mass metric with G V = -drive_rates for the given rows, which
 /// must be independent; of all rows of the model, or empty: zeros.

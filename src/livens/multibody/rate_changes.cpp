@@ -23,6 +23,15 @@ Vector3 spin_of(const Model& model, int body, std::span<const Matrix34> X, std::
     return angular_velocity(X[body], V[body]);
 }
 
+/// Three digits a component; rounding of the others is zero.
+std::string told(const Vector3& v)
+{
+    std::string text;
+    for (int k = 0; k < 3; ++k)
+        text += (k == 0 ? "(" : ", ") + to_text(std::abs(v[k]) < 1e-9 * norm(v) ? 0.0 : v[k], 3);
+    return text + ")";
+}
+
 /// Joints that hold points together have no coordinate for how their bodies turn.
 bool turns_unnamed(const Model& model, const Joint& joint)
 {
@@ -52,9 +61,17 @@ std::string rate_changes(const Model& model, std::span<const Matrix34> X, std::s
         const auto turning = [&](std::span<const Matrix34> V) {
             return spin_of(model, joint.second, X, V) - spin_of(model, joint.first, X, V);
         };
-        const double by = norm(turning(after) - turning(before));
+        const Vector3 from = turning(before), to = turning(after);
+        changes.push_back({"turning at '" + joint.name + "' " + to_text(norm(from), 3) + " -> " +
+                               to_text(norm(to), 3) + " rad/s",
+                           norm(to - from) * model.length()});
+    }
+    for (int b = 0; b < model.n_bodies(); ++b) {   // what was stated of a body, and is not kept
+        const Vector3 from = spin_of(model, b, X, before), to = spin_of(model, b, X, after);
+        if (norm(from) == 0) continue;
         changes.push_back(
-            {"turning at '" + joint.name + "' by " + to_text(by, 3) + " rad/s", by * model.length()});
+            {"angular velocity of '" + model.body_name(b) + "' " + told(from) + " -> " + told(to) + " rad/s",
+             norm(to - from) * model.length()});
     }
     std::ranges::stable_sort(changes, std::greater(), &Change::speed);
     std::string text;

@@ -2,6 +2,7 @@
 #include "livens/multibody/small_motions.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <Eigen/Dense>
 
@@ -63,8 +64,8 @@ void SmallMotions::add_loads(TwistTerms& springs, TwistTerms& dampers) const
             for (std::size_t s = 0; s < load.bodies.size(); ++s) {
                 const int i = load.bodies[r], j = load.bodies[s];
                 if (i == world || j == world) continue;
-                springs.push_back({l, i, j, reduced(tangent.X[r][s], -1, i, j)});
-                dampers.push_back({l, i, j, reduced(tangent.V[r][s], -1, i, j)});
+                springs.push_back(term(l, tangent.X[r][s], -1, i, j));
+                dampers.push_back(term(l, tangent.V[r][s], -1, i, j));
             }
     }
 }
@@ -86,7 +87,7 @@ void SmallMotions::add_constraints(TwistTerms& terms) const
             for (int m = 0; m < row.n_sides; ++m) {
                 const int j = row.bodies[m];
                 const auto K = constraint_hessian(*row.row, at_, Configurations(state_.X.data()), i, j);
-                terms.push_back({tables_.model->row_joint(c), i, j, reduced(K, lambda[c], i, j)});
+                terms.push_back(term(tables_.model->row_joint(c), K, lambda[c], i, j));
             }
         }
     }
@@ -96,7 +97,8 @@ void SmallMotions::add_constraints(TwistTerms& terms) const
         twist::add_geometric(state_.X.data() + 12 * b, r.data() + 12 * b, K.data(), 6);
         K.transposeInPlace();   // written row by row
         const Block turned = block(maps_[b]).transpose() * K * block(maps_[b]);
-        terms.push_back({-1, b, b, stored<6, 6>(-turned)});
+        const Block size = block(maps_[b]).cwiseAbs().transpose() * K.cwiseAbs() * block(maps_[b]).cwiseAbs();
+        terms.push_back({-1, b, b, stored<6, 6>(-turned), stored<6, 6>(size)});
     }
 }
 
@@ -113,10 +115,12 @@ void SmallMotions::add_mass(TwistTerms& terms) const
     }
 }
 
-Matrix<6, 6> SmallMotions::reduced(const Matrix<12, 12>& K, double factor, int i, int j) const
+TwistTerm SmallMotions::term(int source, const Matrix<12, 12>& K, double factor, int i, int j) const
 {
     const Eigen::Map<const Eigen::Matrix<double, 12, 12>> full(K.data());
-    return stored<6, 6>(factor * block(columns_[i]).transpose() * full * block(columns_[j]));
+    const Columns left = block(columns_[i]), right = block(columns_[j]);
+    const Block size = std::abs(factor) * left.cwiseAbs().transpose() * full.cwiseAbs() * right.cwiseAbs();
+    return {source, i, j, stored<6, 6>(factor * left.transpose() * full * right), stored<6, 6>(size)};
 }
 
 std::vector<double> SmallMotions::forces_less_inertia(int side) const

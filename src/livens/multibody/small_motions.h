@@ -13,7 +13,8 @@ namespace livens {
 /// Part of a form on scaled twists: what a source (a load, a joint, or -1) does to body i when body j moves.
 struct TwistTerm {
     int source, i, j;
-    Matrix<6, 6> K;   ///< of a point mass the first three rows or columns
+    Matrix<6, 6> K;        ///< of a point mass the first three rows or columns
+    Matrix<6, 6> size{};   ///< what its rounding is relative to: by absolute values of all that is summed
 };
 using TwistTerms = std::vector<TwistTerm>;
 
@@ -37,7 +38,7 @@ public:
     void add_mass(TwistTerms& terms) const;
 
 private:
-    Matrix<6, 6> reduced(const Matrix<12, 12>& K, double factor, int i, int j) const;
+    TwistTerm term(int source, const Matrix<12, 12>& K, double factor, int i, int j) const;
     std::vector<double> forces_less_inertia(int side) const;
 
     const Tables& tables_;

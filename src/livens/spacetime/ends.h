@@ -2,8 +2,10 @@
 // The ends of time as the engine sees them: conditions, closed and consistent.
 #pragma once
 
+#include <string>
 #include <vector>
 
+#include "livens/diagnostics/estimate.h"
 #include "livens/multibody/closing.h"
 #include "livens/spacetime/problem.h"
 
@@ -25,5 +27,13 @@ struct Ends {
 /// Closes the mechanism at the known ends; throws InputError, see close_start().
 Ends close_ends(const Model& model, const Conditions& conditions, double start, double end,
                 StartPolicy policy);
+
+/// What was stated at the ends of a whole motion and is not there: positions to 1e-8 (lengths of the model,
+/// or of directors), linear momenta and moments of momentum in world axes to 1e-6 of what the largest speed
+/// of the motion makes of the body, or ten estimated errors; without an estimate to 1e-3. A sentence for each
+/// end; empty: all is met. Of momenta at a place that is not known joints leave only a part to choose, and
+/// solving compares that part.
+std::vector<std::string> unmet(const Model& model, const Ends& ends, const Motion& motion,
+                               const ErrorEstimate& estimate);
 
 }   // namespace livens

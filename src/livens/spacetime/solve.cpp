@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <numbers>
 #include <utility>
 
 #include "livens/base/error.h"
@@ -12,6 +13,7 @@
 #include "livens/diagnostics/coordinates.h"
 #include "livens/multibody/singular.h"
 #include "livens/spacetime/accuracy.h"
+#include "livens/spacetime/detail/load_limits.h"
 #include "livens/spacetime/detail/window_notes.h"
 #include "livens/spacetime/guess.h"
 #include "livens/spacetime/lobatto/window.h"
@@ -252,6 +254,19 @@ Solution solve_phase(const Model& model, const Problem& problem, const Time& tim
                                : solve_by_steps(model, problem, *mesh, method, options);
 }
 
+/// Conditions that the motion found for them does not meet.
+std::vector<std::string> missed_conditions(const Model& model, const Conditions& conditions,
+                                           const SolveOptions& options, const Solution& solution)
+{
+    if (!solution.report.converged() || solution.motion.n_elements() == 0) return {};
+    const double start = solution.motion.start(), end = solution.motion.end();
+    const auto closed = [&](const Model& acting) {
+        return close_ends(acting, conditions, start, end, options.initial);
+    };
+    const Ends ends = model.has_events() ? closed(acting_at(model, start).model) : closed(model);
+    return unmet(model, ends, solution.motion, solution.estimate);
+}
+
 Solution solve_all_time(const Model& model, const Problem& problem, const Time& time, const Method& method,
                         const SolveOptions& options)
 {
@@ -269,13 +284,23 @@ Solution solve(const Model& model, const Problem& problem, const Time& time, con
     lower_orders(model, solution.motion);
     if (!options.judge) return solution;
     estimate(model, problem, method, options, solution);
-    judge(model, solution);
+    judge(model, problem, options, solution);
     return solution;
 }
 
-void judge(const Model& model, Solution& solution)
+void judge(const Model& model, const Problem& problem, const SolveOptions& options, Solution& solution)
 {
     solution.verdict = judge(model, solution.motion, solution.report, solution.estimate, solution.growth);
+    for (const std::string& reason : missed_conditions(model, problem.conditions, options, solution))
+        solution.verdict.reasons.push_back(reason);
+    constexpr double degree = std::numbers::pi / 180;
+    const bool is_solved = solution.report.converged();
+    std::string limit = turned_too_far(model, solution.motion, 175 * degree);
+    if (limit.empty() && !is_solved)   // which may break off before it
+        limit = turned_too_far(model, solution.motion, 165 * degree);
+    if (!limit.empty() && is_solved)   // first, as the others may follow from it
+        solution.verdict.reasons.insert(solution.verdict.reasons.begin(), limit);
+    if (!limit.empty() && !is_solved) solution.report.message += "; " + limit;
     if (solution.verdict.reasons.empty()) return;
     solution.report.status = SolveStatus::suspect;
     solution.report.message = solution.verdict.reasons.front();

@@ -90,9 +90,9 @@ void estimate(const Model& model, const Problem& problem, const Method& method, 
 std::vector<double> growth(const Model& model, const Problem& problem, const Method& method,
                            const SolveOptions& options, const Motion& motion);
 
-/// What solve() does last: measures the motion and lets the verdict decide between converged and suspect. An
-/// estimate that the solution has counts.
-void judge(const Model& model, Solution& solution);
+/// What solve() does last: measures the motion, compares it with what was stated at the ends of time, and
+/// lets the verdict decide between converged and suspect. An estimate that the solution has counts.
+void judge(const Model& model, const Problem& problem, const SolveOptions& options, Solution& solution);
 
 /// Throws what solve() would throw for this input, without solving.
 void check_method(const Model& model, const Problem& problem, const Time& time, const Method& method,

@@ -52,6 +52,12 @@ const char* word_of(Operation operation)
     }
 }
 
+/// Whether it jumps or bends where `switching` changes its sign: atan2(y, x) only where x is not positive.
+bool happens(const Expression::Step& step, const std::vector<TimeValue>& values)
+{
+    return step.operation != Operation::arc_tangent || !(values[step.second].value > 0);
+}
+
 /// Where a function changes its sign, to the last digit.
 double root(const std::function<double(double)>& f, double a, double b)
 {
@@ -159,9 +165,13 @@ std::vector<double> Expression::events(double from, double until) const
         if (has_symbols[k] || switching(steps_[k], all[0]) == switching(steps_[k], all[n_looks / 3]))
             continue;
         const auto f = [&](double t) { return switching(steps_[k], evaluate(t, none, -1)); };
-        for (int i = 0; i < n_looks; ++i)
-            if ((switching(steps_[k], all[i]) > 0) != (switching(steps_[k], all[i + 1]) > 0))
-                events.push_back(root(f, from + length * i / n_looks, from + length * (i + 1) / n_looks));
+        for (int i = 0; i < n_looks; ++i) {
+            if ((switching(steps_[k], all[i]) > 0) == (switching(steps_[k], all[i + 1]) > 0)) continue;
+            const double t = root(f, from + length * i / n_looks, from + length * (i + 1) / n_looks);
+            const double before = std::nextafter(t, from);
+            if (happens(steps_[k], evaluate(before, none, -1)) || happens(steps_[k], evaluate(t, none, -1)))
+                events.push_back(t);
+        }
     }
     // of every part that time alone decides: beside the motion it acts as well
     std::vector<double> fences;

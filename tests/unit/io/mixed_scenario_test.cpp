@@ -300,10 +300,12 @@ TEST(BoundaryScenario, JointsMustBeClosedAtTheEndToo)
         return one_body(at_the_end + end + rod, state_at_end, "position = [1, 0, 0]\n");
     };
     good(text("position = [0, 1, 0]"));
-    expect_error(text("position = [0, 1.5, 0]"), "start-position", "\"r\"");
+    expect_error(text("position = [0, 1.5, 0]"), "end-position", "[body.end]");
     const ScenarioResult result = read(text("position = [0, 1.5, 0]"));
-    EXPECT_NE(find(result, "start-position")->message.find("at the end of time"), std::string::npos);
-    expect_error(text("position = [0, 1, 0]\nvelocity = [0, 9, 0]"), "start-velocity", "\"r\"");
+    const Diagnostic& d = *find(result, "end-position");
+    EXPECT_EQ(d.message.rfind("joint 'r' (row 'distance') is open at the end of time", 0), 0u) << d.message;
+    EXPECT_EQ(d.message.find("start"), std::string::npos) << d.message;
+    expect_error(text("position = [0, 1, 0]\nvelocity = [0, 9, 0]"), "end-velocity", "[body.end]");
     // Positions alone: velocities are guesses and need not fit.
     good(one_body(at_the_end + "position = [0, 1, 0]\nvelocity = [0, 9, 0]" + rod,
                   "[start]\ngiven = \"positions\"\n[end]\ngiven = \"positions\"\n",

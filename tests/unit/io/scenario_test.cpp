@@ -531,9 +531,9 @@ TEST(ScenarioCodes, AllAreProvokedByTheseTests)
                                       "window",
                                       "window-out-of-range"};
     others.insert({"format-first", "load-never-acts", "joint-fitted", "expression-kink", "start-changed",
-                   "point-outside", "spring-kink", "directors-dependent", "directors-metric",
-                   "directors-nearly-orthonormal", "io-directory", "io-not-found",
-                   "io-unreadable"});   // here, of meshes, of hostile files
+                   "drive-turns", "end-position", "end-velocity", "point-outside", "spring-kink",
+                   "directors-dependent", "directors-metric", "directors-nearly-orthonormal", "io-directory",
+                   "io-not-found", "io-unreadable"});   // here, of meshes, of hostile files
     others.insert(codes_of_meshes.begin(), codes_of_meshes.end());
     for (const Case& c : cases()) {
         EXPECT_NE(explain(c.code), "") << c.code;

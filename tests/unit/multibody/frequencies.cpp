@@ -161,5 +161,22 @@ TEST(Frequencies, OfManyBodiesAreThoseOfADenseSolver)
     }
 }
 
+/// A torque about an axis of the world does no work on a symmetric motion: what its tangent leaves is
+/// rounding of entries as large as the torque. A spring beside it is seen none the less.
+TEST(Frequencies, AreNotMadeOfTheRoundingOfLargeLoads)
+{
+    for (const double stiffness : {0.0, 9.0}) {
+        Model model;
+        Placement askew;
+        askew.directors = directors_from_rotation_vector({0.3, -1.1, 0.7});
+        model.add_body(rigid_body("body", {1, {}, {1, 0, 0, 0, 2, 0, 0, 0, 2.5}}, askew));
+        model.add_load(torque("large", 0, {7e11, -3e11, 5e11}, Frame::inertial));
+        if (stiffness > 0) model.add_load(spring_damper("spring", world, {}, 0, {}, {stiffness, 0, 0}));
+        const HighestFrequencies f = of(model);
+        EXPECT_NEAR(f.springs.rate, std::sqrt(stiffness), 1e-9);
+        EXPECT_EQ(f.springs.name, stiffness > 0 ? "load 'spring'" : "");
+    }
+}
+
 }   // namespace
 }   // namespace livens

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "livens/multibody/loads.h"
+#include "livens/multibody/load_laws.h"
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <limits>
 
 #include "unit/multibody/random_states.h"
@@ -240,6 +241,66 @@ TEST(Load, PowerLeavesOutTheWorld)
     LoadArguments at;
     at.V[0](0, 0) = 3;
     EXPECT_DOUBLE_EQ(load_power(load, at), 30);
+}
+
+/// Three pairs of point masses about a centre: to second order of their distances, here a hundredth of that
+/// of the attracting point, what each of them feels adds up to the load.
+TEST(Attraction, WithItsGradientIsThatOfABodysParts)
+{
+    Random random(6);
+    for (int n = 0; n < 100; ++n) {
+        const double mu = 2 + random.number(), a = 0.02;
+        const Vector3 centre = random.vector(), there = random.vector() + 4 * random.unit();
+        const Matrix3 axes = random.rotation();
+        const Matrix34 X = random.rigid();
+        MassProperties all{0, centre, {}};
+        Vector3 force{}, couple{};
+        double pull = 0;
+        const Vector3 middle = X * point(centre);
+        for (int k = 0; k < 6; ++k) {
+            const double m = std::array{1.0, 2.0, 4.0}[static_cast<std::size_t>(k / 2)];
+            const Vector3 arm = (k % 2 == 0 ? a : -a) * axes.column(k / 2), at = X * point(centre + arm);
+            const double r = norm(there - at);
+            const Vector3 f = mu * m / (r * r * r) * (there - at);
+            all.mass += m;
+            all.inertia += m * (dot(arm, arm) * identity<3>() - outer(arm, arm));
+            force += f;
+            couple += cross(at - middle, f);
+            pull += norm(f);
+        }
+        const Body body = rigid_body("b", all);
+        const std::vector<Matrix34> start{X};
+        LoadArguments at;
+        at.X[0] = X;
+        const double r = norm(there - middle), small = pull * a * a / (r * r);   // of the second term
+        for (const bool has_gradient : {true, false}) {
+            const Load load = attraction("l", 0, body, {there, mu, has_gradient}, start);
+            const Matrix34 F = forces(load, at)[0];
+            const Vector3 pulls = F.column(0), turns = moment(X, F) - cross(middle - X.column(0), pulls);
+            EXPECT_EQ(norm(pulls - force) < 0.01 * small, has_gradient) << norm(pulls - force) / small;
+            EXPECT_EQ(norm(turns - couple) < 0.01 * small * r, has_gradient)
+                << norm(turns - couple) / small / r;
+            for (int k = 0; k < 3; ++k) EXPECT_EQ(load.readings[k].value(at), pulls[k]);
+        }
+    }
+}
+
+/// Seven million metres away mu m / r is 1e10 times the couple, whose digits would be lost against it.
+TEST(Attraction, PullsAtTheDirectorsByItsGradientAlone)
+{
+    Random random(7);
+    const double mu = 4e14, r = 7e6;
+    for (int n = 0; n < 100; ++n) {
+        const Body body = rigid_body("b", {500, {}, {100, 0, 0, 0, 1250, 0, 0, 0, 1300}});
+        const std::vector<Matrix34> start{configuration(r * random.unit(), random.rotation())};
+        LoadArguments at;
+        at.X[0] = start[0];
+        const Matrix34 F = forces(attraction("l", 0, body, {{}, mu, true}, start), at)[0];
+        const Vector3 away = (1 / r) * start[0].column(0), y = transpose(directors(start[0])) * away;
+        const Vector3 couple = directors(start[0]) * cross(y, {100 * y[0], 1250 * y[1], 1300 * y[2]});
+        EXPECT_LT(norm(moment(start[0], F) - 3 * mu / (r * r * r) * couple), 1e-15);
+        for (int k = 1; k < 4; ++k) EXPECT_LT(norm(F.column(k)), 1e4 * mu / (r * r * r));
+    }
 }
 
 }   // namespace

@@ -129,7 +129,7 @@ TEST(Verdict, OfEnergyThatRadauGainsIsSuspect)
         s.motion.velocities[end] *= std::sqrt(0.1);
         s.motion.momenta[end] = s.motion.velocities[end] * model.bodies()[0].mass;
     }
-    judge(model, s);
+    judge(model, {{model.start()}}, {}, s);
     EXPECT_EQ(s.report.status, SolveStatus::suspect);
     EXPECT_NEAR(s.verdict.energy_drift, 0.1, 1e-6);
     EXPECT_GT(s.verdict.balance.relative_energy_loss(), 0.5);
@@ -145,7 +145,7 @@ TEST(Verdict, IsNotAskedForWhereTheCallerDoesNotWantIt)
     EXPECT_EQ(s.report.status, SolveStatus::converged);
     EXPECT_TRUE(std::isnan(s.verdict.energy_drift));
     EXPECT_EQ(s.verdict.balance.largest_kinetic, 0);
-    judge(model, s);
+    judge(model, {{model.start()}}, options, s);
     EXPECT_EQ(s.report.status, SolveStatus::suspect) << "asked later, it says the same";
 }
 

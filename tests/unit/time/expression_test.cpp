@@ -148,6 +148,16 @@ TEST(Expression, KnowsWhereTimeAloneMakesItJumpOrBend)
     expect("x*abs(t - 2)/(t - 2)", {2});
     expect("x + min(sin(t), 0.5)", {std::asin(0.5), std::acos(-1.0) - std::asin(0.5)});
     expect("max(x, t)", {});
+    // atan2(y, x) jumps on the negative half of its axis and through the origin, and nowhere else.
+    const auto ends_at = [&](const std::string& text, double instant) {   // beside its fences
+        const std::vector<double> found = events(text);
+        return std::ranges::count_if(found, [&](double t) { return std::abs(t - instant) < 1e-14; }) == 1;
+    };
+    EXPECT_TRUE(ends_at("x*atan2(sin(t), cos(t))", std::acos(-1.0)));
+    for (const std::string x : {"-1", "t - 1", "1 - t", "0"})
+        EXPECT_TRUE(ends_at("atan2(t - 1, " + x + ")", 1));
+    expect("x*atan2(0.1*sin(10*t), sqrt(1 - 0.01*sin(10*t)^2))", {});
+    expect("atan2(sin(t - 1), 2 + cos(t))", {});
     expect("sin(3*t)*exp(-t) + t^2", {});
     EXPECT_TRUE(events("abs(sin(3000*t))").empty()) << "an oscillation";
     // Pulses are fenced in.

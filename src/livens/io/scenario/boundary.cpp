@@ -28,7 +28,28 @@ InputError at_the(const std::string& when, const InputError& error)
     const std::size_t close = complaint.path.find(']');
     if (complaint.path.starts_with("body[") && close != std::string::npos)
         complaint.path.insert(close + 1, "." + when);
-    complaint.message += ", at the " + when + " of time";
+    const std::string start = "at the start", there = "at the " + when + " of time";
+    const std::size_t at = complaint.message.find(start);
+    if (at != std::string::npos)
+        complaint.message.replace(at, start.size(), there);
+    else
+        complaint.message += ", " + there;
+    return InputError(std::move(complaint));
+}
+
+/// What it says of the end of time: of joints that are open there it is the end of a body that is wrong.
+InputError at_the_end(const Model& model, const InputError& error)
+{
+    Complaint complaint = at_the("end", error).complaint();
+    const bool is_place = complaint.code == "start-position";
+    if (!is_place && complaint.code != "start-velocity") return InputError(std::move(complaint));
+    complaint.code = is_place ? "end-position" : "end-velocity";
+    for (const Joint& joint : model.joints())
+        if (complaint.path.starts_with("joint[" + joint.name + "]"))
+            complaint.path = "body[" + model.body_name(joint.second) + "].end";
+    complaint.help =
+        is_place ? "state places there that the joints allow, or let them be projected onto the joints"
+                 : "state velocities that fit, or let them be projected onto the joints";
     return InputError(std::move(complaint));
 }
 
@@ -178,7 +199,7 @@ void check_ends(Builder& builder, const Conditions& boundary, StartPolicy policy
         try {
             close(boundary.end, boundary.at_end);
         } catch (const InputError& error) {
-            throw at_the("end", error);
+            throw at_the_end(builder.model(), error);
         }
     });
 }

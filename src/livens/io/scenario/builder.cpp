@@ -16,12 +16,17 @@ struct Spelling {
 constexpr Spelling spellings[] = {
     {"boundary-conditions", "the state at one end", R"(given = "state")"},
     {"boundary-method", "lobatto or mixed", R"(family = "lobatto" in [method])"},
+    {"end-position", "projected", R"(initial = "project" in [start])"},
+    {"end-velocity", "projected", R"(initial = "project" in [start])"},
+    {"joint-branch", "coordinates of the start", "`coordinates` in [start]"},
+    {"joint-contradiction", "coordinates of the start", "`coordinates` in [start]"},
     {"joint-time-mesh", "elements end there", R"(breaks = "from_loads" in [time])"},
     {"mixed-block", "all elements together", R"(leave `window` out)"},
     {"mixed-pairing", "equal multipliers", R"(multipliers = "equal")"},
     {"mixed-pairing", "natural start", R"(momentum = "natural")"},
     {"mixed-pairing", "projected", R"(interfaces = "project")"},
     {"mixed-pairing", "strong start", R"(momentum = "strong")"},
+    {"start-position", "coordinates of the start", "`coordinates` in [start]"},
     {"start-position", "projected", R"(initial = "project" in [start])"},
     {"start-velocity", "projected", R"(initial = "project" in [start])"},
 };

@@ -2,7 +2,9 @@
 // [[drive]]: one table of kinds, and of laws over time.
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "livens/base/text.h"
 #include "livens/io/scenario/builder.h"
@@ -157,11 +159,32 @@ std::array<TimeFunction, 3> read_path(const Section& drive, const Duration& duri
             read_law(drive, 2, 3, 0, during)};
 }
 
-Joint make_on_joint(const Builder& builder, const Section& drive, const std::string& name,
-                    const Duration& during, const Configurations& X)
+/// Positions do not tell whole turns: a joint that stands further than half a turn from where its drive
+/// begins is led there by the shorter way, and counts on from where it is said to stand.
+void warn_of_turns(Builder& builder, const Section& drive, const std::string& name,
+                   const NamedCoordinate& coordinate, const TimeFunction& law, const Duration& during)
+{
+    if (!coordinate.coordinate.is_angle() || during.begins > during.start) return;
+    const double begins = law({during.start, Side::right}).value, gap = begins - coordinate.at_stated;
+    constexpr double half = std::numbers::pi * (1 - 1e-9);
+    if (!(std::abs(gap) >= half)) return;
+    const double turns = std::max(1.0, std::round(std::abs(gap) / (2 * std::numbers::pi)));
+    builder.findings().warning(
+        drive.place(), "drive-turns",
+        "'" + name + "' begins at " + to_text(begins, 4) + " rad, but its joint stands at " +
+            to_text(coordinate.at_stated, 4) + " rad, half a turn away or more",
+        {"positions do not tell whole turns: the joint counts on from where it stands, and may read " +
+             to_text(turns) + (turns == 1 ? " turn" : " turns") + " more or less than the drive",
+         "give the joint a 'coordinate' within half a turn of where the drive begins, or the drive an "
+         "offset"});
+}
+
+Joint make_on_joint(Builder& builder, const Section& drive, const std::string& name, const Duration& during,
+                    const Configurations& X)
 {
     const JointReference of = find_coordinate(builder, drive, "drive[" + name + "]");
     const TimeFunction law = read_law(drive, 0, 1, of.coordinate->at_stated, during);
+    warn_of_turns(builder, drive, name, *of.coordinate, law, during);
     return driven_coordinate(name, *of.joint, *of.coordinate, law, X);
 }
 

@@ -115,9 +115,11 @@ bool check_point_masses(const Builder& builder, const Section& joint, int first,
     for (const int body : {first, second}) {
         if (!builder.is_point(body)) continue;
         if (norm(joint.vector("at") - builder.start_configuration(body).column(0)) <= slack) continue;
-        return joint.error("at", "point-mass",
-                           joint.label() + " is not at the point mass '" + builder.body_name(body) + "'",
-                           {"a point mass has no other point than its own", ""});
+        return joint.error(
+            "at", "point-mass", joint.label() + " is not at the point mass '" + builder.body_name(body) + "'",
+            {"a point mass has no other point than its own",
+             "let 'at' be its place, or give 'points' instead: the place of a guide on the other "
+             "body, and [0, 0, 0] on the point mass"});
     }
     return true;
 }

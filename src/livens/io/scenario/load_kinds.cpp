@@ -144,8 +144,10 @@ std::vector<Key> keys_of_pressure()
 
 std::vector<Key> keys_of_bushing()
 {
-    const std::string of_u = "of u, three displacements in m and three rotations in rad: six numbers, or 36 "
-                             "of a symmetric matrix row by row, in SI units.";
+    const std::string of_u =
+        "of u, three displacements in m and a rotation vector in rad: six numbers, or 36 "
+        "of a symmetric matrix row by row, in SI units. Up to 175 degrees: at half a "
+        "turn the vector changes its sign, and a motion that gets there is suspect.";
     return {
         Key{"between", types::names, "The two bodies it connects; one may be `\"world\"`."}.needed(),
         Key{"at", types::vector3, "Its point at the start, in the world, whose axes it has there.", "m"},
@@ -153,7 +155,10 @@ std::vector<Key> keys_of_bushing()
                                          "displacements and rotations are those of the second in axes "
                                          "of the first."),
         Key{"stiffness", types::list, "Force and torque " + of_u}.needed(),
-        Key{"damping", types::list, "Likewise of the rate of u."},
+        Key{"damping", types::list,
+            "Likewise of the rate of u, whose last three are the rates of the rotation vector: the relative "
+            "angular velocity for small turns and for turns about one axis, not for large ones about "
+            "several."},
         Key{"preload", types::list, "Three forces in N, three torques in N m, against u wherever it is."}};
 }
 

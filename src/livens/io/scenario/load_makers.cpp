@@ -327,7 +327,8 @@ Load make_drag(const LoadSources& p)
 Load make_attraction(const LoadSources& p)
 {
     return attraction(p.name, p.first, p.builder.model().bodies()[p.first],
-                      {point_of(p), p.section.number("mu"), p.section.truth("gradient")}, places(p.builder));
+                      {p.section.vector("point"), p.section.number("mu"), p.section.truth("gradient")},
+                      places(p.builder));
 }
 
 }   // namespace livens

@@ -9,9 +9,9 @@
 
 namespace livens {
 
-/// "slider.displacement 0 -> 0.218 m/s, turning at 'ball' by 7.06 rad/s": the three rates of joints that
-/// changed most, those of two bodies that turn against each other without a coordinate by how much that did.
-/// Empty: none.
+/// "slider.displacement 0 -> 0.218 m/s, turning at 'ball' 0 -> 7.06 rad/s": the three that changed most of
+/// rates of joints, of how fast two bodies turn against each other without a coordinate, and of angular
+/// velocities that were stated of bodies. Empty: none did.
 std::string rate_changes(const Model& model, std::span<const Matrix34> X, std::span<const Matrix34> before,
                          std::span<const Matrix34> after);
 

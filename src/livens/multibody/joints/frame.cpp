@@ -169,9 +169,12 @@ void hold_on_line(Joint& joint, const Slide& slide, double scale)
 
 NamedCoordinate angle_coordinate(const Joint& joint, const JointFrame& frame)
 {
-    const Vector3 u = frame.across_first, v = cross(frame.axis_first, u);
-    return {"angle", angle_between(joint.first, direction(u), direction(v), joint.second,
-                                   direction(frame.across_second))};
+    const Vector3 u = frame.across_first, v = cross(frame.axis_first, u), w = frame.across_second;
+    NamedCoordinate angle{"angle",
+                          angle_between(joint.first, direction(u), direction(v), joint.second, direction(w))};
+    angle.apart = turn_between(joint.first, direction(u), direction(v), joint.second, direction(w),
+                               direction(cross(frame.axis_second, w)));
+    return angle;
 }
 
 NamedCoordinate displacement_coordinate(const Slide& slide)

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <cmath>
-#include <optional>
+#include <functional>
+#include <span>
 #include <utility>
+#include <vector>
 
 #include "livens/base/elementary.h"
 #include "livens/base/error.h"
@@ -14,43 +17,90 @@ namespace livens {
 
 namespace {
 
-/// -mu (m / r + (tr J - 3 y . J y / r^2) / (2 r^3)) with its derivatives by y, the place of the attracting
-/// point in axes in which J does not change.
-struct Potential {
-    double mu, mass;
-    Matrix3 J;   ///< zero without the gradient
+/// A potential of a place y with its derivatives.
+struct Value {
+    double energy = 0;
+    Vector3 slope{};
+    Matrix3 curvature{};
 
-    struct Value {
-        double energy = 0;
-        Vector3 slope{};
-        Matrix3 curvature{};
-    };
-
-    /// Terms a r^n with a = 1 or y . J y.
-    Value operator()(const Vector3& y) const
+    /// factor a r^n, r = |y|, with a(y) and its derivatives.
+    void add(double factor, const Vector3& y, int n, double a, const Vector3& da, const Matrix3& dda)
     {
-        const double r = hypotenuse(y[0], y[1], y[2]), r2 = r * r;
-        Value sum;
-        const auto add = [&](double factor, double a, const Vector3& da, const Matrix3& dda, int n) {
-            const double rn = factor * power(r, n);
-            sum.energy += rn * a;
-            const Vector3 dr = n * rn / r2 * y;   // of r^n
-            sum.slope += rn * da + a * dr;
-            sum.curvature += rn * dda + outer(da, dr) + outer(dr, da) +
-                             a * (n * rn / r2) * (identity<3>() + (n - 2) / r2 * outer(y, y));
-        };
-        add(-mu * (mass), 1, {}, {}, -1);
-        if (J != Matrix3{}) {
-            const Vector3 Jy = J * y;
-            add(-0.5 * mu * trace(J), 1, {}, {}, -3);
-            add(1.5 * mu, dot(y, Jy), 2 * Jy, 2.0 * J, -5);
-        }
-        return sum;
+        const double r = hypotenuse(y[0], y[1], y[2]), r2 = r * r, rn = factor * power(r, n);
+        const Vector3 dr = n * rn / r2 * y;   // of r^n
+        energy += rn * a;
+        slope += rn * da + a * dr;
+        curvature += rn * dda + outer(da, dr) + outer(dr, da) +
+                     a * (n * rn / r2) * (identity<3>() + (n - 2) / r2 * outer(y, y));
     }
 };
 
+/// -mu m / r.
+Value of_the_centre(double mu, double mass, const Vector3& y)
+{
+    Value V;
+    V.add(-mu * mass, y, -1, 1, {}, {});
+    return V;
+}
+
+/// -mu (tr J - 3 y . J y / r^2) / (2 r^3), in axes in which J does not change.
+Value of_the_extent(double mu, const Matrix3& J, const Vector3& y)
+{
+    const Vector3 Jy = J * y;
+    Value V;
+    V.add(-0.5 * mu * trace(J), y, -3, 1, {}, {});
+    V.add(1.5 * mu, y, -5, dot(y, Jy), 2 * Jy, 2.0 * J);
+    return V;
+}
+
+/// A term of the potential, and where its three coordinates begin among those of the load.
+struct Term {
+    std::size_t first = 0;
+    std::function<Value(const Vector3&)> of;
+
+    Value at(const LawArguments& arguments) const
+    {
+        const std::span<const double> y = arguments.values.subspan(first);
+        return of({y[0], y[1], y[2]});
+    }
+};
+
+LoadLaw law_of(const std::vector<Term>& terms)
+{
+    return [terms](const LawArguments& arguments, std::span<double> factors, std::span<double> slopes) {
+        const std::size_t n = factors.size();
+        std::ranges::fill(slopes, 0.0);
+        for (const Term& term : terms) {
+            const Value V = term.at(arguments);
+            for (int k = 0; k < 3; ++k) {
+                const std::size_t unit = term.first + static_cast<std::size_t>(k);
+                factors[unit] = -V.slope[k];
+                for (int l = 0; l < 3 && !slopes.empty(); ++l)
+                    slopes[2 * n * unit + term.first + static_cast<std::size_t>(l)] = -V.curvature(k, l);
+            }
+        }
+    };
+}
+
+/// What is exerted on the body, world axes.
+std::vector<LoadReading> forces_of(const Load& load)
+{
+    std::vector<LoadReading> readings;
+    for (int k = 0; k < 3; ++k)
+        readings.push_back(
+            {std::string(1, "xyz"[k]), "N", [forces = load.forces, k](const LoadArguments& at) {
+                 LoadForces F{};
+                 forces(at, F);
+                 return F[0](k, 0);
+             }});
+    return readings;
+}
+
 }   // namespace
 
+/// The first term is of the place of the centre of mass in the world, the second of that of the attracting
+/// point in axes of the body. In those the first one would pull at the directors, too: mu m / r, whose
+/// rounding is more than all of the second where r is long (J / m is of the size of the body, squared).
 Load attraction(const std::string& name, int body, const Body& properties, const Attraction& law,
                 const Configurations& X)
 {
@@ -60,42 +110,34 @@ Load attraction(const std::string& name, int body, const Body& properties, const
                           to_text(law.mu), "> 0", "", ""});
     const MassProperties mass = properties.is_point ? MassProperties{properties.mass(0, 0), {}, {}}
                                                     : mass_properties(properties.mass);
-    const bool in_body_axes = law.has_gradient && !properties.is_point;
     const Vector4 centre = point(mass.center_of_mass), there = point(law.point);
     LoadParts parts;
-    const auto rows = coincidence_rows(world, there, body, centre, 1);
-    for (int k = 0; k < 3; ++k) {
-        Vector3 unit{};
-        unit[k] = 1;
-        // In axes of the body it is the way from the centre to the point, else back: the potential is even.
-        const PairForm form =
-            in_body_axes ? plane_row(body, direction(unit), centre, world, there, 0, 1) : rows[k];
+    const auto add = [&](const PairForm& form) {
         parts.coordinates.push_back({{{form}}, form_value(form, form.body_i, form.body_j, X)});
         parts.units.push_back(unit_along(name, {{form}}, X));
-    }
-    const Potential of{law.mu, mass.mass, in_body_axes ? mass.inertia : Matrix3{}};
-    const auto at = [of](const LawArguments& arguments) {
-        return of({arguments.values[0], arguments.values[1], arguments.values[2]});
     };
-    parts.is_smooth = true;   // the nearer the faster: elements see it by the motion
-    parts.law = [at](const LawArguments& arguments, std::span<double> factors, std::span<double> slopes) {
-        const Potential::Value V = at(arguments);
+    for (const PairForm& row : coincidence_rows(world, there, body, centre, 1)) add(row);
+    std::vector<Term> terms{
+        {0, [mu = law.mu, m = mass.mass](const Vector3& y) { return of_the_centre(mu, m, y); }}};
+    if (law.has_gradient && !properties.is_point) {
         for (int k = 0; k < 3; ++k) {
-            factors[k] = -V.slope[k];
-            for (int l = 0; l < 3 && !slopes.empty(); ++l) {
-                slopes[6 * k + l] = -V.curvature(k, l);
-                slopes[6 * k + 3 + l] = 0;
-            }
+            Vector3 unit{};
+            unit[k] = 1;
+            add(plane_row(body, direction(unit), centre, world, there, 0, 1));
         }
+        terms.push_back(
+            {3, [mu = law.mu, J = mass.inertia](const Vector3& y) { return of_the_extent(mu, J, y); }});
+    }
+    parts.is_smooth = true;   // the nearer the faster: elements see it by the motion
+    parts.law = law_of(terms);
+    parts.potential = [terms](const LawArguments& arguments) {
+        double energy = 0;
+        for (const Term& term : terms) energy += term.at(arguments).energy;
+        return energy;
     };
-    const auto force = [at, in_body_axes](int k) -> LawEnergy {
-        return
-            [=](const LawArguments& arguments) { return (in_body_axes ? 1 : -1) * at(arguments).slope[k]; };
-    };
-    for (int k = 0; k < 3; ++k) parts.readings.push_back({std::string(1, "xyz"[k]), "N", force(k)});
-    parts.potential = [at](const LawArguments& arguments) { return at(arguments).energy; };
     parts.domain = "it has no size at the attracting point";
     Load load = modulated(name, "attraction", parts, X);
+    load.readings = forces_of(load);
     load.points = {law.point, mass.center_of_mass};
     if (load.bodies[0] != world) std::swap(load.points[0], load.points[1]);
     return load;
