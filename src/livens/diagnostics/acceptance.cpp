@@ -132,8 +132,17 @@ void measure(Verdict& v, const Model& model, const Motion& motion, bool holds_we
 
 }   // namespace
 
+std::string in_words(const Growing& part, const Model& model)
+{
+    if (part.body < 0) return "no body";
+    std::string words = "body '" + model.body_name(part.body) + "' " +
+                        (part.turns ? "turning about (" : "moving along (");
+    for (int i = 0; i < 3; ++i) words += (i > 0 ? ", " : "") + to_text(part.direction[i], 2);
+    return words + ")";
+}
+
 Verdict judge(const Model& model, const Motion& motion, const SolveReport& report,
-              const ErrorEstimate& estimate, std::span<const double> growth)
+              const ErrorEstimate& estimate, std::span<const double> growth, const Growing& part)
 {
     Verdict v;
     if (motion.n_elements() == 0) return v;   // nothing was solved, so there is nothing to judge
@@ -166,7 +175,10 @@ Verdict judge(const Model& model, const Motion& motion, const SolveReport& repor
     }
     if (!std::isnan(v.horizon))
         v.remarks.push_back("what rounding does to the start has grown to 0.01 by " + to_text(v.horizon, 4) +
-                            " s: behind, double precision says nothing of this motion");
+                            " s, most in " + in_words(part, model) + ": the motion goes on to " +
+                            to_text(motion.end(), 6) +
+                            " s, but behind the horizon it is one of many that double precision cannot tell "
+                            "apart");
     if (!report.converged()) return v;
     Reasons reasons(v.reasons);
     const bool counts_turns = motion.constraints_hold == "element nodes";

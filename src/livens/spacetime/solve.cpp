@@ -258,6 +258,22 @@ Solution solve_all_time(const Model& model, const Problem& problem, const Time& 
                               : solve_phase(model, problem, time, method, options);
 }
 
+/// Over events growth is known when all else is.
+void refuse_rounding(const Model& model, Solution& solution)
+{
+    SolveReport& report = solution.report;
+    const double found = solution.estimate.empty() ? 0 : solution.estimate.largest;
+    if (!report.converged() || !(report.accuracy > 0) || found <= report.accuracy) return;
+    const double end = solution.motion.end();
+    report.status = SolveStatus::inaccurate;
+    report.failed_at = solution.estimate.time;
+    report.message = "the accuracy " + to_text(report.accuracy, 6) +
+                     " cannot be told, the motion is whole up to " + to_text(end, 6) +
+                     " s; the rounding of numbers at the start grows to " + to_text(found, 3) +
+                     ", most in " + in_words(solution.growing, model) +
+                     "; try: an earlier end of time, or a larger error in accuracy";
+}
+
 }   // namespace
 
 Solution solve(const Model& model, const Problem& problem, const Time& time, const Method& method,
@@ -268,13 +284,15 @@ Solution solve(const Model& model, const Problem& problem, const Time& time, con
     lower_orders(model, solution.motion);
     if (!options.judge) return solution;
     estimate(model, problem, method, options, solution);
+    refuse_rounding(model, solution);
     judge(model, solution);
     return solution;
 }
 
 void judge(const Model& model, Solution& solution)
 {
-    solution.verdict = judge(model, solution.motion, solution.report, solution.estimate, solution.growth);
+    solution.verdict = judge(model, solution.motion, solution.report, solution.estimate, solution.growth,
+                             solution.growing);
     if (solution.verdict.reasons.empty()) return;
     solution.report.status = SolveStatus::suspect;
     solution.report.message = solution.verdict.reasons.front();
