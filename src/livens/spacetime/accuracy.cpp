@@ -339,6 +339,8 @@ private:
                                         (!report.steep_load.empty()
                                              ? "the law of load '" + report.steep_load +
                                                    "' changes too fast inside them"
+                                         : model_.loads().empty() && !model_.has_drives()
+                                             ? "rounding is left"
                                          : is_fine() ? "rounding is left, or a law bends inside them"
                                                      : "a law may bend or jump inside them");
         report.message += "); try: an earlier end of time, or a larger error in accuracy";
