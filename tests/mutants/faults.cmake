@@ -606,3 +606,36 @@ livens_mutant(NAME angle_apart_by_one_direction
               NEW [[if (false)]]
               TESTS_OF unit_multibody
               MUST_FAIL Joints.AnAngleThatLetsGoNeedsNoDirectionsAcrossItsAxis)
+
+# Neighbours that part until they bend: what they bend by grows from turn to turn of a tumbling body.
+livens_mutant(NAME growth_bends
+              FILE spacetime/growth.cpp
+              OLD [[wide = 3e-5, too_wide = 1e-4;]]
+              NEW [[wide = 3e-2, too_wide = 1e-1;]]
+              TESTS_OF convergence
+              MUST_FAIL Horizon.GrowthOfATumblingBodyIsThatOfTheMotionWhateverTheElements)
+
+# One-sided differences behind the first piece: of second order.
+livens_mutant(NAME growth_one_sided
+              FILE spacetime/growth.cpp
+              OLD [[k == 0 ? share : -share]]
+              NEW [[k == 0 ? 2 * share : 0.0]]
+              TESTS_OF convergence
+              MUST_FAIL Horizon.GrowthOfATumblingBodyIsThatOfTheMotionWhateverTheElements)
+
+# Perturbations across what turns a body alone: a steady spin is told not to grow.
+livens_mutant(NAME growth_across_alone
+              FILE spacetime/growth.cpp
+              OLD [[std::sqrt(2.0) * across(spin)]]
+              NEW [[0.0 * across(spin)]]
+              TESTS_OF convergence
+              MUST_FAIL Horizon.SteadySpinGrowsByItsAngle)
+
+# What was made smaller on the way is forgotten.
+livens_mutant(NAME growth_forgets
+              FILE spacetime/growth.cpp
+              OLD [[pair.so_far /= share;]]
+              NEW [[pair.so_far /= 1;]]
+              TESTS_OF convergence
+              MUST_FAIL Horizon.GrowthOnAnUnstableRestIsItsExponential
+                        Horizon.OfTheDoublePendulumsIsWhereTwoIntegrationsPart)

@@ -131,8 +131,38 @@ void measure(Verdict& v, const Model& model, const Motion& motion, bool holds_we
 
 }   // namespace
 
+std::string in_words(const Growing& part, const Model& model)
+{
+    if (part.body < 0) return "no body";
+    std::string words = "body '" + model.body_name(part.body) + "' " +
+                        (part.turns ? "turning about (" : "moving along (");
+    for (int i = 0; i < 3; ++i) words += (i > 0 ? ", " : "") + to_text(part.direction[i], 2);
+    return words + ")";
+}
+
+namespace {
+
+void find_horizon(Verdict& v, const Model& model, const Motion& motion, std::span<const double> growth,
+                  const Growing& part)
+{
+    for (std::size_t e = 0; e < growth.size(); ++e) {
+        if (e == 0) v.growth = 0;
+        raise_to(v.growth, growth[e]);
+        if (std::isnan(v.horizon) && growth[e] * rounding_at_start >= acceptable_error)
+            v.horizon = motion.mesh.ends[e];
+    }
+    if (!std::isnan(v.horizon))
+        v.remarks.push_back("what rounding does to the start has grown to 0.01 by " + to_text(v.horizon, 4) +
+                            " s, most in " + in_words(part, model) + ": the motion goes on to " +
+                            to_text(motion.end(), 6) +
+                            " s, but behind the horizon it is one of many that double precision cannot tell "
+                            "apart");
+}
+
+}   // namespace
+
 Verdict judge(const Model& model, const Motion& motion, const SolveReport& report,
-              const ErrorEstimate& estimate, std::span<const double> growth)
+              const ErrorEstimate& estimate, std::span<const double> growth, const Growing& part)
 {
     Verdict v;
     if (motion.n_elements() == 0) return v;   // nothing was solved, so there is nothing to judge
@@ -157,15 +187,7 @@ Verdict judge(const Model& model, const Motion& motion, const SolveReport& repor
         v.good_digits = good.digits;
         v.good_until = good.until;
     }
-    for (std::size_t e = 0; e < growth.size(); ++e) {
-        if (e == 0) v.growth = 0;
-        raise_to(v.growth, growth[e]);
-        if (std::isnan(v.horizon) && growth[e] * rounding_at_start >= acceptable_error)
-            v.horizon = motion.mesh.ends[e];
-    }
-    if (!std::isnan(v.horizon))
-        v.remarks.push_back("what rounding does to the start has grown to 0.01 by " + to_text(v.horizon, 4) +
-                            " s: behind, double precision says nothing of this motion");
+    find_horizon(v, model, motion, growth, part);
     if (!report.converged()) return v;
     Reasons reasons(v.reasons);
     const bool counts_turns = motion.constraints_hold == "element nodes";

@@ -18,6 +18,15 @@ namespace [[gnu::visibility("default")]] livens {
 /// problems every one was beyond, of 1518 good ones none.
 inline constexpr double acceptable_velocity_jump = 0.3;
 
+/// What neighbouring motions part by most: where a body is, or how it is turned.
+struct Growing {
+    int body = -1;          ///< none: nobody asked
+    bool turns = false;     ///< about the direction, else it moves along it
+    Vector3 direction{};    ///< of length 1, world axes
+};
+/// "body 'b' turning about (0.1, 0.98, 0.1)"
+std::string in_words(const Growing& part, const Model& model);
+
 /// What was measured of a motion, and what speaks against it. Figures are nan where there is no motion, and
 /// in a verdict that nobody asked for.
 struct Verdict {
@@ -62,6 +71,7 @@ struct Verdict {
 ///   momentum > 0.05; an estimated error > 1e-2 (or the accuracy asked for); a second solution that failed;
 /// or if one of these figures is not a number.
 Verdict judge(const Model& model, const Motion& motion, const SolveReport& report,
-              const ErrorEstimate& estimate = {}, std::span<const double> growth = {});
+              const ErrorEstimate& estimate = {}, std::span<const double> growth = {},
+              const Growing& part = {});
 
 }   // namespace livens

@@ -99,6 +99,27 @@ struct Tries {
     }
 };
 
+/// Of one try, for all: growth is that of the motion, whatever the elements.
+struct Measured {
+    Growth growth{};
+    TimeMesh mesh{};
+    double rounding = 0;   // what it has grown to by the end
+
+    bool is_whole() const { return !growth.factors.empty() && growth.factors.size() == mesh.ends.size(); }
+    /// At the ends of other elements.
+    std::vector<double> at(const std::vector<double>& ends) const
+    {
+        if (ends == mesh.ends) return growth.factors;
+        std::vector<double> there;
+        for (const double t : ends) {
+            const int e = mesh.element_at(t);
+            const double share = (t - mesh.ends[e]) / mesh.length(e);
+            there.push_back((1 - share) * growth.factors[e] + share * growth.factors[e + 1]);
+        }
+        return there;
+    }
+};
+
 class ToAccuracy {
 public:
     ToAccuracy(const Model& model, const Problem& problem, const Span& span, const Method& method,
@@ -275,11 +296,15 @@ private:
     bool look_at_rounding(Solution& solution, int tries)
     {
         const bool is_good = solution.estimate.largest <= span_.accuracy;
-        if (!options_.growth || !(is_good || (tries > 1 && grown_ == 0))) return false;
-        solution.growth = growth(model_, problem_, solution.method, options_, solution.motion);
-        grown_ = grown_rounding(solution.growth);
-        count_rounding(model_, solution.growth, solution.motion.mesh, solution.estimate);
-        return grown_ > span_.accuracy;
+        if (!options_.growth || !(is_good || (tries > 1 && grown_.mesh.ends.empty()))) return false;
+        const TimeMesh& mesh = solution.motion.mesh;
+        if (!grown_.is_whole())
+            grown_ = {growth(model_, problem_, solution.method, options_, solution.motion), mesh};
+        solution.growth = grown_.at(mesh.ends);
+        solution.growing = grown_.growth.part;
+        grown_.rounding = grown_rounding(solution.growth);
+        count_rounding(model_, solution.growth, mesh, solution.estimate);
+        return grown_.rounding > span_.accuracy;
     }
 
     Solution give_up(Try&& last) const
@@ -293,24 +318,31 @@ private:
         report.status = SolveStatus::inaccurate;
         report.failed_at = motion.mesh.ends[good];
         report.message = "the accuracy " + to_text(span_.accuracy, 6) +
-                         " holds up to t = " + to_text(report.failed_at, 6) + " s; ";
+                         " holds up to t = " + to_text(report.failed_at, 6) + " s";
+        if (motion.end() >= span_.end)
+            report.message += ", the motion is whole up to " + to_text(span_.end, 6) + " s";
+        report.message += "; ";
         if (found.largest > span_.accuracy)
             report.message += "the error of body '" + model_.body_name(found.body) + "' is about " +
                               to_text(found.largest, 3) + " at " + to_text(found.time, 6) + " s";
         else
             report.message += "behind, nothing tells the error, since " + report.estimate_failed;
         report.message += " (try " + std::to_string(report.tries);
-        if (grown_ > span_.accuracy)
-            report.message += "; the rounding of numbers at the start grows to " + to_text(grown_, 3);
+        if (grown_.rounding > span_.accuracy)
+            report.message += "; the rounding of numbers at the start grows to " +
+                              to_text(grown_.rounding, 3) + ", most in " +
+                              in_words(grown_.growth.part, model_);
         else
-            report.message +=
-                so_far_.helps && tolerance_ > finest
-                    ? ", with ever shorter elements"
-                    : std::string(", with ever shorter elements, which help no more: ") +
-                          (!report.steep_load.empty()
-                               ? "the law of load '" + report.steep_load + "' changes too fast inside them"
-                           : is_fine() ? "rounding is left, or a law bends inside them"
-                                       : "a law may bend or jump inside them");
+            report.message += so_far_.helps && tolerance_ > finest
+                                  ? ", with ever shorter elements"
+                                  : std::string(", with ever shorter elements, which help no more: ") +
+                                        (!report.steep_load.empty()
+                                             ? "the law of load '" + report.steep_load +
+                                                   "' changes too fast inside them"
+                                         : model_.loads().empty() && !model_.has_drives()
+                                             ? "rounding is left"
+                                         : is_fine() ? "rounding is left, or a law bends inside them"
+                                                     : "a law may bend or jump inside them");
         report.message += "); try: an earlier end of time, or a larger error in accuracy";
         return std::move(last.solution);
     }
@@ -327,7 +359,7 @@ private:
     bool is_free_;             // the degree, which has not been lowered yet
     int highest_degree_ = 0;   // that is tried where it is not stated
     double tolerance_, length_;
-    double grown_ = 0;   // rounding, by the end; 0 as long as nobody asked
+    Measured grown_;
     Tries so_far_;
 };
 

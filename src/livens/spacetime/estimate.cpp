@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <variant>
 
 #include "livens/base/elementary.h"
@@ -348,8 +349,11 @@ void estimate(const Model& model, const Problem& problem, const Method& method, 
         measure_error(model, problem, method, options, solution);
     if (!options.growth && !is_local) return;
     const auto begin = std::chrono::steady_clock::now();
-    if (solution.growth.empty())
-        solution.growth = growth(model, problem, solution.method, options, solution.motion);
+    if (solution.growth.empty()) {
+        Growth grown = growth(model, problem, solution.method, options, solution.motion);
+        solution.growth = std::move(grown.factors);
+        solution.growing = grown.part;
+    }
     if (is_local) {
         solution.estimate = grown_errors(model, solution);
         if (solution.estimate.empty())

@@ -207,6 +207,7 @@ public:
           ends_(phase_ends(model, time)), gap_(near_end * (ends_.back() - ends_.front()))
     {
         options_.judge = false;
+        options_.growth = false;   // of a part from its own start: it says nothing of the whole
     }
 
     /// All phases, as far as they go.

@@ -274,6 +274,22 @@ Solution solve_all_time(const Model& model, const Problem& problem, const Time& 
                               : solve_phase(model, problem, time, method, options);
 }
 
+/// Over events growth is known when all else is.
+void refuse_rounding(const Model& model, Solution& solution)
+{
+    SolveReport& report = solution.report;
+    const double found = solution.estimate.empty() ? 0 : solution.estimate.largest;
+    if (!report.converged() || !(report.accuracy > 0) || found <= report.accuracy) return;
+    const double end = solution.motion.end();
+    report.status = SolveStatus::inaccurate;
+    report.failed_at = solution.estimate.time;
+    report.message = "the accuracy " + to_text(report.accuracy, 6) +
+                     " cannot be told, the motion is whole up to " + to_text(end, 6) +
+                     " s; the rounding of numbers at the start grows to " + to_text(found, 3) +
+                     ", most in " + in_words(solution.growing, model) +
+                     "; try: an earlier end of time, or a larger error in accuracy";
+}
+
 }   // namespace
 
 Solution solve(const Model& model, const Problem& problem, const Time& time, const Method& method,
@@ -284,13 +300,15 @@ Solution solve(const Model& model, const Problem& problem, const Time& time, con
     lower_orders(model, solution.motion);
     if (!options.judge) return solution;
     estimate(model, problem, method, options, solution);
+    refuse_rounding(model, solution);
     judge(model, problem, options, solution);
     return solution;
 }
 
 void judge(const Model& model, const Problem& problem, const SolveOptions& options, Solution& solution)
 {
-    solution.verdict = judge(model, solution.motion, solution.report, solution.estimate, solution.growth);
+    solution.verdict = judge(model, solution.motion, solution.report, solution.estimate, solution.growth,
+                             solution.growing);
     for (const std::string& reason : missed_conditions(model, problem.conditions, options, solution))
         solution.verdict.reasons.push_back(reason);
     constexpr double degree = std::numbers::pi / 180;

@@ -68,6 +68,7 @@ struct Solution {
     /// By how much a perturbation of the start has grown, at element ends, in lengths and rad by lengths and
     /// rad at the start; empty if nobody asked, as far as the neighbouring motion came if it failed.
     std::vector<double> growth{};
+    Growing growing{};              ///< what of it grows most, up to the horizon or the end
     std::vector<Unseen> unseen{};   ///< what laws of loads did inside of elements, see Unseen
     double estimate_seconds = 0;    ///< that the second solution and the neighbouring motion took
 };
@@ -85,10 +86,15 @@ void estimate(const Model& model, const Problem& problem, const Method& method, 
               Solution& solution);
 
 /// By how much a small perturbation of all positions and velocities at the start (velocities by the fastest
-/// rate there is) has grown at element ends: motions on either side, on the same elements, brought near again
-/// every 16 of them. Empty where nothing can move, or without a state at the start.
-std::vector<double> growth(const Model& model, const Problem& problem, const Method& method,
-                           const SolveOptions& options, const Motion& motion);
+/// rate there is) has grown at element ends: the largest of three, each by motions on either side over the
+/// same elements, that are brought near again where they part. Empty where nothing can move, or without a
+/// state at the start.
+struct Growth {
+    std::vector<double> factors;
+    Growing part;
+};
+Growth growth(const Model& model, const Problem& problem, const Method& method, const SolveOptions& options,
+              const Motion& motion);
 
 /// What solve() does last: measures the motion, compares it with what was stated at the ends of time, and
 /// lets the verdict decide between converged and suspect. An estimate that the solution has counts.

@@ -114,6 +114,11 @@ TEST(Following, HasThePlacesOfTheMotion)
             EXPECT_LT(error_of(about(axis, most), stretch_of(1, 2, 14), 12), allowed) << most;
             EXPECT_LT(error_of(about(axis, most), stretch_of(2, 1, 13), 12), allowed) << "against time";
         }
+    // of the same degree its own nodes, as many as there are lanes
+    for (const int degree : {4, 7, 8, 12}) {
+        EXPECT_LT(error_of(about({0.48, -0.6, 0.64}, 5), stretch_of(1, 2, degree), degree), 1e-14) << degree;
+        EXPECT_LT(error_of(about({0, 1, 0}, 0.5), stretch_of(2, 1, degree), degree), 1e-14) << degree;
+    }
     // a control: of a low degree it is a guess
     EXPECT_GT(error_of(about({0, 0, 1}, 5), stretch_of(0, 1, 5), 3), 1e-3);
 }

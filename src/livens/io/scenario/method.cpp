@@ -255,7 +255,7 @@ Table method_table()
              {"second", "local", "none"}},
          Key{"growth", types::truth,
              "Whether two pairs of neighbouring motions tell how perturbations of the start grow, and the "
-             "horizon beyond which double precision says nothing; about four times as costly as the motion. "
+             "horizon beyond which double precision says nothing; two to four times as costly as the motion. "
              "Default: true with `accuracy` of `[time]`, else false."},
          Key{"looks", types::truth,
              "Whether laws of loads are looked at inside of elements, between the points at which they are "

@@ -73,23 +73,23 @@ void Following::weigh()
     for (std::size_t b = 0; b < tables_->bodies.size(); ++b) places_[(7 * b + 3) * W] = 1;   // its start
 }
 
-/// Lanes 1 .. degree of a body, from one end of an element.
-void Following::follow_body(int body, int element, bool is_backwards)
+/// Nodes 1 .. degree of a body, from one end of an element, the last of them in its own lane.
+void Following::follow_body(int body, int element, bool is_backwards, int last_lane, double* places)
 {
     const int W = functions_->width;
     const Tables::BodyTable& of = tables_->bodies[body];
     const int stride = (is_backwards ? -1 : 1) * motion_->X.n_values;
     const double* X0 = motion_->X.coefficient(element, is_backwards ? degree_ : 0).data() +
                        static_cast<std::ptrdiff_t>(12 * body);
-    double* place = places_.data() + 7 * body * W;
     Quaternion before{1, {}};
     for (int a = 1; a <= degree_; ++a) {
         const double* X = X0 + static_cast<std::ptrdiff_t>(a) * stride;
-        for (int i = 0; i < 3; ++i) place[i * W + a] = X[i] - X0[i];
+        double* place = places + (a == degree_ ? last_lane : a);
+        for (int i = 0; i < 3; ++i) place[i * W] = X[i] - X0[i];
         if (of.dofs == 3) continue;
         for (int c = 0; of.offset && c < 3; ++c)
             for (int i = 0; i < 3; ++i)
-                place[i * W + a] += of.center[c] * (X[3 + 3 * c + i] - X0[3 + 3 * c + i]);
+                place[i * W] += of.center[c] * (X[3 + 3 * c + i] - X0[3 + 3 * c + i]);
         double R[9];
         for (int c = 0; c < 3; ++c)
             for (int r = 0; r < 3; ++r) {
@@ -100,27 +100,37 @@ void Following::follow_body(int body, int element, bool is_backwards)
         const double sign =
             q.s * before.s + q.v[0] * before.v[0] + q.v[1] * before.v[1] + q.v[2] * before.v[2];
         if (sign < 0) q = {-q.s, {-q.v[0], -q.v[1], -q.v[2]}};
-        place[3 * W + a] = q.s;
-        for (int i = 0; i < 3; ++i) place[(4 + i) * W + a] = q.v[i];
+        place[3 * W] = q.s;
+        for (int i = 0; i < 3; ++i) place[(4 + i) * W] = q.v[i];
         before = q;
     }
 }
 
 bool Following::place(const Stretch& stretch, double* place)
 {
+    const int n_bodies = tables_->n_bodies(), W = functions_->width;
     if (motion_ == nullptr || motion_->X.points != Points::lobatto || !motion_->X.denominators.empty() ||
-        motion_->X.degree < lowest_degree || motion_->X.degree >= functions_->width ||
-        motion_->X.n_values != 12 * tables_->n_bodies())
+        motion_->X.degree < lowest_degree || motion_->X.n_values != 12 * n_bodies)
         return false;
+    const bool is_alike = motion_->X.degree == rule_->degree;   // its nodes are those that are asked for
+    if (!is_alike && motion_->X.degree >= W) return false;
     const auto [start, end] = std::minmax(stretch.times.front(), stretch.times.back());
     const std::vector<double>& ends = motion_->mesh.ends;
     const auto found = std::ranges::lower_bound(ends, start);
     if (found == ends.end() || *found != start || found + 1 == ends.end() || *(found + 1) != end)
         return false;
+    const int element = static_cast<int>(found - ends.begin());
+    const bool is_backwards = stretch.times.front() == end;
+    if (is_alike) {   // also where there are as many nodes as lanes
+        degree_ = rule_->degree;
+        for (int i = 0; i < 7 * n_bodies; ++i) std::fill_n(place + i * W, W, i % 7 == 3 ? 1.0 : 0.0);
+        for (int b = 0; b < n_bodies; ++b) follow_body(b, element, is_backwards, 0, place + 7 * b * W);
+        return true;
+    }
     if (degree_ != motion_->X.degree) weigh();
-    for (int b = 0; b < tables_->n_bodies(); ++b)
-        follow_body(b, static_cast<int>(found - ends.begin()), stretch.times.front() == end);
-    functions_->extrapolate(tables_->n_bodies(), rule_->degree, places_.data(), weights_.data(), place);
+    for (int b = 0; b < n_bodies; ++b)
+        follow_body(b, element, is_backwards, degree_, places_.data() + 7 * b * W);
+    functions_->extrapolate(n_bodies, rule_->degree, places_.data(), weights_.data(), place);
     return true;
 }
 

@@ -28,7 +28,7 @@ public:
 
 private:
     void weigh();
-    void follow_body(int body, int element, bool is_backwards);
+    void follow_body(int body, int element, bool is_backwards, int last_lane, double* places);
 
     const Motion* motion_ = nullptr;
     const Tables* tables_ = nullptr;

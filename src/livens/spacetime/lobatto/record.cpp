@@ -93,6 +93,13 @@ void Record::divided(int element)
     ++first_, ++last_;
 }
 
+void Record::begin_anew()
+{
+    for_sizes(0, [](auto& values, std::size_t) { values.clear(); });
+    first_ = std::numeric_limits<int>::max();
+    last_ = -1;
+}
+
 void Record::node(int element, int A, const double* X)
 {
     put(motion_.X.values, motion_.X.index(element, A), static_cast<std::size_t>(motion_.X.n_values), X);

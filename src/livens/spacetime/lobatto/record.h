@@ -24,6 +24,8 @@ public:
     void end(int place, const InstantState& state, const InstantSystem& system, bool two_sided);
     /// Multipliers of these rows of the model are not known at the element end that was written last.
     void forget_reactions(int place, std::span<const int> rows);
+    /// Another motion, on what the mesh is now.
+    void begin_anew();
     /// Room for an element more beside `element`, which the mesh has divided; ends behind it move on by one.
     void divided(int element);
     void note_redundant(const std::vector<int>& rows) { motion_.redundant_rows = rows; }

@@ -47,6 +47,13 @@ bool LobattoWindow::is_jump(double t) const { return std::ranges::binary_search(
 /// The mesh's number of the stretch's element end.
 int LobattoWindow::mesh_end(int end) const { return ends_.is_backwards() ? last_ - end : first_ + end; }
 
+void LobattoWindow::restart()
+{
+    record_.begin_anew();
+    if (ends_.start.t != front_.here().t) front_.here().forget_past();
+    front_.is_ready = false;
+}
+
 bool LobattoWindow::open(int first, int last, SolveReport& report)
 {
     first_ = first;

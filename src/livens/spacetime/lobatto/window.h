@@ -24,6 +24,9 @@ public:
     void ignore_laws() { breaks_.is_ignored = true; }
     /// A motion nearby, which has to outlive the window, as the guess where its elements are the same.
     void follow(const Motion& motion) { kernel_.follow(motion); }
+    /// Goes on from the state that the ends have now, over the elements that the mesh has now, as another
+    /// motion. What was learnt of the last element stays.
+    void restart();
     bool open(int first, int last, SolveReport& report) override;
     bool solve(const NewtonOptions& options, bool soon, NewtonReport& report) override;
     double tangent_cost() const override;

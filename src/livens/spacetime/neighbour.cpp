@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "livens/spacetime/detail/neighbour.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "livens/base/error.h"
+#include "livens/multibody/body.h"
+#include "livens/spacetime/lobatto/window.h"
+#include "livens/spacetime/windows.h"
+
+namespace livens {
+
+namespace {
+
+/// Of the iteration. Less is rounding, for which no steps are to be taken; more would be seen in differences.
+constexpr double least_tolerance = 1e-14, most_tolerance = 1e-10;
+
+/// With triads that are none by what bends as such.
+State rigid(const Model& model, State state)
+{
+    for (int b = 0; b < model.n_bodies(); ++b) {
+        if (model.bodies()[b].is_point) continue;
+        const Vector3 w = angular_velocity(state.X[b], state.V[b]);
+        state.X[b] = configuration(state.X[b].column(0), project_directors(directors(state.X[b])));
+        state.V[b] = rate(state.X[b], state.V[b].column(0), w);
+    }
+    return state;
+}
+
+}   // namespace
+
+/// A window that goes on from piece to piece: what is made once is made once, and its guesses know the past.
+struct Neighbour::March {
+    Ends ends;
+    Tables tables;
+    LobattoWindow window;
+
+    March(const Model& model, const Method& method, const State& start, const TimeMesh& mesh)
+        : ends(close_ends(model, {start}, mesh.start(), mesh.end(), StartPolicy::project)),
+          tables(model, ends.independent), window(tables, mesh, ends, rule_of(method))
+    {}
+};
+
+Neighbour::Neighbour(const Model& model, const Method& method, const SolveOptions& options,
+                     const Motion& beside)
+    : model_(model), method_(method), options_(options), beside_(beside)
+{}
+Neighbour::Neighbour(Neighbour&&) noexcept = default;
+Neighbour::~Neighbour() = default;
+
+bool Neighbour::march(const State& start, const Motion& near)
+{
+    if (march_ == nullptr) {
+        march_ = std::make_unique<March>(model_, method_, start, mesh_);
+    } else {
+        march_->ends.start = rigid(model_, start);
+        march_->window.restart();
+    }
+    march_->window.follow(near);
+    WindowOptions w;
+    w.by_newton = options_.by_newton;
+    w.tolerance = std::clamp(options_.tolerance, least_tolerance, most_tolerance);
+    w.max_iterations = options_.max_iterations;
+    w.progress = options_.progress;
+    w.length_of_model = model_.length();
+    w.may_divide = options_.divide;
+    w.trust = {acceptable_velocity_jump, true, true};
+    SolveReport report;
+    solve_windows(march_->window, mesh_, w, report);
+    motion_ = march_->window.take_motion();
+    return report.converged();
+}
+
+bool Neighbour::solve(const State& start, const Motion& near, int first, int last)
+{
+    mesh_.ends.assign(beside_.mesh.ends.begin() + first, beside_.mesh.ends.begin() + last + 1);
+    mesh_.required = mesh_.ends;
+    try {
+        if (is_nodal(method_) && !model_.has_events()) return march(start, near);
+        Solution one = livens::solve(model_, {{start}, {}, &near}, mesh_, method_, options_);
+        motion_ = std::move(one.motion);
+        return one.report.converged();
+    } catch (const InputError& error) {   // the motion has come to a singular position
+        if (error.complaint().code != "start-singular") throw;
+        return false;
+    }
+}
+
+}   // namespace livens
