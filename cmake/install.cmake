@@ -38,7 +38,7 @@ install(DIRECTORY src/livens DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} ${dev} FILE
         PATTERN "pace.h" EXCLUDE PATTERN "phases.h" EXCLUDE PATTERN "second.h" EXCLUDE PATTERN "largest.h" EXCLUDE
         PATTERN "acceptance_bounds.h" EXCLUDE PATTERN "surface.h" EXCLUDE
         PATTERN "aligned_doubles.h" EXCLUDE PATTERN "forest.h" EXCLUDE PATTERN "locking.h" EXCLUDE PATTERN "orientation.h" EXCLUDE PATTERN "joint_factor.h" EXCLUDE PATTERN "row_pattern.h" EXCLUDE PATTERN "sparse_rows.h" EXCLUDE
-        PATTERN "small_motions.h" EXCLUDE PATTERN "statics.h" EXCLUDE
+        PATTERN "small_motions.h" EXCLUDE PATTERN "statics.h" EXCLUDE PATTERN "turning_vibrations.h" EXCLUDE
         PATTERN "lanes.h" EXCLUDE PATTERN "lane_*.h" EXCLUDE)
 install(EXPORT livens-targets NAMESPACE livens:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/livens ${dev})
 configure_package_config_file(cmake/livens-config.cmake.in ${PROJECT_BINARY_DIR}/livens-config.cmake

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Springs far stiffer than the elements are short: what does not move stays, what vibrates stays bounded.
+#include <cmath>
 #include <limits>
+#include <string>
 
 #include "mechanisms.h"
 
@@ -116,6 +118,139 @@ TEST(Stiffness, BoundsUnresolvedVibrations)
             const double free = std::cbrt(3 * 9.81 * 1.5 * 1.5 / stiffness);
             EXPECT_LE(largest_fall(stiffness, 0, degree), 2.2 * free) << stiffness << " " << degree;
         }
+}
+
+/// Points of 1 kg in a row, 2.5 m apart on springs, turning about their middle or drawn from it, as fast as
+/// they are far (1/s).
+Model turning_row(int n, double stiffness, double spin, double drawing = 0)
+{
+    Model model;
+    for (int i = 0; i < n; ++i) {
+        const double z = 2.5 * (i - 0.5 * (n - 1));
+        model.add_body(point_mass("n" + std::to_string(i), 1, {0, 0, z}, {spin * z, 0, drawing * z}));
+    }
+    for (int i = 0; i + 1 < n; ++i)
+        model.add_load(
+            spring_damper("s" + std::to_string(i), i, {}, i + 1, {}, {stiffness, 0, 2.5}));
+    return model;
+}
+
+Solution solve_row(const Model& model, double end, int n, const Method& method)
+{
+    return solve(model, {model.start()}, make_time_mesh(0, end, n), method);
+}
+
+/// What docs/theory.md says of growth in an element.
+double growth_by_law(double p, double phase, double turn)
+{
+    const double most = p * (p + 1) / (2 * (2 * p - 1)) * turn * turn, lag = 2 * p * (p + 1) / phase;
+    return std::sqrt(most - lag * lag);
+}
+
+// Degrees 1 to 5 lose it within seconds, and energy with it.
+TEST(TurningSprings, EndTheMarchByNameBeforeItDies)
+{
+    for (const int n : {2, 5})
+        for (const int degree : {1, 2, 3, 4, 5}) {
+            if (n == 2 && degree == 5) continue;   // 447 for 465
+            const Model model = turning_row(n, 1e7, 1);
+            const Solution s = solve_row(model, 40, 400, Lobatto{degree});
+            const std::string about =
+                std::to_string(n) + " points, lobatto(" + std::to_string(degree) + "): ";
+            EXPECT_EQ(s.report.status, SolveStatus::not_converged) << about;
+            EXPECT_NE(s.report.message.find("load 's"), std::string::npos) << about << s.report.message;
+            EXPECT_NE(s.report.message.find("radau"), std::string::npos) << about << s.report.message;
+            EXPECT_NE(s.report.message.find("turns by 0.1"), std::string::npos) << s.report.message;
+            EXPECT_EQ(s.report.divided, 0) << about;
+            EXPECT_LT(s.verdict.energy_drift, degree == 1 ? 10 : 1e-3) << about;
+        }
+}
+
+// Controls: shorter elements than the bound, springs that do not turn, radau, a time too short to matter.
+TEST(TurningSprings, AreSolvedWhereVibrationsDoNotGrow)
+{
+    const Model turning = turning_row(5, 1e7, 1);
+    for (const int degree : {2, 3, 4, 5}) {
+        const double bound = std::sqrt(8.0 * degree * (degree + 1) * (2 * degree - 1)),
+                     h = 0.9 * std::sqrt(bound / 6016);
+        const Solution s = solve_row(turning, 20, static_cast<int>(20 / h) + 1, Lobatto{degree});
+        EXPECT_TRUE(s.report.converged()) << degree << ": " << s.report.message;
+        EXPECT_LT(s.verdict.energy_drift, 1e-3) << degree;
+    }
+    for (const Method& method : {Method{Radau{3}}, Method{Radau{4}}, Method{Lobatto{7}}}) {
+        const Solution s = solve_row(turning, 20, 200, method);
+        EXPECT_TRUE(s.report.converged()) << name_of(method) << ": " << s.report.message;
+        const Vector3 last = s.motion.at_end(s.motion.n_elements()).X[4].column(0);
+        EXPECT_NEAR(last[0], 5 * std::sin(20.0), 1e-3) << name_of(method);
+    }
+    const Model beating = turning_row(2, 1e7, 0, 0.1);
+    const Solution unseen = solve_row(beating, 40, 400, Lobatto{2});   // an alternating velocity
+    EXPECT_TRUE(unseen.report.reached_end()) << unseen.report.message;
+    EXPECT_EQ(unseen.report.message.find("turns by"), std::string::npos) << unseen.report.message;
+    EXPECT_LT(unseen.verdict.energy_drift, 1e-6);
+    EXPECT_TRUE(solve_row(turning, 1, 10, Lobatto{4}).report.converged());
+}
+
+/// Of two points along their spring.
+double beat_at(const Motion& motion, int end)
+{
+    const State state = motion.at_end(end);
+    const Vector3 d = state.X[1].column(0) - state.X[0].column(0);
+    return std::abs(dot(d, state.V[1].column(0) - state.V[0].column(0))) / norm(d);
+}
+
+// Up to where the march is ended: energy has a start of its own, velocity along the spring grows alone.
+TEST(TurningSprings, GrowAsTheirLawHasIt)
+{
+    const Model model = turning_row(2, 1e7, 1);
+    const double omega = std::sqrt(2e7), h = 0.1;
+    for (const int degree : {2, 3, 4}) {
+        const Solution s = solve_row(model, 40, 400, Lobatto{degree});
+        const int n = s.motion.n_elements(), part = n / 3;
+        ASSERT_GT(part, 4) << degree;
+        const double rate = std::log(beat_at(s.motion, n) / beat_at(s.motion, n - part)) / part;
+        EXPECT_NEAR(rate, growth_by_law(degree, h * omega, h), 0.15 * rate) << degree;
+    }
+}
+
+TEST(TurningSprings, AdviseElementsThatAreShortEnough)
+{
+    const Model model = turning_row(5, 1e7, 1);
+    for (const int degree : {2, 4}) {
+        const std::string said = solve_row(model, 20, 200, Lobatto{degree}).report.message;
+        const std::string words = "elements shorter than ";
+        ASSERT_NE(said.find(words), std::string::npos) << said;
+        const double h = std::stod(said.substr(said.find(words) + words.size()));
+        EXPECT_GT(h, 0.03) << said;
+        const Solution s = solve_row(model, 20, static_cast<int>(20 / h) + 1, Lobatto{degree});
+        EXPECT_TRUE(s.report.converged()) << h << " s: " << s.report.message;
+    }
+}
+
+TEST(TurningSprings, AreBlamedWhereTheMidpointRuleKeepsNoEnergy)
+{
+    const Solution s = solve_row(turning_row(5, 1e7, 1), 20, 200, Midpoint{});
+    EXPECT_NE(s.report.message.find("load 's"), std::string::npos) << s.report.message;
+    EXPECT_NE(s.report.message.find("radau"), std::string::npos) << s.report.message;
+    const Solution still = solve_row(turning_row(2, 1e7, 0), 20, 200, Midpoint{});
+    EXPECT_TRUE(still.report.converged()) << still.report.message;
+}
+
+/// Bodies that turn as well as their springs, which hold them out of their middles.
+TEST(TurningSprings, BetweenRigidBodiesAreNamed)
+{
+    Model model;
+    for (const int side : {-1, 1}) {
+        Placement at;
+        at.position = {0, 0, 1.5 * side};
+        at.velocity = {1.5 * side, 0, 0};
+        at.angular_velocity = {0, 1, 0};
+        model.add_body(rigid_body(side < 0 ? "low" : "high", box(2, {0.5, 0.5, 1}), at));
+    }
+    model.add_load(spring_damper("rod", 0, {0, 0, 0.5}, 1, {0, 0, -0.5}, {1e7, 0, 2}));
+    const Solution s = solve_row(model, 40, 400, Lobatto{2});
+    EXPECT_NE(s.report.message.find("load 'rod'"), std::string::npos) << s.report.message;
+    EXPECT_TRUE(solve_row(model, 40, 400, Radau{4}).report.converged());
 }
 
 }   // namespace

@@ -299,7 +299,7 @@ def check_sizes(d):
 def checked(texts, found):
     d = Documents(texts, found)
     for check in (check_measured, check_recorded, check_instructions, check_allowed, check_performance, check_sizes, sources.check_sources, paper.check_paper,
-                  stability.check_stability):
+                  stability.check_stability, stability.check_turning):
         check(d)
     return d
 

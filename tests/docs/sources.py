@@ -124,7 +124,7 @@ TIES = [
      r"preferred_degree = (\d+), high_degree = (\d+),.*?high_accuracy = ([^;]+);"),
     ("(«1.5» of them in one element, by the first eight elements)", f"{TIME}/accuracy.cpp", r"double fit = ([^;]+);"),
     ("with $\\delta T > «20»$", f"{TIME}/choice.cpp", r"fast_decay = ([^;]+);"),
-    ("with $\\omega T > «50»$", f"{TIME}/choice.cpp", r"fast_vibration = ([^;]+);"),
+    ("with $\\omega T > «50»$", f"{TIME}/accuracy.h", r"fast_vibration = ([^;]+);"),
     ("After «32» elements radau is tried", f"{TIME}/choice.cpp", r"tried_after = (\d+);"),
     ("with $k = «10^8»$ N/m, stretched by $«10^{-6}»$ m", "tests/convergence/auto.cpp", r"Model model = elastic_pendulum\((1e8), 0, ([\de-]+)\)"),
     ("the start, off by $«10^{-5}»$ in all", f"{TIME}/growth.cpp", r"double small = ([^;]+);"),
@@ -133,6 +133,13 @@ TIES = [
     ("second order in it, $«10^{-5}»$ of the whole", f"{TIME}/growth.cpp", r"double small = ([^;]+);"),
     ("its neighbours part by $«10^3»$ to $«2\\cdot10^4»$", "tests/convergence/horizon.cpp",
      r"growth, (1e3)\) << n;.*?growth, (2e4)\) << n;"),
+    ("Where it has changed by more than «1e-5» of", f"{TIME}/turning_springs.cpp", r"noticeable = ([^;]+);"),
+    ("what $\\alpha = «1.5»$ asks", f"{TIME}/turning_springs.cpp", r"largest_turn = ([^;]+);"),
+    ("where the mechanism is «1e-3» rad", "src/livens/multibody/turning_vibrations.cpp", r"small_turn = ([^;]+);"),
+    ("in forms of less than «0.5» of its", "src/livens/multibody/turning_vibrations.cpp", r"much_softer = ([^;]+);"),
+    ("grows by more than «1e-3» an element, energy was at most a share of «0.4» when", f"{TIME}/turning_springs.cpp",
+     r"slowest_growth = ([^;]+);.*?share_before = ([^;]+);"),
+    ("where energy is off by «0.01»;", f"{TIME}/detail/turning_springs.h", r"doubtful_energy = ([^;]+);"),
     ("told in a remark beyond «5» percent", BOUNDS, r"acceptable_drift = ([^;]+);"),
 ]
 PROGRAM, ACCEPTANCE = "docs/program.md", "src/livens/diagnostics/acceptance.cpp"
@@ -141,6 +148,7 @@ OTHERS = [   # (page, words, file, what stands there)
     (PROGRAM, "off by more than «1e-6» of its length", BOUNDS, r"acceptable_violation = ([^;]+);"),
     (PROGRAM, "its mean over an element by more than «1e-3», or its value at a node by more than «0.05»", BOUNDS,
      r"acceptable_weak_violation = ([^;]+);.*?acceptable_nodal_violation = ([^;]+);"),
+    (PROGRAM, "that of energy by more than «1» percent where", f"{TIME}/detail/turning_springs.h", r"doubtful_energy = ([^;]+);"),
     (PROGRAM, "of angular momentum is off by more than «5» percent", BOUNDS, r"acceptable_drift = ([^;]+);"),
     (PROGRAM, "the estimated error exceeds «1e-2», or the second", BOUNDS, r"acceptable_error = ([^;]+);"),
     (PROGRAM, "the estimated error exceeds «1e-3», and the velocity leaves the polynomial of an element by more than «0.1»", ACCEPTANCE,
@@ -162,6 +170,8 @@ FORMULAS = [
     "at $10^6$ are $10^{12}$ times its own", "at $(10^6, -10^6, 10^6)$", "they are off by 100 %",   # an example
     "exceeds 1.01 from $h \\omega = 2.0$, 2.8, 3.1, 6.1 $(p", "$h \\omega = 2.8$, 3.1, 3.1, 6.3, 9.4, 12.6 on for",   # stability.py
     "narrower than 0.01, in which they grow by less than 0.003 an element",   # stability.py
+    "= 4.0$, 12.0, 21.9, 33.5, 46.5, 60.8, 76.3, 93.0 $(p", "by more than 0.001 an element for spins up to $h$ spin $= 0.3$ from",   # stability.py
+    "to 40 percent up to $\\alpha = 0.3$", "2.5 m apart on springs of $10^7$ N/m", "with $h = 0.1$ s", "begin with $10^{-7}$ of",
     "[scan of accuracies](trust.md) 0.9 percent of all elements are refused, of one motion at most 15 percent",   # figures.py
     "is not foretold by what was, 4 percent",   # figures.py
     "($h \\omega = 10^4$: 1e-4 for $p = 1$, 8e-4 for $p = 8$)",   # p / |z|

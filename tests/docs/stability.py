@@ -6,7 +6,12 @@ the integral of products of slopes, G that of products of the functions by the p
 p + 1 nodes, where multipliers act; s is the share of the stiffness that loads bring. Inner nodes eliminated leave [[a, b], [b, a]]: the map
 from one end to the other has the trace -2 a / b, and its radius exceeds 1 where |a| > |b|. s = 0: loads at nodes, the pair IIIA-IIIB.
 Nothing of this is livens' code. Standard library only.
+
+"Springs that turn" of the same page: collocation of x'' = -(omega^2 d d^T + beta^2 t t^T) x in a plane, d and t at right angles and
+turned by a = spin h within an element, where beta keeps a steady turning of the elements' own (R(i beta h) = exp(i a)). In axes that turn along an
+element is one 4 x 4 matrix, of which the spectral radius is taken. "python3 stability.py" prints what is found of it.
 """
+import cmath
 import functools
 import math
 import re
@@ -126,4 +131,124 @@ def check_stability(d):
             d.holds(p >= 4 and long < width and fast < rate and away < width, f"{PAGE}: a resonance at {z:.4f} with degree {p}, {long:.4f} long, growth {fast:.4f}")
 
 
-STALE = [(PAGE, r"2\.8, 3\.1, 6\.1 \$\(p", "2.8, 3.1, 6.3 $(p"), (PAGE, r"6\.3, 9\.4, 12\.6 on", "6.3, 9.4, 13.6 on"), (PAGE, r"narrower than 0\.01", "narrower than 0.001")]
+TURNING = {1: 4.0, 2: 12.0, 3: 21.9, 4: 33.5, 5: 46.5, 6: 60.8, 7: 76.3, 8: 93.0}
+TURNING_WORDS = "more than $\\sqrt{8 p (p + 1)(2p - 1)} = 4.0$, 12.0, 21.9, 33.5, 46.5, 60.8, 76.3, 93.0 $(p = 1 \\dots 8)$"
+TURNING_LAW = "\\sqrt{\\frac{p (p + 1)}{2 (2p - 1)}\\, \\alpha^2 - \\Bigl( \\frac{2 p (p + 1)}{h \\omega} \\Bigr)^2}"
+TURNING_RADAU = "radau's do not, by more than («») an element for spins up to $h$ spin $= 0.3$ from $p = 3$ on"
+
+
+def solved(A, B):
+    """A^-1 B, by elimination with row exchanges."""
+    n, rows = len(A), [[*a, *b] for a, b in zip(A, B)]
+    for i in range(n):
+        k = max(range(i, n), key=lambda r: abs(rows[r][i]))
+        rows[i], rows[k] = rows[k], rows[i]
+        rows[i] = [x / rows[i][i] for x in rows[i]]
+        for r in range(n):
+            if r != i and rows[r][i] != 0:
+                rows[r] = [x - rows[r][i] * y for x, y in zip(rows[r], rows[i])]
+    return [row[n:] for row in rows]
+
+
+def product(A, B):
+    return [[sum(a * b for a, b in zip(row, column)) for column in zip(*B)] for row in A]
+
+
+@functools.cache
+def collocation(p, points):
+    """Points and the integrals of their Lagrange functions up to each of them and up to 1."""
+    if points == "gauss":
+        c = rules(p)[2]
+    else:
+        c = [(x + 1) / 2 for x in roots(lambda x: legendre(p, x)[0] - (legendre(p - 1, x)[0] if p > 1 else 1.0), p - 1)] + [1.0] if p > 1 else [1.0]
+    at, weights = rules(p)[2:]
+    upto = lambda end: [end * sum(w * functions(c, end * x)[0][j] for x, w in zip(at, weights)) for j in range(p)]   # noqa: E731
+    return c, [upto(x) for x in c], upto(1.0)
+
+
+def quotient_phase(p, y):
+    """Of Gauss collocation: R(i y) = exp(i phase)."""
+    c, A, b = collocation(p, "gauss")
+    k = solved([[(i == j) - 1j * y * A[i][j] for j in range(p)] for i in range(p)], [[1.0]] * p)
+    return cmath.phase(1 + 1j * y * sum(w * x[0] for w, x in zip(b, k)))
+
+
+def turning_map(p, points, a, z):
+    """An element on (x, h x'), in axes that turn by a."""
+    c, A, b = collocation(p, points)
+    beta = root(lambda y: quotient_phase(p, y) - a, 0.0, min(2 * a, 2.5)) if points == "gauss" else a
+    stiffness = []
+    for x in c:
+        d, t = (math.cos(a * x), math.sin(a * x)), (-math.sin(a * x), math.cos(a * x))
+        stiffness.append([[z * z * d[i] * d[j] + beta * beta * t[i] * t[j] for j in (0, 1)] for i in (0, 1)])
+    AA, bA = product(A, A), product([b], A)[0]
+    system = [[float(m == n) + AA[m // 2][n // 2] * stiffness[n // 2][m % 2][n % 2] for n in range(2 * p)] for m in range(2 * p)]
+    right = [[float(m % 2 == n) for n in (0, 1)] + [c[m // 2] * (m % 2 == n) for n in (0, 1)] for m in range(2 * p)]
+    Y = solved(system, right)
+    f = [[-sum(stiffness[i][k][l] * Y[2 * i + l][n] for l in (0, 1)) for n in range(4)] for i in range(p) for k in (0, 1)]
+    end = [[float(k == n) + float(k + 2 == n) + sum(bA[i] * f[2 * i + k][n] for i in range(p)) for n in range(4)] for k in (0, 1)] \
+        + [[float(k + 2 == n) + sum(b[i] * f[2 * i + k][n] for i in range(p)) for n in range(4)] for k in (0, 1)]
+    back = [[math.cos(a), math.sin(a)], [-math.sin(a), math.cos(a)]]
+    return [[sum(back[m % 2][k] * end[2 * (m // 2) + k][n] for k in (0, 1)) for n in range(4)] for m in range(4)]
+
+
+def turning_growth(p, a, z, points="gauss"):
+    """An element; of Gauss points, whose map is symplectic, from its two invariants, else by squaring."""
+    M = turning_map(p, points, a, z)
+    if points != "gauss":
+        size = 0.0
+        for k in range(24):   # M^(2^k), scaled
+            largest = max(abs(x) for row in M for x in row)
+            size += math.log(largest) / 2 ** k
+            M = [[x / largest for x in row] for row in M]
+            M = product(M, M)
+        return math.exp(size + math.log(max(abs(x) for row in M for x in row)) / 2 ** 24) - 1
+    trace, squares = sum(M[i][i] for i in range(4)), sum(M[i][k] * M[k][i] for i in range(4) for k in range(4))
+    spread = cmath.sqrt(trace * trace / 4 - ((trace * trace - squares) / 2 - 2))
+    largest = 0.0
+    for s in (trace / 2 + spread, trace / 2 - spread):   # s = l + 1 / l
+        r = cmath.sqrt(s * s / 4 - 1)
+        largest = max(largest, abs(s / 2 + r), abs(s / 2 - r))
+    return largest - 1
+
+
+def law(p, a, z):
+    square = p * (p + 1) / (2 * (2 * p - 1)) * a * a - (2 * p * (p + 1) / z) ** 2
+    return math.sqrt(square) if square > 0 else 0.0
+
+
+def bound(p):
+    return math.sqrt(8 * p * (p + 1) * (2 * p - 1))
+
+
+def check_turning(d):
+    text = " ".join(d.texts[PAGE].split())
+    for words in (TURNING_WORDS, TURNING_LAW):
+        d.holds(words in text, f"{PAGE} should say: {words}")
+    found = re.search(re.escape(TURNING_RADAU).replace(re.escape("(«»)"), r"([\d.]*\d)"), text)
+    d.holds(found is not None, f"{PAGE} should say: {TURNING_RADAU}")
+    for p, stated in TURNING.items():
+        d.holds(abs(stated - bound(p)) <= 0.0501, f"{PAGE}: the bound of degree {p} is {bound(p):.2f}")
+        for a in (0.03, 0.1, 0.3):
+            for times in (1.1, 1.5, 3.0, 10.0):
+                z = times * bound(p) / a
+                ratio = turning_growth(p, a, z) / law(p, a, z)
+                d.holds(0.9 < ratio < 1.4, f"{PAGE}: degree {p}, turn {a}, h omega {z:.1f}: growth is {ratio:.3f} times the law's")
+            for times in (0.4, 0.7, 0.9):
+                grown = turning_growth(p, a, times * bound(p) / a)
+                d.holds(grown < 1e-4, f"{PAGE}: degree {p}, turn {a}: grows by {grown:.1e} an element at {times} of the bound")
+            for z in (3.0, 30.0, 300.0, 3000.0) if p >= 3 and found else ():
+                grown = turning_growth(p, a, z, "radau")
+                d.holds(grown < float(found[1]), f"{PAGE}: radau({p}) grows by {grown:.1e} an element, turn {a}, h omega {z}")
+
+
+STALE = [(PAGE, r"2\.8, 3\.1, 6\.1 \$\(p", "2.8, 3.1, 6.3 $(p"), (PAGE, r"6\.3, 9\.4, 12\.6 on", "6.3, 9.4, 13.6 on"), (PAGE, r"narrower than 0\.01", "narrower than 0.001"),
+         (PAGE, r"21\.9, 33\.5", "21.9, 34.5"), (PAGE, r"by more than 0\.001 an element for spins", "by more than 0.00001 an element for spins")]
+
+
+if __name__ == "__main__":
+    for p in TURNING:
+        print(f"degree {p}: bound {bound(p):.2f}")
+        for a in (0.03, 0.1, 0.3):
+            print(f"  turn {a}: " + ", ".join(f"{times} of it {turning_growth(p, a, times * bound(p) / a):.1e} (law {law(p, a, times * bound(p) / a):.1e}; "
+                                             f"radau {turning_growth(p, a, times * bound(p) / a, 'radau'):.1e})" for times in (0.7, 0.9, 1.1, 3.0, 10.0)))

@@ -639,3 +639,27 @@ livens_mutant(NAME growth_forgets
               TESTS_OF convergence
               MUST_FAIL Horizon.GrowthOnAnUnstableRestIsItsExponential
                         Horizon.OfTheDoublePendulumsIsWhereTwoIntegrationsPart)
+
+# Nobody looks at the energy of stiff springs that turn: the march goes on until it dies.
+livens_mutant(NAME turning_springs_unwatched
+              FILE spacetime/windows.cpp
+              OLD [[options_.watch && outcome.factorisations > 0]]
+              NEW [[options_.watch && outcome.factorisations < 0]]
+              TESTS_OF conservation
+              MUST_FAIL TurningSprings.EndTheMarchByNameBeforeItDies)
+
+# Another bound: elements of the length that is advised lose the motion again.
+livens_mutant(NAME turning_springs_without_bound
+              FILE spacetime/turning_springs.cpp
+              OLD [[(degree + 1) * (2 * degree - 1)]]
+              NEW [[(degree + 1) * (2 * degree + 8)]]
+              TESTS_OF conservation
+              MUST_FAIL TurningSprings.AdviseElementsThatAreShortEnough)
+
+# Velocities that vibrate turn the forms as well: springs that are drawn change the stiffness across them.
+livens_mutant(NAME turning_by_vibration
+              FILE multibody/turning_vibrations.cpp
+              OLD [[springs.moved(springs.slow_part(springs.velocity(), n_slow))]]
+              NEW [[springs.moved(springs.velocity())]]
+              TESTS_OF unit_multibody
+              MUST_FAIL TurningVibrations.LeaveOutVelocitiesThatVibrate)

@@ -17,6 +17,9 @@ struct Look {
 /// True: the march ends there, with SolveStatus::cancelled.
 using Doubt = std::function<bool(const Look&)>;
 
+/// Times the time of the motion: a vibration so fast may be one that nobody asked for.
+inline constexpr double fast_vibration = 50;
+
 /// In which velocities or weights move or turn something by half a length of the model or half a radian.
 double time_of_motion(const Model& model, const State& state);
 

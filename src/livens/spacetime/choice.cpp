@@ -16,8 +16,6 @@ namespace {
 /// Times the time of the motion, or the length of an element: a decay so fast is over before anything moves,
 /// while lobatto rings.
 constexpr double fast_decay = 20;
-/// Likewise: a vibration so fast may be one that nobody asked for.
-constexpr double fast_vibration = 50;
 constexpr int tried_after = 32;   // elements of lobatto
 constexpr double gain = 0.5;      // of lobatto's work, to be worth the change
 constexpr int highest_radau = 8;

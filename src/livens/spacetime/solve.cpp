@@ -11,9 +11,11 @@
 #include "livens/base/error.h"
 #include "livens/base/text.h"
 #include "livens/diagnostics/coordinates.h"
+#include "livens/multibody/frequencies.h"
 #include "livens/multibody/singular.h"
 #include "livens/spacetime/accuracy.h"
 #include "livens/spacetime/detail/load_limits.h"
+#include "livens/spacetime/detail/turning_springs.h"
 #include "livens/spacetime/detail/window_notes.h"
 #include "livens/spacetime/guess.h"
 #include "livens/spacetime/lobatto/window.h"
@@ -117,7 +119,14 @@ WindowOptions window_options(const Model& model, const Ends& ends, const Method&
         w.may_split = false;   // shorter blocks are other equations
         w.advice = "shorter elements, or fewer of them at once";
     } else {
-        if (const auto* lobatto = std::get_if<Lobatto>(&method)) w.length = lobatto->window;
+        if (const auto* lobatto = std::get_if<Lobatto>(&method)) {
+            w.length = lobatto->window;
+            if (ends.has_state() && EnergyWatch::serves(model))
+                w.watch = [watch = EnergyWatch(model, lobatto->degree)](const Motion& so_far,
+                                                                        double until) mutable {
+                    return watch.look(so_far, until);
+                };
+        }
         w.may_divide = options.divide && ends.has_state();
         w.ends_at_bends = options.end_at_bends && model.has_pieces();
         if (w.may_divide) w.trust = {acceptable_velocity_jump, true, true};
@@ -290,6 +299,43 @@ void refuse_rounding(const Model& model, Solution& solution)
                      "; try: an earlier end of time, or a larger error in accuracy";
 }
 
+/// Energy that nobody supplied has a reason that no other check knows.
+void blame_turning_springs(const Model& model, Solution& solution)
+{
+    const auto* lobatto = std::get_if<Lobatto>(&solution.method);
+    const bool is_midpoint = std::holds_alternative<Midpoint>(solution.method);
+    const int degree = lobatto != nullptr ? lobatto->degree : static_cast<int>(is_midpoint);
+    SolveReport& report = solution.report;
+    Verdict& verdict = solution.verdict;
+    const bool is_failed = report.status == SolveStatus::not_converged;
+    if (degree == 0 || !EnergyWatch::serves(model) || !(is_failed || report.converged()) ||
+        !(verdict.energy_drift > doubtful_energy))
+        return;
+    const std::string why = of_turning_springs(model, solution.motion, degree);
+    if (is_failed && !why.empty())
+        report.message = why;
+    else if (!why.empty())
+        verdict.reasons.insert(verdict.reasons.begin(), why);
+    else if (!verdict.reasons.empty())
+        if (std::string perhaps = of_unsteady_springs(model, solution.motion, degree); !perhaps.empty())
+            verdict.reasons.push_back(std::move(perhaps));
+}
+
+/// An accuracy that lobatto did not reach may be what radau is for.
+void advise_radau(const Model& model, Solution& solution)
+{
+    const SolveReport& report = solution.report;
+    const bool is_said = report.message.find("radau") != std::string::npos;
+    if (report.status != SolveStatus::inaccurate || is_said ||
+        !std::holds_alternative<Lobatto>(solution.method) || !EnergyWatch::serves(model))
+        return;
+    const State start = solution.motion.at_end(0);
+    const Frequency vibration = highest_frequencies(model, start).fastest_vibration();
+    if (vibration.rate * time_of_motion(model, start) > fast_vibration)
+        solution.report.message += ", or the family radau, since " + vibration.where(model) +
+                                   " vibrates at " + to_text(vibration.rate, 3) + " rad/s";
+}
+
 }   // namespace
 
 Solution solve(const Model& model, const Problem& problem, const Time& time, const Method& method,
@@ -319,6 +365,8 @@ void judge(const Model& model, const Problem& problem, const SolveOptions& optio
     if (!limit.empty() && is_solved)   // first, as the others may follow from it
         solution.verdict.reasons.insert(solution.verdict.reasons.begin(), limit);
     if (!limit.empty() && !is_solved) solution.report.message += "; " + limit;
+    blame_turning_springs(model, solution);
+    advise_radau(model, solution);
     if (solution.verdict.reasons.empty()) return;
     solution.report.status = SolveStatus::suspect;
     solution.report.message = solution.verdict.reasons.front();

@@ -265,6 +265,7 @@ bool March::take(int first, int last, const Closed& closed, const NewtonReport& 
     time_ = mesh_.ends[options_.direction > 0 ? first : last];
     if (closed.is_refused) return refuse(first, last, closed, outcome);
     if (first < last) return set_failed(first, last);
+    if (options_.watch && outcome.factorisations > 0 && is_stopped_by_watch()) return false;
     const bool goes_on = !options_.progress || options_.progress({done_, n_elements(), time_,
                                                                   outcome.iterations, outcome.residual});
     if (goes_on || is_done()) return true;
@@ -272,6 +273,17 @@ bool March::take(int first, int last, const Closed& closed, const NewtonReport& 
     report_.failed_at = time_;
     report_.message = of_stop(time_);
     return false;
+}
+
+bool March::is_stopped_by_watch()
+{
+    const Motion* motion = options_.direction > 0 ? window_.so_far() : nullptr;
+    if (motion == nullptr) return false;
+    report_.message = options_.watch(*motion, mesh_.end());
+    if (report_.message.empty()) return false;
+    report_.status = SolveStatus::not_converged;
+    report_.failed_at = time_;
+    return true;
 }
 
 bool March::is_done() const

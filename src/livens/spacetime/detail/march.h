@@ -72,6 +72,7 @@ private:
     void count_bend(double t);
     /// Counts what was closed of the elements first..last - 1.
     bool take(int first, int last, const Closed& closed, const NewtonReport& outcome);
+    bool is_stopped_by_watch();
     /// Of the mesh, or as many as it will be if it grows as it did.
     int n_elements() const;
     bool is_done() const;
