@@ -11,6 +11,7 @@
 #include "livens/diagnostics/largest.h"
 #include "livens/multibody/rows.h"
 #include "livens/multibody/tables.h"
+#include "livens/solvers/patience.h"
 #include "livens/time/quadrature.h"
 
 namespace livens {
@@ -242,6 +243,7 @@ public:
         if (end_ == last) return false;
         reserve(static_cast<std::size_t>(last - end_), piece);
         for (; end_ < last; ++end_) {
+            Patience::ask();
             if (end_ > 0) total_.add(1, supply_.over(end_ - 1));
             append_state(piece);
             append_supply(piece);
