@@ -272,7 +272,6 @@ private:
              {&piece.linear_momentum, &piece.angular_momentum, &piece.linear_impulse, &piece.angular_impulse})
             list->reserve(n);
     }
-    /// Energies and momenta.
     void append_state(Balance& piece)
     {
         const std::span<const Matrix34> V = velocities_at_end(motion_, end_);
@@ -283,7 +282,6 @@ private:
         const Instant at{motion_.mesh.ends[end_], end_ == motion_.n_elements() ? Side::left : Side::right};
         const double kinetic = kinetic_energy(model_, X_, V),
                      potential = potential_energy(model_, at, X_, V, supply_.turns().at_end(end_));
-
         piece.t.push_back(at.t);
         piece.kinetic.push_back(kinetic);
         piece.potential.push_back(potential);

@@ -110,11 +110,12 @@ ConditionNumbers condition_numbers(const SparseMatrix& scaled, const SparseLU& l
     const auto S_transposed = [&](Input x, Output y) { scaled.multiply_transposed(x, y); };
     const auto solve = [&](Input x, Output y) { lu.solve(x, y); };
     const auto solve_transposed = [&](Input x, Output y) { lu.solve_transposed(x, y); };
-    return condition_numbers(KnownMatrix{scaled.size, one_norm(scaled, R, C), map(divide_by, C, S, R),   // R^-1 S C^-1
-                              map(divide_by, R, S_transposed, C),
-                              map(multiply_by, R, solve, C),   // C S^-1 R
-                              map(multiply_by, C, solve_transposed, R)},
-                             goes_on);
+    // R^-1 S C^-1 and C S^-1 R
+    return condition_numbers(
+        KnownMatrix{scaled.size, one_norm(scaled, R, C), map(divide_by, C, S, R),
+                    map(divide_by, R, S_transposed, C), map(multiply_by, R, solve, C),
+                    map(multiply_by, C, solve_transposed, R)},
+        goes_on);
 }
 
 }   // namespace livens

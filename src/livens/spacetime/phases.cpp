@@ -308,15 +308,14 @@ private:
             return solve_phase_(acting.model, problem, part, method, options);
         } catch (const InputError& error) {
             none.report.status = SolveStatus::singular;
-            none.report.message = "behind the event at " + to_text(first, 6) +
-                                  " s the motion cannot begin: " + error.complaint().message;
+            none.report.message = "behind the event at " + to_text(first, 6) + " s the motion cannot begin: " +
+                                  error.complaint().message;
         } catch (const Stopped&) {
             none.report.status = SolveStatus::cancelled;
             none.report.message = of_stop(first);
         }
         return none;
     }
-
     const Model& model_;
     const Problem& problem_;
     const Time& time_;

@@ -83,8 +83,8 @@ Solution solve(const Model& model, const Problem& problem, const Time& time, con
                const SolveOptions& options = {});
 
 /// What solve() does before it judges, if asked to and if the iteration converged: a second solution, and how
-/// far it is from the first, where it fails the report says why; and growth(), if asked for. Nothing that ends
-/// it (memory, the caller's word) costs the motion: the report says what is not known.
+/// far it is from the first, where it fails the report says why; and growth(), if asked for. Nothing that
+/// ends it (memory, the caller's word) costs the motion: the report says what is not known.
 void estimate(const Model& model, const Problem& problem, const Method& method, const SolveOptions& options,
               Solution& solution);
 
