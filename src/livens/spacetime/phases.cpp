@@ -308,8 +308,8 @@ private:
             return solve_phase_(acting.model, problem, part, method, options);
         } catch (const InputError& error) {
             none.report.status = SolveStatus::singular;
-            none.report.message = "behind the event at " + to_text(first, 6) + " s the motion cannot begin: " +
-                                  error.complaint().message;
+            none.report.message = "behind the event at " + to_text(first, 6) + " s the motion cannot begin: "
+                                  + error.complaint().message;
         } catch (const Stopped&) {
             none.report.status = SolveStatus::cancelled;
             none.report.message = of_stop(first);
