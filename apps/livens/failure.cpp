@@ -7,6 +7,7 @@
 #include <memory>
 #include <new>
 #include <stdexcept>
+#include <string_view>
 
 #include <unistd.h>
 
@@ -180,6 +181,36 @@ Failure failure(int exit_code, const std::string& message)
     return {exit_code, status_of(exit_code), {plain_error(code, message)}};
 }
 
+namespace {
+
+/// Memory that ends where nothing may be thrown (before main(), in a function that promises so, while an
+/// exception is made) is a failure with an exit code as well. Nothing here allocates.
+[[noreturn]] void end_without_memory() noexcept
+{
+    const bool is_other = [] {
+        if (!std::current_exception()) return false;   // not even that could be made
+        try {
+            throw;
+        } catch (const std::bad_alloc&) {
+            return false;
+        } catch (...) {
+            return true;
+        }
+    }();
+    const std::string_view text = is_other ? "livens: error: internal error, please report it\n"
+                                           : "livens: error: memory is exhausted\n";
+    [[maybe_unused]] const auto written = ::write(STDERR_FILENO, text.data(), text.size());
+    ::_exit(is_other ? exit_internal : exit_resources);
+}
+
+/// Before the tables of libraries are made, which are made before main().
+struct FirstOfAll {
+    FirstOfAll() { std::set_terminate(end_without_memory); }
+};
+[[gnu::init_priority(101)]] const FirstOfAll first_of_all;
+
+}   // namespace
+
 void keep_memory_for_report() { kept_for_report = std::make_unique_for_overwrite<char[]>(report_bytes); }
 
 int guarded(const Common& common, const std::function<int()>& command)
@@ -215,6 +246,9 @@ Scenario load_scenario(const std::string& file, const Common& common, std::vecto
 Scenario scenario_of_run(const Run& run, const std::string& run_file)
 {
     ScenarioResult result = parse_scenario(run.scenario_text, "scenario in " + run_file, {{}, run.meshes});
+    if (!result.scenario && exit_code_of(result.diagnostics) == exit_resources)
+        throw Failure{exit_resources, status_of(exit_resources), std::move(result.diagnostics),
+                      std::move(result.text)};
     if (!result.scenario)
         throw Failure{exit_input_output, "the run's scenario cannot be read by this version",
                       std::move(result.diagnostics), std::move(result.text)};

@@ -21,17 +21,25 @@ void note(int number)
     if (pauses == 0) ::_exit(128 + number);
 }
 
+/// What the caller has the program ignore (nohup, a script's background jobs) stays ignored.
+void watch(int number, struct sigaction& old)
+{
+    ::sigaction(number, nullptr, &old);
+    if (old.sa_handler == SIG_IGN) return;
+    struct sigaction action {};
+    action.sa_handler = note;
+    action.sa_flags = SA_RESTART;
+    sigemptyset(&action.sa_mask);
+    ::sigaction(number, &action, nullptr);
+}
+
 }   // namespace
 
 InterruptWatch::InterruptWatch()
 {
     caught = 0;
-    struct sigaction action {};
-    action.sa_handler = note;
-    action.sa_flags = SA_RESTART;
-    sigemptyset(&action.sa_mask);
-    ::sigaction(SIGINT, &action, &old_interrupt_);
-    ::sigaction(SIGTERM, &action, &old_terminate_);
+    watch(SIGINT, old_interrupt_);
+    watch(SIGTERM, old_terminate_);
 }
 
 InterruptWatch::~InterruptWatch()

@@ -7,7 +7,6 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
-#include <new>
 
 #include <fmt/format.h>
 
@@ -135,6 +134,8 @@ Solved solve_scenario(Job& job, double share, ProgressLine& line)
     };
     Clock::time_point begin = Clock::now();
     solution = solve(scenario.model, {scenario.conditions}, scenario.time, scenario.method, options);
+    if (solution.motion.mesh.ends.empty())   // nothing may replace an older result
+        throw failure(exit_signal + InterruptWatch::signal(), solution.report.message);
     solved.solve_seconds = seconds_since(begin) - solution.estimate_seconds;
     estimate(scenario.model, {scenario.conditions}, scenario.method, options, solution);
     solved.estimate_seconds = solution.estimate_seconds;
@@ -143,12 +144,8 @@ Solved solve_scenario(Job& job, double share, ProgressLine& line)
 
     begin = Clock::now();
     reserve.give_back();
-    try {
-        judge(scenario.model, {scenario.conditions}, options, solution);
-    } catch (const std::bad_alloc&) {
-        if (solution.report.converged()) solution.report.status = SolveStatus::suspect;
-        solution.report.message = "memory ended before the motion was checked";
-    }
+    judge(scenario.model, {scenario.conditions}, options, solution,
+          [] { return InterruptWatch::signal() == 0; });
     const Method method = solution.method;
     solved.run = make_run(scenario.model, std::move(solution), method);
     solved.run.scenario_text = scenario.text;

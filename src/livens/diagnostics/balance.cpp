@@ -11,6 +11,7 @@
 #include "livens/diagnostics/largest.h"
 #include "livens/multibody/rows.h"
 #include "livens/multibody/tables.h"
+#include "livens/solvers/patience.h"
 #include "livens/time/quadrature.h"
 
 namespace livens {
@@ -242,6 +243,7 @@ public:
         if (end_ == last) return false;
         reserve(static_cast<std::size_t>(last - end_), piece);
         for (; end_ < last; ++end_) {
+            Patience::ask();
             if (end_ > 0) total_.add(1, supply_.over(end_ - 1));
             append_state(piece);
             append_supply(piece);
@@ -270,7 +272,6 @@ private:
              {&piece.linear_momentum, &piece.angular_momentum, &piece.linear_impulse, &piece.angular_impulse})
             list->reserve(n);
     }
-    /// Energies and momenta.
     void append_state(Balance& piece)
     {
         const std::span<const Matrix34> V = velocities_at_end(motion_, end_);
@@ -281,7 +282,6 @@ private:
         const Instant at{motion_.mesh.ends[end_], end_ == motion_.n_elements() ? Side::left : Side::right};
         const double kinetic = kinetic_energy(model_, X_, V),
                      potential = potential_energy(model_, at, X_, V, supply_.turns().at_end(end_));
-
         piece.t.push_back(at.t);
         piece.kinetic.push_back(kinetic);
         piece.potential.push_back(potential);

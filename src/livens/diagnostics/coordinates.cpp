@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "livens/diagnostics/sample.h"
+#include "livens/solvers/patience.h"
 
 namespace livens {
 
@@ -33,6 +34,7 @@ FollowedCoordinates::FollowedCoordinates(const Model& model, const Motion& motio
         turned(sample_state(motion, motion.start()).X, std::vector<double>(coordinates_.size(), 0.0));
     at_ends_ = now;
     for (int e = 0; e < motion.n_elements(); ++e) {
+        Patience::ask();
         for (int node = 1; node <= motion.X.degree; ++node)
             now = turned(configurations(motion, e, node), now);
         at_ends_.insert(at_ends_.end(), now.begin(), now.end());
@@ -150,6 +152,7 @@ LoadTurns::LoadTurns(const Model& model, const Motion& motion) : motion_(motion)
     turns_.follow(sample_state(motion, motion.start()).X, now);
     at_ends_ = now;
     for (int e = 0; e < motion.n_elements(); ++e) {
+        Patience::ask();
         for (int node = 1; node <= motion.X.degree; ++node)
             turns_.follow(configurations(motion, e, node), now);
         at_ends_.insert(at_ends_.end(), now.begin(), now.end());
@@ -215,6 +218,7 @@ double first_half_turn(const JointCoordinate& q, const Motion& motion)
     const std::vector<double> nodes = motion.X.basis().nodes();
     for (int e = 0; e < motion.n_elements(); ++e)
         for (int node = 1; node <= motion.X.degree; ++node) {
+            Patience::ask();
             const std::vector<Matrix34> next = configurations(motion, e, node);
             turned += coordinate_change(q, X, next);
             X = next;

@@ -9,6 +9,7 @@
 
 #include "livens/base/elementary.h"
 #include "livens/diagnostics/largest.h"
+#include "livens/solvers/patience.h"
 
 namespace livens {
 
@@ -66,6 +67,7 @@ void ErrorMeter::compare(const Motion& finer, int first, int last)
     reach(last);
     std::vector<int> missing;
     for (int end = first; end <= last; ++end) {
+        Patience::ask();
         const int there = element_end_at(finer.mesh, motion_.mesh.ends[end]);
         if (there < 0) {
             missing.push_back(end);

@@ -8,6 +8,7 @@
 #include "livens/diagnostics/detail/sampler.h"
 #include "livens/diagnostics/diagnostics.h"
 #include "livens/diagnostics/largest.h"
+#include "livens/solvers/patience.h"
 
 namespace livens {
 
@@ -27,6 +28,7 @@ std::vector<double> velocity_jumps(const Model& model, const Motion& motion, int
         centres.push_back(point(body.is_point ? Vector3{} : mass_properties(body.mass).center_of_mass));
     std::vector<Matrix34> slopes(model.bodies().size());
     for (int e = first; e < last; ++e) {
+        Patience::ask();
         double& jump = jumps[e - first];
         const double h = motion.mesh.length(e);
         const std::span<const Matrix34> V = velocities_at_end(motion, at_start ? e : e + 1);

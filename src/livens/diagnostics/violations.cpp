@@ -12,6 +12,7 @@
 #include "livens/diagnostics/sample.h"
 #include "livens/multibody/rows.h"
 #include "livens/multibody/tables.h"
+#include "livens/solvers/patience.h"
 #include "livens/time/quadrature.h"
 
 namespace livens {
@@ -119,6 +120,7 @@ void at_velocity_level(const Tables& tables, const Motion& motion, std::span<Mat
                        ViolationReport& report)
 {
     for (int end = 0; end <= motion.n_elements(); ++end) {
+        Patience::ask();
         positions_at_end(motion, end, X);
         const std::span<const Matrix34> V = velocities_at_end(motion, end);
         for (int r = 0; r < tables.n_rows(); ++r)
@@ -132,6 +134,7 @@ void between_nodes(const Tables& tables, const Motion& motion, int samples, std:
 {
     const ElementSampler between(motion, points_between(motion.X.basis().nodes(), samples));
     for (int e = 0; e < motion.n_elements(); ++e) {
+        Patience::ask();
         for (int k = 0; k < between.size(); ++k) {
             between.positions(e, k, X);
             int row = -1;
@@ -150,6 +153,7 @@ void as_integrals(const Tables& tables, const Motion& motion, std::span<Matrix34
     const std::size_t n_rows = static_cast<std::size_t>(tables.n_rows());
     std::vector<double> joints(n_rows), rigidity(6 * X.size());
     for (int e = 0; e < motion.n_elements(); ++e) {
+        Patience::ask();
         std::ranges::fill(joints, 0.0);
         std::ranges::fill(rigidity, 0.0);
         for (int k = 0; k < sampler.size(); ++k) {

@@ -10,6 +10,7 @@
 #include "livens/diagnostics/detail/sampler.h"
 #include "livens/diagnostics/diagnostics.h"
 #include "livens/diagnostics/largest.h"
+#include "livens/solvers/patience.h"
 
 namespace livens {
 namespace {
@@ -204,6 +205,7 @@ double position_noise(const Model& model, const Motion& motion)
     }
     Bodies X(masses.size());
     for (int end = 0; end <= motion.n_elements(); ++end) {
+        Patience::ask();
         positions_at_end(motion, end, X);
         raise_to(largest, std::sqrt(square(masses, X)));
     }
@@ -220,6 +222,7 @@ Series step_velocities(const Model& model, const Motion& motion, double noise)
     const ElementSampler sampler(motion, equal_steps(n));
     Bodies here(static_cast<std::size_t>(motion.n_bodies)), next(here.size());
     for (int e = 0; e < motion.n_elements(); ++e) {
+        Patience::ask();
         const double step = motion.mesh.length(e) / n;
         sampler.positions(e, 0, here);
         for (int k = 0; k < n; ++k) {
@@ -240,6 +243,7 @@ Series momenta(const Model& model, const Motion& motion, double noise)
     const ElementSampler sampler(motion, equal_steps(n));
     Bodies P(static_cast<std::size_t>(motion.n_bodies));
     for (int e = 0; e < motion.n_elements(); ++e) {
+        Patience::ask();
         for (int k = 0; k < (e + 1 < motion.n_elements() ? n : n + 1); ++k) {
             sampler.momenta(e, k, P);
             series.append(sampler.instant(e, k).t, motion.mesh.length(e) / n, P);
@@ -253,6 +257,7 @@ Series end_velocities(const Model& model, const Motion& motion, double noise)
 {
     Series series(Metric::of_velocities(model), noise, motion.n_elements() + 1);
     for (int end = 0; end <= motion.n_elements(); ++end) {
+        Patience::ask();
         const std::span<const Matrix34> V = velocities_at_end(motion, end);
         const double step = motion.mesh.length(std::max(end - 1, 0));
         series.append(motion.mesh.ends[end], step, Bodies(V.begin(), V.end()));

@@ -2,8 +2,10 @@
 #include "livens/geometry/mesh.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <fstream>
 #include <memory>
+#include <new>
 
 #include "livens/base/error.h"
 #include "livens/geometry/detail/cursor.h"
@@ -146,7 +148,9 @@ Mesh read_mesh_file(const std::filesystem::path& file, std::string name)
                     "has " + std::to_string(size) + " bytes, more than " + std::to_string(max_mesh_bytes));
     const auto bytes = std::make_unique_for_overwrite<char[]>(size);
     prefer_large_pages(bytes.get(), size);
+    errno = 0;
     std::ifstream stream(file, std::ios::binary);
+    if (!stream.is_open() && errno == ENOMEM) throw std::bad_alloc();   // of the stream's own
     stream.read(bytes.get(), static_cast<std::streamsize>(size));
     if (!stream) refuse_file(name, "cannot be read");
     return read_mesh({bytes.get(), size}, name);

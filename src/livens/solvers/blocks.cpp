@@ -100,35 +100,69 @@ std::size_t BlockMatrix::place(int element, int row_node, int column_node) const
                     storage_[static_cast<std::size_t>(element)].size());
 }
 
-SparseMatrix to_sparse(const BlockStructure& structure, const BlockMatrix& matrix)
+namespace {
+
+/// Calls visit(row, column, value) for the entries that are not zero, element after element, rows ascending.
+template <class Visit>
+void for_each_entry(const BlockStructure& structure, const BlockMatrix& matrix, const Visit& visit)
 {
     std::vector<int> first_row, first_unknown;
     running_sums(structure.n_rows, first_row);
     running_sums(structure.n_unknowns, first_unknown);
-    // Elements ascend, but what they share comes twice: columns are sorted, and equal rows added.
-    std::vector<std::vector<std::pair<int, double>>> columns(static_cast<std::size_t>(first_unknown.back()));
     for (int e = 0; e < structure.n_elements(); ++e) {
         const auto node = static_cast<std::size_t>(structure.elements[static_cast<std::size_t>(e)][0]);
         const double* value = matrix.storage(e).data();
         for (int i = 0; i < matrix.n_rows(e); ++i)
             for (int j = 0; j < matrix.n_columns(e); ++j, ++value)
-                if (*value != 0)
-                    columns[static_cast<std::size_t>(first_unknown[node] + j)].emplace_back(
-                        first_row[node] + i, *value);
+                if (*value != 0) visit(first_row[node] + i, first_unknown[node] + j, *value);
     }
-    for (auto& column : columns) {
-        std::stable_sort(column.begin(), column.end(),
-                         [](const auto& a, const auto& b) { return a.first < b.first; });
-        std::size_t n = 0;
+}
+
+/// Sorts the rows of every column and adds equal ones: elements ascend, but what they share comes twice.
+void add_up(SparseMatrix& A)
+{
+    std::vector<std::pair<int, double>> column;
+    int n = 0, begin = 0;
+    for (int j = 0; j < A.size; ++j) {
+        const int end = A.column_starts[j + 1];
+        column.clear();
+        for (int k = begin; k < end; ++k) column.emplace_back(A.rows[k], A.values[k]);
+        std::ranges::stable_sort(column, {}, &std::pair<int, double>::first);
+        A.column_starts[j] = n;
         for (const auto& [row, value] : column) {
-            if (n > 0 && column[n - 1].first == row)
-                column[n - 1].second += value;
-            else
-                column[n++] = {row, value};
+            if (n > A.column_starts[j] && A.rows[n - 1] == row) {
+                A.values[n - 1] += value;
+                continue;
+            }
+            A.rows[n] = row;
+            A.values[n++] = value;
         }
-        column.resize(n);
+        begin = end;
     }
-    return sparse_from_columns(columns);
+    A.column_starts[A.size] = n;
+    A.rows.resize(static_cast<std::size_t>(n));
+    A.values.resize(static_cast<std::size_t>(n));
+}
+
+}   // namespace
+
+/// Entries are counted first: lists of them would take several times the matrix.
+SparseMatrix to_sparse(const BlockStructure& structure, const BlockMatrix& matrix)
+{
+    SparseMatrix A;
+    A.size = std::accumulate(structure.n_unknowns.begin(), structure.n_unknowns.end(), 0);
+    A.column_starts.assign(static_cast<std::size_t>(A.size) + 1, 0);
+    for_each_entry(structure, matrix, [&](int, int column, double) { ++A.column_starts[column + 1]; });
+    std::partial_sum(A.column_starts.begin(), A.column_starts.end(), A.column_starts.begin());
+    A.rows.resize(static_cast<std::size_t>(A.column_starts.back()));
+    A.values.resize(A.rows.size());
+    std::vector<int> next(A.column_starts.begin(), A.column_starts.end() - 1);
+    for_each_entry(structure, matrix, [&](int row, int column, double value) {
+        A.rows[next[column]] = row;
+        A.values[next[column]++] = value;
+    });
+    add_up(A);
+    return A;
 }
 
 }   // namespace livens

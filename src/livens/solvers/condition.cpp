@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Norms and condition numbers of matrices known by their products and solutions alone.
+// Norms of matrices known by their products alone.
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -284,37 +284,6 @@ private:
     bool overflowed_ = false;
 };
 
-// --- condition numbers ---
-
-/// |R^-1 S C^-1|_1, exactly.
-double one_norm(const SparseMatrix& S, const Values& row_scale, const Values& column_scale)
-{
-    double largest = 0;
-    for (int j = 0; j < S.size; ++j) {
-        double sum = 0;
-        for (int k = S.column_starts[j]; k < S.column_starts[j + 1]; ++k)
-            sum += std::abs(S.values[k] / row_scale[S.rows[k]]);
-        largest = std::max(largest, sum / std::abs(column_scale[j]));
-    }
-    return largest;
-}
-
-Values scale_or_ones(std::span<const double> scale, int size)
-{
-    assert(scale.empty() || static_cast<int>(scale.size()) == size);
-    return scale.empty() ? Values(static_cast<std::size_t>(size), 1.0) : Values(scale.begin(), scale.end());
-}
-
-void multiply_by(std::span<double> x, const Values& scale)
-{
-    for (std::size_t i = 0; i < x.size(); ++i) x[i] *= scale[i];
-}
-
-void divide_by(std::span<double> x, const Values& scale)
-{
-    for (std::size_t i = 0; i < x.size(); ++i) x[i] /= scale[i];
-}
-
 }   // namespace
 
 double one_norm(int n, const LinearMap& apply, const LinearMap& apply_transposed)
@@ -344,45 +313,6 @@ double two_norm(int n, const LinearMap& apply, const LinearMap& apply_transposed
         check = check + (check + 3) / 4;
     }
     return value;
-}
-
-ConditionNumbers condition_numbers(const SparseMatrix& scaled, const SparseLU& lu,
-                                   std::span<const double> row_scale, std::span<const double> column_scale,
-                                   const std::function<bool()>& goes_on)
-{
-    const Values R = scale_or_ones(row_scale, scaled.size), C = scale_or_ones(column_scale, scaled.size);
-    Values scratch(static_cast<std::size_t>(scaled.size));
-    using Input = std::span<const double>;
-    using Output = std::span<double>;
-    // y = after * f(before * x), scaled by products or quotients. Who is stopped gets infinity, which ends
-    // every search for a norm at once.
-    bool is_stopped = false;
-    const auto map = [&](auto scale, const Values& before, auto f, const Values& after) -> LinearMap {
-        return [&, scale, f](Input x, Output y) {
-            is_stopped = is_stopped || (goes_on && !goes_on());
-            if (is_stopped) {
-                std::fill(y.begin(), y.end(), not_representable);
-                return;
-            }
-            std::copy(x.begin(), x.end(), scratch.begin());
-            scale(scratch, before);
-            f(scratch, y);
-            scale(y, after);
-        };
-    };
-    const auto S = [&](Input x, Output y) { scaled.multiply(x, y); };
-    const auto S_transposed = [&](Input x, Output y) { scaled.multiply_transposed(x, y); };
-    const auto solve = [&](Input x, Output y) { lu.solve(x, y); };
-    const auto solve_transposed = [&](Input x, Output y) { lu.solve_transposed(x, y); };
-    const LinearMap matrix = map(divide_by, C, S, R);   // R^-1 S C^-1
-    const LinearMap matrix_transposed = map(divide_by, R, S_transposed, C);
-    const LinearMap inverse = map(multiply_by, R, solve, C);   // C S^-1 R
-    const LinearMap inverse_transposed = map(multiply_by, C, solve_transposed, R);
-    const ConditionNumbers numbers{
-        .one = one_norm(scaled, R, C) * one_norm(scaled.size, inverse, inverse_transposed),
-        .two = two_norm(scaled.size, matrix, matrix_transposed) *
-               two_norm(scaled.size, inverse, inverse_transposed)};
-    return is_stopped ? ConditionNumbers{} : numbers;
 }
 
 }   // namespace livens

@@ -7,6 +7,8 @@
 #include <cstddef>
 #include <utility>
 
+#include "livens/solvers/patience.h"
+
 namespace livens {
 
 namespace {
@@ -39,6 +41,8 @@ std::size_t count(int rows, int cols)
 {
     return static_cast<std::size_t>(rows) * static_cast<std::size_t>(cols);
 }
+
+constexpr int large = 256;   // smaller ones are done before anyone could ask
 
 }   // namespace
 
@@ -89,6 +93,7 @@ bool DenseLU::factorise()
 {
     int k = 0;
     for (; k + 1 < n_; k += 2) {
+        if (n_ >= large) Patience::ask();
         if (!choose_pivot(k)) return false;
         const double d0 = 1 / row(k)[k], top = row(k)[k + 1];
         for (int i = k + 1; i < n_; ++i) {
@@ -245,6 +250,7 @@ double OrthogonalBasis::factorise(int k, bool keep_choices)
     k_ = k;
     double smallest = 1;
     for (int j = 0; j < k; ++j) {
+        if (n_ >= large) Patience::ask();
         for (int i = 0; i < j; ++i) reflect_column(i, column(j));
         lead(j, keep_choices);
         reflect(j, keep_choices);
@@ -262,6 +268,7 @@ double OrthogonalBasis::factorise_pivoted(int k, std::span<int> order)
     }
     double smallest = 1;
     for (int j = 0; j < k; ++j) {
+        if (n_ >= large) Patience::ask();
         // ties go to the earlier row, so that the choice does not hang on rounding
         int best = j;
         for (int c = j + 1; c < most_; ++c) {
@@ -355,6 +362,7 @@ void Cholesky::resize(int n)
 bool Cholesky::factorise()
 {
     for (int j = 0; j < n_; ++j) {
+        if (n_ >= large) Patience::ask();
         double* rj = row(j);
         const double d = rj[j] - inner(rj, rj, j);
         if (!(d > 0)) return false;

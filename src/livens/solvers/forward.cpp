@@ -14,6 +14,7 @@
 
 #include "livens/solvers/dense.h"
 #include "livens/solvers/linear_solver.h"
+#include "livens/solvers/patience.h"
 
 namespace livens {
 
@@ -108,6 +109,7 @@ public:
         singular_node_ = -1;
         is_regular_ = false;
         for (int e = 0; e < matrix.n_elements(); ++e) {
+            Patience::ask();
             Piece& piece = pieces_[static_cast<std::size_t>(e)];
             if (!is_finite(matrix.storage(e))) return Outcome::not_finite;
             take(matrix, e);

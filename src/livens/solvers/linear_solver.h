@@ -33,7 +33,7 @@ public:
     /// called again before anything else.
     virtual void analyse(const BlockStructure& structure) = 0;
     /// May use the matrix up: its values are undefined afterwards, its shape stays; clear() before refilling.
-    /// Not finite: an entry, or the sum of an element's entries.
+    /// Not finite: an entry, or the sum of an element's entries. Throws Stopped where Patience ends.
     virtual Outcome factorise(BlockMatrix& matrix) = 0;
     /// In: right-hand side by rows; out: unknowns. Only after a regular factorisation.
     virtual void solve(std::span<double> x) const = 0;

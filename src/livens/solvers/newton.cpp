@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "livens/base/elementary.h"
+#include "livens/solvers/patience.h"
 
 namespace livens {
 
@@ -29,6 +30,18 @@ public:
 
     NewtonReport run()
     {
+        try {
+            return iterate();
+        } catch (const Stopped&) {
+            report_.residual = infinite;
+            fail(SolveStatus::cancelled);
+            return report_;
+        }
+    }
+
+private:
+    NewtonReport iterate()
+    {
         are_finite_ = problem_.residual();
         problem_.keep();
         Verdict verdict = problem_.n_unknowns() == 0 ? Verdict::converged : Verdict::new_factors;
@@ -41,7 +54,6 @@ public:
         return report_;
     }
 
-private:
     enum class Verdict { converged, new_factors, failed };
 
     /// New factors at the kept point, which is the current one, and steps with them as long as they serve.

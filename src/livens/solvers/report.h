@@ -59,7 +59,8 @@ struct SolveReport {
 };
 
 /// Called after each window, and between Newton's iterations on one (`done` and `t` are then as before it);
-/// return false to stop. After the last window only the computation of condition numbers is left to stop.
+/// return false to stop. What takes long inside a window or after the last one (factors, condition numbers,
+/// checks of the motion) calls it again and again with what it was told last.
 struct Progress {
     int done = 0;   ///< elements solved so far, 0..n_elements, in either direction of time
     int n_elements = 0;

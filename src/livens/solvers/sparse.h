@@ -47,7 +47,7 @@ public:
     /// Orders and analyses the pattern; values do not matter. To be repeated when the pattern changes.
     void analyse(const SparseMatrix& A);
     /// False if the matrix is singular to the library or an entry is not finite. `A` must have the analysed
-    /// pattern; it is not kept.
+    /// pattern; it is not kept. Throws Stopped where Patience ends (Eigen; UMFPACK cannot be stopped).
     bool factorise(const SparseMatrix& A);
     /// x = A^-1 b and x = A^-T b; b and x may be the same.
     void solve(std::span<const double> b, std::span<double> x) const;
@@ -81,9 +81,14 @@ struct ConditionNumbers {
     double one = 0;   ///< |A|_1 |A^-1|_1
     double two = 0;   ///< |A|_2 |A^-1|_2
 };
+/// Of a matrix that somebody else solves with. `goes_on` is asked before each product; once it says false the
+/// numbers are 0, which says that they are not known.
+ConditionNumbers condition_numbers(const SparseMatrix& A, const LinearMap& solve,
+                                   const LinearMap& solve_transposed,
+                                   const std::function<bool()>& goes_on = {});
+
 /// Of the matrix A = R^-1 S C^-1 whose scaled form S = R A C was factorised: R and C are diagonal, given by
-/// `row_scale` and `column_scale`; empty: ones. `goes_on` is asked before each product; once it says false
-/// the numbers are 0, which says that they are not known.
+/// `row_scale` and `column_scale`; empty: ones.
 ConditionNumbers condition_numbers(const SparseMatrix& scaled, const SparseLU& lu,
                                    std::span<const double> row_scale = {},
                                    std::span<const double> column_scale = {},

@@ -17,6 +17,7 @@
 #include <string>
 
 #include "livens/solvers/detail/sparse_backend.h"
+#include "livens/solvers/patience.h"
 
 namespace Eigen::internal {
 
@@ -59,6 +60,28 @@ Index SparseLUImpl<double, std::int64_t>::expand(Matrix<std::int64_t, Dynamic, 1
     return grow(vector, length, n_used, keep_length != 0, n_expansions);
 }
 
+/// Eigen's own, but for the question: one is made for every panel of columns, and a large factorisation has
+/// no other place at which it could be stopped. What it throws goes through factorize() as memory that ends.
+template <>
+struct panel_dfs_traits<Matrix<std::int64_t, Dynamic, 1>> {
+    panel_dfs_traits(Index column, std::int64_t* marker) : column_(column), marker_(marker)
+    {
+        livens::Patience::ask();
+    }
+    bool update_segrep(Index representative, Index column)
+    {
+        if (marker_[representative] >= column_) return false;
+        marker_[representative] = column;
+        return true;
+    }
+    void mem_expand(Matrix<std::int64_t, Dynamic, 1>&, Index, Index) {}
+    enum { ExpandMem = false };
+
+private:
+    Index column_;
+    std::int64_t* marker_;
+};
+
 }   // namespace Eigen::internal
 
 namespace livens {
@@ -93,6 +116,9 @@ public:
         try {
             lu_->factorize(matrix_);
         } catch (const std::bad_alloc&) {
+            lu_.reset();
+            throw;
+        } catch (const Stopped&) {
             lu_.reset();
             throw;
         }

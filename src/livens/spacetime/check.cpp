@@ -10,6 +10,7 @@
 #include "livens/spacetime/mixed/window.h"
 #include "livens/spacetime/phases.h"
 #include "livens/spacetime/solve.h"
+#include "livens/stepping/stepping.h"
 
 namespace livens {
 
@@ -187,6 +188,7 @@ void check_method(const Model& model, const Problem& problem, const Time& time, 
                                            : "those of " + name_of(method) + " are not known one by one",
                           "let a second solution tell it"});
     if (options.estimate == SolveOptions::Estimate::local) refuse_laws_that_bend(model);
+    if (!is_elements(method)) check_stepping(model);
     if (mesh == nullptr) return check_accuracy(problem.conditions, std::get<Span>(time), method, options);
     if (std::holds_alternative<Auto>(method))
         throw InputError({"accuracy-elements", "method.family",

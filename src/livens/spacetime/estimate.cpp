@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <utility>
+#include <new>
+#include <string>
 #include <variant>
 
 #include "livens/base/elementary.h"
@@ -14,6 +17,7 @@
 #include "livens/diagnostics/largest.h"
 #include "livens/multibody/frequencies.h"
 #include "livens/spacetime/accuracy.h"
+#include "livens/solvers/patience.h"
 #include "livens/spacetime/phases.h"
 #include "livens/spacetime/second.h"
 
@@ -104,7 +108,6 @@ bool Second::advance(int end)
     try {
         second = solve(model_, problem_, mesh, method_, options_);
     } catch (const InputError& error) {   // about a state that the last piece made, not one that was given
-        if (error.complaint().code != "start-singular") throw;
         second.report.status = SolveStatus::singular;
         second.report.message =
             error.complaint().message + " of a piece at t = " + to_text(mesh.start(), 6) + " s";
@@ -338,12 +341,9 @@ ErrorEstimate grown_errors(const Model& model, const Solution& solution)
     return found;
 }
 
-}   // namespace
-
-void estimate(const Model& model, const Problem& problem, const Method& method, const SolveOptions& options,
-              Solution& solution)
+void estimate_all(const Model& model, const Problem& problem, const Method& method,
+                  const SolveOptions& options, Solution& solution)
 {
-    if (!solution.report.converged()) return;
     const bool is_local = options.estimate == SolveOptions::Estimate::local;
     if (options.estimate == SolveOptions::Estimate::second && solution.estimate.empty())
         measure_error(model, problem, method, options, solution);
@@ -363,6 +363,30 @@ void estimate(const Model& model, const Problem& problem, const Method& method, 
         count_rounding(model, solution.growth, solution.motion.mesh, solution.estimate);
     solution.estimate_seconds +=
         std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+}   // namespace
+
+void estimate(const Model& model, const Problem& problem, const Method& method, const SolveOptions& options,
+              Solution& solution)
+{
+    SolveReport& report = solution.report;
+    if (!report.converged()) return;
+    const int n = solution.motion.n_elements();
+    std::function<bool()> goes_on;
+    if (options.progress)
+        goes_on = [&] { return options.progress({n, n, solution.motion.end(), 0, report.residual_norm}); };
+    const Patience patience(goes_on);
+    const std::string before = " before the error was estimated";
+    try {
+        estimate_all(model, problem, method, options, solution);
+    } catch (const Stopped&) {
+        solution.estimate = {};
+        report.notes.push_back("stopped as asked" + before);
+    } catch (const std::bad_alloc&) {
+        solution.estimate = {};
+        report.estimate_failed = "memory ended" + before;
+    }
 }
 
 }   // namespace livens

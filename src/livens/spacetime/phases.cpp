@@ -11,6 +11,8 @@
 #include "livens/base/text.h"
 #include "livens/diagnostics/largest.h"
 #include "livens/diagnostics/sample.h"
+#include "livens/solvers/patience.h"
+#include "livens/spacetime/detail/window_notes.h"
 
 namespace livens {
 
@@ -300,19 +302,21 @@ private:
     {
         const Time part = part_of(time_, first, last, accuracy);
         if (first == ends_.front()) return solve_phase_(acting.model, problem, part, method, options);
+        Solution none;
+        none.method = method;
+        none.report.failed_at = first;
         try {
             return solve_phase_(acting.model, problem, part, method, options);
         } catch (const InputError& error) {
-            Solution none;
-            none.method = method;
             none.report.status = SolveStatus::singular;
-            none.report.failed_at = first;
-            none.report.message = "behind the event at " + to_text(first, 6) +
-                                  " s the motion cannot begin: " + error.complaint().message;
-            return none;
+            none.report.message = "behind the event at " + to_text(first, 6) + " s the motion cannot begin: "
+                                  + error.complaint().message;
+        } catch (const Stopped&) {
+            none.report.status = SolveStatus::cancelled;
+            none.report.message = of_stop(first);
         }
+        return none;
     }
-
     const Model& model_;
     const Problem& problem_;
     const Time& time_;

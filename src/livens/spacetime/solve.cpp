@@ -3,9 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <memory>
+#include <new>
 #include <numbers>
+#include <string>
 #include <utility>
 
 #include "livens/base/error.h"
@@ -13,6 +16,7 @@
 #include "livens/diagnostics/coordinates.h"
 #include "livens/multibody/frequencies.h"
 #include "livens/multibody/singular.h"
+#include "livens/solvers/patience.h"
 #include "livens/spacetime/accuracy.h"
 #include "livens/spacetime/detail/load_limits.h"
 #include "livens/spacetime/detail/turning_springs.h"
@@ -141,34 +145,54 @@ WindowOptions window_options(const Model& model, const Ends& ends, const Method&
     return w;
 }
 
-/// The caller's word while condition numbers are computed, after the last window.
-class Patience {
+/// The caller's word while condition numbers are computed, after the last window. Nothing that ends them may
+/// cost the motion.
+class ConditionNumbersOfLast {
 public:
-    Patience(const SolveOptions& options, const TimeMesh& mesh, double t)
+    ConditionNumbersOfLast(const SolveOptions& options, const TimeMesh& mesh, double t)
         : progress_(options.progress), state_{mesh.n_elements(), mesh.n_elements(), t, 0, 0}
     {}
-    std::function<bool()> goes_on()
+
+    /// work(goes_on) leaves what it finds in the report.
+    template <class Work>
+    void measure(SolveReport& report, const Work& work)
     {
-        return [this] {
-            is_exhausted_ = is_exhausted_ || (progress_ && !progress_(state_));
-            return !is_exhausted_;
+        const std::function<bool()> goes_on = [this] {
+            is_stopped_ = is_stopped_ || (progress_ && !progress_(state_));
+            return !is_stopped_;
         };
+        const Patience patience(goes_on);
+        try {
+            work(goes_on);
+        } catch (const Stopped&) {
+            is_stopped_ = true;
+        } catch (const std::bad_alloc&) {
+            has_no_memory_ = true;
+            report.notes.push_back("memory ended before condition numbers were computed");
+        }
     }
-    bool is_exhausted() const { return is_exhausted_; }
+    bool is_stopped() const { return is_stopped_; }
+    bool has_no_memory() const { return has_no_memory_; }
 
 private:
     const ProgressCallback& progress_;
     Progress state_;
-    bool is_exhausted_ = false;
+    bool is_stopped_ = false, has_no_memory_ = false;
 };
 
 /// Conditions at both ends may leave a motion free, at conjugate and focal times: then the solution is one of
 /// many, and its digits are made of rounding.
-void refuse_undetermined(Window& window, Patience& patience, SolveReport& report)
+void refuse_undetermined(Window& window, ConditionNumbersOfLast& last, SolveReport& report)
 {
     SolveReport measured;
-    window.measure_condition(measured, patience.goes_on());
-    if (patience.is_exhausted()) return;
+    last.measure(report, [&](const auto& goes_on) { window.measure_condition(measured, goes_on); });
+    if (last.is_stopped()) return;
+    if (last.has_no_memory()) {
+        report.status = SolveStatus::suspect;
+        report.message =
+            "memory ended before it was found whether the conditions at the two ends determine the motion";
+        return;
+    }
     const bool is_singular = !measured.notes.empty() || !(measured.condition_1 < undetermined);
     if (!is_singular) return;
     report.status = SolveStatus::singular;
@@ -198,24 +222,25 @@ Solution solve_by_windows(const Model& model, const Problem& problem, const Time
     WindowOptions w = window_options(model, ends, method, options);
     w.propose = Proposals(model, problem, mesh, ends, method, *window);
     solve_windows(*window, mesh, w, report);
-    Patience patience(options, mesh, w.direction > 0 ? mesh.end() : mesh.start());
+    ConditionNumbersOfLast last(options, mesh, w.direction > 0 ? mesh.end() : mesh.start());
     if (!ends.has_state() && !is_mixed && report.status != SolveStatus::cancelled)
-        refuse_undetermined(*window, patience, report);
+        refuse_undetermined(*window, last, report);
     const bool is_whole = !std::holds_alternative<Lobatto>(method) || w.length == 0 ||
                           w.length >= mesh.n_elements();   // else the last window is all there is
     if (options.condition && report.converged() && is_whole)
-        window->measure_condition(report, patience.goes_on());
+        last.measure(report, [&](const auto& goes_on) { window->measure_condition(report, goes_on); });
     solution.unseen = window->take_unseen();
     solution.motion = window->take_motion();
-    if (options.condition && report.converged() && !is_whole) {
-        // the march's equations as one window of all elements, at the solution
-        LobattoWindow whole(tables, mesh, ends, rule_of(method));
-        const Motion& motion = solution.motion;
-        if (whole.open(0, mesh.n_elements(), report) &&
-            whole.start_from([&](double t) { return motion.at(t); }) && whole.equations().residual())
-            whole.measure_condition(report, patience.goes_on());
-    }
-    if (patience.is_exhausted()) {
+    if (options.condition && report.converged() && !is_whole)
+        last.measure(report, [&](const auto& goes_on) {
+            // the march's equations as one window of all elements, at the solution
+            LobattoWindow whole(tables, mesh, ends, rule_of(method));
+            const Motion& motion = solution.motion;
+            if (whole.open(0, mesh.n_elements(), report) &&
+                whole.start_from([&](double t) { return motion.at(t); }) && whole.equations().residual())
+                whole.measure_condition(report, goes_on);
+        });
+    if (last.is_stopped()) {
         report.status = SolveStatus::cancelled;
         report.failed_at = solution.motion.end();
         report.message = "stopped as asked while condition numbers were computed; the motion is complete";
@@ -339,22 +364,43 @@ void advise_radau(const Model& model, Solution& solution)
 }   // namespace
 
 Solution solve(const Model& model, const Problem& problem, const Time& time, const Method& method,
-               const SolveOptions& options)
+               const SolveOptions& given)
 {
-    check_method(model, problem, time, method, options);
-    Solution solution = solve_all_time(model, problem, time, method, options);
+    check_method(model, problem, time, method, given);
+    SolveOptions options = given;
+    Progress last;
+    std::function<bool()> goes_on;
+    if (given.progress) {
+        options.progress = [&](const Progress& progress) {
+            last = progress;
+            return given.progress(progress);
+        };
+        goes_on = [&] { return given.progress(last); };
+    }
+    const Patience patience(goes_on);
+    Solution solution;
+    try {
+        solution = solve_all_time(model, problem, time, method, options);
+    } catch (const Stopped&) {
+        solution = {};
+        solution.method = method;
+        solution.report.status = SolveStatus::cancelled;
+        solution.report.message = "stopped as asked before the first element was solved";
+        return solution;
+    }
     lower_orders(model, solution.motion);
     if (!options.judge) return solution;
     estimate(model, problem, method, options, solution);
     refuse_rounding(model, solution);
-    judge(model, problem, options, solution);
+    judge(model, problem, options, solution, goes_on);
     return solution;
 }
 
-void judge(const Model& model, const Problem& problem, const SolveOptions& options, Solution& solution)
+namespace {
+
+/// What bodies turn by that a load can no longer follow, and conditions that are not met, beside the verdict.
+void judge_beside(const Model& model, const Problem& problem, const SolveOptions& options, Solution& solution)
 {
-    solution.verdict = judge(model, solution.motion, solution.report, solution.estimate, solution.growth,
-                             solution.growing);
     for (const std::string& reason : missed_conditions(model, problem.conditions, options, solution))
         solution.verdict.reasons.push_back(reason);
     constexpr double degree = std::numbers::pi / 180;
@@ -367,9 +413,36 @@ void judge(const Model& model, const Problem& problem, const SolveOptions& optio
     if (!limit.empty() && !is_solved) solution.report.message += "; " + limit;
     blame_turning_springs(model, solution);
     advise_radau(model, solution);
+}
+
+}   // namespace
+
+void judge(const Model& model, const Problem& problem, const SolveOptions& options, Solution& solution,
+           const std::function<bool()>& goes_on)
+{
+    constexpr double grace = 0.5;   // s of CPU time: most motions are judged by then
+    SolveReport& report = solution.report;
+    const auto give_up = [&](SolveStatus status, const std::string& why) {
+        solution.verdict = {};
+        const std::string what = why + " before the motion was checked";
+        report.notes.push_back(what);
+        if (!report.converged()) return;   // the status says why it is short
+        report.status = status;
+        report.message = what;
+    };
+    try {
+        const Patience patience(goes_on, grace);
+        solution.verdict = judge(model, solution.motion, report, solution.estimate, solution.growth,
+                                 solution.growing);
+        judge_beside(model, problem, options, solution);
+    } catch (const Stopped&) {
+        return give_up(SolveStatus::cancelled, "stopped as asked");
+    } catch (const std::bad_alloc&) {
+        return give_up(SolveStatus::suspect, "memory ended");
+    }
     if (solution.verdict.reasons.empty()) return;
-    solution.report.status = SolveStatus::suspect;
-    solution.report.message = solution.verdict.reasons.front();
+    report.status = SolveStatus::suspect;
+    report.message = solution.verdict.reasons.front();
 }
 
 ExactSample sample_exactly(const Model& model, const Motion& motion, const Method& given, double t,

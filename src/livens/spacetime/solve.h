@@ -2,6 +2,9 @@
 // The one entry: model, conditions, time elements and method in; motion and report out.
 #pragma once
 
+#include <functional>
+#include <vector>
+
 #include "livens/diagnostics/acceptance.h"
 #include "livens/diagnostics/estimate.h"
 #include "livens/multibody/closing.h"
@@ -81,7 +84,8 @@ Solution solve(const Model& model, const Problem& problem, const Time& time, con
                const SolveOptions& options = {});
 
 /// What solve() does before it judges, if asked to and if the iteration converged: a second solution, and how
-/// far it is from the first, where it fails the report says why; and growth(), if asked for.
+/// far it is from the first, where it fails the report says why; and growth(), if asked for. Nothing that
+/// ends it (memory, the caller's word) costs the motion: the report says what is not known.
 void estimate(const Model& model, const Problem& problem, const Method& method, const SolveOptions& options,
               Solution& solution);
 
@@ -97,8 +101,11 @@ Growth growth(const Model& model, const Problem& problem, const Method& method, 
               const Motion& motion);
 
 /// What solve() does last: measures the motion, compares it with what was stated at the ends of time, and
-/// lets the verdict decide between converged and suspect. An estimate that the solution has counts.
-void judge(const Model& model, const Problem& problem, const SolveOptions& options, Solution& solution);
+/// lets the verdict decide between converged and suspect. An estimate that the solution has counts. Half a
+/// second of CPU time after `goes_on` says no, or where memory ends, the motion stays unjudged: a note says
+/// so, the verdict knows nothing, and what had converged is `cancelled` or `suspect`.
+void judge(const Model& model, const Problem& problem, const SolveOptions& options, Solution& solution,
+           const std::function<bool()>& goes_on = {});
 
 /// Throws what solve() would throw for this input, without solving.
 void check_method(const Model& model, const Problem& problem, const Time& time, const Method& method,

@@ -7,6 +7,7 @@
 
 #include "livens/base/text.h"
 #include "livens/diagnostics/sample.h"
+#include "livens/solvers/patience.h"
 #include "livens/spacetime/detail/march.h"
 
 namespace livens {
@@ -49,7 +50,11 @@ March::March(Window& window, TimeMesh& mesh, const WindowOptions& options, Solve
 void March::run()
 {
     time_ = options_.direction > 0 ? mesh_.start() : mesh_.end();
-    options_.pace != nullptr ? run_at_pace(*options_.pace) : run_mesh();
+    try {
+        options_.pace != nullptr ? run_at_pace(*options_.pace) : run_mesh();
+    } catch (const Stopped&) {
+        set_cancelled();
+    }
     window_.describe(report_);
     counts_.tolerance = options_.pace != nullptr ? 1 : options_.tolerance;
     add_notes(report_, counts_);
@@ -269,10 +274,15 @@ bool March::take(int first, int last, const Closed& closed, const NewtonReport& 
     const bool goes_on = !options_.progress || options_.progress({done_, n_elements(), time_,
                                                                   outcome.iterations, outcome.residual});
     if (goes_on || is_done()) return true;
+    set_cancelled();
+    return false;
+}
+
+void March::set_cancelled()
+{
     report_.status = SolveStatus::cancelled;
     report_.failed_at = time_;
     report_.message = of_stop(time_);
-    return false;
 }
 
 bool March::is_stopped_by_watch()

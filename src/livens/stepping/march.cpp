@@ -20,21 +20,6 @@ namespace {
 
 using System = StepEquations::System;
 
-/// Every entry of the mass matrix takes part in the equations of a director, so a vanishing second moment is
-/// a missing equation.
-void refuse_singular_masses(const Model& model)
-{
-    for (const Body& body : model.bodies()) {
-        if (!is_singular(body.mass, body.is_point)) continue;
-        throw InputError(
-            {"mass-singular", "body[" + body.name + "].inertia",
-             "the mass matrix of body '" + body.name + "' is singular, which classical stepping cannot use",
-             "", "J1 + J2 > J3 for every principal moment",
-             "a lamina or a needle has no extent along some axis, so one of its directors has no inertia",
-             "use the method lobatto, or give the body a little thickness"});
-    }
-}
-
 /// Solves the system; false if the matrix is singular. Rows are divided by their largest entry first, so that
 /// the choice of pivots does not depend on the units.
 class LinearSolver {
@@ -321,11 +306,26 @@ private:
 
 }   // namespace
 
+/// Every entry of the mass matrix takes part in the equations of a director, so a vanishing second moment is
+/// a missing equation.
+void check_stepping(const Model& model)
+{
+    for (const Body& body : model.bodies()) {
+        if (!is_singular(body.mass, body.is_point)) continue;
+        throw InputError(
+            {"mass-singular", "body[" + body.name + "].inertia",
+             "the mass matrix of body '" + body.name + "' is singular, which classical stepping cannot use",
+             "", "J1 + J2 > J3 for every principal moment",
+             "a lamina or a needle has no extent along some axis, so one of its directors has no inertia",
+             "use the method lobatto, or give the body a little thickness"});
+    }
+}
+
 SteppingResult march_stepping(const Model& model, const ClosedStart& assembly, const TimeMesh& mesh,
                               SteppingRule rule, const SteppingOptions& options)
 {
     assert(!mesh.ends.empty() && static_cast<int>(assembly.start.X.size()) == model.n_bodies());
-    refuse_singular_masses(model);
+    check_stepping(model);
     return Marcher(model, assembly, mesh, rule, options).run();
 }
 

@@ -31,8 +31,11 @@ struct SteppingResult {
     SolveReport report;
 };
 
-/// One step per element of the mesh, from an assembled start. Bodies are the 12 numbers of X with weak
-/// rigidity multipliers, so m must be positive definite: a singular one is an InputError that names the body.
+/// Bodies are the 12 numbers of X with weak rigidity multipliers, so m must be positive definite: a singular
+/// one is an InputError (`mass-singular`) that names the body.
+void check_stepping(const Model& model);
+
+/// One step per element of the mesh, from an assembled start, of what passes check_stepping().
 SteppingResult march_stepping(const Model& model, const ClosedStart& assembly, const TimeMesh& mesh,
                               SteppingRule rule, const SteppingOptions& options);
 

@@ -3,10 +3,13 @@
 
 #include <atomic>
 #include <cerrno>
+#include <memory>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
+#include <dirent.h>
 #include <fcntl.h>
 #include <sys/file.h>
 #include <sys/stat.h>
@@ -72,21 +75,22 @@ void remove_abandoned(const fs::path& file)
 }
 
 /// ".livens-<digits>-<digits>.tmp"
-bool is_temporary(const std::string& name)
+bool is_temporary(std::string_view name)
 {
     constexpr std::string_view head = ".livens-", tail = ".tmp";
     if (!name.starts_with(head) || !name.ends_with(tail) || name.size() <= head.size() + tail.size())
         return false;
-    const std::string_view middle =
-        std::string_view(name).substr(head.size(), name.size() - head.size() - tail.size());
+    const std::string_view middle = name.substr(head.size(), name.size() - head.size() - tail.size());
     return middle.find_first_not_of("0123456789-") == std::string_view::npos;
 }
 
+/// By readdir: the standard's iterator ends the program where memory ends.
 void remove_abandoned_in(const fs::path& folder)
 {
-    std::error_code error;
-    for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
-        if (is_temporary(entry->path().filename().string())) remove_abandoned(entry->path());
+    const std::unique_ptr<DIR, int (*)(DIR*)> listing(::opendir(folder.c_str()), ::closedir);
+    if (!listing) return;
+    while (const dirent* entry = ::readdir(listing.get()))
+        if (is_temporary(entry->d_name)) remove_abandoned(folder / entry->d_name);
 }
 
 }   // namespace

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "livens/io/scenario.h"
 
+#include <cerrno>
 #include <fstream>
 #include <new>
 
@@ -105,7 +106,9 @@ bool read_text(const std::filesystem::path& file, std::string& text, Findings& f
         return findings.error({}, "resource-limit",
                               "the file has " + std::to_string(size) + " bytes, more than " +
                                   std::to_string(max_scenario_bytes));
+    errno = 0;
     std::ifstream stream(file, std::ios::binary);
+    if (!stream.is_open() && errno == ENOMEM) throw std::bad_alloc();   // of the stream's own
     constexpr std::size_t portion = 1u << 16;
     while (stream && text.size() <= max_scenario_bytes) {   // pipes have no size to ask for
         const std::size_t before = text.size();
@@ -117,9 +120,9 @@ bool read_text(const std::filesystem::path& file, std::string& text, Findings& f
            findings.error({}, "io-unreadable", "the file cannot be read");
 }
 
-/// Runs `work` so that nothing is thrown.
+/// Runs `work` so that nothing is thrown, but std::bad_alloc where not even a finding has room.
 template <class Work>
-void shield(Findings& findings, Work work) noexcept
+void shield(Findings& findings, Work work)
 {
     try {
         work();

@@ -20,7 +20,7 @@ struct SparseLU::Implementation {
     virtual ~Implementation() = default;
 
     virtual void analyse(const SparseMatrix& A) = 0;
-    /// False if the library finds the matrix singular. Throws std::bad_alloc and nothing else.
+    /// False if the library finds the matrix singular. Throws std::bad_alloc and Stopped, nothing else.
     virtual bool factorise(const SparseMatrix& A) = 0;
     /// b and x do not overlap.
     virtual void solve(std::span<const double> b, std::span<double> x) const = 0;

@@ -84,6 +84,7 @@ private:
     bool is_contradictory(const Closed& closed);
     bool set_contradiction(int first, int last, const Closed& closed);
     bool set_failed(int first, int last);
+    void set_cancelled();
     bool explain(int first, int last, const NewtonReport& outcome);
 
     Window& window_;

@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <utility>
 
+#include "livens/solvers/patience.h"
+
 namespace livens {
 
 namespace {
@@ -147,7 +149,10 @@ void NullSpaces::close()
     const int f = f_, n = tables_.n_twists, stride = matrix_.stride(e_);
     double* block = matrix_.block(e_, place_of_row(*stretch_, A_), B_);
     int r = 0;
-    for (; r + 1 < f; r += 2) multiply_pair(r, block + r * stride, block + (r + 1) * stride);
+    for (; r + 1 < f; r += 2) {
+        if (f >= 64) Patience::ask();
+        multiply_pair(r, block + r * stride, block + (r + 1) * stride);
+    }
     if (r == f) return;
     double* __restrict u = block + r * stride;
     std::fill(u, u + f, 0.0);
@@ -176,20 +181,28 @@ void NullSpaces::solve(std::span<const double> rows, const double*, double* y)
 
 /// Nothing is scaled: rows and unknowns are in mass-orthonormal coordinates. The 2-norm knows no choice of
 /// units, axes and bases; the 1-norm feels the bases of the free motions (a factor of f^2 at the very most).
+/// The blocks go before vectors come.
 void NullSpaces::measure_condition(SolveReport& report, const std::function<bool()>& goes_on)
 {
     const SparseMatrix whole = to_sparse(structure_, matrix_);
-    SparseLU lu(SparseBackend::eigen);
-    lu.analyse(whole);
-    if (!lu.factorise(whole)) {
+    if (solver_->factorise(matrix_) != Outcome::regular) {
         report.notes.push_back(
             "the whole matrix is singular to its factorisation: it has no condition number");
         return;
     }
-    const ConditionNumbers condition = condition_numbers(whole, lu, {}, {}, goes_on);
+    matrix_ = {};
+    z_ = {};
+    const auto map = [this](void (LinearSolver::*apply)(std::span<double>) const) -> LinearMap {
+        return [this, apply](std::span<const double> x, std::span<double> y) {
+            std::copy(x.begin(), x.end(), y.begin());
+            ((*solver_).*apply)(y);
+        };
+    };
+    const ConditionNumbers condition = condition_numbers(
+        whole, map(&LinearSolver::solve), map(&LinearSolver::solve_transposed), goes_on);
     report.condition_1 = report.scaled_condition = condition.one;
     report.condition_2 = condition.two;
-    report.factor_entries = lu.factor_entries();
+    report.factor_entries = solver_->report().factor_entries;
 }
 
 /// J y + Y_0 nu = x, Y_1^T y = 0, with the Schur complement Y_1^T J^-1 Y_0.

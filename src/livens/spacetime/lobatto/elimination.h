@@ -26,6 +26,7 @@ public:
     /// then holds the part of y across the null space at node 1 (in the basis), or null.
     virtual bool takes_constraints() const { return false; }
     virtual void describe(SolveReport& report) const = 0;
+    /// Of the tangent that was formed; uses it up.
     virtual void measure_condition(SolveReport& report, const std::function<bool()>& goes_on) = 0;
 };
 

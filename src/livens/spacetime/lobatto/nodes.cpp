@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "livens/multibody/twist.h"
+#include "livens/solvers/patience.h"
 
 namespace livens {
 
@@ -186,6 +187,7 @@ bool Nodes::constrain(const Stretch& stretch, bool same_choices)
     begin_constraining();
     double sum = 0;
     for (int e = 0; e < stretch.n_elements(); ++e) {
+        Patience::ask();
         measure_element(e);
         for (int B = e == 0 ? 0 : 1; B <= rule_.degree; ++B)
             if (stretch.is_unknown(e * rule_.degree + B)) constrain_node(e, B, same_choices, sum);
@@ -240,6 +242,7 @@ double Nodes::correct(const Stretch& stretch)
     double *y = work_.data() + size_, *twist = y + size_;
     for (int A = 0; A < stretch.n_nodes(); ++A) {
         if (!stretch.is_unknown(A)) continue;
+        Patience::ask();
         const double* phi = violations(A);
         if (std::all_of(phi, phi + k, [](double value) { return value == 0; })) continue;
         std::fill(y, y + n, 0.0);

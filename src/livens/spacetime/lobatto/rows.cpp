@@ -5,6 +5,8 @@
 #include <cmath>
 #include <string>
 
+#include "livens/solvers/patience.h"
+
 namespace livens {
 
 namespace {
@@ -189,6 +191,7 @@ bool Rows::evaluate(const Stretch& stretch, const Nodes& nodes)
     double* reduced = reduced_.data();
     for (int A = 0; A < stretch.n_nodes(); ++A) {
         if (!stretch.is_active(A)) continue;
+        Patience::ask();
         twist_row(stretch, nodes, A, q_.data());
         are_finite = eliminate(stretch, nodes, A, reduced) && are_finite;
         reduced += tables_.freedoms();

@@ -30,6 +30,8 @@ public:
     const livens::Rows& balances() const { return rows_; }
     /// Null before settle().
     const Elimination* elimination() const { return elimination_.get(); }
+    /// Its memory; nothing is solved any more until the window is opened as another one.
+    void release_elimination() { elimination_.reset(); }
     /// Room for a twist of all bodies.
     std::vector<double>& scratch() { return work_; }
     /// Forms the tangent at the current point into another sink, for tests.

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "livens/multibody/twist.h"
+#include "livens/solvers/patience.h"
 
 namespace livens {
 
@@ -80,6 +81,7 @@ void Tangent::form(const Stretch& stretch, const Nodes& nodes, const Rows& rows,
     double H[9] = {};
     load_rounding_ = 0;
     for (int e = 0; e < stretch.n_elements(); ++e) {
+        Patience::ask();
         if (!tables_.loads_with_tangent.empty()) evaluate_loads(stretch, nodes, rows, e);
         for (int a = 0; a < rule_.size(); ++a) {
             const int A = e * rule_.degree + a;

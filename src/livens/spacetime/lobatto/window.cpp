@@ -10,6 +10,7 @@
 #include "livens/diagnostics/largest.h"
 #include "livens/multibody/body.h"
 #include "livens/multibody/twist.h"
+#include "livens/solvers/patience.h"
 #include "livens/spacetime/pace.h"
 
 namespace livens {
@@ -175,6 +176,7 @@ bool LobattoWindow::start_from(const Guess& guess)
     std::vector<double> X(12 * tables_.bodies.size());
     for (int A = 0; A < stretch_.n_nodes(); ++A) {
         if (!stretch_.is_unknown(A)) continue;
+        Patience::ask();
         const State state = guess(stretch_.time(rule, A));
         for (std::size_t b = 0; b < state.X.size(); ++b) {
             const Matrix34 rigid =

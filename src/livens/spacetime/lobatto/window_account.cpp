@@ -126,7 +126,9 @@ void LobattoWindow::measure_condition(SolveReport& report, const std::function<b
         report.notes.push_back("the whole matrix is too large for its condition number; use fewer elements");
         return;
     }
-    const auto elimination = null_space_elimination(tables_, stretch_, whole_solver(SparseBackend::eigen));
+    system_.release_elimination();
+    const auto elimination = null_space_elimination(
+        tables_, stretch_, stretch_.is_march() ? forward_solver() : whole_solver(SparseBackend::eigen));
     elimination->begin(stretch_, system_.nodes());
     system_.form_tangent(*elimination);
     elimination->measure_condition(report, goes_on);

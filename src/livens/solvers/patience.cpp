@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "livens/solvers/patience.h"
+
+#include <chrono>
+#include <ctime>
+
+namespace livens {
+
+namespace {
+
+constexpr unsigned calls_between_looks = 16;
+constexpr double seconds_between_questions = 0.01;   // a question may wait for an interpreter's lock
+
+thread_local Patience* current = nullptr;
+thread_local unsigned calls = 0;
+
+double now()
+{
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+double cpu_time()
+{
+#ifdef CLOCK_THREAD_CPUTIME_ID
+    timespec t{};
+    ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+#else
+    return now();
+#endif
+}
+
+}   // namespace
+
+Patience::Patience(const std::function<bool()>& goes_on, double grace)
+    : goes_on_(goes_on), outer_(current), grace_(grace), last_(now())
+{
+    if (goes_on_) current = this;
+}
+
+Patience::~Patience() { current = outer_; }
+
+void Patience::ask()
+{
+    if (current != nullptr && ++calls % calls_between_looks == 0) current->look();
+}
+
+void Patience::look()
+{
+    const double t = now();
+    if (t - last_ < seconds_between_questions) return;
+    last_ = t;
+    if (stopped_at_ < 0) {
+        if (goes_on_()) return;
+        stopped_at_ = cpu_time();
+    }
+    if (cpu_time() - stopped_at_ >= grace_) throw Stopped();
+}
+
+}   // namespace livens

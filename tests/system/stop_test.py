@@ -1,0 +1,110 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Signals in every phase of long runs, memory that is stated, findings that check makes before solve does."""
+import json
+import os
+import signal
+import subprocess
+import time
+import unittest
+
+from program_test import PROGRAM, SANITIZED, ProgramTest
+
+FREE_BODY = """format = 1
+[[body]]
+name = "a"
+shape = { box = [1, 0.5, 0.2] }
+mass = 1
+angular_velocity = [0.1, 0, 1]
+[time]
+end = %d
+elements = %d
+output = 100
+[method]
+condition = %s
+"""
+NEEDLE = """format = 1
+[[body]]
+name = "rod"
+shape = { box = [1e9, 0.1, 0.1] }
+mass = 2
+[time]
+end = 1
+elements = 2
+[method]
+family = "%s"
+"""
+
+
+def cpu_seconds(pid):
+    with open(f"/proc/{pid}/stat") as file:
+        fields = file.read().rsplit(")", 1)[1].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
+@unittest.skipIf(SANITIZED, "times and sizes are those of the program as it is used")
+@unittest.skipUnless(os.path.exists("/proc/self/stat"), "needs /proc")
+class Stops(ProgramTest):
+    def after_signal(self, scenario, at):
+        """CPU seconds that a run takes after SIGINT, which comes when it has used `at` of them."""
+        (self.folder / "run.nc").unlink(missing_ok=True)
+        program = subprocess.Popen([PROGRAM, "solve", scenario, "-q", "-o", "run.nc"], cwd=self.folder,
+                                   stderr=subprocess.DEVNULL)
+        while program.poll() is None and cpu_seconds(program.pid) < at:
+            time.sleep(0.01)
+        self.assertIsNone(program.returncode, "it was done too early")
+        before = cpu_seconds(program.pid)
+        program.send_signal(signal.SIGINT)
+        os.waitid(os.P_PID, program.pid, os.WEXITED | os.WNOWAIT)
+        used = cpu_seconds(program.pid) - before
+        self.assertEqual(program.wait(), 130)
+        return used
+
+    def test_condition_numbers_are_given_up_at_once(self):
+        """Unstopped they take 30 s of CPU time and more, and the motion half a second."""
+        self.write("run.toml", FREE_BODY % (10000, 100000, "true"))
+        for at in (1.2, 2.5, 4):
+            self.assertLess(self.after_signal("run.toml", at), 2)
+            info = json.loads(self.expect(0, "info", "run.nc", "--json").out)
+            self.assertEqual(info["status"], "cancelled")
+
+    def test_long_runs_stop_at_once(self):
+        self.write("run.toml", FREE_BODY % (40000, 400000, "false"))
+        for at in (0.3, 0.8, 1.3):
+            self.assertLess(self.after_signal("run.toml", at), 2)
+            self.expect(0, "info", "run.nc")
+
+    def test_what_the_caller_ignores_stays_ignored(self):
+        self.write("run.toml", FREE_BODY % (4000, 40000, "false"))
+        program = subprocess.Popen([PROGRAM, "solve", "run.toml", "-q"], cwd=self.folder,
+                                   preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_IGN))
+        while program.poll() is None and cpu_seconds(program.pid) < 0.1:
+            time.sleep(0.005)
+        program.send_signal(signal.SIGINT)
+        self.assertEqual(program.wait(), 0)
+
+
+@unittest.skipIf(SANITIZED, "the sanitizer needs memory of its own")
+class MemoryStated(ProgramTest):
+    def test_condition_numbers_are_in_what_check_says(self):
+        self.write("run.toml", FREE_BODY % (1000, 10000, "true"))
+        said = json.loads(self.expect(0, "check", "run.toml", "--json").out)["memory_bytes"]
+        program = subprocess.Popen([PROGRAM, "solve", "run.toml", "-q"], cwd=self.folder)
+        _, status, used = os.wait4(program.pid, 0)
+        program.returncode = os.waitstatus_to_exitcode(status)
+        self.assertEqual(program.returncode, 0)
+        self.assertLess(1024 * used.ru_maxrss, 1.3 * said)
+        self.assertGreater(1024 * used.ru_maxrss, said / 1.3)
+
+
+class FoundByCheck(ProgramTest):
+    def test_singular_masses_have_a_place(self):
+        """Whatever solve would refuse, check finds, with its place."""
+        for family in ("midpoint", "endpoint", "mixed"):
+            self.write("run.toml", NEEDLE % family)
+            for command in ("check", "solve"):
+                error = json.loads(self.expect(3, command, "run.toml", "--json").out)["errors"][0]
+                self.assertEqual((error["code"], error["file"], error["line"]), ("mass-singular", "run.toml", 3))
+
+
+if __name__ == "__main__":
+    unittest.main()
