@@ -522,3 +522,35 @@ livens_mutant(NAME report_free_directors
               NEW [[orthonormal = 1e-2]]
               TESTS_OF livens
               MUST_FAIL report_test.Report.test_directors_that_are_free_are_kept_whole)
+
+# Two dimensions of one name: counts come from one of them, divisors from the other.
+livens_mutant(NAME names_twice
+              FILE io/results/classic_netcdf_read.cpp
+              OLD [[if (twice != names.end())]]
+              NEW [[if (names.empty())]]
+              TESTS_OF unit_io
+              MUST_FAIL CraftedFiles.TwoOfOneNameAreRefused)
+
+# A dimension of length 0 is read as if it were any other.
+livens_mutant(NAME width_of_zero
+              FILE io/results/read.cpp
+              OLD [[if (v != nullptr && v->n_values == 0)]]
+              NEW [[if (v != nullptr && v->n_values == 1u << 31)]]
+              TESTS_OF unit_io
+              MUST_FAIL CraftedFiles.LengthsOfZeroAreRefusedWhereTheyAreRead)
+
+# Variables may share bytes, and reading all of them takes as long as their product with the file.
+livens_mutant(NAME variables_share_bytes
+              FILE io/results/classic_netcdf_read.cpp
+              OLD [[left -= v.n_bytes;]]
+              NEW [[(void)left;]]
+              TESTS_OF unit_io
+              MUST_FAIL CraftedFiles.VariablesHaveNoByteInCommon)
+
+# The motion may have fewer angles than the model's loads read.
+livens_mutant(NAME angles_of_another_model
+              FILE io/results/write.cpp
+              OLD [[fits &= angles.empty() ||]]
+              NEW [[fits &= true ||]]
+              TESTS_OF unit_io
+              MUST_FAIL CraftedFiles.AnglesOfLoadsAreThoseOfTheModel)

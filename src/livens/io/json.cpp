@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "livens/io/json.h"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 
@@ -36,7 +37,103 @@ void append_escaped(std::string& out, std::string_view text)
     out += '"';
 }
 
+/// Goes through one JSON value; each part says whether it was there.
+class JsonReader {
+public:
+    explicit JsonReader(std::string_view text) : rest_(text) {}
+
+    bool value(int depth)
+    {
+        skip_blanks();
+        if (depth > 64 || rest_.empty()) return false;
+        const char c = rest_.front();
+        if (c == '{') return list('}', [&] { return text() && token(":") && value(depth + 1); });
+        if (c == '[') return list(']', [&] { return value(depth + 1); });
+        if (c == '"') return text();
+        return word("true") || word("false") || word("null") || number();
+    }
+    bool at_end()
+    {
+        skip_blanks();
+        return rest_.empty();
+    }
+
+private:
+    void skip_blanks() { rest_.remove_prefix(std::min(rest_.find_first_not_of(" \t\r\n"), rest_.size())); }
+    bool word(std::string_view what)
+    {
+        if (!rest_.starts_with(what)) return false;
+        rest_.remove_prefix(what.size());
+        return true;
+    }
+    bool token(std::string_view what)
+    {
+        skip_blanks();
+        return word(what);
+    }
+    template <class Item>
+    bool list(char end, Item item)
+    {
+        rest_.remove_prefix(1);
+        const std::string_view last(&end, 1);
+        if (token(last)) return true;
+        do
+            if (!item()) return false;
+        while (token(","));
+        return token(last);
+    }
+    bool text()
+    {
+        if (!token("\"")) return false;
+        while (!rest_.empty() && rest_.front() != '"') {
+            const int length = utf8_length(rest_);
+            if (length == 0 || static_cast<unsigned char>(rest_.front()) < 0x20) return false;
+            if (rest_.front() != '\\') rest_.remove_prefix(static_cast<std::size_t>(length));
+            else if (!escape()) return false;
+        }
+        return word("\"");
+    }
+    bool escape()
+    {
+        constexpr std::string_view hexadecimal = "0123456789abcdefABCDEF";
+        rest_.remove_prefix(1);
+        if (word("u")) {
+            const bool is_whole = rest_.size() >= 4 && rest_.substr(0, 4).find_first_not_of(hexadecimal) ==
+                                                           std::string_view::npos;
+            rest_.remove_prefix(is_whole ? 4 : 0);
+            return is_whole;
+        }
+        if (rest_.empty() || std::string_view("\"\\/bfnrt").find(rest_.front()) == std::string_view::npos)
+            return false;
+        rest_.remove_prefix(1);
+        return true;
+    }
+    bool digits()
+    {
+        const std::size_t n = std::min(rest_.find_first_not_of("0123456789"), rest_.size());
+        rest_.remove_prefix(n);
+        return n > 0;
+    }
+    bool number()
+    {
+        word("-");
+        if (!word("0") && !digits()) return false;
+        if (word(".") && !digits()) return false;
+        if (!word("e") && !word("E")) return true;
+        if (!word("+")) word("-");
+        return digits();
+    }
+
+    std::string_view rest_;
+};
+
 }   // namespace
+
+bool is_json(std::string_view text)
+{
+    JsonReader reader(text);
+    return reader.value(0) && reader.at_end();
+}
 
 int utf8_length(std::string_view text)
 {

@@ -71,6 +71,9 @@ private:
     bool has_key_ = false;
 };
 
+/// Whether a text is one JSON value (RFC 8259), nested at most 64 deep.
+bool is_json(std::string_view text);
+
 /// Length in bytes of the UTF-8 sequence at the start of `text`, 0 if there is none (overlong forms,
 /// surrogates and code points above U+10FFFF are none). `text` is not empty.
 int utf8_length(std::string_view text);
