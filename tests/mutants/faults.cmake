@@ -554,3 +554,35 @@ livens_mutant(NAME angles_of_another_model
               NEW [[fits &= true ||]]
               TESTS_OF unit_io
               MUST_FAIL CraftedFiles.AnglesOfLoadsAreThoseOfTheModel)
+
+# Whatever stands there is replaced.
+livens_mutant(NAME nothing_is_occupied
+              FILE io/results/occupied.cpp
+              OLD [[return !head.empty() && !is_own(head);]]
+              NEW [[return !head.empty() && head.empty();]]
+              TESTS_OF unit_io
+              MUST_FAIL Results.OnlyWhatIsEmptyOrOfTheirKindMayBeReplaced)
+
+# The meshes of a scenario forgotten among its inputs.
+livens_mutant(NAME meshes_are_no_inputs
+              FILE apps/livens/places.cpp
+              OLD [[check_differs(file, mesh, "it is a mesh of the scenario");]]
+              NEW [[(void)mesh;]]
+              TESTS_OF livens
+              MUST_FAIL strangers_test.NothingIsLost.test_inputs_whatever_is_forced)
+
+# A host that is named twice, once rightly.
+livens_mutant(NAME one_host_of_two
+              FILE apps/livens/visitors.cpp
+              OLD [[return n_hosts == 1 && is_this;]]
+              NEW [[return is_this || n_hosts == 2;]]
+              TESTS_OF livens
+              MUST_FAIL report_test.View.test_names_of_fields_and_hosts_have_no_case)
+
+# Marks of writing direction taken for letters.
+livens_mutant(NAME directions_are_letters
+              FILE io/json.cpp
+              OLD [[{0x2028, 0x202e},]]
+              NEW [[{0x2028, 0x2029},]]
+              TESTS_OF unit_io
+              MUST_FAIL Invisible.CharactersAreKnownAndEscapedInJson)

@@ -79,8 +79,8 @@ TEST(CraftedFiles, LengthsOfZeroAreRefusedWhereTheyAreRead)
         const std::string said = said_of(c);
         EXPECT_TRUE(said.empty() || said.starts_with("io-damaged: ")) << said;
     }
-    for (const char* name : {"body", "body_length", "row_length", "X_node", "P_node", "multiplier_node", "xyz",
-                             "rigidity_node", "element_end", "note_length", "scenario_length"})
+    for (const char* name : {"body", "body_length", "row_length", "X_node", "P_node", "multiplier_node",
+                             "xyz", "rigidity_node", "element_end", "note_length", "scenario_length"})
         expect_damaged(said([&](Crafted& c) {
                            const std::uint32_t number = c.number_of(name);
                            c.dimensions[number].length = 0;
