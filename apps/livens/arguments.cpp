@@ -19,6 +19,21 @@ void add_choice(CLI::App& command, const std::string& name, std::string& value,
         ->type_name(CLI::detail::join(words, "|"));
 }
 
+/// A name that is empty is a variable of the shell that was not set.
+CLI::Option* add_file(CLI::App& command, const std::string& name, std::string& value,
+                      const std::string& description)
+{
+    const auto is_named = [](const std::string& file) {
+        return file.empty() ? std::string("the name of the file is empty") : std::string();
+    };
+    return command.add_option(name, value, description)->check(CLI::Validator(is_named, ""));
+}
+
+void add_force(CLI::App& command, bool& force)
+{
+    command.add_flag("--force", force, "replace files that livens did not write, too; never inputs");
+}
+
 void add_colour(CLI::App& command, Arguments& a)
 {
     add_choice(command, "--color", a.colour, {"auto", "always", "never"},
@@ -44,7 +59,7 @@ CLI::App& add_command(CLI::App& app, Arguments& a, const std::string& name, cons
 void add_scenario_commands(CLI::App& app, Arguments& a)
 {
     CLI::App& init = add_command(app, a, "init", "Write a small scenario to begin with");
-    init.add_option("NAME", a.name, "of the scenario; default: pendulum")->type_name("NAME");
+    add_file(init, "NAME", a.name, "of the scenario; default: pendulum")->type_name("NAME");
     add_common(init, a);
     CLI::App& check = add_command(app, a, "check", "Check a scenario without solving it");
     check.add_option("FILE", a.scenario, "scenario (TOML)")->required()->type_name("FILE.toml");
@@ -53,11 +68,11 @@ void add_scenario_commands(CLI::App& app, Arguments& a)
     solve.add_option("FILE", a.solve.scenarios, "scenario (TOML), or several")
         ->required()
         ->type_name("FILE.toml");
-    solve
-        .add_option("-o,--output", a.solve.output,
-                    "result file, or a folder for several; default: the scenario's stem with .nc, here")
+    add_file(solve, "-o,--output", a.solve.output,
+             "result file, or a folder for several; default: the scenario's stem with .nc, here")
         ->type_name("RUN.nc");
-    solve.add_option("--csv", a.solve.csv, "write the samples as CSV too")->type_name("FILE.csv");
+    add_file(solve, "--csv", a.solve.csv, "write the samples as CSV too")->type_name("FILE.csv");
+    add_force(solve, a.solve.force);
     solve
         .add_option("-j,--jobs", a.solve.jobs,
                     "scenarios that are solved at a time; default: one a processor")
@@ -131,8 +146,9 @@ void add_run_commands(CLI::App& app, Arguments& a)
     exports.add_option("RUN", a.exports.run, "result file")->required()->type_name("RUN.nc");
     a.exports.files.resize(export_formats().size());
     for (std::size_t i = 0; const ExportFormat& format : export_formats())
-        exports.add_option(std::string("--") + format.word, a.exports.files[i++], format.what)
+        add_file(exports, std::string("--") + format.word, a.exports.files[i++], format.what)
             ->type_name(std::string("FILE") + format.extension);
+    add_force(exports, a.exports.force);
     add_common(exports, a);
     CLI::App& diff = add_command(app, a, "diff", "Compare two runs at their common output times");
     diff.add_option("A", a.diff.first, "result file")->required()->type_name("RUN.nc");
@@ -152,8 +168,9 @@ void add_report_commands(CLI::App& app, Arguments& a)
         command->add_option("OTHER", a.report.other, "result file to compare it with")->type_name("RUN.nc");
         add_common(*command, a);
     }
-    report.add_option("-o,--output", a.report.output, "page; default: the run's stem with .html, here")
+    add_file(report, "-o,--output", a.report.output, "page; default: the run's stem with .html, here")
         ->type_name("FILE.html");
+    add_force(report, a.report.force);
     view.add_option("--port", a.report.port, "on 127.0.0.1; default: any that is free")
         ->check(CLI::Range(1, 65535))
         ->type_name("N");

@@ -25,6 +25,7 @@ struct SolveArguments {
     std::vector<std::string> scenarios;   ///< one or several
     std::string output;   ///< empty: the scenario's stem with .nc in the current folder; a folder for several
     std::string csv;      ///< empty: none
+    bool force = false;   ///< whatever stands where files go
     int jobs = 0;         ///< scenarios at a time; 0: one for each processor
     std::string simd;     ///< set of instructions; empty: what LIVENS_SIMD says, else AVX2 if it is there
 };
@@ -68,6 +69,7 @@ std::string sample_sensor(const SampleArguments& arguments, const Common& common
 struct ExportArguments {
     std::string run;
     std::vector<std::string> files;   ///< one a format of export_formats(); empty: not asked for
+    bool force = false;
 };
 int export_command(const ExportArguments& arguments, const Common& common);
 
@@ -75,6 +77,7 @@ struct ReportArguments {
     std::string run;
     std::string other;    ///< that it is compared with; empty: none
     std::string output;   ///< HTML file; of `report` alone
+    bool force = false;   ///< of `report` alone
     int port = 0;         ///< of `view` alone; 0: one that is free
     bool address_only = false;   ///< of `view`: no browser
 };

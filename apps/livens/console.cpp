@@ -66,11 +66,8 @@ std::string plain(std::string_view text)
     std::string out;
     while (!text.empty()) {
         const int length = utf8_length(text);
-        const unsigned char c = static_cast<unsigned char>(text.front());
-        // U+0080 to U+009f are control characters too; UTF-8 writes them as c2 80 to c2 9f.
-        const bool is_control =
-            c < 0x20 || c == 0x7f || (c == 0xc2 && length == 2 && (text[1] & 0xe0) == 0x80);
-        if (length == 0 || is_control)
+        const char c = text.front();
+        if (length == 0 || is_invisible(code_point(text)))
             out += c == '\n' || c == '\t' ? ' ' : '?';
         else
             out.append(text.substr(0, static_cast<std::size_t>(length)));

@@ -28,7 +28,7 @@ void say_raw(std::string_view text);
 bool error_is_terminal();
 bool output_is_terminal();
 
-/// Text without control characters, so that a name in a file cannot steer a terminal.
+/// Text without what is_invisible(), so that a name in a file steers no terminal and deceives no eye.
 std::string plain(std::string_view text);
 
 }   // namespace livens::program

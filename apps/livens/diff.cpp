@@ -91,12 +91,13 @@ std::vector<double> common_times(const Run& a, const Run& b)
 {
     std::vector<double> times;
     std::size_t j = 0;
+    const double first = std::max(a.motion.start(), b.motion.start());
     for (const double t : a.output) {
         const double tolerance = 1e-12 * std::max({1.0, std::abs(t), std::abs(a.motion.start())});
         while (j < b.output.size() && b.output[j] < t - tolerance) ++j;
         if (j == b.output.size()) break;
         const double last = std::min(a.motion.end(), b.motion.end()) + tolerance;
-        if (b.output[j] <= t + tolerance && t <= last) times.push_back(t);
+        if (b.output[j] <= t + tolerance && t >= first - tolerance && t <= last) times.push_back(t);
     }
     return times;
 }
@@ -122,8 +123,9 @@ Comparison compare(const DiffArguments& arguments, const Run& a, const Run& b)
     const Model second = scenario_of_run(b, arguments.second).model;
     c.largest.resize(c.bodies.size());
     for (const double t : c.times) {
-        const std::vector<BodySample> of_a = sample_bodies(first, a.motion, t);
-        const std::vector<BodySample> of_b = sample_bodies(second, b.motion, t);
+        const auto within = [&](const Motion& m) { return std::clamp(t, m.start(), m.end()); };
+        const std::vector<BodySample> of_a = sample_bodies(first, a.motion, within(a.motion));
+        const std::vector<BodySample> of_b = sample_bodies(second, b.motion, within(b.motion));
         for (std::size_t i = 0; i < c.bodies.size(); ++i) {
             const std::size_t in_a = place_of(a.body_names, c.bodies[i]),
                               in_b = place_of(b.body_names, c.bodies[i]);

@@ -17,7 +17,7 @@ int export_command(const ExportArguments& arguments, const Common& common)
         options += std::string(i > 0 ? ", --" : "--") + formats[i].word;
         if (arguments.files[i].empty()) continue;
         is_empty = false;
-        check_export_place(arguments.files[i], formats[i], arguments.run);
+        check_export_place(arguments.files[i], formats[i], arguments.run, arguments.force);
     }
     if (is_empty) throw failure(exit_usage, "export wants one or more of " + options + " with a file");
     const Run run = read_run(arguments.run);
@@ -26,7 +26,7 @@ int export_command(const ExportArguments& arguments, const Common& common)
     json.begin_object();
     for (std::size_t i = 0; i < formats.size(); ++i) {
         if (arguments.files[i].empty()) continue;
-        formats[i].write(arguments.files[i], {arguments.run, scenario, run});
+        formats[i].write(arguments.files[i], {arguments.run, scenario, run, arguments.force});
         json.member(formats[i].word, arguments.files[i]);
         if (!common.json) say_note("wrote " + plain(arguments.files[i]));
     }

@@ -225,6 +225,15 @@ int guarded(const Common& common, const std::function<int()>& command)
     }
 }
 
+int with_runs(const std::function<int()>& command)
+{
+    try {
+        return command();
+    } catch (const InputError& e) {
+        throw Failure{exit_input_output, status_of(exit_input_output), {from_complaint(e.complaint())}};
+    }
+}
+
 Scenario load_scenario(const std::string& file, const Common& common, std::vector<Diagnostic>* warnings)
 {
     ScenarioResult result = read_scenario(file);

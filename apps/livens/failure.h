@@ -33,6 +33,9 @@ void keep_memory_for_report();
 /// standard output.
 int guarded(const Common& common, const std::function<int()>& command);
 
+/// Likewise of a command that reads runs: what the core complains of is a fault of theirs.
+int with_runs(const std::function<int()>& command);
+
 /// Reads a scenario; warnings are shown, errors thrown.
 Scenario load_scenario(const std::string& file, const Common& common,
                        std::vector<Diagnostic>* warnings = nullptr);

@@ -50,10 +50,10 @@ int run(const CLI::App& app, const Arguments& a)
     if (app.got_subcommand("modes")) return modes_command(a.modes, common);
     if (app.got_subcommand("info")) return info_command(a.run, common);
     if (app.got_subcommand("sample")) return sample_command(a.sample, common);
-    if (app.got_subcommand("export")) return export_command(a.exports, common);
-    if (app.got_subcommand("report")) return report_command(a.report, common);
-    if (app.got_subcommand("view")) return view_command(a.report, common);
-    if (app.got_subcommand("diff")) return diff_command(a.diff, common);
+    if (app.got_subcommand("export")) return with_runs([&] { return export_command(a.exports, common); });
+    if (app.got_subcommand("report")) return with_runs([&] { return report_command(a.report, common); });
+    if (app.got_subcommand("view")) return with_runs([&] { return view_command(a.report, common); });
+    if (app.got_subcommand("diff")) return with_runs([&] { return diff_command(a.diff, common); });
     if (app.got_subcommand("init")) return init_command(a.name, common);
     if (app.got_subcommand("schema")) return schema_command(!a.schema_json);
     if (app.got_subcommand("explain")) return explain_command(a.code);

@@ -37,6 +37,17 @@ double triangle_ratio(const Vector3& moments)
     return others > 0 ? moments[2] / others : 1;
 }
 
+/// Whether all figures are numbers: none overflows, and there is a mass to divide by.
+bool is_told(const Weighed& w)
+{
+    const MassProperties& p = w.properties;
+    const auto is_finite = [](double x) { return std::isfinite(x); };
+    return p.mass > 0 && std::ranges::all_of(p.inertia.a, is_finite) &&
+           std::ranges::all_of(w.mass_matrix.a, is_finite) &&
+           std::ranges::all_of(p.center_of_mass.a, is_finite) && std::isfinite(trace(p.inertia) / p.mass) &&
+           std::isfinite(triangle_ratio(principal_axes(p.inertia).moments));
+}
+
 void add_rows(JsonWriter& json, const char* key, const Matrix3& m)
 {
     json.key(key).begin_array();
@@ -201,6 +212,10 @@ int mass_of_mesh(const MassArguments& arguments, const Common& common)
     const MeshReport r = report_on(arguments, unit);
     const MassProperties p = solid(density, r.moments);
     const Weighed w{arguments.file, p, mass_matrix(p)};
+    if (!is_told(w) || !std::isfinite(r.moments.volume))
+        throw failure(exit_usage,
+                      "with this --density and --unit the mass of the mesh or its moments are beyond the "
+                      "numbers there are; lengths in m and densities in kg/m^3 are meant");
     if (common.json)
         print(json_of(arguments, r, w, density));
     else if (!common.quiet)

@@ -34,6 +34,13 @@ bool is_record(const fs::path& file) { return begins_with(file, "{\n  \"converge
     throw failure(exit_input_output, "cannot write '" + file.string() + "': " + why);
 }
 
+void check_not_occupied(const fs::path& file, bool (*is_own)(std::string_view head))
+{
+    if (is_occupied(file, is_own))
+        refuse(file, "what stands there is no older file of this kind that livens wrote; choose another "
+                     "name, or add '--force' to replace it");
+}
+
 }   // namespace
 
 bool same_file(const fs::path& a, const fs::path& b)
@@ -60,22 +67,31 @@ bool may_record(const fs::path& file)
     return !fs::exists(fs::symlink_status(file, error)) || (is_record(file) && !is_standard_output(file));
 }
 
-void check_place(const fs::path& file)
+void check_place(const fs::path& file, bool (*is_own)(std::string_view head), bool force)
 {
     check_writable(file);
     if (is_standard_output(file)) refuse(file, "standard output goes there");
     if (is_record(file)) refuse(file, "it is the record of a run");
+    if (!force) check_not_occupied(file, is_own);
 }
 
-void check_export_place(const fs::path& file, const ExportFormat& format, const fs::path& run)
+void check_inputs(const fs::path& file, const Scenario& scenario)
+{
+    check_differs(file, scenario.file, "it is the scenario itself");
+    for (const fs::path& mesh : scenario.mesh_files)
+        check_differs(file, mesh, "it is a mesh of the scenario");
+}
+
+void check_export_place(const fs::path& file, const ExportFormat& format, const fs::path& run, bool force)
 {
     check_differs(file, run, "it is the run itself");
     check_differs(file, record_of(run), "it is the record beside the run");
-    check_place(file);
+    check_place(file, format.is_own, true);
     if (begins_with(file, "CDF")) refuse(file, "it is a result file");
     if (file.extension() != format.extension)
         throw failure(exit_usage, std::string("--") + format.word + " writes files that end in '" +
                                       format.extension + "', not '" + file.filename().string() + "'");
+    if (!force) check_not_occupied(file, format.is_own);
 }
 
 void check_differs(const fs::path& file, const fs::path& other, const char* why)

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string_view>
 
 #include "livens/io/exports.h"
 
@@ -20,12 +21,16 @@ bool is_standard_output(const std::filesystem::path& file);
 /// Whether the record may take this name: nothing is there, or an older record.
 bool may_record(const std::filesystem::path& file);
 
-/// Throws what happens now if `file` cannot be written or must not: if it is `other`, which `why` names, the
-/// record of a run, or standard output. Call before solving, so that nothing is computed in vain.
-void check_place(const std::filesystem::path& file);
+/// Throws what happens now if `file` cannot be written or must not: if it is the record of a run, or standard
+/// output, or, unless `force`, a file that is not empty and does not begin as `is_own` has it. Call before
+/// solving, so that nothing is computed in vain.
+void check_place(const std::filesystem::path& file, bool (*is_own)(std::string_view head), bool force);
 /// Likewise for an export of `run`, which overwrites no result at all and ends as its readers expect.
 void check_export_place(const std::filesystem::path& file, const ExportFormat& format,
-                        const std::filesystem::path& run);
+                        const std::filesystem::path& run, bool force);
+/// Throws if `file` is what a scenario was read from, whatever is forced.
+void check_inputs(const std::filesystem::path& file, const Scenario& scenario);
+/// Throws if `file` is `other`, which `why` names.
 void check_differs(const std::filesystem::path& file, const std::filesystem::path& other, const char* why);
 
 }   // namespace livens::program

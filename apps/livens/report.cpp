@@ -19,9 +19,9 @@ fs::path place_of(const ReportArguments& arguments)
 {
     fs::path file = arguments.output;
     if (file.empty()) file = fs::path(arguments.run).stem() += ".html";
-    const ExportFormat format{"output", ".html", "", nullptr};
+    const ExportFormat format{"output", ".html", "", begins_as_report, nullptr};
     for (const std::string& run : {arguments.run, arguments.other})
-        if (!run.empty()) check_export_place(file, format, run);
+        if (!run.empty()) check_export_place(file, format, run, arguments.force);
     return file;
 }
 

@@ -49,18 +49,18 @@ fs::path output_of(const fs::path& scenario, const SolveArguments& arguments)
 
 /// Where everything goes; refuses what would destroy something or cannot be written, before anything is
 /// solved.
-Places places(const fs::path& scenario, const SolveArguments& arguments)
+Places places(const Scenario& scenario, const SolveArguments& arguments)
 {
     Places p;
-    p.scenario = scenario;
-    p.output = output_of(scenario, arguments);
+    p.scenario = scenario.file;
+    p.output = output_of(p.scenario, arguments);
     p.record = record_of(p.output);
     p.csv = arguments.csv;
-    check_differs(p.output, p.scenario, "it is the scenario itself");
-    check_place(p.output);
+    check_inputs(p.output, scenario);
+    check_place(p.output, begins_as_run, arguments.force);
     if (p.csv.empty()) return p;
-    check_differs(p.csv, p.scenario, "it is the scenario itself");
-    check_export_place(p.csv, export_formats().front(), p.output);
+    check_inputs(p.csv, scenario);
+    check_export_place(p.csv, export_formats().front(), p.output, arguments.force);
     return p;
 }
 
@@ -276,13 +276,16 @@ std::vector<Job> read_jobs(const SolveArguments& arguments, const Common& common
         std::vector<Diagnostic> warnings;
         Scenario scenario = load_scenario(file, common, &warnings);
         say_detail(fmt::format("read and checked the scenario in {:.3g} s", seconds_since(begin)));
-        Places p = places(file, arguments);
-        for (const Job& job : jobs)
+        Places p = places(scenario, arguments);
+        for (const Job& job : jobs) {
+            check_inputs(p.output, job.scenario);
+            check_inputs(job.places.output, scenario);
             if (same_file(job.places.output, p.output))
                 throw failure(exit_usage, "'" + plain(job.places.scenario.string()) + "' and '" +
                                               plain(file) + "' would be written to one file, '" +
                                               plain(p.output.string()) +
                                               "'; solve them one by one, with '--output'");
+        }
         jobs.push_back(
             {std::move(scenario), std::move(p), std::move(warnings), arguments.scenarios.size() == 1});
     }

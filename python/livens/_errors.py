@@ -2,6 +2,7 @@
 """What can go wrong, and where: diagnostics, exceptions and warnings."""
 from __future__ import annotations
 
+import errno
 import linecache
 import os
 import sys
@@ -258,6 +259,14 @@ def need(module: str, extra: str, what: str) -> Any:
     except ImportError as error:
         raise ImportError(f"{what} needs {module.partition('.')[0]}: "
                           f"pip install 'livens[{extra}]'") from error
+
+
+def make_way(name: str, kind: str, inputs: list[str], force: bool) -> None:
+    """Raises FileExistsError if what stands at ``name`` is not to be replaced by a file of this kind."""
+    from . import _core
+    why = _core.objection(name, kind, inputs, force)
+    if why:
+        raise FileExistsError(errno.EEXIST, why, name)
 
 
 def file_name(file: str | os.PathLike[str]) -> str:

@@ -40,6 +40,8 @@ def load(file: str | os.PathLike[str] | None = None, *, text: str | None = None,
     """
     if (file is None) == (text is None):
         raise TypeError("load() takes a file's name or text=, one of them")
+    if text is not None and not isinstance(text, str):
+        raise TypeError(f"text= of load() is the scenario itself, a str, not {type(text).__name__}")
     name = "" if file is None else file_name(file)
     if file is not None:
         with open(name, "rb") as stream:

@@ -12,11 +12,26 @@ import numpy as np
 from . import _core
 from ._editing import Tree
 from ._entries import Entry, Names, Section, default_name, unknown_name
-from ._errors import Diagnostic, SlowWarning, SolveWarning, fault, file_name, stack_level, user_place
+from ._errors import Diagnostic, SlowWarning, SolveWarning, fault, file_name, make_way, stack_level, user_place
 from ._generated import Body, Drive, Joint, Load, Sensor
 from ._places import some_time
 from ._rest import Equilibrium, EquilibriumError, Linearisation, Modes
 from ._tree import KINDS, Table, frozen, toml
+
+
+def _holds(name: str, content: bytes) -> bool:
+    """Whether a file is this already."""
+    if not os.path.isfile(name):
+        return False
+    with open(name, "rb") as stream:
+        return stream.read(len(content) + 1) == content
+
+
+def _meshes(tree: Any) -> list[str]:
+    """Paths of all meshes of a tree."""
+    items = tree.items() if isinstance(tree, dict) else enumerate(tree) if isinstance(tree, (list, tuple)) else ()
+    return [path for key, item in items
+            for path in ([item] if key == "mesh" and isinstance(item, str) else _meshes(item))]
 
 
 class Model(Tree):
@@ -191,21 +206,28 @@ class Model(Tree):
         self._functions = {}
         self._forget()
 
-    def to_toml(self, file: str | os.PathLike[str] | None = None) -> str:
+    def to_toml(self, file: str | os.PathLike[str] | None = None, *, force: bool = False) -> str:
         """The model as a scenario file, which the program reads, too; written if ``file`` is given.
 
         A model that was loaded and not edited since gives the text that was read, comments included; else the
         text is made anew. ``load(text=m.to_toml()) == m``.
 
+        Args:
+            file: Its name.
+            force: A file that is there and holds something else is replaced only if this is true; never a mesh of
+                the model.
+
         Raises:
             InputError: ``python-function`` if the model has Python functions as loads.
-            OSError: the file cannot be written.
+            OSError: the file cannot be written; ``FileExistsError`` if another file would be lost.
         """
         self._refuse_functions("written to a file")
         text = self._text if self._text is not None else toml(self._root)
         if file is not None:
-            with open(file_name(file), "w", encoding="utf-8", newline="") as out:
-                out.write(text)
+            name = file_name(file)
+            if not _holds(name, text.encode()):
+                make_way(name, "scenario", [os.path.join(self._folder, mesh) for mesh in _meshes(self._root)], force)
+                _core.write_file(name, text.encode())
         return text
 
     def __repr__(self) -> str:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import _core
-from ._errors import fault, file_name
+from ._errors import fault, file_name, make_way
 from ._parts import Floats
 from ._series import Series
 from ._tree import plain
@@ -221,19 +221,25 @@ class Solution(Series):
             raise fault("python-function", f"the model has a Python function as a load, so it cannot be {what}",
                         help="take arrays or to_xarray() of the result")
 
-    def save(self, file: str | os.PathLike[str]) -> None:
+    def save(self, file: str | os.PathLike[str], *, force: bool = False) -> None:
         """Writes a result file, the program's bytes: classic NetCDF with scenario and checksums.
 
         Whatever happens, the file is the old one or the new one. ``livens info``, xarray and MATLAB read it.
 
+        Args:
+            file: Its name.
+            force: An older result is replaced, any other file only if this is true; never what the model was read from.
+
         Raises:
-            OSError: it cannot be written.
+            OSError: it cannot be written; ``FileExistsError`` if another file would be lost.
             InputError: ``python-function``.
         """
         self._refuse_functions("saved")
-        self._result.save(file_name(file))
+        name = file_name(file)
+        make_way(name, "run", self._result.inputs(), force)
+        self._result.save(name)
 
-    def report(self, file: str | os.PathLike[str], other: Solution | None = None) -> None:
+    def report(self, file: str | os.PathLike[str], other: Solution | None = None, *, force: bool = False) -> None:
         """Writes one page for any browser: the motion in space, linked plots, and whether it is right.
 
         The page needs no network and no livens where it is opened; the program's ``livens report`` writes the same.
@@ -241,9 +247,10 @@ class Solution(Series):
         Args:
             file: ends in ``.html``.
             other: a second solution, shown beside this one.
+            force: An older page is replaced, any other file only if this is true.
 
         Raises:
-            OSError: it cannot be written.
+            OSError: it cannot be written; ``FileExistsError`` if another file would be lost.
             InputError: ``python-function``.
 
         Example:
@@ -256,9 +263,9 @@ class Solution(Series):
             '<!doctype html>'
         """
         name = file_name(file)
+        make_way(name, "report", self._result.inputs(), force)
         page = self._page(os.path.splitext(os.path.basename(name))[0], other)
-        with open(name, "w", encoding="utf-8", newline="\n") as to:
-            to.write(page)
+        _core.write_file(name, page.encode())
 
     def _page(self, name: str, other: Solution | None = None) -> str:
         self._refuse_functions("shown on a page")
@@ -267,12 +274,16 @@ class Solution(Series):
         page: str = self._result.report(name, None if other is None else other._result, "other")
         return page
 
-    def export(self, file: str | os.PathLike[str], format: str | None = None) -> None:
+    def export(self, file: str | os.PathLike[str], format: str | None = None, *, force: bool = False) -> None:
         """Writes the motion for other programs, by the ending of the name or by ``format``.
 
         Args:
             file: Its name.
             format: ``"csv"``, ``"npz"``, ``"gltf"`` or ``"pvd"``, as ``livens export`` has them.
+            force: An older export is replaced, any other file only if this is true.
+
+        Raises:
+            OSError: it cannot be written; ``FileExistsError`` if another file would be lost.
         """
         name = file_name(file)
         known = {word: ending for word, ending, _ in _core.export_formats()}
@@ -280,13 +291,14 @@ class Solution(Series):
         if chosen not in known:
             endings = ", ".join(f"{word} ({ending})" for word, ending in known.items())
             raise fault("unknown-choice", f"no format fits '{chosen or name}'", "format", f"there are {endings}")
+        make_way(name, str(chosen), self._result.inputs(), force)
         if chosen == "npz":
             import tempfile
             with tempfile.TemporaryDirectory() as folder:   # it copies the variables of a result
                 self.save(result := os.path.join(folder, "run.nc"))
-                self._result.export_to(chosen, result, name)
+                self._result.export_to(chosen, result, name, force)
         else:
-            self._result.export_to(chosen, "", name)
+            self._result.export_to(chosen, "", name, force)
 
     def __reduce__(self) -> tuple[Any, ...]:
         self._refuse_functions("pickled")

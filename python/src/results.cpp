@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Results as Python sees them: views of the motion, figures, files.
 #include <algorithm>
+#include <filesystem>
 #include <span>
+#include <system_error>
 
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
@@ -158,6 +160,44 @@ Result load_result(const std::string& file)
     return with_scenario(read_run(file), file);
 }
 
+bool is_same_file(const std::string& a, const std::string& b)
+{
+    std::error_code error;
+    return std::filesystem::equivalent(a, b, error) && !error;
+}
+
+/// Why what stands at `file` is not to be replaced by what is of this kind: of the `inputs` never, of all that
+/// is neither empty nor of this kind unless `force`. Empty: it may be.
+std::string objection(const std::string& file, const std::string& kind, const std::vector<std::string>& inputs,
+                      bool force)
+{
+    for (const std::string& input : inputs)
+        if (is_same_file(file, input)) return "it is what the model was read from";
+    const auto is_none = [](std::string_view) { return false; };
+    bool (*is_own)(std::string_view) = kind == "run"      ? begins_as_run
+                                       : kind == "report" ? begins_as_report
+                                                          : +is_none;
+    for (const ExportFormat& f : export_formats())
+        if (f.word == kind) is_own = f.is_own;
+    if (force || !is_occupied(file, is_own)) return "";
+    return "what stands there is no older file of this kind that livens wrote; choose another name, or say "
+           "force=True to replace it";
+}
+
+std::vector<std::string> inputs(const Result& r)
+{
+    std::vector<std::string> files{r.scenario->file};
+    for (const std::filesystem::path& mesh : r.scenario->mesh_files) files.push_back(mesh.string());
+    return files;
+}
+
+void write_file(const std::string& file, const nb::bytes& bytes)
+{
+    const std::string_view view(bytes.c_str(), bytes.size());
+    const nb::gil_scoped_release unlock;
+    replace_file(file, view);
+}
+
 void save(const Result& r, const std::string& file)
 {
     const nb::gil_scoped_release unlock;
@@ -190,11 +230,12 @@ Result from_bytes(const nb::bytes& bytes)
     return with_scenario(read_run_from(source), "pickle");
 }
 
-void export_to(const Result& r, const std::string& format, const std::string& result, const std::string& file)
+void export_to(const Result& r, const std::string& format, const std::string& result, const std::string& file,
+               bool force)
 {
     const nb::gil_scoped_release unlock;
     for (const ExportFormat& f : export_formats())
-        if (f.word == format) f.write(file, {result, *r.scenario, r.run});
+        if (f.word == format) f.write(file, {result, *r.scenario, r.run, force});
 }
 
 }   // namespace
@@ -251,9 +292,12 @@ void add_results(nb::module_& m)
     result.def("save", &save, nb::arg("file"))
         .def("report", &report, nb::arg("name"), nb::arg("other").none(), nb::arg("other_name"))
         .def("to_bytes", &to_bytes)
-        .def("export_to", &export_to, nb::arg("format"), nb::arg("result"), nb::arg("file"));
+        .def("export_to", &export_to, nb::arg("format"), nb::arg("result"), nb::arg("file"), nb::arg("force"))
+        .def("inputs", &inputs);
     m.def("load_result", &load_result, nb::arg("file"));
     m.def("from_bytes", &from_bytes, nb::arg("bytes"));
+    m.def("objection", &objection, nb::arg("file"), nb::arg("kind"), nb::arg("inputs"), nb::arg("force"));
+    m.def("write_file", &write_file, nb::arg("file"), nb::arg("bytes"));
     m.def("figure_meanings", &figure_meanings);
     m.def("export_formats", [] {
         nb::list all;

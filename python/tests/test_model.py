@@ -296,3 +296,9 @@ def test_a_density_of_a_mesh_is_no_shape_of_its_own() -> None:
     assert 'density_field = "1 + x"' in m.to_toml()
     with pytest.raises(TypeError):
         lv.parts([{"box": [1, 1, 1]}], density_field="1")   # type: ignore[call-arg]
+
+
+def test_the_text_of_a_scenario_is_a_text() -> None:
+    for text in (5, b"format = 1", ["format = 1"]):
+        with pytest.raises(TypeError, match="text= of load"):
+            lv.load(text=text)   # type: ignore[arg-type]

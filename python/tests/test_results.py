@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import gc
+import gzip
 import pathlib
 import pickle
 import subprocess
 import json
+from typing import Any
 
 import numpy as np
 import pytest
@@ -160,6 +162,59 @@ def test_files(sol: lv.Solution, tmp_path: pathlib.Path) -> None:
     with pytest.raises(lv.ResultFileError) as error:
         lv.load_solution(file)
     assert error.value.code == "io-damaged" and pickle.loads(pickle.dumps(error.value)).code == "io-damaged"
+
+
+def test_nothing_is_lost(sol: lv.Solution, tmp_path: pathlib.Path) -> None:
+    writers: dict[str, Any] = {"run.nc": sol.save, "page.html": sol.report, "t.csv": sol.export, "t.npz": sol.export, "t.glb": sol.export,
+               "t.pvd": sol.export}
+    for name, write in writers.items():
+        file = tmp_path / name
+        file.write_bytes(b"of somebody else")
+        with pytest.raises(FileExistsError, match="force=True"):
+            write(file)
+        assert file.read_bytes() == b"of somebody else"
+        write(file, force=True)
+        assert file.read_bytes() != b"of somebody else"
+        write(file)   # what is livens' own
+        file.write_bytes(b"")
+        write(file)
+    own = tmp_path / "own.toml"
+    model = lv.load(ROOT / "examples" / "four_bar.toml")
+    model.to_toml(own)
+    model.to_toml(own)   # the same
+    with pytest.raises(FileExistsError):
+        sol.save(own)
+    model.title = "another"
+    with pytest.raises(FileExistsError, match="force=True"):
+        model.to_toml(own)
+    model.to_toml(own, force=True)
+    assert lv.load(own).title == "another"
+
+
+def test_inputs_are_kept_whatever_is_forced(tmp_path: pathlib.Path) -> None:
+    mesh = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n"
+    (tmp_path / "part.obj").write_text(mesh)
+    (tmp_path / "s.toml").write_text('format = 1\n[[body]]\nname = "b"\ndensity = 1\n'
+                                     'shape = { mesh = "part.obj", unit = "m" }\n[time]\nend = 1\nelements = 2\n')
+    model = lv.load(tmp_path / "s.toml")
+    solution = lv.solve(model)
+    writers: list[Any] = [solution.save, model.to_toml]
+    for write in writers:
+        with pytest.raises(FileExistsError, match="read from"):
+            write(tmp_path / "part.obj", force=True)
+    with pytest.raises(FileExistsError):
+        solution.save(tmp_path / "s.toml")
+    assert (tmp_path / "part.obj").read_text() == mesh
+
+
+def test_crafted_files_are_exceptions(tmp_path: pathlib.Path) -> None:
+    folder = ROOT / "tests" / "system" / "data" / "strangers"
+    for file in folder.glob("*.nc.gz"):
+        crafted = tmp_path / "crafted.nc"
+        crafted.write_bytes(gzip.decompress(file.read_bytes()))
+        with pytest.raises(lv.ResultFileError) as error:
+            lv.load_solution(crafted)
+        assert error.value.code == "io-damaged"
 
 
 def test_samples_are_the_programs(program: str, tmp_path: pathlib.Path, sol: lv.Solution) -> None:

@@ -5,34 +5,17 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <random>
 #include <vector>
 
-#include "fuzz/result.h"
-#include "livens/io/results/classic_netcdf_bytes.h"
+#include "fuzz/edits.h"
+#include "fuzz/round_trip.h"
 
 namespace livens {
 
 namespace {
 
 using RunFile = Run;   // testing::Test has a Run of its own
-
-std::vector<std::string> files()
-{
-    std::vector<std::filesystem::path> paths;
-    for (const auto& entry :
-         std::filesystem::directory_iterator(LIVENS_SOURCE_DIR "/tests/fuzz/corpus_results"))
-        paths.push_back(entry.path());
-    std::sort(paths.begin(), paths.end());
-    std::vector<std::string> all;
-    for (const std::filesystem::path& path : paths) {
-        std::ifstream in(path, std::ios::binary);
-        all.emplace_back(std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>());
-    }
-    return all;
-}
 
 class Damage {
 public:
@@ -98,33 +81,14 @@ private:
     std::mt19937 random_;
 };
 
-/// All numbers of the motion, bit by bit, and the texts that say what they are.
-bool is_same(const Run& a, const Run& b)
-{
-    const auto bits = [](const std::vector<double>& x, const std::vector<double>& y) {
-        return x.size() == y.size() &&
-               (x.empty() || std::memcmp(x.data(), y.data(), x.size() * sizeof(double)) == 0);
-    };
-    return bits(a.motion.X.values, b.motion.X.values) && bits(a.motion.P.values, b.motion.P.values) &&
-           bits(a.motion.mesh.ends, b.motion.mesh.ends) && bits(a.output, b.output) &&
-           bits(a.motion.multipliers.values, b.motion.multipliers.values) &&
-           bits(a.motion.end_multipliers, b.motion.end_multipliers) && a.motion.momenta == b.motion.momenta &&
-           a.motion.velocities == b.motion.velocities && a.scenario_text == b.scenario_text &&
-           a.meshes == b.meshes && bits(a.estimate.position, b.estimate.position) &&
-           bits(a.estimate.velocity, b.estimate.velocity) &&
-           bits(a.estimate.orientation, b.estimate.orientation) &&
-           bits(a.estimate.reaction, b.estimate.reaction) && a.body_names == b.body_names &&
-           a.report.status == b.report.status && a.method == b.method;
-}
-
 /// Files that are read with their checksums, half of them, are refused or unharmed; without, they do no harm.
 /// LIVENS_MUTATIONS asks for another number of them.
 TEST(ResultMutations, EachIsRefusedOrTheRunThatWasWritten)
 {
     const char* wanted = std::getenv("LIVENS_MUTATIONS");
     const unsigned n = wanted != nullptr ? static_cast<unsigned>(std::atol(wanted)) : 20'000;
-    const std::vector<std::string> seeds = files();
-    ASSERT_GT(seeds.size(), 5u);   // of format 2.2 lobatto and radau, of 2.1 the others
+    const std::vector<std::string> seeds = test::result_files();
+    ASSERT_GT(seeds.size(), 6u);   // of format 2.4 turns, of 2.2 lobatto and radau, of 2.1 the others
     std::vector<RunFile> runs;
     for (const std::string& seed : seeds) {
         std::optional<RunFile> run = test::answer_to(seed, true);
@@ -141,12 +105,55 @@ TEST(ResultMutations, EachIsRefusedOrTheRunThatWasWritten)
         if (!run) continue;
         ++(verify ? n_harmless : n_read);
         if (verify) {
-            ASSERT_TRUE(is_same(*run, runs[which])) << "mutation " << i;
+            ASSERT_TRUE(test::is_same(*run, runs[which])) << "mutation " << i;
         }
     }
     EXPECT_GT(n_read, n / 50) << "hardly any file gets beyond the header";
     EXPECT_LT(n_harmless, n / 50) << "hardly any file is damaged";
     std::printf("%u of %u mutations read without checksums, %u harmless with them\n", n_read, n, n_harmless);
+}
+
+std::string random_program(Damage& damage, std::size_t n)
+{
+    std::string program;
+    for (std::size_t i = 0; i < n; ++i) program += static_cast<char>(damage.below(256));
+    return program;
+}
+
+/// Edits of headers, with checksums that fit; and those of the corpus of the fuzzer, all of which are refused.
+TEST(ResultMutations, CraftedFilesAreRefusedOrReadInFull)
+{
+    const std::vector<std::string> seeds = test::result_files();
+    for (const auto& entry :
+         std::filesystem::directory_iterator(LIVENS_SOURCE_DIR "/tests/fuzz/corpus_crafted")) {
+        std::ifstream in(entry.path(), std::ios::binary);
+        const std::string program{std::istreambuf_iterator<char>(in), {}};
+        EXPECT_FALSE(test::answer_to(test::Edits(program, seeds).bytes(), true).has_value()) << entry.path();
+    }
+    const char* wanted = std::getenv("LIVENS_MUTATIONS");
+    const unsigned n = wanted != nullptr ? static_cast<unsigned>(std::atol(wanted)) : 10'000;
+    unsigned n_read = 0;
+    for (unsigned i = 0; i < n; ++i) {
+        Damage damage(i);
+        const std::string program = random_program(damage, 1 + 4 * (1 + damage.below(3)));
+        n_read += test::answer_to(test::Edits(program, seeds).bytes(), true).has_value() ? 1 : 0;
+    }
+    EXPECT_GT(n_read, n / 50) << "hardly any file is read in full";
+    EXPECT_LT(n_read, n / 2) << "hardly any file is damaged";
+    std::printf("%u of %u crafted files read\n", n_read, n);
+}
+
+TEST(ResultMutations, RunsComeBackAsTheyWereWritten)
+{
+    for (const std::string& file : test::result_files()) {
+        const RunFile run = read_run_from(test::source_in(file));
+        const Model model = parse_scenario(run.scenario_text, "").scenario->model;
+        for (unsigned i = 0; i < 100; ++i) {
+            Damage damage(i);
+            const std::string program = random_program(damage, 1 + damage.below(100));
+            test::go_round(model, test::AnyRun(program, run).take());   // or the program ends
+        }
+    }
 }
 
 }   // namespace

@@ -663,3 +663,67 @@ livens_mutant(NAME turning_by_vibration
               NEW [[springs.moved(springs.velocity())]]
               TESTS_OF unit_multibody
               MUST_FAIL TurningVibrations.LeaveOutVelocitiesThatVibrate)
+
+# Two dimensions of one name: counts come from one of them, divisors from the other.
+livens_mutant(NAME names_twice
+              FILE io/results/classic_netcdf_read.cpp
+              OLD [[if (twice != names.end())]]
+              NEW [[if (names.empty())]]
+              TESTS_OF unit_io
+              MUST_FAIL CraftedFiles.TwoOfOneNameAreRefused)
+
+# A dimension of length 0 is read as if it were any other.
+livens_mutant(NAME width_of_zero
+              FILE io/results/read.cpp
+              OLD [[if (v != nullptr && v->n_values == 0)]]
+              NEW [[if (v != nullptr && v->n_values == 1u << 31)]]
+              TESTS_OF unit_io
+              MUST_FAIL CraftedFiles.LengthsOfZeroAreRefusedWhereTheyAreRead)
+
+# Variables may share bytes, and reading all of them takes as long as their product with the file.
+livens_mutant(NAME variables_share_bytes
+              FILE io/results/classic_netcdf_read.cpp
+              OLD [[left -= v.n_bytes;]]
+              NEW [[(void)left;]]
+              TESTS_OF unit_io
+              MUST_FAIL CraftedFiles.VariablesHaveNoByteInCommon)
+
+# The motion may have fewer angles than the model's loads read.
+livens_mutant(NAME angles_of_another_model
+              FILE io/results/write.cpp
+              OLD [[fits &= angles.empty() ||]]
+              NEW [[fits &= true ||]]
+              TESTS_OF unit_io
+              MUST_FAIL CraftedFiles.AnglesOfLoadsAreThoseOfTheModel)
+
+# Whatever stands there is replaced.
+livens_mutant(NAME nothing_is_occupied
+              FILE io/results/occupied.cpp
+              OLD [[return !head.empty() && !is_own(head);]]
+              NEW [[return !head.empty() && head.empty();]]
+              TESTS_OF unit_io
+              MUST_FAIL Results.OnlyWhatIsEmptyOrOfTheirKindMayBeReplaced)
+
+# The meshes of a scenario forgotten among its inputs.
+livens_mutant(NAME meshes_are_no_inputs
+              FILE apps/livens/places.cpp
+              OLD [[check_differs(file, mesh, "it is a mesh of the scenario");]]
+              NEW [[(void)mesh;]]
+              TESTS_OF livens
+              MUST_FAIL strangers_test.NothingIsLost.test_inputs_whatever_is_forced)
+
+# A host that is named twice, once rightly.
+livens_mutant(NAME one_host_of_two
+              FILE apps/livens/visitors.cpp
+              OLD [[return n_hosts == 1 && is_this;]]
+              NEW [[return is_this || n_hosts == 2;]]
+              TESTS_OF livens
+              MUST_FAIL report_test.View.test_names_of_fields_and_hosts_have_no_case)
+
+# Marks of writing direction taken for letters.
+livens_mutant(NAME directions_are_letters
+              FILE io/json.cpp
+              OLD [[{0x2028, 0x202e},]]
+              NEW [[{0x2028, 0x2029},]]
+              TESTS_OF unit_io
+              MUST_FAIL Invisible.CharactersAreKnownAndEscapedInJson)

@@ -66,6 +66,7 @@ family = "lobatto"
 degree = 4
 """
 
+OLDER = "CDF, cut off behind livens_format"   # what may be replaced
 LONG = SMALL.replace("end = 0.5\nelements = 10\noutput = 0.1", "end = 50000\nelements = 1000000\noutput = 1000")
 
 
@@ -357,7 +358,7 @@ output = 0.25
             (one_leap.replace('family = "lobatto"\ndegree = 4', 'family = "midpoint"\nmax_iterations = 1'), "not converged", "upper"),
             (SMALL + spring, "not converged", "element"),
         ):
-            self.write("run.nc", "an older result")
+            self.write("run.nc", OLDER)
             result = self.solve(text, code=NOT_CONVERGED)
             self.assertIs(result["converged"], False)
             self.assertEqual(result["status"], status)
@@ -788,9 +789,9 @@ class WrongInput(ProgramTest):
     def refuse(self, text, code=SCENARIO, line=None, diagnostic=None):
         """`line`: the text of the line that must be named."""
         path = self.write("wrong.toml", text)
-        old = self.write("run.nc", "an older result")
+        old = self.write("run.nc", OLDER)
         done = self.expect(code, "solve", path.name, "-o", "run.nc", "--diagnostics", "gnu")
-        self.assertEqual(old.read_text(), "an older result")
+        self.assertEqual(old.read_text(), OLDER)
         self.assertEqual(self.files(), ["run.nc", "wrong.toml"])
         self.assertTrue(any(self.names(finding, text, line, diagnostic) for finding in done.err.splitlines()),
                         f"expected {diagnostic} at {line!r}:\n{done.err}")
@@ -1094,12 +1095,12 @@ class Signals(ProgramTest):
     def test_interrupt_leaves_a_readable_result(self):
         self.write("long.toml", LONG)
         for number in (signal.SIGINT, signal.SIGTERM):
-            old = self.write("run.nc", "an older result")
+            old = self.write("run.nc", OLDER)
             program = self.start("solve", "long.toml", "-o", "run.nc", "--json")
             wait_until_it_listens(program)
             time.sleep(0.6)
             self.assertIsNone(program.poll(), "the run must be long enough to be interrupted")
-            self.assertEqual(old.read_text(), "an older result")
+            self.assertEqual(old.read_text(), OLDER)
             program.send_signal(number)
             out, err = program.communicate(timeout=60)
             self.assertEqual(program.returncode, 128 + number, err)
@@ -1115,13 +1116,13 @@ class Signals(ProgramTest):
 
     def test_interrupt_while_reading_touches_nothing(self):
         os.mkfifo(self.folder / "pipe.toml")
-        old = self.write("run.nc", "an older result")
+        old = self.write("run.nc", OLDER)
         program = self.start("solve", "pipe.toml", "-o", "run.nc")
         time.sleep(0.3)
         program.send_signal(signal.SIGINT)
         program.communicate(timeout=20)
         self.assertIn(program.returncode, (-signal.SIGINT, 130))
-        self.assertEqual(old.read_text(), "an older result")
+        self.assertEqual(old.read_text(), OLDER)
 
     def test_progress_is_for_terminals(self):
         self.write("long.toml", LONG)

@@ -16,8 +16,10 @@ import pathlib
 import re
 import select
 import signal
+import socket
 import struct
 import subprocess
+import time
 import unittest
 import urllib.parse
 import zlib
@@ -361,6 +363,54 @@ class View(ProgramTest):
         sockets = pathlib.Path("/proc/net/tcp").read_text(encoding="ascii").splitlines()
         listening = [line.split()[1] for line in sockets if line.split()[3] == "0A"]
         self.assertEqual([place for place in listening if place.endswith(f":{port:04X}")], [f"0100007F:{port:04X}"])
+        process.send_signal(signal.SIGINT)
+        self.assertEqual(process.wait(20), 0)
+
+    def ask(self, address, lines, method="GET"):
+        """The answer to a request of these lines."""
+        parts = urllib.parse.urlsplit(address)
+        with socket.create_connection(("127.0.0.1", parts.port), timeout=10) as browser:
+            browser.sendall("\r\n".join([f"{method} {parts.path} HTTP/1.1", *lines, "", ""]).encode())
+            answer = b""
+            while piece := browser.recv(1 << 16):
+                answer += piece
+        return answer
+
+    def test_names_of_fields_and_hosts_have_no_case(self):
+        self.solve()
+        _, address = self.serve("--address")
+        port = urllib.parse.urlsplit(address).port
+        for lines in ([f"host: 127.0.0.1:{port}"], [f"HOST:LocalHost:{port}"], ["Accept: */*", f"hOst: \t127.0.0.1:{port} \t"]):
+            self.assertTrue(self.ask(address, lines).startswith(b"HTTP/1.1 200 "), lines)
+        for lines in ([], ["host: evil.example"], [f"Host: 127.0.0.1:{port}", "Host: evil.example"], [f"X-Host: 127.0.0.1:{port}"],
+                      [f"Host: 127.0.0.1:{port}.evil.example"], ["Host: 127.0.0.1"]):
+            self.assertTrue(self.ask(address, lines).startswith(b"HTTP/1.1 404 "), lines)
+
+    def test_who_is_slow_blocks_nobody(self):
+        self.solve()
+        process, address = self.serve("--address")
+        port = urllib.parse.urlsplit(address).port
+
+        def come():
+            browser = socket.create_connection(("127.0.0.1", port), timeout=20)
+            self.addCleanup(browser.close)
+            return browser
+        silent, dripping = [come() for _ in range(100)], come()
+        asking = come()
+        asking.sendall(f"GET {urllib.parse.urlsplit(address).path} HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\n\r\n".encode())
+        begin = time.monotonic()   # it takes nothing of its page meanwhile
+        for _ in range(3):
+            dripping.send(b"G")
+            self.assertEqual(self.get(address)[0].status, 200)
+        self.assertLess(time.monotonic() - begin, 3)
+        self.assertEqual(silent[0].recv(1), b"", "one too many, the first of all")
+        for _ in range(20):   # for ever, if each byte were waited for
+            try:
+                dripping.send(b"G")
+            except OSError:
+                break
+            time.sleep(0.5)
+        self.assertLess(time.monotonic() - begin, 9)
         process.send_signal(signal.SIGINT)
         self.assertEqual(process.wait(20), 0)
 

@@ -3,7 +3,7 @@
 # netCDF4, xarray, ncdump or the right to mount is skipped where it is missing.
 
 if(LIVENS_BUILD_PROGRAM)
-    foreach(file program_test terminal_test rest_test locking_test mass_test skew_test export_test report_test stop_test hard_ends)
+    foreach(file program_test terminal_test rest_test locking_test mass_test skew_test export_test report_test stop_test strangers_test hard_ends)
         set(script ${CMAKE_CURRENT_SOURCE_DIR}/system/${file}.py)
         file(STRINGS ${script} classes REGEX "^class [A-Za-z]+\\((ProgramTest|HardTest)\\)")
         set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${script})

@@ -16,34 +16,16 @@ constexpr int widest_line = 120;     // characters shown of a line; longer ones 
 constexpr int narrowest_line = 20;   // likewise, on any terminal
 constexpr int marks = 8;             // "... " before and " ..." behind what is cut
 
-/// Of one character in UTF-8; U+FFFD for a byte that is none.
-std::uint32_t code_point(std::string_view character)
-{
-    const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(character[i]); };
-    if (character.size() == 1) return byte(0) < 0x80 ? byte(0) : 0xfffd;
-    std::uint32_t code = byte(0) & (0xff >> (character.size() + 1));
-    for (std::size_t i = 1; i < character.size(); ++i) code = code << 6 | (byte(i) & 0x3f);
-    return code;
-}
-
 bool is_control(std::uint32_t code) { return code < 0x20 || (code >= 0x7f && code < 0xa0); }
 
-/// Marks of writing direction, and separators of lines and paragraphs: they hide what is there.
-bool is_direction(std::uint32_t code)
-{
-    return (code >= 0x2028 && code <= 0x202e) || (code >= 0x2066 && code <= 0x2069) || code == 0x200e ||
-           code == 0x200f || code == 0x061c;
-}
-
-/// One character of a text, made visible: control characters, marks of direction and bytes that are not
-/// UTF-8 are written out. Terminals obey the first two.
+/// One character of a text, made visible: what is_invisible() and bytes that are not UTF-8 are written out.
 std::string visible(std::string_view character)
 {
     static constexpr char digits[] = "0123456789abcdef";
     if (character == "\t") return " ";
     const std::uint32_t code = code_point(character);
     const bool is_odd_byte = code == 0xfffd && character.size() == 1;
-    if (!is_control(code) && !is_direction(code) && !is_odd_byte) return std::string(character);
+    if (!is_invisible(code) && !is_odd_byte) return std::string(character);
     std::string text;
     for (const char c : character) {
         const unsigned char byte = static_cast<unsigned char>(c);
@@ -207,10 +189,11 @@ std::string first_invisible(std::string_view text)
 {
     for (; !text.empty(); text.remove_prefix(character_length(text))) {
         const std::uint32_t code = code_point(text.substr(0, character_length(text)));
-        if (!is_control(code) && !is_direction(code)) continue;
+        if (!is_invisible(code)) continue;
         char name[16];
         std::snprintf(name, sizeof name, "U+%04X", code);
-        return std::string(is_control(code) ? "control characters" : "marks of writing direction") +
+        return std::string(is_control(code) ? "control characters"
+                                            : "invisible marks, as of writing direction") +
                ", here " + name;
     }
     return {};

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <span>
+#include <string_view>
 
 #include "livens/io/results.h"
 #include "livens/io/scenario.h"
@@ -15,12 +16,15 @@ struct ExportInput {
     std::filesystem::path result;   ///< the file that `run` was read from
     const Scenario& scenario;       ///< that of its text
     const Run& run;
+    bool force = false;   ///< whatever stands where further files go, beside the one that is named
 };
 
 struct ExportFormat {
     const char* word;        ///< of the option: "gltf" is --gltf
     const char* extension;   ///< by which readers know the file: ".glb"
     const char* what;
+    /// Whether a file that begins so is an older export, which may be replaced; see is_occupied().
+    bool (*is_own)(std::string_view head);
     /// Written whole or not at all, as replace_file() does. Throws IoError.
     void (*write)(const std::filesystem::path& file, const ExportInput& input);
 };

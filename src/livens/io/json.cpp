@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "livens/io/json.h"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 
@@ -8,9 +9,15 @@ namespace livens {
 
 namespace {
 
-void append_escaped(std::string& out, std::string_view text)
+void append_unit(std::string& out, std::uint32_t unit)
 {
     static constexpr char digits[] = "0123456789abcdef";
+    out += "\\u";
+    for (int shift = 12; shift >= 0; shift -= 4) out += digits[unit >> shift & 15];
+}
+
+void append_escaped(std::string& out, std::string_view text)
+{
     out += '"';
     while (!text.empty()) {
         const int length = utf8_length(text);
@@ -24,19 +31,116 @@ void append_escaped(std::string& out, std::string_view text)
             out += "\\n";
         } else if (c == '\t') {
             out += "\\t";
-        } else if (c < 0x20 || c == 0x7f) {
-            out += "\\u00";
-            out += digits[c >> 4];
-            out += digits[c & 15];
-        } else {
+        } else if (const std::uint32_t code = code_point(text); !is_invisible(code)) {
             out.append(text.substr(0, length));
+        } else if (code < 0x10000) {
+            append_unit(out, code);
+        } else {
+            append_unit(out, 0xd800 + ((code - 0x10000) >> 10));
+            append_unit(out, 0xdc00 + (code & 0x3ff));
         }
         text.remove_prefix(length > 0 ? length : 1);
     }
     out += '"';
 }
 
+/// Goes through one JSON value; each part says whether it was there.
+class JsonReader {
+public:
+    explicit JsonReader(std::string_view text) : rest_(text) {}
+
+    bool value(int depth)
+    {
+        skip_blanks();
+        if (depth > 64 || rest_.empty()) return false;
+        const char c = rest_.front();
+        if (c == '{') return list('}', [&] { return text() && token(":") && value(depth + 1); });
+        if (c == '[') return list(']', [&] { return value(depth + 1); });
+        if (c == '"') return text();
+        return word("true") || word("false") || word("null") || number();
+    }
+    bool at_end()
+    {
+        skip_blanks();
+        return rest_.empty();
+    }
+
+private:
+    void skip_blanks() { rest_.remove_prefix(std::min(rest_.find_first_not_of(" \t\r\n"), rest_.size())); }
+    bool word(std::string_view what)
+    {
+        if (!rest_.starts_with(what)) return false;
+        rest_.remove_prefix(what.size());
+        return true;
+    }
+    bool token(std::string_view what)
+    {
+        skip_blanks();
+        return word(what);
+    }
+    template <class Item>
+    bool list(char end, Item item)
+    {
+        rest_.remove_prefix(1);
+        const std::string_view last(&end, 1);
+        if (token(last)) return true;
+        do
+            if (!item()) return false;
+        while (token(","));
+        return token(last);
+    }
+    bool text()
+    {
+        if (!token("\"")) return false;
+        while (!rest_.empty() && rest_.front() != '"') {
+            const int length = utf8_length(rest_);
+            if (length == 0 || static_cast<unsigned char>(rest_.front()) < 0x20) return false;
+            if (rest_.front() != '\\') rest_.remove_prefix(static_cast<std::size_t>(length));
+            else if (!escape()) return false;
+        }
+        return word("\"");
+    }
+    bool escape()
+    {
+        constexpr std::string_view hexadecimal = "0123456789abcdefABCDEF";
+        rest_.remove_prefix(1);
+        if (word("u")) {
+            const bool is_whole = rest_.size() >= 4 && rest_.substr(0, 4).find_first_not_of(hexadecimal) ==
+                                                           std::string_view::npos;
+            rest_.remove_prefix(is_whole ? 4 : 0);
+            return is_whole;
+        }
+        if (rest_.empty() || std::string_view("\"\\/bfnrt").find(rest_.front()) == std::string_view::npos)
+            return false;
+        rest_.remove_prefix(1);
+        return true;
+    }
+    bool digits()
+    {
+        const std::size_t n = std::min(rest_.find_first_not_of("0123456789"), rest_.size());
+        rest_.remove_prefix(n);
+        return n > 0;
+    }
+    bool number()
+    {
+        word("-");
+        if (!word("0") && !digits()) return false;
+        if (word(".") && !digits()) return false;
+        if (!word("e") && !word("E")) return true;
+        if (!word("+")) word("-");
+        return digits();
+    }
+
+    std::string_view rest_;
+};
+
 }   // namespace
+
+bool is_json(std::string_view text)
+{
+    JsonReader reader(text);
+    return reader.value(0) && reader.at_end();
+}
 
 int utf8_length(std::string_view text)
 {
@@ -52,6 +156,27 @@ int utf8_length(std::string_view text)
     if (first == 0xf0 && byte(1) < 0x90) return 0;    // overlong
     if (first == 0xf4 && byte(1) >= 0x90) return 0;   // beyond U+10FFFF
     return length;
+}
+
+std::uint32_t code_point(std::string_view text)
+{
+    const int length = utf8_length(text);
+    const auto byte = [&](int i) { return static_cast<unsigned char>(text[i]); };
+    if (length <= 1) return length == 0 ? 0xfffd : byte(0);
+    std::uint32_t code = byte(0) & (0xff >> (length + 1));
+    for (int i = 1; i < length; ++i) code = code << 6 | (byte(i) & 0x3f);
+    return code;
+}
+
+bool is_invisible(std::uint32_t code)
+{
+    constexpr std::uint32_t ranges[][2] = {
+        {0, 0x1f},          {0x7f, 0x9f},       {0xad, 0xad},       {0x600, 0x605},     {0x61c, 0x61c},
+        {0x6dd, 0x6dd},     {0x70f, 0x70f},     {0x890, 0x891},     {0x8e2, 0x8e2},     {0x180e, 0x180e},
+        {0x200b, 0x200b},   {0x200e, 0x200f},   {0x2028, 0x202e},   {0x2060, 0x206f},   {0xfeff, 0xfeff},
+        {0xfff9, 0xfffb},   {0x110bd, 0x110bd}, {0x110cd, 0x110cd}, {0x13430, 0x1343f}, {0x1bca0, 0x1bca3},
+        {0x1d173, 0x1d17a}, {0xe0000, 0xe007f}};
+    return std::ranges::any_of(ranges, [&](const auto& r) { return code >= r[0] && code <= r[1]; });
 }
 
 void JsonWriter::new_line()

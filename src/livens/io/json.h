@@ -3,6 +3,7 @@
 #pragma once
 
 #include <concepts>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>
@@ -16,8 +17,8 @@ namespace [[gnu::visibility("default")]] livens {
 /// its key: both are asserted.
 ///
 /// Numbers are the shortest text that reads back to the same double; nan and infinities, which JSON cannot
-/// say, are null. Strings are escaped; bytes that are not UTF-8 become U+FFFD, so that the result is always
-/// valid.
+/// say, are null. Strings are escaped, all that is_invisible() too; bytes that are not UTF-8 become U+FFFD,
+/// so that the result is always valid.
 class JsonWriter {
 public:
     /// indent 0: everything on one line; else that many spaces a level (arrays of numbers stay on one line).
@@ -71,8 +72,18 @@ private:
     bool has_key_ = false;
 };
 
+/// Whether a text is one JSON value (RFC 8259), nested at most 64 deep.
+bool is_json(std::string_view text);
+
 /// Length in bytes of the UTF-8 sequence at the start of `text`, 0 if there is none (overlong forms,
 /// surrogates and code points above U+10FFFF are none). `text` is not empty.
 int utf8_length(std::string_view text);
+
+/// Of the sequence at the start of `text`; U+FFFD for a byte that is none.
+std::uint32_t code_point(std::string_view text);
+
+/// What a terminal obeys or an eye does not see: control and format characters (Unicode's Cc and Cf, but for
+/// the joiners U+200C and U+200D, which words and signs are made with), separators of lines and paragraphs.
+bool is_invisible(std::uint32_t code);
 
 }   // namespace livens

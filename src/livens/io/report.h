@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "livens/io/results.h"
 #include "livens/io/scenario.h"
@@ -30,5 +31,8 @@ struct ReportOptions {
 /// zlib).
 std::string report_page(const ReportInput& run, const ReportInput* other = nullptr,
                         const ReportOptions& options = {});
+
+/// Whether a file that begins so is such a page; see is_occupied().
+bool begins_as_report(std::string_view head);
 
 }   // namespace livens

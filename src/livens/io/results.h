@@ -76,8 +76,17 @@ void check_writable(const std::filesystem::path& file);
 /// Replaces `file` by `bytes`: a temporary name in the same folder is written, synced and renamed. Whatever
 /// happens, at any instant, `file` is the old one or the new one; a failure removes the temporary, and those
 /// that killed processes left in this folder go as well. A symbolic link stays and its target is replaced;
-/// the access rights of an older file are kept. Throws IoError.
+/// the access rights of an older file are kept, but for set-user-ID and set-group-ID. Throws IoError.
 void replace_file(const std::filesystem::path& file, std::string_view bytes);
+
+/// How much of a file tells what it is.
+inline constexpr std::size_t telling_bytes = 8192;
+/// Whether a file that begins so is a run that livens wrote, whole or damaged.
+bool begins_as_run(std::string_view head);
+/// Whether something is lost if `file` is replaced: it is there, holds something, and does not begin as
+/// `is_own` has it (with telling_bytes of it, or all). What cannot be read counts; what is no regular file
+/// does not: check_writable() refuses it.
+bool is_occupied(const std::filesystem::path& file, bool (*is_own)(std::string_view head));
 
 /// A file that cannot be read or written, or is not what it should be. The message names it.
 class IoError : public std::runtime_error {

@@ -65,6 +65,7 @@ struct Scenario {
     SolveOptions options;   ///< tolerance, max_iterations, initial, condition
     std::string resolved;   ///< all options after defaults, as one JSON object
     std::string meshes;     ///< what its meshes come to, so that a run needs no file beside its own
+    std::vector<std::filesystem::path> mesh_files;   ///< that were read for it
 };
 
 struct ScenarioResult {

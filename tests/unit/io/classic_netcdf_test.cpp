@@ -178,7 +178,7 @@ TEST(ClassicNetcdf, SizesThatLieAreRefusedBeforeMemoryIsAskedFor)
     const std::string most("\x7f\xff\xff\xff", 4), negative("\xff\xff\xff\xff", 4);
     EXPECT_EQ(with(image, 12, most), "io-damaged") << "dimensions";
     EXPECT_EQ(with(image, 12, negative), "io-damaged") << "a negative number of dimensions";
-    EXPECT_EQ(with(image, 16, most), "io-truncated") << "length of a name";
+    EXPECT_EQ(with(image, 16, most), "io-damaged") << "length of a name";
     EXPECT_EQ(with(image, 24, most), "io-truncated") << "length of a dimension";
     EXPECT_EQ(with(image, 8, std::string(4, '\0')), "io-damaged") << "no list, and yet of two";
     EXPECT_EQ(with(image, 8, std::string("\0\0\0\x0b", 4)), "io-damaged") << "another list";
@@ -196,7 +196,7 @@ TEST(ClassicNetcdf, SizesThatLieAreRefusedBeforeMemoryIsAskedFor)
     const std::string huge("\x7f\xff\xff\xff\xff\xff\xff\xff", 8);
     EXPECT_EQ(with(wide, wide.find("xy") - 16, huge), "io-damaged") << "t x xy overflows";
     EXPECT_EQ(with(wide, 16, huge), "io-damaged");
-    EXPECT_EQ(with(wide, 24, huge), "io-truncated");
+    EXPECT_EQ(with(wide, 24, huge), "io-damaged") << "length of a name";
 }
 
 TEST(ClassicNetcdf, DamageIsNamed)

@@ -80,7 +80,7 @@ TEST(Hostile, BinaryFilesAreNotText)
     expect_error(std::string("\x7f"
                              "ELF\x02\x01\x01\0\0\0",
                              10),
-                 "not-text", "");
+                 "not-text", "\x7f");
     expect_error("a = 1\nb = \"\x01\"\n", "not-text", "\x01");
 }
 

@@ -125,6 +125,13 @@ inline Model sample_model()
     model.add_body(rigid_body("körper eins", with_center(box(2.0, {1, 2, 3}), {0, 0.5, 0}), placement));
     model.add_body(point_mass("bob", 0.25, {0, 0, 2}, {3, 0, 0}));
     model.add_joint(rod("rod", 0, 1, {{0, 0, 0}, {0, 0, 0}, {0, 0, 1}, {0, 0, 1}}, 2));
+    Load counter;   // of no force, which counts the two angles that the motion has
+    counter.name = "counter";
+    counter.bodies = {0, world};
+    const JointCoordinate turn = angle_between(world, {0, 1, 0, 0}, {0, 0, 1, 0}, 0, {0, 1, 0, 0});
+    counter.angles = {turn, turn};
+    counter.forces = [](const LoadArguments&, LoadForces&) {};
+    model.add_load(counter);
     return model;
 }
 

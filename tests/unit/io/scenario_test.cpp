@@ -331,7 +331,7 @@ std::vector<Case> cases_of_files()
 {
     return {
         change("duplicate-key", "axis = [0, 1, 0]", "axis = [0, 1, 0]\naxis  = [0, 0, 1]", "axis  ="),
-        {"empty-file", " \n\t\r\n", ""},
+        {"empty-file", " \n\t\r\n", " "},
         change("format-version", "format = 1", "format = 2", "2\ngravity"),
         change("misplaced-key", "at = [1, 0, 0]\n", "at = [1, 0, 0]\naxis  = [0, 0, 1]\n", "axis  ="),
         change("missing-key", "between = [\"upper\", \"lower\"]\n", "", "[[joint]]\nname = \"elbow\""),

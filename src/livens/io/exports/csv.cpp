@@ -5,6 +5,7 @@
 #include "livens/diagnostics/sample.h"
 #include "livens/io/exports.h"
 #include "livens/io/json.h"
+#include "livens/io/results/atomic_file.h"
 
 namespace livens {
 
@@ -63,6 +64,7 @@ std::string header(const Model& model, const Run& run, const JointCoordinates& c
     return line + "\r\n";
 }
 
+constexpr std::size_t largest_piece = std::size_t{1} << 20;   // of the table that is held in memory
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr Vector3 no_number{nan, nan, nan};
 
@@ -93,7 +95,13 @@ void add_energies(std::string& line, const Model& model, const Motion& motion, c
 
 void write_csv(const std::filesystem::path& file, const Model& model, const Run& run)
 {
-    check_writable(file);
+    AtomicFile out(file);
+    std::uint64_t n_written = 0;
+    const auto write = [&](std::string& text) {   // a small run may have a large table
+        out.write(n_written, text);
+        n_written += text.size();
+        text.clear();
+    };
     const JointCoordinates coordinates(model, run.motion);
     const SensorReadings sensors(model, run.motion);
     const bool has_reactions = !sample_joints(model, run.motion, run.motion.start()).empty();
@@ -126,8 +134,10 @@ void write_csv(const std::filesystem::path& file, const Model& model, const Run&
             }
         for (const double reading : sensors.at(t)) add_cell(text, reading);
         text += "\r\n";
+        if (text.size() > largest_piece) write(text);
     }
-    replace_file(file, text);
+    write(text);
+    out.commit();
 }
 
 }   // namespace livens

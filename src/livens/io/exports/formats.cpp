@@ -7,15 +7,30 @@ namespace livens {
 
 namespace {
 
+/// As Zip of npz.cpp begins: stored, names in UTF-8, without a date; numpy.savez has other flags.
+bool begins_as_npz(std::string_view head)
+{
+    constexpr std::string_view entry("PK\3\4\x2d\0\0\x08\0\0\0\0\x21\0", 14);
+    return head.starts_with(entry) && head.find(".npy") != std::string_view::npos;
+}
+
+bool begins_as_gltf(std::string_view head)
+{
+    return head.starts_with("glTF") &&
+           head.substr(0, 200).find(R"("generator": "livens )") != std::string_view::npos;
+}
+
 constexpr ExportFormat formats[] = {
     {"csv", ".csv", "table of the samples at the output times",
+     [](std::string_view head) { return head.starts_with("t [s],"); },
      [](const std::filesystem::path& file, const ExportInput& input) {
          write_csv(file, input.scenario.model, input.run);
      }},
-    {"npz", ".npz", "NumPy archive of all variables of the result",
+    {"npz", ".npz", "NumPy archive of all variables of the result", begins_as_npz,
      [](const std::filesystem::path& file, const ExportInput& input) { write_npz(file, input); }},
-    {"gltf", ".glb", "glTF 2.0 animation of the bodies", write_gltf},
-    {"pvd", ".pvd", "ParaView collection; its surfaces lie in a folder beside it", write_pvd},
+    {"gltf", ".glb", "glTF 2.0 animation of the bodies", begins_as_gltf, write_gltf},
+    {"pvd", ".pvd", "ParaView collection; its surfaces lie in a folder beside it",
+     [](std::string_view head) { return head.starts_with(pvd_head); }, write_pvd},
 };
 
 }   // namespace

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <vector>
 
@@ -18,6 +19,13 @@ void write_npz(const std::filesystem::path& file, const ExportInput& input,
                std::uint64_t narrow = 0xffffffff);
 void write_gltf(const std::filesystem::path& file, const ExportInput& input);
 void write_pvd(const std::filesystem::path& file, const ExportInput& input);
+
+/// How a list of surfaces and a surface begin.
+inline constexpr std::string_view pvd_head =
+    "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n";
+inline constexpr std::string_view vtp_head =
+    "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" "
+    "header_type=\"UInt64\">\n";
 
 /// Appends a number, lowest byte first, whatever the machine.
 template <class Number>

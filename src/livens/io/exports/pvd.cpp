@@ -90,13 +90,31 @@ std::string file_of(const Picture& p, const std::string& field)
     data.xml += "</Points>\n<Polys>\n";
     data.add("Int32", "connectivity", 1, numbers(p.corners));
     data.add("Int32", "offsets", 1, numbers(p.offsets));
-    return "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" "
-           "header_type=\"UInt64\">\n<PolyData>\n<FieldData>\n" +
-           field + "</FieldData>\n<Piece NumberOfPoints=\"" + std::to_string(p.points.size() / 3) +
+    return std::string(vtp_head) + "<PolyData>\n<FieldData>\n" + field +
+           "</FieldData>\n<Piece NumberOfPoints=\"" + std::to_string(p.points.size() / 3) +
            "\" NumberOfVerts=\"0\" NumberOfLines=\"0\" NumberOfStrips=\"0\" NumberOfPolys=\"" +
            std::to_string(p.offsets.size()) + "\">\n" + data.xml +
            "</Polys>\n</Piece>\n</PolyData>\n<AppendedData encoding=\"raw\">\n_" + data.bytes +
            "\n</AppendedData>\n</VTKFile>\n";
+}
+
+/// From the list on.
+fs::path piece_of(const fs::path& name, std::size_t n)
+{
+    const std::string digits = std::to_string(n);
+    const std::size_t zeros = digits.size() < 6 ? 6 - digits.size() : 0;
+    return name / (name.string() + "_" + std::string(zeros, '0') + digits + ".vtp");
+}
+
+/// Nothing is written if one of the files in the folder is somebody else's.
+void check_pieces(const fs::path& folder, const fs::path& name, std::size_t n_pieces)
+{
+    const auto is_own = [](std::string_view head) { return head.starts_with(vtp_head); };
+    for (std::size_t i = 0; i < n_pieces; ++i)
+        if (const fs::path piece = folder / piece_of(name, i); is_occupied(piece, is_own))
+            throw IoError("cannot write '" + piece.string() +
+                          "': a file stands there that livens did not write; give the list another name, or "
+                          "say that it may be replaced (--force)");
 }
 
 }   // namespace
@@ -112,18 +130,16 @@ void write_pvd(const fs::path& file, const ExportInput& input)
     fs::create_directories(folder, error);
     if (error) throw IoError("cannot write '" + folder.string() + "': " + error.message());
     const std::string names = names_of(run);
-    std::string list = "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\" "
-                       "byte_order=\"LittleEndian\">\n<Collection>\n";
-    int n = 0;
-    for (const double t : reached_times(run)) {
+    const std::vector<double> times = reached_times(run);
+    if (!input.force) check_pieces(file.parent_path(), name, times.size());
+    std::string list = std::string(pvd_head) + "<Collection>\n";
+    std::size_t n = 0;
+    for (const double t : times) {
         Picture picture;
         const std::vector<BodySample> bodies = sample_bodies(input.scenario.model, run.motion, t);
         for (std::size_t b = 0; b < bodies.size(); ++b)
             picture.add(static_cast<int>(b), surfaces[b], bodies[b]);
-        const std::string digits = std::to_string(n++);
-        const fs::path piece =
-            name / (name.string() + "_" + std::string(digits.size() < 6 ? 6 - digits.size() : 0, '0') +
-                    digits + ".vtp");
+        const fs::path piece = piece_of(name, n++);
         const std::string time = "<DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" "
                                  "format=\"ascii\">" +
                                  to_text(t) + "</DataArray>\n";

@@ -127,4 +127,10 @@ std::string report_page(const ReportInput& run, const ReportInput* other, const 
     return out;
 }
 
+bool begins_as_report(std::string_view head)
+{
+    return head.starts_with("<!doctype html>\n<html lang=\"en\">\n<head>") &&
+           head.substr(0, 1024).find("default-src 'none'; script-src 'sha256-") != std::string_view::npos;
+}
+
 }   // namespace livens

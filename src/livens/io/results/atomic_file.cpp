@@ -4,6 +4,8 @@
 #include <atomic>
 #include <cerrno>
 #include <memory>
+#include <mutex>
+#include <set>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -93,6 +95,16 @@ void remove_abandoned_in(const fs::path& folder)
         if (is_temporary(entry->d_name)) remove_abandoned(folder / entry->d_name);
 }
 
+/// Whether this process has not looked for abandoned temporaries in this folder yet: a list of the folder for
+/// each of many files that are written there would take the square of their number.
+bool is_first_visit(const struct stat& folder)
+{
+    static std::mutex mutex;
+    static std::set<std::pair<dev_t, ino_t>> visited;
+    const std::lock_guard lock(mutex);
+    return visited.emplace(folder.st_dev, folder.st_ino).second;
+}
+
 }   // namespace
 
 Descriptor& Descriptor::operator=(Descriptor&& other) noexcept
@@ -126,9 +138,9 @@ AtomicFile::AtomicFile(const fs::path& file) : file_(file)
     struct stat status {};
     if (::stat(folder.c_str(), &status) != 0) fail(cannot + ": folder " + quoted(folder), errno);
     if (!S_ISDIR(status.st_mode)) fail(cannot + ": folder " + quoted(folder), ENOTDIR);
-    remove_abandoned_in(folder);
+    if (is_first_visit(status)) remove_abandoned_in(folder);
     create();
-    if (!is_there || ::fchmod(out_.number(), old.st_mode & 07777) == 0) return;
+    if (!is_there || ::fchmod(out_.number(), old.st_mode & 0777) == 0) return;
     const int error = errno;
     ::unlink(temporary_.c_str());
     fail("cannot set the access rights of " + quoted(file), error);

@@ -26,7 +26,7 @@ private:
 /// renames; removed if it does not come to that. See replace_file() for what is promised. Throws IoError.
 ///
 /// Temporaries are named .livens-<process>-<n>.tmp and locked while somebody writes them. Those without a
-/// lock, left behind by killed processes, are removed from the folder when the next one is made there.
+/// lock, left behind by killed processes, are removed when a process makes its first one there.
 class AtomicFile {
 public:
     explicit AtomicFile(const std::filesystem::path& file);

@@ -18,6 +18,7 @@ void require(bool truth, const char* what)
 void check_mesh(const TimeMesh& mesh)
 {
     require(!mesh.ends.empty(), "it has no element ends");
+    require(std::isfinite(mesh.ends.back() - mesh.ends.front()), "its duration is not finite");
     for (std::size_t i = 0; i < mesh.ends.size(); ++i) {
         require(std::isfinite(mesh.ends[i]), "an element end is not finite");
         require(i == 0 || mesh.ends[i] > mesh.ends[i - 1], "element ends do not ascend");
@@ -27,6 +28,7 @@ void check_mesh(const TimeMesh& mesh)
 /// `n_values`: what a coefficient must hold. A motion of no elements may hold its start.
 void check_field(const Field& field, std::size_t n_values, std::size_t n_elements, const char* what)
 {
+    require(!field.empty() || field.denominators.empty(), "denominators of nothing");
     if (field.empty()) return;
     require(field.degree >= 0 && field.degree <= max_degree, what);
     require(!(field.continuous && field.degree == 0), what);

@@ -111,8 +111,10 @@ struct ByteSource {
 };
 
 /// Reads the header when made, and variables when they are asked for. Every count, length and place is
-/// checked against the size of the file before memory is asked for. Throws IoError: `io-foreign` if it is no
-/// classic NetCDF file, `io-truncated` if it ends too early, `io-damaged`.
+/// checked against the size of the file before memory is asked for: what is taken and done is at most
+/// proportional to it. Names are unique within dimensions, variables and the attributes of one of them; they
+/// have 256 bytes at most, variables 8 dimensions; variables have no byte in common. Throws IoError:
+/// `io-foreign` if it is no classic NetCDF file, `io-truncated` if it ends too early, `io-damaged`.
 class ClassicReader {
 public:
     /// Without `verify` checksums are not looked at: for tests of what comes after them.

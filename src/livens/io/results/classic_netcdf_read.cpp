@@ -10,7 +10,9 @@ namespace livens {
 
 namespace {
 
-constexpr std::uint64_t largest_header = 64u << 20, most_entries = 1u << 16;
+// A title may be as long as a scenario, 16 MiB; all else that livens writes into a header is small.
+constexpr std::uint64_t largest_header = 17u << 20, most_entries = 1u << 12;
+constexpr std::uint64_t longest_name = 256, most_dimensions = 8;   // names: as in the format's own library
 constexpr std::string_view hdf5_magic = "\x89HDF\r\n\x1a\n";
 
 [[noreturn]] void damaged(const std::string& what)
@@ -36,7 +38,7 @@ public:
     {
         if (n > source_.size || padded(n) > source_.size - at_)
             throw IoError("the file ends within its header: it was cut off", "io-truncated");
-        if (at_ + padded(n) > largest_header) damaged("its header is larger than 64 MiB");
+        if (at_ + padded(n) > largest_header) damaged("its header is larger than 17 MiB");
         const std::size_t end = static_cast<std::size_t>(at_ + padded(n)), have = text_.size();
         if (end > have) {
             text_.resize(std::min<std::uint64_t>(std::max(end, have + buffer_size), source_.size));
@@ -65,7 +67,12 @@ public:
         if (type < 1 || type > n_types_) damaged("its header names a type of numbers that does not exist");
         return type;
     }
-    std::string name() { return std::string(bytes(count())); }
+    std::string name()
+    {
+        const std::uint64_t n = count();
+        if (n == 0 || n > longest_name) damaged("a name in its header is empty or longer than 256 bytes");
+        return std::string(bytes(n));
+    }
     /// How many entries follow.
     std::uint64_t list(std::uint64_t tag)
     {
@@ -85,6 +92,18 @@ private:
 };
 
 namespace {
+
+/// Whatever is looked up by its name is the one that counts were taken from.
+template <class Entry>
+void require_unique(const std::vector<Entry>& entries, const char* kind)
+{
+    std::vector<std::string_view> names;
+    for (const Entry& entry : entries) names.push_back(entry.name);
+    std::ranges::sort(names);
+    const auto twice = std::ranges::adjacent_find(names);
+    if (twice != names.end())
+        damaged("two " + std::string(kind) + " in its header have the name '" + std::string(*twice) + "'");
+}
 
 /// The version of the format, by the first four bytes.
 int version_of(const ByteSource& source)
@@ -115,11 +134,17 @@ ClassicReader::ClassicReader(ByteSource source, bool verify) : source_(std::move
         std::string name = header.name();
         dimensions_.push_back({std::move(name), header.count()});
     }
+    require_unique(dimensions_, "dimensions");
     attributes_ = read_attributes(header);
     for (std::uint64_t n = header.list(variable_tag); n > 0; --n) read_variable(header);
+    require_unique(variables_, "variables");
     header_ = header.text();
-    for (const ClassicVariable& v : variables_)
+    std::uint64_t left = source_.size - header_.size();   // where variables share bytes, reading has no end
+    for (const ClassicVariable& v : variables_) {
         if (v.begin < header_.size()) damaged("variable '" + v.name + "' begins within the header");
+        if (v.n_bytes > left) damaged("its variables lie upon each other");
+        left -= v.n_bytes;
+    }
 }
 
 std::vector<Attribute> ClassicReader::read_attributes(Header& header) const
@@ -143,6 +168,7 @@ std::vector<Attribute> ClassicReader::read_attributes(Header& header) const
         }
         attributes.push_back(std::move(attribute));
     }
+    require_unique(attributes, "attributes");
     return attributes;
 }
 
@@ -151,6 +177,7 @@ void ClassicReader::read_variable(Header& header)
     ClassicVariable v;
     v.name = header.name();
     const std::uint64_t rank = header.count();
+    if (rank > most_dimensions) damaged("variable '" + v.name + "' has more than 8 dimensions");
     v.n_values = 1;
     for (std::uint64_t i = 0; i < rank; ++i) {
         const std::uint64_t id = header.count();

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "livens/base/text.h"
+#include "livens/io/json.h"
 #include "livens/io/results/atomic_file.h"
 #include "livens/io/results/figures.h"
 #include "livens/io/results/layout.h"
@@ -54,7 +55,7 @@ public:
     void names(const std::string& name, const char*, std::vector<std::string>& values)
     {
         const ClassicVariable* v = find({name, {name, name + "_length"}}, NumberType::text);
-        if (v == nullptr || v->n_values == 0) return;
+        if (v == nullptr) return;
         const std::string bytes = file_.bytes(*v);
         const std::size_t width = file_.dimension(v->dimensions.back());
         for (std::size_t i = 0; i < bytes.size(); i += width) {
@@ -112,6 +113,8 @@ private:
         const ClassicVariable* v = file_.variable(info.name);
         if (v != nullptr && (v->type != type || v->dimensions != info.dimensions))
             refuse("variable " + info.name + " has not the shape that livens writes");
+        if (v != nullptr && v->n_values == 0)   // nobody divides by the length of a dimension before
+            refuse("variable " + info.name + " has a dimension of length 0; livens leaves out what is empty");
         seen_.insert(v);
         return v;
     }
@@ -135,6 +138,13 @@ private:
     const ClassicReader& file_;
     std::set<const ClassicVariable*> seen_;
 };
+
+/// The options stand as they are within JSON of our own.
+void check_options(const Run& run)
+{
+    if (!run.resolved.empty() && !(run.resolved.starts_with('{') && is_json(run.resolved)))
+        refuse("variable options is no JSON object");
+}
 
 /// Whether this file is one that this livens reads.
 void check_version(const ClassicReader& file)
@@ -170,6 +180,7 @@ Run read_run_from(ByteSource source, bool verify)
     RunReader archive(file);
     visit_run(archive, run);
     archive.verify_rest();
+    check_options(run);
     run.estimate.n_bodies = run.motion.n_bodies;
     run.estimate.n_joints = run.estimate.reaction.empty() ? 0 : static_cast<int>(run.joint_names.size());
     check_run(run);
@@ -190,6 +201,7 @@ RunHead read_run_head(const std::filesystem::path& path)
         RunHead head;
         RunReader archive(file);
         visit_head(archive, head.run);
+        check_options(head.run);
         head.start = file.number("start").value_or(0);
         head.end = file.number("end").value_or(0);
         head.n_output_times = static_cast<long long>(file.dimension("output"));

@@ -7,6 +7,7 @@
 #include "livens/io/results/atomic_file.h"
 #include "livens/io/results/figures.h"
 #include "livens/io/results/writing.h"
+#include "livens/multibody/turns.h"
 
 namespace livens {
 
@@ -34,6 +35,8 @@ void check_model(const Model& model, const Run& run)
     for (int b = 0; fits && b < model.n_bodies(); ++b)
         fits =
             model.bodies()[b].name == run.body_names[b] && model.bodies()[b].is_point == run.body_is_point[b];
+    const std::vector<double>& angles = run.motion.load_angles;
+    fits &= angles.empty() || angles.size() == run.motion.mesh.ends.size() * Turns(model).size();
     if (!fits) throw IoError("the motion is one of another model than the scenario's", "io-damaged");
 }
 

@@ -13,6 +13,7 @@
 #include "livens/base/text.h"
 #include "livens/geometry/soundness.h"
 #include "livens/io/scenario/density_fields.h"
+#include "livens/io/scenario/findings.h"
 
 namespace livens {
 
@@ -77,11 +78,30 @@ public:
             if (!read(x) || !std::isfinite(x)) return false;
         return true;
     }
-    std::string rest() const { return std::string(text_); }
+    /// A name, as in_line() wrote it.
+    std::string rest() const
+    {
+        std::string name;
+        for (std::size_t i = 0; i < text_.size(); ++i) {
+            const char next = text_[i] == '\\' && i + 1 < text_.size() ? text_[i + 1] : ' ';
+            const bool is_escaped = next == 'n' || next == '\\';
+            name += !is_escaped ? text_[i] : next == 'n' ? '\n' : '\\';
+            i += is_escaped ? 1 : 0;
+        }
+        return name;
+    }
 
 private:
     std::string_view text_;
 };
+
+/// Names and densities end their lines, and may have breaks of lines in them.
+std::string in_line(const std::string& name)
+{
+    std::string text;
+    for (const char c : name) text += c == '\n' ? "\\n" : c == '\\' ? "\\\\" : std::string(1, c);
+    return text + "\n";
+}
 
 template <int R, int C>
 std::string numbers_of(const Matrix<R, C>& m)
@@ -130,7 +150,7 @@ bool read_line(std::string_view text, std::map<std::pair<std::string, bool>, Red
     if (word == "weighted") {
         Moments m;
         double unit = 0;
-        if (!line.read(m) || !line.read(unit)) return false;
+        if (!line.read(m) || !line.read(unit) || !std::isfinite(unit)) return false;
         mesh->weighted[{unit, line.rest()}] = m;
         return true;
     }
@@ -206,12 +226,14 @@ const Moments& MeshStore::weighted(const std::string& path, bool is_turned, doub
         .first->second;
 }
 
-Mesh MeshStore::read(const std::string& path, bool is_turned) const
+Mesh MeshStore::read(const std::string& path, bool is_turned)
 {
     namespace fs = std::filesystem;
     const fs::path relative(path);
     if (path.empty() || relative.is_absolute())
         refuse("mesh-path", path, "must be a path from the scenario's folder on");
+    if (const std::string culprit = first_invisible(path); !culprit.empty())
+        refuse("mesh-path", path, "must not contain " + culprit, "give the file a name without it");
     for (const fs::path& part : relative)
         if (part == "..")
             refuse("mesh-path", path, "leaves the scenario's folder", "put the mesh beside the scenario");
@@ -222,6 +244,7 @@ Mesh MeshStore::read(const std::string& path, bool is_turned) const
     const fs::path file = error ? fs::path() : fs::weakly_canonical(folder / relative, error);
     if (error) refuse("mesh-file", path, "cannot be read: " + error.message());
     if (!is_inside(file, folder)) refuse("mesh-path", path, "leaves the scenario's folder by a link");
+    files_.push_back(file);
     Mesh mesh = read_mesh_file(file, path);
     if (is_turned) turn_outwards(mesh);
     require_sound(mesh);
@@ -233,15 +256,15 @@ std::string MeshStore::kept() const
     std::string text;
     for (const auto& [key, mesh] : known_) {
         text +=
-            "mesh " + std::to_string(key.second ? 1 : 0) + " " + numbers_of(mesh.whole) + key.first + "\n";
-        for (const auto& [name, m] : mesh.regions) text += "region " + numbers_of(m) + name + "\n";
+            "mesh " + std::to_string(key.second ? 1 : 0) + " " + numbers_of(mesh.whole) + in_line(key.first);
+        for (const auto& [name, m] : mesh.regions) text += "region " + numbers_of(m) + in_line(name);
         for (const NamedSurface& s : mesh.surfaces) {
             text += "surface " + numbers_of(s.moments.area);
             for (const Matrix4& of : s.moments.normal) text += numbers_of(of);
-            text += s.name + "\n";
+            text += in_line(s.name);
         }
         for (const auto& [field, m] : mesh.weighted)
-            text += "weighted " + numbers_of(m) + to_text(field.first) + " " + field.second + "\n";
+            text += "weighted " + numbers_of(m) + to_text(field.first) + " " + in_line(field.second);
         const Surface& picture = mesh.picture;
         if (picture.n_left_out > 0)
             text += "thinned " + std::to_string(picture.n_left_out) + " " + to_text(picture.moved) + "\n";

@@ -2,6 +2,7 @@
 // The meshes that a scenario names: each is read, checked and integrated once.
 #pragma once
 
+#include <filesystem>
 #include <map>
 #include <string>
 #include <utility>
@@ -42,15 +43,18 @@ public:
 
     /// All that was asked for, as MeshSource::kept.
     std::string kept() const;
+    /// That were read.
+    const std::vector<std::filesystem::path>& files() const { return files_; }
 
 private:
     using Key = std::pair<std::string, bool>;
-    Mesh read(const std::string& path, bool is_turned) const;
+    Mesh read(const std::string& path, bool is_turned);
     ReducedMesh& entry(const std::string& path, bool is_turned);
 
     MeshSource source_;
     std::map<Key, ReducedMesh> known_;
     std::map<Key, ReducedMesh> kept_;   ///< of a run
+    std::vector<std::filesystem::path> files_;
 };
 
 }   // namespace livens

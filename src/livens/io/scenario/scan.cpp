@@ -45,7 +45,7 @@ bool scan_characters(std::string_view text, Findings& findings)
 {
     constexpr std::size_t head = 4096;
     if (text.substr(0, head).find('\0') != std::string_view::npos)
-        return findings.error({}, "not-text", "this is a binary file, not a scenario",
+        return findings.error({1, 1, 1}, "not-text", "this is a binary file, not a scenario",
                               {"", "scenarios are TOML"});
     for (Cursor c(text); !c.at_end(); c.next()) {
         const unsigned char byte = static_cast<unsigned char>(c.peek());

@@ -71,6 +71,7 @@ void build(const Node& root, TreePart part, const MeshSource& meshes, Scenario& 
     scenario.outlines = std::move(builder.outlines());
     scenario.parts = std::move(builder.parts());
     scenario.meshes = builder.meshes().kept();
+    scenario.mesh_files = builder.meshes().files();
 }
 
 void parse(Scenario& scenario, const MeshSource& meshes, Findings& findings)
@@ -82,7 +83,7 @@ void parse(Scenario& scenario, const MeshSource& meshes, Findings& findings)
         return;
     }
     if (text.find_first_not_of(" \t\r\n") == std::string_view::npos) {
-        findings.error({}, "empty-file", "the file is empty",
+        findings.error({1, 1, 1}, "empty-file", "the file is empty",
                        {"", "the folder examples holds scenarios to begin with"});
         return;
     }

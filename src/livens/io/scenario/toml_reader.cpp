@@ -2,6 +2,7 @@
 // The only source that includes toml++: it compiles slowly, and its errors and positions are translated here.
 #include <algorithm>
 #include <cctype>
+#include <sstream>
 #include <tuple>
 
 #include "livens/io/scenario/document.h"
@@ -185,6 +186,53 @@ void report(const toml::parse_error& error, std::string_view text, Findings& fin
     }
 }
 
+/// Whether the parser meets something in this text that it had not reckoned with.
+bool is_beyond_parser(std::string_view text)
+{
+    try {
+        (void)toml::parse(text);
+        return false;
+    } catch (const ParserFault&) {
+        return true;
+    }
+}
+
+/// How far the parser comes in such a text, to a block of bytes.
+std::size_t reach_of_parser(std::string_view text)
+{
+    std::istringstream stream{std::string(text)};
+    try {
+        (void)toml::parse(stream);
+    } catch (const ParserFault&) {
+    }
+    const auto reach = stream.tellg();   // -1 at the end
+    return reach < 0 ? text.size() : static_cast<std::size_t>(reach);
+}
+
+/// The last character of the shortest text that the parser cannot explain, where the whole one is such.
+void report_character(std::string_view text, Findings& findings)
+{
+    constexpr std::size_t block = 96;   // more than the parser reads at a time
+    const std::size_t reach = reach_of_parser(text);
+    std::size_t low = reach > block ? reach - block : 0, high = reach;
+    if (is_beyond_parser(text.substr(0, low)) || !is_beyond_parser(text.substr(0, high))) {
+        low = 0;
+        high = text.size();
+    }
+    while (high - low > 1) {
+        const std::size_t middle = low + (high - low) / 2;
+        (is_beyond_parser(text.substr(0, middle)) ? high : low) = middle;
+    }
+    const std::string_view before = text.substr(0, low);
+    const std::size_t line = before.rfind('\n') + 1;   // 0 where there is none
+    const auto is_first_byte = [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; };
+    const int number = 1 + static_cast<int>(std::ranges::count(before, '\n'));
+    const int column = static_cast<int>(std::ranges::count_if(text.substr(line, high - line), is_first_byte));
+    const bool is_foreign = static_cast<unsigned char>(text[low]) >= 0x80;
+    findings.error({number, std::max(1, column), 1}, "toml-syntax", "nothing in TOML goes on like this",
+                   {"reading stops at the first syntax error", is_foreign ? quotes_help : ""});
+}
+
 /// Where the parser met something it had not reckoned with: a header that begins with what is no key.
 void report_fault(std::string_view text, Findings& findings)
 {
@@ -205,7 +253,7 @@ void report_fault(std::string_view text, Findings& findings)
         }
         begin = end + 1;
     }
-    findings.error({}, "toml-syntax", "this is not TOML, in a way that the parser cannot explain");
+    report_character(text, findings);
 }
 
 }   // namespace
