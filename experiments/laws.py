@@ -180,7 +180,7 @@ class Law:
         """Of a state; a quantity on a border goes to the side that it moves to, as x does."""
         found = []
         for quantity, borders in zip(self.switches, self.borders):
-            at = float(quantity(t, x, v, [0] * len(self.switches)))
+            at = float(quantity(t, x, v, [0] * len(self.switches)))   # none depends on another's piece
             later = float(quantity(t, x + REAL(1e-9) * np.sign(v), v, [0] * len(self.switches)))
             found.append(int(np.searchsorted(borders, at + REAL(1e-6) * (later - at))))
         return found
@@ -311,9 +311,10 @@ def periodic_bends(points, chords):
 class Points:
     """Tables of one degree: points of [0, 1], integrals once and twice, coefficients, and where borders are looked for."""
 
-    def __init__(self, n):
+    def __init__(self, n, real=real):
         self.n = n
-        self.s, self.weights, self.coefficients, self.once = truth.tables_of_pieces(n)
+        self.s, self.weights, self.coefficients, self.once = (table.astype(real([0]).dtype)
+                                                              for table in truth.tables_of_pieces(n))
         self.twice = self.once @ self.once
         self.once_rough, self.twice_rough = self.once.astype(float), self.twice.astype(float)
         looks = (1 - np.cos(np.arange(1, 97) * np.pi / 96)) / 2
@@ -336,7 +337,7 @@ class Points:
 
 
 class Motion:
-    """Steps: begins (and the end), lengths of polynomials, values (step, node, (x, v))."""
+    """Steps: begins (and the end), lengths of polynomials, values (step, node, (x, v)); x may be several."""
 
     def __init__(self, points, ends, lengths, values):
         self.points, self.ends, self.lengths, self.values = points, real(ends), lengths, values
@@ -345,21 +346,26 @@ class Motion:
     def coordinate(self, times):
         t = real(times)
         step = np.clip(np.searchsorted(self.ends, t, side="left") - 1, 0, len(self.values) - 1)
-        found = np.empty(len(t), REAL)
+        n = self.values[0].shape[1] // 2
+        found = np.empty((len(t), n), REAL)
         for k in np.unique(step):
             mine = step == k
-            found[mine] = self.points.interpolation((t[mine] - self.ends[k]) / self.lengths[k]) @ self.values[k][:, 0]
-        return found
+            found[mine] = self.points.interpolation((t[mine] - self.ends[k]) / self.lengths[k]) @ self.values[k][:, :n]
+        return found if self.several else found[:, 0]
+
+    several = False
 
 
 class March:
     """Steps of one degree to one tolerance."""
+    POINTS_OF = {n: Points(n) for n in (32, 22)}
+    NEAR = 2.0**-43   # of a step: nearer to a border that was just crossed nothing is known
 
     def __init__(self, law, n, tail):
-        self.law, self.points, self.tail = law, POINTS_OF[n], tail
+        self.law, self.points, self.tail = law, self.POINTS_OF[n], tail
 
     def step(self, t, x, v, h, pieces, scales):
-        """Values (node, (x, v)) and how much shorter it should be by its last coefficients; None: no solution."""
+        """Values (node, (x, v)), and what reach() says of them; None: no solution."""
         law, P = self.law, self.points
         times = t + h * P.s
         try:
@@ -394,53 +400,68 @@ class March:
         else:
             return None
         values = np.stack([x + h * v * P.s + h * h * (P.twice @ a), v + h * (P.once @ a)], -1)
-        tail = np.abs(P.coefficients[-4:] @ values).max(axis=0) / scales
-        return values, float(tail.max()) / self.tail
+        return values, *self.reach(values, scales)
 
-    def border(self, t, h, values, pieces):
-        """(s, switch, piece behind it) of the first border that a step meets, or None."""
-        law, P = self.law, self.points
+    def reach(self, values, scales):
+        """The last coefficients by their bound, and by how much longer a step could be: as from where on all are
+        below it, where they fall as powers of its length."""
+        P = self.points
+        sizes = (np.abs(P.coefficients @ values) / scales).max(axis=1).astype(float) / self.tail
+        tail = sizes[-4:].max()
+        above = int(np.max(np.nonzero(sizes > 1)[0], initial=2)) + 1
+        return tail, 0.9 * self.tail ** (1 / (P.n - 2) - 1 / min(above, P.n - 2))
+
+    @staticmethod
+    def parts(values):
+        """x and v of values (.., (x, v))."""
+        return values[..., 0], values[..., 1]
+
+    def border(self, t, h, values, pieces, crossed=None):
+        """(s, switch, piece behind it, border) of the first border that a step meets, or None."""
+        law, P, first = self.law, self.points, None
         there = P.at_looks @ values
-        first = None
+        first_look = int(np.searchsorted(P.looks, self.NEAR))
 
         def crossing(number, border, sign, s_low, s_high):
             def beyond(s):
-                x, v = P.at(values, s)
+                x, v = self.parts(P.at(values, s))
                 return float(sign * (law.switches[number](t + h * s, x, v, pieces) - border))
             return first_root(beyond, s_low, s_high)
         times = t + h * P.looks
         for number, (quantity, borders) in enumerate(zip(law.switches, law.borders)):
-            q = quantity(times, there[:, 0], there[:, 1], pieces) + 0 * times
+            q = quantity(times, *self.parts(there), pieces) + 0 * times
             piece = pieces[number]
             for border, sign, after in ((piece, 1, piece + 1), (piece - 1, -1, piece - 1)):
                 if not 0 <= border < len(borders):
                     continue
-                found = self.met(sign * (q - borders[border]), lambda a, b, bo=borders[border], si=sign:
+                # a border that was just crossed is known to rounding alone
+                late = first_look if crossed == (number, border) else 0
+                found = self.met(sign * (q - borders[border])[late:], late, lambda a, b, bo=borders[border], si=sign:
                                  crossing(number, bo, si, a, b))
                 if found is not None and (first is None or found < first[0]):
-                    first = found, number, after
+                    first = found, number, after, border
         return first
 
-    def met(self, beyond, root):
-        """First s at which what is below zero comes above it, also between two looks, where it comes near."""
-        P = self.points
+    def met(self, beyond, late, root):
+        """First s at which what is below zero comes above it, also between two looks, where it comes near; `beyond` at
+        looks from number `late` on."""
+        looks = self.points.looks[late:]
         up = int(np.argmax(beyond > 0)) if (beyond > 0).any() else len(beyond)
         peaks = [k for k in range(1, min(up, len(beyond) - 1))
                  if beyond[k] >= beyond[k - 1] and beyond[k] >= beyond[k + 1] and
                  -beyond[k] < max(beyond[k] - beyond[k - 1], beyond[k] - beyond[k + 1])]
         for k in peaks:
-            found = root(P.looks[k - 1], (P.looks[k], P.looks[k + 1]))
+            found = root(looks[k - 1], (looks[k], looks[k + 1]))
             if found is not None:
                 return found
         if up == len(beyond):
             return None
-        return root(P.looks[up - 1] if up else REAL(0), P.looks[up])
+        return root(looks[up - 1] if up else REAL(0) if not late else looks[0], looks[up])
 
     def __call__(self, x, v, end, longest):
         law, t = self.law, REAL(0)
-        x, v = REAL(x), REAL(v)
         pieces = law.pieces(t, x, v)
-        scales = np.array([max(abs(float(x)), 1e-2), max(abs(float(v)), 1e-2)])
+        scales, crossed = self.larger(np.full(2, 1e-2), x, v), None
         stops = [REAL(b) for b in law.breaks if 0 < b < end] + [REAL(end)]
         ends, lengths, values, h = [t], [], [], REAL(longest) / 10
         while t < end:
@@ -449,12 +470,12 @@ class March:
             with np.errstate(all="ignore"):
                 found = self.step(t, x, v, step, pieces, scales)
             if found is None or found[1] > 1:
-                h = step * REAL(0.4 if found is None else min(0.8, max(0.25, found[1] ** (-1 / self.points.n))))
+                h = step * REAL(0.4 if found is None else max(0.25, 0.9 * found[1] ** (-1 / self.points.n)))
                 if h < 1e-13 * end:
                     raise NoTruth("steps vanish")
                 continue
-            here, tail = found
-            met = self.border(t, step, here, pieces)
+            here, _, longer = found
+            met = self.border(t, step, here, pieces, crossed)
             share = REAL(1) if met is None else met[0]
             if share > 0:
                 ends.append(stop if met is None and step == stop - t else t + share * step)
@@ -462,16 +483,22 @@ class March:
                 values.append(here)
                 if len(values) > MOST_STEPS:
                     raise NoTruth("too many steps")
-            x, v = here[-1] if met is None else self.points.at(here, share)
+            x, v = self.parts(here[-1] if met is None else self.points.at(here, share))
             t = ends[-1]
-            h = min(step * REAL(1.7 if tail < CALM else 1), REAL(longest))
-            scales = np.maximum(scales, np.abs(here).max(axis=0).astype(float))
+            h = min(step * REAL(min(longer, 2.5)), REAL(longest))
+            scales = self.larger(scales, *self.parts(here))
+            crossed = None
             if met is not None:
+                crossed = met[1], met[3]
                 pieces = [met[2] if k == met[1] else piece for k, piece in enumerate(pieces)]
                 self.crossings += 1
         return Motion(self.points, ends, lengths, values)
 
     crossings = 0
+
+    @staticmethod
+    def larger(scales, x, v):
+        return np.maximum(scales, [float(np.abs(x).max()), float(np.abs(v).max())])
 
 
 def first_root(beyond, low, high):
@@ -494,7 +521,7 @@ def first_root(beyond, low, high):
     if below >= 0:
         return a
     for k in range(200):
-        s = (a * above - b * below) / (above - below) if k % 3 else (a + b) / 2
+        s = (a * above - b * below) / (above - below) if k % 3 and above > below else (a + b) / 2
         if not a < s < b:
             s = (a + b) / 2
         if s in (a, b):
@@ -509,15 +536,17 @@ def first_root(beyond, low, high):
     return b
 
 
-POINTS_OF = {n: Points(n) for n in (32, 22)}
 FINE, ROUGH = (32, 1e-17), (22, 1e-14)   # degree, last coefficients of steps
-CALM = 0.15   # by the bound of the last coefficients: the next step is longer; rounding is less than that
 
 
 def march(law, x, v, end):
     """The motion, with the distance of a rougher one as its error."""
-    fine = March(law, *FINE)(x, v, end, end / 10)
-    rough = March(law, *ROUGH)(x, v, end, end / 13)
-    times = np.concatenate([np.linspace(0, end, 200), fine.ends[1:].astype(float)])
+    x, v = REAL(x), REAL(v)
+    return compared(March(law, *FINE)(x, v, end, end / 10), March(law, *ROUGH)(x, v, end, end / 13))
+
+
+def compared(fine, rough):
+    """The finer motion, with how far it is off."""
+    times = np.concatenate([np.linspace(0, float(fine.ends[-1]), 200), fine.ends[1:].astype(float)])
     fine.error = float(np.abs(fine.coordinate(times) - rough.coordinate(times)).max())
     return fine

@@ -47,7 +47,7 @@ class Case:
     """
 
     def __init__(self, kind, number, text, law, x, v, end, place):
-        self.kind, self.number, self.text = kind, number, text
+        self.kind, self.laws, self.number, self.text = kind, [kind], number, text
         self.law, self.x, self.v, self.end, self.place = law, x, v, end, place
         self.speed = None   # of a bead that keeps it
 
@@ -236,7 +236,7 @@ def drag(c, kind, number):
 
 def rows(c, mount, low, high, least=4):
     """Elongations and forces of a table that pulls back, mostly."""
-    n = c.randint(least, 9)
+    n, high = c.randint(least, 9), max(high, low + 0.2)
     gaps = np.array([c.uniform(0.3, 2) for _ in range(n - 1)])
     places = low + (high - low) * np.concatenate([[0], np.cumsum(gaps) / gaps.sum()])
     rate, more = c.uniform(10, 60), c.uniform(0, 60)
@@ -474,12 +474,12 @@ def bushing(c, kind, number):
 
 
 # How many of a thousand.
-KINDS = {"tanh_place": (tanh_place, 110), "tanh_rate": (tanh_rate, 110), "rest_on_sharp": (rest_on_sharp, 60),
-         "drag": (drag, 110), "spline_spring": (table_spring, 90), "spline_between": (table_between, 50),
+KINDS = {"tanh_place": (tanh_place, 90), "tanh_rate": (tanh_rate, 110), "rest_on_sharp": (rest_on_sharp, 60),
+         "drag": (drag, 90), "spline_spring": (table_spring, 90), "spline_between": (table_between, 50),
          "line_spring": (table_spring, 30), "line_between": (table_between, 20), "wire_open": (wire, 50),
          "wire_closed": (wire, 25), "wire_weight": (wire, 35), "jump": (jump, 50), "stop": (stop, 50),
          "grazed_stop": (grazed_stop, 60), "v_abs_v": (v_abs_v, 30), "through_anchor": (through_anchor, 40),
-         "time_pulse": (time_pulse, 30), "place_pulse": (place_pulse, 30), "rate_pulse": (rate_pulse, 10),
+         "time_pulse": (time_pulse, 30), "place_pulse": (place_pulse, 70), "rate_pulse": (rate_pulse, 10),
          "bushing": (bushing, 10)}
 
 
