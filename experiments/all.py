@@ -2,11 +2,12 @@
 """Runs the experiments and prints one table of verdicts.
 
     all.py [--short] [--livens PROGRAM] [--output FOLDER] [figNN ...]
-    all.py --scans [--short] [--livens PROGRAM] [--output FOLDER] [NAME ...] [--seed N] [--count N] [--kind KIND ..]
+    all.py --scans [--short] [--livens PROGRAM] [--output FOLDER] [NAME ...]
+           [--seed N] [--count N] [--kind KIND ..]
     all.py --list [--scans] [NAME ...]      which would run
 
-An experiment is named by its folder or by the beginning of it: fig02, text; a scan by what is behind scan_. Seed,
-count and kinds are for the scans of laws: other laws, fewer, of one kind.
+An experiment is named by its folder or by the beginning of it: fig02, text; a scan by what is behind scan_.
+Seed, count and kinds are for the scans of laws: other laws, fewer, of one kind.
 """
 import argparse
 import json

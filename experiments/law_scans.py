@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the two scans of laws share: what is asked for, runs under a limit of processor time, and what is counted.
+"""What the two scans of laws share: what is asked for, runs under a limit of processor time, what is counted.
 
-A case has `kind`, `laws`, `number`, `text` (a scenario without [time] and [method]), `end` and truth(), which gives what
-scans.errors asks of a true motion and leaves what that is off itself in `error`, in m or rad.
+A case has `kind`, `laws`, `number`, `text` (a scenario without [time] and [method]), `end` and truth(), which
+gives what scans.errors asks of a true motion and leaves what that is off itself in `error`, in m or rad.
 
     told        the estimated error of a run that is called converged
     missed      it was asked for an accuracy, and is off by more than three of them
-    third       off by more than three times what it tells (errors above LEAST); of estimate = "local" counted apart
+    third       off by more than three times what it tells (errors above LEAST); `local` estimates apart
     tenth       off by more than ten times that plus SLIP
     refused     asked for an accuracy: not converged, suspect, or not ready after LIMIT s of processor time
     input       refused before it is solved
@@ -66,7 +66,8 @@ def solve(program, text, folder, switch):
     """(exit code, figures, path of the result); under the limit."""
     (folder / "run.toml").write_text(text, encoding="utf-8")
     process = subprocess.run(
-        ["sh", "-c", f'ulimit -t {LIMIT}; exec "$@"', "sh", program, "solve", "run.toml", "-o", "run.nc", "--json", "-q"],
+        ["sh", "-c", f'ulimit -t {LIMIT}; exec "$@"', "sh",
+         program, "solve", "run.toml", "-o", "run.nc", "--json", "-q"],
         cwd=folder, env=os.environ | switch, capture_output=True, text=True, check=False)
     if process.returncode in scans.RUNS:
         return process.returncode, json.loads(process.stdout), folder / "run.nc"
@@ -79,8 +80,9 @@ def judged(case, text, code, figures, path, motion):
     """One row."""
     content = tomllib.loads(text)
     time, method = content["time"], content.get("method", {})
-    row = {"kind": case.kind, "laws": " ".join(case.laws), "number": case.number, "accuracy": time.get("accuracy"),
-           "elements": figures.get("elements"), "method": figures.get("method", ""),
+    row = {"kind": case.kind, "laws": " ".join(case.laws), "number": case.number,
+           "accuracy": time.get("accuracy"), "elements": figures.get("elements"),
+           "method": figures.get("method", ""),
            "estimate": method.get("estimate", "second"), "exit": code, "told": figures.get("estimated_error"),
            "true": math.inf, "truth": math.nan, "seconds": figures.get("solve_seconds", 0) +
            figures.get("estimate_seconds", 0), "message": figures.get("message", OVER)}
@@ -165,7 +167,8 @@ def is_input(row):
 
 COUNTS = {"missed": is_missed, "third": lambda row: is_third(row) and row["estimate"] != "local",
           "third, local": lambda row: is_third(row) and row["estimate"] == "local", "tenth": is_tenth,
-          "refused": is_refused, "over": is_over, "input": is_input, "false alarm": is_false_alarm, "untold": is_untold}
+          "refused": is_refused, "over": is_over, "input": is_input, "false alarm": is_false_alarm,
+          "untold": is_untold}
 
 
 def by_kind(rows, kinds_of=lambda row: [row["kind"]]):
@@ -177,12 +180,15 @@ def by_kind(rows, kinds_of=lambda row: [row["kind"]]):
     table = []
     for kind, mine in kinds.items():
         good = [row for row in mine if is_converged(row)]
-        told = [(row["estimate"], row["true"] / max(row["told"], 1e-300)) for row in good if row["true"] > LEAST]
-        table.append({"kind": kind, "runs": len(mine), "to an accuracy": sum(row["accuracy"] is not None for row in mine),
+        asked = [row["true"] / row["accuracy"] for row in good if row["accuracy"]]
+        told = [(row["estimate"] == "local", row["true"] / max(row["told"], 1e-300))
+                for row in good if row["true"] > LEAST]
+        table.append({"kind": kind, "runs": len(mine),
+                      "to an accuracy": sum(row["accuracy"] is not None for row in mine),
                       **{name: sum(map(test, mine)) for name, test in COUNTS.items()},
-                      "by accuracy": max((row["true"] / row["accuracy"] for row in good if row["accuracy"]), default=0.0),
-                      "by second": max((ratio for estimate, ratio in told if estimate != "local"), default=0.0),
-                      "by local": max((ratio for estimate, ratio in told if estimate == "local"), default=0.0),
+                      "by accuracy": max(asked, default=0.0),
+                      "by second": max((ratio for local, ratio in told if not local), default=0.0),
+                      "by local": max((ratio for local, ratio in told if local), default=0.0),
                       "seconds": sum(row["seconds"] for row in mine)})
     return table
 
@@ -193,7 +199,8 @@ def laws_of(row):
 
 def show(table):
     """As text, in columns."""
-    lines = [list(table[0])] + [[f"{x:.3g}" if isinstance(x, float) else str(x) for x in row.values()] for row in table]
+    lines = [list(table[0])] + [[f"{x:.3g}" if isinstance(x, float) else str(x) for x in row.values()]
+                                for row in table]
     widths = [max(len(line[i]) for line in lines) for i in range(len(lines[0]))]
     return "\n".join("  ".join(f"{text:>{width}}" for text, width in zip(line, widths)) for line in lines)
 
@@ -206,9 +213,10 @@ def keep(e, cases, rows, folder="failed"):
         faults = [name for name, test in COUNTS.items() if test(row)]
         if faults:
             place.mkdir(exist_ok=True)
-            head = "# {}: asked {accuracy}, told {told}, true {true:.3g} (truth to {truth:.1g}), exit {exit} {message}\n".format(
-                ", ".join(faults), **row)
-            (place / f"{case.kind}_{case.number}.toml".replace(" ", "_")).write_text(head + text, encoding="utf-8")
+            head = ("# {}: asked {accuracy}, told {told}, true {true:.3g} (truth to {truth:.1g}), "
+                    "exit {exit} {message}\n").format(", ".join(faults), **row)
+            name = f"{case.kind}_{case.number}.toml".replace(" ", "_")
+            (place / name).write_text(head + text, encoding="utf-8")
 
 
 def tables(e, rows, name):
@@ -238,7 +246,8 @@ def judge(e, cases, rows):
                  counts["refused"] / max(sum(row["accuracy"] is not None for row in rows), 1))
     e.expect("false alarms on stated meshes, of all, share", counts["false alarm"] / len(rows))
     e.expect("truth not known well enough, share", counts["untold"] / len(rows))
-    e.remark(f"estimate = \"local\": {len(known) - len(second)} runs, {counts['third, local']} told below a third")
+    e.remark(f'estimate = "local": {len(known) - len(second)} runs, '
+             f'{counts["third, local"]} told below a third')
 
 
 def scan(e, cases):

@@ -1,16 +1,16 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """True motions of one coordinate under laws that are sharp, bend or jump; shares nothing with livens.
 
-x'' = f(t, x, v), where f is analytic piece by piece: abs, max, min, rows of tables, ends of curves are switches,
-each a quantity with borders, and on which piece of each the motion is, is a state of its own. A step is a
-polynomial for x'' on Chebyshev points in numbers of 64 bits of mantissa, found by Newton's iteration with the law of
-the pieces at its start, which goes on analytically beyond them; a step is as long as the last coefficients are
-rounding, and ends where it first meets a border, which is found on the polynomial itself, grazed ones where it comes
-nearest. Narrow places of a law that is smooth (pulses, steps of tanh) have borders, too, at which only steps end, so
-that none is passed over.
+x'' = f(t, x, v), where f is analytic piece by piece: abs, max, min, rows of tables, ends of curves are
+switches, each a quantity with borders, and on which piece of each the motion is, is a state of its own. A
+step is a polynomial for x'' on Chebyshev points in numbers of 64 bits of mantissa, found by Newton's
+iteration with the law of the pieces at its start, which goes on analytically beyond them; a step is as long
+as the last coefficients are rounding, and ends where it first meets a border, which is found on the
+polynomial itself, grazed ones where it comes nearest. Narrow places of a law that is smooth (pulses, steps
+of tanh) have borders, too, at which only steps end, so that none is passed over.
 
     motion = laws.march(law, x, v, end)             # law: see Law
-    motion.error                                    # how far a march of lower degree and tolerance is off, m or rad
+    motion.error              # how far a march of lower degree and tolerance is off, m or rad
     x = motion.coordinate(times)
 """
 import ast
@@ -41,7 +41,8 @@ FUNCTIONS = {"sin": np.sin, "cos": np.cos, "tan": np.tan, "tanh": np.tanh, "exp"
 class Expression:
     """A formula of livens by names, on one piece of each of its abs, max and min.
 
-    switches   functions (names, pieces) -> quantity, whose only border is 0; pieces: 0 below, 1 above, of each
+    switches   functions (names, pieces) -> quantity, whose only border is 0
+    pieces     0 below, 1 above, of each
     A quotient (e)/abs(e) is the sign of the piece, so that it has a value at the border itself.
     """
 
@@ -110,18 +111,21 @@ class Expression:
 
 
 class Table:
-    """Rows of one quantity over another, by cubics or straight lines, straight on beyond the ends; borders: rows."""
+    """Rows of one quantity over another, by cubics or straight lines, straight on beyond the ends."""
 
     def __init__(self, places, values, spline):
         self.borders, values = real(places), real(values)
         h = np.diff(self.borders)
-        bends = truth.Spline(self.borders, values[:, None]).bends[:, 0] if spline else np.zeros(len(values), REAL)
+        bends = np.zeros(len(values), REAL)
+        if spline:
+            bends = truth.Spline(self.borders, values[:, None]).bends[:, 0]
         rise = np.diff(values) / h
         # value, slope, half the bend, a sixth of the third derivative at the beginning of each piece
         cubics = [(values[i], rise[i] - h[i] * (2 * bends[i] + bends[i + 1]) / 6, bends[i] / 2,
                    (bends[i + 1] - bends[i]) / (6 * h[i])) for i in range(len(h))]
         end = cubics[-1][1] + h[-1] * (2 * cubics[-1][2] + 3 * h[-1] * cubics[-1][3])
-        self.cubics = [(values[0], cubics[0][1], REAL(0), REAL(0)), *cubics, (values[-1], end, REAL(0), REAL(0))]
+        zero = REAL(0)
+        self.cubics = [(values[0], cubics[0][1], zero, zero), *cubics, (values[-1], end, zero, zero)]
         self.begins = np.concatenate([self.borders[:1], self.borders])
 
     def at(self, x, piece):
@@ -160,7 +164,8 @@ class Law:
         def bound(t, x, v):
             return {"t": t, "x": x, "v": v} | {key: f(t, x, v) for key, f in names.items()}
         for quantity in formula.switches:
-            self.switches.append(lambda t, x, v, pieces, q=quantity: q(bound(t, x, v), pieces[first:last]) + 0 * x)
+            self.switches.append(lambda t, x, v, pieces, q=quantity:
+                                 q(bound(t, x, v), pieces[first:last]) + 0 * x)
             self.borders.append(real([0]))
         self.terms.append(lambda t, x, v, pieces: formula.value(bound(t, x, v), pieces[first:last]))
         return self
@@ -187,20 +192,21 @@ class Law:
 
 
 class Wire(Law):
-    """A bead on a cubic spline by lengths of chords (docs/joints.md), straight on beyond the ends of an open one; x is
-    the length of the chords until there. weight: acceleration of free fall."""
+    """A bead on a cubic spline by lengths of chords (docs/joints.md), straight on beyond ends of an open one.
+
+    x is the length of the chords until there; weight: acceleration of free fall.
+    """
     ROUNDS = 12
 
     def __init__(self, points, closed=False, weight=(0, 0, 0)):
         super().__init__(1)
         points = real(points)
         self.weight, self.closed, n = real(weight), closed, len(points)
-        around = np.concatenate([points] * 3 + [points[:1]]) if closed else points   # a spline forgets its ends
+        around = np.concatenate([points, points[:1]]) if closed else points
         chords = np.sqrt((np.diff(around, axis=0) ** 2).sum(-1))
         lengths = np.concatenate([[0], np.cumsum(chords)])
         if closed:
-            bends = periodic_bends(points, chords[:n])
-            lengths, around = lengths[:n + 1], around[:n + 1]
+            bends = periodic_bends(points, chords)
             self.components = [(around, np.concatenate([bends, bends[:1]]))]
         else:
             self.components = [(points, truth.Spline(lengths, points).bends)]
@@ -247,7 +253,7 @@ class Wire(Law):
         return where
 
     def by_length(self, x, speed, times):
-        """x at instants for a bead that keeps its speed: the length of the curve, by quadrature and inverted."""
+        """x at instants for a bead that keeps its speed: the length of the curve by quadrature, inverted."""
         gauss, weights = np.polynomial.legendre.leggauss(60)
         gauss, weights = refined_gauss(real(gauss), real(weights))
 
@@ -309,7 +315,7 @@ def periodic_bends(points, chords):
 # ---------------------------------------------------------------- the march
 
 class Points:
-    """Tables of one degree: points of [0, 1], integrals once and twice, coefficients, and where borders are looked for."""
+    """Tables of one degree: points of [0, 1], integrals once and twice, coefficients, looks for borders."""
 
     def __init__(self, n, real=real):
         self.n = n
@@ -350,7 +356,8 @@ class Motion:
         found = np.empty((len(t), n), REAL)
         for k in np.unique(step):
             mine = step == k
-            found[mine] = self.points.interpolation((t[mine] - self.ends[k]) / self.lengths[k]) @ self.values[k][:, :n]
+            s = (t[mine] - self.ends[k]) / self.lengths[k]
+            found[mine] = self.points.interpolation(s) @ self.values[k][:, :n]
         return found if self.several else found[:, 0]
 
     several = False
@@ -403,8 +410,10 @@ class March:
         return values, *self.reach(values, scales)
 
     def reach(self, values, scales):
-        """The last coefficients by their bound, and by how much longer a step could be: as from where on all are
-        below it, where they fall as powers of its length."""
+        """The last coefficients by their bound, and by how much longer a step could be.
+
+        Coefficients fall as powers of its length; from where on all are below the bound tells.
+        """
         P = self.points
         sizes = (np.abs(P.coefficients @ values) / scales).max(axis=1).astype(float) / self.tail
         tail = sizes[-4:].max()
@@ -436,15 +445,18 @@ class March:
                     continue
                 # a border that was just crossed is known to rounding alone
                 late = first_look if crossed == (number, border) else 0
-                found = self.met(sign * (q - borders[border])[late:], late, lambda a, b, bo=borders[border], si=sign:
-                                 crossing(number, bo, si, a, b))
+                def root(a, b, border=borders[border], sign=sign):
+                    return crossing(number, border, sign, a, b)
+                found = self.met(sign * (q - borders[border])[late:], late, root)
                 if found is not None and (first is None or found < first[0]):
                     first = found, number, after, border
         return first
 
     def met(self, beyond, late, root):
-        """First s at which what is below zero comes above it, also between two looks, where it comes near; `beyond` at
-        looks from number `late` on."""
+        """First s at which what is below zero comes above it, also between two looks, where it comes near.
+
+        beyond   at looks from number `late` on
+        """
         looks = self.points.looks[late:]
         up = int(np.argmax(beyond > 0)) if (beyond > 0).any() else len(beyond)
         peaks = [k for k in range(1, min(up, len(beyond) - 1))
@@ -502,7 +514,7 @@ class March:
 
 
 def first_root(beyond, low, high):
-    """Where beyond(s) rises above zero in [low, high]; high = (peak, high): None if it does not, by its highest place."""
+    """Where beyond(s) rises above zero in [low, high]; high = (peak, high): None if not even at its peak."""
     if isinstance(high, tuple):
         a, m, b = (float(s) for s in (low, *high))
         for _ in range(60):   # golden section

@@ -583,7 +583,7 @@ class Experiment:
 
 
 def run(script, main, further=None):
-    """Runs one experiment as a program and leaves with its exit status; further(parser) adds arguments of its own."""
+    """Runs one experiment as a program and leaves with its exit status; further(parser) adds arguments."""
     parser = argparse.ArgumentParser(description=main.__doc__)
     parser.add_argument("--short", action="store_true", help="fewer refinements, a few seconds")
     parser.add_argument("--livens", default=PROGRAM, help="the program")

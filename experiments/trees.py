@@ -1,22 +1,22 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """True motions of trees of bodies under laws that are sharp, bend or jump, in coordinates of their joints.
 
-A formulation that shares nothing with livens, nor with truth.py: every joint is a row of turns and slides about axes
-as they stand at the start (products of exponentials), M(q) q'' = Q from twists at the origin, rods by multipliers on
-the level of accelerations. Time is cut and solved as in laws.py: steps are polynomials for q'' on Chebyshev points, by
-Newton's iteration, in double precision; they end at borders of switches. `error` of a motion is its distance to a
-march of lower degree and tolerance, m or rad.
+A formulation that shares nothing with livens, nor with truth.py: every joint is a row of turns and slides
+about axes as they stand at the start (products of exponentials), M(q) q'' = Q from twists at the origin,
+rods by multipliers on the level of accelerations. Time is cut and solved as in laws.py: steps are
+polynomials for q'' on Chebyshev points, by Newton's iteration, in double precision; they end at borders of
+switches. `error` of a motion is its distance to a march of lower degree and tolerance, m or rad.
 
     motion = trees.of(text, end, sharp)   # text of a scenario without [time] and [method]; sharp: see Tree
     centres, triads = motion.at(times)
 
-What it reads: bodies by mass and inertia, or points; revolute, prismatic, cylindrical, universal, spherical joints by
-`at`, from bodies that stand above in the file; rods between any; actuators by expressions of coordinates; springs on
-joints and between points, linear or by tables; drag; forces that are constant; bushings about the axis of a joint.
+What it reads: bodies by mass and inertia, or points; revolute, prismatic, cylindrical, universal, spherical
+joints by `at`, from bodies that stand above in the file; rods between any; actuators by expressions of
+coordinates; springs on joints and between points, linear or by tables; drag; forces that are constant;
+bushings about the axis of a joint.
 """
 import hashlib
 import pathlib
-import sys
 import tomllib
 
 import numpy as np
@@ -28,7 +28,9 @@ def cross(a, b):
     """Vector product along the last axis."""
     product = np.empty(np.broadcast_shapes(a.shape, b.shape))
     a0, a1, a2, b0, b1, b2 = (of[..., i] for of in (a, b) for i in range(3))
-    product[..., 0], product[..., 1], product[..., 2] = a1 * b2 - a2 * b1, a2 * b0 - a0 * b2, a0 * b1 - a1 * b0
+    product[..., 0] = a1 * b2 - a2 * b1
+    product[..., 1] = a2 * b0 - a0 * b2
+    product[..., 2] = a0 * b1 - a1 * b0
     return product
 
 
@@ -64,7 +66,7 @@ def unit(vector):
 class Tree:
     """q'' of t, q, q'; what laws.March asks of a law.
 
-    sharp   ("joint.angle" or "joint.displacement", with "_rate" or not, or "t", centre, width): narrow places of laws
+    sharp   narrow places of laws: (what, centre, width), of "t", "joint.angle", "joint.angle_rate", ..
     """
     WHAT = {"R": "angle", "P": "displacement"}
 
@@ -73,7 +75,8 @@ class Tree:
         self.gravity = np.array(content.get("gravity", [0, 0, 0]), float)
         self.bodies = [Body(entry) for entry in content["body"]]
         self.index = {"world": None} | {entry["name"]: i for i, entry in enumerate(content["body"])}
-        self.kinds, self.axes, self.points, self.above = [], [], [], []   # of coordinates; above: the one before
+        self.kinds, self.axes, self.points = [], [], []   # of coordinates
+        self.above = []                                   # the coordinate before each
         self.coordinates, self.rods = {}, []   # "joint.angle" -> (number, value at the start)
         self.switches, self.borders, self.terms = [], [], []
         tied = {entry["between"][1]: entry for entry in content.get("joint", []) if entry["type"] != "rod"}
@@ -90,8 +93,9 @@ class Tree:
                               for k in laws.Law.PLACES})
         for what in {what for what, *_ in sharp} - {"t"}:
             read = self.reader(what)
-            self.switch(lambda s, pieces, read=read: read(s), sorted(
-                {centre + k * width for mine, centre, width in sharp if mine == what for k in laws.Law.PLACES}))
+            borders = {centre + k * width for mine, centre, width in sharp if mine == what
+                       for k in laws.Law.PLACES}
+            self.switch(lambda s, pieces, read=read: read(s), sorted(borders))
 
     # structure
 
@@ -119,7 +123,8 @@ class Tree:
         axes = [joint["axis"]] * 2 if "axis" in joint else joint.get("axes", x)
         for kind, axis in zip(kinds, axes):
             if joint["type"] not in ("universal", "spherical"):
-                self.coordinates[f"{joint['name']}.{self.WHAT[kind]}"] = len(self.kinds), joint.get("coordinate", 0.0)
+                what = f"{joint['name']}.{self.WHAT[kind]}"
+                self.coordinates[what] = len(self.kinds), joint.get("coordinate", 0.0)
             self.add(k, kind, axis, at)
 
     def two_points(self, entry):
@@ -229,7 +234,7 @@ class Tree:
         self.terms.append(lambda s, pieces: s.push(k, at, F + 0 * s.t[:, None]))
 
     def bushing(self, entry):
-        """About the axis of the one coordinate between its bodies, at the start along an axis of the world."""
+        """Along the one coordinate between its bodies, whose axis is one of the world at the start."""
         number = self.bodies[self.index[entry["between"][1]]].chain[-1]
         i = int(np.argmax(np.abs(self.axes[number]))) + 3 * (self.kinds[number] == "R")
         stiffness, damping = float(entry["stiffness"][i]), float(entry["damping"][i])
@@ -270,17 +275,22 @@ class Tree:
         s = State(self, np.zeros(1), np.zeros((1, self.n)), np.zeros((1, self.n)), full=True)
         rows, right = [], []
         for k, body in enumerate(self.bodies):
-            rows += [s.columns(k, body.place)[0].T] + ([] if body.is_point else [(s.a[0] * self.mask[k][:, None]).T])
-            right += [body.velocity] + ([] if body.is_point else [body.spin])
-        rates, *_ = np.linalg.lstsq(np.concatenate(rows), np.concatenate(right), rcond=None)
-        assert np.abs(np.concatenate(rows) @ rates - np.concatenate(right)).max() < 1e-12, "velocities break joints"
+            rows.append(s.columns(k, body.place)[0].T)
+            right.append(body.velocity)
+            if not body.is_point:
+                rows.append((s.a[0] * self.mask[k][:, None]).T)
+                right.append(body.spin)
+        rows, right = np.concatenate(rows), np.concatenate(right)
+        rates, *_ = np.linalg.lstsq(rows, right, rcond=None)
+        assert np.abs(rows @ rates - right).max() < 1e-12, "velocities break joints"
         return np.zeros(self.n), rates
 
     def moving(self, rates):
         """Velocities and spins of the bodies at the start for given rates, made to fit rods."""
         s = State(self, np.zeros(1), np.zeros((1, self.n)), np.array(rates, float)[None], full=True)
         if self.rods:
-            G = np.array([((s.columns(*p) - s.columns(*q))[0] @ (s.point(*p) - s.point(*q))[0]) for p, q in self.rods])
+            G = np.array([(s.columns(*p) - s.columns(*q))[0] @ (s.point(*p) - s.point(*q))[0]
+                          for p, q in self.rods])
             s.v = s.v - (np.linalg.pinv(G) @ (G @ s.v[0]))[None]
             s = State(self, s.t, s.q, s.v, full=True)
         return [(s.velocity(k, body.place)[0], s.w[k][0]) for k, body in enumerate(self.bodies)]
@@ -295,11 +305,12 @@ class State:
     """All of many instants (k): where the bodies are, twists, and with `full` masses and forces."""
 
     def __init__(self, tree, t, q, v, full=False):
-        self.tree, self.t, self.q, self.v = tree, np.asarray(t, float), np.asarray(q, float), np.asarray(v, float)
+        self.tree = tree
+        self.t, self.q, self.v = (np.asarray(of, float) for of in (t, q, v))
         K = len(self.q)
         self.R, self.p = {None: np.broadcast_to(np.eye(3), (K, 3, 3))}, {None: np.zeros((K, 3))}
-        self.a, self.b = np.zeros((K, tree.n, 3)), np.zeros((K, tree.n, 3))   # columns of twists at the origin
-        twist, bias = {None: (0 * self.p[None], 0 * self.p[None])}, {None: (0 * self.p[None], 0 * self.p[None])}
+        self.a, self.b = np.zeros((2, K, tree.n, 3))   # columns of twists at the origin
+        twist, bias = ({None: (0 * self.p[None], 0 * self.p[None])} for _ in range(2))
         for i, (kind, axis, point, above) in enumerate(zip(tree.kinds, tree.axes, tree.points, tree.above)):
             R, p = self.R[above], self.p[above]
             along = R @ axis
@@ -375,7 +386,13 @@ class March(laws.March):
         n = values.shape[-1] // 2
         return (values[:, :n], values[:, n:]) if values.ndim == 2 else (values[None, :n], values[None, n:])
 
-    def step(self, t, x, v, h, pieces, scales):
+    def step(self, *of):
+        try:
+            return self.solved(*of)
+        except np.linalg.LinAlgError:   # states of an iteration that runs away
+            return None
+
+    def solved(self, t, x, v, h, pieces, scales):
         law, P, h = self.law, self.points, float(h)
         x, v = np.ravel(x), np.ravel(v)
         times, m, n = float(t) + h * P.s, P.n + 1, law.n
@@ -418,7 +435,8 @@ class March(laws.March):
         more = np.concatenate([np.zeros((1, 2 * n)), np.diag(np.repeat(d, n))])   # (1 + 2 n, 2 n)
         states = np.concatenate([x, v], -1) + more[:, None]
         states = states.reshape(-1, 2 * n)
-        f = self.law.acceleration(np.tile(times, 1 + 2 * n), states[:, :n], states[:, n:], pieces).reshape(-1, m, n)
+        times = np.tile(times, 1 + 2 * n)
+        f = self.law.acceleration(times, states[:, :n], states[:, n:], pieces).reshape(-1, m, n)
         by = np.moveaxis(f[1:] - f[0], 0, -1) / np.repeat(d, n)   # (m, n, 2 n)
         return f[0], by[..., :n], by[..., n:]
 
@@ -440,12 +458,12 @@ def of(text, end, sharp=(), kept_in=None):
     """The motion; kept in a folder, it is made once."""
     tree, path = Tree(text, sharp), None
     if kept_in is not None:
-        sources = "".join(pathlib.Path(module.__file__).read_text("utf-8") for module in (laws, sys.modules[__name__]))
+        sources = "".join(pathlib.Path(path).read_text("utf-8") for path in (laws.__file__, __file__))
         key = hashlib.sha256((text + repr((end, sharp)) + sources).encode()).hexdigest()[:20]
         path = pathlib.Path(kept_in) / f"{key}.npz"
         if path.exists():
             with np.load(path) as kept:
-                motion = laws.Motion(March.POINTS_OF[FINE[0]], kept["ends"], kept["lengths"], list(kept["values"]))
+                motion = laws.Motion(March.POINTS_OF[FINE[0]], kept["ends"], kept["lengths"], kept["values"])
                 motion.several, shown = True, Shown(tree, motion)
                 shown.error = float(kept["error"])
                 return shown
@@ -454,7 +472,8 @@ def of(text, end, sharp=(), kept_in=None):
     fine.several = rough.several = True
     shown, other = Shown(tree, fine), Shown(tree, rough)
     times = np.concatenate([np.linspace(0, end, 200), fine.ends[1:-1].astype(float)])
-    shown.error = max(float(np.linalg.norm(p - q, axis=-1).max()) for p, q in zip(shown.at(times), other.at(times)))
+    shown.error = max(float(np.linalg.norm(p - q, axis=-1).max())
+                      for p, q in zip(shown.at(times), other.at(times)))
     if path is not None:
         path.parent.mkdir(parents=True, exist_ok=True)
         np.savez(path, ends=fine.ends.astype(float), lengths=np.array(fine.lengths, float),

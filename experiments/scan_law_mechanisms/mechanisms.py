@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Random mechanisms of 1 to 4 bodies with laws that are sharp, bend or jump.
 
-A case hangs on the seed and its number alone. Forces are made for the inertia that a coordinate has at the start.
+A case hangs on the seed and its number alone. Forces are made for the inertia of a coordinate at the start.
 """
 import pathlib
 import sys
@@ -14,13 +14,17 @@ import kinds  # noqa: E402
 import paper  # noqa: E402
 import trees  # noqa: E402
 
-JOINTS = ["revolute"] * 10 + ["prismatic"] * 4 + ["cylindrical"] * 3 + ["universal"] * 2 + ["spherical"] * 2 + ["rod"]
+JOINTS = [kind for kind, n in (("revolute", 10), ("prismatic", 4), ("cylindrical", 3), ("universal", 2),
+                               ("spherical", 2), ("rod", 1)) for _ in range(n)]
+LAWS = ["tanh_place", "tanh_rate", "tanh_rate", "spline", "spline", "lines", "jump", "stop", "v_abs_v",
+        "time_pulse", "place_pulse"]
 KEPT = paper.ROOT / "build" / "truth"
 
 
 class Case:
     def __init__(self, kind, laws, number, text, sharp, end):
-        self.kind, self.laws, self.number, self.text, self.sharp, self.end = kind, laws, number, text, sharp, end
+        self.kind, self.laws, self.number = kind, laws, number
+        self.text, self.sharp, self.end = text, sharp, end
 
     def truth(self):
         motion = trees.of(self.text, self.end, self.sharp, KEPT)
@@ -66,7 +70,8 @@ class Builder:
                 body["rotation_vector"] = self.digits(c.uniform(0.1, 2) * c.direction())
             if c.chance(0.3):
                 body["center_of_mass"] = self.digits(0.05 * c.direction())
-            joint["at"] = self.digits(before + c.uniform(0.2, 0.8) * (np.array(place) - before) + 0.1 * c.direction())
+            joint["at"] = self.digits(before + c.uniform(0.2, 0.8) * (np.array(place) - before) +
+                                      0.1 * c.direction())
         if kind in ("revolute", "prismatic", "cylindrical"):
             joint["axis"] = c.choice([[1, 0, 0], [0, 1, 0], [0, 0, 1], self.digits(c.direction())])
         elif kind == "universal":
@@ -99,8 +104,7 @@ class Builder:
     def law(self, what):
         """A law of one coordinate; its kind."""
         c = self.c
-        kind = c.choice(["tanh_place", "tanh_rate", "tanh_rate", "spline", "spline", "lines", "jump", "stop", "v_abs_v",
-                         "time_pulse", "place_pulse"])
+        kind = c.choice(LAWS)
         def by(*bounds): return self.by(what, c.number(*bounds))
         if kind == "tanh_place":
             s, a = c.log(30, 3000), 0.0 if c.chance(0.5) else c.number(0.01, 0.2)
@@ -115,8 +119,9 @@ class Builder:
             class Weighed:
                 by = staticmethod(lambda number, digits: self.by(what, number))
             elongations, forces = kinds.rows(c, Weighed, -wide, wide * c.uniform(0.5, 1.2))
-            self.spring(what, law="table", table={"elongations": elongations, "forces": forces, "interpolation":
-                                                  "spline" if kind == "spline" else "linear"})
+            way = "spline" if kind == "spline" else "linear"
+            self.spring(what, law="table",
+                        table={"elongations": elongations, "forces": forces, "interpolation": way})
         elif kind == "jump":
             a = c.number(0.001, 0.1)
             self.on(what, f"-{by(1, 8)}*((x - {a})/abs(x - {a}))")
@@ -125,7 +130,8 @@ class Builder:
         elif kind == "v_abs_v":
             self.on(what, f"-{by(0.2, 4)}*v*abs(v)")
         elif kind == "time_pulse":
-            centre, width = (float(f"{self.end * share:.3g}") for share in (c.uniform(0.05, 0.9), c.log(1e-3, 0.2)))
+            centre, width = (float(f"{self.end * share:.3g}")
+                             for share in (c.uniform(0.05, 0.9), c.log(1e-3, 0.2)))
             self.on(what, kinds.pulse(c, "t", centre, width, self.by(what, c.either() * c.number(0.3, 2))))
             self.sharp.append(("t", centre, width))
         else:
@@ -139,10 +145,11 @@ class Builder:
         c, k = self.c, self.c.randrange(len(self.bodies))
         body = self.bodies[k]
         other = "world" if k == 0 or c.chance(0.7) else f"b{c.randrange(k)}"
-        points = [self.digits(c.uniform(0.02, 0.15) * c.direction()) if "inertia" in self.bodies[i] else [0, 0, 0]
-                  for i in ([] if other == "world" else [int(other[1:])]) + [k]]
+        tied = [k] if other == "world" else [int(other[1:]), k]
+        points = [self.digits(c.uniform(0.02, 0.15) * c.direction())
+                  if "inertia" in self.bodies[i] else [0, 0, 0] for i in tied]
         if other == "world":
-            points = [self.digits(np.array(body["position"]) + c.uniform(0.3, 0.8) * c.direction())] + points
+            points.insert(0, self.digits(np.array(body["position"]) + c.uniform(0.3, 0.8) * c.direction()))
         ends = self.tree.two_points({"between": [other, body["name"]], "points": points})
         length = float(np.linalg.norm(ends[0][1] - ends[1][1])) if other == "world" else \
             float(np.linalg.norm(np.array(body["position"]) - self.bodies[int(other[1:])]["position"]))
@@ -150,7 +157,8 @@ class Builder:
         free = float(f"{length * c.uniform(0.5, 1.1):.3g}")
         spring = {"type": "spring", "between": [other, body["name"]], "points": points, "free_length": free}
         if self.tree.coordinates and c.chance(0.3):
-            self.loads.append(spring | {"stiffness": rate, "damping": float(f"{rate * c.uniform(0, 0.05):.3g}")})
+            damping = float(f"{rate * c.uniform(0, 0.05):.3g}")
+            self.loads.append(spring | {"stiffness": rate, "damping": damping})
             return "linear_spring"
         class Weighed:
             by = staticmethod(lambda number, digits: float(f"{number * body['mass']:.{digits}g}"))
@@ -163,7 +171,8 @@ class Builder:
     def drag(self):
         c, k = self.c, self.c.randrange(len(self.bodies))
         body = self.bodies[k]
-        load = {"type": "drag", "body": body["name"], "quadratic": float(f"{body['mass'] * c.log(0.1, 3):.3g}")}
+        quadratic = float(f"{body['mass'] * c.log(0.1, 3):.3g}")
+        load = {"type": "drag", "body": body["name"], "quadratic": quadratic}
         if "inertia" in body and c.chance(0.5):
             load["point"] = self.digits(c.uniform(0.05, 0.3) * c.direction())
         if c.chance(0.3):
@@ -180,7 +189,8 @@ class Builder:
         free = joint["axis"].index(1) + 3 * turns
         def of(value, others): return [value if i == free else others for i in range(6)]
         self.loads.append({"type": "bushing", "between": joint["between"], "at": joint["at"],
-                           "stiffness": of(self.by(what, c.log(5, 500)), 50.0), "damping": of(self.by(what, c.number(0, 1)), 0.5)})
+                           "stiffness": of(self.by(what, c.log(5, 500)), 50.0),
+                           "damping": of(self.by(what, c.number(0, 1)), 0.5)})
 
     def fill(self):
         """Loads; the kind of the case is that of its first law."""
@@ -193,11 +203,13 @@ class Builder:
             if c.chance(0.75) or not found:
                 found.append(self.law(what))
             if "displacement" in what or c.chance(0.3):
-                self.spring(what, stiffness=self.by(what, c.number(5, 40)), damping=self.by(what, c.number(0, 0.5)))
+                self.spring(what, stiffness=self.by(what, c.number(5, 40)),
+                            damping=self.by(what, c.number(0, 0.5)))
             if c.chance(0.25):
                 self.on(what, f"{self.by(what, c.number(2, 10))}*sin({c.number(2, 12)}*t)")
         for joint in self.joints:
-            if joint["type"] in ("revolute", "prismatic") and sorted(joint["axis"]) == [0, 0, 1] and c.chance(0.08):
+            along = sorted(joint.get("axis", ())) == [0, 0, 1]
+            if joint["type"] in ("revolute", "prismatic") and along and c.chance(0.08):
                 self.bushing(joint)
         return found
 
@@ -221,4 +233,5 @@ def case(seed, number):
     found = builder.fill()
     builder.move()
     count = len(builder.bodies)
-    return Case(f"{count} {'body' if count == 1 else 'bodies'}", sorted({*found}), number, builder.text(), builder.sharp, end)
+    kind = f"{count} {'body' if count == 1 else 'bodies'}"
+    return Case(kind, sorted({*found}), number, builder.text(), builder.sharp, end)

@@ -52,7 +52,7 @@ class Case:
         self.speed = None   # of a bead that keeps it
 
     def truth(self):
-        """Found once: a function of instants to centres (time, body, xyz) and triads; its error stands in `error`."""
+        """Found once; what it is off itself stands in `error`."""
         if self.speed is None:
             motion = laws.march(self.law, self.x, self.v, self.end)
             self.error, coordinate = motion.error, motion.coordinate
@@ -87,13 +87,15 @@ class Mount:
         body, joint = {"name": "m", "mass": m}, {"name": "p", "between": ["world", "m"]}
         if self.kind == "slide":
             self.mass, self.axis = REAL(m), np.array([1.0, 0, 0]) if c.chance(0.6) else c.direction()
-            self.start = np.array([0.0, 0, 0]) if c.chance(0.6) else np.array([c.number(-1, 1) for _ in range(3)])
-            body |= {"inertia": [c.number(0.01, 0.05) * m] * 3, "position": self.start, "velocity": v * self.axis}
+            self.start = np.zeros(3) if c.chance(0.6) else np.array([c.number(-1, 1) for _ in range(3)])
+            body |= {"inertia": [c.number(0.01, 0.05) * m] * 3, "position": self.start,
+                     "velocity": v * self.axis}
             joint |= {"type": "prismatic", "at": self.start, "axis": self.axis, "coordinate": x}
         else:
             i = c.number(0.05, 0.3) * m
             self.mass = REAL(i)
-            body |= {"inertia": [0.9 * i, i, 0.8 * i], "angular_velocity": [0, v, 0], "rotation_vector": [0, x, 0]}
+            body |= {"inertia": [0.9 * i, i, 0.8 * i], "angular_velocity": [0, v, 0],
+                     "rotation_vector": [0, x, 0]}
             joint |= {"type": "revolute", "at": [0, 0, 0], "axis": [0, 1, 0], "coordinate": x}
             self.arm = 0.0
             if self.kind == "pendulum":
@@ -119,7 +121,8 @@ class Mount:
         what = "displacement" if self.kind == "slide" else "angle"
         used = {name: f"p.{what}{rate}" for name, rate in (("x", ""), ("v", "_rate"))
                 if name in text.replace("exp", "").replace("max", "")}
-        self.loads.append({"type": "actuator", "joint": "p", "expression": text} | ({"inputs": used} if used else {}))
+        self.loads.append({"type": "actuator", "joint": "p", "expression": text} |
+                          ({"inputs": used} if used else {}))
         law.add(text)
 
     def place(self, x):
@@ -193,7 +196,7 @@ def rest_on_sharp(c, kind, number):
     if c.chance(0.6):   # friction
         mount = Mount(c, 0.0 if c.chance(0.5) else c.number(-0.5, 0.5), 0.0)
         law = mount.law(sharp=[("v", 0, 1 / s)])
-        push = c.choice([f"{mount.by(c.number(3, 15))}", f"{mount.by(c.number(3, 15))}*sin({c.number(2, 12)}*t)"])
+        push = f"{mount.by(c.number(3, 15))}" + c.choice(["", f"*sin({c.number(2, 12)}*t)"])
         mount.actuator(f"{push} - {mount.by(c.number(1, 8))}*{smooth_sign(c, 'v', s)}", law)
     else:
         mount = Mount(c, 0.0 if c.chance(0.4) else float(f"{c.either() * c.uniform(0.2, 3) / s:.3g}"), 0.0)
@@ -240,7 +243,8 @@ def rows(c, mount, low, high, least=4):
     gaps = np.array([c.uniform(0.3, 2) for _ in range(n - 1)])
     places = low + (high - low) * np.concatenate([[0], np.cumsum(gaps) / gaps.sum()])
     rate, more = c.uniform(10, 60), c.uniform(0, 60)
-    forces = [mount.by(rate * e + more * e**3 + c.uniform(-0.1, 0.1) * rate * (high - low), 3) for e in places]
+    forces = [mount.by(rate * e + more * e**3 + c.uniform(-0.1, 0.1) * rate * (high - low), 3)
+              for e in places]
     return [float(f"{e:.3g}") for e in places], forces
 
 
@@ -254,8 +258,8 @@ def table_spring(c, kind, number):
     rest = 0.0 if c.chance(0.7) else c.number(-0.1, 0.1)
     damping = mount.by(c.number(0.05, 1)) if c.chance(0.3) else 0.0
     way = "spline" if kind.startswith("spline") else "linear"
-    mount.loads.append({"type": "spring", "joint": "p", "law": "table", "rest": rest, "damping": damping, "table":
-                        {"elongations": elongations, "forces": forces, "interpolation": way}})
+    mount.loads.append({"type": "spring", "joint": "p", "law": "table", "rest": rest, "damping": damping,
+                        "table": {"elongations": elongations, "forces": forces, "interpolation": way}})
     law.add_table(laws.Table(elongations, forces, way == "spline"), lambda x: x - REAL(rest))
     law.add(f"-{damping!r}*v")
     if c.chance(0.25):
@@ -282,11 +286,12 @@ def table_between(c, kind, number):
     b, point, d = beside(c, mount, c.number(0.1, 0.6))
     law, free = mount.law(), c.number(0.05, 0.6)
     farthest = math.hypot(float(d), abs(x) + 0.3) - free
-    elongations, forces = rows(c, mount, float(d) * c.uniform(0.9, 1.2) - free, farthest * c.uniform(0.7, 1.1))
+    elongations, forces = rows(c, mount, float(d) * c.uniform(0.9, 1.2) - free,
+                               farthest * c.uniform(0.7, 1.1))
     way = "spline" if kind.startswith("spline") else "linear"
-    mount.loads.append({"type": "spring", "between": ["world", "m"], "points": [point, [0, 0, 0]], "law": "table",
-                        "free_length": free, "table": {"elongations": elongations, "forces": forces,
-                                                       "interpolation": way}})
+    mount.loads.append({"type": "spring", "between": ["world", "m"], "points": [point, [0, 0, 0]],
+                        "law": "table", "free_length": free,
+                        "table": {"elongations": elongations, "forces": forces, "interpolation": way}})
 
     def length(x):
         return np.sqrt((x - b) ** 2 + d * d)
@@ -308,8 +313,8 @@ def through_anchor(c, kind, number):
     mount.body["velocity"] = mount.v * mount.axis
     law = mount.law(sharp=[("x", b, d)] if d else [])
     k, free = mount.by(c.number(3, 50)), c.number(0.1, 0.6)
-    mount.loads.append({"type": "spring", "between": ["world", "m"], "points": [point, [0, 0, 0]], "stiffness": k,
-                        "free_length": free})
+    mount.loads.append({"type": "spring", "between": ["world", "m"], "points": [point, [0, 0, 0]],
+                        "stiffness": k, "free_length": free})
     names = {"b": lambda t, x, v: REAL(b), "d": lambda t, x, v: d}
     law.add(f"-{k!r}*(1 - {free!r}/sqrt((x - b)^2 + d^2))*(x - b)" if d else
             f"-{k!r}*(abs(x - b) - {free!r})*((x - b)/abs(x - b))", **names)
@@ -348,8 +353,8 @@ def wire(c, kind, number):
     steep = np.sqrt((slope * slope).sum())
     end = float(f"{law.round / abs(speed) * c.uniform(0.3, 1.5 if closed else 0.9):.3g}")
     m = c.log(0.2, 10)
-    body = {"name": "bead", "mass": m, "inertia": [c.number(0.01, 0.1) * m] * 3, "position": place.astype(float),
-            "velocity": (speed * slope / steep).astype(float)}
+    body = {"name": "bead", "mass": m, "inertia": [c.number(0.01, 0.1) * m] * 3,
+            "position": place.astype(float), "velocity": (speed * slope / steep).astype(float)}
     joint = {"name": "wire", "type": "slot", "between": ["world", "bead"],
              "curve": {"points": points} | ({"closed": True} if closed else {})}
     text = scenario(kind, [body], [joint], [], (0, 0, -G) if kind == "wire_weight" else (0, 0, 0))
@@ -430,7 +435,8 @@ def place_pulse(c, kind, number):
     k = c.number(5, 60) if turns and mount.kind != "pendulum" else 0
     end = c.number(0.5, 3)
     way = abs(v) / math.sqrt(k) if k else 0.5 if turns else abs(v) * end
-    places = [(float(f"{math.copysign(way * c.uniform(0.05, 0.95), v):.3g}"), float(f"{way * c.log(1e-3, 0.1):.3g}"))
+    places = [(float(f"{math.copysign(way * c.uniform(0.05, 0.95), v):.3g}"),
+               float(f"{way * c.log(1e-3, 0.1):.3g}"))
               for _ in range(c.choice([1, 1, 2, 3, 4]))]
     law = mount.law(sharp=[("x", *of) for of in places])
     mount.actuator(" + ".join([f"-{mount.by(k)}*x" if k else "0*x"] + [
@@ -466,9 +472,11 @@ def bushing(c, kind, number):
     free = 0 if mount.kind == "slide" else 4
 
     def of(value, others): return [value if i == free else others for i in range(6)]
-    mount.loads.append({"type": "bushing", "between": ["world", "m"], "at": mount.start if free == 0 else [0, 0, 0],
+    mount.loads.append({"type": "bushing", "between": ["world", "m"],
+                        "at": mount.start if free == 0 else [0, 0, 0],
                         "stiffness": of(k, 100.0), "damping": of(damper, 1.0), "preload": of(ahead, 0.0)})
-    law.add(f"-{k!r}*(x - begin) - {damper!r}*v - {ahead!r}".replace("- -", "+ "), begin=lambda t, x, v: REAL(mount.x))
+    law.add(f"-{k!r}*(x - begin) - {damper!r}*v - {ahead!r}".replace("- -", "+ "),
+            begin=lambda t, x, v: REAL(mount.x))
     mount.actuator(f"-{mount.by(c.number(1, 8))}*{smooth_sign(c, 'v', s)}{drive(c, mount, 0.7)}", law)
     return mount.case(kind, number, law, c.number(0.3, 2))
 
