@@ -179,7 +179,7 @@ class Law:
         return self
 
     def acceleration(self, t, x, v, pieces):
-        return sum(term(t, x, v, pieces) for term in self.terms) / self.mass
+        return sum(term(t, x, v, pieces) for term in self.terms) / self.mass + 0 * x
 
     def pieces(self, t, x, v):
         """Of a state; a quantity on a border goes to the side that it moves to, as x does."""

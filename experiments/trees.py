@@ -237,10 +237,11 @@ class Tree:
         """Along the one coordinate between its bodies, whose axis is one of the world at the start."""
         number = self.bodies[self.index[entry["between"][1]]].chain[-1]
         i = int(np.argmax(np.abs(self.axes[number]))) + 3 * (self.kinds[number] == "R")
-        stiffness, damping = float(entry["stiffness"][i]), float(entry["damping"][i])
+        stiffness, damping, ahead = (float(entry.get(key, [0] * 6)[i])
+                                     for key in ("stiffness", "damping", "preload"))
 
         def act(s, pieces):
-            s.Q[:, number] -= stiffness * s.q[:, number] + damping * s.v[:, number]
+            s.Q[:, number] -= stiffness * s.q[:, number] + damping * s.v[:, number] + ahead
         self.terms.append(act)
 
     # what laws.March asks for
@@ -441,6 +442,7 @@ class March(laws.March):
         return f[0], by[..., :n], by[..., n:]
 
 
+VERSION = 1   # of motions that are kept: raise it where they change
 FINE, ROUGH = (24, 3e-14), (20, 3e-13)
 
 
@@ -458,8 +460,7 @@ def of(text, end, sharp=(), kept_in=None):
     """The motion; kept in a folder, it is made once."""
     tree, path = Tree(text, sharp), None
     if kept_in is not None:
-        sources = "".join(pathlib.Path(path).read_text("utf-8") for path in (laws.__file__, __file__))
-        key = hashlib.sha256((text + repr((end, sharp)) + sources).encode()).hexdigest()[:20]
+        key = hashlib.sha256((text + repr((end, sharp, FINE, ROUGH, VERSION))).encode()).hexdigest()[:20]
         path = pathlib.Path(kept_in) / f"{key}.npz"
         if path.exists():
             with np.load(path) as kept:
