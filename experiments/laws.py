@@ -20,7 +20,6 @@ import numpy as np
 import truth
 
 REAL = truth.REAL
-MOST_STEPS = 12000
 MOST_ITERATIONS = 30
 
 
@@ -366,6 +365,7 @@ class Motion:
 class March:
     """Steps of one degree to one tolerance."""
     POINTS_OF = {n: Points(n) for n in (32, 22)}
+    MOST_STEPS = 12000
     NEAR = 2.0**-43   # of a step: nearer to a border that was just crossed nothing is known
 
     def __init__(self, law, n, tail):
@@ -493,7 +493,7 @@ class March:
                 ends.append(stop if met is None and step == stop - t else t + share * step)
                 lengths.append(step)
                 values.append(here)
-                if len(values) > MOST_STEPS:
+                if len(values) > self.MOST_STEPS:
                     raise NoTruth("too many steps")
             x, v = self.parts(here[-1] if met is None else self.points.at(here, share))
             t = ends[-1]

@@ -380,6 +380,7 @@ class State:
 class March(laws.March):
     """Steps of all coordinates, in double precision."""
     POINTS_OF = {n: laws.Points(n, lambda x: np.array(x, float)) for n in (24, 20)}
+    MOST_STEPS = 1500
     NEAR = 2.0**-30
 
     @staticmethod
