@@ -476,7 +476,11 @@ class March:
         scales, crossed = self.larger(np.full(2, 1e-2), x, v), None
         stops = [REAL(b) for b in law.breaks if 0 < b < end] + [REAL(end)]
         ends, lengths, values, h = [t], [], [], REAL(longest) / 10
+        tries = 0
         while t < end:
+            tries += 1
+            if tries > 4 * self.MOST_STEPS:
+                raise NoTruth("too many tries")
             stop = next(b for b in stops if b > t)
             step = min(h, stop - t)
             with np.errstate(all="ignore"):
@@ -503,10 +507,7 @@ class March:
             if met is not None:
                 crossed = met[1], met[3]
                 pieces = [met[2] if k == met[1] else piece for k, piece in enumerate(pieces)]
-                self.crossings += 1
         return Motion(self.points, ends, lengths, values)
-
-    crossings = 0
 
     @staticmethod
     def larger(scales, x, v):
