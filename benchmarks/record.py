@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Measures the times that documents state, and takes over what the scans have counted: record.py PROGRAM [SCANS [PAPER]]
-       record.py --paper PAPER | --accuracies SCANS | --instructions OUTPUT | --run_time OUTPUT
+       record.py --paper PAPER | --accuracies SCANS | --laws SCANS | --instructions OUTPUT | --run_time OUTPUT
 
 Writes benchmarks/recorded.json, with machine and date; tests/docs/figures.py holds README.md, docs/validation.md and docs/trust.md
 against it. SCANS: the folder in which scripts/scan left its data (build/scan), PAPER: that of scripts/paper (build/paper); without them what
 was recorded of them stays. With an option nothing else is taken over: --instructions reads what `scripts/instructions` and
 `scripts/instructions chains` have printed to one file, --run_time what benchmarks/paper has: elements and errors, which no other work changes.
 Times are the least of several runs of solve() alone, each on one core; of long ones, which other work on the machine interrupts, the
-processor's share. Standard library only.
+processor's share. Of scans of laws the rows of tables are printed, as docs/trust.md has them. Standard library only.
 """
 import csv
 import datetime
@@ -119,6 +119,43 @@ def accuracies(folder):
     return record
 
 
+LAW_SCANS = ("laws", "law_mechanisms")
+COUNTS = ("runs", "to an accuracy", "missed", "third", "third, local", "tenth", "refused", "over", "false alarm", "untold")
+
+
+def laws(folder):
+    """Of both scans of laws: counts by kind or law and of all, with the worst; what is wrong without the looks."""
+    record = {}
+    for name in LAW_SCANS:
+        rows, seen = rows_of(folder, f"scan_{name}")
+        with (folder / f"scan_{name}" / "kinds.csv").open(newline="", encoding="utf-8") as file:
+            kinds = {row["kind"]: {key: int(row[key]) for key in COUNTS} |
+                     {f"worst {key}": float(f"{float(row[key]):.2g}") for key in ("by accuracy", "by second", "by local")}
+                     for row in csv.DictReader(file)}
+        ends = [row["exit"] for row in rows]
+        record[name] = {"converged": ends.count("0"), "local": sum(row["estimate"] == "local" and row["exit"] == "0" for row in rows),
+                        "wrong without the looks": seen["wrong without the looks"], "kinds": kinds}
+    return record
+
+
+def law_rows(record, name):
+    """Rows of the table of docs/trust.md: runs, to an accuracy, missed, third, tenth, refused, worst by accuracy, by estimate."""
+    for kind, counts in record[name]["kinds"].items():
+        cells = [counts[key] for key in ("runs", "to an accuracy", "missed", "third", "tenth", "refused")]
+        cells += [f"{counts[key]:.2g}" for key in ("worst by accuracy", "worst by second")]
+        yield f"| {kind.replace('_', ' ')} | {' | '.join(map(str, cells))} |"
+
+
+def law_words(record, name):
+    """What the page says of one scan beside its table."""
+    whole = record[name]["kinds"]["all"]
+    return [f"{record[name]['converged']} of {whole['runs']} runs were called converged",
+            f"{whole['third, local']} of {record[name]['local']} with `local` told below a third",
+            f"{whole['over']} took more than 20 s, {whole['untold']} had no truth good enough, "
+            f"{whole['false alarm']} on stated meshes were suspect and right to 1e-3",
+            f"with the looks off {record[name]['wrong without the looks']} are wrong"]
+
+
 def paper(folder):
     """What the experiments of the paper have judged, to five digits: experiment -> expectation -> number.
     Of figure 9 the table of data.csv too: method -> h -> what is in its columns."""
@@ -171,6 +208,10 @@ def main():
         record, source = json.loads(RECORD.read_text(encoding="utf-8")), pathlib.Path(sys.argv[2])
         if sys.argv[1] == "--accuracies":
             record["scans"]["accuracies"] = accuracies(source)
+        elif sys.argv[1] == "--laws":
+            record["scans"] |= laws(source)
+            for name in LAW_SCANS:
+                print("\n".join([*law_rows(record["scans"], name), *law_words(record["scans"], name)]))
         else:
             record[sys.argv[1][2:]] = {"--paper": paper, "--instructions": instructions, "--run_time": run_time}[sys.argv[1]](source)
         return write(record)
@@ -180,7 +221,8 @@ def main():
     record["times"] = times(program)
     if len(sys.argv) > 2:
         folder = pathlib.Path(sys.argv[2])
-        record["scans"] = {"date": record["machine"]["date"], "meshes": meshes(folder), "accuracies": accuracies(folder)}
+        record["scans"] = {"date": record["machine"]["date"], "meshes": meshes(folder), "accuracies": accuracies(folder),
+                           **laws(folder)}
     if len(sys.argv) > 3:
         record["paper"] = paper(pathlib.Path(sys.argv[3]))
     return write(record)

@@ -3,9 +3,11 @@
 
     all.py [--short] [--livens PROGRAM] [--output FOLDER] [figNN ...]
     all.py --scans [--short] [--livens PROGRAM] [--output FOLDER] [NAME ...]
+           [--seed N] [--count N] [--kind KIND ..]
     all.py --list [--scans] [NAME ...]      which would run
 
 An experiment is named by its folder or by the beginning of it: fig02, text; a scan by what is behind scan_.
+Seed, count and kinds are for the scans of laws: other laws, fewer, of one kind.
 """
 import argparse
 import json
@@ -14,6 +16,7 @@ import subprocess
 import sys
 import time
 
+import law_scans
 import paper
 
 HERE = pathlib.Path(__file__).resolve().parent
@@ -33,6 +36,13 @@ def chosen(names, scans):
     return [folder for folder in folders if not names or any(folder.name.startswith(name) for name in names)]
 
 
+def of_laws(arguments):
+    """What is passed on to scans of laws."""
+    given = {"--seed": [arguments.seed], "--count": [arguments.count] * (arguments.count is not None)}
+    return [str(word) for key, values in given.items() for value in values for word in (key, value)] + [
+        word for kind in arguments.kind or () for word in ("--kind", kind)]
+
+
 def main():
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -41,6 +51,7 @@ def main():
     parser.add_argument("--list", action="store_true", help="say which, and run none")
     parser.add_argument("--livens", default=paper.PROGRAM)
     parser.add_argument("--output", type=pathlib.Path, help="default: build/paper or build/scan")
+    law_scans.arguments(parser)
     parser.add_argument("names", nargs="*", metavar="figNN", help="which; default: all")
     arguments = parser.parse_args()
 
@@ -55,7 +66,8 @@ def main():
         verdict.unlink(missing_ok=True)   # an old one must not speak for a run that breaks
         began = time.monotonic()
         command = [sys.executable, "-B", folder / "run", "--livens", arguments.livens, "--output", output]
-        status = subprocess.run(command + ["--short"] * arguments.short, check=False).returncode
+        command += ["--short"] * arguments.short + of_laws(arguments) * ("law" in folder.name)
+        status = subprocess.run(command, check=False).returncode
         failed |= status != 0
         held = "-"
         if verdict.exists():

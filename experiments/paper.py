@@ -434,7 +434,7 @@ class Experiment:
 
     def __init__(self, script, arguments):
         self.name = pathlib.Path(script).resolve().parent.name
-        self.short, self.livens = arguments.short, arguments.livens
+        self.short, self.livens, self.arguments = arguments.short, arguments.livens, arguments
         self.output = pathlib.Path(arguments.output or ROOT / "build" / "paper" / self.name)
         self.output.mkdir(parents=True, exist_ok=True)
         path = arguments.expected or pathlib.Path(script).resolve().parent / "expected.json"
@@ -582,13 +582,15 @@ class Experiment:
         return passed
 
 
-def run(script, main):
-    """Runs one experiment as a program and leaves with its exit status."""
+def run(script, main, further=None):
+    """Runs one experiment as a program and leaves with its exit status; further(parser) adds arguments."""
     parser = argparse.ArgumentParser(description=main.__doc__)
     parser.add_argument("--short", action="store_true", help="fewer refinements, a few seconds")
     parser.add_argument("--livens", default=PROGRAM, help="the program")
     parser.add_argument("--output", type=pathlib.Path, help="folder of the results")
     parser.add_argument("--expected", help="other expectations than those beside the script")
+    if further:
+        further(parser)
     arguments = parser.parse_args()
     arguments.livens = pathlib.Path(arguments.livens).resolve()
     if not arguments.livens.is_file():
