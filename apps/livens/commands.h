@@ -75,10 +75,10 @@ int export_command(const ExportArguments& arguments, const Common& common);
 
 struct ReportArguments {
     std::string run;
-    std::string other;    ///< that it is compared with; empty: none
-    std::string output;   ///< HTML file; of `report` alone
-    bool force = false;   ///< of `report` alone
-    int port = 0;         ///< of `view` alone; 0: one that is free
+    std::string other;           ///< that it is compared with; empty: none
+    std::string output;          ///< HTML file; of `report` alone
+    bool force = false;          ///< of `report` alone
+    int port = 0;                ///< of `view` alone; 0: one that is free
     bool address_only = false;   ///< of `view`: no browser
 };
 int report_command(const ReportArguments& arguments, const Common& common);

@@ -26,7 +26,7 @@ struct Weighed {
     MassProperties properties;
     Matrix4 mass_matrix;   ///< about the reference point
     bool is_point = false;
-    bool is_skew = false;   ///< stated along other directors than all here is
+    bool is_skew = false;                ///< stated along other directors than all here is
     std::vector<ShapePart> parts = {};   ///< of a union
 };
 

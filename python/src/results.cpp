@@ -145,7 +145,8 @@ Result with_scenario(Run run, const std::string& name)
 }
 
 /// One page for a browser.
-std::string report(const Result& result, const std::string& name, const Result* other, const std::string& other_name)
+std::string report(const Result& result, const std::string& name, const Result* other,
+                   const std::string& other_name)
 {
     const nb::gil_scoped_release unlock;
     const ReportInput here{*result.scenario, result.run, name};
@@ -166,10 +167,10 @@ bool is_same_file(const std::string& a, const std::string& b)
     return std::filesystem::equivalent(a, b, error) && !error;
 }
 
-/// Why what stands at `file` is not to be replaced by what is of this kind: of the `inputs` never, of all that
-/// is neither empty nor of this kind unless `force`. Empty: it may be.
-std::string objection(const std::string& file, const std::string& kind, const std::vector<std::string>& inputs,
-                      bool force)
+/// Why what stands at `file` is not to be replaced by what is of this kind: of the `inputs` never, of all
+/// that is neither empty nor of this kind unless `force`. Empty: it may be.
+std::string objection(const std::string& file, const std::string& kind,
+                      const std::vector<std::string>& inputs, bool force)
 {
     for (const std::string& input : inputs)
         if (is_same_file(file, input)) return "it is what the model was read from";

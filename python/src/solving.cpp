@@ -53,7 +53,8 @@ nb::tuple build_text(const std::string& text, const std::string& file, const std
     return nb::make_tuple(shared(result.scenario), to_python(result.diagnostics, nullptr));
 }
 
-nb::tuple build_tree(const nb::dict& root, const std::string& text, const std::string& folder, bool model_alone)
+nb::tuple build_tree(const nb::dict& root, const std::string& text, const std::string& folder,
+                     bool model_alone)
 {
     TreeReader reader;
     const Node tree = reader.read(root);
@@ -148,8 +149,9 @@ bool is_of_python(const Model& model)
     return std::ranges::any_of(model.loads(), [](const Load& load) { return load.type == "python"; });
 }
 
-/// judged(), of a large motion in a thread of its own, while this one asks whether anybody still waits for it. When
-/// nobody does there is no result, and that thread is left to itself: it holds all it needs, and ends.
+/// judged(), of a large motion in a thread of its own, while this one asks whether anybody still waits for
+/// it. When nobody does there is no result, and that thread is left to itself: it holds all it needs, and
+/// ends.
 std::optional<Result> judged_while(const std::function<bool()>& goes_on, Unjudged&& motion)
 {
     constexpr std::size_t small = 100'000;   // numbers, which are judged within some milliseconds
@@ -236,8 +238,8 @@ bool tell(int n_done, const nb::object& progress)
     }
 }
 
-/// [(tree, text, folder of meshes), ..] -> [(result or None, diagnostics), ..] in their order; what one of them
-/// throws is thrown when all have ended.
+/// [(tree, text, folder of meshes), ..] -> [(result or None, diagnostics), ..] in their order; what one of
+/// them throws is thrown when all have ended.
 nb::list solve_many(const nb::list& trees, int n_threads, nb::object progress, double most_bytes)
 {
     std::vector<Variant> variants;

@@ -61,9 +61,8 @@ TEST(Stiffness, LeavesAMassAtRestAtEveryTolerance)
                 for (const double tolerance : {1e-6, 1e-8, 1e-10, 1e-12, 1e-14}) {
                     const Solution s =
                         solve_at(hanging_mass(stiffness, free_length), 0.1, 100, degree, tolerance);
-                    ASSERT_TRUE(s.report.converged())
-                        << stiffness << " N/m, lobatto(" << degree << "), " << tolerance << ": "
-                        << s.report.message;
+                    ASSERT_TRUE(s.report.converged()) << stiffness << " N/m, lobatto(" << degree << "), "
+                                                      << tolerance << ": " << s.report.message;
                     const Distance d = largest_from_start(s);
                     const double allowed = 100 * ulp * std::max(1.0, stiffness / 1e7);
                     EXPECT_LE(d.X, allowed) << stiffness << " N/m, lobatto(" << degree << ")";
@@ -77,9 +76,8 @@ TEST(Stiffness, LeavesABodyAtRestAtEveryTolerance)
         for (const int degree : {1, 2, 4, 8})
             for (const double tolerance : {1e-6, 1e-8, 1e-10, 1e-12, 1e-14}) {
                 const Solution s = solve_at(hanging_box(stiffness), 0.1, 100, degree, tolerance);
-                ASSERT_TRUE(s.report.converged())
-                    << stiffness << " N/m, lobatto(" << degree << "), " << tolerance << ": "
-                    << s.report.message;
+                ASSERT_TRUE(s.report.converged()) << stiffness << " N/m, lobatto(" << degree << "), "
+                                                  << tolerance << ": " << s.report.message;
                 EXPECT_LE(largest_from_start(s).X, 100 * ulp * std::max(1.0, stiffness / 1e7));
             }
 }
@@ -99,10 +97,11 @@ double largest_fall(double stiffness, double preload, int degree)
     Model model({0, 0, -9.81});
     model.add_body(rigid_body("box", box(1.5, {2, 1, 1})));
     for (const double side : {-1.0, 1.0})
-        model.add_load(spring_damper(side < 0 ? "left" : "right", world, {2.5 * side, 0, 0}, 0,
-                                     {side, 0, 0}, {stiffness, 0, 1.5 - preload}));
+        model.add_load(spring_damper(side < 0 ? "left" : "right", world, {2.5 * side, 0, 0}, 0, {side, 0, 0},
+                                     {stiffness, 0, 1.5 - preload}));
     const Solution s = solve_at(model, 10, 200, degree, 1e-12);
-    EXPECT_TRUE(s.report.reached_end()) << stiffness << " N/m, lobatto(" << degree << "): " << s.report.message;
+    EXPECT_TRUE(s.report.reached_end())
+        << stiffness << " N/m, lobatto(" << degree << "): " << s.report.message;
     return largest_from_start(s).X;
 }
 
@@ -130,8 +129,7 @@ Model turning_row(int n, double stiffness, double spin, double drawing = 0)
         model.add_body(point_mass("n" + std::to_string(i), 1, {0, 0, z}, {spin * z, 0, drawing * z}));
     }
     for (int i = 0; i + 1 < n; ++i)
-        model.add_load(
-            spring_damper("s" + std::to_string(i), i, {}, i + 1, {}, {stiffness, 0, 2.5}));
+        model.add_load(spring_damper("s" + std::to_string(i), i, {}, i + 1, {}, {stiffness, 0, 2.5}));
     return model;
 }
 

@@ -54,8 +54,8 @@ TEST(Horizon, BendsOfNeighboursDoNotGrow)
 }
 
 /// A body about its middle axis that turns over every 4.5 s; 5.5e4 is the largest singular value of Euler's
-/// variational equations (DOP853, 1e-13). From turn to turn a perturbation across the motion grows by 1e8, and
-/// so does what a neighbour bends by: measured over 16 elements at a time growth was 6e12, 3e20 or 2e4.
+/// variational equations (DOP853, 1e-13). From turn to turn a perturbation across the motion grows by 1e8,
+/// and so does what a neighbour bends by: measured over 16 elements at a time growth was 6e12, 3e20 or 2e4.
 TEST(Horizon, GrowthOfATumblingBodyIsThatOfTheMotionWhateverTheElements)
 {
     Model model;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// libFuzzer's target for result files whose headers lie and whose checksums fit; fuzz.cmake says how it is run.
+// libFuzzer's target for result files whose headers lie and whose checksums fit; fuzz.cmake says how it is
+// run.
 #include "fuzz/edits.h"
 #include "fuzz/result.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Bytes as a program that edits a result file: first the file, then edits of four bytes each, what is done and to
-// what. Checksums fit at the end, so that nothing keeps the reader from looking.
+// Bytes as a program that edits a result file: first the file, then edits of four bytes each, what is done
+// and to what. Checksums fit at the end, so that nothing keeps the reader from looking.
 #pragma once
 
 #include <filesystem>
@@ -102,24 +102,54 @@ private:
         ClassicDimension& d = any(file_.dimensions, a);
         const auto n_dimensions = static_cast<std::uint32_t>(file_.dimensions.size());
         switch (what % 16) {
-        case 0: file_.add({d.name, length(b)}, c % 2 == 0); break;
-        case 1: d.length = length(b); break;
-        case 2: resize(a % n_dimensions, b < 64 ? b : length(b - 64) % 4096); break;
-        case 3: d.name = name(any(file_.dimensions, b).name, c); break;
-        case 4: v.dimensions.assign(c == 1 ? 100'000 : b % 16, c % n_dimensions); break;
+        case 0:
+            file_.add({d.name, length(b)}, c % 2 == 0);
+            break;
+        case 1:
+            d.length = length(b);
+            break;
+        case 2:
+            resize(a % n_dimensions, b < 64 ? b : length(b - 64) % 4096);
+            break;
+        case 3:
+            d.name = name(any(file_.dimensions, b).name, c);
+            break;
+        case 4:
+            v.dimensions.assign(c == 1 ? 100'000 : b % 16, c % n_dimensions);
+            break;
         case 5:
             if (!v.dimensions.empty()) any(v.dimensions, b) = c % n_dimensions;
             break;
-        case 6: v.name = name(any(file_.variables, b).name, c); break;
-        case 7: file_.variables.push_back(Variable(any(file_.variables, b))); break;
-        case 8: file_.variables.erase(file_.variables.begin() + a % file_.variables.size()); break;
-        case 9: v.type = b; break;
-        case 10: v.begin = 8 * (b + 256ull * c); break;
-        case 11: v.data.resize(4 * (b + 256 * (c % 16))); break;
-        case 12: put(v.data, b, c); break;
-        case 13: any(file_.attributes, a).value = value(b); break;
-        case 14: any(v.attributes, b).value = value(c); break;
-        default: (b % 2 == 0 ? file_.attributes : v.attributes).push_back(any(v.attributes, c)); break;
+        case 6:
+            v.name = name(any(file_.variables, b).name, c);
+            break;
+        case 7:
+            file_.variables.push_back(Variable(any(file_.variables, b)));
+            break;
+        case 8:
+            file_.variables.erase(file_.variables.begin() + a % file_.variables.size());
+            break;
+        case 9:
+            v.type = b;
+            break;
+        case 10:
+            v.begin = 8 * (b + 256ull * c);
+            break;
+        case 11:
+            v.data.resize(4 * (b + 256 * (c % 16)));
+            break;
+        case 12:
+            put(v.data, b, c);
+            break;
+        case 13:
+            any(file_.attributes, a).value = value(b);
+            break;
+        case 14:
+            any(v.attributes, b).value = value(c);
+            break;
+        default:
+            (b % 2 == 0 ? file_.attributes : v.attributes).push_back(any(v.attributes, c));
+            break;
         }
     }
 

@@ -37,10 +37,11 @@ inline bool is_same(const Run& a, const Run& b)
            bits(a.motion.load_angles, b.motion.load_angles) && bits(a.growth, b.growth) &&
            bits(a.motion.mesh.ends, b.motion.mesh.ends) && bits(a.output, b.output) &&
            bits(a.motion.multipliers.values, b.motion.multipliers.values) &&
-           bits(a.motion.end_multipliers, b.motion.end_multipliers) && matrices(a.motion.momenta, b.motion.momenta) &&
+           bits(a.motion.end_multipliers, b.motion.end_multipliers) &&
+           matrices(a.motion.momenta, b.motion.momenta) &&
            matrices(a.motion.velocities, b.motion.velocities) &&
-           matrices(a.motion.accelerations, b.motion.accelerations) && a.title == b.title && a.notes == b.notes &&
-           a.report.notes == b.report.notes && a.report.message == b.report.message &&
+           matrices(a.motion.accelerations, b.motion.accelerations) && a.title == b.title &&
+           a.notes == b.notes && a.report.notes == b.report.notes && a.report.message == b.report.message &&
            a.motion.block_ends == b.motion.block_ends && a.scenario_text == b.scenario_text &&
            a.meshes == b.meshes && bits(a.estimate.position, b.estimate.position) &&
            bits(a.estimate.velocity, b.estimate.velocity) &&

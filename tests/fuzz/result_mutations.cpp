@@ -120,7 +120,8 @@ std::string random_program(Damage& damage, std::size_t n)
     return program;
 }
 
-/// Edits of headers, with checksums that fit; and those of the corpus of the fuzzer, all of which are refused.
+/// Edits of headers, with checksums that fit; and those of the corpus of the fuzzer, all of which are
+/// refused.
 TEST(ResultMutations, CraftedFilesAreRefusedOrReadInFull)
 {
     const std::vector<std::string> seeds = test::result_files();

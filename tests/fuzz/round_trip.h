@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The reader against the writer: a run with whatever in it is read as it was written, and what is read and written
-// again is the same file.
+// The reader against the writer: a run with whatever in it is read as it was written, and what is read and
+// written again is the same file.
 #pragma once
 
 #include <algorithm>
@@ -77,21 +77,46 @@ private:
                                               &run_.estimate.reaction};
         std::vector<Matrix34>* const ends[] = {&m.momenta, &m.velocities, &m.accelerations};
         switch (what % 14) {
-        case 0: put(*lists[n % std::size(lists)]); break;
-        case 1: put(*ends[n % std::size(ends)]); break;
-        case 2: weigh(*fields[n % std::size(fields)]); break;
-        case 3: *fields[1 + n % 3] = {}; break;
-        case 4: (n % 2 == 0 ? m.end_multipliers : run_.growth).clear(); break;
-        case 5: m.accelerations.clear(); break;
-        case 6: run_.estimate = {}; break;
-        case 7: run_.output.resize(run_.output.size() * n / 256); break;
-        case 8:
-            m.block_ends = n % 2 == 0 || m.n_elements() == 0 ? std::vector<int>{} : std::vector{0, m.n_elements()};
+        case 0:
+            put(*lists[n % std::size(lists)]);
             break;
-        case 9: run_.title = text(n); break;
-        case 10: run_.report.message = text(n); break;
-        case 11: run_.notes.assign(1 + n % 5, text(next())); break;
-        case 12: run_.report.notes.assign(n % 5, text(next())); break;
+        case 1:
+            put(*ends[n % std::size(ends)]);
+            break;
+        case 2:
+            weigh(*fields[n % std::size(fields)]);
+            break;
+        case 3:
+            *fields[1 + n % 3] = {};
+            break;
+        case 4:
+            (n % 2 == 0 ? m.end_multipliers : run_.growth).clear();
+            break;
+        case 5:
+            m.accelerations.clear();
+            break;
+        case 6:
+            run_.estimate = {};
+            break;
+        case 7:
+            run_.output.resize(run_.output.size() * n / 256);
+            break;
+        case 8:
+            m.block_ends =
+                n % 2 == 0 || m.n_elements() == 0 ? std::vector<int>{} : std::vector{0, m.n_elements()};
+            break;
+        case 9:
+            run_.title = text(n);
+            break;
+        case 10:
+            run_.report.message = text(n);
+            break;
+        case 11:
+            run_.notes.assign(1 + n % 5, text(next()));
+            break;
+        case 12:
+            run_.report.notes.assign(n % 5, text(next()));
+            break;
         default: {
             const auto figures = run_figures();
             const Figure& figure = figures[n % figures.size()];
@@ -106,7 +131,8 @@ private:
     Run run_;
 };
 
-/// Ends the program unless the run comes back. What is not one (times that do not ascend after all) is refused.
+/// Ends the program unless the run comes back. What is not one (times that do not ascend after all) is
+/// refused.
 inline void go_round(const Model& model, const Run& run)
 {
     const auto written = [&](const Run& it) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What must hold for any text: it ends in a scenario or in an error, never in both or neither, every finding can
-// be printed, and syntax errors have a place.
+// What must hold for any text: it ends in a scenario or in an error, never in both or neither, every finding
+// can be printed, and syntax errors have a place.
 #pragma once
 
 #include <algorithm>
@@ -28,7 +28,8 @@ inline bool is_answered(const std::string& text)
         if (!result.diagnostics.empty() && render(result.diagnostics, result.text, format).empty())
             is_printed = false;
     for (const Diagnostic& d : result.diagnostics)
-        if (explain(d.code).empty() || d.code == "internal" || (is_syntax(d.code) && d.line < 1)) return false;
+        if (explain(d.code).empty() || d.code == "internal" || (is_syntax(d.code) && d.line < 1))
+            return false;
     return result.scenario.has_value() != has_error && result.text == text && is_printed;
 }
 

@@ -40,15 +40,15 @@ std::string slider(double x, double v, const std::string& loads)
 {
     return "gravity = [0, 0, 0]\n[[body]]\nname = \"m\"\nmass = 1\ninertia = [0.01, 0.01, 0.01]\nvelocity = "
            "[" +
-           to_text(v) + ", 0, 0]\n[[joint]]\nname = \"p\"\ntype = \"prismatic\"\nbetween = [\"world\", \"m\"]"
+           to_text(v) +
+           ", 0, 0]\n[[joint]]\nname = \"p\"\ntype = \"prismatic\"\nbetween = [\"world\", \"m\"]"
            "\nat = [0, 0, 0]\naxis = [1, 0, 0]\ncoordinate = " +
            to_text(x) + "\n" + loads;
 }
 
 std::string force(const std::string& expression)
 {
-    const std::string rate =
-        expression.find('v') == std::string::npos ? "" : ", v = \"p.displacement_rate\"";
+    const std::string rate = expression.find('v') == std::string::npos ? "" : ", v = \"p.displacement_rate\"";
     return "[[load]]\nname = \"law\"\ntype = \"actuator\"\njoint = \"p\"\ninputs = { x = \"p.displacement\"" +
            rate + " }\nexpression = \"" + expression + "\"\n";
 }
@@ -64,7 +64,8 @@ Tried run(const std::string& scenario, const std::string& time, double truth, bo
     Tried run{solve(s.model, {s.model.start()}, s.time, s.method, options)};
     const JointCoordinates all(s.model, run.solution.motion);
     const double end = run.solution.motion.end();
-    run.error = std::abs(all.at(end)[0].value - truth) / (all.coordinate(0).coordinate.is_angle() ? 1 : s.model.length());
+    run.error = std::abs(all.at(end)[0].value - truth) /
+                (all.coordinate(0).coordinate.is_angle() ? 1 : s.model.length());
     return run;
 }
 
@@ -80,20 +81,21 @@ std::vector<Case> cases()
     const std::string spline =
         "[[load]]\ntype = \"spring\"\njoint = \"p\"\nlaw = \"table\"\ntable = { elongations = [-0.63, -0.55, "
         "-0.47, 0.49], forces = [-31.2, -24.2, -10.9, 10.6], interpolation = \"spline\" }\n";
-    const std::string drag =
-        force("-12.9*x") + "[[load]]\ntype = \"drag\"\nbody = \"m\"\nquadratic = 2.93\n";
+    const std::string drag = force("-12.9*x") + "[[load]]\ntype = \"drag\"\nbody = \"m\"\nquadratic = 2.93\n";
     return {
-        {"a narrow pulse of an angle", wheel("rate = 5\n", torque("100*exp(-((q-2)/0.01)^2)")), "end = 3\n", 1e-6,
-         15.8911601972, 0.5},
+        {"a narrow pulse of an angle", wheel("rate = 5\n", torque("100*exp(-((q-2)/0.01)^2)")), "end = 3\n",
+         1e-6, 15.8911601972, 0.5},
         {"dry friction by a smooth sign, from rest", wheel("", torque("20 - 5*tanh(3000*w)")), "end = 0.5\n",
          1e-8, 1.875032694, 1e-5},
         {"the same beside a spring, driven",
          slider(0.46, -1.25, force("-35.7*x - 5.5*tanh(251.0*v) + 15.5*sin(5.2*t)")), "end = 2.3\n", 1e-5,
          -1.3743235695319, 1e-5},
-        {"a smooth sign of a place", slider(-0.2, -1.07, force("-48.6*x - 4.6*tanh(3676.0*x)")), "end = 2.8\n",
-         1e-5, 0.058117073382, 1e-3},
-        {"quadratic drag that reverses", slider(0.22, -1.27, drag), "end = 1.3\n", 1e-8, 0.075527249067, 1e-8},
-        {"knots of a spline over elongation", slider(0, 6, spline), "end = 2.2\n", 1e-7, -1.167092953755, 1e-7},
+        {"a smooth sign of a place", slider(-0.2, -1.07, force("-48.6*x - 4.6*tanh(3676.0*x)")),
+         "end = 2.8\n", 1e-5, 0.058117073382, 1e-3},
+        {"quadratic drag that reverses", slider(0.22, -1.27, drag), "end = 1.3\n", 1e-8, 0.075527249067,
+         1e-8},
+        {"knots of a spline over elongation", slider(0, 6, spline), "end = 2.2\n", 1e-7, -1.167092953755,
+         1e-7},
     };
 }
 
@@ -152,7 +154,7 @@ TEST(Inside, GrazedStopsAreTouched)
         const std::string law = force("-9*x - 1e5*max(0, x - " + to_text(stop) + ")");
         const double W = std::sqrt(w * w + k), c = k * stop / (W * W);
         const double t_in = std::acos(stop) / w, v_in = w * std::sin(w * t_in);   // of x = cos(w t)
-        const double first = std::acos(-1.0) / w - t_in;   // from x = -1 to the stop
+        const double first = std::acos(-1.0) / w - t_in;                          // from x = -1 to the stop
         // in the stop x - c = A cos(W t) + B sin(W t), until it is back
         const double A = stop - c, B = v_in / W, back = 2 * std::atan2(B, A) / W;
         const double end = 2.5, after = end - first - back;
@@ -175,8 +177,12 @@ TEST(Inside, InstantsOfJumpsAreInTheEstimate)
         "}]\n[[load]]\nname = \"stop\"\ntype = \"actuator\"\njoint = \"pin\"\ninputs = { q = \"pin.angle\" "
         "}\nexpression = \"-6*q/abs(q)\"\n";
     const Tried fine = run(rod, "end = 5\nelements = 400\n[method]\ndegree = 10\n", 0);
-    const double truth = JointCoordinates(parse_scenario("format = 1\n" + rod + "[time]\nend = 5\n", "t").scenario.value().model,
-                                          fine.solution.motion).at(5)[0].value;
+    const double truth =
+        JointCoordinates(
+            parse_scenario("format = 1\n" + rod + "[time]\nend = 5\n", "t").scenario.value().model,
+            fine.solution.motion)
+            .at(5)[0]
+            .value;
     for (const int degree : {2, 3, 4, 5})
         for (const int elements : {60, 80, 110}) {
             const std::string time = "end = 5\nelements = " + std::to_string(elements) +
@@ -199,13 +205,15 @@ TEST(Inside, SpringsThroughTheirAnchorTurnRound)
     }
     const double v = w * (B * std::cos(w * t) - A * std::sin(w * t)), rest = 0.5 - t;
     const double truth = -free_length + free_length * std::cos(w * rest) + v / w * std::sin(w * rest);
-    const std::string spring = "[[load]]\ntype = \"spring\"\nbetween = [\"world\", \"m\"]\npoints = [[0, 0, 0], "
-                               "[0, 0, 0]]\nstiffness = 4\nfree_length = 0.5\n";
+    const std::string spring =
+        "[[load]]\ntype = \"spring\"\nbetween = [\"world\", \"m\"]\npoints = [[0, 0, 0], "
+        "[0, 0, 0]]\nstiffness = 4\nfree_length = 0.5\n";
     const Tried r = run("gravity = [0, 0, 0]\n[[body]]\nname = \"m\"\nmass = 1\ninertia = [0.01, 0.01, "
-                      "0.01]\nposition = [1, 0, 0]\nvelocity = [-4, 0, 0]\n[[joint]]\nname = \"p\"\ntype = "
-                      "\"prismatic\"\nbetween = [\"world\", \"m\"]\nat = [0, 0, 0]\naxis = [1, 0, "
-                      "0]\ncoordinate = 1\n" + spring,
-                      "end = 0.5\naccuracy = 1e-9\n", truth);
+                        "0.01]\nposition = [1, 0, 0]\nvelocity = [-4, 0, 0]\n[[joint]]\nname = \"p\"\ntype = "
+                        "\"prismatic\"\nbetween = [\"world\", \"m\"]\nat = [0, 0, 0]\naxis = [1, 0, "
+                        "0]\ncoordinate = 1\n" +
+                            spring,
+                        "end = 0.5\naccuracy = 1e-9\n", truth);
     EXPECT_TRUE(r.converged()) << r.solution.report.message;
     EXPECT_LT(r.error, 1e-9);
 }

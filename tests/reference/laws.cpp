@@ -188,7 +188,8 @@ TEST(Laws, ASatelliteLibratesInTrueUnitsToTheAccuracyAsked)
     }
 }
 
-/// Beyond half a turn the rotation vector of a bushing changes its sign: the run says so, whatever it ends with.
+/// Beyond half a turn the rotation vector of a bushing changes its sign: the run says so, whatever it ends
+/// with.
 TEST(Laws, ABushingThatReachesHalfATurnIsNamed)
 {
     const auto run = [](double spin, const std::string& time) {

@@ -134,8 +134,8 @@ void measure(Verdict& v, const Model& model, const Motion& motion, bool holds_we
 std::string in_words(const Growing& part, const Model& model)
 {
     if (part.body < 0) return "no body";
-    std::string words = "body '" + model.body_name(part.body) + "' " +
-                        (part.turns ? "turning about (" : "moving along (");
+    std::string words =
+        "body '" + model.body_name(part.body) + "' " + (part.turns ? "turning about (" : "moving along (");
     for (int i = 0; i < 3; ++i) words += (i > 0 ? ", " : "") + to_text(part.direction[i], 2);
     return words + ")";
 }

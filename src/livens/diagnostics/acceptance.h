@@ -20,9 +20,9 @@ inline constexpr double acceptable_velocity_jump = 0.3;
 
 /// What neighbouring motions part by most: where a body is, or how it is turned.
 struct Growing {
-    int body = -1;          ///< none: nobody asked
-    bool turns = false;     ///< about the direction, else it moves along it
-    Vector3 direction{};    ///< of length 1, world axes
+    int body = -1;         ///< none: nobody asked
+    bool turns = false;    ///< about the direction, else it moves along it
+    Vector3 direction{};   ///< of length 1, world axes
 };
 /// "body 'b' turning about (0.1, 0.98, 0.1)"
 std::string in_words(const Growing& part, const Model& model);
@@ -34,17 +34,17 @@ struct Verdict {
 
     double max_constraint_violation = unknown;   ///< at nodes, each row by its scale; rigidity included
     double max_velocity_violation = unknown;     ///< |dPhi/dt| / scale at element ends, 1/s
-    double max_weak_violation = unknown;     ///< where constraints hold weakly: largest mean, else 0
-    double energy_drift = unknown;           ///< relative, see Balance
+    double max_weak_violation = unknown;         ///< where constraints hold weakly: largest mean, else 0
+    double energy_drift = unknown;               ///< relative, see Balance
     double linear_momentum_drift = unknown;
     double angular_momentum_drift = unknown;
     double zigzag_positions = unknown;   ///< 0 smooth to 1 pure zig-zag, see Zigzag
     double zigzag_momenta = unknown;
-    double zigzag_time = unknown;        ///< of the worst of both, s
-    double velocity_jump = 0;            ///< see VelocityJump; 0 where constraints do not hold at nodes
-    double velocity_jump_time = unknown; ///< s
-    double estimated_error = unknown;    ///< largest of ErrorEstimate, if there is one
-    double estimated_digits = unknown;   ///< its negative decadic logarithm, 0 to 16
+    double zigzag_time = unknown;            ///< of the worst of both, s
+    double velocity_jump = 0;                ///< see VelocityJump; 0 where constraints do not hold at nodes
+    double velocity_jump_time = unknown;     ///< s
+    double estimated_error = unknown;        ///< largest of ErrorEstimate, if there is one
+    double estimated_digits = unknown;       ///< its negative decadic logarithm, 0 to 16
     double estimated_error_time = unknown;   ///< where it is largest, s
     double good_digits = unknown;            ///< see ErrorEstimate::good()
     double good_until = unknown;             ///< likewise, s
@@ -52,8 +52,8 @@ struct Verdict {
     double horizon = unknown;   ///< s, where 1e-13 has grown to 1e-2; unknown also if that is after the end
     /// Rounding at the start decides by then which of many motions is shown.
     bool is_beyond_horizon(double t) const { return t > horizon; }
-    std::vector<std::string> reasons;    ///< why the motion is suspect, a line each; empty: it is not
-    std::vector<std::string> remarks;    ///< what is worth a look and refuses nothing
+    std::vector<std::string> reasons;   ///< why the motion is suspect, a line each; empty: it is not
+    std::vector<std::string> remarks;   ///< what is worth a look and refuses nothing
     BalanceFigures balance;
     std::shared_ptr<const Balance> balances;   ///< their series, of motions of up to 4095 elements
     ViolationReport violations;   ///< means only where constraints hold weakly, nothing between nodes
@@ -74,4 +74,4 @@ Verdict judge(const Model& model, const Motion& motion, const SolveReport& repor
               const ErrorEstimate& estimate = {}, std::span<const double> growth = {},
               const Growing& part = {});
 
-}   // namespace livens
+}   // namespace gnu::visibility("default")]]livens

@@ -142,13 +142,13 @@ std::string render_human(const Diagnostic& d, std::string_view source, const Col
             columns > 0 ? std::clamp(columns - gutter - marks, narrowest_line, widest_line) : widest_line;
         const Excerpt e = excerpt(find_line(source, d.line), d.column, d.length, room);
         out += bar + "\n" + c.frame + number + " |" + c.plain + (e.text.empty() ? "" : " ") + e.text + "\n";
-        out += bar + " " + (d.severity == Severity::error ? c.error : c.warning) + e.underline + c.plain +
-               "\n";
+        out +=
+            bar + " " + (d.severity == Severity::error ? c.error : c.warning) + e.underline + c.plain + "\n";
     }
     const auto say = [&](const char* kind, const std::string& text) {
         if (!text.empty())
-            out += margin + c.frame + " = " + c.plain + c.strong + kind + c.plain + ": " + escaped(text) +
-                   "\n";
+            out +=
+                margin + c.frame + " = " + c.plain + c.strong + kind + c.plain + ": " + escaped(text) + "\n";
     };
     say("note", d.note);
     say("help", d.help);
@@ -157,8 +157,8 @@ std::string render_human(const Diagnostic& d, std::string_view source, const Col
 
 std::string render_gnu(const Diagnostic& d)
 {
-    std::string out = place(d, ":") + ": " + name(d.severity) + ": " + escaped(d.message) + " [" + d.code +
-                      "]\n";
+    std::string out =
+        place(d, ":") + ": " + name(d.severity) + ": " + escaped(d.message) + " [" + d.code + "]\n";
     const std::string at = place(d, ":") + ": note: ";
     if (!d.note.empty()) out += at + escaped(d.note) + "\n";
     if (!d.help.empty()) out += at + escaped(d.help) + "\n";

@@ -36,4 +36,4 @@ std::span<const ExportFormat> export_formats();
 /// angular velocity; then energies. Names that spreadsheets would take for formulas begin with an apostrophe.
 void write_csv(const std::filesystem::path& file, const Model& model, const Run& run);
 
-}   // namespace livens
+}   // namespace gnu::visibility("default")]]livens

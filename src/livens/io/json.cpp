@@ -95,8 +95,10 @@ private:
         while (!rest_.empty() && rest_.front() != '"') {
             const int length = utf8_length(rest_);
             if (length == 0 || static_cast<unsigned char>(rest_.front()) < 0x20) return false;
-            if (rest_.front() != '\\') rest_.remove_prefix(static_cast<std::size_t>(length));
-            else if (!escape()) return false;
+            if (rest_.front() != '\\')
+                rest_.remove_prefix(static_cast<std::size_t>(length));
+            else if (!escape())
+                return false;
         }
         return word("\"");
     }
@@ -105,8 +107,8 @@ private:
         constexpr std::string_view hexadecimal = "0123456789abcdefABCDEF";
         rest_.remove_prefix(1);
         if (word("u")) {
-            const bool is_whole = rest_.size() >= 4 && rest_.substr(0, 4).find_first_not_of(hexadecimal) ==
-                                                           std::string_view::npos;
+            const bool is_whole = rest_.size() >= 4 &&
+                                  rest_.substr(0, 4).find_first_not_of(hexadecimal) == std::string_view::npos;
             rest_.remove_prefix(is_whole ? 4 : 0);
             return is_whole;
         }
@@ -249,10 +251,7 @@ JsonWriter& JsonWriter::value(std::string_view text)
     return *this;
 }
 
-JsonWriter& JsonWriter::value(double number)
-{
-    return std::isfinite(number) ? raw(to_text(number)) : null();
-}
+JsonWriter& JsonWriter::value(double number) { return std::isfinite(number) ? raw(to_text(number)) : null(); }
 
 JsonWriter& JsonWriter::value(std::span<const double> numbers)
 {

@@ -86,4 +86,4 @@ std::uint32_t code_point(std::string_view text);
 /// the joiners U+200C and U+200D, which words and signs are made with), separators of lines and paragraphs.
 bool is_invisible(std::uint32_t code);
 
-}   // namespace livens
+}   // namespace gnu::visibility("default")]]livens

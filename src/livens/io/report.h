@@ -35,4 +35,4 @@ std::string report_page(const ReportInput& run, const ReportInput* other = nullp
 /// Whether a file that begins so is such a page; see is_occupied().
 bool begins_as_report(std::string_view head);
 
-}   // namespace livens
+}   // namespace gnu::visibility("default")]]livens

@@ -40,7 +40,7 @@ struct Run {
     ErrorEstimate estimate;
     std::vector<double> growth;       ///< Solution::growth, nan where the neighbouring motion did not come
     std::vector<std::string> notes;   ///< of the report and of the verdict
-    std::string version;   ///< of the livens that wrote it
+    std::string version;              ///< of the livens that wrote it
 };
 
 /// A run with everything that follows from these three: names, notes, version; `output` holds all element
@@ -93,8 +93,7 @@ class IoError : public std::runtime_error {
 public:
     explicit IoError(const std::string& message, std::string code = "io")
         : std::runtime_error(message), code_(std::move(code))
-    {
-    }
+    {}
     /// "io", or one that explain() has a page of.
     const std::string& code() const { return code_; }
 
@@ -102,4 +101,4 @@ private:
     std::string code_;
 };
 
-}   // namespace livens
+}   // namespace gnu::visibility("default")]]livens

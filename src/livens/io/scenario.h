@@ -61,10 +61,10 @@ struct Scenario {
     Time time;   ///< element ends hold jumps of loads (unless breaks = "ignore") and output times
     std::vector<double> output;   ///< output times; all element ends, where known, if the scenario lists none
     Method method;
-    Conditions conditions;      ///< what is given at start and end, and the states there, with their times
-    SolveOptions options;   ///< tolerance, max_iterations, initial, condition
-    std::string resolved;   ///< all options after defaults, as one JSON object
-    std::string meshes;     ///< what its meshes come to, so that a run needs no file beside its own
+    Conditions conditions;   ///< what is given at start and end, and the states there, with their times
+    SolveOptions options;    ///< tolerance, max_iterations, initial, condition
+    std::string resolved;    ///< all options after defaults, as one JSON object
+    std::string meshes;      ///< what its meshes come to, so that a run needs no file beside its own
     std::vector<std::filesystem::path> mesh_files;   ///< that were read for it
 };
 
@@ -101,4 +101,4 @@ double unit_of_length(const std::string& unit);
 std::string schema_json();
 std::string schema_markdown();
 
-}   // namespace livens
+}   // namespace gnu::visibility("default")]]livens

@@ -52,4 +52,4 @@ HighestFrequencies highest_frequencies(const Model& model, const State& state, S
 /// likewise.
 std::vector<Vibration> vibrations(const Model& model, const State& state, Side side = Side::right);
 
-}   // namespace livens
+}   // namespace gnu::visibility("default")]]livens

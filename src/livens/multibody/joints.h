@@ -140,4 +140,4 @@ Joint gear(const std::string& name, const Joint& first, const Joint& second, dou
 Joint rack_and_pinion(const std::string& name, const Joint& pinion, const Joint& rack, double radius,
                       const Configurations& X, double scale = 1);
 
-}   // namespace livens
+}   // namespace gnu::visibility("default")]]livens

@@ -138,7 +138,7 @@ private:
     const std::vector<Inertia>& inertias_;
     std::span<const Matrix34> X_;
     std::vector<int> order_;
-    std::vector<double> size_;   ///< norms of the rows before they were scaled to one
+    std::vector<double> size_;                     ///< norms of the rows before they were scaled to one
     std::unique_ptr<SparseRows> by_elimination_;   // where that has digits enough, else the basis
     OrthogonalBasis basis_;
 };

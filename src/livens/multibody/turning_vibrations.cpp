@@ -133,8 +133,8 @@ std::pair<State, double> moved(const Model& model, State state, const VectorXd& 
 {
     double rate = 0;
     for (int b = 0; b < model.n_bodies(); ++b)
-        rate = std::max(
-            {rate, V.segment<3>(12 * b).norm() / model.length(), V.segment<9>(12 * b + 3).norm()});
+        rate =
+            std::max({rate, V.segment<3>(12 * b).norm() / model.length(), V.segment<9>(12 * b + 3).norm()});
     if (rate == 0) return {std::move(state), 0};
     const double time = small_turn / rate;
     for (int b = 0; b < model.n_bodies(); ++b)
@@ -161,9 +161,9 @@ std::vector<TurningVibration> turning_vibrations(const Model& model, const State
     std::vector<TurningVibration> found;
     for (auto i = n_slow; i < squares.size(); ++i) {
         const VectorXd form = springs.form(i), q = later.form_of(springs.moved(form));
-        const auto softer = std::lower_bound(later.squares().begin(), later.squares().end(),
-                                             much_softer * squares(i)) -
-                            later.squares().begin();
+        const auto softer =
+            std::lower_bound(later.squares().begin(), later.squares().end(), much_softer * squares(i)) -
+            later.squares().begin();
         const VectorXd left = later.slow_part(q, softer);
         const double turn = std::atan2(later.size(left), later.size(q - left));
         found.push_back({springs.name(std::sqrt(squares(i)), form), turn / time});

@@ -67,10 +67,9 @@ ConditionNumbers condition_numbers(const KnownMatrix& A, const std::function<boo
     };
     const LinearMap matrix = asking(A.multiply), matrix_transposed = asking(A.multiply_transposed),
                     inverse = asking(A.solve), inverse_transposed = asking(A.solve_transposed);
-    const ConditionNumbers numbers{
-        .one = A.one_norm * livens::one_norm(A.size, inverse, inverse_transposed),
-        .two =
-            two_norm(A.size, matrix, matrix_transposed) * two_norm(A.size, inverse, inverse_transposed)};
+    const ConditionNumbers numbers{.one = A.one_norm * livens::one_norm(A.size, inverse, inverse_transposed),
+                                   .two = two_norm(A.size, matrix, matrix_transposed) *
+                                          two_norm(A.size, inverse, inverse_transposed)};
     return is_stopped ? ConditionNumbers{} : numbers;
 }
 
@@ -111,11 +110,10 @@ ConditionNumbers condition_numbers(const SparseMatrix& scaled, const SparseLU& l
     const auto solve = [&](Input x, Output y) { lu.solve(x, y); };
     const auto solve_transposed = [&](Input x, Output y) { lu.solve_transposed(x, y); };
     // R^-1 S C^-1 and C S^-1 R
-    return condition_numbers(
-        KnownMatrix{scaled.size, one_norm(scaled, R, C), map(divide_by, C, S, R),
-                    map(divide_by, R, S_transposed, C), map(multiply_by, R, solve, C),
-                    map(multiply_by, C, solve_transposed, R)},
-        goes_on);
+    return condition_numbers(KnownMatrix{scaled.size, one_norm(scaled, R, C), map(divide_by, C, S, R),
+                                         map(divide_by, R, S_transposed, C), map(multiply_by, R, solve, C),
+                                         map(multiply_by, C, solve_transposed, R)},
+                             goes_on);
 }
 
 }   // namespace livens

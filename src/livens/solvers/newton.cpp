@@ -60,8 +60,7 @@ private:
     Verdict use_new_factors()
     {
         if (report_.iterations >= options_.max_iterations) return stop_at_limit();
-        if (options_.goes_on && !options_.goes_on(report_.iterations))
-            return fail(SolveStatus::cancelled);
+        if (options_.goes_on && !options_.goes_on(report_.iterations)) return fail(SolveStatus::cancelled);
         ++report_.factorisations;
         rows_before_ = problem_.rows().size;
         if (!problem_.factorise() || !solve(increment_, size_)) return fail(SolveStatus::singular);

@@ -94,4 +94,4 @@ ConditionNumbers condition_numbers(const SparseMatrix& scaled, const SparseLU& l
                                    std::span<const double> column_scale = {},
                                    const std::function<bool()>& goes_on = {});
 
-}   // namespace livens
+}   // namespace gnu::visibility("default")]]livens

@@ -145,8 +145,8 @@ public:
 
     std::string description() const override
     {
-        return "Eigen " + std::to_string(EIGEN_WORLD_VERSION) + "." + std::to_string(EIGEN_MAJOR_VERSION)
-            + "." + std::to_string(EIGEN_MINOR_VERSION) + " SparseLU, natural order";
+        return "Eigen " + std::to_string(EIGEN_WORLD_VERSION) + "." + std::to_string(EIGEN_MAJOR_VERSION) +
+               "." + std::to_string(EIGEN_MINOR_VERSION) + " SparseLU, natural order";
     }
 
 private:

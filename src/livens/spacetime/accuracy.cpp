@@ -333,16 +333,15 @@ private:
                               to_text(grown_.rounding, 3) + ", most in " +
                               in_words(grown_.growth.part, model_);
         else
-            report.message += so_far_.helps && tolerance_ > finest
-                                  ? ", with ever shorter elements"
-                                  : std::string(", with ever shorter elements, which help no more: ") +
-                                        (!report.steep_load.empty()
-                                             ? "the law of load '" + report.steep_load +
-                                                   "' changes too fast inside them"
-                                         : model_.loads().empty() && !model_.has_drives()
-                                             ? "rounding is left"
-                                         : is_fine() ? "rounding is left, or a law bends inside them"
-                                                     : "a law may bend or jump inside them");
+            report.message +=
+                so_far_.helps && tolerance_ > finest
+                    ? ", with ever shorter elements"
+                    : std::string(", with ever shorter elements, which help no more: ") +
+                          (!report.steep_load.empty()
+                               ? "the law of load '" + report.steep_load + "' changes too fast inside them"
+                           : model_.loads().empty() && !model_.has_drives() ? "rounding is left"
+                           : is_fine() ? "rounding is left, or a law bends inside them"
+                                       : "a law may bend or jump inside them");
         report.message += "); try: an earlier end of time, or a larger error in accuracy";
         return std::move(last.solution);
     }

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <utility>
 #include <new>
 #include <string>
+#include <utility>
 #include <variant>
 
 #include "livens/base/elementary.h"
@@ -16,8 +16,8 @@
 #include "livens/diagnostics/diagnostics.h"
 #include "livens/diagnostics/largest.h"
 #include "livens/multibody/frequencies.h"
-#include "livens/spacetime/accuracy.h"
 #include "livens/solvers/patience.h"
+#include "livens/spacetime/accuracy.h"
 #include "livens/spacetime/phases.h"
 #include "livens/spacetime/second.h"
 

@@ -224,9 +224,9 @@ public:
         const State start = motion_.at_end(0);
         for (State& one : neighbours) {
             State other = Difference(start, one).beside(start, 2);
-            pairs_.push_back({{Neighbour(model_, method_, quiet_, motion_),
-                               Neighbour(model_, method_, quiet_, motion_)},
-                              {std::move(one), std::move(other)}});
+            pairs_.push_back(
+                {{Neighbour(model_, method_, quiet_, motion_), Neighbour(model_, method_, quiet_, motion_)},
+                 {std::move(one), std::move(other)}});
         }
         for (int at = 0; at < motion_.n_elements();) {
             const int last = solve_from(at);
@@ -257,7 +257,8 @@ private:
             const Motion& one = pair.sides[0].motion();
             for (int end = first + 1; is_first && end < last; ++end)
                 if (2 * Difference(one.at(motion_.mesh.ends[end + 1]), motion_.at_end(end + 1))
-                            .size(model_, rate_) > too_wide)
+                            .size(model_, rate_) >
+                    too_wide)
                     last = end;
             is_first = false;
             const Motion other = mirrored(motion_, first, one);

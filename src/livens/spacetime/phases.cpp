@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// layout allows long-file: phases, how they are joined and what they are judged by are one story
 #include "livens/spacetime/phases.h"
 
 #include <algorithm>
@@ -291,8 +292,7 @@ private:
                            to_text(miss.spin, 2) + " rad/s"
                      : std::string("no place near fits")) +
             "): livens knows no impacts; try: a law that meets position and rate there, or shorter elements "
-            "if "
-            "they are meant to meet";
+            "if they are meant to meet";
         return false;
     }
 
@@ -301,22 +301,24 @@ private:
                         double accuracy, const Method& method, const SolveOptions& options) const
     {
         const Time part = part_of(time_, first, last, accuracy);
-        if (first == ends_.front()) return solve_phase_(acting.model, problem, part, method, options);
+        const auto solve = [&] { return solve_phase_(acting.model, problem, part, method, options); };
+        if (first == ends_.front()) return solve();
         Solution none;
         none.method = method;
         none.report.failed_at = first;
         try {
-            return solve_phase_(acting.model, problem, part, method, options);
+            return solve();
         } catch (const InputError& error) {
             none.report.status = SolveStatus::singular;
-            none.report.message = "behind the event at " + to_text(first, 6) + " s the motion cannot begin: "
-                                  + error.complaint().message;
+            none.report.message = "behind the event at " + to_text(first, 6) +
+                                  " s the motion cannot begin: " + error.complaint().message;
         } catch (const Stopped&) {
             none.report.status = SolveStatus::cancelled;
             none.report.message = of_stop(first);
         }
         return none;
     }
+
     const Model& model_;
     const Problem& problem_;
     const Time& time_;

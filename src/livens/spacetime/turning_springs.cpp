@@ -34,14 +34,11 @@ constexpr double largest_turn = 1.5;   // rad in an element that may be right ab
 constexpr double looked_back = 16;
 
 /// The product of h omega and the turn in an element beyond which vibrations grow.
-double bound_of_product(int degree)
-{
-    return std::sqrt(8.0 * degree * (degree + 1) * (2 * degree - 1));
-}
+double bound_of_product(int degree) { return std::sqrt(8.0 * degree * (degree + 1) * (2 * degree - 1)); }
 
 struct Growing {
     TurningVibration vibration;
-    double growth = 0;   // an element
+    double growth = 0;                                          // an element
     double longest = std::numeric_limits<double>::infinity();   // element without growth, of all vibrations
 };
 

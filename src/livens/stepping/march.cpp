@@ -81,8 +81,8 @@ constexpr double finest_tolerance = 1e-12;
 struct StepOutcome {
     SolveStatus status = SolveStatus::converged;
     int iterations = 0;
-    bool is_growing = false;          ///< the last increment was longer than the one before
-    bool is_rounded = false;          ///< ended by rounding, short of the tolerance
+    bool is_growing = false;      ///< the last increment was longer than the one before
+    bool is_rounded = false;      ///< ended by rounding, short of the tolerance
     StepEquations::Worst worst;   ///< of the residual at the end
     std::string load;             ///< that is not finite
 };
@@ -270,11 +270,10 @@ private:
         report.failed_at = now_.t;
         const std::string where =
             " in the step from t = " + to_text(now_.t, 6) + " s to " + to_text(now_.t + now_.h, 6) + " s";
-        const std::string worst =
-            outcome.worst.name.empty()
-                ? ""
-                : "; the largest residual is " + to_text(outcome.worst.value, 6) + " in " +
-                      outcome.worst.name;
+        const std::string worst = outcome.worst.name.empty()
+                                      ? ""
+                                      : "; the largest residual is " + to_text(outcome.worst.value, 6) +
+                                            " in " + outcome.worst.name;
         if (!outcome.load.empty()) {
             report.message = outcome.load + where;
         } else if (outcome.status == SolveStatus::not_finite) {
@@ -283,8 +282,8 @@ private:
             report.message =
                 "the tangent is singular" + where + worst + "; the joints may have lost rank there";
         } else {
-            const std::string n = std::to_string(outcome.iterations) +
-                                  (outcome.iterations == 1 ? " iteration" : " iterations");
+            const std::string n =
+                std::to_string(outcome.iterations) + (outcome.iterations == 1 ? " iteration" : " iterations");
             report.message = "Newton's iteration did not converge in " + n + ", the limit," +
                              (outcome.is_growing ? " and was still diverging" : "") + where + worst +
                              "; take shorter steps";

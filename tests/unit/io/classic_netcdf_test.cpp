@@ -70,9 +70,9 @@ std::string small_file_by_hand(int version)
 {
     ByHand h(version == 5 ? 8 : 4);
     h.bytes = std::string("CDF") + static_cast<char>(version);
-    h.count(0);                                                        // records
-    h.tag(0x0a).count(2).text("t").count(3).text("xy").count(2);       // dimensions
-    h.tag(0x0c).count(4).text_attribute("title", "hello");             // global attributes
+    h.count(0);                                                    // records
+    h.tag(0x0a).count(2).text("t").count(3).text("xy").count(2);   // dimensions
+    h.tag(0x0c).count(4).text_attribute("title", "hello");         // global attributes
     h.text("n").tag(4).count(1).number(0xfffffffe, 4);
     h.text("x").tag(6).count(1).number(0x3fe0000000000000, 8).text_attribute("livens_checksum", hash);
     const std::size_t header = version == 5 ? 592 : 432;
@@ -207,8 +207,10 @@ TEST(ClassicNetcdf, DamageIsNamed)
         image[place] = static_cast<char>(image[place] ^ 4);
         const ClassicReader file(source_of(image));
         try {
-            if (variable == nullptr) file.verify_header();
-            else file.verify(*file.variable(variable));
+            if (variable == nullptr)
+                file.verify_header();
+            else
+                file.verify(*file.variable(variable));
         } catch (const IoError& error) {
             return error.code() + ": " + error.what();
         }

@@ -58,11 +58,15 @@ TEST(CraftedFiles, TwoOfOneNameAreRefused)
     for (const ClassicDimension& dimension : whole().dimensions)
         for (const std::uint64_t length : {0, 1, 3, 0x7fffffff})
             for (const bool is_first : {true, false})
-                expect_damaged(said([&](Crafted& c) { c.add({dimension.name, length}, is_first); }),
+                expect_damaged(said([&](Crafted& c) {
+                                   c.add({dimension.name, length}, is_first);
+                               }),
                                "two dimensions in its header have the name '" + dimension.name + "'");
     expect_damaged(said([](Crafted& c) { c.variables.push_back(*c.find("X")); }), "two variables");
     expect_damaged(said([](Crafted& c) { c.attributes.push_back({"n_bodies", 1 << 30}); }), "two attributes");
-    expect_damaged(said([](Crafted& c) { c.find("X")->attributes.push_back({"degree", 32}); }),
+    expect_damaged(said([](Crafted& c) {
+                       c.find("X")->attributes.push_back({"degree", 32});
+                   }),
                    "two attributes");
     EXPECT_EQ(said([](Crafted& c) { c.add({"something else", 5}, true); }), "") << "a control";
 }
@@ -99,7 +103,9 @@ TEST(CraftedFiles, RanksAndNamesAreBounded)
                        }),
                        "more than 8 dimensions");
     for (const std::size_t n : {std::size_t{0}, std::size_t{257}, std::size_t{400'000}})
-        expect_damaged(said([&](Crafted& c) { c.dimensions.push_back({std::string(n, 'n'), 1}); }),
+        expect_damaged(said([&](Crafted& c) {
+                           c.dimensions.push_back({std::string(n, 'n'), 1});
+                       }),
                        "longer than 256 bytes");
     EXPECT_EQ(said([](Crafted& c) {
                   c.dimensions.push_back({std::string(256, 'n'), 1});

@@ -106,8 +106,8 @@ TEST(Hostile, NestingIsBoundedBeforeParsing)
 
 TEST(Hostile, TheDeepestThatIsAllowedIsParsed)
 {
-    const std::string deepest = "a = " + std::string(max_scenario_depth, '[') +
-                                std::string(max_scenario_depth, ']') + "\n";
+    const std::string deepest =
+        "a = " + std::string(max_scenario_depth, '[') + std::string(max_scenario_depth, ']') + "\n";
     EXPECT_NE(find(read(deepest), "unknown-key"), nullptr) << shown(read(deepest));
     std::string key = "a";
     for (int i = 0; i < max_scenario_depth; ++i) key += ".a";
@@ -214,10 +214,18 @@ TEST(Hostile, DamagedTextNeverCrashes)
             const std::size_t at = random() % text.size();
             const std::size_t length = random() % 6;
             switch (random() % 4) {
-            case 0: text.erase(at, length); break;
-            case 1: text.insert(at, 1, alphabet[random() % alphabet.size()]); break;
-            case 2: text[at] = alphabet[random() % alphabet.size()]; break;
-            default: text.resize(at + 1); break;
+            case 0:
+                text.erase(at, length);
+                break;
+            case 1:
+                text.insert(at, 1, alphabet[random() % alphabet.size()]);
+                break;
+            case 2:
+                text[at] = alphabet[random() % alphabet.size()];
+                break;
+            default:
+                text.resize(at + 1);
+                break;
             }
         }
         const ScenarioResult result = read(text);

@@ -2,8 +2,8 @@
 // The family mixed and conditions at both ends: what arrives, and what is told where.
 #include <filesystem>
 
-#include "livens/io/scenario/builder.h"
 #include "livens/io/results.h"
+#include "livens/io/scenario/builder.h"
 #include "livens/solvers/sparse.h"
 #include "unit/io/scenario_text.h"
 
@@ -97,8 +97,7 @@ TEST(MixedScenario, EndMultipliersBelongToTheNaturalEqualPairing)
 {
     EXPECT_EQ(method_of(mixed("end_multiplier = \"zero\"")).end_multiplier, Mixed::EndMultiplier::zero);
     for (const char* other : {"momentum = \"strong\"", "multipliers = \"lower\""})
-        expect_error(mixed("end_multiplier = \"zero\"\n" + std::string(other)), "misplaced-key",
-                     "\"zero\"");
+        expect_error(mixed("end_multiplier = \"zero\"\n" + std::string(other)), "misplaced-key", "\"zero\"");
 }
 
 TEST(RadauScenario, HasADegreeAndTheStateAtTheStart)

@@ -88,9 +88,9 @@ TEST_F(Results, NamesOfMeshesAndSurfacesComeBackWhateverIsInThem)
 
 TEST(Invisible, CharactersAreKnownAndEscapedInJson)
 {
-    for (const char* mark : {"\xc2\x85", "\xc2\x9b", "\xe2\x80\xa8", "\xe2\x80\xae", "\xe2\x81\xa6",
-                             "\xe2\x80\x8b", "\xef\xbb\xbf", "\xc2\xad", "\xf3\xa0\x80\x81", "\x7f",
-                             "\x1b"}) {
+    for (const char* mark :
+         {"\xc2\x85", "\xc2\x9b", "\xe2\x80\xa8", "\xe2\x80\xae", "\xe2\x81\xa6", "\xe2\x80\x8b",
+          "\xef\xbb\xbf", "\xc2\xad", "\xf3\xa0\x80\x81", "\x7f", "\x1b"}) {
         EXPECT_TRUE(is_invisible(code_point(mark))) << mark;
         JsonWriter json;
         json.value(mark);
@@ -112,10 +112,9 @@ TEST(Invisible, CharactersAreKnownAndEscapedInJson)
 TEST(Places, EverySyntaxErrorHasOne)
 {
     const std::string far(5000, ' ');
-    for (const auto& [text, line, column] :
-         {std::tuple("r=[}", 1, 4), std::tuple("[[[a", 1, 3),
-          std::tuple("x = 1\n\na = [1, \xe2\x80\xa8 2]\n", 3, 9), std::tuple("a = [\xc2\x85]", 1, 6),
-          std::tuple("", 1, 1)})
+    for (const auto& [text, line, column] : {std::tuple("r=[}", 1, 4), std::tuple("[[[a", 1, 3),
+                                             std::tuple("x = 1\n\na = [1, \xe2\x80\xa8 2]\n", 3, 9),
+                                             std::tuple("a = [\xc2\x85]", 1, 6), std::tuple("", 1, 1)})
         for (const std::string& before : {std::string(), "# \xc3\xa4 a comment\n" + far + "\n"}) {
             if (std::string_view(text).empty() && !before.empty()) continue;
             const ScenarioResult result = test::read(before + text);

@@ -29,8 +29,8 @@ Solution solved(const Model& model, const Method& method, double end, int elemen
 
 bool speaks_of(const std::vector<std::string>& texts, const std::string& word)
 {
-    return std::ranges::any_of(
-        texts, [&](const std::string& text) { return text.find(word) != std::string::npos; });
+    return std::ranges::any_of(texts,
+                               [&](const std::string& text) { return text.find(word) != std::string::npos; });
 }
 
 const Method every_method[] = {Lobatto{1}, Lobatto{4}, Radau{2}, Radau{5}, Mixed{}, Midpoint{}, Endpoint{}};
@@ -80,8 +80,8 @@ TEST(Verdict, OfRestOnAStiffSpringHasNoReason)
     const double stiffness = 1e6, mass = 2;
     Model model({0, 0, -9.81});
     const int body = model.add_body(point_mass("load", mass, {0, 0, 0}));
-    model.add_load(spring_damper("spring", world, {0, 0, 1}, body, {},
-                                 {stiffness, 0, 1 - mass * 9.81 / stiffness}));
+    model.add_load(
+        spring_damper("spring", world, {0, 0, 1}, body, {}, {stiffness, 0, 1 - mass * 9.81 / stiffness}));
     for (const Method& method : {Method(Midpoint{}), Method(Endpoint{}), Method(Mixed{})}) {
         const Solution s = solved(model, method, 1, 200);
         EXPECT_TRUE(s.report.converged()) << name_of(method) << ": " << s.report.message;

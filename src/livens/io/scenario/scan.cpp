@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 
-#include "livens/io/scenario/document.h"
 #include "livens/io/json.h"
 #include "livens/io/scenario.h"
+#include "livens/io/scenario/document.h"
 
 namespace livens {
 
@@ -152,13 +152,20 @@ bool scan(std::string_view text, Findings& findings)
 std::string_view describe(Node::Kind kind)
 {
     switch (kind) {
-    case Node::Kind::truth: return "true or false";
-    case Node::Kind::integer: return "a whole number";
-    case Node::Kind::number: return "a number";
-    case Node::Kind::text: return "a text";
-    case Node::Kind::array: return "a list";
-    case Node::Kind::table: return "a table";
-    case Node::Kind::date: return "a date or time";
+    case Node::Kind::truth:
+        return "true or false";
+    case Node::Kind::integer:
+        return "a whole number";
+    case Node::Kind::number:
+        return "a number";
+    case Node::Kind::text:
+        return "a text";
+    case Node::Kind::array:
+        return "a list";
+    case Node::Kind::table:
+        return "a table";
+    case Node::Kind::date:
+        return "a date or time";
     }
     return "";
 }

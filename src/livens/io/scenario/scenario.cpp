@@ -97,8 +97,7 @@ bool read_text(const std::filesystem::path& file, std::string& text, Findings& f
 {
     std::error_code error;
     const std::filesystem::file_status status = std::filesystem::status(file, error);
-    if (!std::filesystem::exists(status))
-        return findings.error({}, "io-not-found", "there is no such file");
+    if (!std::filesystem::exists(status)) return findings.error({}, "io-not-found", "there is no such file");
     if (std::filesystem::is_directory(status))
         return findings.error({}, "io-directory", "this is a directory, not a file");
     const bool is_regular = std::filesystem::is_regular_file(status);

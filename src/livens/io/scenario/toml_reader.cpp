@@ -163,11 +163,11 @@ void report(const toml::parse_error& error, std::string_view text, Findings& fin
     const std::string_view line = line_of(text, place.line);
     if (says("cannot redefine")) {
         if (!says("table header")) place = place_of_key_before(place, line);
-        findings.error(
-            place, "duplicate-key", "'" + std::string(word) + "' is given a second time",
-            {"a key may be given once in its table",
-             says("array-of-tables") ? "write [[" + std::string(word) + "]] with two brackets everywhere"
-                                     : ""});
+        findings.error(place, "duplicate-key", "'" + std::string(word) + "' is given a second time",
+                       {"a key may be given once in its table",
+                        says("array-of-tables")
+                            ? "write [[" + std::string(word) + "]] with two brackets everywhere"
+                            : ""});
     } else if (says("not representable")) {
         const int width = static_cast<int>(word.size());
         if (place.column > width) place = {place.line, place.column - width, width};

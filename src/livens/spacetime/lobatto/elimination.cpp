@@ -198,8 +198,8 @@ void NullSpaces::measure_condition(SolveReport& report, const std::function<bool
             ((*solver_).*apply)(y);
         };
     };
-    const ConditionNumbers condition = condition_numbers(
-        whole, map(&LinearSolver::solve), map(&LinearSolver::solve_transposed), goes_on);
+    const ConditionNumbers condition =
+        condition_numbers(whole, map(&LinearSolver::solve), map(&LinearSolver::solve_transposed), goes_on);
     report.condition_1 = report.scaled_condition = condition.one;
     report.condition_2 = condition.two;
     report.factor_entries = solver_->report().factor_entries;
@@ -244,7 +244,7 @@ private:
 
     const Tables& tables_;
     const OrthogonalBasis *first_ = nullptr, *last_ = nullptr;
-    double factor_ = 1;             // of the mass
+    double factor_ = 1;              // of the mass
     std::vector<Matrix3> inverse_;   // of H
     DenseLU schur_;
     std::vector<double> columns_;   // J^-1 Y_0, rank columns of length n

@@ -88,8 +88,7 @@ void Following::follow_body(int body, int element, bool is_backwards, int last_l
         for (int i = 0; i < 3; ++i) place[i * W] = X[i] - X0[i];
         if (of.dofs == 3) continue;
         for (int c = 0; of.offset && c < 3; ++c)
-            for (int i = 0; i < 3; ++i)
-                place[i * W] += of.center[c] * (X[3 + 3 * c + i] - X0[3 + 3 * c + i]);
+            for (int i = 0; i < 3; ++i) place[i * W] += of.center[c] * (X[3 + 3 * c + i] - X0[3 + 3 * c + i]);
         double R[9];
         for (int c = 0; c < 3; ++c)
             for (int r = 0; r < 3; ++r) {
