@@ -120,7 +120,7 @@ def accuracies(folder):
 
 
 LAW_SCANS = ("laws", "law_mechanisms")
-COUNTS = ("runs", "to an accuracy", "missed", "third", "third, local", "tenth", "refused", "over", "false alarm", "untold")
+COUNTS = ("runs", "to an accuracy", "missed", "third", "tenth", "refused", "over", "false alarm", "untold")
 
 
 def laws(folder):
@@ -130,10 +130,10 @@ def laws(folder):
         rows, seen = rows_of(folder, f"scan_{name}")
         with (folder / f"scan_{name}" / "kinds.csv").open(newline="", encoding="utf-8") as file:
             kinds = {row["kind"]: {key: int(row[key]) for key in COUNTS} |
-                     {f"worst {key}": float(f"{float(row[key]):.2g}") for key in ("by accuracy", "by second", "by local")}
+                     {f"worst {key}": float(f"{float(row[key]):.2g}") for key in ("by accuracy", "by second")}
                      for row in csv.DictReader(file)}
         ends = [row["exit"] for row in rows]
-        record[name] = {"converged": ends.count("0"), "local": sum(row["estimate"] == "local" and row["exit"] == "0" for row in rows),
+        record[name] = {"converged": ends.count("0"),
                         "wrong without the looks": seen["wrong without the looks"], "kinds": kinds}
     return record
 
@@ -150,7 +150,6 @@ def law_words(record, name):
     """What the page says of one scan beside its table."""
     whole = record[name]["kinds"]["all"]
     return [f"{record[name]['converged']} of {whole['runs']} runs were called converged",
-            f"{whole['third, local']} of {record[name]['local']} with `local` told below a third",
             f"{whole['over']} took more than 20 s, {whole['untold']} had no truth good enough, "
             f"{whole['false alarm']} on stated meshes were suspect and right to 1e-3",
             f"with the looks off {record[name]['wrong without the looks']} are wrong"]

@@ -33,7 +33,7 @@ SLIP = 1e-9
 FALSE_ALARM = 1e-3
 OVER = "over the limit"
 WITHOUT = "LIVENS_WITHOUT_LOOKS"   # a program that does not look at laws inside elements, for the control
-SWITCH = {"LIVENS_LAW_LOOKS": "0"}   # or the same program, told not to
+BLIND = "looks = false\n"             # or the same program, told not to
 
 
 def arguments(parser):
@@ -57,18 +57,22 @@ def asked(c, end, accuracies):
         time["elements"] = int(c.log(5, 61))
         method |= {"family": "radau", "degree": c.randint(2, 8)} if c.chance(0.3) else \
             {"family": "lobatto", "degree": c.randint(2, 12)}
-        if c.chance(0.35):
-            method["estimate"] = "local"
     return time, method
 
 
-def solve(program, text, folder, switch):
+def blind(text):
+    """The same scenario, its laws taken for smooth."""
+    head, method, rest = text.partition("[method]\n")
+    return head + (method or "\n[method]\n") + BLIND + rest
+
+
+def solve(program, text, folder):
     """(exit code, figures, path of the result); under the limit."""
     (folder / "run.toml").write_text(text, encoding="utf-8")
     process = subprocess.run(
         ["sh", "-c", f'ulimit -t {LIMIT}; exec "$@"', "sh",
          program, "solve", "run.toml", "-o", "run.nc", "--json", "-q"],
-        cwd=folder, env=os.environ | switch, capture_output=True, text=True, check=False)
+        cwd=folder, capture_output=True, text=True, check=False)
     if process.returncode in scans.RUNS:
         return process.returncode, json.loads(process.stdout), folder / "run.nc"
     if process.returncode in (-9, -24, 137, 152):
@@ -83,7 +87,7 @@ def judged(case, text, code, figures, path, motion):
     row = {"kind": case.kind, "laws": " ".join(case.laws), "number": case.number,
            "accuracy": time.get("accuracy"), "elements": figures.get("elements"),
            "method": figures.get("method", ""),
-           "estimate": method.get("estimate", "second"), "exit": code, "told": figures.get("estimated_error"),
+           "exit": code, "told": figures.get("estimated_error"),
            "true": math.inf, "truth": math.nan, "seconds": figures.get("solve_seconds", 0) +
            figures.get("estimate_seconds", 0), "message": figures.get("message", OVER)}
     length = figures.get("model_length")
@@ -100,13 +104,13 @@ def judged(case, text, code, figures, path, motion):
     return row
 
 
-def run_all(e, cases, program=None, switch={}, note=100):
+def run_all(e, cases, program=None, note=100):
     """Rows of (case, text), each text solved while the truth of others is found."""
     rows, program = [], program or e.livens
     with tempfile.TemporaryDirectory(prefix="livens-laws-") as scratch, \
             concurrent.futures.ThreadPoolExecutor(len(os.sched_getaffinity(0))) as pool:
         def launch(item):
-            return solve(program, item[1], pathlib.Path(tempfile.mkdtemp(dir=scratch)), switch)
+            return solve(program, item[1], pathlib.Path(tempfile.mkdtemp(dir=scratch)))
         for (case, text), done in zip(cases, pool.map(launch, cases)):
             if not hasattr(case, "motion"):
                 try:
@@ -165,8 +169,7 @@ def is_input(row):
     return row["exit"] not in (*scans.RUNS, OVER)
 
 
-COUNTS = {"missed": is_missed, "third": lambda row: is_third(row) and row["estimate"] != "local",
-          "third, local": lambda row: is_third(row) and row["estimate"] == "local", "tenth": is_tenth,
+COUNTS = {"missed": is_missed, "third": is_third, "tenth": is_tenth,
           "refused": is_refused, "over": is_over, "input": is_input, "false alarm": is_false_alarm,
           "untold": is_untold}
 
@@ -181,14 +184,12 @@ def by_kind(rows, kinds_of=lambda row: [row["kind"]]):
     for kind, mine in kinds.items():
         good = [row for row in mine if is_converged(row)]
         asked = [row["true"] / row["accuracy"] for row in good if row["accuracy"]]
-        told = [(row["estimate"] == "local", row["true"] / max(row["told"], 1e-300))
-                for row in good if row["true"] > LEAST]
+        told = [row["true"] / max(row["told"], 1e-300) for row in good if row["true"] > LEAST]
         table.append({"kind": kind, "runs": len(mine),
                       "to an accuracy": sum(row["accuracy"] is not None for row in mine),
                       **{name: sum(map(test, mine)) for name, test in COUNTS.items()},
                       "by accuracy": max(asked, default=0.0),
-                      "by second": max((ratio for local, ratio in told if not local), default=0.0),
-                      "by local": max((ratio for local, ratio in told if local), default=0.0),
+                      "by second": max(told, default=0.0),
                       "seconds": sum(row["seconds"] for row in mine)})
     return table
 
@@ -234,20 +235,17 @@ def judge(e, cases, rows):
     keep(e, cases, rows)
     counts = tables(e, rows, "kinds")
     known = [row for row in rows if is_converged(row)]
-    second = [row for row in known if row["estimate"] != "local"]
     e.expect("runs", len(rows))
     e.expect("called converged", sum(row["exit"] == paper.CONVERGED for row in rows))
     e.expect("accuracy missed by more than three", counts["missed"])
     e.expect("told below a tenth of the truth and 1e-9", counts["tenth"])
     e.expect("refused before they are solved", counts["input"])
     if not e.short:   # shares of few say nothing
-        e.expect("told below a third of the truth, share", counts["third"] / max(len(second), 1))
+        e.expect("told below a third of the truth, share", counts["third"] / max(len(known), 1))
         e.expect("refused, of those to an accuracy, share",
                  counts["refused"] / max(sum(row["accuracy"] is not None for row in rows), 1))
     e.expect("false alarms on stated meshes, of all, share", counts["false alarm"] / len(rows))
     e.expect("truth not known well enough, share", counts["untold"] / len(rows))
-    e.remark(f'estimate = "local": {len(known) - len(second)} runs, '
-             f'{counts["third, local"]} told below a third')
 
 
 def scan(e, cases):
@@ -256,7 +254,8 @@ def scan(e, cases):
         return
     # The same with no look at laws inside elements: wrong ones must be seen.
     program = os.environ.get(WITHOUT)
-    rows = run_all(e, cases, program, {} if program else SWITCH)
+    blinded = cases if program else [(case, blind(text)) for case, text in cases]
+    rows = run_all(e, blinded, program)
     e.table(rows, "without_looks.csv")
     keep(e, cases, rows, "failed_without_looks")
     tables(e, rows, "kinds_without_looks")

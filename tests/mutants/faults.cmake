@@ -727,3 +727,44 @@ livens_mutant(NAME directions_are_letters
               NEW [[{0x2028, 0x2029},]]
               TESTS_OF unit_io
               MUST_FAIL Invisible.CharactersAreKnownAndEscapedInJson)
+
+# Nothing is ever doubted: a needle between two looks is flown through.
+livens_mutant(NAME laws_undoubted
+              FILE spacetime/lobatto/inside.cpp
+              OLD [[return doubt > negligible ? doubt : 0;]]
+              NEW [[return doubt > 1e99 ? doubt : 0;]]
+              TESTS_OF unit_spacetime
+              MUST_FAIL InsideLaws.ANeedleIsFoundWhateverItsWidth
+                        InsideLaws.WhatNeitherSolutionSeesIsInTheEstimate)
+
+# What the second solution does not see is forgotten.
+livens_mutant(NAME unseen_forgotten
+              FILE diagnostics/estimate.cpp
+              OLD [[shifts_[b].rate += one.shift[b], shifts_[b].moment += one.shift[b] * since;]]
+              NEW [[shifts_[b].rate += 0 * one.shift[b], shifts_[b].moment += 0 * since;]]
+              TESTS_OF unit_spacetime
+              MUST_FAIL InsideLaws.WhatNeitherSolutionSeesIsInTheEstimate)
+
+# Opaque forces are not looked at beside the ends of elements.
+livens_mutant(NAME ends_of_elements_unseen
+              FILE spacetime/lobatto/inside.cpp
+              OLD [[constexpr double beside_ends[] = {1e-4, 1e-2};]]
+              NEW [[constexpr double beside_ends[] = {1e-15, 1e-14};]]
+              TESTS_OF unit_spacetime
+              MUST_FAIL InsideLaws.ALayerAtTheStartIsSeenOfForcesThatAreOpaque)
+
+# The slope of a product without one of its parts.
+livens_mutant(NAME enclosed_product
+              FILE time/expression_enclosures.cpp
+              OLD [[a.slope * b.value + a.value * b.slope]]
+              NEW [[a.slope * b.value]]
+              TESTS_OF unit_time
+              MUST_FAIL Expression.OverAWayEnclosesWhatItDoes)
+
+# A product of symbols taken for linear: nobody looks at it.
+livens_mutant(NAME products_are_linear
+              FILE time/expression_enclosures.cpp
+              OLD [[more < Kind::affine || std::min(a, b) == Kind::number ? more : Kind::other]]
+              NEW [[more]]
+              TESTS_OF unit_time
+              MUST_FAIL Expression.KnowsWhetherItIsLinearInItsSymbols)

@@ -16,6 +16,7 @@
 #include "livens/multibody/singular.h"
 #include "livens/solvers/patience.h"
 #include "livens/spacetime/accuracy.h"
+#include "livens/spacetime/detail/turning_springs.h"
 #include "livens/spacetime/detail/window_notes.h"
 #include "livens/spacetime/guess.h"
 #include "livens/spacetime/lobatto/window.h"

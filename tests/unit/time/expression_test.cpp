@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <numbers>
 #include <random>
 
 #include "livens/base/error.h"
@@ -167,6 +168,87 @@ TEST(Expression, KnowsWhereTimeAloneMakesItJumpOrBend)
     EXPECT_GT(fence.back(), 1.238);
     EXPECT_EQ(Expression("1 + max(x, 0)", {"x"}).kink_by_symbols(), "max at column 5");
     EXPECT_EQ(Expression("max(t, 0)*x", {"x"}).kink_by_symbols(), "");
+}
+
+/// Values and slopes at any place of a way are within what is enclosed, on pieces of any width.
+TEST(Expression, OverAWayEnclosesWhatItDoes)
+{
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> any(0, 1);
+    for (const char* text :
+         {"-3*x - 0.2*v", "exp(-((x - 1)/0.1)^2)", "tanh(40*v)*x", "sin(7*x + t)/(2 + cos(3*v))", "abs(x)*v",
+          "max(x, v) - min(x*x, t)", "atan2(x - 1, v - 1)", "sqrt(1.5 + x) + log(2 + v*v)", "(2 + x)^v",
+          "tan(0.3*x) + x^3 - v^-2", "x^2*v^4 - 2^x"}) {
+        const Expression f(text, {"x", "v"});
+        for (int i = 0; i < 200; ++i) {
+            const double t0 = 3 * any(random), dt = any(random), x0 = 2 * any(random) - 0.5, dx = any(random),
+                         v0 = 2 * any(random) + 0.1, dv = any(random);
+            const auto at = [&](double s) {
+                const double numbers[] = {x0 + s * dx, v0 + s * dv};
+                return f(t0 + s * dt, numbers);
+            };
+            const double first = any(random), last = first + any(random) * (1 - first);
+            const auto over = [&](double from, double by) {
+                return EnclosedValue{{from + first * by, from + last * by}, {by, by}};
+            };
+            const EnclosedValue numbers[] = {over(x0, dx), over(v0, dv)};
+            const EnclosedValue found = f.over(over(t0, dt), numbers);
+            for (int k = 0; k < 5; ++k) {
+                const double s = first + any(random) * (last - first), e = 1e-6 * (last - first);
+                const double slack = 1e-9 * (1 + std::abs(at(s)));
+                EXPECT_GE(at(s), found.value.low - slack) << text;
+                EXPECT_LE(at(s), found.value.high + slack) << text;
+                if (s - e < first || s + e > last) continue;
+                const double slope = (at(s + e) - at(s - e)) / (2 * e), rounding = 1e-15 / e + 1e-6;
+                EXPECT_GE(slope, found.slope.low - rounding * (1 + std::abs(slope))) << text;
+                EXPECT_LE(slope, found.slope.high + rounding * (1 + std::abs(slope))) << text;
+            }
+        }
+    }
+    // far from a needle nothing can be hidden
+    const Expression needle("100*exp(-((x - 2)/0.01)^2)", {"x"});
+    const EnclosedValue far[] = {{{0, 1.8}, {1.8, 1.8}}}, near[] = {{{1.8, 2.2}, {0.4, 0.4}}};
+    EXPECT_LT(needle.over({}, far).slope.size(), 1e-100);
+    EXPECT_GT(needle.over({}, near).slope.size(), 1000);
+}
+
+TEST(Expression, KnowsWhetherItIsLinearInItsSymbols)
+{
+    const auto is_affine = [](const char* text) { return Expression(text, {"x", "v"}).is_affine(); };
+    for (const char* text : {"-3*x - 0.2*v + sin(2*t)", "(x - v)/3 - -x", "2", "exp(t)*t - x", "pi*(x + 1)"})
+        EXPECT_TRUE(is_affine(text)) << text;
+    for (const char* text : {"x*v", "sin(x)", "t*x", "1/x", "x^2", "max(x, 0)", "x/t"})
+        EXPECT_FALSE(is_affine(text)) << text;
+}
+
+TEST(Expression, HasGuardsWhereTheMotionDecides)
+{
+    const Expression f("abs(x) + max(v, t) + atan2(x, v) + abs(t)", {"x", "v"});
+    ASSERT_EQ(f.guards().size(), 3u);
+    double numbers[3];
+    const double at[] = {-2, 3};
+    f.guarded(1, at, numbers);
+    EXPECT_EQ(numbers[0], -2);
+    EXPECT_EQ(numbers[1], 2);
+    EXPECT_NEAR(numbers[2], std::atan2(-2.0, 3.0), 1e-15);
+    const Guard& angle = f.guards()[2];
+    EXPECT_EQ(angle.piece_at(0.1).high, std::numbers::pi);
+    EXPECT_EQ(angle.piece_at(0.1).low, -std::numbers::pi);
+    EXPECT_NEAR(angle.following(-3, 3.2), 2 * std::numbers::pi - 3, 1e-15);
+}
+
+TEST(Guard, HasItsPiecesBetweenItsPlaces)
+{
+    const Guard guard{{-1, 2, 5}};
+    EXPECT_EQ(guard.piece_at(2).high, 2) << "a place belongs to the piece below";
+    EXPECT_EQ(guard.piece_at(2.1).low, 2);
+    EXPECT_TRUE(std::isinf(guard.piece_at(6).high));
+    EXPECT_EQ(guard.piece_at(3).margin(4.5), 0.5);
+    EXPECT_EQ(guard.piece_at(3).margin(1), -1);
+    const Guard round{{0, 1, 3}, 4};
+    EXPECT_EQ(round.piece_at(3.5).high, 4) << "the seam";
+    EXPECT_EQ(round.piece_at(9.5).low, 9);
+    EXPECT_EQ(round.piece_at(-0.5).low, -1);
 }
 
 TEST(Expression, IsOnTheSideOfABreakThatIsMeant)
