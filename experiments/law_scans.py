@@ -6,7 +6,7 @@ gives what scans.errors asks of a true motion and leaves what that is off itself
 
     told        the estimated error of a run that is called converged
     missed      it was asked for an accuracy, and is off by more than three of them
-    third       off by more than three times what it tells (errors above LEAST); `local` estimates apart
+    third       off by more than three times what it tells (errors above LEAST)
     tenth       off by more than ten times that plus SLIP
     refused     asked for an accuracy: not converged, suspect, or not ready after LIMIT s of processor time
     input       refused before it is solved

@@ -151,6 +151,7 @@ Load modulated(const std::string& name, const std::string& type, const LoadParts
         load.guarded = [all](const LoadArguments& arguments, std::span<double> numbers) {
             all.parts.guards.values(all.look(arguments).arguments(arguments.at), numbers);
         };
+    load.bends_at_centre = static_cast<bool>(parts.guards.centre);
     if (parts.guards.centre)
         load.centre = [all](const LoadArguments& arguments) {
             return all.parts.guards.centre(all.look(arguments).arguments(arguments.at));

@@ -124,6 +124,7 @@ struct Load {
     std::optional<LawInside> inside{};
     /// A vector at whose zero F is not smooth: the velocity of what drags, the line of a spring.
     std::function<Vector3(const LoadArguments&)> centre{};
+    bool bends_at_centre = false;   ///< F is not smooth along ways that lead straight through it either
     /// Potential energy in J of the conservative part; empty if the load has none.
     std::function<double(const LoadArguments&)> potential;
     /// Power in W of the part without potential. If empty: tr(F^T V) for a load without potential, else 0.

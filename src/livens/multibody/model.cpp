@@ -270,7 +270,7 @@ int Model::add_load(Load load)
             refuse("load-needs-directors", path,
                    "the load needs the orientation of '" + bodies_[load.bodies[b]].name + "', a point mass",
                    "a point mass takes forces in world axes at its own point");
-    has_pieces_ = has_pieces_ || !load.guards.empty() || load.centre;
+    has_pieces_ = has_pieces_ || !load.guards.empty() || load.bends_at_centre;
     loads_.push_back(std::move(load));
     changed();
     return static_cast<int>(loads_.size()) - 1;

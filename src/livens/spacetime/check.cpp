@@ -79,7 +79,7 @@ void refuse_special_rows(const Model& model, const Method& method)
 void refuse_laws_that_bend(const Model& model)
 {
     for (const Load& load : model.loads())
-        if (!load.is_smooth || !load.guards.empty() || load.centre)
+        if (!load.is_smooth || !load.guards.empty() || load.bends_at_centre)
             throw InputError({"estimate-method", "method.estimate",
                               "the errors of elements do not tell that of the motion here", "local",
                               "second or none",

@@ -146,7 +146,7 @@ TEST(MixedScenario, ResolvedStatesEveryChoice)
                             R"("window": "all", "interfaces": "carry", "first_guess": "march", )"
                             R"("linear_solver": "eigen", )"
                             R"("tolerance": 1e-14, "max_iterations": 30, )"
-                            R"("estimate": "second", "growth": false, "condition": false})"),
+                            R"("estimate": "second", "growth": false, "looks": true, "condition": false})"),
               std::string::npos)
         << resolved;
     EXPECT_NE(good(splines("[0, 0, 0, 0.5, 1, 1, 1]")).resolved.find(R"("knots": [0, 0, 0, 0.5, 1, 1, 1])"),

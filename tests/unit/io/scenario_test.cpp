@@ -285,7 +285,7 @@ TEST(Scenario, ResolvedStatesAllOptions)
               R"("output": "element ends", "breaks": "from_loads"}, )"
               R"("method": {"family": "lobatto", "degree": 4, "window": 1, )"
               R"("tolerance": 1e-14, "max_iterations": 30, "estimate": "second", )"
-              R"("growth": false, "condition": false}, )"
+              R"("growth": false, "looks": true, "condition": false}, )"
               R"("start": {"given": "state", "initial": "check"}, "end": {"given": "nothing"}})");
     const Scenario midpoint = good(replaced(valid_scenario, "degree = 4", "family = \"midpoint\""));
     EXPECT_TRUE(std::holds_alternative<Midpoint>(midpoint.method));

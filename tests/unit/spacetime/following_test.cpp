@@ -139,7 +139,7 @@ TEST(Following, RefusesWhatItHasNoElementFor)
     for (const auto& [from, to] : {std::pair{0.0, 2.0}, {0.0, 0.5}, {0.5, 1.0}, {2.0, 3.0}, {-1.0, 0.0}})
         EXPECT_FALSE(follows(motion, from, to)) << from << ' ' << to;
     EXPECT_FALSE(follows(motion_of(turn, 2), 0, 1)) << "series say more";
-    EXPECT_FALSE(follows(motion_of(turn, functions.width), 0, 1)) << "more nodes than lanes";
+    EXPECT_FALSE(follows(motion_of(turn, functions.width + 1), 0, 1)) << "more nodes than lanes";
     Motion other = motion;
     other.X.points = Points::radau;
     EXPECT_FALSE(follows(other, 0, 1));

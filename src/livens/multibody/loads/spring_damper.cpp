@@ -201,6 +201,7 @@ Load spring_damper(const std::string& name, int first, const Vector3& point_firs
     if (spring.free_length > 0 || spring.damping > 0 || spring.preload != 0 || spring.law) {
         load.centre = [law](const LoadArguments& arguments) { return law.line(arguments).r; };
         load.is_smooth = false;
+        load.bends_at_centre = spring.free_length > 0 || spring.preload != 0 || spring.law;
     }
     load.potential = [law](const LoadArguments& arguments) { return law.potential(arguments); };
     load.power = [law](const LoadArguments& arguments) { return law.damper_power(arguments); };

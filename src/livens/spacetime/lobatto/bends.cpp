@@ -41,7 +41,7 @@ void Bends::watch(int load, int row)
     if (load >= 0) {
         const Load& of = tables_.model->loads()[static_cast<std::size_t>(load)];
         one.guards = of.guards;
-        one.has_centre = static_cast<bool>(of.centre);
+        one.has_centre = of.bends_at_centre;
         one.bodies = of.bodies;
         std::erase(one.bodies, world);
     } else if (const ConstraintRow& of = tables_.model->row(row); of.guard) {
