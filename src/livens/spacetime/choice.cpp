@@ -94,8 +94,11 @@ private:
 
     bool is_good(const Solution& solution) const
     {
-        return solution.report.converged() &&
-               judge(model_, solution.motion, solution.report, solution.estimate, {}).reasons.empty();
+        constexpr double doubtful =
+            0.01;   // of the energy: vibrations that lobatto does not follow take or give it
+        if (!solution.report.converged()) return false;
+        const Verdict verdict = judge(model_, solution.motion, solution.report, solution.estimate, {});
+        return verdict.reasons.empty() && !(verdict.energy_drift > doubtful);
     }
 
     Solution by_radau(const Solution& before) const
