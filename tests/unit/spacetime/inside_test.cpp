@@ -103,7 +103,7 @@ TEST(InsideLaws, ALayerAtTheStartIsSeenOfForcesThatAreOpaque)
 {
     Model model({0, 0, 0});
     model.add_body(point_mass("bob", 1, {0, 0, 0}, {0, 0, 0}));
-    const auto friction = [](double v) { return 20 - 5 * std::tanh(3000 * v); };
+    const auto friction = [](double v) { return 20 - 5 * std::tanh(30000 * v); };
     Load load;
     load.name = "opaque";
     load.type = "function";
@@ -111,16 +111,16 @@ TEST(InsideLaws, ALayerAtTheStartIsSeenOfForcesThatAreOpaque)
     load.depends_on_V = true;
     load.forces = [=](const LoadArguments& at, LoadForces& F) { F[0](0, 0) = friction(at.V[0](0, 0)); };
     load.tangent = [](const LoadArguments& at, LoadTangent& tangent) {
-        const double t = std::tanh(3000 * at.V[0](0, 0));
-        tangent.V[0][0](0, 0) = -15000 * (1 - t * t);
+        const double t = std::tanh(30000 * at.V[0](0, 0));
+        tangent.V[0][0](0, 0) = -150000 * (1 - t * t);
     };
     model.add_load(load);
-    // v' = 20 - 5 tanh(3000 v): x by quadrature of v dv / v'
+    // v' = 20 - 5 tanh(30000 v): x by quadrature of v dv / v'
     const Solution s = flown(model, Span{0, 0.5, 1e-7});
     const double v = speed_at_end(s);
     double time = 0;   // to reach v, by Simpson's rule in the layer and 1/15 behind it
     const int n = 20000;
-    const double layer = 0.01, step = layer / n;
+    const double layer = 0.001, step = layer / n;
     for (int i = 0; i < n; ++i)
         time += step / 6 *
                 (1 / friction(i * step) + 4 / friction((i + 0.5) * step) + 1 / friction((i + 1) * step));
