@@ -33,7 +33,7 @@ install(DIRECTORY src/livens DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} ${dev} FILE
         PATTERN "dense.h" EXCLUDE PATTERN "elementary.h" EXCLUDE PATTERN "projection.h" EXCLUDE PATTERN "time_space.h" EXCLUDE
         PATTERN "constraint_basis.h" EXCLUDE PATTERN "instant.h" EXCLUDE PATTERN "rank.h" EXCLUDE
         PATTERN "rows.h" EXCLUDE PATTERN "tables.h" EXCLUDE PATTERN "twist.h" EXCLUDE PATTERN "blocks.h" EXCLUDE
-        PATTERN "linear_solver.h" EXCLUDE PATTERN "newton.h" EXCLUDE PATTERN "ends.h" EXCLUDE PATTERN "guess.h"
+        PATTERN "linear_solver.h" EXCLUDE PATTERN "newton.h" EXCLUDE PATTERN "patience.h" EXCLUDE PATTERN "ends.h" EXCLUDE PATTERN "guess.h"
         EXCLUDE PATTERN "window.h" EXCLUDE PATTERN "windows.h" EXCLUDE PATTERN "accuracy.h" EXCLUDE
         PATTERN "pace.h" EXCLUDE PATTERN "phases.h" EXCLUDE PATTERN "second.h" EXCLUDE PATTERN "largest.h" EXCLUDE
         PATTERN "acceptance_bounds.h" EXCLUDE PATTERN "surface.h" EXCLUDE
