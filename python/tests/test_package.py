@@ -15,7 +15,7 @@ import livens as lv
 
 
 def test_wheel_has_not_grown() -> None:
-    """The files of the package, compressed as zip does it usually; scripts/wheel does it harder, to less than 2 MB."""
+    """The files of the package, compressed as zip does it usually; scripts/wheel does it harder."""
     folder = pathlib.Path(lv.__path__[0])
     files = [file for file in folder.rglob("*") if file.is_file() and file.suffix != ".pyc"]
     assert sum(file.suffix == ".so" for file in files) == 1
@@ -25,7 +25,7 @@ def test_wheel_has_not_grown() -> None:
             archive.write(file, file.relative_to(folder.parent))
     sizes = sorted(((info.compress_size, info.filename) for info in archive.infolist()), reverse=True)
     others = 10_000   # metadata and licence
-    assert packed.tell() + others < 2_087_000, sizes[:5]
+    assert packed.tell() + others < 4_000_000, sizes[:5]
     assert packed.tell() > 500_000, "the engine and the page of reports are in there"
 
 
