@@ -107,8 +107,9 @@ void Following::follow_body(int body, int element, bool is_backwards, int last_l
 
 bool Following::place(const Stretch& stretch, double* place)
 {
+    if (motion_ == nullptr) return false;
     const int n_bodies = tables_->n_bodies(), W = functions_->width;
-    if (motion_ == nullptr || motion_->X.points != Points::lobatto || !motion_->X.denominators.empty() ||
+    if (motion_->X.points != Points::lobatto || !motion_->X.denominators.empty() ||
         motion_->X.degree < lowest_degree || motion_->X.n_values != 12 * n_bodies)
         return false;
     const bool is_alike = motion_->X.degree == rule_->degree;   // its nodes are those that are asked for
