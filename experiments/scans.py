@@ -62,17 +62,23 @@ def errors(run, motion, length):
     return distances(run, motion, length, run["time"], centres, np.nan_to_num(triads))   # nan: points have none
 
 
-def errors_everywhere(run, motion, length):
-    """Instants and errors at output times and at all ends of elements, of which `accuracy` and `estimated_error`
-    speak. Nearly all of the former are among the latter: not those on singular positions of the joints."""
+def errors_at_ends(run, motion, length):
+    """Instants and errors at all ends of elements."""
     if "X" not in run.file.variables:
         return np.zeros(1), np.array([math.inf])
     ends = run["element_end"]
     X = run["X"][np.searchsorted(run["X_node"], ends)]
     triads = X[:, :, 1:]
-    centres = X[:, :, 0] + (run["body_center_of_mass"][None, :, :, None] * triads).sum(axis=2)
-    there = distances(run, motion, length, ends, centres, triads)
-    if "time" not in run.file.variables:
+    mass = run["body_mass_matrix"]   # in the axes of X, also where directors are skew
+    centres = X[:, :, 0] + ((mass[:, 0, 1:] / mass[:, 0, :1])[None, :, :, None] * triads).sum(axis=2)
+    return ends, distances(run, motion, length, ends, centres, triads)
+
+
+def errors_everywhere(run, motion, length):
+    """Instants and errors at output times and at all ends of elements, of which `accuracy` and `estimated_error`
+    speak. Nearly all of the former are among the latter: not those on singular positions of the joints."""
+    ends, there = errors_at_ends(run, motion, length)
+    if "X" not in run.file.variables or "time" not in run.file.variables:
         return ends, there
     return np.concatenate([ends, run["time"]]), np.concatenate([there, errors(run, motion, length)])
 

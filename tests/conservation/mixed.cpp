@@ -206,17 +206,16 @@ TEST(MixedFailures, InTheMiddleOfAMarchAreReportedAndKeepWhatIsSolved)
 
 TEST(MixedFailures, MayBeCancellationsWithinABlock)
 {
-    std::vector<int> elements;
+    int after_first = 0;
     SolveOptions options;
-    options.progress = [&elements](const Progress& progress) {
-        elements.push_back(progress.done);
-        return elements.size() < 3;   // within the first block, after it, within the second
+    options.progress = [&after_first](const Progress& progress) {
+        after_first += progress.done == 10 ? 1 : 0;
+        return after_first < 2;   // within the first block, however often; after it; within the second
     };
     Mixed method = mixed({lagrange, 2, natural, equal});
     method.window = 10;
     const Model model = cubes_on_rods(0.1);
     const Solution solution = solve(model, {model.start()}, make_time_mesh(0, 1, 20), method, options);
-    EXPECT_EQ(elements, (std::vector<int>{0, 10, 10}));
     EXPECT_EQ(solution.report.status, SolveStatus::cancelled);
     EXPECT_NE(solution.report.message.find("stopped as asked in the window of elements 10 to 19 (t = 0.5 to 1 s)"), std::string::npos)
         << solution.report.message;

@@ -723,11 +723,23 @@ livens_mutant(NAME directions_are_letters
 # Nothing is ever doubted: a needle between two looks is flown through.
 livens_mutant(NAME laws_undoubted
               FILE spacetime/lobatto/inside.cpp
-              OLD [[return doubt > negligible ? doubt : 0;]]
-              NEW [[return doubt > 1e99 ? doubt : 0;]]
+              OLD [[    double doubt = 0;
+    for (std::size_t k = 0; k < m; ++k) {
+        double steepest = 0, widest = 0;]]
+              NEW [[    double doubt = 0;
+    for (std::size_t k = 0; k < 0 * m; ++k) {
+        double steepest = 0, widest = 0;]]
               TESTS_OF unit_spacetime
               MUST_FAIL InsideLaws.ANeedleIsFoundWhateverItsWidth
                         InsideLaws.WhatNeitherSolutionSeesIsInTheEstimate)
+
+# What is seen of a law is integrated well, whatever its shape between the places.
+livens_mutant(NAME integrals_unchecked
+              FILE spacetime/lobatto/inside.cpp
+              OLD [[std::max(steepness_doubt(law, panel, seen), quadrature_doubt(law, rule, panel, seen))]]
+              NEW [[std::max(steepness_doubt(law, panel, seen), 0 * quadrature_doubt(law, rule, panel, seen))]]
+              TESTS_OF reference
+              MUST_FAIL Inside.LayersOfAnyWidthAreInTheEstimate)
 
 # What the second solution does not see is forgotten.
 livens_mutant(NAME unseen_forgotten

@@ -99,6 +99,23 @@ std::vector<Case> cases()
     };
 }
 
+/// w' = 20 - 5 tanh(s w) from rest: behind the layer w = 15 (t + c/s), q = w^2/30 - d/s^2, by quadrature over
+/// y = s w of 1/15 - 1/(20 - 5 tanh y) for c, and of y times that for d. First elements are a thousand times
+/// as long as the layer or as long as it, as the accuracy wants: what load points take of it is anything.
+TEST(Inside, LayersOfAnyWidthAreInTheEstimate)
+{
+    constexpr double c = 0.01307772337349, d = 0.008315332011677, end = 0.5;
+    for (const double steepness : {300.0, 1000.0, 2000.0, 3000.0, 4500.0, 8000.0, 30000.0})
+        for (const double accuracy : {1e-3, 1e-4, 1e-5, 1e-6}) {
+            const double w = 15 * (end + c / steepness), q = w * w / 30 - d / (steepness * steepness);
+            const Tried r = run(wheel("", torque("20 - 5*tanh(" + to_text(steepness) + "*w)")),
+                                "end = 0.5\naccuracy = " + to_text(accuracy) + "\n", q);
+            EXPECT_TRUE(r.converged()) << steepness << ": " << r.solution.report.message;
+            EXPECT_LT(r.error, accuracy) << steepness;
+            EXPECT_LT(r.error, 3 * r.told() + 1e-9) << steepness << ", " << accuracy;
+        }
+}
+
 TEST(Inside, LawsAreFollowedToTheAccuracyThatIsTold)
 {
     for (const Case& c : cases()) {

@@ -61,9 +61,26 @@ LawInside whole(const Load& load)
 
 }   // namespace
 
+InsideLaws::CheckedRule::CheckedRule(int n_points) : gauss(livens::gauss(n_points))
+{
+    const std::size_t n = gauss.points.size(), left_out = 1 + n / 2;
+    std::vector<double> nodes{0};
+    nodes.insert(nodes.end(), gauss.points.begin(), gauss.points.end());
+    nodes.push_back(1);
+    nodes.erase(nodes.begin() + static_cast<std::ptrdiff_t>(left_out));
+    const LagrangeBasis basis(nodes);
+    std::vector<double> weights(n + 1, 0.0), values(n + 1);
+    for (std::size_t i = 0; i < n; ++i) {
+        basis.values(gauss.points[i], values);
+        for (std::size_t k = 0; k <= n; ++k) weights[k] += gauss.weights[i] * values[k];
+    }
+    weights.insert(weights.begin() + static_cast<std::ptrdiff_t>(left_out), 0.0);
+    check = std::move(weights);
+}
+
 InsideLaws::InsideLaws(const Tables& tables, const ElementRule& rule)
     : tables_(tables), rule_(rule), way_(tables, rule), basis_(lobatto_basis(rule.degree + 2)),
-      fine_(gauss(static_cast<int>(rule.loads.points.size()) + more_points)), some_(gauss(points_of_piece))
+      fine_(static_cast<int>(rule.loads.points.size()) + more_points), some_(points_of_piece)
 {
     const std::vector<Load>& loads = tables.model->loads();
     for (std::size_t l = 0; l < loads.size(); ++l) {
@@ -222,9 +239,27 @@ double InsideLaws::steepness_doubt(const Law& law, const Panel& panel, const std
     return doubt > negligible ? doubt : 0;
 }
 
-void InsideLaws::integrate(const Law& law, const Quadrature& rule, Panel& panel)
+/// What another rule, which knows the ends, makes of the same places differently: a law may be seen, and yet
+/// bend so much between them that their integral is not what it seems.
+double InsideLaws::quadrature_doubt(const Law& law, const CheckedRule& rule, const Panel& panel,
+                                    const std::vector<double>& seen) const
 {
-    const std::size_t m = law.inside.n_factors, n = rule.points.size();
+    const std::size_t m = law.inside.n_factors, n = rule.gauss.points.size();
+    const double width = panel.last - panel.first;
+    double doubt = 0;
+    for (std::size_t q = 0; q < n_moments; ++q)
+        for (std::size_t k = 0; k < m; ++k) {
+            double other = 0;
+            for (std::size_t i = 0; i < n + 2; ++i)
+                other += width * rule.check[i] * legendre(seen[i * (1 + m)])[q] * seen[i * (1 + m) + 1 + k];
+            doubt = std::max(doubt, std::abs(other - panel.moments[q * m + k]) * law.mobility[k] * h_ * h_);
+        }
+    return doubt > negligible ? doubt : 0;
+}
+
+void InsideLaws::integrate(const Law& law, const CheckedRule& rule, Panel& panel)
+{
+    const std::size_t m = law.inside.n_factors, n = rule.gauss.points.size();
     const double width = panel.last - panel.first;
     const bool is_bounded = static_cast<bool>(law.inside.steepest);
     panel.moments.assign(n_moments * m, 0.0);
@@ -235,16 +270,17 @@ void InsideLaws::integrate(const Law& law, const Quadrature& rule, Panel& panel)
     };
     if (is_bounded) see(0, panel.first);
     for (std::size_t i = 0; i < n; ++i) {
-        const double s = panel.first + width * rule.points[i];
+        const double s = panel.first + width * rule.gauss.points[i];
         see(i + 1, s);
         const std::array<double, n_moments> P = legendre(s);
         for (std::size_t q = 0; q < n_moments; ++q)
             for (std::size_t k = 0; k < m; ++k)
-                panel.moments[q * m + k] += width * rule.weights[i] * P[q] * seen[(i + 1) * (1 + m) + 1 + k];
+                panel.moments[q * m + k] +=
+                    width * rule.gauss.weights[i] * P[q] * seen[(i + 1) * (1 + m) + 1 + k];
     }
     if (!is_bounded) return;
     see(n + 1, panel.last);
-    panel.doubt = steepness_doubt(law, panel, seen);
+    panel.doubt = std::max(steepness_doubt(law, panel, seen), quadrature_doubt(law, rule, panel, seen));
 }
 
 /// Panels are halved, the most doubtful first.
@@ -277,7 +313,7 @@ std::vector<double> InsideLaws::unseen(const Law& law)
         integrate(law, fine_, panels[0]);
         divide(law, panels);
     } else {
-        static const Quadrature few = gauss(2);
+        static const CheckedRule few(2);
         const double ends[] = {0, beside_ends[0], beside_ends[1], 1 - beside_ends[1], 1 - beside_ends[0], 1};
         for (std::size_t i = 0; i + 1 < std::size(ends); ++i) {
             panels.push_back({ends[i], ends[i + 1], 0, {}});

@@ -36,6 +36,14 @@ private:
         LawInside inside;
         std::vector<double> mobility;   // of each unit: what it accelerates, in lengths or rad
     };
+    /// Points of Gauss, and weights by which these, the middle one left out, and both ends tell whether their
+    /// integral can be trusted: [end, points.., end].
+    struct CheckedRule {
+        Quadrature gauss;
+        std::vector<double> check;
+
+        explicit CheckedRule(int n_points);
+    };
     /// A piece of the way, and integrals over it: of factor k with the polynomial m at [m * n_factors + k].
     struct Panel {
         double first = 0, last = 1;
@@ -50,7 +58,9 @@ private:
     void factors_at(const Law& law, double share, double* factors);
     EnclosedValue range(std::size_t number, std::size_t n, const Panel& panel) const;
     double steepness_doubt(const Law& law, const Panel& panel, const std::vector<double>& seen);
-    void integrate(const Law& law, const Quadrature& rule, Panel& panel);
+    double quadrature_doubt(const Law& law, const CheckedRule& rule, const Panel& panel,
+                            const std::vector<double>& seen) const;
+    void integrate(const Law& law, const CheckedRule& rule, Panel& panel);
     void divide(const Law& law, std::vector<Panel>& panels);
     std::vector<double> unseen(const Law& law);
 
@@ -58,8 +68,8 @@ private:
     const ElementRule& rule_;
     std::vector<Law> laws_;
     Way way_;
-    LagrangeBasis basis_;      // on which the numbers of a law are known
-    Quadrature fine_, some_;   // of the whole way, and of its pieces
+    LagrangeBasis basis_;       // on which the numbers of a law are known
+    CheckedRule fine_, some_;   // of the whole way, and of its pieces
     // Of the law at hand: its numbers at the nodes of basis_, and bounds of their derivatives.
     std::vector<double> numbers_, slopes_, second_, third_;
     std::vector<double> work_, at_;
