@@ -170,9 +170,12 @@ TEST(Estimates, OfElementsAreForMarchesOfNodalElements)
     SolveOptions local;
     local.estimate = SolveOptions::Estimate::local;
     const TimeMesh mesh = make_time_mesh(0, 0.1, 4);
-    const auto code_of = [&](const Problem& problem, const Time& time, const Method& method) {
+    Model sprung = model;   // the force of a spring depends on the motion, and so do dampers'
+    sprung.add_load(spring_damper("spring", 0, {0, 0, 0}, world, {0, 0, 1}, {.stiffness = 100}));
+    const auto code_of = [&](const Problem& problem, const Time& time, const Method& method,
+                             const Model* other = nullptr) {
         try {
-            solve(model, problem, time, method, local);
+            solve(other != nullptr ? *other : model, problem, time, method, local);
         } catch (const InputError& error) {
             return error.complaint().code;
         }
@@ -184,6 +187,7 @@ TEST(Estimates, OfElementsAreForMarchesOfNodalElements)
     EXPECT_EQ(code_of(back, mesh, Lobatto{4}), "estimate-method");
     EXPECT_EQ(code_of(march, Span{0, 0.1, 1e-6}, Lobatto{4}), "accuracy-elements");
     EXPECT_EQ(code_of(march, mesh, Lobatto{4}), "");
+    EXPECT_EQ(code_of(march, mesh, Lobatto{4}, &sprung), "estimate-method");
 }
 
 TEST(Estimates, AreNotSoldWhereThereIsNone)

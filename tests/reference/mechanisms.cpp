@@ -385,8 +385,7 @@ TEST(Mechanisms, ATorsionSpringCountsItsTurns)
     for (const auto& [time, method, bound] :
          {std::tuple{to_accuracy, "", 1e-8}, std::tuple{to_accuracy, "[method]\nfamily = \"radau\"\n", 1e-8},
           std::tuple{in_elements, "[method]\ndegree = 8\n", 1e-10},
-          std::tuple{in_elements, "[method]\ndegree = 8\nwindow = 7\n", 1e-10},
-          std::tuple{in_elements, "[method]\ndegree = 6\nestimate = \"local\"\n", 1e-8}}) {
+          std::tuple{in_elements, "[method]\ndegree = 8\nwindow = 7\n", 1e-10}}) {
         const Solved s = solved(fan(time, method));
         EXPECT_NEAR(s.coordinate("hub", "angle", t).value, angle, bound) << method;
         // The spring's potential counts them, too.

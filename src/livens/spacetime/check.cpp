@@ -75,17 +75,18 @@ void refuse_special_rows(const Model& model, const Method& method)
                               "use lobatto for screws, gears and slots"});
 }
 
-/// The velocity jump of an element is that of the smooth part of its motion.
-void refuse_laws_that_bend(const Model& model)
+/// Where forces follow the motion, vibrations and laws that bend make errors that add up from element to
+/// element, of which velocity jumps tell up to a hundred times too little.
+void refuse_laws_of_the_motion(const Model& model)
 {
     for (const Load& load : model.loads())
-        if (!load.is_smooth || !load.guards.empty() || load.bends_at_centre)
+        if (load.depends_on_X || load.depends_on_V)
             throw InputError({"estimate-method", "method.estimate",
                               "the errors of elements do not tell that of the motion here", "local",
                               "second or none",
-                              "the law of load '" + load.name +
-                                  "' may bend inside of elements, of which their "
-                                  "velocity jumps tell nothing",
+                              "the force of load '" + load.name +
+                                  "' depends on the motion: errors of its vibrations add up over elements, "
+                                  "whose velocity jumps tell nothing of it",
                               "let a second solution tell it"});
 }
 
@@ -187,7 +188,7 @@ void check_method(const Model& model, const Problem& problem, const Time& time, 
                           is_nodal(method) ? "how they grow is told by neighbours of a state at the start"
                                            : "those of " + name_of(method) + " are not known one by one",
                           "let a second solution tell it"});
-    if (options.estimate == SolveOptions::Estimate::local) refuse_laws_that_bend(model);
+    if (options.estimate == SolveOptions::Estimate::local) refuse_laws_of_the_motion(model);
     if (!is_elements(method)) check_stepping(model);
     if (mesh == nullptr) return check_accuracy(problem.conditions, std::get<Span>(time), method, options);
     if (std::holds_alternative<Auto>(method))

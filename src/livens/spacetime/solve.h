@@ -54,7 +54,7 @@ struct SolveOptions {
                   ///< or in elements that hardly resolve the motion: + 2) or with half the steps; mixed: its
                   ///< witness
         local,    ///< what every element loses by its velocity jump, grown as neighbouring motions part: one
-                  ///< number for all bodies, good to a factor of ten or so; nothing of velocities and
+                  ///< number for all bodies, too large by ten often; nothing of velocities and
                   ///< reactions (lobatto and radau on a mesh, state at the start)
         none
     } estimate = Estimate::second;

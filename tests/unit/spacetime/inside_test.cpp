@@ -98,6 +98,34 @@ TEST(InsideLaws, WhatNeitherSolutionSeesIsInTheEstimate)
     }
 }
 
+/// A layer at the start, exp(-x / width), so wide that its slope is seen and so narrow that Gauss's points
+/// have little of it; load points of radau have none in it.
+TEST(InsideLaws, WhatIsSeenIsIntegratedToo)
+{
+    for (const double width : {0.0045, 0.006, 0.02}) {
+        Model model({0, 0, 0});
+        const int bob = model.add_body(point_mass("bob", 1, {0, 0, 0}, {1, 0, 0}));
+        const JointCoordinate x = displacement_along(world, direction({1, 0, 0}), point({}), bob, point({}));
+        const State start = model.start();
+        LoadParts parts;
+        parts.units = {unit_along("layer", x, Configurations(start.X))};
+        parts.coordinates = {{x, 0}};
+        parts.law = [width](const LawArguments& at, std::span<double> factors, std::span<double> slopes) {
+            factors[0] = 0.1 * std::exp(-at.values[0] / width);
+            if (!slopes.empty()) slopes[0] = -factors[0] / width, slopes[1] = 0;
+        };
+        parts.steepest = [width](const EnclosedValue&, std::span<const EnclosedValue> numbers,
+                                 std::span<double> bounds) {
+            bounds[0] = 0.1 * std::exp(-numbers[0].value.low / width) * numbers[0].slope.size() / width;
+        };
+        model.add_load(modulated("layer", "layer", parts, Configurations(start.X)));
+        const Solution s = solve(model, {model.start()}, make_time_mesh(0, 4, 4), Radau{5}, {});
+        const double truth = std::sqrt(1 + 2 * 0.1 * width), off = (4 - width) * (truth - 1) / model.length();
+        EXPECT_GT(s.estimate.largest, 0.5 * off) << width;
+        EXPECT_LT(s.estimate.largest, 3 * off) << width;
+    }
+}
+
 /// Forces that nobody bounds are sampled, nearer and nearer to the ends of elements: a layer at the start.
 TEST(InsideLaws, ALayerAtTheStartIsSeenOfForcesThatAreOpaque)
 {

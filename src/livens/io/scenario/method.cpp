@@ -266,7 +266,9 @@ Table method_table()
              "lobatto from degree 4 under loads and drives, or on elements that hardly resolve the motion, "
              "of degree + 2, or with half the steps; mixed: lobatto of degree + 2); what its elements "
              "lose, grown as two neighbouring motions part (lobatto and radau with `elements` and the "
-             "state at the start; good to a factor of ten or so, nothing of velocities and reactions); or "
+             "state at the start, beside loads of time alone; too large by ten often, nothing of velocities "
+             "and "
+             "reactions); or "
              "nothing.",
              "",
              "second",
