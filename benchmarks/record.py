@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Measures the times that documents state, and takes over what the scans have counted: record.py PROGRAM [SCANS [PAPER]]
-       record.py --paper PAPER | --accuracies SCANS | --laws SCANS | --instructions OUTPUT | --run_time OUTPUT
+       record.py --paper PAPER | --accuracies SCANS | --laws SCANS | --reported SCANS | --instructions OUTPUT | --run_time OUTPUT
 
 Writes benchmarks/recorded.json, with machine and date; tests/docs/figures.py holds README.md, docs/validation.md and docs/trust.md
 against it. SCANS: the folder in which scripts/scan left its data (build/scan), PAPER: that of scripts/paper (build/paper); without them what
 was recorded of them stays. With an option nothing else is taken over: --instructions reads what `scripts/instructions` and
 `scripts/instructions chains` have printed to one file, --run_time what benchmarks/paper has: elements and errors, which no other work changes.
 Times are the least of several runs of solve() alone, each on one core; of long ones, which other work on the machine interrupts, the
-processor's share. Of scans of laws the rows of tables are printed, as docs/trust.md has them. Standard library only.
+processor's share. Of scans of laws and of reported cases the rows of tables are printed, as docs/trust.md has them. Standard library only.
 """
 import csv
 import datetime
@@ -155,6 +155,23 @@ def law_words(record, name):
             f"with the looks off {record[name]['wrong without the looks']} are wrong"]
 
 
+def reported(folder):
+    """Cases that were told wrong once, as they stand and to the other accuracies: asked, elements, exit, told, true."""
+    rows, seen = rows_of(folder, "scan_reported")
+    figure = lambda text: float(f"{float(text):.2g}") if text else None   # noqa: E731
+    record = {"runs": seen["runs"], "wrong": seen["off by more than three times what is told, or asked for"],
+              "wrong without the looks": seen["wrong without the looks"], "cases": {}}
+    for row in rows:
+        record["cases"].setdefault(row["case"], [figure(row["asked"]), int(row["exit"]), figure(row["told"]), figure(row["true"])])
+    return record
+
+
+def reported_rows(record):
+    """Rows of the table of docs/trust.md: asked, exit, told, true."""
+    for name, (asked, left, told, true) in record["reported"]["cases"].items():
+        yield f"| {name.replace('_', ' ')} | {asked or 'elements'} | {left} | {told if told is not None else '-'} | {true if true is not None else '-'} |"
+
+
 def paper(folder):
     """What the experiments of the paper have judged, to five digits: experiment -> expectation -> number.
     Of figure 9 the table of data.csv too: method -> h -> what is in its columns."""
@@ -211,6 +228,9 @@ def main():
             record["scans"] |= laws(source)
             for name in LAW_SCANS:
                 print("\n".join([*law_rows(record["scans"], name), *law_words(record["scans"], name)]))
+        elif sys.argv[1] == "--reported":
+            record["scans"]["reported"] = reported(source)
+            print("\n".join(reported_rows(record["scans"])))
         else:
             record[sys.argv[1][2:]] = {"--paper": paper, "--instructions": instructions, "--run_time": run_time}[sys.argv[1]](source)
         return write(record)
@@ -221,7 +241,7 @@ def main():
     if len(sys.argv) > 2:
         folder = pathlib.Path(sys.argv[2])
         record["scans"] = {"date": record["machine"]["date"], "meshes": meshes(folder), "accuracies": accuracies(folder),
-                           **laws(folder)}
+                           **laws(folder), "reported": reported(folder)}
     if len(sys.argv) > 3:
         record["paper"] = paper(pathlib.Path(sys.argv[3]))
     return write(record)

@@ -39,7 +39,7 @@ std::string utf8(nb::handle text, const Location& at)
 /// A value of a key: tuples and lists alike.
 nb::object to_object(const Node& node);
 
-nb::tuple place_tuple(const Place& place, nb::object nested)
+nb::tuple place_tuple(const SourceLocation& place, nb::object nested)
 {
     return nb::make_tuple(place.line, place.column, place.length, std::move(nested));
 }
@@ -209,7 +209,7 @@ nb::tuple tables_of(const Node& root)
     return nb::make_tuple(table, places);
 }
 
-Place TreeReader::place(const Location& location)
+SourceLocation TreeReader::place(const Location& location)
 {
     locations_.push_back(location);
     return {static_cast<int>(locations_.size()) - 1, 1, 1};

@@ -14,11 +14,11 @@ namespace livens::python {
 
 namespace nb = nanobind;
 
-/// Where a node stands in the tree: `line` of its Place is an index into these.
+/// Where a node stands in the tree: `line` of its SourceLocation is an index into these.
 struct Location {
-    std::string table;   ///< key of the root, empty: the root itself
-    int index = -1;      ///< among the tables of an array, or -1
-    std::string key;     ///< of the table, empty: the table itself
+    std::string table;                ///< key of the root, empty: the root itself
+    int index = -1;                   ///< among the tables of an array, or -1
+    std::string key;                  ///< of the table, empty: the table itself
     std::vector<std::string> inner;   ///< from its value inwards: keys, and numbers from 0 in lists
 };
 
@@ -37,7 +37,7 @@ private:
     Node array(nb::handle object, const Location& location, int depth);
     bool read_scalar(nb::handle object, const Location& location, Node& node) const;
     void count(const Location& location);
-    Place place(const Location& location);
+    SourceLocation place(const Location& location);
 
     std::vector<Location> locations_{{}};   // 0: nothing is known
     int n_values_ = 0;

@@ -228,6 +228,11 @@ def check_recorded(d):
     for name in record.LAW_SCANS:
         for words in (*record.law_rows(recorded["scans"], name), *record.law_words(recorded["scans"], name)):
             d.says("docs/trust.md", words)
+    for words in record.reported_rows(recorded["scans"]):
+        d.says("docs/trust.md", words)
+    known = recorded["scans"]["reported"]
+    d.says("docs/trust.md", f"Of all {known['runs']} runs none is wrong; with the looks off {known['wrong without the looks']} are")
+    d.holds(known["wrong"] == 0, "docs/trust.md: reported cases are wrong")
     asked = sum(part["motions"] for part in parts) + accuracies["bursts"]
     d.says("docs/theory.md", f"of the {asked} motions of the scan {asked - accuracies['second tries']} need no second try")
     d.says("docs/trust.md", f"{accuracies['above six']} cost more than six times")

@@ -2,13 +2,13 @@
 # The house's rules, checked as tests: the table of floors, sizes, names, documents. Each checker is also run
 # against made-up faults that it must refuse.
 
-foreach(check floors functions classes docs)
+foreach(check floors functions classes names docs)
     set(script ${CMAKE_CURRENT_SOURCE_DIR}/layout/check_floors.py)
     set(arguments ${PROJECT_SOURCE_DIR})
     if(check MATCHES "functions|classes")
         list(APPEND arguments --${check})
-    elseif(check STREQUAL "docs")
-        set(script ${CMAKE_CURRENT_SOURCE_DIR}/layout/check_docs.py)
+    elseif(check MATCHES "names|docs")
+        set(script ${CMAKE_CURRENT_SOURCE_DIR}/layout/check_${check}.py)
     endif()
     add_test(NAME layout.${check} COMMAND ${livens_python} -B ${script} ${arguments})
     add_test(NAME layout.${check}_refuses_faults

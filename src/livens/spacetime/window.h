@@ -18,7 +18,7 @@ namespace livens {
 using Guess = std::function<State(double t)>;
 
 /// Where something is worst, for a person.
-struct Place {
+struct WorstResidual {
     std::string name;       ///< "joint 'elbow' (row 'x'), body 'upper'"; empty: nowhere in particular
     double t = 0;           ///< s
     std::string bad_load;   ///< what is told of a load that is not finite
@@ -99,7 +99,7 @@ public:
     /// X of all bodies at an end of an element of the open window.
     virtual std::vector<Matrix34> positions(int element_end) const = 0;
     /// Where the residual is worst, or the load that is not finite.
-    virtual Place worst() const = 0;
+    virtual WorstResidual worst() const = 0;
     /// Figures that only the family knows: unknowns, pivots, entries of factors.
     virtual void describe(SolveReport& report) const = 0;
     /// Condition numbers of the open window's matrix at the current point; 0 once `goes_on` says false.

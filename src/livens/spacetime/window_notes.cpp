@@ -46,7 +46,7 @@ std::string window_at(const TimeMesh& mesh, int first, int last)
 }
 
 std::string of_failure(const NewtonReport& outcome, int max_iterations, const std::string& window,
-                       const Place& worst, std::string advice)
+                       const WorstResidual& worst, std::string advice)
 {
     if (outcome.status == SolveStatus::cancelled)
         return "stopped as asked in " + window + "; the motion up to there is complete";

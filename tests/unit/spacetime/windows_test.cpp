@@ -60,7 +60,7 @@ public:
     }
     void divided(int element) override { divisions.push_back(element); }
     std::vector<Matrix34> positions(int) const override { return {Matrix34{1, 0, 0}}; }
-    Place worst() const override { return {"joint 'elbow' (row 'x')", 0.5, ""}; }
+    WorstResidual worst() const override { return {"joint 'elbow' (row 'x')", 0.5, ""}; }
     void describe(SolveReport& report) const override { report.unknowns = 1; }
     void measure_condition(SolveReport&, const std::function<bool()>&) override {}
     Motion take_motion() override { return {}; }
@@ -294,10 +294,7 @@ TEST(Windows, AreNotCountedWhereTheyCannotBeClosed)
     WindowOptions options;
     options.propose = [&](int, int, int attempt) -> WindowOptions::Proposal {
         if (attempt > 0) return {};
-        return {[](double) {
-                    return State{1.0, {Matrix34{1, 0, 0}}, {Matrix34{}}};
-                },
-                false};
+        return {[](double) { return State{1.0, {Matrix34{1, 0, 0}}, {Matrix34{}}}; }, false};
     };
     const SolveReport report = run(window, options);
     EXPECT_EQ(report.rescued, 0);

@@ -84,7 +84,7 @@ void Builder::remember(const std::string& path, const Section& section)
 
 /// The core writes `body[upper].mass`, or `load.until` where it does not know the name. The longest part of
 /// the path that is known counts.
-Place Builder::find_place(std::string path, const std::string& context) const
+SourceLocation Builder::find_place(std::string path, const std::string& context) const
 {
     for (const std::string_view kind : {"body.", "joint.", "drive.", "load."})
         if (path.substr(0, kind.size()) == kind) path = context + path.substr(kind.size() - 1);
@@ -95,7 +95,7 @@ Place Builder::find_place(std::string path, const std::string& context) const
         path.resize(dot == std::string::npos ? 0 : dot);
     }
     const auto found = places_.find(context);
-    return found != places_.end() ? found->second : Place{};
+    return found != places_.end() ? found->second : SourceLocation{};
 }
 
 InputError Builder::unknown_name(const std::string& kind, const std::string& name, const std::string& path,
@@ -136,7 +136,7 @@ std::string help_in_toml(const Complaint& complaint)
     return complaint.help + (keys.empty() || has_keys ? "" : keys + ")");
 }
 
-BodyReference Builder::find_body(const std::string& name, const Place& place, const Section& section)
+BodyReference Builder::find_body(const std::string& name, const SourceLocation& place, const Section& section)
 {
     if (name == "world") return {world, true};
     const auto found = bodies_.find(name);

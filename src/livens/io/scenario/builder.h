@@ -43,7 +43,7 @@ public:
     /// Makes `path` known as the place of the section, and its keys as `path.key`.
     void remember(const std::string& path, const Section& section);
     /// Makes `path` known as this place, unless it is known.
-    void remember(const std::string& path, const Place& place) { places_.try_emplace(path, place); }
+    void remember(const std::string& path, const SourceLocation& place) { places_.try_emplace(path, place); }
     /// Calls `build` and turns an InputError into a finding at the place it names, else at that of `path`.
     /// False if there was one.
     template <class Build>
@@ -59,7 +59,7 @@ public:
     }
 
     /// The body of a name in a section; an unknown one is reported at `place`.
-    BodyReference find_body(const std::string& name, const Place& place, const Section& section);
+    BodyReference find_body(const std::string& name, const SourceLocation& place, const Section& section);
     /// Both of `between`; false unless both can be used. `self` is the code of one body named twice.
     bool find_pair(const Section& section, std::string_view self, BodyReference& first,
                    BodyReference& second);
@@ -82,7 +82,7 @@ public:
 
 private:
     void report(const Complaint& complaint, const std::string& path);
-    Place find_place(std::string path, const std::string& context) const;
+    SourceLocation find_place(std::string path, const std::string& context) const;
 
     const Section& top_;
     Findings& findings_;
@@ -92,7 +92,7 @@ private:
     std::vector<std::vector<NamedSurface>> surfaces_;
     MeshStore meshes_;
     std::unordered_map<std::string, BodyReference> bodies_;
-    std::map<std::string, Place> places_;
+    std::map<std::string, SourceLocation> places_;
     double length_ = 1;
 };
 
@@ -198,7 +198,7 @@ bool has_knots(const Method& method);
 /// machine. The motion has at most 8 GiB, the factors of one block's matrix (mixed) too: 150 entries of
 /// 16 bytes for each of 30 unknowns a rigid body and node (6 a point mass, 1 a row). That leaves 100,000
 /// linear elements of a single body. False after an error at `place`.
-bool check_size(const Model& model, const Method& method, double n_elements, const Place& place,
+bool check_size(const Model& model, const Method& method, double n_elements, const SourceLocation& place,
                 Findings& findings);
 
 }   // namespace livens

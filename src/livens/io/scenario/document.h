@@ -21,7 +21,7 @@ struct Node {
     enum class Kind : std::uint8_t { truth, integer, number, text, array, table, date };
 
     Kind kind = Kind::table;
-    Place place;                            ///< of the value; of its header for a table with one
+    SourceLocation place;                   ///< of the value; of its header for a table with one
     double number = 0;                      ///< of truth, integer, number
     std::unique_ptr<NodeContent> content;   ///< of text, array, table
 
@@ -33,7 +33,7 @@ struct Node {
 
 struct Entry {
     std::string key;
-    Place place;   ///< of the key
+    SourceLocation place;   ///< of the key
     Node value;
 };
 

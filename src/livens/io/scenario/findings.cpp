@@ -36,7 +36,7 @@ int distance(std::string_view a, std::string_view b)
 
 }   // namespace
 
-void Findings::add(Severity severity, const Place& place, std::string_view code, std::string message,
+void Findings::add(Severity severity, const SourceLocation& place, std::string_view code, std::string message,
                    Advice advice)
 {
     assert(!explain(code).empty() && "every code has a page");
@@ -56,13 +56,13 @@ void Findings::add(Severity severity, const Place& place, std::string_view code,
                       std::move(advice.help)});
 }
 
-bool Findings::error(const Place& place, std::string_view code, std::string message, Advice advice)
+bool Findings::error(const SourceLocation& place, std::string_view code, std::string message, Advice advice)
 {
     add(Severity::error, place, code, std::move(message), std::move(advice));
     return false;
 }
 
-void Findings::warning(const Place& place, std::string_view code, std::string message, Advice advice)
+void Findings::warning(const SourceLocation& place, std::string_view code, std::string message, Advice advice)
 {
     add(Severity::warning, place, code, std::move(message), std::move(advice));
 }

@@ -12,7 +12,7 @@
 namespace livens {
 
 /// Where something stands in a file; line and column count characters from 1, line 0 is the whole file.
-struct Place {
+struct SourceLocation {
     int line = 0;
     int column = 0;
     int length = 1;
@@ -27,8 +27,8 @@ struct Advice {
 class Findings {
 public:
     /// Returns false, what readers then return.
-    bool error(const Place& place, std::string_view code, std::string message, Advice advice = {});
-    void warning(const Place& place, std::string_view code, std::string message, Advice advice = {});
+    bool error(const SourceLocation& place, std::string_view code, std::string message, Advice advice = {});
+    void warning(const SourceLocation& place, std::string_view code, std::string message, Advice advice = {});
 
     /// Errors so far: a reader compares before and after to learn whether a part was in order.
     int n_errors() const { return n_errors_; }
@@ -38,7 +38,7 @@ public:
     std::vector<Diagnostic> take(const std::string& file);
 
 private:
-    void add(Severity severity, const Place& place, std::string_view code, std::string message,
+    void add(Severity severity, const SourceLocation& place, std::string_view code, std::string message,
              Advice advice);
 
     std::vector<Diagnostic> found_;

@@ -304,7 +304,7 @@ bool has_knots(const Method& method)
     return mixed != nullptr && mixed::basis_of(*mixed).has_knots && !mixed->knots.empty();
 }
 
-bool check_size(const Model& model, const Method& method, double n_elements, const Place& place,
+bool check_size(const Model& model, const Method& method, double n_elements, const SourceLocation& place,
                 Findings& findings)
 {
     const std::string what = std::to_string(static_cast<long long>(n_elements)) + " time elements for " +

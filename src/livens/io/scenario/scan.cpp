@@ -20,7 +20,7 @@ public:
     bool at_end() const { return rest_.empty(); }
     char peek() const { return rest_.front(); }
     bool starts_with(std::string_view s) const { return rest_.substr(0, s.size()) == s; }
-    Place place() const { return {line_, column_, 1}; }
+    SourceLocation place() const { return {line_, column_, 1}; }
     int length() const { return utf8_length(rest_); }
 
     void next()

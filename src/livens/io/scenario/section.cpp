@@ -248,7 +248,8 @@ Section::Section(const Node& node, const Table& table, std::string label, Findin
         if (!key.required || node.find(key.name) != nullptr) continue;
         const std::string name = "'" + std::string(key.name) + "'";
         findings.error(
-            &table == &root_table() ? Place{1, 1, 1} : node.place, "missing-key", label_ + " lacks " + name,
+            &table == &root_table() ? SourceLocation{1, 1, 1} : node.place, "missing-key",
+            label_ + " lacks " + name,
             {name + ": " + key.doc, key.name == table.chooser ? type_told_by_keys(node, table) : ""});
     }
     is_valid_ = findings.n_errors() == errors_before;
@@ -308,7 +309,7 @@ const Value* Section::find(std::string_view key) const
     return v != nullptr && v->is_valid ? v : nullptr;
 }
 
-Place Section::place(std::string_view key) const
+SourceLocation Section::place(std::string_view key) const
 {
     const Value* v = value(key);
     return v != nullptr ? v->node->place : place();

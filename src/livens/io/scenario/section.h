@@ -38,7 +38,7 @@ public:
     Section(const Node& node, const Table& table, std::string label, Findings& findings);
 
     const std::string& label() const { return label_; }
-    Place place() const { return node_->place; }
+    SourceLocation place() const { return node_->place; }
     /// Nothing was wrong with this table and those inside it.
     bool is_valid() const { return is_valid_; }
     /// Index of its kind in the schema's table; any_kind if there is none or the file's word is none.
@@ -51,7 +51,7 @@ public:
     /// The key's value; null if it is missing or not valid.
     const Value* find(std::string_view key) const;
     /// Of the value; of the table if the key is missing.
-    Place place(std::string_view key) const;
+    SourceLocation place(std::string_view key) const;
 
     // Values, or the schema's fallback (zero without one) where the key is missing or not valid.
     double number(std::string_view key) const;

@@ -100,7 +100,8 @@ void move_bodies(Builder& builder)
                        time == nullptr ? 0 : time->number("start"));
         builder.model() = std::move(moved.model);
         for (const std::string& change : moved.changed)
-            builder.findings().warning(start == nullptr ? Place{} : start->place(), "start-changed", change,
+            builder.findings().warning(start == nullptr ? SourceLocation{} : start->place(), "start-changed",
+                                       change,
                                        {"", "leave these velocities out, or state them so that they fit"});
     });
 }

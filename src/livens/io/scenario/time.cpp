@@ -93,7 +93,7 @@ bool check_output_list(const Section& time, const Value& output, Findings& findi
     const double start = time.number("start"), end = time.number("end");
     const std::vector<double>& times = output.numbers;
     for (std::size_t i = 0; i < times.size(); ++i) {
-        const Place place = output.node->items()[i].place;
+        const SourceLocation place = output.node->items()[i].place;
         if (times[i] < start || times[i] > end) {
             findings.error(place, "time-output",
                            "the output time " + to_text(times[i]) + " s lies outside the motion",
@@ -202,7 +202,7 @@ bool make_span(Builder& builder, const Section& time, Scenario& scenario)
 bool check_knot_mesh(Builder& builder, const Section& time, const Section& method, const TimeMesh& mesh,
                      Findings& findings)
 {
-    const auto refuse = [&](const Place& place, const std::string& message, const Advice& advice) {
+    const auto refuse = [&](const SourceLocation& place, const std::string& message, const Advice& advice) {
         findings.error(place, "knots-mesh", message, advice);
         return false;
     };
@@ -252,7 +252,7 @@ bool make_knot_mesh(Builder& builder, const Section& time, const Section& method
 /// What does not go with an accuracy.
 bool check_span(const Section& time, const Section* method, Findings& findings)
 {
-    const auto refuse = [&](const Place& place, const std::string& message) {
+    const auto refuse = [&](const SourceLocation& place, const std::string& message) {
         return findings.error(place, "accuracy-elements", message,
                               {"elements follow from the accuracy", "leave out one of the two"});
     };

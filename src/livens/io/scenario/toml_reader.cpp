@@ -42,9 +42,9 @@ namespace {
 
 constexpr const char* quotes_help = "what is not ASCII stands in quotes: \"ä\" = 1";
 
-Place place_of(const toml::source_region& region)
+SourceLocation place_of(const toml::source_region& region)
 {
-    Place place{static_cast<int>(region.begin.line), static_cast<int>(region.begin.column), 1};
+    SourceLocation place{static_cast<int>(region.begin.line), static_cast<int>(region.begin.column), 1};
     if (region.end.line == region.begin.line && region.end.column > region.begin.column)
         place.length = static_cast<int>(region.end.column - region.begin.column);
     return place;
@@ -123,7 +123,7 @@ std::string_view quoted(std::string_view description)
 }
 
 /// toml++ points behind `key =`; the key itself is wanted.
-Place place_of_key_before(const Place& place, std::string_view line)
+SourceLocation place_of_key_before(const SourceLocation& place, std::string_view line)
 {
     const auto is_in_key = [](unsigned char c) {
         return std::isalnum(c) != 0 || c == '_' || c == '-' || c == '.';
@@ -137,11 +137,11 @@ Place place_of_key_before(const Place& place, std::string_view line)
     for (--end; end > 0 && (before(end) == ' ' || before(end) == '\t');) --end;
     int begin = end;
     while (begin > 0 && is_in_key(static_cast<unsigned char>(before(begin)))) --begin;
-    return begin < end ? Place{place.line, begin + 1, end - begin} : place;
+    return begin < end ? SourceLocation{place.line, begin + 1, end - begin} : place;
 }
 
 /// What a person probably meant where a value is followed by something.
-std::string help_after_value(std::string_view line, const Place& place, std::string_view seen)
+std::string help_after_value(std::string_view line, const SourceLocation& place, std::string_view seen)
 {
     const std::size_t column = static_cast<std::size_t>(std::max(1, place.column)) - 1;
     const std::string_view before = line.substr(0, std::min(column, line.size()));
@@ -159,7 +159,7 @@ void report(const toml::parse_error& error, std::string_view text, Findings& fin
         return description.find(words) != std::string_view::npos;
     };
     const std::string_view word = quoted(description);
-    Place place = place_of(error.source());
+    SourceLocation place = place_of(error.source());
     const std::string_view line = line_of(text, place.line);
     if (says("cannot redefine")) {
         if (!says("table header")) place = place_of_key_before(place, line);

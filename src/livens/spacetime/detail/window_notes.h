@@ -29,7 +29,7 @@ std::string window_at(const TimeMesh& mesh, int first, int last);
 
 /// Why Newton's iteration did not solve a window, and what to try: `advice`, or what fits the status.
 std::string of_failure(const NewtonReport& outcome, int max_iterations, const std::string& window,
-                       const Place& worst, std::string advice);
+                       const WorstResidual& worst, std::string advice);
 
 /// Of a window that says nothing of the motion although its equations are met.
 std::string of_lie(const std::string& window);

@@ -45,7 +45,7 @@ public:
     std::string jumping_load() const override { return breaks_.bends.jumping_load(); }
     void divided(int element) override { record_.divided(element); }
     std::vector<Matrix34> positions(int element_end) const override;
-    Place worst() const override;
+    WorstResidual worst() const override;
     void describe(SolveReport& report) const override;
     void measure_condition(SolveReport& report, const std::function<bool()>& goes_on) override;
     std::vector<Unseen> take_unseen() override { return std::move(breaks_.unseen); }

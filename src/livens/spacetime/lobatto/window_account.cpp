@@ -9,9 +9,9 @@
 
 namespace livens {
 
-Place LobattoWindow::worst() const
+WorstResidual LobattoWindow::worst() const
 {
-    Place place{"", stretch_.times[0], system_.balances().bad_load(stretch_, system_.nodes())};
+    WorstResidual place{"", stretch_.times[0], system_.balances().bad_load(stretch_, system_.nodes())};
     double worst = 0;
     int row = -1, body = -1;
     for (int A = 0; A < stretch_.n_nodes(); ++A) {

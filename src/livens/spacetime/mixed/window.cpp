@@ -241,7 +241,7 @@ std::vector<Matrix34> MixedWindow::positions(int element_end) const
     return coordinates_.bodies(x.data());
 }
 
-Place MixedWindow::worst() const
+WorstResidual MixedWindow::worst() const
 {
     const Worst worst = block_->worst();
     return {worst.name, worst.t, block_->bad_load()};

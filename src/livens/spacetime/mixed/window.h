@@ -33,7 +33,7 @@ public:
     bool near_state(State& state) const override;
     Closed close(const Trust& trust, SolveReport& report) override;
     std::vector<Matrix34> positions(int element_end) const override;
-    Place worst() const override;
+    WorstResidual worst() const override;
     void describe(SolveReport& report) const override;
     void measure_condition(SolveReport& report, const std::function<bool()>& goes_on) override
     {
