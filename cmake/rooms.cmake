@@ -128,11 +128,12 @@ function(livens_library name)
     target_link_libraries(livens_${name} PUBLIC Threads::Threads PRIVATE ${libraries})
 endfunction()
 
-# livens_test(NAME SOURCES file... ROOMS room... [LIBRARIES lib...] [SLOW]): a GoogleTest program. With ROOMS it links
-# these rooms alone (a room's unit tests build before the rooms above exist).
+# livens_test(NAME SOURCES file... ROOMS room... [LIBRARIES lib...] [SLOW] [STUDY]): a GoogleTest program. With ROOMS
+# it links these rooms alone (a room's unit tests build before the rooms above exist). STUDY: what is true of many whole motions,
+# which sanitizers need not see. A test whose name begins with LONG_ has the label long instead of fast.
 function(livens_test name)
-    cmake_parse_arguments(arg "SLOW" "" "SOURCES;ROOMS;LIBRARIES" ${ARGN})
-    if(arg_SLOW AND NOT LIVENS_SLOW_TESTS)
+    cmake_parse_arguments(arg "SLOW;STUDY" "" "SOURCES;ROOMS;LIBRARIES" ${ARGN})
+    if((arg_SLOW AND NOT LIVENS_SLOW_TESTS) OR (arg_STUDY AND NOT LIVENS_STUDIES))
         return()
     endif()
     add_executable(${name} ${arg_SOURCES})
@@ -163,7 +164,16 @@ function(livens_test name)
     if(arg_SLOW)
         set(label slow)
     endif()
-    gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60 PROPERTIES LABELS ${label} TIMEOUT 600)
+    gtest_discover_tests(${name} TEST_FILTER "-*.LONG_*" DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60
+                         PROPERTIES LABELS ${label} TIMEOUT 600)
+    foreach(source ${arg_SOURCES})
+        file(STRINGS ${source} long REGEX "\\(.*LONG_" LIMIT_COUNT 1)
+        if(long)   # a label that the name of a test asks for
+            gtest_discover_tests(${name} TEST_FILTER "*.LONG_*" DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60
+                                 PROPERTIES LABELS long TIMEOUT 600)
+            break()
+        endif()
+    endforeach()
 endfunction()
 
 # Every header compiles alone, and twice.

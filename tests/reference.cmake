@@ -3,7 +3,7 @@
 file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/reference/*.cpp)
 if(LIVENS_BUILD_PROGRAM AND sources)
     find_package(nlohmann_json 3 REQUIRED)
-    livens_test(reference SOURCES ${sources} LIBRARIES livens_io livens_core nlohmann_json::nlohmann_json)
+    livens_test(reference STUDY SOURCES ${sources} LIBRARIES livens_io livens_core nlohmann_json::nlohmann_json)
     file(GLOB slow CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/reference/slow/*.cpp)
     livens_test(published SLOW SOURCES ${slow} LIBRARIES livens_io livens_core nlohmann_json::nlohmann_json)
 endif()

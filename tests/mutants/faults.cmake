@@ -107,8 +107,8 @@ livens_mutant(NAME loads_at_lobatto_points
               OLD [[rule.loads = gauss(rule.degree);]]
               NEW [[rule.loads = rule.degree > 1 ? gauss_lobatto(rule.degree) : gauss(1);]]
               TESTS_OF properties
-              MUST_FAIL IntegratorKit.EveryMethodIsStableAsStated
-                        IntegratorKit.EveryMethodIsStableInTurnsAsStated
+              MUST_FAIL IntegratorKit.LONG_EveryMethodIsStableAsStated
+                        IntegratorKit.LONG_EveryMethodIsStableInTurnsAsStated
                         IntegratorKit.TheLibrarysElementIsThatByHand)
 
 # What a load does at a Gauss point given to one node, instead of shared out: impulses are right, moments not.
@@ -448,7 +448,7 @@ livens_mutant(NAME contacts_beyond_the_box
               OLD [[if (any(met & bad)) return false;]]
               NEW [[if (any(met & bad) && n_above_ > 1) return false;]]
               TESTS_OF unit_geometry
-              MUST_FAIL Contacts.OfSurfacesWithASpikeAreThoseOfAllPairs)
+              MUST_FAIL Contacts.LONG_OfSurfacesWithASpikeAreThoseOfAllPairs)
 
 # Several sheets over one place are taken for one: they may cross.
 livens_mutant(NAME contacts_of_two_sheets

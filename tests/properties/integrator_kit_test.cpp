@@ -23,16 +23,16 @@ void expect_all_pass(Check check)
     for (const IntegratorCase& c : integrator_cases()) EXPECT_EQ(joined(check(c)), "") << c.what;
 }
 
-TEST(IntegratorKit, EveryMethodHasItsOrder) { expect_all_pass(check_integrator_order); }
-TEST(IntegratorKit, EveryMethodIsRetracedAsStated) { expect_all_pass(check_integrator_reversal); }
+TEST(IntegratorKit, LONG_EveryMethodHasItsOrder) { expect_all_pass(check_integrator_order); }
+TEST(IntegratorKit, LONG_EveryMethodIsRetracedAsStated) { expect_all_pass(check_integrator_reversal); }
 TEST(IntegratorKit, EveryMethodKeepsWhatIsStated) { expect_all_pass(check_integrator_invariants); }
-TEST(IntegratorKit, EveryMethodIsStableAsStated) { expect_all_pass(check_integrator_stability); }
-TEST(IntegratorKit, EveryMethodIsStableInTurnsAsStated)
+TEST(IntegratorKit, LONG_EveryMethodIsStableAsStated) { expect_all_pass(check_integrator_stability); }
+TEST(IntegratorKit, LONG_EveryMethodIsStableInTurnsAsStated)
 {
     expect_all_pass(check_integrator_stability_of_turns);
 }
 
-TEST(IntegratorKit, EveryMethodIsStableUnderPreloadAsStated)
+TEST(IntegratorKit, LONG_EveryMethodIsStableUnderPreloadAsStated)
 {
     expect_all_pass(check_integrator_stability_with_preload);
 }

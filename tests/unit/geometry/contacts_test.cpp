@@ -78,7 +78,7 @@ protected:
     std::array<int, 2> n_{};
 };
 
-TEST_F(Contacts, OfSurfacesWithMovedPointsAreThoseOfAllPairs)
+TEST_F(Contacts, LONG_OfSurfacesWithMovedPointsAreThoseOfAllPairs)
 {
     for (const Mesh& mesh : {ball(6), torus(8, 2, 0.5), box_surface({}, {1, 1, 1}, 3)})
         for (const double size : {0.05, 0.1, 0.15, 0.2, 0.3})
@@ -88,7 +88,7 @@ TEST_F(Contacts, OfSurfacesWithMovedPointsAreThoseOfAllPairs)
 }
 
 /// One point far from where it was: its neighbours become needles and spikes through what lies there.
-TEST_F(Contacts, OfSurfacesWithASpikeAreThoseOfAllPairs)
+TEST_F(Contacts, LONG_OfSurfacesWithASpikeAreThoseOfAllPairs)
 {
     for (const Mesh& mesh : {ball(8), torus(9, 2, 0.7)})
         for (int k = 0; k < 80; ++k) {
@@ -100,7 +100,7 @@ TEST_F(Contacts, OfSurfacesWithASpikeAreThoseOfAllPairs)
 }
 
 /// Of very different sizes, near each other and apart.
-TEST_F(Contacts, OfPiecesAreThoseOfAllPairs)
+TEST_F(Contacts, LONG_OfPiecesAreThoseOfAllPairs)
 {
     for (int k = 0; k < 150; ++k) {
         const double size = std::pow(10, -(k % 5));
@@ -132,7 +132,7 @@ TEST_F(Contacts, OfSheetsThatLieCloseAreWhereADomeComesThrough)
 }
 
 /// A thin plate with waves whose upper side dips in places down to the lower one, and through it.
-TEST_F(Contacts, OfAThinPlateAreThoseOfAllPairs)
+TEST_F(Contacts, LONG_OfAThinPlateAreThoseOfAllPairs)
 {
     const Mesh plate = box_surface({-1, -1, -0.02}, {1, 1, 0.02}, 7);
     for (int k = 0; k < 80; ++k) {
@@ -152,7 +152,7 @@ TEST_F(Contacts, OfAThinPlateAreThoseOfAllPairs)
 
 /// A flat ring that goes round twice before it closes, like a staircase: seen from above it lies over itself,
 /// and its turns cross where they are close.
-TEST_F(Contacts, OfAStaircaseAreThoseOfAllPairs)
+TEST_F(Contacts, LONG_OfAStaircaseAreThoseOfAllPairs)
 {
     for (int k = 0; k < 80; ++k) {
         const double height = 0.05 * std::abs(any(1)[0]);

@@ -144,7 +144,7 @@ std::vector<Solid> curved_solids()
     };
 }
 
-TEST(Moments, OfCurvedSolidsConvergeWithTheirOrder)
+TEST(Moments, LONG_OfCurvedSolidsConvergeWithTheirOrder)
 {
     for (const Solid& solid : curved_solids()) {
         SCOPED_TRACE(solid.name);

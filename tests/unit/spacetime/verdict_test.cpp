@@ -149,7 +149,7 @@ TEST(Verdict, IsNotAskedForWhereTheCallerDoesNotWantIt)
     EXPECT_EQ(s.report.status, SolveStatus::suspect) << "asked later, it says the same";
 }
 
-TEST(Verdict, OfElementsTooLongForTheMotionIsSuspect)
+TEST(Verdict, LONG_OfElementsTooLongForTheMotionIsSuspect)
 {
     // A steady spin by 3 rad an element keeps its energy and momenta, and turns the other way to the eye.
     Model model;
