@@ -106,15 +106,15 @@ struct Measured {
     double rounding = 0;   // what it has grown to by the end
 
     bool is_whole() const { return !growth.factors.empty() && growth.factors.size() == mesh.ends.size(); }
-    /// At the ends of other elements.
-    std::vector<double> at(const std::vector<double>& ends) const
+    /// Of these figures, at the ends of other elements.
+    std::vector<double> at(const std::vector<double>& ends, const std::vector<double>& figures) const
     {
-        if (ends == mesh.ends) return growth.factors;
+        if (ends == mesh.ends || figures.empty()) return figures;
         std::vector<double> there;
         for (const double t : ends) {
             const int e = mesh.element_at(t);
             const double share = (t - mesh.ends[e]) / mesh.length(e);
-            there.push_back((1 - share) * growth.factors[e] + share * growth.factors[e + 1]);
+            there.push_back((1 - share) * figures[e] + share * figures[e + 1]);
         }
         return there;
     }
@@ -299,11 +299,16 @@ private:
         if (!options_.growth || !(is_good || (tries > 1 && grown_.mesh.ends.empty()))) return false;
         const TimeMesh& mesh = solution.motion.mesh;
         if (!grown_.is_whole())
-            grown_ = {growth(model_, problem_, solution.method, options_, solution.motion), mesh};
-        solution.growth = grown_.at(mesh.ends);
+            grown_ = {growth(model_, problem_, solution.method, options_, solution.motion,
+                             std::min(0.3 * span_.accuracy, told_without_rounding(solution.estimate))),
+                      mesh};
+        solution.growth = grown_.at(mesh.ends, grown_.growth.factors);
         solution.growing = grown_.growth.part;
-        grown_.rounding = grown_rounding(solution.growth);
-        count_rounding(model_, solution.growth, mesh, solution.estimate);
+        solution.rounding = grown_.at(mesh.ends, grown_.growth.rounding);
+        solution.rounding_in = grown_.growth.rounding_in;
+        const std::vector<double> rounding = grown_rounding(solution.growth, solution.rounding);
+        grown_.rounding = rounding.empty() ? 0 : rounding.back();
+        count_rounding(model_, rounding, mesh, solution.estimate);
         return grown_.rounding > span_.accuracy;
     }
 
@@ -329,9 +334,11 @@ private:
             report.message += "behind, nothing tells the error, since " + report.estimate_failed;
         report.message += " (try " + std::to_string(report.tries);
         if (grown_.rounding > span_.accuracy)
-            report.message += "; the rounding of numbers at the start grows to " +
-                              to_text(grown_.rounding, 3) + ", most in " +
-                              in_words(grown_.growth.part, model_);
+            report.message +=
+                "; the rounding of numbers at the start grows to " + to_text(grown_.rounding, 3) +
+                ", most in " +
+                in_words(grown_.growth.rounding.empty() ? grown_.growth.part : grown_.growth.rounding_in,
+                         model_);
         else
             report.message +=
                 so_far_.helps && tolerance_ > finest
