@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // How perturbations of the start grow, and until when double precision says something.
 #include "convergence/studies.h"
+#include "livens/multibody/body.h"
 #include "livens/multibody/drives.h"
 #include "livens/time/time_laws.h"
 
@@ -92,6 +93,128 @@ TEST(Horizon, SteadySpinGrowsByItsAngle)
     }
 }
 
+/// Held at its centre it has nothing but its spin that could grow: not by a push, which takes a free body as
+/// far.
+TEST(Horizon, SteadySpinOfABodyThatIsHeldGrowsByItsAngle)
+{
+    for (const Vector3& w : {Vector3{0, 0, 5}, Vector3{5, 0, 0}, Vector3{3, 2, 4}}) {
+        Model model;
+        model.add_body(rigid_body("ball", {1, {}, identity<3>()}, {.angular_velocity = w}));
+        model.add_joint(spherical("centre", world, 0, {}));
+        const Solution s = with_growth(model, 20, 100, Lobatto{6});
+        EXPECT_GT(s.verdict.growth, 0.5 * 20 * norm(w));
+        EXPECT_LT(s.verdict.growth, 1.1 * 20 * norm(w));
+    }
+}
+
+/// Bodies at random and how they turn, by the largest singular value of Euler's variational equations (order
+/// 8, extended precision).
+TEST(Horizon, GrowthOfBodiesThatTurnOver)
+{
+    struct Case {
+        Vector3 inertia, spin;
+        double end, growth;
+    };
+    for (const Case& c :
+         {Case{{1.1, 1.4, 2.4}, {0.0017, 5.7, 0.0001}, 50, 3.87e4},
+          Case{{1, 2, 3}, {0.01, 6, 0}, 100, 2.58e4}, Case{{0.5, 1.5, 1.8}, {0.036, 6, 0.0006}, 54, 4.85e3},
+          Case{{1.2, 1.8, 2.7}, {-1.2, -0.3, -2.2}, 50, 132}}) {
+        Model model;
+        const Matrix3 J{c.inertia[0], 0, 0, 0, c.inertia[1], 0, 0, 0, c.inertia[2]};
+        model.add_body(rigid_body("b", {1, {}, J}, {.angular_velocity = c.spin}));
+        SolveOptions options;
+        options.growth = true;
+        for (const Time& time :
+             {Time{Span{.start = 0, .end = c.end, .accuracy = 1e-4}},
+              Time{Span{.start = 0, .end = c.end, .accuracy = 1e-6}}, Time{make_time_mesh(0, c.end, 1000)},
+              Time{make_time_mesh(0, c.end, 3000)}}) {
+            const bool is_mesh = std::holds_alternative<TimeMesh>(time);
+            const Solution s = solve(model, {model.start()}, time, Lobatto{is_mesh ? 6 : 0}, options);
+            EXPECT_TRUE(s.report.converged()) << s.report.message;
+            EXPECT_GT(s.verdict.growth, c.growth / 3);
+            EXPECT_LT(s.verdict.growth, c.growth * 1.5);
+        }
+    }
+}
+
+/// Calm motions need one neighbour for each perturbation, on one side.
+TEST(Horizon, CalmMotionsHaveNeighboursOnOneSide)
+{
+    Model model({0, 0, -9.81});
+    model.add_body(point_mass("bob", 1, {1, 0, 0}));
+    model.add_joint(rod("rod", world, 0, {}, 1));
+    const auto elements_of_neighbours = [&](double end) {
+        const TimeMesh mesh = make_time_mesh(0, end, 100);
+        const Solution s = solve(model, {model.start()}, mesh, Lobatto{6});
+        int n = 0;
+        SolveOptions options;
+        options.progress = [&](const Progress&) {
+            ++n;
+            return true;
+        };
+        const Growth grown = growth(model, {model.start()}, Lobatto{6}, options, s.motion);
+        EXPECT_EQ(grown.factors.size(), s.motion.mesh.ends.size());
+        return 1.0 * n / s.motion.n_elements();
+    };
+    EXPECT_LT(elements_of_neighbours(5), 2.6);     // some are begun in vain
+    EXPECT_GT(elements_of_neighbours(100), 3.0);   // grown by more than a hundred
+}
+
+/// In a plane of the axes, where a light mass between rods lashes about, perturbations across the plane grow
+/// by 6e15 in 10 s, but rounding does not reach them.
+class LightBetweenRods : public ::testing::Test {
+protected:
+    static Model model(const Matrix3& axes)
+    {
+        Model model(axes * Vector3{0, -9.81, 0});
+        model.add_body(point_mass("upper", 1e-4, axes * Vector3{0.8, 0.6, 0}));
+        model.add_body(point_mass("lower", 1, axes * Vector3{1.8, 0.6, 0}));
+        model.add_joint(rod("above", world, 0, {}, norm(axes * Vector3{0.8, 0.6, 0})));
+        model.add_joint(rod("below", 0, 1, {}, norm(axes * Vector3{1, 0, 0})));
+        return model;
+    }
+    static Solution solved(const Matrix3& axes, double accuracy)
+    {
+        SolveOptions options;
+        options.growth = true;
+        options.initial = StartPolicy::project;
+        const Model light = model(axes);
+        return solve(light, {light.start()}, Span{.start = 0, .end = 10, .accuracy = accuracy}, Lobatto{0},
+                     options);
+    }
+};
+
+TEST_F(LightBetweenRods, RoundingDoesNotLeaveAPlaneOfTheAxes)
+{
+    for (const double accuracy : {1e-4, 1e-6}) {
+        const Solution s = solved(identity<3>(), accuracy);
+        ASSERT_TRUE(s.report.converged()) << s.report.message;
+        EXPECT_GT(s.verdict.growth, 1e14);
+        EXPECT_TRUE(std::isnan(s.verdict.horizon));
+        // by DOP853 on its equations, 1e-13
+        const Vector3 end = s.motion.at_end(s.motion.n_elements()).X[0].column(0);
+        EXPECT_LT(norm(end - Vector3{0.86646193, -0.49924316, 0}), accuracy);
+        ASSERT_FALSE(s.rounding.empty());
+        EXPECT_LT(s.rounding.back(), 1e-7);
+        ASSERT_FALSE(s.verdict.remarks.empty());
+        EXPECT_NE(s.verdict.remarks.back().find("rounding does not reach it"), std::string::npos)
+            << s.verdict.remarks.back();
+        EXPECT_NE(s.verdict.remarks.back().find("moving along ("), std::string::npos);
+    }
+}
+
+/// Control: in any other plane numbers are rounded across it.
+TEST_F(LightBetweenRods, RoundingLeavesAnyOtherPlane)
+{
+    const Matrix3 tilted = directors_from_rotation_vector({0.4, 0.3, -0.2});
+    const Solution s = solved(tilted, 1e-6);
+    EXPECT_EQ(s.report.status, SolveStatus::inaccurate);
+    EXPECT_NE(s.report.message.find("the rounding of numbers at the start grows to"), std::string::npos)
+        << s.report.message;
+    EXPECT_NE(s.report.message.find("most in body 'upper'"), std::string::npos) << s.report.message;
+    EXPECT_GT(s.verdict.growth, 1e6);
+}
+
 TEST(Horizon, WhatGrowsIsNamed)
 {
     Model model({0, 0, -9.81});
@@ -130,6 +253,28 @@ TEST(Horizon, ARefusalNamesWhatGrowsAndSaysThatTheMotionIsWhole)
     EXPECT_NE(s.report.message.find("most in body 'bob' moving along ("), std::string::npos)
         << s.report.message;
     EXPECT_TRUE(to(1e-5).report.converged());
+}
+
+/// Rounding inside of elements costs more than that of the start where bodies turn over: the refusal tells
+/// the growth, too.
+TEST(Horizon, ARefusalByRoundingTellsTheGrowth)
+{
+    Model model;
+    Placement spinning;
+    spinning.angular_velocity = {0.001, 6, 0};
+    model.add_body(rigid_body("b", {1, {}, Matrix3{1, 0, 0, 0, 2, 0, 0, 0, 3}}, spinning));
+    SolveOptions options;
+    options.growth = true;
+    const Solution s =
+        solve(model, {model.start()}, Span{.start = 0, .end = 30, .accuracy = 1e-8}, Lobatto{0}, options);
+    ASSERT_EQ(s.report.status, SolveStatus::inaccurate);
+    EXPECT_GT(s.verdict.growth, 5.5e4 / 3);
+    EXPECT_LT(s.verdict.growth, 5.5e4 * 1.5);
+    EXPECT_TRUE(std::isnan(s.verdict.horizon));
+    for (const char* words :
+         {"the motion is whole up to 30 s", "rounding is left; what is off at the start grows",
+          "most in body 'b' turning about ("})
+        EXPECT_NE(s.report.message.find(words), std::string::npos) << s.report.message;
 }
 
 /// On its head a pendulum leaves as exp(sqrt(g / l) t); the growth is that of any neighbour.

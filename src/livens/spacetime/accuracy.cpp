@@ -11,6 +11,7 @@
 #include "livens/base/elementary.h"
 #include "livens/base/text.h"
 #include "livens/multibody/body.h"
+#include "livens/spacetime/detail/measured_growth.h"
 #include "livens/spacetime/detail/window_notes.h"
 #include "livens/spacetime/lobatto/window.h"
 #include "livens/spacetime/second.h"
@@ -96,27 +97,6 @@ struct Tries {
         helps = one.is_broken_off || error < well_helped * least;
         if (!helps) in_vain = std::max(in_vain, error);
         if (!one.is_broken_off) least = std::min(least, error);
-    }
-};
-
-/// Of one try, for all: growth is that of the motion, whatever the elements.
-struct Measured {
-    Growth growth{};
-    TimeMesh mesh{};
-    double rounding = 0;   // what it has grown to by the end
-
-    bool is_whole() const { return !growth.factors.empty() && growth.factors.size() == mesh.ends.size(); }
-    /// Of these figures, at the ends of other elements.
-    std::vector<double> at(const std::vector<double>& ends, const std::vector<double>& figures) const
-    {
-        if (ends == mesh.ends || figures.empty()) return figures;
-        std::vector<double> there;
-        for (const double t : ends) {
-            const int e = mesh.element_at(t);
-            const double share = (t - mesh.ends[e]) / mesh.length(e);
-            there.push_back((1 - share) * figures[e] + share * figures[e + 1]);
-        }
-        return there;
     }
 };
 
@@ -296,24 +276,32 @@ private:
     bool look_at_rounding(Solution& solution, int tries)
     {
         const bool is_good = solution.estimate.largest <= span_.accuracy;
-        if (!options_.growth || !(is_good || (tries > 1 && grown_.mesh.ends.empty()))) return false;
-        const TimeMesh& mesh = solution.motion.mesh;
-        if (!grown_.is_whole())
-            grown_ = {growth(model_, problem_, solution.method, options_, solution.motion,
-                             std::min(0.3 * span_.accuracy, told_without_rounding(solution.estimate))),
-                      mesh};
-        solution.growth = grown_.at(mesh.ends, grown_.growth.factors);
-        solution.growing = grown_.growth.part;
-        solution.rounding = grown_.at(mesh.ends, grown_.growth.rounding);
-        solution.rounding_in = grown_.growth.rounding_in;
-        const std::vector<double> rounding = grown_rounding(solution.growth, solution.rounding);
-        grown_.rounding = rounding.empty() ? 0 : rounding.back();
-        count_rounding(model_, rounding, mesh, solution.estimate);
-        return grown_.rounding > span_.accuracy;
+        if (!options_.growth || !(is_good || (tries > 1 && !grown_.is_asked()))) return false;
+        grown_.tell(model_, problem_, options_, span_.accuracy, solution);
+        return grown_.rounding() > span_.accuracy;
     }
 
-    Solution give_up(Try&& last) const
+    /// Why ever shorter elements were not enough.
+    std::string in_vain(const SolveReport& report) const
     {
+        const std::string tried = ", with ever shorter elements";
+        if (so_far_.helps && tolerance_ > finest) return tried;
+        const std::string vain = tried + ", which help no more: ";
+        if (!report.steep_load.empty())
+            return vain + "the law of load '" + report.steep_load + "' changes too fast inside them";
+        const bool is_smooth = model_.loads().empty() && !model_.has_drives();
+        if (!is_smooth && !is_fine()) return vain + "a law may bend or jump inside them";
+        const std::string left =
+            vain + "rounding is left" + (is_smooth ? "" : ", or a law bends inside them");
+        if (!grown_.is_asked()) return left;
+        return left + "; what is off at the start grows by " + to_text(grown_.largest(), 3) + ", most in " +
+               grown_.in_words(model_);
+    }
+
+    Solution give_up(Try&& last)
+    {
+        if (options_.growth && last.solution.growth.empty())
+            grown_.tell(model_, problem_, options_, span_.accuracy, last.solution);
         const ErrorEstimate& found = last.solution.estimate;
         SolveReport& report = last.solution.report;
         const Motion& motion = last.solution.motion;
@@ -333,22 +321,11 @@ private:
         else
             report.message += "behind, nothing tells the error, since " + report.estimate_failed;
         report.message += " (try " + std::to_string(report.tries);
-        if (grown_.rounding > span_.accuracy)
-            report.message +=
-                "; the rounding of numbers at the start grows to " + to_text(grown_.rounding, 3) +
-                ", most in " +
-                in_words(grown_.growth.rounding.empty() ? grown_.growth.part : grown_.growth.rounding_in,
-                         model_);
+        if (grown_.rounding() > span_.accuracy)
+            report.message += "; the rounding of numbers at the start grows to " +
+                              to_text(grown_.rounding(), 3) + ", most in " + grown_.in_words(model_);
         else
-            report.message +=
-                so_far_.helps && tolerance_ > finest
-                    ? ", with ever shorter elements"
-                    : std::string(", with ever shorter elements, which help no more: ") +
-                          (!report.steep_load.empty()
-                               ? "the law of load '" + report.steep_load + "' changes too fast inside them"
-                           : model_.loads().empty() && !model_.has_drives() ? "rounding is left"
-                           : is_fine() ? "rounding is left, or a law bends inside them"
-                                       : "a law may bend or jump inside them");
+            report.message += in_vain(report);
         report.message += "); try: an earlier end of time, or a larger error in accuracy";
         return std::move(last.solution);
     }
@@ -365,7 +342,7 @@ private:
     bool is_free_;             // the degree, which has not been lowered yet
     int highest_degree_ = 0;   // that is tried where it is not stated
     double tolerance_, length_;
-    Measured grown_;
+    MeasuredGrowth grown_;
     Tries so_far_;
 };
 

@@ -28,9 +28,8 @@ constexpr Nearness beside_one{1e-7, 3e-7, 1e-6}, beside_two{1e-5, 3e-5, 1e-4};
 constexpr double most_of_one = 100, share_of_one = 1e-2;
 /// Of what neighbours are apart: what their iteration may leave, by the square of the growth.
 constexpr double share_left = 1e-4;
-/// Of numbers, by half; and how many of them rounding is told as, since it may be off in any direction and
-/// two are carried along.
-constexpr double spacing = 0.5 * std::numeric_limits<double>::epsilon(), n_spacings = 4;
+/// Of numbers, by half.
+constexpr double spacing = 0x1p-53;
 /// Elements that neighbours are solved for together, at first and at the most.
 constexpr int first_piece = 16, most_in_piece = 128;
 
@@ -279,7 +278,7 @@ Growth growth(const Model& model, const Problem& problem, const Method& method, 
     grown.rounding = grown.factors;   // where nothing else tells
     std::ranges::copy_n(of_rounding.factors.begin(),
                         std::min(grown.factors.size(), of_rounding.factors.size()), grown.rounding.begin());
-    for (double& r : grown.rounding) r *= n_spacings * spacing;
+    for (double& r : grown.rounding) r *= told_by_growth;
     grown.rounding_in = of_rounding.part;
     return grown;
 }
