@@ -659,8 +659,8 @@ livens_mutant(NAME rounding_across_a_plane
 # Rounding is told to stay in any plane.
 livens_mutant(NAME rounding_forgotten
               FILE spacetime/growth.cpp
-              OLD [[r *= told_by_growth;]]
-              NEW [[r *= 1e-6 * told_by_growth;]]
+              OLD [[std::min(anywhere, told_by_growth * of_rounding.factors[e])]]
+              NEW [[1e-6 * std::min(anywhere, told_by_growth * of_rounding.factors[e])]]
               TESTS_OF convergence
               MUST_FAIL Horizon.ARefusalNamesWhatGrowsAndSaysThatTheMotionIsWhole)
 

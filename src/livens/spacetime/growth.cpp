@@ -70,6 +70,7 @@ struct Surroundings {
     const Motion& motion;
     const std::optional<Ends>& closed;   // where a window marches
     double rate;                         // the fastest there ever is
+    bool has_bends = false;              // of their own
 };
 
 /// All of them, piece by piece; between pieces they are brought near again.
@@ -102,7 +103,8 @@ public:
 private:
     Neighbour neighbour() const
     {
-        return Neighbour(at_.model, at_.method, at_.quiet, motion_, at_.closed ? &*at_.closed : nullptr);
+        return Neighbour(at_.model, at_.method, at_.quiet, motion_, at_.closed ? &*at_.closed : nullptr,
+                         at_.has_bends);
     }
 
     void add(const Kicks& kicks, double factor)
@@ -124,6 +126,7 @@ private:
             if (are_lost()) break;
             if (at == 0) grown_.factors.push_back(1);
             const int end = record(at, last);
+            if (end == at) break;
             bring_near(at, end);
             at = end;
         }
@@ -132,6 +135,19 @@ private:
     bool are_lost() const
     {
         return std::ranges::all_of(all_, [](const Perturbed& one) { return one.is_lost; });
+    }
+
+    /// Neighbours bend at instants of their own, and are known well at their element ends alone.
+    bool has_end(const Motion& beside, int end) const
+    {
+        return std::ranges::binary_search(beside.mesh.ends, motion_.mesh.ends[end]);
+    }
+    bool have_end(int end) const
+    {
+        return std::ranges::all_of(all_, [&](const Perturbed& one) {
+            return one.is_lost || (has_end(one.sides[0].motion(), end) &&
+                                   (!has_two_ || has_end(one.sides[1].motion(), end)));
+        });
     }
 
     Difference apart_at(const Perturbed& one, int end) const
@@ -153,8 +169,9 @@ private:
             if (each.is_lost) continue;
             const Motion& one = each.sides[0].motion();
             for (int end = first + 1; is_first && end < last; ++end)
-                if (Difference(one.at(motion_.mesh.ends[end + 1]), motion_.at_end(end + 1), 1)
-                        .size(at_.model, at_.rate) > near_.too_wide)
+                if (has_end(one, end + 1) &&
+                    Difference(one.at(motion_.mesh.ends[end + 1]), motion_.at_end(end + 1), 1)
+                            .size(at_.model, at_.rate) > near_.too_wide)
                     last = end;
             is_first = false;
             if (!has_two_) continue;
@@ -186,25 +203,25 @@ private:
     int record(int first, int last)
     {
         int end = first;
-        for (; end < last && (has_two_ || stretched_ <= most_alone_); ++end) {
+        for (int next = first + 1; next <= last && (has_two_ || stretched_ <= most_alone_); ++next) {
+            if (!have_end(next)) continue;
             double size = 0, grown = 0, stretched = 0;
             Growing part;
             for (const Perturbed& one : all_) {
                 if (one.is_lost) continue;
-                const Difference apart = apart_at(one, end + 1);
+                const Difference apart = apart_at(one, next);
                 const double width = apart.size(at_.model, at_.rate),
                              of_one = one.so_far * apart.size_of_places(at_.model);
                 raise_to(size, width);
                 raise_to(stretched, one.so_far * width);
-                if (of_one > grown && of_one > largest_)
-                    part = apart.most(at_.model, motion_.at_end(end + 1).X);
+                if (of_one > grown && of_one > largest_) part = apart.most(at_.model, motion_.at_end(next).X);
                 raise_to(grown, of_one);
             }
             if (size > near_.too_wide && end > first) break;
             if (grown > largest_ && largest_ < growth_at_horizon) grown_.part = part;
             raise_to(largest_, grown);
             raise_to(stretched_, stretched);
-            grown_.factors.push_back(grown);
+            for (; end < next; ++end) grown_.factors.push_back(grown);
         }
         return end;
     }
@@ -246,10 +263,26 @@ private:
     Growth grown_;
 };
 
-/// What is told of rounding by the growth of any perturbation may be far more than what rounding does.
-bool is_doubtful(double growth, double told)
+double largest(const Growth& grown)
 {
-    return growth >= growth_at_horizon || spacing * growth > told;
+    double largest = 0;
+    for (const double g : grown.factors) raise_to(largest, g);
+    return largest;
+}
+
+/// What is told of rounding by the growth of any perturbation may be far more than what rounding does.
+bool is_doubtful(const Growth& grown, double told)
+{
+    return largest(grown) >= growth_at_horizon || spacing * largest(grown) > told;
+}
+
+/// Where a law jumps, a neighbour whose elements do not end there is pushed by all of an element; where it
+/// bends and touches again and again, one whose elements do is not on the elements of the motion any more.
+/// Both grow too much, not too little.
+void take_smaller(Growth& grown, Growth&& other)
+{
+    if (!(largest(other) < largest(grown)) || other.factors.size() < grown.factors.size()) return;
+    grown = std::move(other);
 }
 
 }   // namespace
@@ -267,18 +300,24 @@ Growth growth(const Model& model, const Problem& problem, const Method& method, 
         closed = close_ends(model, problem.conditions, motion.start(), motion.end(), options.initial);
     const State start = motion.at_end(0);
     const double at_start = fastest_rate(model, start.V), ever = fastest_rate(model, motion.velocities);
-    const Surroundings at{model, method, quiet, motion, closed, ever > 0 ? ever : 1};
-    Growth grown =
-        Neighbours(at, options.tolerance).grown_from(kicks_everywhere(model, start, at_start), at_start);
-    double largest = 0;
-    for (const double g : grown.factors) raise_to(largest, g);
-    if (!is_doubtful(largest, told)) return grown;
+    Surroundings at{model, method, quiet, motion, closed, ever > 0 ? ever : 1};
+    const auto measure = [&](const std::vector<Kicks>& kicks) {
+        return Neighbours(at, options.tolerance).grown_from(kicks, at_start);
+    };
+    const std::vector<Kicks> kicks = kicks_everywhere(model, start, at_start);
+    Growth grown = measure(kicks);
+    if (!is_doubtful(grown, told)) return grown;
+    at.has_bends = closed && !motion.mesh.bends.empty();
+    if (at.has_bends) take_smaller(grown, measure(kicks));
+    if (!is_doubtful(grown, told)) return grown;
     const Growth of_rounding =
         Neighbours(at, options.tolerance).grown_from(kicks_of_rounding(model, motion, at.rate));
-    grown.rounding = grown.factors;   // where nothing else tells
-    std::ranges::copy_n(of_rounding.factors.begin(),
-                        std::min(grown.factors.size(), of_rounding.factors.size()), grown.rounding.begin());
-    for (double& r : grown.rounding) r *= told_by_growth;
+    for (std::size_t e = 0; e < grown.factors.size(); ++e) {   // at the most what it would be anywhere
+        const double anywhere = spacing * grown.factors[e];
+        const bool is_known = e < of_rounding.factors.size();
+        grown.rounding.push_back(is_known ? std::min(anywhere, told_by_growth * of_rounding.factors[e])
+                                          : anywhere);
+    }
     grown.rounding_in = of_rounding.part;
     return grown;
 }

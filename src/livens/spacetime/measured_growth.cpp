@@ -50,10 +50,9 @@ double MeasuredGrowth::largest() const
 {
     double largest = 0;
     for (const double g : growth_.factors) raise_to(largest, g);
-    if (growth_.rounding.empty()) return largest;
-    largest = 0;
-    for (const double r : growth_.rounding) raise_to(largest, r / told_by_growth);
-    return largest;
+    double rounding = 0;
+    for (const double r : growth_.rounding) raise_to(rounding, r);
+    return growth_.rounding.empty() ? largest : std::min(largest, rounding / told_by_growth);
 }
 
 }   // namespace livens

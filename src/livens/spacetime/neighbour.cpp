@@ -42,8 +42,9 @@ struct Neighbour::March {
 };
 
 Neighbour::Neighbour(const Model& model, const Method& method, const SolveOptions& options,
-                     const Motion& beside, const Ends* closed)
-    : model_(model), method_(method), options_(options), beside_(beside), closed_(closed)
+                     const Motion& beside, const Ends* closed, bool has_bends)
+    : model_(model), method_(method), options_(options), beside_(beside), closed_(closed),
+      has_bends_(has_bends)
 {}
 Neighbour::Neighbour(Neighbour&&) noexcept = default;
 Neighbour::~Neighbour() = default;
@@ -63,6 +64,7 @@ bool Neighbour::march(const State& start, const Motion& near, double left)
     w.length_of_model = model_.length();
     w.may_divide = options_.divide;
     w.trust = {acceptable_velocity_jump, true, true};
+    w.ends_at_bends = !mesh_.bends.empty();
     SolveReport report;
     solve_windows(march_->window, mesh_, w, report);
     motion_ = march_->window.take_motion();
@@ -73,6 +75,10 @@ bool Neighbour::solve(const State& start, const Motion& near, int first, int las
 {
     mesh_.ends.assign(beside_.mesh.ends.begin() + first, beside_.mesh.ends.begin() + last + 1);
     mesh_.required = mesh_.ends;
+    mesh_.bends.clear();
+    if (has_bends_)
+        for (const double t : beside_.mesh.bends)
+            if (t > mesh_.start() && t <= mesh_.end()) mesh_.bends.push_back(t);
     try {
         if (closed_ != nullptr) return march(start, near, left);
         Solution one = livens::solve(model_, {{start}, {}, &near}, mesh_, method_, options_);

@@ -12,9 +12,10 @@ namespace livens {
 class Neighbour {
 public:
     /// References must outlive it. `closed`: as the motion begins, where a window marches it; null: elements
-    /// that are solved as any problem is.
+    /// that are solved as any problem is. `has_bends`: laws bend at instants of its own, where elements end
+    /// instead of where they bend beside it; else these ends serve.
     Neighbour(const Model& model, const Method& method, const SolveOptions& options, const Motion& beside,
-              const Ends* closed);
+              const Ends* closed, bool has_bends);
     Neighbour(Neighbour&&) noexcept;
     ~Neighbour();
 
@@ -34,6 +35,7 @@ private:
     const SolveOptions& options_;
     const Motion& beside_;
     const Ends* closed_;
+    bool has_bends_;
     TimeMesh mesh_;
     std::unique_ptr<March> march_;   // of one element after the other, if closed
     Motion motion_;
