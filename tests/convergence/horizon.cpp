@@ -137,6 +137,19 @@ TEST(Horizon, GrowthOfBodiesThatTurnOver)
     }
 }
 
+/// Pieces of motions that other families begin anew are not the motion: they are compared with each other.
+TEST(Horizon, GrowthIsTheSameByOtherFamilies)
+{
+    Model model({0, 0, -9.81});
+    model.add_body(point_mass("bob", 1, {1, 0, 0}));
+    model.add_joint(rod("rod", world, 0, {}, 1));
+    const double known = with_growth(model, 5, 100, Lobatto{6}).verdict.growth;
+    Mixed mixed;
+    mixed.degree = 3;
+    for (const Method& method : {Method(Radau{5}), Method(mixed), Method(Midpoint{})})
+        EXPECT_NEAR(with_growth(model, 5, 400, method).verdict.growth / known, 1, 0.01) << name_of(method);
+}
+
 /// Calm motions need one neighbour for each perturbation, on one side.
 TEST(Horizon, CalmMotionsHaveNeighboursOnOneSide)
 {

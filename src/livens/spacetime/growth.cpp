@@ -24,7 +24,8 @@ struct Nearness {
 /// On one side of the motion what bends is of second order, on both sides of third; the smaller, the more of
 /// it is what the iteration leaves.
 constexpr Nearness beside_one{1e-7, 3e-7, 1e-6}, beside_two{1e-5, 3e-5, 1e-4};
-/// Growth up to which a neighbour on one side does, and what an error of it may become.
+/// Growth up to which a neighbour on one side does, and what an error of it may become. Not where a piece
+/// that begins anew is not the motion: blocks, and steps that go on from more than a state.
 constexpr double most_of_one = 100, share_of_one = 1e-2;
 /// Of what neighbours are apart: what their iteration may leave, by the square of the growth.
 constexpr double share_left = 1e-4;
@@ -78,7 +79,8 @@ class Neighbours {
 public:
     Neighbours(const Surroundings& at, double most_left)
         : at_(at), motion_(at.motion),
-          most_alone_(std::min(most_of_one, std::sqrt(share_of_one * beside_one.small / most_left))),
+          most_alone_(
+              at.closed ? std::min(most_of_one, std::sqrt(share_of_one * beside_one.small / most_left)) : 0),
           has_two_(most_alone_ < 1), near_(has_two_ ? beside_two : beside_one)
     {}
 
