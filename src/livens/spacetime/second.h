@@ -58,11 +58,11 @@ void add_events(const Model& model, const Motion& motion, ErrorEstimate& found);
 
 /// Where it is more the motion is beyond its horizon, which the verdict tells.
 constexpr double growth_at_horizon = 1e11;
-/// What is told of rounding, by the growth of what it reaches: some spacings of numbers, since it may be off in
-/// any direction and two are carried along.
+/// What is told of rounding, by the growth of what it reaches: some spacings of numbers, since it may be off
+/// in any direction and two are carried along.
 constexpr double told_by_growth = 4 * 0x1p-53;
-/// What the rounding of numbers at the start has grown to at element ends, up to the horizon, in lengths of the
-/// model and rad: as was measured, or by the growth; see growth().
+/// What the rounding of numbers at the start has grown to at element ends, up to the horizon, in lengths of
+/// the model and rad: as was measured, or by the growth; see growth().
 std::vector<double> grown_rounding(std::span<const double> growth, std::span<const double> measured);
 /// What an estimate leaves open, for growth(): where rounding may be more it counts.
 double told_without_rounding(const ErrorEstimate& found);
