@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // How perturbations of the start grow, and until when double precision says something.
 #include "convergence/studies.h"
+#include "livens/multibody/body.h"
 #include "livens/multibody/drives.h"
 #include "livens/time/time_laws.h"
 
@@ -92,6 +93,229 @@ TEST(Horizon, SteadySpinGrowsByItsAngle)
     }
 }
 
+/// Held at its centre it has nothing but its spin that could grow: not by a push, which takes a free body as
+/// far.
+TEST(Horizon, SteadySpinOfABodyThatIsHeldGrowsByItsAngle)
+{
+    for (const Vector3& w : {Vector3{0, 0, 5}, Vector3{5, 0, 0}, Vector3{3, 2, 4}}) {
+        Model model;
+        model.add_body(rigid_body("ball", {1, {}, identity<3>()}, {.angular_velocity = w}));
+        model.add_joint(spherical("centre", world, 0, {}));
+        const Solution s = with_growth(model, 20, 100, Lobatto{6});
+        EXPECT_GT(s.verdict.growth, 0.5 * 20 * norm(w));
+        EXPECT_LT(s.verdict.growth, 1.1 * 20 * norm(w));
+    }
+}
+
+/// Bodies at random and how they turn, by the largest singular value of Euler's variational equations (order
+/// 8, extended precision).
+TEST(Horizon, GrowthOfBodiesThatTurnOver)
+{
+    struct Case {
+        Vector3 inertia, spin;
+        double end, growth;
+    };
+    for (const Case& c :
+         {Case{{1.1, 1.4, 2.4}, {0.0017, 5.7, 0.0001}, 50, 3.87e4},
+          Case{{1, 2, 3}, {0.01, 6, 0}, 100, 2.58e4}, Case{{0.5, 1.5, 1.8}, {0.036, 6, 0.0006}, 54, 4.85e3},
+          Case{{1.2, 1.8, 2.7}, {-1.2, -0.3, -2.2}, 50, 132}}) {
+        Model model;
+        const Matrix3 J{c.inertia[0], 0, 0, 0, c.inertia[1], 0, 0, 0, c.inertia[2]};
+        model.add_body(rigid_body("b", {1, {}, J}, {.angular_velocity = c.spin}));
+        SolveOptions options;
+        options.growth = true;
+        for (const Time& time :
+             {Time{Span{.start = 0, .end = c.end, .accuracy = 1e-4}},
+              Time{Span{.start = 0, .end = c.end, .accuracy = 1e-6}}, Time{make_time_mesh(0, c.end, 1000)},
+              Time{make_time_mesh(0, c.end, 3000)}}) {
+            const bool is_mesh = std::holds_alternative<TimeMesh>(time);
+            const Solution s = solve(model, {model.start()}, time, Lobatto{is_mesh ? 6 : 0}, options);
+            EXPECT_TRUE(s.report.converged()) << s.report.message;
+            EXPECT_GT(s.verdict.growth, c.growth / 3);
+            EXPECT_LT(s.verdict.growth, c.growth * 1.5);
+        }
+    }
+}
+
+using Real = long double;
+
+/// Euler's equations and the quaternion of a free body, by Taylor series of extended precision.
+class FreeBody {
+public:
+    FreeBody(const Vector3& inertia, const Vector3& spin) : inertia_(inertia)
+    {
+        for (int i = 0; i < 3; ++i) y_[i] = spin[i];
+        y_[3] = 1;
+    }
+    /// Rotation from the start on, at ascending instants.
+    Matrix3 at(double t)
+    {
+        const Real whole = t - t_;
+        const int n = 1 + static_cast<int>(whole / 0.05L);
+        for (int k = 0; k < n; ++k) step(whole / n);
+        t_ = t;
+        const Real s = y_[3], x = y_[4], y = y_[5], z = y_[6];
+        const auto d = [](Real number) { return static_cast<double>(number); };
+        return {d(1 - 2 * (y * y + z * z)), d(2 * (x * y + s * z)),     d(2 * (x * z - s * y)),
+                d(2 * (x * y - s * z)),     d(1 - 2 * (x * x + z * z)), d(2 * (y * z + s * x)),
+                d(2 * (x * z + s * y)),     d(2 * (y * z - s * x)),     d(1 - 2 * (x * x + y * y))};
+    }
+
+private:
+    void step(Real h)
+    {
+        constexpr int order = 30;
+        Real c[7][order + 1];
+        for (int i = 0; i < 7; ++i) c[i][0] = y_[i];
+        const Real a = inertia_[0], b = inertia_[1], g = inertia_[2];
+        for (int n = 0; n < order; ++n) {
+            const auto product = [&](int i, int j) {
+                Real sum = 0;
+                for (int k = 0; k <= n; ++k) sum += c[i][k] * c[j][n - k];
+                return sum;
+            };
+            const Real rates[7] = {(b - g) / a * product(1, 2),
+                                   (g - a) / b * product(2, 0),
+                                   (a - b) / g * product(0, 1),
+                                   -(product(4, 0) + product(5, 1) + product(6, 2)) / 2,
+                                   (product(3, 0) + product(5, 2) - product(6, 1)) / 2,
+                                   (product(3, 1) + product(6, 0) - product(4, 2)) / 2,
+                                   (product(3, 2) + product(4, 1) - product(5, 0)) / 2};
+            for (int i = 0; i < 7; ++i) c[i][n + 1] = rates[i] / (n + 1);
+        }
+        for (int i = 0; i < 7; ++i) {
+            y_[i] = 0;
+            for (int n = order; n >= 0; --n) y_[i] = y_[i] * h + c[i][n];
+        }
+    }
+
+    Vector3 inertia_;
+    Real y_[7] = {};
+    double t_ = 0;
+};
+
+/// Beside an unstable axis the start may grow by 1e4 while what is rounded in mid-flip grows by 1e8:
+/// accuracies that rounding does not let be reached are refused, and what is told covers it.
+TEST(Horizon, RoundingsOnTheWayAreTold)
+{
+    int n_refused = 0, n_rounded = 0;
+    for (const double tilt : {0.001, 0.0017, 0.004})
+        for (const double accuracy : {1e-5, 3e-6, 1e-6, 1e-7, 3e-8}) {
+            const Vector3 inertia{1, 2, 3}, spin{tilt, 6, 0};
+            Model model;
+            model.add_body(
+                rigid_body("b", {1, {}, Matrix3{1, 0, 0, 0, 2, 0, 0, 0, 3}}, {.angular_velocity = spin}));
+            SolveOptions options;
+            options.growth = true;
+            const Solution s = solve(model, {model.start()}, Span{0, 30, accuracy}, Lobatto{0}, options);
+            FreeBody body(inertia, spin);
+            double error = 0;
+            for (int e = 0; e <= s.motion.n_elements(); ++e) {
+                const Matrix3 off = directors(s.motion.at_end(e).X[0]) - body.at(s.motion.mesh.ends[e]);
+                error = std::max(error, norm(off) / std::sqrt(2.0));
+            }
+            n_rounded += error > 1e-7 && accuracy < 2e-7 ? 1 : 0;
+            n_refused += s.report.converged() ? 0 : 1;
+            if (!s.report.converged()) continue;
+            EXPECT_LT(error, 3 * s.estimate.largest) << tilt << ", " << accuracy;
+            EXPECT_LT(error, 3 * accuracy) << tilt;
+        }
+    EXPECT_GT(n_refused, 2);
+    tell("refused", n_refused);
+    tell("rounded", n_rounded);
+}
+
+/// Pieces of motions that other families begin anew are not the motion: they are compared with each other.
+TEST(Horizon, GrowthIsTheSameByOtherFamilies)
+{
+    Model model({0, 0, -9.81});
+    model.add_body(point_mass("bob", 1, {1, 0, 0}));
+    model.add_joint(rod("rod", world, 0, {}, 1));
+    const double known = with_growth(model, 5, 100, Lobatto{6}).verdict.growth;
+    Mixed mixed;
+    mixed.degree = 3;
+    for (const Method& method : {Method(Radau{5}), Method(mixed), Method(Midpoint{})})
+        EXPECT_NEAR(with_growth(model, 5, 400, method).verdict.growth / known, 1, 0.01) << name_of(method);
+}
+
+/// Calm motions need one neighbour for each perturbation, on one side.
+TEST(Horizon, CalmMotionsHaveNeighboursOnOneSide)
+{
+    Model model({0, 0, -9.81});
+    model.add_body(point_mass("bob", 1, {1, 0, 0}));
+    model.add_joint(rod("rod", world, 0, {}, 1));
+    const auto elements_of_neighbours = [&](double end) {
+        const TimeMesh mesh = make_time_mesh(0, end, 100);
+        const Solution s = solve(model, {model.start()}, mesh, Lobatto{6});
+        int n = 0;
+        SolveOptions options;
+        options.progress = [&](const Progress&) {
+            ++n;
+            return true;
+        };
+        const Growth grown = growth(model, {model.start()}, Lobatto{6}, options, s.motion);
+        EXPECT_EQ(grown.factors.size(), s.motion.mesh.ends.size());
+        return 1.0 * n / s.motion.n_elements();
+    };
+    EXPECT_LT(elements_of_neighbours(5), 2.6);     // some are begun in vain
+    EXPECT_GT(elements_of_neighbours(100), 3.0);   // grown by more than a hundred
+}
+
+/// In a plane of the axes, where a light mass between rods lashes about, perturbations across the plane grow
+/// by 6e15 in 10 s, but rounding does not reach them.
+class LightBetweenRods : public ::testing::Test {
+protected:
+    static Model model(const Matrix3& axes)
+    {
+        Model model(axes * Vector3{0, -9.81, 0});
+        model.add_body(point_mass("upper", 1e-4, axes * Vector3{0.8, 0.6, 0}));
+        model.add_body(point_mass("lower", 1, axes * Vector3{1.8, 0.6, 0}));
+        model.add_joint(rod("above", world, 0, {}, norm(axes * Vector3{0.8, 0.6, 0})));
+        model.add_joint(rod("below", 0, 1, {}, norm(axes * Vector3{1, 0, 0})));
+        return model;
+    }
+    static Solution solved(const Matrix3& axes, double accuracy)
+    {
+        SolveOptions options;
+        options.growth = true;
+        options.initial = StartPolicy::project;
+        const Model light = model(axes);
+        return solve(light, {light.start()}, Span{.start = 0, .end = 10, .accuracy = accuracy}, Lobatto{0},
+                     options);
+    }
+};
+
+TEST_F(LightBetweenRods, RoundingDoesNotLeaveAPlaneOfTheAxes)
+{
+    for (const double accuracy : {1e-4, 1e-6}) {
+        const Solution s = solved(identity<3>(), accuracy);
+        ASSERT_TRUE(s.report.converged()) << s.report.message;
+        EXPECT_GT(s.verdict.growth, 1e14);
+        EXPECT_TRUE(std::isnan(s.verdict.horizon));
+        // by DOP853 on its equations, 1e-13
+        const Vector3 end = s.motion.at_end(s.motion.n_elements()).X[0].column(0);
+        EXPECT_LT(norm(end - Vector3{0.86646193, -0.49924316, 0}), accuracy);
+        ASSERT_FALSE(s.rounding.empty());
+        EXPECT_LT(s.rounding.back(), 1e-7);
+        ASSERT_FALSE(s.verdict.remarks.empty());
+        EXPECT_NE(s.verdict.remarks.back().find("rounding does not reach it"), std::string::npos)
+            << s.verdict.remarks.back();
+        EXPECT_NE(s.verdict.remarks.back().find("moving along ("), std::string::npos);
+    }
+}
+
+/// Control: in any other plane numbers are rounded across it.
+TEST_F(LightBetweenRods, RoundingLeavesAnyOtherPlane)
+{
+    const Matrix3 tilted = directors_from_rotation_vector({0.4, 0.3, -0.2});
+    const Solution s = solved(tilted, 1e-6);
+    EXPECT_EQ(s.report.status, SolveStatus::inaccurate);
+    EXPECT_NE(s.report.message.find("the rounding of numbers grows to"), std::string::npos)
+        << s.report.message;
+    EXPECT_NE(s.report.message.find("most in body 'upper'"), std::string::npos) << s.report.message;
+    EXPECT_GT(s.verdict.growth, 1e6);
+}
+
 TEST(Horizon, WhatGrowsIsNamed)
 {
     Model model({0, 0, -9.81});
@@ -130,6 +354,28 @@ TEST(Horizon, ARefusalNamesWhatGrowsAndSaysThatTheMotionIsWhole)
     EXPECT_NE(s.report.message.find("most in body 'bob' moving along ("), std::string::npos)
         << s.report.message;
     EXPECT_TRUE(to(1e-5).report.converged());
+}
+
+/// Rounding inside of elements costs more than that of the start where bodies turn over: the refusal tells
+/// the growth, too.
+TEST(Horizon, ARefusalByRoundingTellsTheGrowth)
+{
+    Model model;
+    Placement spinning;
+    spinning.angular_velocity = {0.001, 6, 0};
+    model.add_body(rigid_body("b", {1, {}, Matrix3{1, 0, 0, 0, 2, 0, 0, 0, 3}}, spinning));
+    SolveOptions options;
+    options.growth = true;
+    const Solution s =
+        solve(model, {model.start()}, Span{.start = 0, .end = 30, .accuracy = 1e-8}, Lobatto{0}, options);
+    ASSERT_EQ(s.report.status, SolveStatus::inaccurate);
+    EXPECT_GT(s.verdict.growth, 5.5e4 / 3);
+    EXPECT_LT(s.verdict.growth, 5.5e4 * 1.5);
+    EXPECT_TRUE(std::isnan(s.verdict.horizon));
+    for (const char* words :
+         {"the motion is whole up to 30 s", "the rounding of numbers grows to",
+          "most in body 'b' turning about ("})
+        EXPECT_NE(s.report.message.find(words), std::string::npos) << s.report.message;
 }
 
 /// On its head a pendulum leaves as exp(sqrt(g / l) t); the growth is that of any neighbour.

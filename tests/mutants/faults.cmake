@@ -610,27 +610,59 @@ livens_mutant(NAME angle_apart_by_one_direction
 # Neighbours that part until they bend: what they bend by grows from turn to turn of a tumbling body.
 livens_mutant(NAME growth_bends
               FILE spacetime/growth.cpp
-              OLD [[wide = 3e-5, too_wide = 1e-4;]]
-              NEW [[wide = 3e-2, too_wide = 1e-1;]]
+              OLD [[beside_two{1e-5, 3e-5, 1e-4}]]
+              NEW [[beside_two{1e-5, 3e-2, 1e-1}]]
               TESTS_OF convergence
               MUST_FAIL Horizon.GrowthOfATumblingBodyIsThatOfTheMotionWhateverTheElements)
 
-# One-sided differences behind the first piece: of second order.
+# One-sided differences whatever they have grown to: of second order.
 livens_mutant(NAME growth_one_sided
               FILE spacetime/growth.cpp
-              OLD [[k == 0 ? share : -share]]
-              NEW [[k == 0 ? 2 * share : 0.0]]
+              OLD [[constexpr double most_of_one = 100, share_of_one = 1e-2;]]
+              NEW [[constexpr double most_of_one = 1e30, share_of_one = 1e60;]]
               TESTS_OF convergence
               MUST_FAIL Horizon.GrowthOfATumblingBodyIsThatOfTheMotionWhateverTheElements)
+
+# Both sides from the start on: right, and twice the work.
+livens_mutant(NAME growth_always_two_sided
+              FILE spacetime/growth.cpp
+              OLD [[has_two_(most_alone_ < 1)]]
+              NEW [[has_two_(most_alone_ > 1)]]
+              TESTS_OF convergence
+              MUST_FAIL Horizon.CalmMotionsHaveNeighboursOnOneSide)
 
 # What was made smaller on the way is forgotten.
 livens_mutant(NAME growth_forgets
               FILE spacetime/growth.cpp
-              OLD [[pair.so_far /= share;]]
-              NEW [[pair.so_far /= 1;]]
+              OLD [[one.so_far /= share;]]
+              NEW [[one.so_far /= 1;]]
               TESTS_OF convergence
               MUST_FAIL Horizon.GrowthOnAnUnstableRestIsItsExponential
                         Horizon.OfTheDoublePendulumsIsWhereTwoIntegrationsPart)
+
+# Perturbations across what turns a body alone: a steady spin is told not to grow.
+livens_mutant(NAME growth_across_alone
+              FILE spacetime/perturbations.cpp
+              OLD [[std::sqrt(2.0) * across(spin)]]
+              NEW [[0.0 * across(spin)]]
+              TESTS_OF convergence
+              MUST_FAIL Horizon.SteadySpinOfABodyThatIsHeldGrowsByItsAngle)
+
+# Rounding is thought to leave the plane that all numbers are in.
+livens_mutant(NAME rounding_across_a_plane
+              FILE spacetime/perturbations.cpp
+              OLD [[along[i] = !zeros[i];]]
+              NEW [[along[i] = true;]]
+              TESTS_OF convergence
+              MUST_FAIL LightBetweenRods.RoundingDoesNotLeaveAPlaneOfTheAxes)
+
+# Rounding is told to stay in any plane.
+livens_mutant(NAME rounding_forgotten
+              FILE spacetime/growth.cpp
+              OLD [[std::min(anywhere, told_by_growth * of_rounding.factors[e])]]
+              NEW [[1e-6 * std::min(anywhere, told_by_growth * of_rounding.factors[e])]]
+              TESTS_OF convergence
+              MUST_FAIL Horizon.ARefusalNamesWhatGrowsAndSaysThatTheMotionIsWhole)
 
 # Nobody looks at the energy of stiff springs that turn: the march goes on until it dies.
 livens_mutant(NAME turning_springs_unwatched

@@ -142,19 +142,31 @@ std::string in_words(const Growing& part, const Model& model)
 
 namespace {
 
+/// By what rounding does, where that was measured.
 void find_horizon(Verdict& v, const Model& model, const Motion& motion, std::span<const double> growth,
-                  const Growing& part)
+                  const Growing& part, std::span<const double> rounding, const Growing& rounding_in)
 {
+    constexpr double spacing = 0.5 * std::numeric_limits<double>::epsilon();
+    double first = Verdict::unknown;   // for any perturbation
     for (std::size_t e = 0; e < growth.size(); ++e) {
         if (e == 0) v.growth = 0;
         raise_to(v.growth, growth[e]);
-        if (std::isnan(v.horizon) && growth[e] * rounding_at_start >= acceptable_error)
-            v.horizon = motion.mesh.ends[e];
+        const bool is_measured = e < rounding.size();
+        const double grown = growth[e] * rounding_at_start,
+                     by_rounding =
+                         is_measured ? std::min(grown, rounding[e] / spacing * rounding_at_start) : grown;
+        if (std::isnan(first) && grown >= acceptable_error) first = motion.mesh.ends[e];
+        if (std::isnan(v.horizon) && by_rounding >= acceptable_error) v.horizon = motion.mesh.ends[e];
     }
+    if (std::isnan(v.horizon) && !std::isnan(first))
+        v.remarks.push_back("what moves " + in_words(part, model) +
+                            " by 1e-13 at the start grows to 0.01 by " + to_text(first, 4) +
+                            " s; numbers there stay zero, so that rounding does not reach it, but anything "
+                            "else does");
     if (!std::isnan(v.horizon))
         v.remarks.push_back("what rounding does to the start has grown to 0.01 by " + to_text(v.horizon, 4) +
-                            " s, most in " + in_words(part, model) + ": the motion goes on to " +
-                            to_text(motion.end(), 6) +
+                            " s, most in " + in_words(rounding_in.body < 0 ? part : rounding_in, model) +
+                            ": the motion goes on to " + to_text(motion.end(), 6) +
                             " s, but behind the horizon it is one of many that double precision cannot tell "
                             "apart");
 }
@@ -162,7 +174,8 @@ void find_horizon(Verdict& v, const Model& model, const Motion& motion, std::spa
 }   // namespace
 
 Verdict judge(const Model& model, const Motion& motion, const SolveReport& report,
-              const ErrorEstimate& estimate, std::span<const double> growth, const Growing& part)
+              const ErrorEstimate& estimate, std::span<const double> growth, const Growing& part,
+              std::span<const double> rounding, const Growing& rounding_in)
 {
     Verdict v;
     if (motion.n_elements() == 0) return v;   // nothing was solved, so there is nothing to judge
@@ -187,7 +200,7 @@ Verdict judge(const Model& model, const Motion& motion, const SolveReport& repor
         v.good_digits = good.digits;
         v.good_until = good.until;
     }
-    find_horizon(v, model, motion, growth, part);
+    find_horizon(v, model, motion, growth, part, rounding, rounding_in);
     if (!report.converged()) return v;
     Reasons reasons(v.reasons);
     const bool counts_turns = motion.constraints_hold == "element nodes";

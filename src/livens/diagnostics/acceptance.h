@@ -72,6 +72,7 @@ struct Verdict {
 /// or if one of these figures is not a number.
 Verdict judge(const Model& model, const Motion& motion, const SolveReport& report,
               const ErrorEstimate& estimate = {}, std::span<const double> growth = {},
-              const Growing& part = {});
+              const Growing& part = {}, std::span<const double> rounding = {},
+              const Growing& rounding_in = {});
 
 }   // namespace gnu::visibility("default")]]livens

@@ -11,6 +11,7 @@
 #include "livens/base/elementary.h"
 #include "livens/base/text.h"
 #include "livens/multibody/body.h"
+#include "livens/spacetime/detail/measured_growth.h"
 #include "livens/spacetime/detail/window_notes.h"
 #include "livens/spacetime/lobatto/window.h"
 #include "livens/spacetime/second.h"
@@ -35,6 +36,7 @@ constexpr double far_off = 3;   // accuracies of a try in vain, after which anot
 constexpr int preferred_radau = 5, high_radau = 8;
 constexpr double high_accuracy = 1e-9;   // below, the high degree
 constexpr double fine_accuracy = 1e-8;   // below, rounding counts
+constexpr double all_digits = 1e-15;     // of the iteration
 constexpr double fit = 1.5;              // times the time between stops: longer elements are of no use
 constexpr int looked_at = 8;             // elements that tell whether they fit between stops
 constexpr int least_piece = 16;          // elements that the second solution solves together
@@ -51,7 +53,6 @@ int& degree_of(Method& method) { return const_cast<int&>(degree_of(std::as_const
 /// be shortened in vain.
 SolveOptions with_tolerance_for(double accuracy, int tries, SolveOptions options)
 {
-    constexpr double all_digits = 1e-15;
     if (accuracy <= fine_accuracy && (tries > 1 || accuracy >= high_accuracy))
         options.tolerance = std::min(options.tolerance, all_digits);
     return options;
@@ -99,27 +100,6 @@ struct Tries {
     }
 };
 
-/// Of one try, for all: growth is that of the motion, whatever the elements.
-struct Measured {
-    Growth growth{};
-    TimeMesh mesh{};
-    double rounding = 0;   // what it has grown to by the end
-
-    bool is_whole() const { return !growth.factors.empty() && growth.factors.size() == mesh.ends.size(); }
-    /// At the ends of other elements.
-    std::vector<double> at(const std::vector<double>& ends) const
-    {
-        if (ends == mesh.ends) return growth.factors;
-        std::vector<double> there;
-        for (const double t : ends) {
-            const int e = mesh.element_at(t);
-            const double share = (t - mesh.ends[e]) / mesh.length(e);
-            there.push_back((1 - share) * growth.factors[e] + share * growth.factors[e + 1]);
-        }
-        return there;
-    }
-};
-
 class ToAccuracy {
 public:
     ToAccuracy(const Model& model, const Problem& problem, const Span& span, const Method& method,
@@ -158,7 +138,12 @@ public:
             report.accuracy = span_.accuracy;
             if (!report.converged()) return std::move(one.solution);
             const ErrorEstimate& found = one.solution.estimate;
-            if (!one.is_broken_off && look_at_rounding(one.solution, tries)) return give_up(std::move(one));
+            if (!one.is_broken_off && look_at_rounding(one.solution, tries)) {
+                if (grown_.least_rounding() > span_.accuracy || options_.tolerance <= all_digits)
+                    return give_up(std::move(one));
+                options_.tolerance = all_digits;   // what the iteration leaves is the most of it
+                continue;
+            }
             const bool is_good = !one.is_broken_off && found.largest <= span_.accuracy;
             if (is_good && (so_far_.is_once_good || !may_be_chance())) return std::move(one.solution);
             if (!is_good) so_far_.count(one);
@@ -296,19 +281,32 @@ private:
     bool look_at_rounding(Solution& solution, int tries)
     {
         const bool is_good = solution.estimate.largest <= span_.accuracy;
-        if (!options_.growth || !(is_good || (tries > 1 && grown_.mesh.ends.empty()))) return false;
-        const TimeMesh& mesh = solution.motion.mesh;
-        if (!grown_.is_whole())
-            grown_ = {growth(model_, problem_, solution.method, options_, solution.motion), mesh};
-        solution.growth = grown_.at(mesh.ends);
-        solution.growing = grown_.growth.part;
-        grown_.rounding = grown_rounding(solution.growth);
-        count_rounding(model_, solution.growth, mesh, solution.estimate);
-        return grown_.rounding > span_.accuracy;
+        if (!options_.growth || !(is_good || (tries > 1 && !grown_.is_asked()))) return false;
+        grown_.tell(model_, problem_, options_, span_.accuracy, solution);
+        return grown_.rounding() > span_.accuracy;
     }
 
-    Solution give_up(Try&& last) const
+    /// Why ever shorter elements were not enough.
+    std::string in_vain(const SolveReport& report) const
     {
+        const std::string tried = ", with ever shorter elements";
+        if (so_far_.helps && tolerance_ > finest) return tried;
+        const std::string vain = tried + ", which help no more: ";
+        if (!report.steep_load.empty())
+            return vain + "the law of load '" + report.steep_load + "' changes too fast inside them";
+        const bool is_smooth = model_.loads().empty() && !model_.has_drives();
+        if (!is_smooth && !is_fine()) return vain + "a law may bend or jump inside them";
+        const std::string left =
+            vain + "rounding is left" + (is_smooth ? "" : ", or a law bends inside them");
+        if (!grown_.is_asked()) return left;
+        return left + "; what is off at the start grows by " + to_text(grown_.largest(), 3) + ", most in " +
+               grown_.in_words(model_);
+    }
+
+    Solution give_up(Try&& last)
+    {
+        if (options_.growth && last.solution.growth.empty())
+            grown_.tell(model_, problem_, options_, span_.accuracy, last.solution);
         const ErrorEstimate& found = last.solution.estimate;
         SolveReport& report = last.solution.report;
         const Motion& motion = last.solution.motion;
@@ -328,20 +326,11 @@ private:
         else
             report.message += "behind, nothing tells the error, since " + report.estimate_failed;
         report.message += " (try " + std::to_string(report.tries);
-        if (grown_.rounding > span_.accuracy)
-            report.message += "; the rounding of numbers at the start grows to " +
-                              to_text(grown_.rounding, 3) + ", most in " +
-                              in_words(grown_.growth.part, model_);
+        if (grown_.rounding() > span_.accuracy)
+            report.message += "; the rounding of numbers grows to " + to_text(grown_.rounding(), 3) +
+                              ", most in " + grown_.in_words(model_);
         else
-            report.message +=
-                so_far_.helps && tolerance_ > finest
-                    ? ", with ever shorter elements"
-                    : std::string(", with ever shorter elements, which help no more: ") +
-                          (!report.steep_load.empty()
-                               ? "the law of load '" + report.steep_load + "' changes too fast inside them"
-                           : model_.loads().empty() && !model_.has_drives() ? "rounding is left"
-                           : is_fine() ? "rounding is left, or a law bends inside them"
-                                       : "a law may bend or jump inside them");
+            report.message += in_vain(report);
         report.message += "); try: an earlier end of time, or a larger error in accuracy";
         return std::move(last.solution);
     }
@@ -358,7 +347,7 @@ private:
     bool is_free_;             // the degree, which has not been lowered yet
     int highest_degree_ = 0;   // that is tried where it is not stated
     double tolerance_, length_;
-    Measured grown_;
+    MeasuredGrowth grown_;
     Tries so_far_;
 };
 

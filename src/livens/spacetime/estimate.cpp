@@ -234,27 +234,6 @@ void add_inside(const Model& model, const Motion& motion, const std::vector<doub
     found.find_largest(motion.mesh);
 }
 
-double grown_rounding(std::span<const double> growth)
-{
-    constexpr double rounding = 0.5 * std::numeric_limits<double>::epsilon();
-    double largest = 0;
-    for (const double g : growth) raise_to(largest, g);
-    return rounding * std::min(largest, growth_at_horizon);
-}
-
-void count_rounding(const Model& model, std::span<const double> growth, const TimeMesh& mesh,
-                    ErrorEstimate& found)
-{
-    const auto n = static_cast<std::size_t>(found.n_bodies);
-    double least = 0;
-    for (std::size_t i = 0; i < found.position.size() && i / n < growth.size(); ++i) {
-        raise_to(least, grown_rounding(growth.subspan(i / n, 1)));
-        raise_to(found.position[i], least);
-        if (!model.bodies()[i % n].is_point) raise_to(found.orientation[i], least);
-    }
-    found.find_largest(mesh);
-}
-
 namespace {
 
 /// Where what a law did unseen in the first solution makes much of the error, the estimate has its name.
@@ -350,9 +329,12 @@ void estimate_all(const Model& model, const Problem& problem, const Method& meth
     if (!options.growth && !is_local) return;
     const auto begin = std::chrono::steady_clock::now();
     if (solution.growth.empty()) {
-        Growth grown = growth(model, problem, solution.method, options, solution.motion);
+        Growth grown = growth(model, problem, solution.method, options, solution.motion,
+                              told_without_rounding(solution.estimate));
         solution.growth = std::move(grown.factors);
         solution.growing = grown.part;
+        solution.rounding = told_of_rounding(grown, options.tolerance);
+        solution.rounding_in = grown.rounding_in;
     }
     if (is_local) {
         solution.estimate = grown_errors(model, solution);
@@ -360,7 +342,8 @@ void estimate_all(const Model& model, const Problem& problem, const Method& meth
             solution.report.estimate_failed = "no neighbouring motion tells to the end how errors grow";
     }
     if (!solution.estimate.empty())
-        count_rounding(model, solution.growth, solution.motion.mesh, solution.estimate);
+        count_rounding(model, grown_rounding(solution.growth, solution.rounding), solution.motion.mesh,
+                       solution.estimate);
     solution.estimate_seconds +=
         std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }

@@ -2,184 +2,37 @@
 // How perturbations of the start grow: neighbouring motions, carried along.  (docs/theory.md, "The horizon")
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
+#include <functional>
 #include <limits>
-#include <span>
+#include <optional>
+#include <utility>
 
-#include "livens/base/error.h"
 #include "livens/diagnostics/largest.h"
-#include "livens/multibody/body.h"
-#include "livens/multibody/twist.h"
 #include "livens/spacetime/detail/neighbour.h"
+#include "livens/spacetime/detail/perturbations.h"
 #include "livens/spacetime/second.h"
 
 namespace livens {
 
 namespace {
 
-/// Of lengths of the model and rad, where neighbours are brought near again: far above rounding.
-constexpr double small = 1e-5;
-/// How far they may part until then, as foreseen and at the most: far below what bends.
-constexpr double wide = 3e-5, too_wide = 1e-4;
+/// How near neighbours are, in lengths of the model and rad: where they are brought near again, and how far
+/// they may part until then, as foreseen and at the most.
+struct Nearness {
+    double small, wide, too_wide;
+};
+/// On one side of the motion what bends is of second order, on both sides of third; the smaller, the more of
+/// it is what the iteration leaves.
+constexpr Nearness beside_one{1e-7, 3e-7, 1e-6}, beside_two{1e-5, 3e-5, 1e-4};
+/// Growth up to which a neighbour on one side does, and what an error of it may become. Not where a piece
+/// that begins anew is not the motion: blocks, and steps that go on from more than a state.
+constexpr double most_of_one = 100, share_of_one = 1e-2;
+/// Of what neighbours are apart: what their iteration may leave, by the square of the growth.
+constexpr double share_left = 1e-4;
+/// Of numbers, by half.
+constexpr double spacing = 0x1p-53;
 /// Elements that neighbours are solved for together, at first and at the most.
 constexpr int first_piece = 16, most_in_piece = 128;
-/// Neighbours on either side of the motion.
-constexpr int n_pairs = 2;
-
-/// Numbers between -1 and 1 that are the same on every machine.
-class Noise {
-public:
-    double operator()()
-    {
-        state_ ^= state_ << 13, state_ ^= state_ >> 7, state_ ^= state_ << 17;
-        return 2 * static_cast<double>(state_ >> 11) / 9007199254740992.0 - 1;
-    }
-
-private:
-    std::uint64_t state_ = 0x9e3779b97f4a7c15u;
-};
-
-/// The fastest rate that gravity and velocities make, 1/s: how velocities compare with positions.
-double fastest_rate(const Model& model, std::span<const Matrix34> velocities)
-{
-    const double length = model.length();
-    double rate = std::sqrt(norm(model.gravity()) / length);
-    for (const Matrix34& V : velocities)
-        rate = std::max({rate, norm(V.column(0)) / length, norm(directors(V)) / std::sqrt(2.0)});
-    return rate;
-}
-
-/// In lengths and rad.
-double size_of(const Model& model, std::span<const Matrix34> difference)
-{
-    double farthest = 0, widest = 0;
-    for (const Matrix34& d : difference) {
-        farthest = std::max(farthest, norm(d.column(0)));
-        widest = std::max(widest, norm(directors(d)) / std::sqrt(2.0));
-    }
-    return std::max(farthest / model.length(), widest);
-}
-
-/// Half the difference of two states.
-struct Difference {
-    std::vector<Matrix34> X, V;
-
-    Difference(const State& a, const State& b)
-    {
-        for (std::size_t i = 0; i < a.X.size(); ++i) {
-            X.push_back(0.5 * (a.X[i] - b.X[i]));
-            V.push_back(0.5 * (a.V[i] - b.V[i]));
-        }
-    }
-    State beside(State s, double factor) const
-    {
-        for (std::size_t i = 0; i < X.size(); ++i) {
-            s.X[i] += factor * X[i];
-            s.V[i] += factor * V[i];
-        }
-        return s;
-    }
-    /// In lengths and rad, velocities as they would be after a time of 1 / rate.
-    double size(const Model& model, double rate) const
-    {
-        const double of_positions = size_of(model, X);
-        return rate > 0 ? std::max(of_positions, size_of(model, V) / rate) : of_positions;
-    }
-};
-
-/// The body that such a difference moves or turns most, and along or about what.
-Growing most_of(const Model& model, std::span<const Matrix34> difference, std::span<const Matrix34> X)
-{
-    Growing most;
-    double size = 0;
-    for (std::size_t b = 0; b < difference.size(); ++b) {
-        const Matrix34& d = difference[b];
-        const bool has_moved = raise_to(size, norm(d.column(0)) / model.length()),
-                   has_turned = raise_to(size, norm(directors(d)) / std::sqrt(2.0));
-        if (!has_moved && !has_turned) continue;
-        Vector3 along = d.column(0);
-        if (has_turned) along = {};
-        for (int i = 1; has_turned && i <= 3; ++i) along += cross(X[b].column(i), d.column(i));
-        const double sign = *std::ranges::max_element(along.a, {}, [](double x) { return std::abs(x); });
-        most = {static_cast<int>(b), has_turned, std::copysign(1 / norm(along), sign) * along};
-    }
-    return most;
-}
-
-/// Half of what two states are apart, each by its size: shifts and turns, pushes and spins at this rate.
-double perturbation(const Model& model, const State& one, const State& other, double rate)
-{
-    const double in_time = rate > 0 ? 1 / rate : 0;
-    double size = 0;
-    for (std::size_t b = 0; b < one.X.size(); ++b) {
-        const Matrix34 dX = one.X[b] - other.X[b], dV = one.V[b] - other.V[b];
-        raise_to(size, norm(dX.column(0)) / model.length());
-        raise_to(size, norm(dV.column(0)) / model.length() * in_time);
-        if (model.bodies()[b].is_point) continue;
-        raise_to(size, norm(directors(dX)) / std::sqrt(2.0));
-        const auto spin = [b](const State& s) {   // in axes of the body
-            return transpose(directors(s.X[b])) * angular_velocity(s.X[b], s.V[b]);
-        };
-        raise_to(size, norm(spin(one) - spin(other)) * in_time);
-    }
-    return 0.5 * size;
-}
-
-/// Two perpendicular unit vectors at random. Together they miss one direction; it is as far from what turns a
-/// body as from what is across it, since either may be what grows.
-struct Across {
-    Vector3 e[n_pairs];
-
-    explicit Across(Noise& noise, const Vector3& spin = {})
-    {
-        const auto any = [&] {
-            for (;;) {
-                const double x = noise(), y = noise(), z = noise();
-                const Vector3 v{x, y, z};
-                if (norm(v) > 0.1) return v;
-            }
-        };
-        const auto across = [&](const Vector3& n) {
-            for (;;) {
-                const Vector3 v = cross(n, any());
-                if (norm(v) > 0.1 * norm(n)) return (1 / norm(v)) * v;
-            }
-        };
-        Vector3 missed = any();
-        if (norm(spin) > 0) missed = (1 / norm(spin)) * spin + std::sqrt(2.0) * across(spin);
-        missed *= 1 / norm(missed);
-        e[0] = across(missed);
-        e[1] = cross(missed, e[0]);
-    }
-};
-
-/// States beside this one, off by `small` in all that can move.
-std::vector<State> neighbours_of(const Model& model, const State& state, double rate)
-{
-    const double length = model.length();
-    std::vector<State> all(n_pairs, state);
-    Noise noise;
-    for (int b = 0; b < model.n_bodies(); ++b) {
-        const bool is_point = model.bodies()[b].is_point;
-        const Vector3 turning = is_point ? Vector3{} : angular_velocity(state.X[b], state.V[b]);
-        const Across step(noise), turn(noise), push(noise), spin(noise, turning);
-        for (int k = 0; k < n_pairs; ++k) {
-            State& s = all[k];
-            const Vector3 shift = small * length * step.e[k], faster = small * length * rate * push.e[k];
-            if (is_point) {
-                s.X[b] = configuration(state.X[b].column(0) + shift, Matrix3{});
-                s.V[b] = configuration(state.V[b].column(0) + faster, Matrix3{});
-                continue;
-            }
-            // turned with its spin, so that of a free body the turn is none and does not hide what spins do
-            s.X[b] = twist::moved(state.X[b], shift, small * turn.e[k]);
-            const Vector3 turned = directors(s.X[b]) * (transpose(directors(state.X[b])) * turning);
-            const Vector3 w = turned + small * rate * spin.e[k];
-            s.V[b] = configuration(state.V[b].column(0) + faster, cross_matrix(w) * directors(s.X[b]));
-        }
-    }
-    return all;
-}
 
 /// What lies on the other side of the motion as this piece of a neighbour, from an element on: its guess, off
 /// by what bends. Without elements where the two have different ones.
@@ -199,159 +52,340 @@ Motion mirrored(const Motion& motion, int first, const Motion& beside)
     return other;
 }
 
-/// Motions on either side: what bends in half their difference is of third order, and does not grow into
-/// directions that are not there.
-struct Pair {
+/// A motion beside the one at hand, or one on either side of it: what bends in half their difference is of
+/// third order.
+struct Perturbed {
+    Perturbed(Neighbour one, Neighbour other) : sides{std::move(one), std::move(other)} {}
+
     Neighbour sides[2];
     State starts[2]{};
     double so_far = 1;   // by the difference at hand: what was made smaller on the way
+    double least = 1;    // of what it was stretched to, positions and velocities
     bool is_lost = false;
-
-    Difference apart_at(double t) const { return {sides[0].motion().at(t), sides[1].motion().at(t)}; }
 };
 
-/// All pairs, piece by piece; between pieces they are brought near again.
+/// What neighbours are made of.
+struct Surroundings {
+    const Model& model;
+    const Method& method;
+    const SolveOptions& quiet;
+    const Motion& motion;
+    const std::optional<Ends>& closed;   // where a window marches
+    double rate;                         // the fastest there ever is
+    bool has_bends = false;              // of their own
+
+    /// On which perturbations are put.
+    std::span<const int> rows() const
+    {
+        return closed ? std::span<const int>(closed->independent) : std::span<const int>();
+    }
+};
+
+/// All of them, piece by piece; between pieces they are brought near again.
 class Neighbours {
 public:
-    Neighbours(const Model& model, const Method& method, const SolveOptions& quiet, const Motion& motion,
-               double rate)
-        : model_(model), method_(method), quiet_(quiet), motion_(motion), rate_(rate)
+    Neighbours(const Surroundings& at, double most_left)
+        : at_(at), motion_(at.motion),
+          most_alone_(
+              at.closed ? std::min(most_of_one, std::sqrt(share_of_one * beside_one.small / most_left)) : 0),
+          has_two_(most_alone_ < 1), near_(has_two_ ? beside_two : beside_one)
     {}
 
-    /// At element ends, as far as any pair can be solved.
-    Growth grown_from(std::vector<State> neighbours, double rate)
+    /// At element ends, as far as any can be solved: by the size at the start, with velocities by this rate.
+    Growth grown_from(const std::vector<Kicks>& kicks, double rate)
     {
-        const State start = motion_.at_end(0);
-        for (State& one : neighbours) {
-            State other = Difference(start, one).beside(start, 2);
-            pairs_.push_back(
-                {{Neighbour(model_, method_, quiet_, motion_), Neighbour(model_, method_, quiet_, motion_)},
-                 {std::move(one), std::move(other)}});
-        }
-        for (int at = 0; at < motion_.n_elements();) {
-            const int last = solve_from(at);
-            if (at == 0) begin(rate);
-            if (are_lost()) break;
-            const int end = record(at, last);
-            bring_near(at, end);
-            at = end;
-        }
+        for (const Kicks& one : kicks) add(one, near_.small);
+        march([&] { judge_start(rate); });
+        return std::move(grown_);
+    }
+    /// By what the kicks are: of the start, and of every element, as roundings are.
+    Growth grown_from(Roundings& roundings)
+    {
+        roundings_ = &roundings;
+        for (const Kicks& one : roundings.of(motion_.at_end(0)))
+            if (const double size = size_of(at_.model, one, at_.rate); size > 0) add(one, near_.small / size);
+        march([&] {
+            for (Perturbed& one : all_) lose_unless_apart(one, at_.rate);
+        });
         return std::move(grown_);
     }
 
 private:
+    Neighbour neighbour() const
+    {
+        return Neighbour(at_.model, at_.method, at_.quiet, motion_, at_.closed ? &*at_.closed : nullptr,
+                         at_.has_bends);
+    }
+
+    void add(const Kicks& kicks, double factor)
+    {
+        Perturbed one(neighbour(), neighbour());
+        one.so_far = 1 / factor;
+        for (int k = 0; k < (has_two_ ? 2 : 1); ++k)
+            one.starts[k] =
+                beside(at_.model, motion_.at_end(0), kicks, k == 0 ? factor : -factor, at_.rows());
+        all_.push_back(std::move(one));
+    }
+
+    void march(const std::function<void()>& begin)
+    {
+        for (int at = 0; at < motion_.n_elements();) {
+            const int last = solve_from(at);
+            if (at == 0) begin();
+            if (are_lost()) break;
+            if (at == 0) grown_.factors.push_back(1);
+            const int end = record(at, last);
+            if (end == at) break;
+            bring_near(at, end);
+            at = end;
+        }
+    }
+
     bool are_lost() const
     {
-        return std::ranges::all_of(pairs_, [](const Pair& pair) { return pair.is_lost; });
+        return std::ranges::all_of(all_, [](const Perturbed& one) { return one.is_lost; });
+    }
+
+    /// Neighbours bend at instants of their own, and are known well at their element ends alone.
+    bool has_end(const Motion& beside, int end) const
+    {
+        return std::ranges::binary_search(beside.mesh.ends, motion_.mesh.ends[end]);
+    }
+    bool have_end(int end) const
+    {
+        return std::ranges::all_of(all_, [&](const Perturbed& one) {
+            return one.is_lost || (has_end(one.sides[0].motion(), end) &&
+                                   (!has_two_ || has_end(one.sides[1].motion(), end)));
+        });
+    }
+
+    Difference apart_at(const Perturbed& one, int end) const
+    {
+        const double t = motion_.mesh.ends[end];
+        return has_two_ ? Difference(one.sides[0].motion().at(t), one.sides[1].motion().at(t), 0.5)
+                        : Difference(one.sides[0].motion().at(t), motion_.at_end(end), 1);
     }
 
     /// The first motion tells how far it is to go before it is too far from the one between them.
     int solve_from(int first)
     {
         int last = std::min(first + length_, motion_.n_elements());
+        const double left = share_left * near_.small / (stretched_ * stretched_);
         bool is_first = true;
-        for (Pair& pair : pairs_) {
-            if (pair.is_lost) continue;
-            pair.is_lost = !pair.sides[0].solve(pair.starts[0], motion_, first, last);
-            if (pair.is_lost) continue;
-            const Motion& one = pair.sides[0].motion();
+        for (Perturbed& each : all_) {
+            if (each.is_lost) continue;
+            each.is_lost = !each.sides[0].solve(each.starts[0], motion_, first, last, left);
+            if (each.is_lost) continue;
+            const Motion& one = each.sides[0].motion();
             for (int end = first + 1; is_first && end < last; ++end)
-                if (2 * Difference(one.at(motion_.mesh.ends[end + 1]), motion_.at_end(end + 1))
-                            .size(model_, rate_) >
-                    too_wide)
+                if (has_end(one, end + 1) &&
+                    Difference(one.at(motion_.mesh.ends[end + 1]), motion_.at_end(end + 1), 1)
+                            .size(at_.model, at_.rate) > near_.too_wide)
                     last = end;
             is_first = false;
+            if (!has_two_) continue;
             const Motion other = mirrored(motion_, first, one);
-            pair.is_lost =
-                !pair.sides[1].solve(pair.starts[1], other.X.empty() ? motion_ : other, first, last);
+            each.is_lost =
+                !each.sides[1].solve(each.starts[1], other.X.empty() ? motion_ : other, first, last, left);
         }
         return last;
     }
 
-    /// Perturbations are judged as they are where all constraints hold.
-    void begin(double rate)
+    /// How far it is apart at the start; nothing can move but what is driven where that is next to nothing.
+    double lose_unless_apart(Perturbed& one, double rate) const
     {
-        const double t = motion_.start();
-        for (Pair& pair : pairs_) {
-            if (pair.is_lost) continue;
-            const State one = pair.sides[0].motion().at(t), other = pair.sides[1].motion().at(t);
-            const double size = perturbation(model_, one, other, rate);
-            pair.is_lost = !(size > 1e-3 * small);   // nothing can move but what is driven
-            pair.so_far = 1 / size;
-        }
-        if (!are_lost()) grown_.factors.push_back(1);
+        if (one.is_lost) return 0;
+        const State side = one.sides[0].motion().at(motion_.start());
+        const double size = Difference::of_bodies(at_.model, side, motion_.at_end(0), rate);
+        one.is_lost = !(size > 1e-3 * near_.small);
+        return size;
     }
 
-    /// Up to where a pair is too wide, or to the end of what was solved.
+    /// Perturbations are judged as they are where all constraints hold.
+    void judge_start(double rate)
+    {
+        for (Perturbed& one : all_)
+            if (const double size = lose_unless_apart(one, rate); !one.is_lost) one.so_far = 1 / size;
+    }
+
+    /// Up to where one is too wide or wants another side, or to the end of what was solved.
     int record(int first, int last)
     {
         int end = first;
-        for (; end < last; ++end) {
-            double size = 0, grown = 0;
+        for (int next = first + 1; next <= last && (has_two_ || stretched_ <= most_alone_); ++next) {
+            if (!have_end(next)) continue;
+            double size = 0, grown = 0, stretched = 0;
             Growing part;
-            for (const Pair& pair : pairs_) {
-                if (pair.is_lost) continue;
-                const Difference apart = pair.apart_at(motion_.mesh.ends[end + 1]);
-                raise_to(size, apart.size(model_, rate_));
-                const double of_pair = pair.so_far * size_of(model_, apart.X);
-                if (of_pair > grown && of_pair > largest_)
-                    part = most_of(model_, apart.X, motion_.at_end(end + 1).X);
-                raise_to(grown, of_pair);
+            for (Perturbed& one : all_) {
+                if (one.is_lost) continue;
+                const Difference apart = apart_at(one, next);
+                const double width = apart.size(at_.model, at_.rate),
+                             of_one = one.so_far * apart.size_of_places(at_.model);
+                raise_to(size, width);
+                raise_to(stretched, one.so_far * width);
+                one.least = std::min(one.least, one.so_far * width);
+                raise_to(grown_.later, one.so_far * width / one.least);
+                if (of_one > grown && of_one > largest_) part = apart.most(at_.model, motion_.at_end(next).X);
+                raise_to(grown, of_one);
             }
-            if (size > too_wide && end > first) break;
+            if (size > near_.too_wide && end > first) break;
             if (grown > largest_ && largest_ < growth_at_horizon) grown_.part = part;
             raise_to(largest_, grown);
-            grown_.factors.push_back(grown);
+            raise_to(stretched_, stretched);
+            raise_to(grown_.later, stretched_ * stretched_);
+            for (; end < next; ++end) grown_.factors.push_back(grown);
         }
         return end;
     }
 
-    void bring_near(int first, int end)
+    /// As a difference of states, off the joints by what bends.
+    Difference kicked(int end, const Kicks& kicks, double factor) const
     {
-        double widest = small;
-        for (Pair& pair : pairs_) {
-            if (pair.is_lost) continue;
-            // Near in positions alone is not near: where neighbours cross, their velocities differ most.
-            const Difference apart = pair.apart_at(motion_.mesh.ends[end]);
-            const double size = apart.size(model_, rate_), share = small / size;
-            raise_to(widest, size);
-            pair.is_lost = !std::isfinite(share);
-            pair.so_far /= share;
-            for (int k = 0; k < 2; ++k) {
-                pair.starts[k] = apart.beside(motion_.at_end(end), k == 0 ? share : -share);
-                pair.starts[k].t = motion_.mesh.ends[end];
-            }
-        }
-        const int n = end - first;
-        const double by_element = std::log(widest / small) / n, fitting = std::log(wide / small) / by_element;
-        length_ = static_cast<int>(std::clamp(fitting, 1.0, std::min(2.0 * n, 1.0 * most_in_piece)));
+        const State here = motion_.at_end(end);
+        return {beside(at_.model, here, kicks, factor, at_.rows()), here, 1};
     }
 
-    const Model& model_;
-    const Method& method_;
-    const SolveOptions& quiet_;
+    /// What elements round on the way is added to what rounding has grown to: of n of them sqrt(n) times it.
+    void bring_near(int first, int end)
+    {
+        const bool wants_two = has_two_ || stretched_ > most_alone_;
+        const Nearness next = wants_two ? beside_two : near_;
+        const int n = end - first;
+        double widest = near_.small;
+        const std::vector<Kicks> rounded =
+            roundings_ != nullptr ? roundings_->of(motion_.at_end(end)) : std::vector<Kicks>(all_.size());
+        for (std::size_t i = 0; i < all_.size(); ++i) {
+            Perturbed& one = all_[i];
+            if (one.is_lost) continue;
+            // Near in positions alone is not near: where neighbours cross, their velocities differ most.
+            Difference apart = apart_at(one, end);
+            if (roundings_ != nullptr) apart += kicked(end, rounded[i], std::sqrt(n) / one.so_far);
+            const double size = apart.size(at_.model, at_.rate), share = next.small / size;
+            raise_to(widest, size);
+            one.is_lost = !std::isfinite(share);
+            one.so_far /= share;
+            for (int k = 0; k < 2; ++k) {
+                one.starts[k] = apart.beside(motion_.at_end(end), k == 0 ? share : -share);
+                one.starts[k].t = motion_.mesh.ends[end];
+            }
+        }
+        const double by_element = std::log(widest / near_.small) / n,
+                     fitting = std::log(next.wide / next.small) / by_element;
+        length_ = static_cast<int>(std::clamp(fitting, 1.0, std::min(2.0 * n, 1.0 * most_in_piece)));
+        has_two_ = wants_two;
+        near_ = next;
+    }
+
+    const Surroundings& at_;
     const Motion& motion_;
-    double rate_;   // the fastest there ever is
+    Roundings* roundings_ = nullptr;   // that are added on the way
+    double most_alone_;
+    bool has_two_;
+    Nearness near_;
     int length_ = first_piece;
-    std::vector<Pair> pairs_;
-    double largest_ = 1;
+    std::vector<Perturbed> all_;
+    double largest_ = 1, stretched_ = 1;
     Growth grown_;
 };
+
+double largest(const Growth& grown)
+{
+    double largest = 0;
+    for (const double g : grown.factors) raise_to(largest, g);
+    return largest;
+}
+
+/// What is told of rounding by the growth of any perturbation may be far more than what rounding does.
+bool is_doubtful(const Growth& grown, double told)
+{
+    return largest(grown) >= growth_at_horizon || spacing * largest(grown) > told;
+}
+/// What is rounded on the way may grow by more than what is rounded at the start.
+bool may_grow_later(const Growth& grown, double told) { return spacing * grown.later > told; }
+
+/// Where a law jumps, a neighbour whose elements do not end there is pushed by all of an element; where it
+/// bends and touches again and again, one whose elements do is not on the elements of the motion any more.
+/// Both grow too much, not too little.
+void take_smaller(Growth& grown, Growth&& other)
+{
+    if (!(largest(other) < largest(grown)) || other.factors.size() < grown.factors.size()) return;
+    grown = std::move(other);
+}
 
 }   // namespace
 
 Growth growth(const Model& model, const Problem& problem, const Method& method, const SolveOptions& options,
-              const Motion& motion)
+              const Motion& motion, double told)
 {
     if (problem.conditions.at_start != Known::state || motion.n_elements() == 0) return {};
     SolveOptions quiet = options;
     quiet.condition = quiet.judge = quiet.end_at_bends = quiet.look_at_laws = false;
     quiet.meeting = std::numeric_limits<double>::infinity();   // neighbours are beside it
     quiet.initial = StartPolicy::project;
+    std::optional<Ends> closed;
+    if (is_nodal(method) && !model.has_events())
+        closed = close_ends(model, problem.conditions, motion.start(), motion.end(), options.initial);
     const State start = motion.at_end(0);
     const double at_start = fastest_rate(model, start.V), ever = fastest_rate(model, motion.velocities);
-    return Neighbours(model, method, quiet, motion, ever > 0 ? ever : 1)
-        .grown_from(neighbours_of(model, start, at_start), at_start);
+    Surroundings at{model, method, quiet, motion, closed, ever > 0 ? ever : 1};
+    const auto measure = [&](const std::vector<Kicks>& kicks) {
+        return Neighbours(at, options.tolerance).grown_from(kicks, at_start);
+    };
+    const std::vector<Kicks> kicks = kicks_everywhere(model, start, at_start);
+    Growth grown = measure(kicks);
+    at.has_bends = closed && !motion.mesh.bends.empty();
+    if (at.has_bends && is_doubtful(grown, told)) take_smaller(grown, measure(kicks));
+    if (!is_doubtful(grown, told) && !may_grow_later(grown, told)) return grown;
+    Roundings roundings(model, motion, at.rate);
+    const Growth of_rounding = Neighbours(at, options.tolerance).grown_from(roundings);
+    for (std::size_t e = 0; e < grown.factors.size(); ++e)
+        grown.rounding.push_back(e < of_rounding.factors.size() ? of_rounding.factors[e] : grown.factors[e]);
+    grown.rounding_in = of_rounding.part;
+    return grown;
+}
+
+double rounded_by(double tolerance)
+{
+    constexpr double some = 3, left = 0.1;
+    return std::max(some * spacing, left * tolerance);
+}
+
+std::vector<double> told_of_rounding(const Growth& grown, double tolerance)
+{
+    std::vector<double> told = grown.rounding;
+    for (double& r : told) r *= rounded_by(tolerance);
+    return told;
+}
+
+std::vector<double> grown_rounding(std::span<const double> growth, std::span<const double> measured)
+{
+    std::vector<double> grown;
+    double largest = 0;
+    for (std::size_t e = 0; e < growth.size(); ++e) {
+        raise_to(largest, e < measured.size() ? measured[e] : spacing * growth[e]);
+        // behind the horizon nothing is told
+        grown.push_back(growth[e] < growth_at_horizon ? largest
+                                                      : std::min(largest, spacing * growth_at_horizon));
+    }
+    return grown;
+}
+
+double told_without_rounding(const ErrorEstimate& found)
+{
+    constexpr double least = 1e-11, share = 0.3;   // below, it is not worth what it costs to know
+    return std::max(least, share * found.largest);
+}
+
+void count_rounding(const Model& model, std::span<const double> rounding, const TimeMesh& mesh,
+                    ErrorEstimate& found)
+{
+    const auto n = static_cast<std::size_t>(found.n_bodies);
+    for (std::size_t i = 0; i < found.position.size() && i / n < rounding.size(); ++i) {
+        const double least = rounding[i / n];
+        raise_to(found.position[i], least);
+        if (!model.bodies()[i % n].is_point) raise_to(found.orientation[i], least);
+    }
+    found.find_largest(mesh);
 }
 
 }   // namespace livens

@@ -36,48 +36,51 @@ struct Neighbour::March {
     Tables tables;
     LobattoWindow window;
 
-    March(const Model& model, const Method& method, const State& start, const TimeMesh& mesh)
-        : ends(close_ends(model, {start}, mesh.start(), mesh.end(), StartPolicy::project)),
-          tables(model, ends.independent), window(tables, mesh, ends, rule_of(method))
+    March(const Model& model, const Method& method, const Ends& closed, const TimeMesh& mesh)
+        : ends(closed), tables(model, ends.independent), window(tables, mesh, ends, rule_of(method))
     {}
 };
 
 Neighbour::Neighbour(const Model& model, const Method& method, const SolveOptions& options,
-                     const Motion& beside)
-    : model_(model), method_(method), options_(options), beside_(beside)
+                     const Motion& beside, const Ends* closed, bool has_bends)
+    : model_(model), method_(method), options_(options), beside_(beside), closed_(closed),
+      has_bends_(has_bends)
 {}
 Neighbour::Neighbour(Neighbour&&) noexcept = default;
 Neighbour::~Neighbour() = default;
 
-bool Neighbour::march(const State& start, const Motion& near)
+bool Neighbour::march(const State& start, const Motion& near, double left)
 {
-    if (march_ == nullptr) {
-        march_ = std::make_unique<March>(model_, method_, start, mesh_);
-    } else {
-        march_->ends.start = rigid(model_, start);
-        march_->window.restart();
-    }
+    const bool is_new = march_ == nullptr;
+    if (is_new) march_ = std::make_unique<March>(model_, method_, *closed_, mesh_);
+    march_->ends.start = rigid(model_, start);
+    if (!is_new) march_->window.restart();
     march_->window.follow(near);
     WindowOptions w;
     w.by_newton = options_.by_newton;
-    w.tolerance = std::clamp(options_.tolerance, least_tolerance, most_tolerance);
+    w.tolerance = std::clamp(left, least_tolerance, most_tolerance);
     w.max_iterations = options_.max_iterations;
     w.progress = options_.progress;
     w.length_of_model = model_.length();
     w.may_divide = options_.divide;
     w.trust = {acceptable_velocity_jump, true, true};
+    w.ends_at_bends = !mesh_.bends.empty();
     SolveReport report;
     solve_windows(march_->window, mesh_, w, report);
     motion_ = march_->window.take_motion();
     return report.converged();
 }
 
-bool Neighbour::solve(const State& start, const Motion& near, int first, int last)
+bool Neighbour::solve(const State& start, const Motion& near, int first, int last, double left)
 {
     mesh_.ends.assign(beside_.mesh.ends.begin() + first, beside_.mesh.ends.begin() + last + 1);
     mesh_.required = mesh_.ends;
+    mesh_.bends.clear();
+    if (has_bends_)
+        for (const double t : beside_.mesh.bends)
+            if (t > mesh_.start() && t <= mesh_.end()) mesh_.bends.push_back(t);
     try {
-        if (is_nodal(method_) && !model_.has_events()) return march(start, near);
+        if (closed_ != nullptr) return march(start, near, left);
         Solution one = livens::solve(model_, {{start}, {}, &near}, mesh_, method_, options_);
         motion_ = std::move(one.motion);
         return one.report.converged();

@@ -58,12 +58,19 @@ void add_events(const Model& model, const Motion& motion, ErrorEstimate& found);
 
 /// Where it is more the motion is beyond its horizon, which the verdict tells.
 constexpr double growth_at_horizon = 1e11;
-/// What the rounding of numbers at the start has grown to, up to the horizon, in lengths of the model and
-/// rad; growth as of growth().
-double grown_rounding(std::span<const double> growth);
+/// What an element is off by in units of the motion in it, for each of what rounding reaches: some spacings
+/// of numbers, and what an iteration to this tolerance leaves as a rule.
+double rounded_by(double tolerance);
+/// What was measured by itself, times that: as Solution::rounding has it.
+std::vector<double> told_of_rounding(const Growth& grown, double tolerance);
+/// What rounding has grown to at element ends, up to the horizon, in lengths of the model and rad: as was
+/// measured, or by the growth of the start; see growth().
+std::vector<double> grown_rounding(std::span<const double> growth, std::span<const double> measured);
+/// What an estimate leaves open, for growth(): where rounding may be more it counts.
+double told_without_rounding(const ErrorEstimate& found);
 /// Both solutions begin with the same rounded numbers, so that their distance does not tell what that costs:
 /// no estimate is below what rounding has grown to by then.
-void count_rounding(const Model& model, std::span<const double> growth, const TimeMesh& mesh,
+void count_rounding(const Model& model, std::span<const double> rounding, const TimeMesh& mesh,
                     ErrorEstimate& found);
 
 }   // namespace livens

@@ -303,8 +303,8 @@ void refuse_rounding(const Model& model, Solution& solution)
     report.failed_at = solution.estimate.time;
     report.message = "the accuracy " + to_text(report.accuracy, 6) +
                      " cannot be told, the motion is whole up to " + to_text(end, 6) +
-                     " s; the rounding of numbers at the start grows to " + to_text(found, 3) + ", most in " +
-                     in_words(solution.growing, model) +
+                     " s; the rounding of numbers grows to " + to_text(found, 3) + ", most in " +
+                     in_words(solution.rounding.empty() ? solution.growing : solution.rounding_in, model) +
                      "; try: an earlier end of time, or a larger error in accuracy";
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <vector>
 
 #include "livens/diagnostics/acceptance.h"
@@ -71,7 +72,11 @@ struct Solution {
     /// By how much a perturbation of the start has grown, at element ends, in lengths and rad by lengths and
     /// rad at the start; empty if nobody asked, as far as the neighbouring motion came if it failed.
     std::vector<double> growth{};
+    /// What the rounding of numbers, at the start and on the way, has grown to, in lengths and rad, at
+    /// element ends; empty where 2^-53 of the growth tells enough.
+    std::vector<double> rounding{};
     Growing growing{};              ///< what of it grows most, up to the horizon or the end
+    Growing rounding_in{};          ///< likewise of `rounding`
     std::vector<Unseen> unseen{};   ///< what laws of loads did inside of elements, see Unseen
     double estimate_seconds = 0;    ///< that the second solution and the neighbouring motion took
 };
@@ -94,11 +99,16 @@ void estimate(const Model& model, const Problem& problem, const Method& method, 
 /// same elements, that are brought near again where they part. Empty where nothing can move, or without a
 /// state at the start.
 struct Growth {
-    std::vector<double> factors;
-    Growing part;
+    std::vector<double> factors{};
+    Growing part{};
+    double later = 1;                 ///< bounds what perturbations on the way grow by
+    std::vector<double> rounding{};   ///< what 1 at the start and in each element grows to
+    Growing rounding_in{};
 };
+/// `told`: where 2^-53 of it would be more, in lengths and rad, or where it is beyond the horizon, what
+/// rounding grows to is measured by itself.
 Growth growth(const Model& model, const Problem& problem, const Method& method, const SolveOptions& options,
-              const Motion& motion);
+              const Motion& motion, double told = std::numeric_limits<double>::infinity());
 
 /// What solve() does last: measures the motion, compares it with what was stated at the ends of time, and
 /// lets the verdict decide between converged and suspect. An estimate that the solution has counts. Half a

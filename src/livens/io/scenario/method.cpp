@@ -275,8 +275,8 @@ Table method_table()
              false,
              {"second", "local", "none"}},
          Key{"growth", types::truth,
-             "Whether two pairs of neighbouring motions tell how perturbations of the start grow, and the "
-             "horizon beyond which double precision says nothing; two to four times as costly as the motion. "
+             "Whether neighbouring motions tell how perturbations of the start grow, and the horizon beyond "
+             "which double precision says nothing; one to three times as costly as the motion. "
              "Default: true with `accuracy` of `[time]`, else false."},
          Key{"looks", types::truth,
              "Whether laws of loads are looked at inside of elements, between the points at which they are "
