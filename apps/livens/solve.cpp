@@ -105,6 +105,7 @@ struct Job {
     Places places;
     std::vector<Diagnostic> warnings{};
     bool is_alone = true;   // on the main thread, which may speak at once
+    bool force = false;     // what stands in the way is replaced
     std::exception_ptr failure{};
     std::vector<std::string> details{}, complaints{};
     std::string text{}, error{};   // on standard output, and standard error
@@ -277,8 +278,8 @@ std::vector<Job> read_jobs(const SolveArguments& arguments, const Common& common
         const Clock::time_point begin = Clock::now();
         std::vector<Diagnostic> warnings;
         Scenario scenario = load_scenario(file, common, &warnings);
-        say_detail(fmt::format("read and checked the scenario in {:.3g} s", seconds_since(begin)));
         Places p = places(scenario, arguments);
+        say_detail(fmt::format("read and checked the scenario in {:.3g} s", seconds_since(begin)));
         for (const Job& job : jobs) {
             check_inputs(p.output, job.scenario);
             check_inputs(job.places.output, scenario);
@@ -288,8 +289,8 @@ std::vector<Job> read_jobs(const SolveArguments& arguments, const Common& common
                                               plain(p.output.string()) +
                                               "'; solve them one by one, with '--output'");
         }
-        jobs.push_back(
-            {std::move(scenario), std::move(p), std::move(warnings), arguments.scenarios.size() == 1});
+        jobs.push_back({std::move(scenario), std::move(p), std::move(warnings),
+                        arguments.scenarios.size() == 1, arguments.force});
     }
     return jobs;
 }
@@ -312,9 +313,12 @@ void do_job(Job& job, const Common& common, double share, ProgressLine& line)
         job.text = summary_of(solved, p, common.verbose);
     const SignalPause pause;
     const Clock::time_point writing = Clock::now();
-    write_run(p.output, job.scenario.model, solved.run);
+    write_result(p.output, job.scenario.model, solved.run, job.force);
     write_record(record, job);
-    if (!p.csv.empty()) write_csv(p.csv, job.scenario.model, solved.run);
+    if (!p.csv.empty()) {
+        check_export_place(p.csv, export_formats().front(), p.output, job.force);
+        write_csv(p.csv, job.scenario.model, solved.run);
+    }
     job.detail(fmt::format("written in {:.3g} s", seconds_since(writing)));
 }
 
