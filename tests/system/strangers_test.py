@@ -227,7 +227,7 @@ class NothingIsLost(ProgramTest):
 
     def test_files_that_come_while_it_is_solved(self):
         """Neither they nor the motion are lost; older results that come meanwhile are replaced."""
-        self.write("long.toml", text_with("elements = 10", "elements = 20000"))
+        self.write("long.toml", text_with("elements = 10", "elements = 5000"))
         for force in ((), ("--force",)):
             for content in (b"mine", self.result):
                 (self.folder / "long.nc").unlink(missing_ok=True)
