@@ -94,7 +94,7 @@ void judge_beside(const Model& model, const Problem& problem, const SolveOptions
 void judge(const Model& model, const Problem& problem, const SolveOptions& options, Solution& solution,
            const std::function<bool()>& goes_on)
 {
-    // Most motions are judged by then; of the others even the writing takes longer than anybody wants to wait.
+    // Most motions are judged by then; of the others the writing alone takes as long as anybody waits.
     constexpr std::size_t large = 2'000'000;   // numbers
     const double grace = solution.motion.X.values.size() > large ? 0 : 0.5;   // s of CPU time
     SolveReport& report = solution.report;
