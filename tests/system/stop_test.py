@@ -74,6 +74,18 @@ class Stops(ProgramTest):
             self.assertLess(self.after_signal("run.toml", at), 2)
             self.expect(0, "info", "run.nc")
 
+    def test_chains_stop_at_once(self):
+        """Large motions are not checked any more; to write this one takes a second."""
+        text = "format = 1\ngravity = [0, 0, -9.81]\n"
+        for i in range(60):
+            text += (f'[[body]]\nname = "b{i}"\nshape = {{ box = [0.9, 0.1, 0.1] }}\nmass = 1\nposition = [{i + 0.5}, 0, 0]\n'
+                     f'[[joint]]\nname = "j{i}"\ntype = "revolute"\nat = [{i}, 0, 0]\naxis = [0, 1, 0]\n'
+                     f'between = ["{f"b{i - 1}" if i > 0 else "world"}", "b{i}"]\n')
+        self.write("run.toml", text + "[time]\nend = 0.3\nelements = 3000\noutput = 0.01\n")
+        for at in (0.3, 0.7):
+            self.assertLess(self.after_signal("run.toml", at), 2)
+            self.expect(0, "info", "run.nc")
+
     def test_what_the_caller_ignores_stays_ignored(self):
         self.write("run.toml", FREE_BODY % (4000, 40000, "false"))
         program = subprocess.Popen([PROGRAM, "solve", "run.toml", "-q"], cwd=self.folder,
