@@ -82,7 +82,7 @@ bool Neighbour::solve(const State& start, const Motion& near, int first, int las
         motion_ = std::move(one.motion);
         return one.report.converged();
     } catch (const InputError&) {
-        // Of the motion itself all was right: it has come to a singular position, or no start beside it closes.
+        // Of the motion all was right: it has come to a singular position, or no start beside it closes.
         return false;
     }
 }
