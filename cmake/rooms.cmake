@@ -59,7 +59,7 @@ endif()
 # and is asked once. LIBRARIES are linked by whatever the room is linked into. STACKS:
 # see livens_harden(). EIGEN rooms use Eigen inside their sources, never in a header. Eigen is given another namespace
 # there: its inline functions depend on processor flags, and a program that uses Eigen with other flags must not share
-# them through the linker.
+# them through the linker. cmake/eigen mends what Eigen does where memory ends.
 function(livens_room name)
     cmake_parse_arguments(arg "EIGEN;STACKS;FAST;SMALL" "" "LIBRARIES" ${ARGN})
     file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/livens/${name}/*.cpp)
@@ -85,7 +85,7 @@ function(livens_room name)
     if(arg_EIGEN)
         find_package(Eigen3 3.4 REQUIRED NO_MODULE)
         get_target_property(eigen Eigen3::Eigen INTERFACE_INCLUDE_DIRECTORIES)
-        target_include_directories(livens_room_${name} SYSTEM PRIVATE ${eigen})
+        target_include_directories(livens_room_${name} SYSTEM PRIVATE ${PROJECT_SOURCE_DIR}/cmake/eigen ${eigen})
         target_compile_definitions(livens_room_${name} PRIVATE Eigen=livens_eigen)
     endif()
 endfunction()

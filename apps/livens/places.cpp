@@ -94,6 +94,20 @@ void check_export_place(const fs::path& file, const ExportFormat& format, const 
     if (!force) check_not_occupied(file, format.is_own);
 }
 
+void write_result(const fs::path& output, const Model& model, const Run& run, bool force)
+{
+    try {
+        write_run(output, model, run, !force);
+    } catch (const OccupiedError& error) {
+        fs::path beside;
+        for (int n = 1; beside.empty() || fs::exists(fs::symlink_status(beside)); ++n)
+            beside = output.parent_path() / (output.stem().string() + "-" + std::to_string(n) + ".nc");
+        write_run(beside, model, run, true);
+        throw failure(exit_input_output,
+                      std::string(error.what()) + "; the motion is in '" + beside.string() + "'");
+    }
+}
+
 void check_differs(const fs::path& file, const fs::path& other, const char* why)
 {
     if (same_file(file, other)) refuse(file, why);

@@ -28,6 +28,9 @@ void check_place(const std::filesystem::path& file, bool (*is_own)(std::string_v
 /// Likewise for an export of `run`, which overwrites no result at all and ends as its readers expect.
 void check_export_place(const std::filesystem::path& file, const ExportFormat& format,
                         const std::filesystem::path& run, bool force);
+/// Writes a result. A file of somebody else that came since the place was looked at stays, unless `force`,
+/// and so does the motion, beside it; then it throws what ends in exit code 6.
+void write_result(const std::filesystem::path& output, const Model& model, const Run& run, bool force);
 /// Throws if `file` is what a scenario was read from, whatever is forced.
 void check_inputs(const std::filesystem::path& file, const Scenario& scenario);
 /// Throws if `file` is `other`, which `why` names.

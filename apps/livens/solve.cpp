@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <new>
 
 #include <fmt/format.h>
 
@@ -104,6 +105,7 @@ struct Job {
     Places places;
     std::vector<Diagnostic> warnings{};
     bool is_alone = true;   // on the main thread, which may speak at once
+    bool force = false;     // what stands in the way is replaced
     std::exception_ptr failure{};
     std::vector<std::string> details{}, complaints{};
     std::string text{}, error{};   // on standard output, and standard error
@@ -209,18 +211,19 @@ std::string now_utc()
 
 /// What would make the result differ from run to run lies beside it. Its loss is worth a word, not the
 /// result.
-void write_record(const Solved& solved, Job& job)
+void write_record(const std::string& record, Job& job)
 {
     const Places& p = job.places;
-    if (!may_record(p.record)) {
-        job.detail("'" + p.record.string() +
-                   "' is left alone: it was not written by livens, or is standard output");
-        return;
-    }
     try {
-        replace_file(p.record, json_of(solved, p, job.warnings, now_utc()));
+        if (may_record(p.record))
+            replace_file(p.record, record);
+        else
+            job.detail("'" + p.record.string() +
+                       "' is left alone: it was not written by livens, or is standard output");
     } catch (const IoError& error) {
         job.complaints.push_back(error.what());
+    } catch (const std::bad_alloc&) {
+        job.complaints.push_back("no memory is left to write the record");
     }
 }
 
@@ -275,8 +278,8 @@ std::vector<Job> read_jobs(const SolveArguments& arguments, const Common& common
         const Clock::time_point begin = Clock::now();
         std::vector<Diagnostic> warnings;
         Scenario scenario = load_scenario(file, common, &warnings);
-        say_detail(fmt::format("read and checked the scenario in {:.3g} s", seconds_since(begin)));
         Places p = places(scenario, arguments);
+        say_detail(fmt::format("read and checked the scenario in {:.3g} s", seconds_since(begin)));
         for (const Job& job : jobs) {
             check_inputs(p.output, job.scenario);
             check_inputs(job.places.output, scenario);
@@ -286,35 +289,37 @@ std::vector<Job> read_jobs(const SolveArguments& arguments, const Common& common
                                               plain(p.output.string()) +
                                               "'; solve them one by one, with '--output'");
         }
-        jobs.push_back(
-            {std::move(scenario), std::move(p), std::move(warnings), arguments.scenarios.size() == 1});
+        jobs.push_back({std::move(scenario), std::move(p), std::move(warnings),
+                        arguments.scenarios.size() == 1, arguments.force});
     }
     return jobs;
 }
 
-/// Solves, writes, and keeps what there is to say.
+/// Solves, writes, and keeps what there is to say, which is found before: where memory ends over it, an older
+/// result stays.
 void do_job(Job& job, const Common& common, double share, ProgressLine& line)
 {
     const Solved solved = solve_scenario(job, share, line);
     const Places& p = job.places;
-    {
-        const SignalPause pause;
-        const Clock::time_point writing = Clock::now();
-        write_run(p.output, job.scenario.model, solved.run);
-        write_record(solved, job);
-        if (!p.csv.empty()) write_csv(p.csv, job.scenario.model, solved.run);
-        job.detail(fmt::format("written in {:.3g} s", seconds_since(writing)));
-    }
     job.exit_code = exit_code_of(solved);
-    if (job.exit_code != exit_ok) {
-        const SolveReport& report = solved.run.report;
+    const SolveReport& report = solved.run.report;
+    if (job.exit_code != exit_ok)
         job.error =
             report.message.empty() ? std::string("the run is ") + to_string(report.status) : report.message;
-    }
+    const std::string record = json_of(solved, p, job.warnings, now_utc());
     if (common.json)
         job.text = json_of(solved, p, job.warnings, "");
     else if (!common.quiet)
         job.text = summary_of(solved, p, common.verbose);
+    const SignalPause pause;
+    const Clock::time_point writing = Clock::now();
+    write_result(p.output, job.scenario.model, solved.run, job.force);
+    write_record(record, job);
+    if (!p.csv.empty()) {
+        check_export_place(p.csv, export_formats().front(), p.output, job.force);
+        write_csv(p.csv, job.scenario.model, solved.run);
+    }
+    job.detail(fmt::format("written in {:.3g} s", seconds_since(writing)));
 }
 
 /// Returns its exit code.

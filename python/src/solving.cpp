@@ -6,7 +6,6 @@
 #include <functional>
 #include <future>
 #include <optional>
-#include <ranges>
 #include <string>
 #include <thread>
 #include <utility>
@@ -16,6 +15,7 @@
 #include <nanobind/stl/string.h>
 
 #include "livens/io/scenario/tree.h"
+#include "livens/solvers/patience.h"
 #include "livens/spacetime/ensemble.h"
 #include "python_load.h"
 #include "result.h"
@@ -43,12 +43,57 @@ nb::object shared(std::optional<Scenario>& scenario)
 /// Of meshes; empty: where Python is.
 MeshSource meshes_in(const std::string& folder) { return {folder.empty() ? "." : folder}; }
 
-nb::tuple build_text(const std::string& text, const std::string& file, const std::string& folder)
+/// Work that nobody waits for any more.
+std::atomic<int> n_left = 0;
+
+/// work(), in a thread of its own, while this one asks whether Python has a signal. Where it has there is no
+/// result, and that thread is left to itself: it holds all it needs, and ends. For what asks nobody itself:
+/// meshes that are read.
+ScenarioResult read_while_wanted(const std::function<ScenarioResult()>& work)
 {
-    ScenarioResult result;
+    std::optional<ScenarioResult> result;
     {
         const nb::gil_scoped_release unlock;
-        result = parse_scenario(text, file, meshes_in(folder));
+        auto task = std::make_shared<std::packaged_task<ScenarioResult()>>(work);
+        std::future<ScenarioResult> future = task->get_future();
+        ++n_left;
+        try {
+            std::thread([task]() mutable {
+                (*task)();
+                task.reset();
+                --n_left;
+            }).detach();
+        } catch (...) {
+            --n_left;
+            throw;
+        }
+        const auto is_wanted = [] {
+            const nb::gil_scoped_acquire lock;
+            return PyErr_CheckSignals() == 0;
+        };
+        for (auto wait = std::chrono::milliseconds(1); !result; wait = std::chrono::milliseconds(20)) {
+            if (future.wait_for(wait) == std::future_status::ready)
+                result = future.get();
+            else if (!is_wanted())
+                break;
+        }
+    }
+    if (!result) throw nb::python_error();
+    return std::move(*result);
+}
+
+/// Whether a text may name meshes: all else is read within milliseconds.
+bool may_have_meshes(const std::string& text) { return text.find("mesh") != std::string::npos; }
+
+nb::tuple build_text(const std::string& text, const std::string& file, const std::string& folder)
+{
+    const auto read = [text, file, folder] { return parse_scenario(text, file, meshes_in(folder)); };
+    ScenarioResult result;
+    if (may_have_meshes(text)) {
+        result = read_while_wanted(read);
+    } else {
+        const nb::gil_scoped_release unlock;
+        result = read();
     }
     return nb::make_tuple(shared(result.scenario), to_python(result.diagnostics, nullptr));
 }
@@ -57,11 +102,15 @@ nb::tuple build_tree(const nb::dict& root, const std::string& text, const std::s
                      bool model_alone)
 {
     TreeReader reader;
-    const Node tree = reader.read(root);
+    const auto read = [tree = std::make_shared<const Node>(reader.read(root)), text, folder, model_alone] {
+        return read_tree(*tree, text, meshes_in(folder), model_alone ? TreePart::model : TreePart::whole);
+    };
     ScenarioResult result;
-    {
+    if (!folder.empty() || may_have_meshes(text)) {
+        result = read_while_wanted(read);
+    } else {
         const nb::gil_scoped_release unlock;
-        result = read_tree(tree, text, meshes_in(folder), model_alone ? TreePart::model : TreePart::whole);
+        result = read();
     }
     return nb::make_tuple(shared(result.scenario), to_python(result.diagnostics, &reader.locations()));
 }
@@ -96,7 +145,7 @@ private:
     bool has_failed_ = false;
 };
 
-/// A motion that was solved and is to be judged, which cannot be interrupted.
+/// A motion that was solved and is to be judged.
 struct Unjudged {
     Shared scenario;
     Solution solution;
@@ -119,17 +168,16 @@ Unjudged solved(const Shared& scenario, const ProgressCallback& progress, double
     return motion;
 }
 
-/// What `livens solve` does between solving and writing.
-Result judged(Unjudged&& motion)
+/// What `livens solve` does between solving and writing. Once `goes_on` says no it is given up at once,
+/// without the grace that the program has: nobody will see a motion that was interrupted.
+Result judged(Unjudged&& motion, const std::function<bool()>& goes_on)
 {
     const Scenario& scenario = *motion.scenario;
     Solution& solution = motion.solution;
     const double estimate_seconds = solution.estimate_seconds;
-    try {
+    {
+        const Patience patience(goes_on);
         judge(scenario.model, {scenario.conditions}, scenario.options, solution);
-    } catch (const std::bad_alloc&) {
-        if (solution.report.converged()) solution.report.status = SolveStatus::suspect;
-        solution.report.message = "memory ended before the motion was checked";
     }
     const Method method = solution.method;
     Run run = make_run(scenario.model, std::move(solution), method);
@@ -139,36 +187,6 @@ Result judged(Unjudged&& motion)
     run.resolved = scenario.resolved;
     run.output = scenario.output.empty() ? run.motion.mesh.ends : scenario.output;
     return {motion.scenario, std::move(run), method, motion.seconds, estimate_seconds};
-}
-
-/// Motions that are judged although nobody waits for them any more.
-std::atomic<int> n_left = 0;
-
-bool is_of_python(const Model& model)
-{
-    return std::ranges::any_of(model.loads(), [](const Load& load) { return load.type == "python"; });
-}
-
-/// judged(), of a large motion in a thread of its own, while this one asks whether anybody still waits for
-/// it. When nobody does there is no result, and that thread is left to itself: it holds all it needs, and
-/// ends.
-std::optional<Result> judged_while(const std::function<bool()>& goes_on, Unjudged&& motion)
-{
-    constexpr std::size_t small = 100'000;   // numbers, which are judged within some milliseconds
-    if (motion.solution.motion.X.values.size() <= small || is_of_python(motion.scenario->model))
-        return judged(std::move(motion));
-    auto task = std::make_shared<std::packaged_task<Result()>>(
-        [kept = std::make_shared<Unjudged>(std::move(motion))] { return judged(std::move(*kept)); });
-    std::future<Result> result = task->get_future();
-    ++n_left;
-    std::thread([task]() mutable {
-        (*task)();
-        task.reset();
-        --n_left;
-    }).detach();
-    while (result.wait_for(std::chrono::milliseconds(20)) != std::future_status::ready)
-        if (!goes_on()) return {};
-    return result.get();
 }
 
 /// Before the process ends.
@@ -186,11 +204,13 @@ Result solve_one(const Shared& scenario, nb::object progress, double most_bytes)
         const nb::gil_scoped_release unlock;
         Unjudged motion = solved(
             scenario, [&](const Progress& p) { return watch.goes_on(p); }, most_bytes);
-        const auto no_signal = [] {
+        const auto no_signal = [next = Clock::now(), is_wanted = true]() mutable {
+            if (!is_wanted || Clock::now() < next) return is_wanted;
+            next = Clock::now() + std::chrono::milliseconds(50);
             const nb::gil_scoped_acquire lock;
-            return PyErr_CheckSignals() == 0;
+            return is_wanted = PyErr_Occurred() == nullptr && PyErr_CheckSignals() == 0;
         };
-        if (!watch.has_failed()) result = judged_while(no_signal, std::move(motion));
+        if (!watch.has_failed()) result = judged(std::move(motion), no_signal);
     }
     if (!result || PyErr_Occurred() != nullptr) throw nb::python_error();
     return std::move(*result);
@@ -217,7 +237,7 @@ void solve_variant(Variant& variant, double most_bytes, std::atomic<bool>& is_st
         Unjudged motion = solved(
             std::make_shared<Scenario>(std::move(*read.scenario)),
             [&](const Progress&) { return !is_stopped; }, most_bytes);
-        if (!is_stopped) variant.result = judged_while([&] { return !is_stopped.load(); }, std::move(motion));
+        if (!is_stopped) variant.result = judged(std::move(motion), [&] { return !is_stopped.load(); });
     } catch (...) {
         variant.failure = std::current_exception();
     }

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import pathlib
 import pickle
 import subprocess
 import sys
@@ -178,6 +179,22 @@ sent = []""").replace("WORK", 'lv.solve(m, 50, elements=10000, estimate="none")'
         if delays[-1] < 0.2:
             break
     assert min(delays) < 0.2, delays
+
+
+def test_ctrl_c_while_a_mesh_is_read(tmp_path: pathlib.Path) -> None:
+    """20,000 shells in each other, which take seconds to be refused. The process ends when that is done."""
+    corners = np.array([[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]])[[[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]]]
+    faces = np.zeros((20000, 4), dtype=[("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("mark", "<u2")])
+    faces["corners"] = (1 + np.arange(20000) / 20000)[:, None, None, None] * corners
+    (tmp_path / "shells.stl").write_bytes(bytes(80) + (80000).to_bytes(4, "little") + faces.tobytes())
+    (tmp_path / "shells.toml").write_text(
+        'format = 1\n[[body]]\nname = "b"\ndensity = 1\nshape = { mesh = "shells.stl", unit = "m", turn = true }\n'
+        "[time]\nend = 1\nelements = 1\n")
+    script = INTERRUPTED.replace("WORK", f"lv.load({str(tmp_path / 'shells.toml')!r}).check()")
+    done = subprocess.run([sys.executable, "-c", script, os.path.dirname(__file__), "0.5"], capture_output=True, text=True,
+                          timeout=120, check=True)
+    delay, alive = done.stdout.split()
+    assert alive == "True" and float(delay) < 0.5, done.stdout
 
 
 def test_progress(pendulum: lv.Model, capsys: pytest.CaptureFixture[str]) -> None:

@@ -744,6 +744,54 @@ livens_mutant(NAME one_host_of_two
               TESTS_OF livens
               MUST_FAIL report_test.View.test_names_of_fields_and_hosts_have_no_case)
 
+# What came while a scenario was solved is replaced all the same.
+livens_mutant(NAME place_looked_at_once
+              FILE io/results/atomic_file.cpp
+              OLD [[if (is_occupied(target_, is_own_))]]
+              NEW [[if (false)]]
+              TESTS_OF livens
+              MUST_FAIL strangers_test.NothingIsLost.test_files_that_come_while_it_is_solved)
+
+# As many dimensions as a file says.
+livens_mutant(NAME ranks_believed
+              FILE io/results/classic_netcdf_read.cpp
+              OLD [[if (rank > most_dimensions)]]
+              NEW [[if (rank > 1000 * most_dimensions)]]
+              TESTS_OF unit_io
+              MUST_FAIL CraftedFiles.RanksAndNamesAreBounded)
+
+# What both ends take of memory, without their condition number.
+livens_mutant(NAME both_ends_unstated
+              FILE io/scenario/method.cpp
+              OLD [[(40 + 18 * p) * f * f + 550 * f + 1000)]]
+              NEW [[0 * f)]]
+              TESTS_OF livens
+              MUST_FAIL stop_test.MemoryStated.test_conditions_at_both_ends_are_in_what_check_says)
+
+# Faces on both sides of a point count.
+livens_mutant(NAME faces_before_the_point
+              FILE geometry/depths.cpp
+              OLD [[if (away * turn > 0) wound.behind += turn;]]
+              NEW [[wound.behind += turn;]]
+              TESTS_OF unit_geometry
+              MUST_FAIL DepthsOf.PiecesAnywhereAreThoseOfSolidAngles)
+
+# A line along an edge taken for one beside it.
+livens_mutant(NAME lines_along_edges
+              FILE geometry/depths.cpp
+              OLD [[        wound.is_clear = false;]]
+              NEW [[        wound.is_met = true;]]
+              TESTS_OF unit_geometry
+              MUST_FAIL DepthsOf.BlocksInAGridAreThoseOfSolidAngles)
+
+# More pairs than are looked at taken for none that touch.
+livens_mutant(NAME pairs_uncounted
+              FILE geometry/contacts.cpp
+              OLD [[if (!are_few) return {0, 0};]]
+              NEW [[(void)are_few;]]
+              TESTS_OF unit_geometry
+              MUST_FAIL Nested.ShellsAreRefusedByTheirNumberInNoTime)
+
 # Marks of writing direction taken for letters.
 livens_mutant(NAME directions_are_letters
               FILE io/json.cpp

@@ -18,6 +18,7 @@ import sys
 import time
 import unittest
 
+import memory_test
 from program_test import IO, PROGRAM, RESOURCES, SANITIZED, SMALL, ProgramTest
 
 LONG_FORM = "--long" in sys.argv
@@ -232,6 +233,17 @@ class Limits(HardTest):
             file.flush()
             os.fsync(file.fileno())
         return size / 1e6 / (time.monotonic() - begin)
+
+
+class Allocations(HardTest):
+    def test_more_places(self):
+        if SANITIZED or not memory_test.FAILING.exists():
+            self.skipTest("needs glibc, and allocations without a sanitizer")
+        tries = memory_test.FailingAllocations()
+        tries.setUp()
+        self.addCleanup(tries.doCleanups)
+        for what, seen in tries.try_commands(1000 if LONG_FORM else 50):
+            say(f"allocations that fail, {what}: exits {counts(seen)}")
 
 
 class Disks(HardTest):

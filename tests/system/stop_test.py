@@ -2,12 +2,13 @@
 """Signals in every phase of long runs, memory that is stated, findings that check makes before solve does."""
 import json
 import os
+import resource
 import signal
 import subprocess
 import time
 import unittest
 
-from program_test import PROGRAM, SANITIZED, ProgramTest
+from program_test import PROGRAM, SANITIZED, SMALL, ProgramTest
 
 FREE_BODY = """format = 1
 [[body]]
@@ -73,6 +74,18 @@ class Stops(ProgramTest):
             self.assertLess(self.after_signal("run.toml", at), 2)
             self.expect(0, "info", "run.nc")
 
+    def test_chains_stop_at_once(self):
+        """Large motions are not checked any more; to write this one takes a second."""
+        text = "format = 1\ngravity = [0, 0, -9.81]\n"
+        for i in range(60):
+            text += (f'[[body]]\nname = "b{i}"\nshape = {{ box = [0.9, 0.1, 0.1] }}\nmass = 1\nposition = [{i + 0.5}, 0, 0]\n'
+                     f'[[joint]]\nname = "j{i}"\ntype = "revolute"\nat = [{i}, 0, 0]\naxis = [0, 1, 0]\n'
+                     f'between = ["{f"b{i - 1}" if i > 0 else "world"}", "b{i}"]\n')
+        self.write("run.toml", text + "[time]\nend = 0.3\nelements = 3000\noutput = 0.01\n")
+        for at in (0.3, 0.7):
+            self.assertLess(self.after_signal("run.toml", at), 2)
+            self.expect(0, "info", "run.nc")
+
     def test_what_the_caller_ignores_stays_ignored(self):
         self.write("run.toml", FREE_BODY % (4000, 40000, "false"))
         program = subprocess.Popen([PROGRAM, "solve", "run.toml", "-q"], cwd=self.folder,
@@ -86,7 +99,21 @@ class Stops(ProgramTest):
 @unittest.skipIf(SANITIZED, "the sanitizer needs memory of its own")
 class MemoryStated(ProgramTest):
     def test_condition_numbers_are_in_what_check_says(self):
-        self.write("run.toml", FREE_BODY % (1000, 10000, "true"))
+        self.expect_as_said(FREE_BODY % (1000, 10000, "true"))
+
+    def test_conditions_at_both_ends_are_in_what_check_says(self):
+        """They take a condition number, whether it is asked for or not, and a second solution another one."""
+        for text in (FREE_BODY % (1, 3000, "false"), FREE_BODY.replace('"a"', '"b"') % (1, 2000, "true")):
+            self.expect_as_said(text.replace("mass = 1", "mass = 1\nend = { position = [0.1, 0.2, 0] }").replace(
+                "angular_velocity = [0.1, 0, 1]\n", "").replace("output = 100", "output = 1").replace(
+                    "[time]", '[start]\ngiven = "positions"\n[end]\ngiven = "positions"\n[time]'))
+
+    def test_blocks_of_high_degree_are_in_what_check_says(self):
+        self.expect_as_said(SMALL.replace("elements = 10", "elements = 25").replace(
+            'family = "lobatto"\ndegree = 4', 'family = "mixed"\ndegree = 8'))
+
+    def expect_as_said(self, text):
+        self.write("run.toml", text)
         said = json.loads(self.expect(0, "check", "run.toml", "--json").out)["memory_bytes"]
         program = subprocess.Popen([PROGRAM, "solve", "run.toml", "-q"], cwd=self.folder)
         _, status, used = os.wait4(program.pid, 0)
@@ -94,6 +121,22 @@ class MemoryStated(ProgramTest):
         self.assertEqual(program.returncode, 0)
         self.assertLess(1024 * used.ru_maxrss, 1.3 * said)
         self.assertGreater(1024 * used.ru_maxrss, said / 1.3)
+
+    @unittest.skipUnless(hasattr(resource, "prlimit"), "needs Linux")
+    def test_memory_that_ends_over_condition_numbers_costs_no_motion(self):
+        """It is there when the run begins, and is taken away."""
+        self.write("run.toml", FREE_BODY % (2000, 20000, "true"))
+        program = subprocess.Popen([PROGRAM, "solve", "run.toml", "-q"], cwd=self.folder, stderr=subprocess.DEVNULL)
+        pages = [0, 0]
+        while program.poll() is None and pages[1] * resource.getpagesize() < 150e6:
+            with open(f"/proc/{program.pid}/statm") as file:
+                pages = [int(number) for number in file.read().split()[:2]]
+        size = pages[0] * resource.getpagesize()
+        resource.prlimit(program.pid, resource.RLIMIT_AS, (size, size))
+        self.assertEqual(program.wait(), 0)
+        info = self.expect(0, "info", "run.nc").out
+        self.assertIn("memory ended before condition numbers were computed", info)
+        self.assertEqual(json.loads(self.expect(0, "info", "run.nc", "--json").out)["status"], "converged")
 
 
 class FoundByCheck(ProgramTest):

@@ -225,6 +225,29 @@ class NothingIsLost(ProgramTest):
             self.expect(IO, "solve", *scenarios, "-o", "sub", "--force")
         self.assertEqual((self.folder / "sub" / "small.nc").read_text(), SMALL)
 
+    def test_files_that_come_while_it_is_solved(self):
+        """Neither they nor the motion are lost; older results that come meanwhile are replaced."""
+        self.write("long.toml", text_with("elements = 10", "elements = 5000"))
+        for force in ((), ("--force",)):
+            for content in (b"mine", self.result):
+                (self.folder / "long.nc").unlink(missing_ok=True)
+                program = subprocess.Popen([PROGRAM, "solve", "long.toml", "-v", *force], cwd=self.folder,
+                                           stderr=subprocess.PIPE, stdout=subprocess.DEVNULL)
+                read = program.stderr.readline()   # "read and checked the scenario": its place was looked at
+                self.assertIn(b"read and checked", read)
+                self.write("long.nc", content)
+                err = program.communicate(timeout=100)[1].decode()
+                if force or content != b"mine":
+                    self.assertEqual(program.returncode, 0, err)
+                    self.expect(0, "info", "long.nc")
+                    self.assertNotEqual((self.folder / "long.nc").read_bytes(), content)
+                else:
+                    self.assertEqual(program.returncode, IO, err)
+                    self.assertIn("the motion is in 'long-1.nc'", err)
+                    self.assertEqual((self.folder / "long.nc").read_bytes(), content)
+                    self.expect(0, "info", "long-1.nc")
+        self.assert_no_temporaries()
+
     def test_names_that_are_empty(self):
         for arguments in (("solve", "small.toml", "-o", ""), ("solve", "small.toml", "--csv", ""), ("init", ""),
                           ("export", "run.nc", "--csv", ""), ("report", "run.nc", "-o", "")):

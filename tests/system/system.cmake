@@ -1,9 +1,16 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Tests that run the program as a user does: one ctest a class of these scripts. Standard library only; what needs
 # netCDF4, xarray, ncdump or the right to mount is skipped where it is missing.
+include(CheckFunctionExists)
 
 if(LIVENS_BUILD_PROGRAM)
-    foreach(file program_test terminal_test rest_test locking_test mass_test skew_test export_test report_test stop_test strangers_test hard_ends)
+    check_function_exists(__libc_memalign LIVENS_HAS_GLIBC)
+    if(LIVENS_HAS_GLIBC)   # to be loaded before the program's libraries: allocations that fail
+        add_library(failing_allocations MODULE ${CMAKE_CURRENT_SOURCE_DIR}/system/failing_allocations.cpp)
+        target_link_libraries(failing_allocations PRIVATE livens_flags)
+        set_target_properties(failing_allocations PROPERTIES PREFIX "")
+    endif()
+    foreach(file program_test terminal_test rest_test locking_test mass_test skew_test export_test report_test stop_test memory_test strangers_test hard_ends)
         set(script ${CMAKE_CURRENT_SOURCE_DIR}/system/${file}.py)
         file(STRINGS ${script} classes REGEX "^class [A-Za-z]+\\((ProgramTest|HardTest)\\)")
         set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${script})

@@ -17,8 +17,11 @@ namespace livens {
 namespace {
 
 constexpr double touch = 1e-13;             // gaps below it, relative to the pair's size, are none
+constexpr std::int64_t some_pairs = 4096;   // after which a thread tells the others
 constexpr std::size_t few_leaves = 1024;    // below it threads are not worth their while
-constexpr std::int64_t most_pairs = 3000;   // looked at a triangle: more are no surface of a part
+constexpr std::int64_t many_pairs = 100;    // boxes that meet, a triangle: most surfaces have a tenth of it
+constexpr std::int64_t most_pairs =
+    3000;   // more are no surface of a part; of slanted needles there are as many
 
 /// Whether two triangles have nothing in common but the corners that both have. Projections onto a direction
 /// are of corners relative to the first one of `a`; `shared` are the leading corners of both that are the
@@ -90,7 +93,7 @@ private:
 /// The pairs of boxes of one level of a tree that meet, or one with itself: what is looked at in one go.
 struct Task {
     std::size_t k, l;
-    std::int64_t n_pairs = 0;   ///< looked at
+    std::int64_t n_pairs = 0;   ///< of boxes that meet
     std::pair<std::int32_t, std::int32_t> found{-1, -1};
 };
 
@@ -98,32 +101,31 @@ class Contacts {
 public:
     Contacts(const Facets& f, const Triangles& triangles, const Rings& rings)
         : points_(f.mesh->points), directions_(rings.directions), tree_(points_, triangles, rings),
-          most_(1'000'000 + most_pairs * static_cast<std::int64_t>(triangles.corners.size() / 3))
+          many_(limit(triangles, many_pairs)), most_(most(triangles))
     {
         tree_.leave_out(lone_sheets(tree_, points_));
     }
+    static std::int64_t most(const Triangles& triangles) { return limit(triangles, most_pairs); }
+    static std::int64_t limit(const Triangles& triangles, std::int64_t each)
+    {
+        return 1'000'000 + each * static_cast<std::int64_t>(triangles.corners.size() / 3);
+    }
 
-    /// The first pair that touches; {-1, -1} if there is none, {0, 0} if there are too many to look at.
+    /// The first pair that touches; {-1, -1} if there is none, {0, 0} if there are too many to look at. They
+    /// are counted before, where they are many; the first of them are looked at all the same, for whoever
+    /// made the mesh wants to hear of a place.
     std::pair<std::int32_t, std::int32_t> find()
     {
         std::vector<Task> tasks;
         divide(tasks, 1, 1, tree_.n_leaves < few_leaves ? 0 : 6);
-        std::atomic<int> last = static_cast<int>(tasks.size());   // with something found
-        in_parallel(static_cast<int>(tasks.size()), [&](int i) {
-            if (i > last) return;
-            Task& task = tasks[i];
-            go(task, task.k, task.l);
-            if (!is_done(task)) return;
-            for (int known = last; i < known && !last.compare_exchange_weak(known, i);) {
-            }
-        });
-        std::int64_t n = 0;   // in the order of tasks, whoever did them
-        for (const Task& task : tasks) {
-            n += task.n_pairs;
-            if (n > most_) return {0, 0};
-            if (task.found.first >= 0) return task.found;
-        }
-        return {-1, -1};
+        if (run(tasks, many_)) return first_of(tasks);
+        if (const auto found = first_of_many(tasks); found.first >= 0) return found;
+        is_counting_ = true;
+        const bool are_few = run(tasks, most_);
+        is_counting_ = false;
+        if (!are_few) return {0, 0};
+        run(tasks, most_);
+        return first_of(tasks);
     }
 
 private:
@@ -142,9 +144,60 @@ private:
                     if (tree_.boxes[i].meets(tree_.boxes[j])) divide(tasks, i, j, levels - 1);
     }
 
-    bool is_done(const Task& task) const { return task.found.first >= 0 || task.n_pairs > most_; }
+    /// False if they are more than `limit`: then it stopped somewhere.
+    bool run(std::vector<Task>& tasks, std::int64_t limit)
+    {
+        begin(tasks, limit);
+        std::atomic<int> last = static_cast<int>(tasks.size());   // with something found
+        in_parallel(static_cast<int>(tasks.size()), [&](int i) {
+            if (i > last || is_beyond()) return;
+            Task& task = tasks[i];
+            go(task, task.k, task.l);
+            n_pairs_ += task.n_pairs % some_pairs;
+            if (task.found.first < 0) return;
+            for (int known = last; i < known && !last.compare_exchange_weak(known, i);) {
+            }
+        });
+        return !is_beyond();
+    }
 
-    void go(Task& task, std::size_t k, std::size_t l) const   // that meet, of one level
+    /// In the order of tasks, whoever did them.
+    static std::pair<std::int32_t, std::int32_t> first_of(const std::vector<Task>& tasks)
+    {
+        for (const Task& task : tasks)
+            if (task.found.first >= 0) return task.found;
+        return {-1, -1};
+    }
+
+    /// By one thread, so that it is the same for any number of them.
+    std::pair<std::int32_t, std::int32_t> first_of_many(std::vector<Task>& tasks)
+    {
+        begin(tasks, many_);
+        for (Task& task : tasks) {
+            go(task, task.k, task.l);
+            n_pairs_ += task.n_pairs % some_pairs;
+            if (task.found.first >= 0 || is_beyond()) return task.found;
+        }
+        return {-1, -1};
+    }
+
+    void begin(std::vector<Task>& tasks, std::int64_t limit)
+    {
+        for (Task& task : tasks) task = {task.k, task.l};
+        n_pairs_ = 0;
+        limit_ = limit;
+    }
+
+    bool is_beyond() const { return n_pairs_.load(std::memory_order_relaxed) > limit_; }
+    bool is_done(const Task& task) const { return task.found.first >= 0 || is_beyond(); }
+    void count(Task& task, std::int64_t n)
+    {
+        const std::int64_t before = task.n_pairs;
+        task.n_pairs += n;
+        n_pairs_ += task.n_pairs / some_pairs * some_pairs - before / some_pairs * some_pairs;
+    }
+
+    void go(Task& task, std::size_t k, std::size_t l)   // that meet, of one level
     {
         if (is_done(task) || !tree_.boxes[k].meets(tree_.boxes[k])) return;   // nothing meets nothing
         if (k >= tree_.n_leaves) return look(task, k - tree_.n_leaves, l - tree_.n_leaves);
@@ -154,7 +207,7 @@ private:
             if (tree_.boxes[2 * k].meets(tree_.boxes[2 * k + 1])) go(task, 2 * k, 2 * k + 1);
             return;
         }
-        ++task.n_pairs;
+        count(task, 1);
         for (const std::size_t i : {2 * k, 2 * k + 1}) {
             if (!tree_.boxes[i].meets(tree_.boxes[l])) continue;
             for (const std::size_t j : {2 * l, 2 * l + 1})
@@ -162,7 +215,7 @@ private:
         }
     }
 
-    void look(Task& task, std::size_t k, std::size_t l) const
+    void look(Task& task, std::size_t k, std::size_t l)
     {
         const Leaf& others = tree_.leaves[l];
         unsigned rows = k == l ? 255 : tree_.leaves[k].met(CoarseBox(tree_.boxes[tree_.n_leaves + l]));
@@ -171,6 +224,8 @@ private:
             unsigned met = others.met(tree_.leaves[k].box(i));
             if (k == l) met &= ~1u << i;
             if (met == 0) continue;
+            count(task, std::popcount(met));
+            if (is_counting_) continue;
             const Four a = tree_.triangle(Leaf::n * k + i);
             std::array<Four, 3> known;   // corners that nothing else need be asked about, and the face
             for (int c = 0; c < 3; ++c) {
@@ -178,7 +233,6 @@ private:
                 known[c] = Four{at, at, at, a[3]};
             }
             for (; met != 0 && !is_done(task); met &= met - 1) {
-                ++task.n_pairs;
                 const Four b = tree_.triangle(Leaf::n * l + std::countr_zero(met));
                 if (any((b == known[0]) | (b == known[1]) | (b == known[2]))) continue;
                 if (!Pair(points_, a, b).is_apart()) task.found = std::minmax(a[3], b[3]);
@@ -189,7 +243,9 @@ private:
     const std::vector<Vector3>& points_;
     const std::vector<std::uint8_t>& directions_;
     BoxTree tree_;
-    std::int64_t most_;
+    std::int64_t many_, most_, limit_ = 0;
+    std::atomic<std::int64_t> n_pairs_{0};   ///< of all tasks, some at a time
+    bool is_counting_ = false;
 };
 
 }   // namespace
@@ -202,8 +258,11 @@ void check_contacts(const Facets& f, const Triangles& triangles, const Rings& ri
     const std::string& name = f.mesh->name;
     if (a == b)
         faults.push_back({"mesh-self-contact", "",
-                          name + ": the faces are too entangled to see whether they touch", "", "", "",
-                          "export the part with shorter triangles"});
+                          name + ": more than " + std::to_string(Contacts::most(triangles)) +
+                              " pairs of its " + std::to_string(f.n_faces()) +
+                              " faces lie near each other, too many to see whether they touch",
+                          "", "", "",
+                          "export the part with shorter triangles, and without what lies inside of it"});
     else
         faults.push_back({"mesh-self-contact", "",
                           name + ": " + name_of_face(*f.mesh, a) + " and " + name_of_face(*f.mesh, b) +

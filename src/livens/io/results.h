@@ -49,7 +49,9 @@ Run make_run(const Model& model, Solution solution, const Method& method);
 
 /// Writes to a temporary name in the same folder, syncs, renames: see replace_file(). Same run, same bytes.
 /// Takes next to no memory of its own: 40 bytes an element for integrals, 8 a node for times, a buffer.
-void write_run(const std::filesystem::path& file, const Model& model, const Run& run);
+/// `spares_others`: throws OccupiedError where what stands there by then is_occupied() by no run.
+void write_run(const std::filesystem::path& file, const Model& model, const Run& run,
+               bool spares_others = false);
 Run read_run(const std::filesystem::path& file);
 
 /// What can be had without reading the motion, however large: figures, names, notes and options.
@@ -99,6 +101,12 @@ public:
 
 private:
     std::string code_;
+};
+
+/// Nothing was written, since something stands there that is not to be replaced.
+class OccupiedError : public IoError {
+public:
+    using IoError::IoError;
 };
 
 }   // namespace gnu::visibility("default")]]livens

@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cassert>
-#include <mutex>
-#include <optional>
+#include <memory>
 
 #include "livens/base/error.h"
 #include "livens/multibody/detail/wording.h"
@@ -20,15 +20,19 @@ constexpr int max_degree = 32;
 /// Lagrange bases, each built at its first use: all of them would cost more than a short motion.
 const LagrangeBasis& known_basis(Points points, int degree)
 {
+    // No std::call_once: the C library ends the program where memory ends inside of it.
     struct Known {
-        std::once_flag once;
-        std::optional<LagrangeBasis> basis;
+        std::atomic<const LagrangeBasis*> basis{nullptr};
+        ~Known() { delete basis.load(); }
     };
     static std::array<Known, 2 * max_degree> all;
     assert(degree >= 1 && degree <= max_degree);
     Known& known = all[static_cast<std::size_t>((points == Points::lobatto ? 0 : max_degree) + degree - 1)];
-    std::call_once(known.once, [&] { known.basis = basis_on(points, degree); });
-    return *known.basis;
+    if (const LagrangeBasis* const basis = known.basis.load(std::memory_order_acquire)) return *basis;
+    auto made = std::make_unique<const LagrangeBasis>(basis_on(points, degree));
+    const LagrangeBasis* first = nullptr;   // of several threads
+    if (!known.basis.compare_exchange_strong(first, made.get(), std::memory_order_acq_rel)) return *first;
+    return *made.release();
 }
 
 Matrix34 body_of(std::span<const double> stacked, int body)

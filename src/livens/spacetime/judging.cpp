@@ -94,7 +94,9 @@ void judge_beside(const Model& model, const Problem& problem, const SolveOptions
 void judge(const Model& model, const Problem& problem, const SolveOptions& options, Solution& solution,
            const std::function<bool()>& goes_on)
 {
-    constexpr double grace = 0.5;   // s of CPU time: most motions are judged by then
+    // Most motions are judged by then; of the others the writing alone takes as long as anybody waits.
+    constexpr std::size_t large = 2'000'000;   // numbers
+    const double grace = solution.motion.X.values.size() > large ? 0 : 0.5;   // s of CPU time
     SolveReport& report = solution.report;
     const auto give_up = [&](SolveStatus status, const std::string& why) {
         solution.verdict = {};

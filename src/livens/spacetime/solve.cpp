@@ -222,8 +222,9 @@ Solution solve_by_windows(const Model& model, const Problem& problem, const Time
     ConditionNumbersOfLast last(options, mesh, w.direction > 0 ? mesh.end() : mesh.start());
     if (!ends.has_state() && !is_mixed && report.status != SolveStatus::cancelled)
         refuse_undetermined(*window, last, report);
-    const bool is_whole = !std::holds_alternative<Lobatto>(method) || w.length == 0 ||
-                          w.length >= mesh.n_elements();   // else the last window is all there is
+    // Else the last window is all there is, or nothing: single elements of a march form no matrix.
+    const bool is_whole = !std::holds_alternative<Lobatto>(method) || !ends.has_state() ||
+                          (mesh.n_elements() > 1 && (w.length == 0 || w.length >= mesh.n_elements()));
     if (options.condition && report.converged() && is_whole)
         last.measure(report, [&](const auto& goes_on) { window->measure_condition(report, goes_on); });
     solution.unseen = window->take_unseen();

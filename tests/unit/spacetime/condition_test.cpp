@@ -63,6 +63,26 @@ TEST(ConditionNumber, OfAFreePointHasTheInverseOfSecondDifferences)
     }
 }
 
+/// Alone in a motion, or in a phase between two events, an element forms no matrix on its way.
+TEST(ConditionNumber, OfASingleElementIsThatOfItsMatrix)
+{
+    for (const int degree : {1, 2, 4})
+        for (const int window : {0, 1, 2}) {
+            SolveOptions options;
+            options.condition = true;
+            Lobatto method{degree};
+            method.window = window;
+            const Model model = degree == 1 ? flying_point() : tests::two_bricks();
+            const Solution s = solve(model, {model.start()}, make_time_mesh(0, 0.1, 1), method, options);
+            ASSERT_TRUE(s.report.converged());
+            if (degree == 1)
+                EXPECT_EQ(s.report.condition_1, 1);
+            else
+                EXPECT_GT(s.report.condition_2, 1.5);
+            EXPECT_TRUE(std::isfinite(s.report.condition_2));
+        }
+}
+
 Solution with_condition(const Model& model, double end, int n, int degree)
 {
     SolveOptions options;

@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <cerrno>
+#include <cstdio>
 #include <memory>
 #include <mutex>
 #include <set>
@@ -118,7 +119,8 @@ Descriptor::~Descriptor()
     if (number_ >= 0) ::close(number_);
 }
 
-AtomicFile::AtomicFile(const fs::path& file) : file_(file)
+AtomicFile::AtomicFile(const fs::path& file, bool (*is_own)(std::string_view head))
+    : file_(file), is_own_(is_own)
 {
     const std::string cannot = "cannot write " + quoted(file);
     if (file.empty() || !file.has_filename() || file.filename() == "." || file.filename() == "..")
@@ -181,13 +183,32 @@ void AtomicFile::write(std::uint64_t offset, std::string_view bytes)
     }
 }
 
+/// A name that nobody has is taken only while nobody has it.
+void AtomicFile::take_name()
+{
+    for (int attempt = 0; is_own_ != nullptr && attempt < 100; ++attempt) {
+        struct stat there {};
+        if (is_occupied(target_, is_own_))
+            throw OccupiedError("cannot write " + quoted(file_) +
+                                ": what stands there now came meanwhile, and is none that livens wrote");
+        if (::lstat(target_.c_str(), &there) == 0) break;
+#ifdef RENAME_NOREPLACE
+        if (::renameat2(AT_FDCWD, temporary_.c_str(), AT_FDCWD, target_.c_str(), RENAME_NOREPLACE) == 0)
+            return;
+        if (errno == EEXIST) continue;   // what is it?
+#endif
+        break;   // a file system without such a call
+    }
+    if (::rename(temporary_.c_str(), target_.c_str()) != 0) fail("cannot replace " + quoted(file_), errno);
+}
+
 void AtomicFile::commit()
 {
     if (::fsync(out_.number()) != 0) fail("cannot write " + quoted(file_), errno);
     // Some file systems report a full disk only when a file is closed; the lock lasts until all are.
     if (const int twin = ::dup(out_.number()); twin >= 0 && ::close(twin) != 0)
         fail("cannot write " + quoted(file_), errno);
-    if (::rename(temporary_.c_str(), target_.c_str()) != 0) fail("cannot replace " + quoted(file_), errno);
+    take_name();
     temporary_.clear();
     // The new file stands; a folder that cannot be synced (some network file systems) takes nothing back.
     const Descriptor folder(::open(folder_of(target_).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));

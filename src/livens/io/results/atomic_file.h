@@ -29,7 +29,9 @@ private:
 /// lock, left behind by killed processes, are removed when a process makes its first one there.
 class AtomicFile {
 public:
-    explicit AtomicFile(const std::filesystem::path& file);
+    /// `is_own`: of the beginning of a file that may be replaced; see is_occupied(). It is asked last of all,
+    /// for a file that came while this one was made.
+    explicit AtomicFile(const std::filesystem::path& file, bool (*is_own)(std::string_view head) = nullptr);
     ~AtomicFile();
     AtomicFile(const AtomicFile&) = delete;
     AtomicFile& operator=(const AtomicFile&) = delete;
@@ -39,8 +41,10 @@ public:
 
 private:
     void create();
+    void take_name();
 
     std::filesystem::path file_, target_, temporary_;
+    bool (*is_own_)(std::string_view head);
     Descriptor out_{-1};
 };
 

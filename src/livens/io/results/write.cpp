@@ -164,9 +164,9 @@ void write_run_to(const ByteSink& sink, const Model& model, const Run& run, std:
     archive.write(sink);
 }
 
-void write_run(const std::filesystem::path& file, const Model& model, const Run& run)
+void write_run(const std::filesystem::path& file, const Model& model, const Run& run, bool spares_others)
 {
-    AtomicFile out(file);
+    AtomicFile out(file, spares_others ? begins_as_run : nullptr);
     write_run_to([&](std::uint64_t offset, std::string_view bytes) { out.write(offset, bytes); }, model, run);
     out.commit();
 }

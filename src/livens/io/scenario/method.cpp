@@ -14,10 +14,9 @@ constexpr double max_motion_bytes = 8 * gibibyte;
 constexpr double max_matrix_bytes = 8 * gibibyte;
 // The whole solution of 20,000 linear elements of one rigid body (56 entries of the factors an unknown, and
 // the matrix, its pattern and copies) took 2.3 kB an unknown, as much as 150 entries of 16 bytes. Bodies that
-// hang together fill the factors: chains on ball joints had 76 entries an unknown for each body (1 to 16
-// bodies, linear). Higher degrees take more: the bound refuses nothing that would fit.
+// hang together fill the factors: chains of 2, 4 and 8 hinges took 240, 400 and 770 entries, linear elements.
 constexpr double least_entries_per_unknown = 150;
-constexpr double entries_per_unknown_and_body = 76;
+constexpr double entries_per_unknown = 2.57;   // beyond 60, for each unknown of a node
 constexpr double bytes_per_factor_entry = 16;
 
 struct MethodKind : Kind {
@@ -216,16 +215,30 @@ double condition_bytes(const Model& model, const Method& method, double n_elemen
     return n_elements * (blocks + factors + entries + p * node);
 }
 
+/// Conditions at both ends take one window of all elements, and its condition number, which tells whether
+/// they determine the motion; those of a second solution are of one degree more. Free bodies (1 to 6) and
+/// chains of 1 to 8 hinges, degrees 1 to 4, took what follows within a quarter.
+double both_ends_bytes(const Model& model, const Lobatto& lobatto, double n_elements, bool is_estimated)
+{
+    double twists = 0;
+    for (const Body& body : model.bodies()) twists += body.is_point ? 3 : 6;
+    const double f = std::max(twists - model.n_rows(), 1.0), p = lobatto.degree + (is_estimated ? 1 : 0);
+    return n_elements * p * (twists * (600 + 24 * twists) + (40 + 18 * p) * f * f + 550 * f + 1000);
+}
+
 /// Of the factors of one block's matrix, which outweigh all else.
 double matrix_bytes(const Model& model, const Mixed& mixed, double n_elements)
 {
     double unknowns = model.n_rows();   // a node
     for (const Body& body : model.bodies()) unknowns += body.is_point ? 6 : 30;
-    const double entries = model.joints().empty() ? least_entries_per_unknown
-                                                  : std::max(least_entries_per_unknown,
-                                                             entries_per_unknown_and_body * model.n_bodies());
-    // the factors fill a band as wide as an element: degrees 1 to 8 took 1.1, 1.3, .. 3.4 times the entries
-    const double width = std::max(1.0, 0.65 + 0.34 * mixed.degree);
+    const bool is_free = model.joints().empty();
+    const double entries = is_free ? least_entries_per_unknown
+                                   : std::max(least_entries_per_unknown, 60 + entries_per_unknown * unknowns);
+    // the factors fill a band as wide as an element: degrees 1 to 8 took 1.1, 1.3, .. 3.4 times the entries,
+    // 2.7 times of free bodies, 4.2 times of chains
+    const double p = mixed.degree, of_chain = std::clamp(unknowns / 35 - 1, 0.0, 1.0),
+                 width = is_free ? 0.75 + 0.25 * p
+                                 : std::max(1.0, 0.65 + 0.34 * p) + of_chain * 0.012 * (p * p - 1);
     return unknowns * mixed.degree * elements_at_once(mixed.window, n_elements) * entries * width *
            bytes_per_factor_entry;
 }
@@ -324,10 +337,9 @@ bool check_size(const Model& model, const Method& method, double n_elements, con
 MemoryNeed memory_needed(const Scenario& scenario)
 {
     const Model& model = scenario.model;
-    Method method = scenario.method;
+    const Method& method = scenario.method;
     const bool is_march =
         scenario.conditions.at_start == Known::state || scenario.conditions.at_end == Known::state;
-    if (auto* lobatto = std::get_if<Lobatto>(&method); lobatto != nullptr && !is_march) lobatto->window = 0;
     const auto* mesh = std::get_if<TimeMesh>(&scenario.time);
     const double n_output = static_cast<double>(scenario.output.size());
     // for an accuracy at least one between output times is found
@@ -339,7 +351,10 @@ MemoryNeed memory_needed(const Scenario& scenario)
     need.motion =
         motion_bytes(model, method, n) + sizeof(double) * (2 * n + n_output);   // ends and iterations
     need.system = system_bytes(model, method, n);
-    if (scenario.options.condition && is_march && std::holds_alternative<Lobatto>(method))
+    const auto* lobatto = std::get_if<Lobatto>(&method);
+    if (lobatto != nullptr && !is_march)
+        need.system = both_ends_bytes(model, *lobatto, n, is_estimated);
+    else if (lobatto != nullptr && scenario.options.condition)
         need.system = std::max(need.system, condition_bytes(model, method, n));
     need.checks = sizeof(double) * (estimates * n + 6 * n * degree_of(method)) + (8u << 20);
     return need;

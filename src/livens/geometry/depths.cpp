@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "livens/geometry/detail/depths.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+namespace livens {
+
+namespace {
+
+constexpr double unclear = 1e-12;            // of what is subtracted
+constexpr std::int64_t looks_of_view = 30;   // what the solid angle of a face costs
+constexpr std::int64_t looks_at_least = 30'000'000, looks_a_triangle = 1000;   // more take seconds
+constexpr int most_cells = 1024;                                                // along a side
+constexpr std::size_t entries_a_triangle = 8;
+
+/// Of the triangle 0, a, b seen along the first axis, doubled. 0 where it is not clear.
+double area(const Vector3& a, const Vector3& b)
+{
+    const double one = a[1] * b[2], other = a[2] * b[1];
+    return std::abs(one - other) <= unclear * (std::abs(one) + std::abs(other)) ? 0 : one - other;
+}
+
+}   // namespace
+
+Depths::Depths(const Facets& facets, const Triangles& triangles, const Pieces& pieces)
+    : facets_(facets), triangles_(triangles), pieces_(pieces), around_(pieces.n), wounds_(pieces.n),
+      most_looks_(looks_at_least + looks_a_triangle * static_cast<std::int64_t>(triangles.corners.size() / 3))
+{
+    for (std::int32_t face = 0; face < facets.n_faces(); ++face) {
+        Around& around = around_[pieces.of(face)];
+        around.faces.push_back(face);
+        for (std::int32_t h = facets.begin(face); h < facets.begin(face + 1); ++h) around.widen(facets.at(h));
+    }
+    make_grid();
+}
+
+void Depths::Around::widen(const Vector3& p)
+{
+    for (int i = 0; i < 3; ++i) {
+        low[i] = std::min(low[i], p[i]);
+        high[i] = std::max(high[i], p[i]);
+    }
+}
+
+bool Depths::Around::holds(const Vector3& p) const
+{
+    for (int i = 0; i < 3; ++i)
+        if (!(p[i] >= low[i] && p[i] <= high[i])) return false;
+    return true;
+}
+
+int Depths::Grid::cell(int side, double x) const
+{
+    return std::clamp(static_cast<int>(n * std::clamp((x - low[side]) * scale[side], 0.0, 1.0)), 0, n - 1);
+}
+
+/// As fine as leaves each triangle in a few cells.
+void Depths::make_grid()
+{
+    const std::vector<Vector3>& points = facets_.mesh->points;
+    const std::size_t n = triangles_.corners.size() / 3;
+    double high[2]{};
+    for (int side = 0; side < 2; ++side) {
+        grid_.low[side] = HUGE_VAL;
+        high[side] = -HUGE_VAL;
+        for (const std::int32_t c : triangles_.corners) {
+            grid_.low[side] = std::min(grid_.low[side], points[c][side + 1]);
+            high[side] = std::max(high[side], points[c][side + 1]);
+        }
+        const double size = high[side] - grid_.low[side];
+        grid_.scale[side] = size > 0 && std::isfinite(1 / size) ? 1 / size : 0;
+    }
+    const auto for_cells = [&](std::size_t t, const auto& work) {
+        int first[2], last[2];
+        for (int side = 0; side < 2; ++side) {
+            const auto x = [&](int i) { return points[triangles_.corners[3 * t + i]][side + 1]; };
+            first[side] = grid_.cell(side, std::min({x(0), x(1), x(2)}));
+            last[side] = grid_.cell(side, std::max({x(0), x(1), x(2)}));
+        }
+        work(first, last);
+    };
+    std::size_t n_entries = 0;
+    grid_.n = std::clamp(static_cast<int>(std::sqrt(static_cast<double>(n))), 1, most_cells);
+    for (;; grid_.n /= 2) {
+        n_entries = 0;
+        for (std::size_t t = 0; t < n; ++t)
+            for_cells(t, [&](const int* first, const int* last) {
+                n_entries += static_cast<std::size_t>(last[0] - first[0] + 1) *
+                             static_cast<std::size_t>(last[1] - first[1] + 1);
+            });
+        if (grid_.n == 1 || n_entries <= entries_a_triangle * n) break;
+    }
+    std::vector<std::int32_t>& begins = grid_.begins;
+    begins.assign(static_cast<std::size_t>(grid_.n) * static_cast<std::size_t>(grid_.n) + 1, 0);
+    grid_.triangles.resize(n_entries);
+    const auto for_places = [&](std::size_t t, const auto& work) {
+        for_cells(t, [&](const int* first, const int* last) {
+            for (int i = first[0]; i <= last[0]; ++i)
+                for (int j = first[1]; j <= last[1]; ++j) work(begins[i * grid_.n + j + 1]);
+        });
+    };
+    for (std::size_t t = 0; t < n; ++t) for_places(t, [](std::int32_t& count) { ++count; });
+    // Each cell's end becomes its begin, and grows to its end again.
+    std::int32_t sum = 0;
+    for (std::size_t c = 1; c < begins.size(); ++c) sum += std::exchange(begins[c], sum);
+    for (std::size_t t = 0; t < n; ++t)
+        for_places(t, [&](std::int32_t& at) { grid_.triangles[at++] = static_cast<std::int32_t>(t); });
+}
+
+void Depths::cross(const Vector3& point, std::size_t triangle, Wound& wound) const
+{
+    const std::int32_t* const c = &triangles_.corners[3 * triangle];
+    const std::vector<Vector3>& points = facets_.mesh->points;
+    const Vector3 p[3] = {points[c[0]] - point, points[c[1]] - point, points[c[2]] - point};
+    for (int i = 1; i < 3; ++i) {
+        if (p[0][i] > 0 && p[1][i] > 0 && p[2][i] > 0) return;
+        if (p[0][i] < 0 && p[1][i] < 0 && p[2][i] < 0) return;
+    }
+    const double a[3] = {area(p[1], p[2]), area(p[2], p[0]), area(p[0], p[1])};
+    int n_left = 0, n_right = 0;
+    for (const double x : a) {
+        n_left += x > 0;
+        n_right += x < 0;
+    }
+    if (n_left > 0 && n_right > 0) return;   // passes by
+    const double away = a[0] * p[0][0] + a[1] * p[1][0] + a[2] * p[2][0],
+                 size = std::abs(a[0] * p[0][0]) + std::abs(a[1] * p[1][0]) + std::abs(a[2] * p[2][0]);
+    if (n_left + n_right < 3 || std::abs(away) <= unclear * size) {
+        wound.is_clear = false;
+        return;
+    }
+    const int turn = n_left > 0 ? 1 : -1;
+    wound.in_all += turn;
+    if (away * turn > 0) wound.behind += turn;
+}
+
+double Depths::seen(const Vector3& point, std::int32_t piece)
+{
+    const Around& around = around_[piece];
+    if (is_beyond() || !around.holds(point)) return 0;
+    double sum = 0;
+    for (const std::int32_t face : around.faces) sum += share_of_view(facets_, face, point);
+    n_looks_ += looks_of_view * static_cast<std::int64_t>(around.faces.size());
+    return sum;
+}
+
+int Depths::of(const Vector3& point, std::int32_t own, bool as_if_outwards)
+{
+    if (is_beyond()) return 0;
+    const int cell = grid_.cell(0, point[1]) * grid_.n + grid_.cell(1, point[2]);
+    const std::int32_t begin = grid_.begins[cell], end = grid_.begins[cell + 1];
+    n_looks_ += end - begin;
+    met_.clear();
+    for (std::int32_t k = begin; k < end; ++k) {
+        const auto triangle = static_cast<std::size_t>(grid_.triangles[k]);
+        const std::int32_t piece = pieces_.of(triangles_.face(triangle));
+        if (piece == own) continue;
+        Wound& wound = wounds_[piece];
+        if (!std::exchange(wound.is_met, true)) met_.push_back(piece);
+        cross(point, triangle, wound);
+    }
+    double depth = 0;
+    for (const std::int32_t piece : met_) {
+        const Wound wound = std::exchange(wounds_[piece], Wound{});
+        const bool is_counted = wound.is_clear && wound.in_all == 0;
+        const double around = is_counted ? wound.behind : seen(point, piece);
+        depth += as_if_outwards ? std::abs(around) : around;
+    }
+    return static_cast<int>(std::lround(depth));
+}
+
+double share_of_view(const Facets& f, std::int32_t face, const Vector3& p)
+{
+    double angle = 0;
+    for (std::int32_t h = f.begin(face) + 1; h + 1 < f.begin(face + 1); ++h) {
+        const Vector3 a = f.at(f.begin(face)) - p, b = f.at(h) - p, c = f.at(h + 1) - p;
+        const double la = norm(a), lb = norm(b), lc = norm(c);
+        const double below = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb;
+        angle += 2 * std::atan2(dot(a, cross(b, c)), below);
+    }
+    return angle / (4 * std::numbers::pi);
+}
+
+}   // namespace livens
