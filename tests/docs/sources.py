@@ -139,6 +139,8 @@ TIES = [
     ("this ends at $G^2 = «10^{-2}» d$", f"{TIME}/growth.cpp", r"share_of_one = ([^;]+);"),
     ("$«10^{-5}»$ away on both, and made so again, at the latest, before they would exceed $«10^{-4}»$ at", f"{TIME}/growth.cpp",
      r"beside_two\{([^,]+), [^,]+, ([^}]+)\}"),
+    ("once more with a tolerance of $«10^{-15}»$", f"{TIME}/accuracy.cpp", r"all_digits = ([^;]+);"),
+    ("has to agree to $«10^{-11}»$ of lengths or rad", f"{TIME}/lobatto/inside.cpp", r"negligible = ([^;]+);"),
     ("parts across that plane by more than $«10^{14}»$ in", "tests/convergence/horizon.cpp", r"growth, (1e14)\);"),
     ("second solution tells ($«10^{-11}»$ at least)", f"{TIME}/growth.cpp", r"double least = ([^,]+), share"),
     ("is $«5.5\\cdot10^4»$: on two meshes and to two accuracies its growth is between a third of that and «1.5» times", "tests/convergence/horizon.cpp",
