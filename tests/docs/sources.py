@@ -142,7 +142,7 @@ TIES = [
     ("once more with a tolerance of $«10^{-15}»$", f"{TIME}/accuracy.cpp", r"all_digits = ([^;]+);"),
     ("has to agree to $«10^{-11}»$ of lengths or rad", f"{TIME}/lobatto/inside.cpp", r"negligible = ([^;]+);"),
     ("parts across that plane by more than $«10^{14}»$ in", "tests/convergence/horizon.cpp", r"growth, (1e14)\);"),
-    ("second solution tells ($«10^{-11}»$ at least)", f"{TIME}/growth.cpp", r"double least = ([^,]+), share"),
+    ("second solution tells ($«10^{-11}»$ at least)", f"{TIME}/measured_growth.cpp", r"double least = ([^,]+), share"),
     ("is $«5.5\\cdot10^4»$: on two meshes and to two accuracies its growth is between a third of that and «1.5» times", "tests/convergence/horizon.cpp",
      r"growth, (5\.5e4) / 3\).*?growth, 5\.5e4 \* ([^)]+)\)"),
     ("its neighbours part by $«10^3»$ to $«2\\cdot10^4»$ on three meshes", "tests/convergence/horizon.cpp",

@@ -659,10 +659,19 @@ livens_mutant(NAME rounding_across_a_plane
 # Rounding is told to stay in any plane.
 livens_mutant(NAME rounding_forgotten
               FILE spacetime/growth.cpp
-              OLD [[std::min(anywhere, told_by_growth * of_rounding.factors[e])]]
-              NEW [[1e-6 * std::min(anywhere, told_by_growth * of_rounding.factors[e])]]
+              OLD [[of_rounding.factors.size() ? of_rounding]]
+              NEW [[of_rounding.factors.size() ? 1e-6 * of_rounding]]
               TESTS_OF convergence
-              MUST_FAIL Horizon.ARefusalNamesWhatGrowsAndSaysThatTheMotionIsWhole)
+              MUST_FAIL Horizon.ARefusalNamesWhatGrowsAndSaysThatTheMotionIsWhole
+                        Horizon.RoundingsOnTheWayAreTold)
+
+# Numbers are rounded at the start, and never again.
+livens_mutant(NAME rounded_once
+              FILE spacetime/growth.cpp
+              OLD [[std::sqrt(n) / one.so_far)]]
+              NEW [[0 * std::sqrt(n) / one.so_far)]]
+              TESTS_OF convergence
+              MUST_FAIL Horizon.RoundingsOnTheWayAreTold)
 
 # Nobody looks at the energy of stiff springs that turn: the march goes on until it dies.
 livens_mutant(NAME turning_springs_unwatched

@@ -33,6 +33,8 @@ constexpr double share_left = 1e-4;
 constexpr double spacing = 0x1p-53;
 /// Elements that neighbours are solved for together, at first and at the most.
 constexpr int first_piece = 16, most_in_piece = 128;
+/// Where roundings are added behind each: many enough at any instant, of which a few may be where it matters.
+constexpr int rounded_piece = 4;
 
 /// What lies on the other side of the motion as this piece of a neighbour, from an element on: its guess, off
 /// by what bends. Without elements where the two have different ones.
@@ -59,8 +61,8 @@ struct Perturbed {
 
     Neighbour sides[2];
     State starts[2]{};
-    double so_far = 1;   // by the difference at hand: what was made smaller on the way
-    double least = 1;    // of what it was stretched to, positions and velocities
+    double so_far = 1;            // by the difference at hand: what was made smaller on the way
+    double least = 1, most = 1;   // that it was stretched to, positions and velocities
     bool is_lost = false;
 };
 
@@ -102,6 +104,7 @@ public:
     Growth grown_from(Roundings& roundings)
     {
         roundings_ = &roundings;
+        length_ = rounded_piece;
         for (const Kicks& one : roundings.of(motion_.at_end(0)))
             if (const double size = size_of(at_.model, one, at_.rate); size > 0) add(one, near_.small / size);
         march([&] {
@@ -208,6 +211,15 @@ private:
             if (const double size = lose_unless_apart(one, rate); !one.is_lost) one.so_far = 1 / size;
     }
 
+    /// What is perturbed later may grow by more than this one, by as much as this one shrinks at times.
+    void judge_way(Perturbed& one, double width)
+    {
+        one.least = std::min(one.least, width);
+        raise_to(one.most, width);
+        raise_to(grown_.later, width / one.least);
+        raise_to(shrunk_, one.most / width);
+    }
+
     /// Up to where one is too wide or wants another side, or to the end of what was solved.
     int record(int first, int last)
     {
@@ -223,8 +235,7 @@ private:
                              of_one = one.so_far * apart.size_of_places(at_.model);
                 raise_to(size, width);
                 raise_to(stretched, one.so_far * width);
-                one.least = std::min(one.least, one.so_far * width);
-                raise_to(grown_.later, one.so_far * width / one.least);
+                judge_way(one, one.so_far * width);
                 if (of_one > grown && of_one > largest_) part = apart.most(at_.model, motion_.at_end(next).X);
                 raise_to(grown, of_one);
             }
@@ -232,7 +243,7 @@ private:
             if (grown > largest_ && largest_ < growth_at_horizon) grown_.part = part;
             raise_to(largest_, grown);
             raise_to(stretched_, stretched);
-            raise_to(grown_.later, stretched_ * stretched_);
+            raise_to(grown_.later, stretched_ * std::min(stretched_, shrunk_ * shrunk_));
             for (; end < next; ++end) grown_.factors.push_back(grown);
         }
         return end;
@@ -271,7 +282,8 @@ private:
         }
         const double by_element = std::log(widest / near_.small) / n,
                      fitting = std::log(next.wide / next.small) / by_element;
-        length_ = static_cast<int>(std::clamp(fitting, 1.0, std::min(2.0 * n, 1.0 * most_in_piece)));
+        const int most = roundings_ != nullptr ? rounded_piece : most_in_piece;
+        length_ = static_cast<int>(std::clamp(fitting, 1.0, std::min(2.0 * n, 1.0 * most)));
         has_two_ = wants_two;
         near_ = next;
     }
@@ -284,7 +296,7 @@ private:
     Nearness near_;
     int length_ = first_piece;
     std::vector<Perturbed> all_;
-    double largest_ = 1, stretched_ = 1;
+    double largest_ = 1, stretched_ = 1, shrunk_ = 1;
     Growth grown_;
 };
 
@@ -300,9 +312,6 @@ bool is_doubtful(const Growth& grown, double told)
 {
     return largest(grown) >= growth_at_horizon || spacing * largest(grown) > told;
 }
-/// What is rounded on the way may grow by more than what is rounded at the start.
-bool may_grow_later(const Growth& grown, double told) { return spacing * grown.later > told; }
-
 /// Where a law jumps, a neighbour whose elements do not end there is pushed by all of an element; where it
 /// bends and touches again and again, one whose elements do is not on the elements of the motion any more.
 /// Both grow too much, not too little.
@@ -335,7 +344,7 @@ Growth growth(const Model& model, const Problem& problem, const Method& method, 
     Growth grown = measure(kicks);
     at.has_bends = closed && !motion.mesh.bends.empty();
     if (at.has_bends && is_doubtful(grown, told)) take_smaller(grown, measure(kicks));
-    if (!is_doubtful(grown, told) && !may_grow_later(grown, told)) return grown;
+    if (!is_rounding_open(grown, told, options.tolerance)) return grown;
     Roundings roundings(model, motion, at.rate);
     const Growth of_rounding = Neighbours(at, options.tolerance).grown_from(roundings);
     for (std::size_t e = 0; e < grown.factors.size(); ++e)
@@ -344,48 +353,10 @@ Growth growth(const Model& model, const Problem& problem, const Method& method, 
     return grown;
 }
 
-double rounded_by(double tolerance)
+/// What is rounded on the way may grow by more than what is rounded at the start, too.
+bool is_rounding_open(const Growth& grown, double told, double tolerance)
 {
-    constexpr double some = 3, left = 0.1;
-    return std::max(some * spacing, left * tolerance);
-}
-
-std::vector<double> told_of_rounding(const Growth& grown, double tolerance)
-{
-    std::vector<double> told = grown.rounding;
-    for (double& r : told) r *= rounded_by(tolerance);
-    return told;
-}
-
-std::vector<double> grown_rounding(std::span<const double> growth, std::span<const double> measured)
-{
-    std::vector<double> grown;
-    double largest = 0;
-    for (std::size_t e = 0; e < growth.size(); ++e) {
-        raise_to(largest, e < measured.size() ? measured[e] : spacing * growth[e]);
-        // behind the horizon nothing is told
-        grown.push_back(growth[e] < growth_at_horizon ? largest
-                                                      : std::min(largest, spacing * growth_at_horizon));
-    }
-    return grown;
-}
-
-double told_without_rounding(const ErrorEstimate& found)
-{
-    constexpr double least = 1e-11, share = 0.3;   // below, it is not worth what it costs to know
-    return std::max(least, share * found.largest);
-}
-
-void count_rounding(const Model& model, std::span<const double> rounding, const TimeMesh& mesh,
-                    ErrorEstimate& found)
-{
-    const auto n = static_cast<std::size_t>(found.n_bodies);
-    for (std::size_t i = 0; i < found.position.size() && i / n < rounding.size(); ++i) {
-        const double least = rounding[i / n];
-        raise_to(found.position[i], least);
-        if (!model.bodies()[i % n].is_point) raise_to(found.orientation[i], least);
-    }
-    found.find_largest(mesh);
+    return is_doubtful(grown, told) || rounded_by(tolerance) * grown.later > told;
 }
 
 }   // namespace livens

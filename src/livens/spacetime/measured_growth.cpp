@@ -14,6 +14,50 @@ constexpr double spacing = 0x1p-53;   // of numbers, by half
 
 }   // namespace
 
+double rounded_by(double tolerance)
+{
+    constexpr double some = 3, left = 0.1;
+    return std::max(some * spacing, left * tolerance);
+}
+
+std::vector<double> told_of_rounding(const Growth& grown, double tolerance)
+{
+    std::vector<double> told = grown.rounding;
+    for (double& r : told) r *= rounded_by(tolerance);
+    return told;
+}
+
+std::vector<double> grown_rounding(std::span<const double> growth, std::span<const double> measured)
+{
+    std::vector<double> grown;
+    double largest = 0;
+    for (std::size_t e = 0; e < growth.size(); ++e) {
+        raise_to(largest, e < measured.size() ? measured[e] : spacing * growth[e]);
+        // behind the horizon nothing is told
+        grown.push_back(growth[e] < growth_at_horizon ? largest
+                                                      : std::min(largest, spacing * growth_at_horizon));
+    }
+    return grown;
+}
+
+double told_without_rounding(const ErrorEstimate& found)
+{
+    constexpr double least = 1e-11, share = 0.3;   // below, it is not worth what it costs to know
+    return std::max(least, share * found.largest);
+}
+
+void count_rounding(const Model& model, std::span<const double> rounding, const TimeMesh& mesh,
+                    ErrorEstimate& found)
+{
+    const auto n = static_cast<std::size_t>(found.n_bodies);
+    for (std::size_t i = 0; i < found.position.size() && i / n < rounding.size(); ++i) {
+        const double least = rounding[i / n];
+        raise_to(found.position[i], least);
+        if (!model.bodies()[i % n].is_point) raise_to(found.orientation[i], least);
+    }
+    found.find_largest(mesh);
+}
+
 /// At the ends of other elements.
 std::vector<double> MeasuredGrowth::at(const std::vector<double>& ends,
                                        const std::vector<double>& figures) const
@@ -33,8 +77,9 @@ void MeasuredGrowth::tell(const Model& model, const Problem& problem, const Solv
 {
     constexpr double share = 0.3;   // of the accuracy: what rounding may be without a closer look
     const TimeMesh& mesh = solution.motion.mesh;
-    if (!is_whole() || mesh_.end() < mesh.end()) {
-        const double told = std::min(share * accuracy, told_without_rounding(solution.estimate));
+    const double told = std::min(share * accuracy, told_without_rounding(solution.estimate));
+    const bool is_open = growth_.rounding.empty() && is_rounding_open(growth_, told, options.tolerance);
+    if (!is_whole() || mesh_.end() < mesh.end() || is_open) {
         growth_ = growth(model, problem, solution.method, options, solution.motion, told);
         mesh_ = mesh;
     }

@@ -61,6 +61,8 @@ constexpr double growth_at_horizon = 1e11;
 /// What an element is off by in units of the motion in it, for each of what rounding reaches: some spacings
 /// of numbers, and what an iteration to this tolerance leaves as a rule.
 double rounded_by(double tolerance);
+/// Whether this leaves open if rounding is below what is told, so that it has to be measured by itself.
+bool is_rounding_open(const Growth& grown, double told, double tolerance);
 /// What was measured by itself, times that: as Solution::rounding has it.
 std::vector<double> told_of_rounding(const Growth& grown, double tolerance);
 /// What rounding has grown to at element ends, up to the horizon, in lengths of the model and rad: as was
