@@ -312,6 +312,7 @@ bool is_doubtful(const Growth& grown, double told)
 {
     return largest(grown) >= growth_at_horizon || spacing * largest(grown) > told;
 }
+
 /// Where a law jumps, a neighbour whose elements do not end there is pushed by all of an element; where it
 /// bends and touches again and again, one whose elements do is not on the elements of the motion any more.
 /// Both grow too much, not too little.

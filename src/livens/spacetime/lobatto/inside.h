@@ -20,8 +20,6 @@ public:
     /// References must outlive it.
     InsideLaws(const Tables& tables, const ElementRule& rule);
 
-    /// All laws are smooth.
-    bool empty() const { return laws_.empty(); }
     /// Of element e, whose end state is `end`, prepared by `instant`: how what was not seen would have kicked
     /// the bodies, and the load that kicks most. `angles`: at its first node, see Turns.
     Unseen look(const Stretch& stretch, const Nodes& nodes, int e, const std::vector<double>& angles,

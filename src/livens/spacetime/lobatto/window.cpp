@@ -27,13 +27,13 @@ LobattoWindow::LobattoWindow(const Tables& tables, const TimeMesh& mesh, const E
                              const ElementRule& rule)
     : tables_(tables), ends_(ends), system_(tables, rule), series_(tables, system_.rule()),
       kernel_(tables, system_.rule()), instant_(tables, kernel_.serves() && ends.has_state()),
-      record_(tables, mesh, system_.rule()), front_(tables), breaks_{tables.model->load_breaks(),
-                                                                     Bends(tables, rule),
-                                                                     InsideLaws(tables, system_.rule()),
-                                                                     false,
-                                                                     {}},
-      rank_{Branches(tables, system_.rule())}
+      record_(tables, mesh, system_.rule()),
+      front_(tables), breaks_{tables.model->load_breaks(), Bends(tables, rule), {}, {}}, rank_{Branches(
+                                                                                             tables,
+                                                                                             system_.rule())}
 {
+    if (!std::ranges::all_of(tables.model->loads(), &Load::is_smooth))
+        breaks_.inside.emplace(tables, system_.rule());
     record_.note_redundant(ends.redundant);
     work_.lambda.assign(tables.rows.size(), 0.0);
     work_.end_lambda = work_.lambda;
@@ -293,9 +293,9 @@ Closed LobattoWindow::close(const Trust& trust, SolveReport& report)
 /// What a law did unseen counts as the velocity jump that goes with such an error.
 Unseen LobattoWindow::look_at_laws(int e, Closed& closed)
 {
-    if (breaks_.is_ignored || breaks_.inside.empty()) return {};
+    if (!breaks_.inside) return {};
     Unseen unseen =
-        breaks_.inside.look(stretch_, system_.nodes(), e, front_.here().angles, instant_, front_.next());
+        breaks_.inside->look(stretch_, system_.nodes(), e, front_.here().angles, instant_, front_.next());
     if (!(unseen.error > 0)) return unseen;
     const double jump = velocity_jump_of(stretch_.points, stretch_.degree, unseen.error);
     if (raise_to(closed.velocity_jump, jump))

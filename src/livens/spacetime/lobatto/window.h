@@ -2,6 +2,8 @@
 // lobatto(p) and radau(p) as families: their windows, what they hand on, and its motion.
 #pragma once
 
+#include <optional>
+
 #include "livens/spacetime/ends.h"
 #include "livens/spacetime/lobatto/bends.h"
 #include "livens/spacetime/lobatto/branches.h"
@@ -21,7 +23,7 @@ public:
     LobattoWindow(const Tables& tables, const TimeMesh& mesh, const Ends& ends, const ElementRule& rule);
 
     /// Nobody asks what laws of loads do inside of elements.
-    void ignore_laws() { breaks_.is_ignored = true; }
+    void ignore_laws() { breaks_.inside.reset(); }
     /// A motion nearby, which has to outlive the window, as the guess where its elements are the same.
     void follow(const Motion& motion) { kernel_.follow(motion); }
     /// Goes on from the state that the ends have now, over the elements that the mesh has now, as another
@@ -70,8 +72,7 @@ private:
     struct Breaks {
         std::vector<double> jumps;   // instants
         Bends bends;
-        InsideLaws inside;
-        bool is_ignored = false;   // what laws do inside
+        std::optional<InsideLaws> inside{};   // where a law need not be smooth, and is not ignored
         std::vector<Unseen> unseen;
     };
     struct Rank {
