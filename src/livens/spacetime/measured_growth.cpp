@@ -16,7 +16,7 @@ constexpr double spacing = 0x1p-53;   // of numbers, by half
 
 double rounded_by(double tolerance)
 {
-    constexpr double some = 3, left = 0.1;
+    constexpr double some = 2, left = 0.1;
     return std::max(some * spacing, left * tolerance);
 }
 
