@@ -280,8 +280,7 @@ Table method_table()
              "of degree + 2, or with half the steps; mixed: lobatto of degree + 2); what its elements "
              "lose, grown as two neighbouring motions part (lobatto and radau with `elements` and the "
              "state at the start, beside loads of time alone; too large by ten often, nothing of velocities "
-             "and "
-             "reactions); or "
+             "and reactions); or "
              "nothing.",
              "",
              "second",
