@@ -41,8 +41,18 @@ def arguments(parser):
     parser.add_argument("--kind", action="append", help="of this kind alone; may stand again")
 
 
-def asked(c, end, accuracies):
-    """[time] and [method]: to an accuracy, mostly, or on a mesh that is stated."""
+def takes_other_families(text):
+    """Whether mixed and the classical rules can solve it: rows of joints are quadratic, nothing is driven, no
+    body is a lamina."""
+    content = tomllib.loads(text)
+    flat = any(max(body["inertia"][:3]) >= sum(body["inertia"][:3]) / 2 for body in content["body"]
+               if "inertia" in body)
+    return not flat and "drive" not in content and not any(
+        joint["type"] in ("slot", "screw", "gear", "rack") for joint in content.get("joint", ()))
+
+
+def asked(c, end, accuracies, text):
+    """[time] and [method] of a scenario: to an accuracy, mostly, or on a mesh that is stated."""
     time, method = {"end": end}, {}
     if c.chance(0.12):
         time["output"] = float(f"{end / c.randint(2, 9):.3g}")
@@ -56,6 +66,9 @@ def asked(c, end, accuracies):
         time["elements"] = int(c.log(5, 61))
         method |= {"family": "radau", "degree": c.randint(2, 8)} if c.chance(0.3) else \
             {"family": "lobatto", "degree": c.randint(2, 12)}
+        if c.chance(0.3) and takes_other_families(text):
+            method = {"family": c.choice(("midpoint", "endpoint", "mixed"))}   # of low order
+            time["elements"] *= int(c.log(1, 40))
     return time, method
 
 

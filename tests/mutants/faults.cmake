@@ -838,6 +838,14 @@ livens_mutant(NAME unseen_forgotten
               TESTS_OF unit_spacetime
               MUST_FAIL InsideLaws.WhatNeitherSolutionSeesIsInTheEstimate)
 
+# The classical rules and mixed judge themselves.
+livens_mutant(NAME no_witness
+              FILE spacetime/estimate.cpp
+              OLD [[method_(witness_of(method))]]
+              NEW [[method_(method)]]
+              TESTS_OF convergence
+              MUST_FAIL Estimates.AreTheTrueErrorWithinAFactorOfThree)
+
 # Opaque forces are not looked at beside the ends of elements.
 livens_mutant(NAME ends_of_elements_unseen
               FILE spacetime/lobatto/inside.cpp

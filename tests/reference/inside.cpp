@@ -113,6 +113,25 @@ TEST(Inside, LayersOfAnyWidthAreInTheEstimate)
         }
 }
 
+/// Families without looks of their own have a witness that looks. By half their steps the rules told a tenth
+/// of what they are off by: both miss the layer.
+TEST(Inside, OtherFamiliesKnowHowFarTheyAreOff)
+{
+    constexpr double c = 0.01307772337349, d = 0.008315332011677, end = 0.5, steepness = 3000;
+    const double w = 15 * (end + c / steepness), q = w * w / 30 - d / (steepness * steepness);
+    for (const char* family : {"midpoint", "endpoint", "mixed"})
+        for (const int elements : {400, 500, 1000}) {
+            const Tried r = run(wheel("", torque("20 - 5*tanh(3000*w)")),
+                                "end = 0.5\nelements = " + std::to_string(elements) +
+                                    "\n[method]\nfamily = \"" + family + "\"\n",
+                                q);
+            EXPECT_TRUE(r.converged()) << family << ": " << r.solution.report.message;
+            EXPECT_GT(r.error, 1e-5) << family << " " << elements;
+            EXPECT_LT(r.error, 1.2 * r.told()) << family << " " << elements;
+            EXPECT_LT(r.told(), 3 * r.error) << family << " " << elements;
+        }
+}
+
 TEST(Inside, LawsAreFollowedToTheAccuracyThatIsTold)
 {
     for (const Case& c : cases()) {

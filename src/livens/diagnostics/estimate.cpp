@@ -42,8 +42,7 @@ double digits_of(double error)
 
 }   // namespace
 
-ErrorMeter::ErrorMeter(const Model& model, const Motion& motion, double factor)
-    : model_(model), motion_(motion), factor_(factor)
+ErrorMeter::ErrorMeter(const Model& model, const Motion& motion) : model_(model), motion_(motion)
 {
     estimate_.n_bodies = model.n_bodies();
     estimate_.length = model.length();
@@ -103,9 +102,9 @@ void ErrorMeter::compare_states(int end, const State& a, const State& b)
     for (int k = 0; k < estimate_.n_bodies; ++k) {
         const BodyGap gap = gap_between(a, b, model_.bodies()[k], k, estimate_.length);
         const auto at = static_cast<std::size_t>(end * estimate_.n_bodies + k);
-        estimate_.position[at] = factor_ * gap.position;
-        estimate_.orientation[at] = factor_ * gap.orientation;
-        estimate_.velocity[at] = factor_ * gap.velocity;
+        estimate_.position[at] = gap.position;
+        estimate_.orientation[at] = gap.orientation;
+        estimate_.velocity[at] = gap.velocity;
     }
 }
 
@@ -120,7 +119,7 @@ void ErrorMeter::compare_reactions(int end, const Motion& finer, Side side)
             if (side == Side::right) one->left = one->right;
         }
         double& error = estimate_.reaction[static_cast<std::size_t>(end * estimate_.n_joints) + j];
-        const double gap = factor_ * gap_between(a[j], b[j], estimate_.length);
+        const double gap = gap_between(a[j], b[j], estimate_.length);
         error = side != Side::middle && error > gap ? error : gap;
         raise_to(estimate_.largest_reaction, size_of(a[j], estimate_.length));
     }

@@ -81,9 +81,8 @@ struct ErrorEstimate {
 /// rows reactions are the least.
 class ErrorMeter {
 public:
-    /// `factor`: 1 where the error of the finer one is smaller by an order of magnitude, 1 / (1 - 2^-p) for a
-    /// method of order p with half the steps. References must outlive the meter.
-    ErrorMeter(const Model& model, const Motion& motion, double factor = 1);
+    /// References must outlive the meter.
+    ErrorMeter(const Model& model, const Motion& motion);
 
     /// At the element ends first..last of the motion, of which `finer` has these two. Where it has one of its
     /// own instead, since a law bends there, the larger error of the two beside it stands.
@@ -103,7 +102,6 @@ private:
 
     const Model& model_;
     const Motion& motion_;
-    double factor_;
     ErrorEstimate estimate_;
     // Kicks so far, and their sums with the instants from which they count.
     struct Kicks {

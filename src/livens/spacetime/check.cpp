@@ -64,11 +64,11 @@ void refuse_special_rows(const Model& model, const Method& method)
     if (is_nodal(method)) return;
     const std::string name = std::holds_alternative<Mixed>(method) ? "mixed" : name_of(method);
     if (model.has_drives())
-        throw InputError({"drives-method", "method.name", "the method " + name + " cannot follow drives",
+        throw InputError({"drives-method", "method.family", "the method " + name + " cannot follow drives",
                           name, "lobatto or radau", "", "use lobatto for joints that depend on time"});
     for (int r = 0; r < model.n_rows(); ++r)
         if (model.row(r).function)
-            throw InputError({"joint-method", "method.name",
+            throw InputError({"joint-method", "method.family",
                               "the method " + name + " cannot hold " + model.row_name(r), name,
                               "lobatto or radau",
                               "its rows must be quadratic forms of the bodies' positions and directors",

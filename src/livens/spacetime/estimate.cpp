@@ -53,42 +53,21 @@ bool has_bend(const Motion& motion, const TimeMesh& mesh, double end)
     return end > mesh.start() && end < mesh.end() && std::ranges::binary_search(motion.mesh.bends, end);
 }
 
-TimeMesh halved(const TimeMesh& mesh)
-{
-    TimeMesh finer;
-    for (int e = 0; e < mesh.n_elements(); ++e) {
-        finer.ends.push_back(mesh.ends[e]);
-        finer.ends.push_back(mesh.ends[e] + 0.5 * mesh.length(e));
-    }
-    finer.ends.push_back(mesh.end());
-    return finer;
-}
-
-/// The error by the distance from the finer solution.
-double order_factor(const Method& method)
-{
-    return std::holds_alternative<Midpoint>(method)   ? 4.0 / 3
-           : std::holds_alternative<Endpoint>(method) ? 2
-                                                      : 1;
-}
-
 }   // namespace
 
 Second::Second(const Model& model, const Problem& problem, const Method& method, const SolveOptions& options,
                const Motion& first)
-    : model_(model), problem_(problem), method_(method), options_(options), first_(first),
-      meter_(model, first, order_factor(method)), is_backwards_(problem.conditions.at_end == Known::state),
+    : model_(model), problem_(problem), method_(witness_of(method)), options_(options), first_(first),
+      meter_(model, first), is_backwards_(problem.conditions.at_end == Known::state),
       is_lobatto_(std::holds_alternative<Lobatto>(method)), at_(is_backwards_ ? first.n_elements() : 0)
 {
     problem_.guess = [&first](double t) { return first.at(t); };
     problem_.near = &first;
     options_.condition = options_.judge = false;
     options_.meeting = std::numeric_limits<double>::infinity();   // both meet it within their errors
-    if (auto* radau = std::get_if<Radau>(&method_)) ++radau->degree;
-    if (const auto* mixed = std::get_if<Mixed>(&method)) {
-        method_ = mixed->witness();
-        options_.max_iterations = SolveOptions{}.max_iterations;   // the given number is one for blocks
-    }
+    if (const auto* radau = std::get_if<Radau>(&method)) method_ = Radau{radau->degree + 1};
+    if (!is_nodal(method))   // the given number is one for blocks or steps
+        options_.max_iterations = SolveOptions{}.max_iterations;
 }
 
 bool Second::advance(int end)
@@ -102,7 +81,6 @@ bool Second::advance(int end)
         (has_bend(first_, mesh, t) ? mesh.bends : mesh.required).push_back(t);
     for (const double t : missed(mesh, model_.load_breaks()))   // what one solution missed, two would
         mesh.ends.insert(std::ranges::upper_bound(mesh.ends, t), t);
-    if (!is_nodal(method_)) mesh = halved(mesh);
     const auto begin = std::chrono::steady_clock::now();
     Solution second;
     try {

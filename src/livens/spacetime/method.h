@@ -72,14 +72,20 @@ struct Mixed {
     std::vector<double> weights;   ///< of NURBS, one for each function; needs a single block
     SparseBackend linear_solver = SparseBackend::eigen;
 
-    /// lobatto of a higher order than these elements have with any basis and pairing, on the same mesh: their
-    /// guess, and the second solution that tells their error.
+    /// See witness_of(). lobatto of a higher order than these elements have with any basis and pairing: their
+    /// guess, too.
     Lobatto witness() const { return {degree + 2}; }
 };
 
-/// Classical rules, one step per element: independent witnesses.
-struct Midpoint {};   ///< energy-momentum midpoint rule, order 2
-struct Endpoint {};   ///< implicit Euler, order 1
+/// Energy-momentum midpoint rule of order 2, a step an element: it shares nothing with spacetime elements.
+struct Midpoint {
+    Lobatto witness() const { return {3}; }   ///< see witness_of()
+};
+
+/// Implicit Euler of order 1, likewise. Its witness damps as it does.
+struct Endpoint {
+    Radau witness() const { return {3}; }   ///< see witness_of()
+};
 
 /// Lobatto; Radau where fast decays, or vibrations that do not matter, would rule lobatto's elements. With an
 /// accuracy only; Solution::method says what was taken.
@@ -100,6 +106,20 @@ inline bool is_nodal(const Method& method)
 inline bool is_elements(const Method& method)
 {
     return is_nodal(method) || std::holds_alternative<Mixed>(method);
+}
+
+/// Nodal elements of a higher order, on whose second solution on the same mesh the error of a method is told;
+/// of nodal elements themselves, as they are.
+inline Method witness_of(const Method& method)
+{
+    return std::visit(
+        [](const auto& one) -> Method {
+            if constexpr (requires { one.witness(); })
+                return one.witness();
+            else
+                return one;
+        },
+        method);
 }
 
 /// The elements between the knots of a method that has some. Throws what is wrong with knots and weights.

@@ -7,9 +7,9 @@
 namespace livens {
 
 /// The same problem with one or two degrees more (two: lobatto from degree 4, under loads or in elements
-/// that hardly resolve the motion; the classical methods: with half the steps) on the same elements, of which
-/// it may divide some. It goes on from its own end states, so what it finds are global errors. Nothing of it
-/// is kept but these.
+/// that hardly resolve the motion; mixed and the classical rules: by witness_of() them) on the same elements,
+/// of which it may divide some. It goes on from its own end states, so what it finds are global errors.
+/// Nothing of it is kept but these.
 class Second {
 public:
     /// References must outlive it; the motion may grow. `method` is that of the first solution.

@@ -52,8 +52,8 @@ struct SolveOptions {
     /// What tells the error of the motion, where it is judged.
     enum class Estimate {
         second,   ///< a second solution on the same mesh, of degree + 1 (lobatto from degree 4, under loads
-                  ///< or in elements that hardly resolve the motion: + 2) or with half the steps; mixed: its
-                  ///< witness
+                  ///< or in elements that hardly resolve the motion: + 2); mixed and the classical rules:
+                  ///< by witness_of() them
         local,    ///< what every element loses by its velocity jump, grown as neighbouring motions part: one
                   ///< number for all bodies, too large by ten often; nothing of velocities and
                   ///< reactions (lobatto and radau on a mesh, state at the start)

@@ -277,11 +277,10 @@ Table method_table()
              types::choice,
              "What tells the error of the motion: a second solution on the same elements (of degree + 1, "
              "lobatto from degree 4 under loads and drives, or on elements that hardly resolve the motion, "
-             "of degree + 2, or with half the steps; mixed: lobatto of degree + 2); what its elements "
-             "lose, grown as two neighbouring motions part (lobatto and radau with `elements` and the "
-             "state at the start, beside loads of time alone; too large by ten often, nothing of velocities "
-             "and reactions); or "
-             "nothing.",
+             "of degree + 2; mixed: lobatto of degree + 2, midpoint: lobatto(3), endpoint: radau(3)); what "
+             "its elements lose, grown as two neighbouring motions part (lobatto and radau with "
+             "`elements` and the state at the start, beside loads of time alone; too large by ten often, "
+             "nothing of velocities and reactions); or nothing.",
              "",
              "second",
              false,
