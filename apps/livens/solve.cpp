@@ -134,20 +134,20 @@ Solved solve_scenario(Job& job, double share, ProgressLine& line)
         line.show(progress);
         return InterruptWatch::signal() == 0;
     };
+    const Problem problem{scenario.conditions, {}, nullptr, scenario.prepared};
     Clock::time_point begin = Clock::now();
-    solution = solve(scenario.model, {scenario.conditions}, scenario.time, scenario.method, options);
+    solution = solve(scenario.model, problem, scenario.time, scenario.method, options);
     if (solution.motion.mesh.ends.empty())   // nothing may replace an older result
         throw failure(exit_signal + InterruptWatch::signal(), solution.report.message);
     solved.solve_seconds = seconds_since(begin) - solution.estimate_seconds;
-    estimate(scenario.model, {scenario.conditions}, scenario.method, options, solution);
+    estimate(scenario.model, problem, scenario.method, options, solution);
     solved.estimate_seconds = solution.estimate_seconds;
     line.clear();
     job.detail(fmt::format("solved in {:.3g} s", solved.solve_seconds));
 
     begin = Clock::now();
     reserve.give_back();
-    judge(scenario.model, {scenario.conditions}, options, solution,
-          [] { return InterruptWatch::signal() == 0; });
+    judge(scenario.model, problem, options, solution, [] { return InterruptWatch::signal() == 0; });
     const Method method = solution.method;
     solved.run = make_run(scenario.model, std::move(solution), method);
     solved.run.scenario_text = scenario.text;

@@ -163,10 +163,9 @@ livens_mutant(NAME load_comes_unnoticed
 
 # One start taken for another that was closed before.
 livens_mutant(NAME any_start_is_the_last
-              FILE multibody/detail/from_model.h
-              OLD [[same(closed_->state.X, state.X) &&]]
+              FILE multibody/prepared.cpp
+              OLD [[same(a.X, b.X) &&]]
               NEW [[true &&]]
-              RECOMPILE multibody/closing.cpp
               TESTS_OF unit_spacetime
               MUST_FAIL Solve.EveryStartIsCheckedAndClosed)
 

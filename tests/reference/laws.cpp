@@ -477,7 +477,7 @@ TEST(Laws, AnglesAreCountedWhileMarching)
     const Model& model = read.scenario->model;
     Conditions conditions;
     conditions.start = model.start();
-    const Ends ends = close_ends(model, conditions, 0, 5, {});
+    const Ends ends = close_ends(model, {conditions}, 0, 5, {});
     const Tables tables(model, ends.independent);
     TimeMesh mesh{{0}};
     LobattoWindow window(tables, mesh, ends, element_rule(Points::lobatto, 4));

@@ -63,6 +63,7 @@ struct Scenario {
     Method method;
     Conditions conditions;   ///< what is given at start and end, and the states there, with their times
     SolveOptions options;    ///< tolerance, max_iterations, initial, condition
+    std::shared_ptr<Prepared> prepared;   ///< what reading has found of the model, for Problem
     std::string resolved;    ///< all options after defaults, as one JSON object
     std::string meshes;      ///< what its meshes come to, so that a run needs no file beside its own
     std::vector<std::filesystem::path> mesh_files;   ///< that were read for it

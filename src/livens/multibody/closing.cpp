@@ -10,7 +10,6 @@
 #include "livens/base/elementary.h"
 #include "livens/base/error.h"
 #include "livens/base/text.h"
-#include "livens/multibody/detail/from_model.h"
 #include "livens/multibody/detail/rate_changes.h"
 #include "livens/multibody/detail/reach.h"
 #include "livens/multibody/detail/start_speeds.h"
@@ -282,7 +281,9 @@ void note_redundancy(const Model& model, ClosedStart& assembly)
     }
 }
 
-ClosedStart close_anew(const Model& the_model, const State& start, StartPolicy policy)
+}   // namespace
+
+ClosedStart close_start(const Model& the_model, const State& start, StartPolicy policy)
 {
     ClosedStart assembly;
     assembly.start = start;
@@ -313,21 +314,6 @@ ClosedStart close_anew(const Model& the_model, const State& start, StartPolicy p
     settle_velocities(model, the_model, policy, wrenches, assembly.independent, drives, assembly.start,
                       assembly.notes);
     return assembly;
-}
-
-}   // namespace
-
-ClosedStart close_start(const Model& model, const State& start, StartPolicy policy)
-{
-    FromModel* const known = FromModel::of(model);
-    if (known == nullptr) return close_anew(model, start, policy);
-    auto closed = known->closed(start, policy);
-    if (closed == nullptr) {
-        closed = std::make_shared<const FromModel::Closed>(
-            FromModel::Closed{start, policy, close_anew(model, start, policy)});
-        known->keep(closed);
-    }
-    return closed->closed;
 }
 
 }   // namespace livens

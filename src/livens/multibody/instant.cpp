@@ -5,22 +5,18 @@
 #include <cmath>
 #include <utility>
 
-#include "livens/multibody/detail/from_model.h"
 #include "livens/multibody/twist.h"
 
 namespace livens {
 
 namespace {
 
-/// The one that the model has, if it is of these rows.
+/// The last one, if it is of these rows.
 std::shared_ptr<const RowPattern> pattern_of(const Tables& tables, const std::vector<int>& rows)
 {
-    FromModel* const known = FromModel::of(*tables.model);
-    auto pattern = known != nullptr ? known->pattern(rows) : nullptr;
-    if (pattern != nullptr) return pattern;
-    pattern = std::make_shared<const RowPattern>(tables, rows);
-    if (known != nullptr) known->keep(pattern);
-    return pattern;
+    std::shared_ptr<const RowPattern>& known = tables.known_pattern->last;
+    if (known == nullptr || known->chosen() != rows) known = std::make_shared<const RowPattern>(tables, rows);
+    return known;
 }
 
 }   // namespace

@@ -3,12 +3,12 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 
 #include "livens/base/error.h"
 #include "livens/multibody/detail/directors.h"
-#include "livens/multibody/detail/from_model.h"
 #include "livens/multibody/detail/wording.h"
 
 namespace livens {
@@ -203,7 +203,12 @@ void check_row(const ConstraintRow& row, const Joint& joint, const std::vector<B
 
 Model::Model(const Vector3& gravity) : gravity_(gravity) { changed(); }
 
-void Model::changed() { from_this_ = std::make_shared<FromModel>(); }
+void Model::changed()
+{
+    static std::atomic<std::uint64_t> last{0};
+    version_ = ++last;
+    length_ = {};
+}
 
 int Model::add_body(Body body)
 {

@@ -2,6 +2,8 @@
 // The mechanism: bodies, joints, loads and gravity.
 #pragma once
 
+#include <atomic>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -13,8 +15,6 @@
 #include "livens/multibody/sensors.h"
 
 namespace [[gnu::visibility("default")]] livens {
-
-class FromModel;   // inside of the engine
 
 /// Positions and their rates of all bodies at one instant.
 struct State {
@@ -82,11 +82,25 @@ public:
     /// attracts. Always positive: 1 if there is nothing to measure but rounding. Tolerances are relative to
     /// it. Moving and turning the model changes it by rounding only.
     double length() const;
+    /// The same for copies, and another after each change, so that what was found of a model is known to be of
+    /// it.
+    std::uint64_t version() const { return version_; }
 
 private:
     struct RowPlace {
         int joint;
         int row;
+    };
+    /// length(), 0 where nobody has asked: threads that do so at once find the same.
+    struct Length {
+        Length() = default;
+        Length(const Length& other) : value(other.value.load(std::memory_order_relaxed)) {}
+        Length& operator=(const Length& other)
+        {
+            value.store(other.value.load(std::memory_order_relaxed), std::memory_order_relaxed);
+            return *this;
+        }
+        mutable std::atomic<double> value{0};
     };
 
     Vector3 gravity_;
@@ -98,11 +112,11 @@ private:
     std::vector<int> first_rows_;
     bool has_drives_ = false;
     bool has_events_ = false, has_pieces_ = false;
-    std::shared_ptr<FromModel> from_this_;   // of these members alone: new with each change of them
+    std::uint64_t version_ = 0;
+    Length length_;
 
     void changed();
     friend Model frozen(const Model& model, Instant at);
-    friend class FromModel;
 };
 
 /// The model with all rows as they are at an instant, without drives: for what is asked of positions alone.

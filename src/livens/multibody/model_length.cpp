@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "livens/multibody/detail/from_model.h"
 #include "livens/multibody/model.h"
 
 namespace livens {
@@ -61,10 +60,12 @@ double length_of(const Model& model)
 
 double Model::length() const
 {
-    FromModel* const known = FromModel::of(*this);
-    if (known == nullptr) return length_of(*this);
-    if (known->length == 0) known->length = length_of(*this);
-    return known->length;
+    double length = length_.value.load(std::memory_order_relaxed);
+    if (length == 0) {
+        length = length_of(*this);
+        length_.value.store(length, std::memory_order_relaxed);
+    }
+    return length;
 }
 
 }   // namespace livens

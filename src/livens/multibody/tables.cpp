@@ -115,9 +115,11 @@ bool scale_body(const Body& body, double length, Tables::BodyTable& table)
 
 }   // namespace
 
-Tables::Tables(const Model& the_model, std::vector<int> rows_to_solve, bool with_rigidity)
+Tables::Tables(const Model& the_model, std::vector<int> rows_to_solve, bool with_rigidity,
+               std::shared_ptr<KnownPattern> known)
     : model(&the_model), turns(the_model), independent(std::move(rows_to_solve)),
-      rank(static_cast<int>(independent.size())), n_bodies_(the_model.n_bodies())
+      rank(static_cast<int>(independent.size())),
+      known_pattern(known != nullptr ? std::move(known) : std::make_shared<KnownPattern>()), n_bodies_(the_model.n_bodies())
 {
     length = the_model.length();
     for (const Body& body : the_model.bodies()) {

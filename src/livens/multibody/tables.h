@@ -8,12 +8,20 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <vector>
 
 #include "livens/multibody/model.h"
 #include "livens/multibody/turns.h"
 
 namespace livens {
+
+class RowPattern;
+
+/// The last pattern that was made of a model's rows.
+struct KnownPattern {
+    std::shared_ptr<const RowPattern> last;
+};
 
 /// Tables made once per solution. Arrays over bodies hold 12 numbers each (columns of X); arrays over twists
 /// hold `n_twists` numbers, six a body and three a point mass.
@@ -59,7 +67,9 @@ struct Tables {
 
     /// `independent`: rows of the joints, of full rank, that hold for all others.
     /// `with_rigidity`: rigidity_rows() of the bodies follow the rows of the joints.
-    Tables(const Model& the_model, std::vector<int> independent, bool with_rigidity = false);
+    /// `known`: of the same model, see Prepared; null: these tables have their own.
+    Tables(const Model& the_model, std::vector<int> independent, bool with_rigidity = false,
+           std::shared_ptr<KnownPattern> known = nullptr);
     Tables(const Tables&) = delete;
     Tables& operator=(const Tables&) = delete;
 
@@ -73,6 +83,7 @@ struct Tables {
     int n_twists = 0;
     std::vector<int> independent;   ///< rows that are solved for, until choose_rows() finds them unfit
     int rank = 0;                   ///< how many they are
+    std::shared_ptr<KnownPattern> known_pattern;
     bool regular = true;            ///< every inertia is definite; else L is that of a slightly larger one
 
     int n_bodies() const { return n_bodies_; }

@@ -106,8 +106,8 @@ public:
                const SolveOptions& options, const Doubt& doubt)
         : model_(model), problem_(problem), span_(span),
           options_(with_tolerance_for(span.accuracy, 1, options)), doubt_(doubt),
-          ends_(close_ends(model, problem.conditions, span.start, span.end, options.initial)),
-          tables_(model, ends_.independent), stops_(stops_of(model, span)), method_(method),
+          ends_(close_ends(model, problem, span.start, span.end, options.initial)),
+          tables_(model, ends_.independent, false, problem.prepared->pattern(model)), stops_(stops_of(model, span)), method_(method),
           is_free_(degree_of(method) == 0), tolerance_(first_share * span.accuracy),
           length_(std::min(0.01 * (span.end - span.start), time_of_motion(model, ends_.start)))
     {

@@ -29,7 +29,7 @@ public:
            const SolveOptions& options)
         : model_(model), problem_(problem), span_(span),
           options_(options), lobatto_{either.degree, 1}, radau_{std::min(either.degree, highest_radau)},
-          ends_(close_ends(model, problem.conditions, span.start, span.end, options.initial)),
+          ends_(close_ends(model, problem, span.start, span.end, options.initial)),
           start_(ends_.start), freedoms_(Tables(model, ends_.independent).freedoms()),
           at_start_(highest_frequencies(model, start_)),
           length_(std::min(time_of_motion(model, start_), span.end - span.start))

@@ -24,9 +24,11 @@ struct Ends {
     bool is_backwards() const { return at_end == Known::state; }
 };
 
+/// The problem, with room for what is found of its model.
+Problem with_prepared(Problem problem);
+
 /// Closes the mechanism at the known ends; throws InputError, see close_start().
-Ends close_ends(const Model& model, const Conditions& conditions, double start, double end,
-                StartPolicy policy);
+Ends close_ends(const Model& model, const Problem& problem, double start, double end, StartPolicy policy);
 
 /// What was stated at the ends of a whole motion and is not there: positions to 1e-8 (lengths of the model,
 /// or of directors), linear momenta and moments of momentum in world axes to 1e-6 of what the largest speed

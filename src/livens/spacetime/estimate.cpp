@@ -18,6 +18,7 @@
 #include "livens/multibody/frequencies.h"
 #include "livens/solvers/patience.h"
 #include "livens/spacetime/accuracy.h"
+#include "livens/spacetime/ends.h"
 #include "livens/spacetime/phases.h"
 #include "livens/spacetime/second.h"
 
@@ -328,9 +329,10 @@ void estimate_all(const Model& model, const Problem& problem, const Method& meth
 
 }   // namespace
 
-void estimate(const Model& model, const Problem& problem, const Method& method, const SolveOptions& options,
+void estimate(const Model& model, const Problem& stated, const Method& method, const SolveOptions& options,
               Solution& solution)
 {
+    const Problem problem = with_prepared(stated);
     SolveReport& report = solution.report;
     if (!report.converged()) return;
     const int n = solution.motion.n_elements();

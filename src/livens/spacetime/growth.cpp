@@ -72,6 +72,7 @@ struct Surroundings {
     const Method& method;
     const SolveOptions& quiet;
     const Motion& motion;
+    const std::shared_ptr<Prepared>& prepared;
     const std::optional<Ends>& closed;   // where a window marches
     double rate;                         // the fastest there ever is
     bool has_bends = false;              // of their own
@@ -116,7 +117,7 @@ public:
 private:
     Neighbour neighbour() const
     {
-        return Neighbour(at_.model, at_.method, at_.quiet, motion_, at_.closed ? &*at_.closed : nullptr,
+        return Neighbour(at_.model, at_.method, at_.quiet, motion_, at_.prepared, at_.closed ? &*at_.closed : nullptr,
                          at_.has_bends);
     }
 
@@ -324,9 +325,10 @@ void take_smaller(Growth& grown, Growth&& other)
 
 }   // namespace
 
-Growth growth(const Model& model, const Problem& problem, const Method& method, const SolveOptions& options,
+Growth growth(const Model& model, const Problem& stated, const Method& method, const SolveOptions& options,
               const Motion& motion, double told)
 {
+    const Problem problem = with_prepared(stated);
     if (problem.conditions.at_start != Known::state || motion.n_elements() == 0) return {};
     SolveOptions quiet = options;
     quiet.condition = quiet.judge = quiet.end_at_bends = quiet.look_at_laws = false;
@@ -334,10 +336,10 @@ Growth growth(const Model& model, const Problem& problem, const Method& method, 
     quiet.initial = StartPolicy::project;
     std::optional<Ends> closed;
     if (is_nodal(method) && !model.has_events())
-        closed = close_ends(model, problem.conditions, motion.start(), motion.end(), options.initial);
+        closed = close_ends(model, problem, motion.start(), motion.end(), options.initial);
     const State start = motion.at_end(0);
     const double at_start = fastest_rate(model, start.V), ever = fastest_rate(model, motion.velocities);
-    Surroundings at{model, method, quiet, motion, closed, ever > 0 ? ever : 1};
+    Surroundings at{model, method, quiet, motion, problem.prepared, closed, ever > 0 ? ever : 1};
     const auto measure = [&](const std::vector<Kicks>& kicks) {
         return Neighbours(at, options.tolerance).grown_from(kicks, at_start);
     };

@@ -77,11 +77,11 @@ double missing_momentum(const Model& model, const State& reached, const State& k
 MarchGuess guess_from_state(const Model& model, const State& state, std::span<const double> times, int degree)
 {
     const bool is_forwards = times.back() > times.front();
-    Conditions conditions{state, Known::state, state, Known::nothing};
-    if (!is_forwards) std::swap(conditions.at_start, conditions.at_end);
+    Problem problem{{state, Known::state, state, Known::nothing}};
+    if (!is_forwards) std::swap(problem.conditions.at_start, problem.conditions.at_end);
     TimeMesh mesh{{times.begin(), times.end()}};
     if (!is_forwards) std::reverse(mesh.ends.begin(), mesh.ends.end());
-    const Ends ends = close_ends(model, conditions, mesh.start(), mesh.end(), StartPolicy::project);
+    const Ends ends = close_ends(model, problem, mesh.start(), mesh.end(), StartPolicy::project);
     const Tables tables(model, ends.independent);
     LobattoWindow window(tables, mesh, ends, lobatto_rule(degree));
     SolveReport report;

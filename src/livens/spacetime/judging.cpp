@@ -22,13 +22,13 @@ namespace livens {
 namespace {
 
 /// Conditions that the motion found for them does not meet.
-std::vector<std::string> missed_conditions(const Model& model, const Conditions& conditions,
+std::vector<std::string> missed_conditions(const Model& model, const Problem& problem,
                                            const SolveOptions& options, const Solution& solution)
 {
     if (!solution.report.converged() || solution.motion.n_elements() == 0) return {};
     const double start = solution.motion.start(), end = solution.motion.end();
     const auto closed = [&](const Model& acting) {
-        return close_ends(acting, conditions, start, end, options.initial);
+        return close_ends(acting, problem, start, end, options.initial);
     };
     const Ends ends = model.has_events() ? closed(acting_at(model, start).model) : closed(model);
     return unmet(model, ends, solution.motion, solution.estimate);
@@ -75,7 +75,7 @@ void advise_radau(const Model& model, Solution& solution)
 /// What bodies turn by that a load can no longer follow, and conditions that are not met, beside the verdict.
 void judge_beside(const Model& model, const Problem& problem, const SolveOptions& options, Solution& solution)
 {
-    for (const std::string& reason : missed_conditions(model, problem.conditions, options, solution))
+    for (const std::string& reason : missed_conditions(model, problem, options, solution))
         solution.verdict.reasons.push_back(reason);
     constexpr double degree = std::numbers::pi / 180;
     const bool is_solved = solution.report.converged();

@@ -36,15 +36,17 @@ struct Neighbour::March {
     Tables tables;
     LobattoWindow window;
 
-    March(const Model& model, const Method& method, const Ends& closed, const TimeMesh& mesh)
-        : ends(closed), tables(model, ends.independent), window(tables, mesh, ends, rule_of(method))
+    March(const Model& model, Prepared& prepared, const Method& method, const Ends& closed,
+          const TimeMesh& mesh)
+        : ends(closed), tables(model, ends.independent, false, prepared.pattern(model)), window(tables, mesh, ends, rule_of(method))
     {}
 };
 
 Neighbour::Neighbour(const Model& model, const Method& method, const SolveOptions& options,
-                     const Motion& beside, const Ends* closed, bool has_bends)
-    : model_(model), method_(method), options_(options), beside_(beside), closed_(closed),
-      has_bends_(has_bends)
+                     const Motion& beside, std::shared_ptr<Prepared> prepared, const Ends* closed,
+                     bool has_bends)
+    : model_(model), method_(method), options_(options), beside_(beside), prepared_(std::move(prepared)),
+      closed_(closed), has_bends_(has_bends)
 {}
 Neighbour::Neighbour(Neighbour&&) noexcept = default;
 Neighbour::~Neighbour() = default;
@@ -52,7 +54,7 @@ Neighbour::~Neighbour() = default;
 bool Neighbour::march(const State& start, const Motion& near, double left)
 {
     const bool is_new = march_ == nullptr;
-    if (is_new) march_ = std::make_unique<March>(model_, method_, *closed_, mesh_);
+    if (is_new) march_ = std::make_unique<March>(model_, *prepared_, method_, *closed_, mesh_);
     march_->ends.start = rigid(model_, start);
     if (!is_new) march_->window.restart();
     march_->window.follow(near);
@@ -81,7 +83,7 @@ bool Neighbour::solve(const State& start, const Motion& near, int first, int las
             if (t > mesh_.start() && t <= mesh_.end()) mesh_.bends.push_back(t);
     try {
         if (closed_ != nullptr) return march(start, near, left);
-        Solution one = livens::solve(model_, {{start}, {}, &near}, mesh_, method_, options_);
+        Solution one = livens::solve(model_, {{start}, {}, &near, prepared_}, mesh_, method_, options_);
         motion_ = std::move(one.motion);
         return one.report.converged();
     } catch (const InputError&) {

@@ -3,9 +3,11 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 
 #include "livens/multibody/model.h"
 #include "livens/multibody/motion.h"
+#include "livens/multibody/prepared.h"
 
 namespace [[gnu::visibility("default")]] livens {
 
@@ -38,6 +40,9 @@ struct Problem {
     /// A motion of the same bodies that is near: marches of lobatto(p) take it as their guess where their
     /// elements are its own. Must outlive the solution. Null: there is none.
     const Motion* near = nullptr;
+    /// What was found of the model when it was solved before, for less work; null: nothing, and nothing is
+    /// kept. One thread at a time.
+    std::shared_ptr<Prepared> prepared{};
 };
 
 }   // namespace livens

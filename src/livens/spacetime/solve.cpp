@@ -208,8 +208,8 @@ Solution solve_by_windows(const Model& model, const Problem& problem, const Time
     mesh.required.insert(mesh.required.end(), breaks.begin(), breaks.end());
     std::ranges::sort(mesh.required);
     const bool is_mixed = std::holds_alternative<Mixed>(method);
-    const Ends ends = close_ends(model, problem.conditions, mesh.start(), mesh.end(), options.initial);
-    const Tables tables(model, ends.independent, is_mixed);
+    const Ends ends = close_ends(model, problem, mesh.start(), mesh.end(), options.initial);
+    const Tables tables(model, ends.independent, is_mixed, problem.prepared->pattern(model));
     const std::unique_ptr<Window> window =
         make_window(tables, mesh, ends, method, options.look_at_laws, problem.near);
     Solution solution;
@@ -249,7 +249,7 @@ Solution solve_by_windows(const Model& model, const Problem& problem, const Time
 Solution solve_by_steps(const Model& model, const Problem& problem, const TimeMesh& mesh,
                         const Method& method, const SolveOptions& options)
 {
-    const ClosedStart start = close_start(model, problem.conditions.start, options.initial);
+    const ClosedStart start = problem.prepared->close(model, problem.conditions.start, options.initial);
     refuse_singular_start(model, start);
     const auto rule =
         std::holds_alternative<Midpoint>(method) ? SteppingRule::midpoint : SteppingRule::endpoint;
@@ -311,10 +311,11 @@ void refuse_rounding(const Model& model, Solution& solution)
 
 }   // namespace
 
-Solution solve(const Model& model, const Problem& problem, const Time& time, const Method& method,
+Solution solve(const Model& model, const Problem& stated, const Time& time, const Method& method,
                const SolveOptions& given)
 {
-    check_method(model, problem, time, method, given);
+    check_method(model, stated, time, method, given);
+    const Problem problem = with_prepared(stated);
     SolveOptions options = given;
     Progress last;
     std::function<bool()> goes_on;
@@ -368,7 +369,7 @@ ExactSample sample_exactly(const Model& model, const Motion& motion, const Metho
     quiet.condition = false;   // one shortened element is not what was asked about
     quiet.initial =
         StartPolicy::project;   // an end state holds its constraints to rounding; polish, never refuse
-    Problem problem{{motion.at_end(element)}};
+    Problem problem = with_prepared({{motion.at_end(element)}});
     problem.conditions.start.angles = LoadTurns(model, motion).at_end(element);   // files do not hold them
     const TimeMesh one{{motion.mesh.ends[element], t}};
     quiet.judge = false;

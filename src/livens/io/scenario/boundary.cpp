@@ -183,7 +183,7 @@ void read_boundary(Builder& builder, Conditions& boundary)
     }
 }
 
-void check_ends(Builder& builder, const Conditions& boundary, StartPolicy policy)
+void check_ends(Builder& builder, const Conditions& boundary, StartPolicy policy, Prepared& prepared)
 {
     const auto close = [&](State state, Known given) {
         if (given == Known::nothing) return;
@@ -191,7 +191,7 @@ void check_ends(Builder& builder, const Conditions& boundary, StartPolicy policy
             for (Matrix34& V : state.V) V = {};   // a guess, which need not fit
         const Model model =
             builder.model().has_events() ? acting_at(builder.model(), state.t).model : builder.model();
-        const ClosedStart closed = close_start(model, state, policy);
+        const ClosedStart closed = prepared.close(model, state, policy);
         if (given == Known::state) refuse_singular_start(model, closed);
     };
     builder.guard("start", [&] { close(boundary.start, boundary.at_start); });

@@ -181,7 +181,7 @@ void read_loads(Builder& builder);
 /// What is given at both ends, and the state at the end. The state at the start is the model's.
 void read_boundary(Builder& builder, Conditions& boundary);
 /// Closes the mechanism where something is given, as solve() will.
-void check_ends(Builder& builder, const Conditions& boundary, StartPolicy policy);
+void check_ends(Builder& builder, const Conditions& boundary, StartPolicy policy, Prepared& prepared);
 Method read_method(const Section* section, Findings& findings);
 /// Time, method, conditions: everything of the scenario but the model.
 void read_run(Builder& builder, Scenario& scenario);

@@ -66,7 +66,8 @@ void build(const Node& root, TreePart part, const MeshSource& meshes, Scenario& 
         check_method(builder.model(), {scenario.conditions}, scenario.time, scenario.method,
                      scenario.options);
     });
-    if (fits) check_ends(builder, scenario.conditions, scenario.options.initial);
+    scenario.prepared = std::make_shared<Prepared>();
+    if (fits) check_ends(builder, scenario.conditions, scenario.options.initial, *scenario.prepared);
     scenario.model = std::move(builder.model());
     scenario.outlines = std::move(builder.outlines());
     scenario.parts = std::move(builder.parts());

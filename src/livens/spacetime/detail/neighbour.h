@@ -15,7 +15,7 @@ public:
     /// that are solved as any problem is. `has_bends`: laws bend at instants of its own, where elements end
     /// instead of where they bend beside it; else these ends serve.
     Neighbour(const Model& model, const Method& method, const SolveOptions& options, const Motion& beside,
-              const Ends* closed, bool has_bends);
+              std::shared_ptr<Prepared> prepared, const Ends* closed, bool has_bends);
     Neighbour(Neighbour&&) noexcept;
     ~Neighbour();
 
@@ -34,6 +34,7 @@ private:
     const Method& method_;
     const SolveOptions& options_;
     const Motion& beside_;
+    std::shared_ptr<Prepared> prepared_;
     const Ends* closed_;
     bool has_bends_;
     TimeMesh mesh_;
