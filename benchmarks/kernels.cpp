@@ -123,7 +123,8 @@ Solution run(const Kernel& kernel)
     options.judge = options.divide = false;   // what is counted is the solution
     options.estimate = SolveOptions::Estimate::none;
     options.tolerance = kernel.tolerance;
-    return solve(kernel.model, {kernel.model.start()}, kernel.mesh, kernel.method, options);
+    const Problem problem{{kernel.model.start()}, {}, nullptr, kernel.prepared};
+    return solve(kernel.model, problem, kernel.mesh, kernel.method, options);
 }
 
 double error(const Kernel& kernel, const Solution& solution)

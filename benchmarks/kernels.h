@@ -26,6 +26,7 @@ struct Kernel {
     Vector3 reference{};        ///< where it is at the end, m
     double largest_error = 0;   ///< m; more means that something else was measured
     double tolerance = 1e-12;
+    std::shared_ptr<Prepared> prepared = std::make_shared<Prepared>();
 };
 
 /// The four kernels with a bound on their instructions.

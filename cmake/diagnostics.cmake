@@ -7,7 +7,7 @@ file(READ ${diagnostics_file} diagnostics_page)
 # A literal a page: compilers need not take one of more than 65536 characters.
 string(REPLACE "\n## " ")livens\",\n        R\"livens(\n## " diagnostics_page "${diagnostics_page}")
 file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/generated/diagnostics_page.cpp @ONLY CONTENT
-"#include \"livens/io/scenario/explain.h\"
+"#include \"livens/io/scenario/schema/explain.h\"
 
 #include <string>
 

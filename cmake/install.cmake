@@ -25,21 +25,15 @@ endif()
 install(FILES LICENSE NOTICES DESTINATION ${CMAKE_INSTALL_DOCDIR} ${program})
 install(TARGETS ${libraries} EXPORT livens-targets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} ${dev}
         LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} ${dev})
-# What users include, and no insides: tests/install/headers.txt lists it.
-install(DIRECTORY src/livens DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} ${dev} FILES_MATCHING PATTERN "*.h"
-        PATTERN "detail" EXCLUDE PATTERN "results" EXCLUDE PATTERN "scenario" EXCLUDE
-        PATTERN "exports" EXCLUDE PATTERN "report" EXCLUDE
-        PATTERN "lobatto" EXCLUDE PATTERN "mixed" EXCLUDE PATTERN "stepping" EXCLUDE
-        PATTERN "dense.h" EXCLUDE PATTERN "elementary.h" EXCLUDE PATTERN "projection.h" EXCLUDE PATTERN "time_space.h" EXCLUDE
-        PATTERN "constraint_basis.h" EXCLUDE PATTERN "instant.h" EXCLUDE PATTERN "rank.h" EXCLUDE
-        PATTERN "rows.h" EXCLUDE PATTERN "tables.h" EXCLUDE PATTERN "twist.h" EXCLUDE PATTERN "blocks.h" EXCLUDE
-        PATTERN "linear_solver.h" EXCLUDE PATTERN "newton.h" EXCLUDE PATTERN "patience.h" EXCLUDE PATTERN "ends.h" EXCLUDE PATTERN "guess.h"
-        EXCLUDE PATTERN "window.h" EXCLUDE PATTERN "windows.h" EXCLUDE PATTERN "accuracy.h" EXCLUDE
-        PATTERN "pace.h" EXCLUDE PATTERN "phases.h" EXCLUDE PATTERN "second.h" EXCLUDE PATTERN "largest.h" EXCLUDE
-        PATTERN "acceptance_bounds.h" EXCLUDE PATTERN "surface.h" EXCLUDE
-        PATTERN "aligned_doubles.h" EXCLUDE PATTERN "forest.h" EXCLUDE PATTERN "locking.h" EXCLUDE PATTERN "orientation.h" EXCLUDE PATTERN "joint_factor.h" EXCLUDE PATTERN "row_pattern.h" EXCLUDE PATTERN "sparse_rows.h" EXCLUDE
-        PATTERN "small_motions.h" EXCLUDE PATTERN "statics.h" EXCLUDE PATTERN "turning_vibrations.h" EXCLUDE
-        PATTERN "lanes.h" EXCLUDE PATTERN "lane_*.h" EXCLUDE)
+# What users include, and no insides.
+file(STRINGS ${PROJECT_SOURCE_DIR}/cmake/headers.txt livens_headers)
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/cmake/headers.txt)
+foreach(header ${livens_headers})
+    get_filename_component(folder ${header} DIRECTORY)
+    if(LIVENS_BUILD_PROGRAM OR NOT header MATCHES "^livens/io/")
+        install(FILES src/${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/${folder} ${dev})
+    endif()
+endforeach()
 install(EXPORT livens-targets NAMESPACE livens:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/livens ${dev})
 configure_package_config_file(cmake/livens-config.cmake.in ${PROJECT_BINARY_DIR}/livens-config.cmake
                               INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/livens)

@@ -90,6 +90,12 @@ function(livens_room name)
     endif()
 endfunction()
 
+# livens_fast_part(ROOM FOLDER): what lies in a folder of a room is for kernels, while the room is not.
+function(livens_fast_part room folder)
+    file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/livens/${room}/${folder}/*.cpp)
+    set_property(SOURCE ${sources} APPEND PROPERTY COMPILE_OPTIONS ${livens_fast})
+endfunction()
+
 # livens_link_small(TARGET): without functions that nobody calls. Not by gold, which could make one of those that are the
 # same: it takes the wheel's own hypot() for glibc's, see python/src/glibc.cpp.
 include(CheckLinkerFlag)

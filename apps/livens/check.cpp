@@ -7,9 +7,9 @@
 #include "commands.h"
 #include "console.h"
 #include "failure.h"
+#include "livens/dynamics/start/closing.h"
+#include "livens/dynamics/start/start_coordinates.h"
 #include "livens/io/known_state.h"
-#include "livens/multibody/closing.h"
-#include "livens/multibody/start_coordinates.h"
 #include "memory.h"
 
 namespace livens::program {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // livens equilibrium: where a mechanism rests.
-#include "livens/multibody/equilibrium.h"
+#include "livens/statics/equilibrium.h"
 
 #include <cmath>
 

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "livens/io/scenario.h"
-#include "livens/multibody/equilibrium.h"
+#include "livens/statics/equilibrium.h"
 #include "summary.h"
 
 namespace livens::program {

@@ -82,8 +82,9 @@ peers::Points ends(const Mechanism& m, const Solution& solution)
 int main()
 {
     return peers::serve([](const Mechanism& m, const std::vector<std::string>& setting) {
-        return [&m, run = run_of(m, setting), model = model_of(m)] {
-            return ends(m, solve(model, {model.start()}, run.time, run.method, run.options));
+        return [&m, run = run_of(m, setting), model = model_of(m), known = std::make_shared<Prepared>()] {
+            const Problem problem{{model.start()}, {}, nullptr, known};
+            return ends(m, solve(model, problem, run.time, run.method, run.options));
         };
     });
 }

@@ -366,7 +366,7 @@ def add_reference(site: Site) -> None:
         text += f"\n## {command}\n\n```text\n{site.run(command, '--help').rstrip()}\n```\n"
     site.add("reference/commands", text)
     add_python(site)
-    headers = (site.root / "tests/install/headers.txt").read_text(encoding="utf-8").split()
+    headers = (site.root / "cmake/headers.txt").read_text(encoding="utf-8").split()
     pages = []
     for room, title in ROOMS.items():
         own = [header for header in headers if header.split("/")[1] == room]

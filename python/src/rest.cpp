@@ -9,8 +9,8 @@
 #include <nanobind/stl/vector.h>
 
 #include "livens/io/known_state.h"
-#include "livens/multibody/equilibrium.h"
 #include "livens/multibody/motion.h"
+#include "livens/statics/equilibrium.h"
 #include "result.h"
 
 namespace livens::python {

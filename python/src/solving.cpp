@@ -14,7 +14,7 @@
 #include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/string.h>
 
-#include "livens/io/scenario/tree.h"
+#include "livens/io/scenario/text/tree.h"
 #include "livens/solvers/patience.h"
 #include "livens/spacetime/ensemble.h"
 #include "python_load.h"

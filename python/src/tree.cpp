@@ -5,9 +5,9 @@
 #include <nanobind/stl/string_view.h>
 
 #include "livens/base/error.h"
-#include "livens/io/scenario/schema.h"
-#include "livens/io/scenario/section.h"
-#include "livens/io/scenario/units.h"
+#include "livens/io/scenario/schema/schema.h"
+#include "livens/io/scenario/schema/section.h"
+#include "livens/io/scenario/text/units.h"
 
 namespace livens::python {
 

@@ -8,7 +8,7 @@
 #include <nanobind/nanobind.h>
 
 #include "livens/io/scenario.h"
-#include "livens/io/scenario/document.h"
+#include "livens/io/scenario/text/document.h"
 
 namespace livens::python {
 

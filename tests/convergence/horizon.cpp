@@ -2,7 +2,7 @@
 // How perturbations of the start grow, and until when double precision says something.
 #include "convergence/studies.h"
 #include "livens/multibody/body.h"
-#include "livens/multibody/drives.h"
+#include "livens/multibody/joints/drives.h"
 #include "livens/time/time_laws.h"
 
 namespace livens::tests {

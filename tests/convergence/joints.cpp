@@ -6,7 +6,7 @@
 #include "convergence/studies.h"
 #include "livens/diagnostics/coordinates.h"
 #include "livens/diagnostics/sample.h"
-#include "livens/multibody/spline_curve.h"
+#include "livens/multibody/joints/spline_curve.h"
 
 namespace livens::tests {
 namespace {

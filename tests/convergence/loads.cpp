@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Order 2p under loads of every kind, against Newton's and Euler's equations with quaternions.
 #include "convergence/studies.h"
-#include "livens/multibody/surface_loads.h"
+#include "livens/multibody/loads/surface_loads.h"
 #include "newton_euler.h"
 
 namespace livens::tests {

@@ -2,7 +2,7 @@
 // Joints that say twice what others say, in axes that turn: the rows that are left out change on the way.
 #include <cmath>
 
-#include "livens/multibody/drives.h"
+#include "livens/multibody/joints/drives.h"
 #include "livens/time/time_laws.h"
 #include "mechanisms.h"
 

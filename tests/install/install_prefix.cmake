@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # cmake -DBUILD= -DPREFIX= -DCONFIG= -P install_prefix.cmake: installs the finished build into an empty
-# PREFIX and looks at what is there: the headers of headers.txt, no other, and all that these include.
+# PREFIX and looks at what is there: the headers of cmake/headers.txt, no other, and all that these include.
 
 cmake_minimum_required(VERSION 3.20)
 file(REMOVE_RECURSE ${PREFIX})
@@ -28,7 +28,7 @@ if(EXISTS ${PREFIX}/bin/livens)   # the page is made by the program that lies be
     endif()
 endif()
 file(GLOB_RECURSE installed RELATIVE ${PREFIX}/include ${PREFIX}/include/*)
-file(STRINGS ${CMAKE_CURRENT_LIST_DIR}/headers.txt wanted)
+file(STRINGS ${CMAKE_CURRENT_LIST_DIR}/../../cmake/headers.txt wanted)
 if(NOT EXISTS ${PREFIX}/include/livens/io)   # built without the program
     list(FILTER wanted EXCLUDE REGEX "^livens/io/")
 endif()

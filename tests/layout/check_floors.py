@@ -22,19 +22,34 @@ FLOORS = [
     ["base"],
     ["time", "solvers", "geometry"],
     ["multibody"],
-    ["spacetime", "stepping", "diagnostics"],
+    ["dynamics"],
+    ["statics", "stepping"],
+    ["diagnostics"],
+    ["spacetime"],
     ["io"],
     ["apps"],
 ]
-# solve() hands the classical methods to the witnesses and its motion to the judge; they know nothing of it. Elements
-# in space are integrated by the rules of time.
-ARROWS = {("geometry", "time"), ("spacetime", "stepping"), ("spacetime", "diagnostics")}
+# Elements in space are integrated by the rules of time. Witnesses know nothing of what they are compared with.
+ARROWS = {("geometry", "time")}
+APART = {("diagnostics", "stepping")}
+# Folders of a room, lowest first: none sees one that comes later. A room's own files are its face, which its folders and
+# their users may see, and which may see them. Folders that are not named here stand beside each other.
+PARTS = {
+    "multibody": ["joints", "loads"],
+    "dynamics": ["rows", "lanes", "instant", "start"],
+    "spacetime": ["march", "nodal", "mixed", "accuracy"],
+    "io": ["results", "exports", "report", "scenario"],
+    "io/scenario": ["text", "schema", "bodies", "joints", "loads", "run"],
+}
+# Folders that other rooms do not see into, but for what is named.
+INSIDES = {"detail", "scenario", "march", "nodal", "mixed", "accuracy"}
+SEEN_INSIDE = {"livens/spacetime/mixed/bases.h"}   # words of a table, for the reader of scenarios
 
 FLOOR = {room: number for number, rooms in enumerate(FLOORS) for room in rooms}
 
 # What is not the standard library: where it comes from, and the rooms whose sources may include it.
 FOREIGN = [
-    (r"Eigen/", {"solvers", "multibody", "stepping"}),   # their targets rename its namespace, see cmake/rooms.cmake
+    (r"Eigen/", {"solvers", "multibody", "dynamics", "statics", "stepping"}),   # their targets rename its namespace, see cmake/rooms.cmake
     (r"suitesparse/|umfpack|metis", {"solvers"}),
     (r"toml\+\+/|toml\.hpp", {"io"}),
     (r"netcdf|hdf5|H5", set()),   # io reads and writes it itself
@@ -107,7 +122,18 @@ def files_with_rooms(root):
 
 
 def may_see(room, other):
-    return other == room or FLOOR[other] < FLOOR[room] or (room, other) in ARROWS
+    return other == room or (FLOOR[other] < FLOOR[room] and (room, other) not in APART) or (room, other) in ARROWS
+
+
+def runs_up(path, name):
+    """The folder of its own room, in which a file includes what stands above its own folder; else None."""
+    mine, other = path.parts[:-1], pathlib.PurePath(name).parts[1:-1]
+    for depth in range(1, min(len(mine), len(other))):
+        if mine[:depth] == other[:depth] and mine[depth] != other[depth]:
+            order = PARTS.get("/".join(mine[:depth]), ())
+            if mine[depth] in order and other[depth] in order and order.index(mine[depth]) < order.index(other[depth]):
+                return "/".join(other[:depth + 1])
+    return None
 
 
 def check_includes(check, path, room, text):
@@ -133,10 +159,12 @@ def check_includes(check, path, room, text):
             elif other not in FLOOR or other == "apps" or len(parts) < 3:
                 check.fault(path, number, "room", f"include of an unknown room, {name}")
             elif not may_see(room, other):
-                way = "upward" if FLOOR[other] > FLOOR[room] else "sideways"
+                way = "upward" if FLOOR[other] > FLOOR[room] else "sideways" if FLOOR[other] == FLOOR[room] else "apart"
                 check.fault(path, number, way, f"{room} (F{FLOOR[room]}) includes {name} (F{FLOOR[other]})")
-            elif {"detail", "scenario"} & set(parts[2:-1]) and other != room:
+            elif INSIDES & set(parts[2:-1]) and other != room and not is_test and name not in SEEN_INSIDE:
                 check.fault(path, number, "detail", f"{room} includes the inside of another room, {name}")
+            elif not is_test and room != "apps" and runs_up(path.relative_to(check.root / "src" / "livens"), name):
+                check.fault(path, number, "part", f"{name} stands above the folder of this file")
             elif not quoted:
                 check.fault(path, number, "include", f'write "{name}", not <{name}>')
             elif not (check.root / "src" / name).is_file():
@@ -346,9 +374,9 @@ CONTROLS = [
     ("upward", {"src/livens/multibody/up.cpp": '#  include   "livens/diagnostics/energy.h"\n'}),
     ("upward", {"src/livens/time/up.cpp": 'const char* s = "/*";\n#include "livens/io/file.h"\n'}),
     ("upward", {"tests/unit/time/up_test.cpp": '#include "livens/multibody/model.h"\n'}),
-    ("sideways", {"src/livens/stepping/side.cpp": '#include "livens/spacetime/solve.h"\n'}),
-    ("sideways", {"src/livens/diagnostics/side.cpp": '#include "livens/spacetime/solve.h"\n'}),
-    ("sideways", {"src/livens/stepping/side.cpp": '#include "livens/diagnostics/energy.h"\n'}),
+    ("upward", {"src/livens/stepping/side.cpp": '#include "livens/spacetime/solve.h"\n'}),
+    ("upward", {"src/livens/diagnostics/side.cpp": '#include "livens/spacetime/solve.h"\n'}),
+    ("upward", {"src/livens/stepping/side.cpp": '#include "livens/diagnostics/energy.h"\n'}),
     ("sideways", {"src/livens/time/side.cpp": '#include "livens/solvers/newton.h"\n'}),
     ("circle", {"src/livens/time/a.h": '#pragma once\n#include "livens/time/b.h"\n',
                 "src/livens/time/b.h": '#pragma once\n#include "livens/time/a.h"\n'}),
@@ -364,6 +392,15 @@ CONTROLS = [
     ("room", {"src/livens/io/attic.cpp": '#include "livens/attic/box.h"\n'}),
     ("detail", {"src/livens/time/detail/inner.h": "#pragma once\n",
                 "src/livens/io/peek.cpp": '#include "livens/time/detail/inner.h"\n'}),
+    ("detail", {"src/livens/spacetime/nodal/inner.h": "#pragma once\n",
+                "src/livens/io/peek.cpp": '#include "livens/spacetime/nodal/inner.h"\n'}),
+    ("part", {"src/livens/spacetime/nodal/inner.h": "#pragma once\n",
+              "src/livens/spacetime/march/up.cpp": '#include "livens/spacetime/nodal/inner.h"\n'}),
+    ("part", {"src/livens/io/scenario/run/inner.h": "#pragma once\n",
+              "src/livens/io/scenario/text/deep/up.cpp": '#include "livens/io/scenario/run/inner.h"\n'}),
+    ("sideways", {"src/livens/statics/rest.h": "#pragma once\n",
+                  "src/livens/stepping/side.cpp": '#include "livens/statics/rest.h"\n'}),
+    ("apart", {"src/livens/diagnostics/side.cpp": '#include "livens/stepping/rule.h"\n'}),
     ("detail", {"src/livens/io/scenario/inner.h": "#pragma once\n",
                 "apps/livens/peek.cpp": '#include "livens/io/scenario/inner.h"\n'}),
     ("name", {"src/livens/time/utils.h": "#pragma once\n"}),

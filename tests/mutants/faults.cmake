@@ -45,7 +45,7 @@ livens_mutant(NAME curvature_mixed_term
 
 # Drives forgotten in the velocity at element ends: all order is gone.
 livens_mutant(NAME velocity_without_drives
-              FILE multibody/instant.cpp
+              FILE dynamics/instant/instant.cpp
               OLD [[-tables_.rate(basis.rows[c], {state.t}, state.X.data())]]
               NEW [[-0 * tables_.rate(basis.rows[c], {state.t}, state.X.data())]]
               TESTS_OF convergence
@@ -54,7 +54,7 @@ livens_mutant(NAME velocity_without_drives
 
 # The last weight off by one part in a thousand: the order is gone.
 livens_mutant(NAME one_weight
-              FILE spacetime/lobatto/rule.cpp
+              FILE spacetime/nodal/rule.cpp
               OLD [[rule.weights = gauss_lobatto(n).weights;]]
               NEW [[rule.weights = gauss_lobatto(n).weights; rule.weights[rule.degree] *= 1.001;]]
               TESTS_OF convergence
@@ -64,8 +64,8 @@ livens_mutant(NAME one_weight
 
 # One wrong sign in d_i x r_i.
 livens_mutant(NAME sign_of_a_moment
-              FILE multibody/twist.h
-              RECOMPILE multibody/tables_in_twists.cpp spacetime/lobatto/tangent.cpp
+              FILE dynamics/rows/twist.h
+              RECOMPILE dynamics/rows/tables_in_twists.cpp spacetime/nodal/tangent.cpp
               OLD [[m[1] += X[a + 2] * r[a] - X[a] * r[a + 2];]]
               NEW [[m[1] += X[a + 2] * r[a] + X[a] * r[a + 2];]]
               TESTS_OF convergence
@@ -73,14 +73,14 @@ livens_mutant(NAME sign_of_a_moment
 
 # The turning of the rows left out of the tangent: the answer stays, convergence is linear.
 livens_mutant(NAME missing_geometric_term
-              FILE spacetime/lobatto/tangent.cpp
+              FILE spacetime/nodal/tangent.cpp
               OLD [[twist::add_geometric(nodes.X(A) + 12 * b, total_.data() + 12 * b, blocks_.data() + 36 * b, 6);]]
               NEW [[(void)b;]]
               TESTS_OF convergence
               MUST_FAIL Newton.NeedsThreeIterationsAnElementOnTheAverage
                         Newton.FactorisesOnceAnElementWhereErrorsAreSmall)
 livens_mutant(NAME missing_geometric_term_by_differences
-              FILE spacetime/lobatto/tangent.cpp
+              FILE spacetime/nodal/tangent.cpp
               OLD [[twist::add_geometric(nodes.X(A) + 12 * b, total_.data() + 12 * b, blocks_.data() + 36 * b, 6);]]
               NEW [[(void)b;]]
               TESTS_OF unit_spacetime
@@ -88,14 +88,14 @@ livens_mutant(NAME missing_geometric_term_by_differences
 
 # Loads taken where the element starts, their moments where it has come to: a spring that turns what it holds.
 livens_mutant(NAME loads_at_the_start
-              FILE spacetime/lobatto/rows.cpp
+              FILE spacetime/nodal/rows.cpp
               OLD [[tables_.add_loads(at, X_.data(), V_.data(),]]
               NEW [[tables_.add_loads(at, nodes.X(e * rule_.degree), V_.data(),]]
               TESTS_OF unit_spacetime
               MUST_FAIL MarchKernel.AgreesWithNewtonOnRandomMechanisms)
 livens_mutant(NAME loads_at_the_start_in_lanes
-              FILE spacetime/lobatto/lane_kernel.h
-              RECOMPILE spacetime/lobatto/lanes_sse2.cpp
+              FILE spacetime/nodal/kernel/lane_kernel.h
+              RECOMPILE spacetime/nodal/kernel/lanes_sse2.cpp
               OLD [[start.numbers[i] + times<W>(v.increments + i * W, rule.M)]]
               NEW [[all<W>(start.numbers[i])]]
               TESTS_OF conservation
@@ -103,7 +103,7 @@ livens_mutant(NAME loads_at_the_start_in_lanes
 
 # Loads at as many Gauss-Lobatto points: springs are no Gauss collocation then, and stable no longer.
 livens_mutant(NAME loads_at_lobatto_points
-              FILE spacetime/lobatto/rule.cpp
+              FILE spacetime/nodal/rule.cpp
               OLD [[rule.loads = gauss(rule.degree);]]
               NEW [[rule.loads = rule.degree > 1 ? gauss_lobatto(rule.degree) : gauss(1);]]
               TESTS_OF properties
@@ -113,7 +113,7 @@ livens_mutant(NAME loads_at_lobatto_points
 
 # What a load does at a Gauss point given to one node, instead of shared out: impulses are right, moments not.
 livens_mutant(NAME loads_given_to_one_node
-              FILE spacetime/lobatto/rows.cpp
+              FILE spacetime/nodal/rows.cpp
               OLD [[const double m = rule_.M[c * n_nodes + A];]]
               NEW [[const double m = A == c ? 1 : 0;]]
               TESTS_OF unit_spacetime
@@ -121,8 +121,8 @@ livens_mutant(NAME loads_given_to_one_node
 
 # The instant of a node for what is taken at a Gauss point: right for constant loads only.
 livens_mutant(NAME loads_at_the_instants_of_nodes
-              FILE spacetime/lobatto/stretch.h
-              RECOMPILE spacetime/lobatto/rows.cpp spacetime/lobatto/march_kernel.cpp
+              FILE spacetime/nodal/stretch.h
+              RECOMPILE spacetime/nodal/rows.cpp spacetime/nodal/kernel/march_kernel.cpp
               OLD [[rule.loads.points[c] * h(e), Side::middle}]]
               NEW [[rule.nodes[c] * h(e), Side::middle}]]
               TESTS_OF convergence
@@ -131,14 +131,14 @@ livens_mutant(NAME loads_at_the_instants_of_nodes
 
 # Phi from the gradient at the node alone, not from the mean of both ends: right for linear rows only.
 livens_mutant(NAME constraint_without_mean_gradient
-              FILE multibody/tables.cpp
+              FILE dynamics/rows/tables.cpp
               OLD [[sum += (g_from[12 * side + a + i] + g_to[12 * side + a + i]) * d[a + i];]]
               NEW [[sum += 2 * g_to[12 * side + a + i] * d[a + i];]]
               TESTS_OF unit_spacetime
               MUST_FAIL MarchKernel.AgreesWithNewtonOnRandomMechanisms)
 livens_mutant(NAME violations_not_projected_in_lanes
-              FILE spacetime/lobatto/lane_kernel.h
-              RECOMPILE spacetime/lobatto/lanes_sse2.cpp
+              FILE spacetime/nodal/kernel/lane_kernel.h
+              RECOMPILE spacetime/nodal/kernel/lanes_sse2.cpp
               OLD [[multiply(p, G, v.step, v.violations, v.work);]]
               NEW [[multiply(p, G, v.step, nullptr, v.work);]]
               TESTS_OF conservation
@@ -146,7 +146,7 @@ livens_mutant(NAME violations_not_projected_in_lanes
 
 # Turns in axes that run ahead of the body instead of behind: the motion is right, by more steps.
 livens_mutant(NAME axes_that_run_ahead
-              FILE multibody/row_pattern.cpp
+              FILE dynamics/lanes/row_pattern.cpp
               OLD [[= -determinant(spin) *]]
               NEW [[= determinant(spin) *]]
               TESTS_OF unit_spacetime
@@ -163,7 +163,7 @@ livens_mutant(NAME load_comes_unnoticed
 
 # One start taken for another that was closed before.
 livens_mutant(NAME any_start_is_the_last
-              FILE multibody/prepared.cpp
+              FILE dynamics/start/prepared.cpp
               OLD [[same(a.X, b.X) &&]]
               NEW [[true &&]]
               TESTS_OF unit_spacetime
@@ -171,7 +171,7 @@ livens_mutant(NAME any_start_is_the_last
 
 # Angles followed from node to node by increments since the first node of the element.
 livens_mutant(NAME turns_of_an_element
-              FILE spacetime/lobatto/nodes.cpp
+              FILE spacetime/nodal/nodes.cpp
               OLD [[difference[i] = B > 1 ? step[i] - dX(e, B - 1)[i] : step[i];]]
               NEW [[difference[i] = step[i];]]
               TESTS_OF convergence
@@ -179,7 +179,7 @@ livens_mutant(NAME turns_of_an_element
 
 # Nodes in positions where the joints lose rank are taken as they come.
 livens_mutant(NAME nodes_in_singular_positions
-              FILE spacetime/lobatto/window_account.cpp
+              FILE spacetime/nodal/window_account.cpp
               OLD [[constexpr double least = 1e-2;]]
               NEW [[constexpr double least = 0;]]
               TESTS_OF convergence
@@ -197,7 +197,7 @@ livens_mutant(NAME reflections_without_choice
 
 # The momentum at the start shared out by the weights: right for degree 1 only.
 livens_mutant(NAME radau_momentum_by_weights
-              FILE spacetime/lobatto/rule.cpp
+              FILE spacetime/nodal/rule.cpp
               OLD [[rule.c[a] = static_cast<double>(-w * rule.D[a * n]);]]
               NEW [[rule.c[a] = static_cast<double>(w);]]
               TESTS_OF convergence
@@ -213,7 +213,7 @@ livens_mutant(NAME radau_jump_at_the_end
 
 # The fastest damper of all bodies taken for that of every vibration.
 livens_mutant(NAME damper_of_another_body
-              FILE spacetime/estimate.cpp
+              FILE spacetime/accuracy/estimate.cpp
               OLD [[one.rate < one.decay)]]
               NEW [[one.rate < highest_frequencies(model, motion.at_end(end)).dampers.rate)]]
               TESTS_OF convergence
@@ -229,34 +229,34 @@ livens_mutant(NAME radau_blow_up_hidden
 
 # What bears a preload taken for what lets go.
 livens_mutant(NAME frequency_of_a_preload_reversed
-              FILE multibody/small_motions.cpp
+              FILE statics/small_motions.cpp
               OLD [[stored<6, 6>(-turned)]]
               NEW [[stored<6, 6>(turned)]]
-              TESTS_OF unit_multibody
+              TESTS_OF unit_statics
               MUST_FAIL Frequencies.OfAPreloadThatABodyBears)
 
 # Rigidity's part of the stiffness forgotten where moments are balanced.
 livens_mutant(NAME stiffness_without_geometric_term
-              FILE multibody/small_motions.cpp
+              FILE statics/small_motions.cpp
               OLD [[twist::add_geometric(state_.X.data() + 12 * b, r.data() + 12 * b, K.data(), 6);]]
               NEW [[twist::add_geometric(state_.X.data() + 12 * b, r.data() + 12 * b, K.data(), 6), K.setZero();]]
-              TESTS_OF unit_multibody
+              TESTS_OF unit_statics
               MUST_FAIL Linearisation.IsThatOfDifferencesOfAccelerations)
 
 # Newton's own steps, which climb to the upright pendulum as well.
 livens_mutant(NAME equilibrium_by_newton_alone
-              FILE multibody/equilibrium.cpp
+              FILE statics/equilibrium.cpp
               OLD [[divisor(i) = mu < 0 ? std::copysign(size, k) : size + mu;]]
               NEW [[divisor(i) = std::copysign(size, k);]]
-              TESTS_OF unit_multibody
+              TESTS_OF unit_statics
               MUST_FAIL Equilibrium.OfAPendulumIsTheHangingOneFromAnywhere)
 
 # The skew part of a stiffness lost.
 livens_mutant(NAME stiffness_made_symmetric
-              FILE multibody/linearisation.cpp
+              FILE statics/linearisation.cpp
               OLD [[linear.K = by_rows(K);]]
               NEW [[linear.K = by_rows(0.5 * (K + K.transpose()));]]
-              TESTS_OF unit_multibody
+              TESTS_OF unit_statics
               MUST_FAIL Linearisation.OfAFollowerForceIsNotSymmetric)
 
 # --- the paper's elements
@@ -475,7 +475,7 @@ livens_mutant(NAME pressure_by_depth
 
 # A link that leads out of the scenario's folder.
 livens_mutant(NAME mesh_by_a_link
-              FILE io/scenario/meshes.cpp
+              FILE io/scenario/bodies/meshes.cpp
               OLD [[if (!is_inside(file, folder))]]
               NEW [[if (file.empty())]]
               TESTS_OF unit_io
@@ -492,7 +492,7 @@ livens_mutant(NAME round_solid_at_its_rim
 
 # A part with a density of its own weighed by the body's as well: right where that is 1.
 livens_mutant(NAME field_times_density
-              FILE io/scenario/shapes.cpp
+              FILE io/scenario/bodies/shapes.cpp
               OLD [[section.has("density_field") ? factor : density * factor]]
               NEW [[density * factor]]
               TESTS_OF unit_io
@@ -524,7 +524,7 @@ livens_mutant(NAME report_free_directors
 
 # The attracting point, which is the world's, sent through the axes of a skew body.
 livens_mutant(NAME attraction_in_the_body
-              FILE io/scenario/load_makers.cpp
+              FILE io/scenario/loads/load_makers.cpp
               OLD [[{p.section.vector("point"), p.section.number("mu")]]
               NEW [[{point_of(p), p.section.number("mu")]]
               TESTS_OF livens
@@ -552,26 +552,26 @@ livens_mutant(NAME attraction_without_trace
 
 # Rounding of a large load taken for a vibration.
 livens_mutant(NAME frequency_of_rounding
-              FILE multibody/frequencies.cpp
+              FILE statics/frequencies.cpp
               OLD [[return value <= rounding * size;]]
               NEW [[return value <= 0 * rounding * size;]]
-              TESTS_OF unit_multibody
+              TESTS_OF unit_statics
               MUST_FAIL Frequencies.AreNotMadeOfTheRoundingOfLargeLoads)
 
 # A driven angle as the sine of what it is off: beyond a quarter of a turn that leads away.
 livens_mutant(NAME driven_angle_by_its_sine
-              FILE multibody/reach.cpp
+              FILE dynamics/rows/reach.cpp
               OLD [[is_driven_angle(joint) ? by_angle(joint) : joint]]
               NEW [[joint]]
-              TESTS_OF unit_multibody
+              TESTS_OF unit_dynamics
               MUST_FAIL ClosedStart.LeadsADrivenAngleBackFromAnywhere)
 
 # One try: bodies that stand at one place are told that they cannot be joined.
 livens_mutant(NAME one_start_alone
-              FILE multibody/reach.cpp
+              FILE dynamics/rows/reach.cpp
               OLD [[for (const double size : disturbances) {]]
               NEW [[for (const double size : {0.0}) {]]
-              TESTS_OF unit_multibody
+              TESTS_OF unit_dynamics
               MUST_FAIL ClosedStart.ClosesBodiesThatStandAtOnePlace)
 
 # atan2(y, x) taken to jump wherever y passes zero.
@@ -584,15 +584,15 @@ livens_mutant(NAME cut_on_both_sides
 
 # Rounding measured by what is stated alone: at rest everything breaks a joint.
 livens_mutant(NAME rounding_is_no_rest
-              FILE multibody/closing.cpp
+              FILE dynamics/start/closing.cpp
               OLD [[if (least > speed) fault]]
               NEW [[if (least > 1e99) fault]]
-              TESTS_OF unit_multibody
+              TESTS_OF unit_dynamics
               MUST_FAIL StartSpeeds.OfRoundingAreRest)
 
 # Momenta that were stated and are not there: nobody looks.
 livens_mutant(NAME ends_not_compared
-              FILE spacetime/met_ends.cpp
+              FILE spacetime/accuracy/met_ends.cpp
               OLD [[if (c.off <= 1 || (worst]]
               NEW [[if (c.off <= 1e99 || (worst]]
               TESTS_OF convergence
@@ -608,7 +608,7 @@ livens_mutant(NAME angle_apart_by_one_direction
 
 # Neighbours that part until they bend: what they bend by grows from turn to turn of a tumbling body.
 livens_mutant(NAME growth_bends
-              FILE spacetime/growth.cpp
+              FILE spacetime/accuracy/growth.cpp
               OLD [[beside_two{1e-5, 3e-5, 1e-4}]]
               NEW [[beside_two{1e-5, 3e-2, 1e-1}]]
               TESTS_OF convergence
@@ -616,7 +616,7 @@ livens_mutant(NAME growth_bends
 
 # One-sided differences whatever they have grown to: of second order.
 livens_mutant(NAME growth_one_sided
-              FILE spacetime/growth.cpp
+              FILE spacetime/accuracy/growth.cpp
               OLD [[constexpr double most_of_one = 100, share_of_one = 1e-2;]]
               NEW [[constexpr double most_of_one = 1e30, share_of_one = 1e60;]]
               TESTS_OF convergence
@@ -624,7 +624,7 @@ livens_mutant(NAME growth_one_sided
 
 # Both sides from the start on: right, and twice the work.
 livens_mutant(NAME growth_always_two_sided
-              FILE spacetime/growth.cpp
+              FILE spacetime/accuracy/growth.cpp
               OLD [[has_two_(most_alone_ < 1)]]
               NEW [[has_two_(most_alone_ > 1)]]
               TESTS_OF convergence
@@ -632,7 +632,7 @@ livens_mutant(NAME growth_always_two_sided
 
 # What was made smaller on the way is forgotten.
 livens_mutant(NAME growth_forgets
-              FILE spacetime/growth.cpp
+              FILE spacetime/accuracy/growth.cpp
               OLD [[one.so_far /= share;]]
               NEW [[one.so_far /= 1;]]
               TESTS_OF convergence
@@ -641,7 +641,7 @@ livens_mutant(NAME growth_forgets
 
 # Perturbations across what turns a body alone: a steady spin is told not to grow.
 livens_mutant(NAME growth_across_alone
-              FILE spacetime/perturbations.cpp
+              FILE spacetime/accuracy/perturbations.cpp
               OLD [[std::sqrt(2.0) * across(spin)]]
               NEW [[0.0 * across(spin)]]
               TESTS_OF convergence
@@ -649,7 +649,7 @@ livens_mutant(NAME growth_across_alone
 
 # Rounding is thought to leave the plane that all numbers are in.
 livens_mutant(NAME rounding_across_a_plane
-              FILE spacetime/perturbations.cpp
+              FILE spacetime/accuracy/perturbations.cpp
               OLD [[along[i] = !zeros[i];]]
               NEW [[along[i] = true;]]
               TESTS_OF convergence
@@ -657,7 +657,7 @@ livens_mutant(NAME rounding_across_a_plane
 
 # Rounding is told to stay in any plane.
 livens_mutant(NAME rounding_forgotten
-              FILE spacetime/growth.cpp
+              FILE spacetime/accuracy/growth.cpp
               OLD [[of_rounding.factors.size() ? of_rounding]]
               NEW [[of_rounding.factors.size() ? 1e-6 * of_rounding]]
               TESTS_OF convergence
@@ -666,7 +666,7 @@ livens_mutant(NAME rounding_forgotten
 
 # Numbers are rounded at the start, and never again.
 livens_mutant(NAME rounded_once
-              FILE spacetime/growth.cpp
+              FILE spacetime/accuracy/growth.cpp
               OLD [[std::sqrt(n) / one.so_far)]]
               NEW [[0 * std::sqrt(n) / one.so_far)]]
               TESTS_OF convergence
@@ -674,7 +674,7 @@ livens_mutant(NAME rounded_once
 
 # Nobody looks at the energy of stiff springs that turn: the march goes on until it dies.
 livens_mutant(NAME turning_springs_unwatched
-              FILE spacetime/windows.cpp
+              FILE spacetime/march/windows.cpp
               OLD [[options_.watch && outcome.factorisations > 0]]
               NEW [[options_.watch && outcome.factorisations < 0]]
               TESTS_OF conservation
@@ -682,7 +682,7 @@ livens_mutant(NAME turning_springs_unwatched
 
 # Another bound: elements of the length that is advised lose the motion again.
 livens_mutant(NAME turning_springs_without_bound
-              FILE spacetime/turning_springs.cpp
+              FILE spacetime/accuracy/turning_springs.cpp
               OLD [[(degree + 1) * (2 * degree - 1)]]
               NEW [[(degree + 1) * (2 * degree + 8)]]
               TESTS_OF conservation
@@ -690,10 +690,10 @@ livens_mutant(NAME turning_springs_without_bound
 
 # Velocities that vibrate turn the forms as well: springs that are drawn change the stiffness across them.
 livens_mutant(NAME turning_by_vibration
-              FILE multibody/turning_vibrations.cpp
+              FILE statics/turning_vibrations.cpp
               OLD [[springs.moved(springs.slow_part(springs.velocity(), n_slow))]]
               NEW [[springs.moved(springs.velocity())]]
-              TESTS_OF unit_multibody
+              TESTS_OF unit_statics
               MUST_FAIL TurningVibrations.LeaveOutVelocitiesThatVibrate)
 
 # Two dimensions of one name: counts come from one of them, divisors from the other.
@@ -770,7 +770,7 @@ livens_mutant(NAME ranks_believed
 
 # What both ends take of memory, without their condition number.
 livens_mutant(NAME both_ends_unstated
-              FILE io/scenario/method.cpp
+              FILE io/scenario/run/method.cpp
               OLD [[(40 + 18 * p) * f * f + 550 * f + 1000)]]
               NEW [[0 * f)]]
               TESTS_OF livens
@@ -810,7 +810,7 @@ livens_mutant(NAME directions_are_letters
 
 # Nothing is ever doubted: a needle between two looks is flown through.
 livens_mutant(NAME laws_undoubted
-              FILE spacetime/lobatto/inside.cpp
+              FILE spacetime/nodal/inside.cpp
               OLD [[    double doubt = 0;
     for (std::size_t k = 0; k < m; ++k) {
         double steepest = 0, widest = 0;]]
@@ -823,7 +823,7 @@ livens_mutant(NAME laws_undoubted
 
 # What is seen of a law is integrated well, whatever its shape between the places.
 livens_mutant(NAME integrals_unchecked
-              FILE spacetime/lobatto/inside.cpp
+              FILE spacetime/nodal/inside.cpp
               OLD [[std::max(steepness_doubt(law, panel, seen), quadrature_doubt(law, rule, panel, seen))]]
               NEW [[std::max(steepness_doubt(law, panel, seen), 0 * quadrature_doubt(law, rule, panel, seen))]]
               TESTS_OF unit_spacetime
@@ -839,7 +839,7 @@ livens_mutant(NAME unseen_forgotten
 
 # The classical rules and mixed judge themselves.
 livens_mutant(NAME no_witness
-              FILE spacetime/estimate.cpp
+              FILE spacetime/accuracy/estimate.cpp
               OLD [[method_(witness_of(method))]]
               NEW [[method_(method)]]
               TESTS_OF convergence
@@ -847,7 +847,7 @@ livens_mutant(NAME no_witness
 
 # Opaque forces are not looked at beside the ends of elements.
 livens_mutant(NAME ends_of_elements_unseen
-              FILE spacetime/lobatto/inside.cpp
+              FILE spacetime/nodal/inside.cpp
               OLD [[constexpr double beside_ends[] = {1e-4, 1e-2};]]
               NEW [[constexpr double beside_ends[] = {1e-15, 1e-14};]]
               TESTS_OF unit_spacetime

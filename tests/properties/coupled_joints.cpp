@@ -4,9 +4,9 @@
 
 #include <numbers>
 
+#include "livens/dynamics/rows/tables.h"
 #include "livens/multibody/joint_coordinates.h"
 #include "livens/multibody/model.h"
-#include "livens/multibody/tables.h"
 #include "properties/joint_kit.h"
 
 namespace livens {

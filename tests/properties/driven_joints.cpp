@@ -2,8 +2,8 @@
 // Joints that depend on time, by the kit that every joint passes.
 #include <gtest/gtest.h>
 
+#include "livens/dynamics/rows/tables.h"
 #include "livens/multibody/model.h"
-#include "livens/multibody/tables.h"
 #include "properties/joint_kit.h"
 
 namespace livens {

@@ -2,7 +2,7 @@
 // Every joint of the library, one entry a joint: the kit runs over this list.
 #include <cmath>
 
-#include "livens/multibody/spline_curve.h"
+#include "livens/multibody/joints/spline_curve.h"
 #include "properties/joint_kit.h"
 
 namespace livens {

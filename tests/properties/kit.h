@@ -47,13 +47,15 @@ constexpr int of_states(int states)
 
 /// Every source of a folder, `apart` from what they share, is called by the type of a case; `fewest` of them.
 template <typename Cases>
-void expect_sources_in(const Cases& cases, const std::string& folder, const std::string& apart, int fewest)
+void expect_sources_in(const Cases& cases, const std::string& folder, const std::vector<std::string>& apart,
+                       int fewest)
 {
     int files = 0;
     for (const auto& entry :
          std::filesystem::directory_iterator(std::filesystem::path(LIVENS_SOURCE_DIR) / folder)) {
         const std::string type = entry.path().stem().string();
-        if (entry.path().extension() != ".cpp" || type == apart) continue;
+        if (entry.path().extension() != ".cpp" || std::ranges::find(apart, type) != apart.end()) continue;
+        if (std::filesystem::exists(std::filesystem::path(entry.path()).replace_extension(".h"))) continue;   // a tool
         ++files;
         EXPECT_TRUE(std::ranges::any_of(cases, [&](const auto& c) { return c.type == type; })) << type;
     }

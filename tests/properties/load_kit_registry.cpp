@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Every load of the library in every variant, one entry each: the kit runs over this list.
-#include "livens/multibody/load_laws.h"
-#include "livens/multibody/surface_loads.h"
+#include "livens/multibody/loads/load_laws.h"
+#include "livens/multibody/loads/surface_loads.h"
 #include "livens/time/expression.h"
 #include "properties/load_kit.h"
 

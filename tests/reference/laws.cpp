@@ -6,9 +6,9 @@
 #include <numbers>
 
 #include "livens/base/text.h"
-#include "livens/spacetime/lobatto/window.h"
-#include "livens/spacetime/pace.h"
-#include "livens/spacetime/windows.h"
+#include "livens/spacetime/march/pace.h"
+#include "livens/spacetime/march/windows.h"
+#include "livens/spacetime/nodal/window.h"
 #include "reference/shipped.h"
 #include "reference/solved.h"
 

@@ -6,8 +6,8 @@
 #include <numbers>
 #include <sstream>
 
-#include "livens/multibody/equilibrium.h"
 #include "livens/multibody/motion.h"
+#include "livens/statics/equilibrium.h"
 #include "reference/shipped.h"
 
 namespace livens::tests {

@@ -8,7 +8,7 @@
 
 #include "livens/base/error.h"
 #include "livens/base/text.h"
-#include "livens/multibody/spline_curve.h"
+#include "livens/multibody/joints/spline_curve.h"
 #include "reference/solved.h"
 
 namespace livens::tests {

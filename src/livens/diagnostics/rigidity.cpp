@@ -11,10 +11,10 @@
 #include "livens/base/error.h"
 #include "livens/diagnostics/diagnostics.h"
 #include "livens/diagnostics/sample.h"
-#include "livens/multibody/reactions.h"
-#include "livens/multibody/rows.h"
-#include "livens/multibody/small_motions.h"
+#include "livens/dynamics/instant/reactions.h"
+#include "livens/dynamics/rows/rows.h"
 #include "livens/multibody/turns.h"
+#include "livens/statics/small_motions.h"
 
 namespace livens {
 

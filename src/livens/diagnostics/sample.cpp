@@ -11,10 +11,10 @@
 #include "livens/base/error.h"
 #include "livens/base/text.h"
 #include "livens/diagnostics/diagnostics.h"
+#include "livens/dynamics/instant/reactions.h"
+#include "livens/dynamics/rows/rank.h"
+#include "livens/dynamics/rows/rows.h"
 #include "livens/multibody/body.h"
-#include "livens/multibody/rank.h"
-#include "livens/multibody/reactions.h"
-#include "livens/multibody/rows.h"
 
 namespace livens {
 

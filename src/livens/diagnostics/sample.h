@@ -4,9 +4,9 @@
 
 #include <vector>
 
+#include "livens/dynamics/instant/reactions.h"
 #include "livens/multibody/model.h"
 #include "livens/multibody/motion.h"
-#include "livens/multibody/reactions.h"
 
 namespace [[gnu::visibility("default")]] livens {
 

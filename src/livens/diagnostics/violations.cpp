@@ -10,8 +10,8 @@
 #include "livens/diagnostics/diagnostics.h"
 #include "livens/diagnostics/largest.h"
 #include "livens/diagnostics/sample.h"
-#include "livens/multibody/rows.h"
-#include "livens/multibody/tables.h"
+#include "livens/dynamics/rows/rows.h"
+#include "livens/dynamics/rows/tables.h"
 #include "livens/solvers/patience.h"
 #include "livens/time/quadrature.h"
 

@@ -6,7 +6,7 @@
 #include <cstdio>
 
 #include "livens/io/json.h"
-#include "livens/io/scenario/findings.h"
+#include "livens/io/scenario/text/findings.h"
 
 namespace livens {
 

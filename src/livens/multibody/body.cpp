@@ -6,8 +6,8 @@
 
 #include "livens/base/elementary.h"
 #include "livens/base/error.h"
-#include "livens/multibody/detail/directors.h"
-#include "livens/multibody/detail/wording.h"
+#include "livens/multibody/directors.h"
+#include "livens/multibody/wording.h"
 
 namespace livens {
 

@@ -4,8 +4,8 @@
 #include <algorithm>
 
 #include "livens/base/error.h"
-#include "livens/multibody/detail/load_values.h"
-#include "livens/multibody/detail/wording.h"
+#include "livens/multibody/loads/load_values.h"
+#include "livens/multibody/wording.h"
 
 namespace livens {
 

@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "livens/base/error.h"
-#include "livens/multibody/detail/wording.h"
+#include "livens/multibody/wording.h"
 
 namespace livens {
 

@@ -8,8 +8,8 @@
 #include <limits>
 
 #include "livens/base/error.h"
-#include "livens/multibody/detail/directors.h"
-#include "livens/multibody/detail/wording.h"
+#include "livens/multibody/directors.h"
+#include "livens/multibody/wording.h"
 
 namespace livens {
 

@@ -82,8 +82,8 @@ public:
     /// attracts. Always positive: 1 if there is nothing to measure but rounding. Tolerances are relative to
     /// it. Moving and turning the model changes it by rounding only.
     double length() const;
-    /// The same for copies, and another after each change, so that what was found of a model is known to be of
-    /// it.
+    /// The same for copies, and another after each change, so that what was found of a model is known to be
+    /// of it.
     std::uint64_t version() const { return version_; }
 
 private:

@@ -8,7 +8,7 @@
 #include <memory>
 
 #include "livens/base/error.h"
-#include "livens/multibody/detail/wording.h"
+#include "livens/multibody/wording.h"
 #include "livens/time/basis.h"
 
 namespace livens {

@@ -8,10 +8,10 @@
 
 #include "livens/base/error.h"
 #include "livens/diagnostics/acceptance.h"
+#include "livens/dynamics/rows/twist.h"
 #include "livens/multibody/body.h"
-#include "livens/multibody/twist.h"
-#include "livens/spacetime/lobatto/window.h"
-#include "livens/spacetime/windows.h"
+#include "livens/spacetime/march/windows.h"
+#include "livens/spacetime/nodal/window.h"
 
 namespace livens {
 

@@ -4,9 +4,9 @@
 
 #include <span>
 
-#include "livens/multibody/tables.h"
-#include "livens/spacetime/ends.h"
-#include "livens/spacetime/window.h"
+#include "livens/dynamics/rows/tables.h"
+#include "livens/spacetime/march/ends.h"
+#include "livens/spacetime/march/window.h"
 
 namespace livens {
 

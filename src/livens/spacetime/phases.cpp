@@ -13,7 +13,7 @@
 #include "livens/diagnostics/largest.h"
 #include "livens/diagnostics/sample.h"
 #include "livens/solvers/patience.h"
-#include "livens/spacetime/detail/window_notes.h"
+#include "livens/spacetime/march/window_notes.h"
 
 namespace livens {
 

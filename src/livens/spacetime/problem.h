@@ -5,9 +5,9 @@
 #include <functional>
 #include <memory>
 
+#include "livens/dynamics/start/prepared.h"
 #include "livens/multibody/model.h"
 #include "livens/multibody/motion.h"
-#include "livens/multibody/prepared.h"
 
 namespace [[gnu::visibility("default")]] livens {
 

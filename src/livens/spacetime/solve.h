@@ -8,7 +8,7 @@
 
 #include "livens/diagnostics/acceptance.h"
 #include "livens/diagnostics/estimate.h"
-#include "livens/multibody/closing.h"
+#include "livens/dynamics/start/closing.h"
 #include "livens/multibody/motion.h"
 #include "livens/solvers/report.h"
 #include "livens/spacetime/method.h"

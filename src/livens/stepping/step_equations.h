@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "livens/multibody/closing.h"
+#include "livens/dynamics/start/closing.h"
 #include "livens/multibody/model.h"
 #include "livens/stepping/stepping.h"
 

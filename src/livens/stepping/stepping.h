@@ -3,7 +3,7 @@
 // spacetime.
 #pragma once
 
-#include "livens/multibody/closing.h"
+#include "livens/dynamics/start/closing.h"
 #include "livens/multibody/model.h"
 #include "livens/multibody/motion.h"
 #include "livens/solvers/report.h"

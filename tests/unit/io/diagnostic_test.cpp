@@ -9,7 +9,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "livens/io/scenario/findings.h"
+#include "livens/io/scenario/text/findings.h"
 
 namespace livens {
 

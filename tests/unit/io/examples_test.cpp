@@ -9,7 +9,7 @@
 #include <map>
 
 #include "livens/io/scenario.h"
-#include "livens/io/scenario/tree.h"
+#include "livens/io/scenario/text/tree.h"
 #include "livens/spacetime/solve.h"
 #include "unit/io/scenario_text.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Every entry of the schema is misspelled, repeated, mistyped, left out, pushed out of its range and given
 // odd numbers.
-#include "livens/io/scenario/schema.h"
+#include "livens/io/scenario/schema/schema.h"
 
 #include <filesystem>
 #include <fstream>
@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "livens/io/scenario/units.h"
+#include "livens/io/scenario/text/units.h"
 #include "unit/io/scenario_text.h"
 
 namespace livens {

@@ -7,7 +7,7 @@
 #include "livens/io/exports.h"
 #include "livens/io/json.h"
 #include "livens/io/report.h"
-#include "livens/io/scenario/meshes.h"
+#include "livens/io/scenario/bodies/meshes.h"
 #include "unit/io/sample_run.h"
 #include "unit/io/scenario_text.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "livens/io/scenario/units.h"
+#include "livens/io/scenario/text/units.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "livens/multibody/fit.h"
+#include "livens/multibody/joints/fit.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "livens/multibody/load_laws.h"
+#include "livens/multibody/loads/load_laws.h"
 
 #include <gtest/gtest.h>
 

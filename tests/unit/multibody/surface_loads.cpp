@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Loads spread over surfaces, by their moments.   (P20)
-#include "livens/multibody/surface_loads.h"
+#include "livens/multibody/loads/surface_loads.h"
 
 #include <gtest/gtest.h>
 

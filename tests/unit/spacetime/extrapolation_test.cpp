@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What the polynomial of an element says of the one behind it.
-#include "livens/spacetime/lobatto/extrapolation.h"
+#include "livens/spacetime/nodal/kernel/extrapolation.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Places of nodes as a motion nearby has them.
-#include "livens/spacetime/lobatto/following.h"
+#include "livens/spacetime/nodal/kernel/following.h"
 
 #include <gtest/gtest.h>
 

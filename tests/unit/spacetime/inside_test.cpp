@@ -6,7 +6,7 @@
 #include <numbers>
 #include <string>
 
-#include "livens/multibody/load_laws.h"
+#include "livens/multibody/loads/load_laws.h"
 #include "livens/spacetime/solve.h"
 
 namespace livens::tests {

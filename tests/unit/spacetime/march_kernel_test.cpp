@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The kernel of a march against Newton's iteration with the real tangent, element by element.
-#include "livens/spacetime/lobatto/march_kernel.h"
+#include "livens/spacetime/nodal/kernel/march_kernel.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "livens/multibody/closing.h"
+#include "livens/dynamics/start/closing.h"
 #include "livens/multibody/joints.h"
 #include "livens/spacetime/instructions.h"
 #include "livens/spacetime/solve.h"

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "livens/base/error.h"
-#include "livens/multibody/closing.h"
+#include "livens/dynamics/start/closing.h"
 #include "livens/spacetime/mixed/equations.h"
 #include "unit/spacetime/mechanisms.h"
 

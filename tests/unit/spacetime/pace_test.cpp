@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "livens/diagnostics/diagnostics.h"
-#include "livens/spacetime/pace.h"
+#include "livens/spacetime/march/pace.h"
 
 namespace livens {
 namespace {

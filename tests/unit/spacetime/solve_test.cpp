@@ -95,18 +95,19 @@ TEST(Solve, AdvisesInConceptsAndNotInTheKeysOfFiles)
 }
 
 /// The end of the motion of 0.2 s.
-State end_of(const Model& model, const State& start)
+State end_of(const Model& model, const State& start, const std::shared_ptr<Prepared>& prepared = nullptr)
 {
     SolveOptions options;
     options.judge = false;
-    const Solution solution = solve(model, {start}, make_time_mesh(0, 0.2, 4), Lobatto{4}, options);
+    const Problem problem{{start}, {}, nullptr, prepared};
+    const Solution solution = solve(model, problem, make_time_mesh(0, 0.2, 4), Lobatto{4}, options);
     EXPECT_TRUE(solution.report.converged()) << solution.report.message;
     return solution.motion.at_end(solution.motion.n_elements());
 }
 
 bool are_alike(const State& a, const State& b) { return a.X == b.X && a.V == b.V; }
 
-// A model keeps what was found out about it, until it changes.
+// What was found of a model serves it until it changes.
 TEST(Solve, ChangesOfAModelThatWasSolvedCount)
 {
     const std::function<void(Model&)> changes[] = {
@@ -122,13 +123,16 @@ TEST(Solve, ChangesOfAModelThatWasSolvedCount)
         }};
     for (const auto& change : changes) {
         Model solved = testing_models::two_bricks(), fresh = testing_models::two_bricks();
-        const State before = end_of(solved, solved.start());
+        const auto prepared = std::make_shared<Prepared>();
+        const State before = end_of(solved, solved.start(), prepared);
+        EXPECT_TRUE(are_alike(before, end_of(fresh, fresh.start())));
         const Model copy = solved;
+        EXPECT_EQ(copy.version(), solved.version());
         change(solved);
         change(fresh);
-        EXPECT_TRUE(are_alike(end_of(solved, solved.start()), end_of(fresh, fresh.start())));
+        EXPECT_TRUE(are_alike(end_of(solved, solved.start(), prepared), end_of(fresh, fresh.start())));
         EXPECT_EQ(solved.length(), fresh.length());
-        EXPECT_TRUE(are_alike(end_of(copy, copy.start()), before)) << "a copy is a model of its own";
+        EXPECT_TRUE(are_alike(end_of(copy, copy.start(), prepared), before)) << "a copy is its own model";
         EXPECT_EQ(copy.length(), testing_models::two_bricks().length());
     }
 }
@@ -136,16 +140,18 @@ TEST(Solve, ChangesOfAModelThatWasSolvedCount)
 TEST(Solve, EveryStartIsCheckedAndClosed)
 {
     const Model model = testing_models::two_bricks();
+    const auto prepared = std::make_shared<Prepared>();
     State open = model.start();
     open.X[1] += configuration({0, 0, 1e-3}, Matrix3{});
     SolveOptions project;
     project.judge = false;
     project.initial = StartPolicy::project;
     const auto solved = [&](const State& start, const SolveOptions& options) {
-        return solve(model, {start}, make_time_mesh(0, 0.1, 2), Lobatto{4}, options);
+        const Problem problem{{start}, {}, nullptr, prepared};
+        return solve(model, problem, make_time_mesh(0, 0.1, 2), Lobatto{4}, options);
     };
     for (int i = 0; i < 2; ++i) {   // what one of them was found to be is nothing to the others
-        end_of(model, model.start());
+        end_of(model, model.start(), prepared);
         EXPECT_EQ(complaint_of([&] { solved(open, {}); }).code, "start-position");
         const Solution moved = solved(open, project);
         EXPECT_TRUE(moved.report.converged());

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "livens/multibody/closing.h"
-#include "livens/spacetime/lobatto/system.h"
+#include "livens/dynamics/start/closing.h"
+#include "livens/spacetime/nodal/system.h"
 #include "livens/spacetime/solve.h"
 #include "unit/spacetime/mechanisms.h"
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "livens/spacetime/guess.h"
-#include "livens/spacetime/windows.h"
+#include "livens/spacetime/march/windows.h"
 #include "unit/spacetime/mechanisms.h"
 
 namespace livens {

@@ -11,9 +11,9 @@
 
 #include "livens/base/error.h"
 #include "livens/io/scenario.h"
-#include "livens/io/scenario/meshes.h"
-#include "livens/io/scenario/section.h"
-#include "livens/multibody/load_laws.h"
+#include "livens/io/scenario/bodies/meshes.h"
+#include "livens/io/scenario/schema/section.h"
+#include "livens/multibody/loads/load_laws.h"
 #include "livens/time/expression.h"
 
 namespace livens {

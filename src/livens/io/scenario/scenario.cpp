@@ -6,7 +6,7 @@
 #include <new>
 
 #include "livens/io/scenario/builder.h"
-#include "livens/io/scenario/tree.h"
+#include "livens/io/scenario/text/tree.h"
 
 namespace livens {
 

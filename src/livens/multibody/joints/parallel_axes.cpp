@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "livens/multibody/detail/joint_frame.h"
+#include "livens/multibody/joints/joint_frame.h"
 
 namespace livens {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "livens/base/error.h"
-#include "livens/multibody/detail/joint_frame.h"
-#include "livens/multibody/detail/wording.h"
+#include "livens/multibody/joints/joint_frame.h"
+#include "livens/multibody/wording.h"
 
 namespace livens {
 

@@ -4,8 +4,8 @@
 #include <utility>
 
 #include "livens/base/error.h"
-#include "livens/multibody/detail/joint_frame.h"
-#include "livens/multibody/detail/wording.h"
+#include "livens/multibody/joints/joint_frame.h"
+#include "livens/multibody/wording.h"
 
 namespace livens {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "livens/multibody/body.h"
-#include "livens/multibody/detail/joint_frame.h"
+#include "livens/multibody/joints/joint_frame.h"
 
 namespace livens {
 

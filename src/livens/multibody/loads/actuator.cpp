@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "livens/multibody/detail/load_values.h"
-#include "livens/multibody/load_laws.h"
+#include "livens/multibody/loads/load_laws.h"
+#include "livens/multibody/loads/load_values.h"
 
 namespace livens {
 

@@ -10,8 +10,8 @@
 #include "livens/base/error.h"
 #include "livens/base/text.h"
 #include "livens/multibody/body.h"
-#include "livens/multibody/detail/load_values.h"
-#include "livens/multibody/load_laws.h"
+#include "livens/multibody/loads/load_laws.h"
+#include "livens/multibody/loads/load_values.h"
 
 namespace livens {
 

@@ -5,9 +5,9 @@
 #include "livens/base/elementary.h"
 #include "livens/base/error.h"
 #include "livens/base/text.h"
-#include "livens/multibody/detail/load_coordinate.h"
-#include "livens/multibody/detail/load_values.h"
-#include "livens/multibody/load_laws.h"
+#include "livens/multibody/loads/load_coordinate.h"
+#include "livens/multibody/loads/load_laws.h"
+#include "livens/multibody/loads/load_values.h"
 
 namespace livens {
 

@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "livens/multibody/detail/load_values.h"
-#include "livens/multibody/load_laws.h"
+#include "livens/multibody/loads/load_laws.h"
+#include "livens/multibody/loads/load_values.h"
 
 namespace livens {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "livens/multibody/detail/load_values.h"
+#include "livens/multibody/loads/load_values.h"
 
 namespace livens {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "livens/multibody/detail/load_coordinate.h"
-#include "livens/multibody/detail/load_values.h"
+#include "livens/multibody/loads/load_coordinate.h"
+#include "livens/multibody/loads/load_values.h"
 
 namespace livens {
 

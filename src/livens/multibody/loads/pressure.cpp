@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "livens/multibody/detail/load_values.h"
-#include "livens/multibody/surface_loads.h"
+#include "livens/multibody/loads/load_values.h"
+#include "livens/multibody/loads/surface_loads.h"
 
 namespace livens {
 

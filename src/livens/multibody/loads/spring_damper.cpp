@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "livens/base/elementary.h"
-#include "livens/multibody/detail/load_values.h"
+#include "livens/multibody/loads/load_values.h"
 
 namespace livens {
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cassert>
 
-#include "livens/multibody/detail/load_values.h"
-#include "livens/multibody/surface_loads.h"
+#include "livens/multibody/loads/load_values.h"
+#include "livens/multibody/loads/surface_loads.h"
 
 namespace livens {
 

@@ -3,9 +3,9 @@
 #include <cmath>
 
 #include "livens/base/error.h"
+#include "livens/spacetime/march/windows.h"
 #include "livens/spacetime/mixed/bases.h"
 #include "livens/spacetime/mixed/window.h"
-#include "livens/spacetime/windows.h"
 
 namespace livens {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "livens/multibody/tables.h"
+#include "livens/dynamics/rows/tables.h"
 
 namespace livens::mixed {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <functional>
 
-#include "livens/multibody/projection.h"
+#include "livens/dynamics/rows/projection.h"
 #include "livens/spacetime/mixed/bases.h"
 #include "livens/time/quadrature.h"
 

@@ -4,10 +4,10 @@
 
 #include <optional>
 
-#include "livens/spacetime/ends.h"
+#include "livens/spacetime/march/ends.h"
+#include "livens/spacetime/march/window.h"
 #include "livens/spacetime/mixed/block.h"
 #include "livens/spacetime/mixed/motion_of_blocks.h"
-#include "livens/spacetime/window.h"
 
 namespace livens {
 

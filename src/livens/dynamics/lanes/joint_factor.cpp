@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "livens/dynamics/lanes/joint_factor.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "livens/dynamics/lanes/lane_rows.h"
+
+namespace livens {
+
+namespace {
+
+using lanes::At;
+
+/// Columns of X to those of the pattern: the centre of mass for the reference point.
+void to_centres(const Tables& tables, const double* X, double* numbers)
+{
+    for (int b = 0; b < tables.n_bodies(); ++b, X += 12, numbers += 12) {
+        std::copy_n(X, 12, numbers);
+        const double* c = tables.bodies[b].center;
+        for (int i = 0; tables.bodies[b].offset && i < 3; ++i)
+            numbers[i] += X[3 + i] * c[0] + X[6 + i] * c[1] + X[9 + i] * c[2];
+    }
+}
+
+}   // namespace
+
+void LaneStore::resize(const RowPattern& pattern, int width)
+{
+    const lanes::Pattern& p = pattern.view();
+    lanes::Values& v = values_;
+    const int X = 12 * p.n_bodies;
+    const std::pair<double**, int> arrays[] = {{&v.numbers, pattern.n_numbers()},
+                                               {&v.increments, pattern.n_numbers()},
+                                               {&v.place, 7 * p.n_bodies},
+                                               {&v.last_place, 7 * p.n_bodies},
+                                               {&v.gradients, p.n_entries},
+                                               {&v.factor, pattern.n_factor()},
+                                               {&v.violations, p.n_rows},
+                                               {&v.impulses, p.n_rows},
+                                               {&v.rows, p.n_twists},
+                                               {&v.step, p.n_twists},
+                                               {&v.work, p.n_rows},
+                                               {&v.pivots, 1},
+                                               {&v.loads, X},
+                                               {&v.load_X, X},
+                                               {&v.load_V, X}};
+    const auto room = [width](int size) { return static_cast<std::size_t>((size * width + 7) / 8 * 8); };
+    std::size_t n = 0;
+    for (const auto& [array, size] : arrays) n += room(size);
+    numbers_.assign(n, 0.0);
+    n = 0;
+    for (const auto& [array, size] : arrays) {
+        *array = numbers_.data() + n;
+        n += room(size);
+    }
+    for (int b = 0; b < p.n_bodies; ++b)
+        for (int l = 0; l < width; ++l)   // no turn
+            v.place[(7 * b + 3) * width + l] = v.last_place[(7 * b + 3) * width + l] = 1;
+    for (int e = 0; e < p.n_entries; ++e)   // those without terms stay
+        for (int l = 0; l < width; ++l) v.gradients[e * width + l] = p.entries.constants[e];
+}
+
+bool JointFactor::serves(const Tables& tables)
+{
+    return tables.regular && std::all_of(tables.rows.begin(), tables.rows.end(),
+                                         [](const auto& row) { return row.is_quadratic; });
+}
+
+void JointFactor::use(std::shared_ptr<const RowPattern> pattern)
+{
+    if (pattern == pattern_) return;
+    pattern_ = std::move(pattern);
+    store_.resize(*pattern_, 1);
+    work_.assign(static_cast<std::size_t>(pattern_->n_numbers()), 0.0);
+}
+
+double JointFactor::prepare(const Tables& tables, const double* X, const NearFactor& near)
+{
+    constexpr double rounding = 1e-16;   // of Phi: nothing to correct
+    const lanes::Pattern& p = pattern_->view();
+    const lanes::Values& v = values();
+    to_centres(tables, X, v.numbers);
+    lanes::form_products<1>(p, v, v, false);
+    lanes::form_gradients<1>(p, v);
+    lanes::form_violations<1>(p, p.violations.constants, v.numbers, v.violations);
+    for (int r = 0; r < p.n_rows; ++r)
+        if (std::abs(v.violations[r]) < rounding * tables.rows[pattern_->rows()[r]].row->scale)
+            v.violations[r] = 0;
+    if (near.pattern == pattern_.get()) {
+        for (int i = 0; i < pattern_->n_factor(); ++i) v.factor[i] = near.values->factor[i * near.width];
+        v.pivots[0] = near.values->pivots[0];
+    } else {
+        lanes::factorise<1>(p, v);
+    }
+    const double pivot = std::sqrt(v.pivots[0]);
+    n_passes_ = pivot > 1e-3 ? 2 : 4;
+    return pivot;
+}
+
+void JointFactor::project(double* y, const double* rates, double* mu)
+{
+    const lanes::Pattern& p = pattern_->view();
+    const At<1, false> G{values().gradients, nullptr}, factor{values().factor, nullptr};
+    double* more = values().work;
+    std::fill_n(mu, p.n_rows, 0.0);
+    for (int pass = 0; pass < n_passes_; ++pass) {
+        lanes::multiply(p, G, y, nullptr, more);
+        for (int r = 0; rates != nullptr && r < p.n_rows; ++r) more[r] -= rates[r];
+        lanes::solve(p, factor, more);
+        lanes::take_off(p, G, more, y);
+        for (int r = 0; r < p.n_rows; ++r) mu[r] += more[r];
+    }
+}
+
+void JointFactor::add_wrenches(const double* mu, double factor, double* q)
+{
+    const lanes::Pattern& p = pattern_->view();
+    double* y = values().rows;
+    std::fill_n(y, p.n_twists, 0.0);
+    lanes::take_off(p, At<1, false>{values().gradients, nullptr}, mu, y);
+    for (int b = 0; b < p.n_bodies; ++b) {
+        const lanes::Body& body = p.bodies[b];
+        const double *f = y + body.first, *L = body.root_spin, *d = values().numbers + 12 * b + 3;
+        double* out = q + body.first;
+        for (int i = 0; i < 3; ++i) out[i] -= factor * body.root_mass * f[i];
+        for (int a = 0; body.dofs == 6 && a < 3; ++a) {   // L y_2 in body axes, turned
+            const double torque = factor * (L[a] * f[3] + L[3 + a] * f[4] + L[6 + a] * f[5]);
+            for (int i = 0; i < 3; ++i) out[3 + i] -= d[3 * a + i] * torque;
+        }
+    }
+}
+
+void JointFactor::curvatures(const Tables& tables, const double* V, const double* A, double* out)
+{
+    const lanes::Pattern& p = pattern_->view();
+    double *second = work_.data(), *rates = values().increments;
+    const double* x = values().numbers;
+    to_centres(tables, V, rates);
+    to_centres(tables, A, second);
+    for (int m = 0; m < p.n_products; ++m) {
+        const auto [i, j] = p.products[m];
+        double sum = 0;
+        for (int k = 0; k < 3; ++k)
+            sum += second[i + k] * x[j + k] + 2 * rates[i + k] * rates[j + k] + x[i + k] * second[j + k];
+        second[12 * p.n_bodies + m] = sum;
+    }
+    for (int r = 0; r < p.n_rows; ++r) {
+        out[r] = 0;
+        for (int t = p.violations.begin[r]; t < p.violations.begin[r + 1]; ++t)
+            out[r] += p.violations.terms[t].factor * second[p.violations.terms[t].number];
+    }
+}
+
+}   // namespace livens

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Constraint rows in lanes: gradients, violations, and projections by a factor of G G^T.
+#pragma once
+
+#include "livens/dynamics/lanes/lane_factor.h"
+
+namespace livens::lanes {
+namespace {
+
+template <int W>
+void form_products(const Pattern& p, const Values& start, const Values& v, bool changes)
+{
+    const At<W, false> X{v.numbers, nullptr}, dX{v.increments, nullptr};
+    for (int m = 0; m < p.n_products; ++m) {
+        const Columns& of = p.products[m];
+        const int at = (12 * p.n_bodies + m) * W;
+        const Three<W> x = X.column(of.x);
+        store(v.numbers + at, dot(x, X.column(of.y)));
+        if (!changes) continue;
+        const Three<W> dx = dX.column(of.x), dy = dX.column(of.y);
+        const double* y0 = start.numbers + of.y;
+        store(v.increments + at, y0[0] * dx.x[0] + y0[1] * dx.x[1] + y0[2] * dx.x[2] + dot(x, dy));
+    }
+}
+
+template <int W>
+void form_gradients(const Pattern& p, const Values& v)
+{
+    for (int e = 0; e < p.n_entries; ++e) {
+        const int first = p.entries.begin[e], last = p.entries.begin[e + 1];
+        if (first == last) continue;
+        Lanes<W> g = p.entries.terms[first].factor * load<W>(v.numbers + p.entries.terms[first].number * W);
+        for (int t = first + 1; t < last; ++t)
+            g += p.entries.terms[t].factor * load<W>(v.numbers + p.entries.terms[t].number * W);
+        if (p.entries.constants[e] != 0) g = p.entries.constants[e] + g;
+        store(v.gradients + e * W, g);
+    }
+}
+
+template <int W>
+void form_violations(const Pattern& p, const double* constants, const double* numbers, double* violations)
+{
+    for (int r = 0; r < p.n_rows; ++r) {
+        Lanes<W> phi = all<W>(0);
+        for (int t = p.violations.begin[r]; t < p.violations.begin[r + 1]; ++t)
+            phi += p.violations.terms[t].factor * load<W>(numbers + p.violations.terms[t].number * W);
+        store(violations + r * W, constants[r] + phi);
+    }
+}
+
+template <int m, bool is_start, int W, bool rows>
+LIVENS_INLINE void solve_down(const Pattern& p, const Part& part, const At<W, rows>& factor, double* x)
+{
+    using Some = Batch<W, m>;
+    const Group& group = part.group;
+    const int n = is_unrolled<W> ? m : group.n, first = part.first;
+    const auto entry = [&](int r, int k) LIVENS_LAMBDA {
+        return get<Some, is_start>(factor, group.diagonal + triangle(r, k));
+    };
+    Some s[m];
+    each<m>([&](auto r) LIVENS_LAMBDA { s[r.value] = get<Some, W>(x, group.first + first + r.value); });
+    for (const Block* b = p.blocks + group.blocks; b != p.blocks + (&group)[1].blocks; ++b)
+        count_to<m>(b->n, [&](int j) LIVENS_LAMBDA {
+            const Some y = get<Some, W>(x, b->first + j);
+            each<m>([&](auto r) LIVENS_LAMBDA {
+                s[r.value] -= get<Some, is_start>(factor, b->entry + j * n + first + r.value) * y;
+            });
+        });
+    each<m>([&](auto r) LIVENS_LAMBDA {
+        for (int k = 0; k < first; ++k)
+            s[r.value] -= entry(first + r.value, k) * get<Some, W>(x, group.first + k);
+        each<r.value>([&](auto k) LIVENS_LAMBDA {
+            s[r.value] -= entry(first + r.value, first + k.value) * s[k.value];
+        });
+        s[r.value] = s[r.value] * entry(first + r.value, first + r.value);
+        put<W>(x, group.first + first + r.value, s[r.value]);
+    });
+}
+
+template <int m, bool is_start, int W, bool rows>
+LIVENS_INLINE void solve_up(const Pattern& p, const Part& part, const At<W, rows>& factor, double* x)
+{
+    using Some = Batch<W, m>;
+    const Group& group = part.group;
+    const int n = is_unrolled<W> ? m : group.n, first = part.first;
+    const auto entry = [&](int r, int k) LIVENS_LAMBDA {
+        return get<Some, is_start>(factor, group.diagonal + triangle(r, k));
+    };
+    Some s[m];
+    each<m>([&](auto r) LIVENS_LAMBDA { s[r.value] = get<Some, W>(x, group.first + first + r.value); });
+    each<m>([&](auto i) LIVENS_LAMBDA {
+        constexpr int r = m - 1 - i.value;
+        s[r] = s[r] * entry(first + r, first + r);
+        each<r>([&](auto k) LIVENS_LAMBDA { s[k.value] -= entry(first + r, first + k.value) * s[r]; });
+        for (int k = 0; k < first; ++k)
+            put<W>(x, group.first + k, get<Some, W>(x, group.first + k) - entry(first + r, k) * s[r]);
+        put<W>(x, group.first + first + r, s[r]);
+    });
+    for (const Block* b = p.blocks + group.blocks; b != p.blocks + (&group)[1].blocks; ++b)
+        count_to<m>(b->n, [&](int j) LIVENS_LAMBDA {
+            Some y = get<Some, W>(x, b->first + j);
+            each<m>([&](auto r) LIVENS_LAMBDA {
+                y -= get<Some, is_start>(factor, b->entry + j * n + first + r.value) * s[r.value];
+            });
+            put<W>(x, b->first + j, y);
+        });
+}
+
+/// x <- (G G^T)^-1 x
+template <int W, bool rows>
+void solve(const Pattern& p, const At<W, rows>& factor, double* x)
+{
+    for_groups<W, false>(p, [&](const Part& part, auto m, auto is_start, int l) LIVENS_LAMBDA {
+        solve_down<m.value, rows && is_start.value>(p, part, from_lane(factor, l), x + l);
+    });
+    for_groups<W, true>(p, [&](const Part& part, auto m, auto is_start, int l) LIVENS_LAMBDA {
+        solve_up<m.value, rows && is_start.value>(p, part, from_lane(factor, l), x + l);
+    });
+}
+
+/// out <- G y + rates, which may be null.
+template <int W, bool rows>
+void multiply(const Pattern& p, const At<W, rows>& G, const double* y, const double* rates, double* out)
+{
+    for_groups<W, false>(p, [&](const Part& part, auto m, auto is_start, int l) LIVENS_LAMBDA {
+        using Some = Batch<W, m.value>;
+        const Group& group = part.group;
+        const int first = group.first + part.first;
+        const std::int32_t* begin = p.unit_begin + first;
+        const At<W, rows> of = from_lane(G, l);
+        Some s[m.value];
+        each<m.value>([&](auto r) LIVENS_LAMBDA {
+            s[r.value] = rates != nullptr ? get<Some, W>(rates + l, first + r.value) : all<Some::width>(0);
+            for (const Unit* u = p.units + begin[r.value]; u != p.units + begin[r.value + 1]; ++u)
+                s[r.value] += u->value * get<Some, W>(y + l, u->twist);
+        });
+        for (const Column* g = p.columns + group.columns; g != p.columns + (&group)[1].columns; ++g) {
+            const Some by = get<Some, W>(y + l, g->twist);
+            each<m.value>([&](auto r) LIVENS_LAMBDA {
+                s[r.value] += get < Some, rows && is_start.value > (of, g->entry + part.first + r.value) * by;
+            });
+        }
+        each<m.value>([&](auto r) LIVENS_LAMBDA { put<W>(out + l, first + r.value, s[r.value]); });
+    });
+}
+
+/// y <- y - G^T x
+template <int W, bool rows>
+void take_off(const Pattern& p, const At<W, rows>& G, const double* x, double* y)
+{
+    for_groups<W, false>(p, [&](const Part& part, auto m, auto is_start, int l) LIVENS_LAMBDA {
+        using Some = Batch<W, m.value>;
+        const Group& group = part.group;
+        const int first = group.first + part.first;
+        const std::int32_t* begin = p.unit_begin + first;
+        const At<W, rows> of = from_lane(G, l);
+        Some s[m.value];
+        each<m.value>([&](auto r) LIVENS_LAMBDA {
+            s[r.value] = get<Some, W>(x + l, first + r.value);
+            for (const Unit* u = p.units + begin[r.value]; u != p.units + begin[r.value + 1]; ++u)
+                put<W>(y + l, u->twist, get<Some, W>(y + l, u->twist) - u->value * s[r.value]);
+        });
+        for (const Column* g = p.columns + group.columns; g != p.columns + (&group)[1].columns; ++g) {
+            Some left = get<Some, W>(y + l, g->twist);
+            each<m.value>([&](auto r) LIVENS_LAMBDA {
+                left -= get < Some,
+                    rows && is_start.value > (of, g->entry + part.first + r.value) * s[r.value];
+            });
+            put<W>(y + l, g->twist, left);
+        }
+    });
+}
+
+}   // namespace
+}   // namespace livens::lanes

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "livens/dynamics/rows/constraint_basis.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace livens {
+
+void ConstraintBasis::resize(const Tables& tables, bool all_rows)
+{
+    const int most = all_rows ? tables.n_rows() : tables.rank;
+    q.resize(tables.n_twists, most);
+    rows.assign(static_cast<std::size_t>(tables.rank), 0);
+    row_scale.assign(static_cast<std::size_t>(most), 1.0);
+    gradients.assign(static_cast<std::size_t>(Tables::gradient_size * most), 0.0);
+}
+
+double ConstraintBasis::fill(const Tables& tables, int column, int row, Instant at, const double* X,
+                             const double* maps)
+{
+    double* g = gradients.data() + Tables::gradient_size * column;
+    double* out = q.column(column);
+    tables.gradient(row, at, X, g);
+    tables.scaled_gradient(row, X, maps, g, out);
+    double sum = 0;
+    for (int i = 0; i < tables.n_twists; ++i) sum += out[i] * out[i];
+    const double scale = sum > 0 ? 1 / std::sqrt(sum) : 1.0;
+    for (int i = 0; i < tables.n_twists; ++i) out[i] *= scale;
+    return scale;
+}
+
+double ConstraintBasis::build(const Tables& tables, Instant at, const double* X, const double* maps,
+                              const std::vector<int>& which, bool keep_choices)
+{
+    rows = which;
+    for (int c = 0; c < tables.rank; ++c) row_scale[c] = fill(tables, c, which[c], at, X, maps);
+    return smallest_pivot = q.factorise(tables.rank, keep_choices);
+}
+
+double ConstraintBasis::choose(const Tables& tables, Instant at, const double* X, const double* maps)
+{
+    const int all = tables.n_rows();
+    std::vector<int> order(static_cast<std::size_t>(all));
+    for (int r = 0; r < all; ++r) row_scale[r] = fill(tables, r, r, at, X, maps);
+    smallest_pivot = q.factorise_pivoted(tables.rank, order);
+    const std::vector<double> unsorted = gradients, scales = row_scale;
+    for (int c = 0; c < tables.rank; ++c) {
+        rows[c] = order[c];
+        row_scale[c] = scales[order[c]];
+        std::copy_n(unsorted.begin() + Tables::gradient_size * order[c], Tables::gradient_size,
+                    gradients.begin() + Tables::gradient_size * c);
+    }
+    return smallest_pivot;
+}
+
+}   // namespace livens

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The directions that joints hold and those they leave free, at one configuration.
+#pragma once
+
+#include <vector>
+
+#include "livens/dynamics/rows/tables.h"
+#include "livens/solvers/dense.h"
+
+namespace livens {
+
+/// An orthogonal basis of the constraint directions at one configuration, with the scaling of its rows.
+struct ConstraintBasis {
+    OrthogonalBasis q;               ///< of the columns D^T Ghat^T / s
+    std::vector<int> rows;           ///< rank rows of the tables, in the order of the columns
+    std::vector<double> row_scale;   ///< 1 / s, in the same order
+    std::vector<double> gradients;   ///< Tables::gradient_size numbers a row, in the same order
+
+    double smallest_pivot = 1;   ///< of the last build() or choose()
+
+    const double* gradient(int column) const { return gradients.data() + Tables::gradient_size * column; }
+    void resize(const Tables& tables, bool all_rows);
+    /// The basis for given rows. Returns the smallest scaled pivot.
+    double build(const Tables& tables, Instant at, const double* X, const double* maps,
+                 const std::vector<int>& which, bool keep_choices);
+    /// Chooses the rows by column pivoting among all.
+    double choose(const Tables& tables, Instant at, const double* X, const double* maps);
+
+private:
+    double fill(const Tables& tables, int column, int row, Instant at, const double* X, const double* maps);
+};
+
+}   // namespace livens

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "livens/dynamics/rows/rows.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace livens {
+
+namespace {
+
+constexpr double eps = std::numeric_limits<double>::epsilon();
+
+template <int R, int C>
+Matrix<R, C> absolute(Matrix<R, C> m)
+{
+    for (double& x : m.a) x = std::abs(x);
+    return m;
+}
+
+/// act(row) of every form of a row, weighed, as a row without signs.
+template <typename Act>
+void for_each_positive_form(const ConstraintRow& row, std::span<const Matrix34> X, const Act& act)
+{
+    for_each_form(row, {}, X, [&](const QuadraticForm& form, int i, int j, double weight) {
+        ConstraintRow positive;
+        positive.body_i = i;
+        positive.body_j = j;
+        positive.c_ii = absolute(weight * form.c_ii);
+        positive.c_ij = absolute(weight * form.c_ij);
+        positive.c_jj = absolute(weight * form.c_jj);
+        positive.b_i = absolute(weight * form.b_i);
+        positive.b_j = absolute(weight * form.b_j);
+        positive.c = std::abs(weight * form.c);
+        act(positive);
+    });
+}
+
+std::vector<Matrix34> absolute(std::span<const Matrix34> X)
+{
+    std::vector<Matrix34> positive;
+    for (const Matrix34& body : X) positive.push_back(absolute(body));
+    return positive;
+}
+
+/// `terms`: the sum of the absolute terms of every entry of g.
+Wrench wrench_of(int body, const Vector3& at, const Matrix34& X, const Matrix34& g, const Matrix34& terms)
+{
+    Wrench wrench{body, at, g.column(0), {}, 0};
+    double level = 0;
+    for (int i = 1; i < 4; ++i) {
+        wrench.moment += cross(X.column(i), g.column(i) - at[i - 1] * g.column(0));
+        level += norm(terms.column(i)) + std::abs(at[i - 1]) * norm(terms.column(0));
+    }
+    if (norm(wrench.moment) <= 8 * eps * level) wrench.moment = {};
+    const double force = norm(wrench.force);
+    if (force > 0) wrench.doubt = 4 * eps * norm(terms.column(0)) / force;
+    return wrench;
+}
+
+}   // namespace
+
+std::vector<int> all_rows(const Model& model)
+{
+    std::vector<int> rows(model.n_rows());
+    std::iota(rows.begin(), rows.end(), 0);
+    return rows;
+}
+
+std::vector<double> joint_values(const Model& model, std::span<const Matrix34> X)
+{
+    std::vector<double> phi;
+    for (int r = 0; r < model.n_rows(); ++r) phi.push_back(constraint_value(model.row(r), X));
+    return phi;
+}
+
+std::vector<double> joint_rates(const Model& model, std::span<const Matrix34> X, std::span<const Matrix34> V)
+{
+    std::vector<double> rates(model.n_rows(), 0.0);
+    for (int r = 0; r < model.n_rows(); ++r) {
+        const RowGradient g = constraint_gradient(model.row(r), X);
+        for (const int body : g.bodies) rates[r] += dot(g.of(body), V[body]);
+    }
+    return rates;
+}
+
+std::vector<double> drive_rates(const Model& model, Instant at, std::span<const Matrix34> X)
+{
+    std::vector<double> rates(model.n_rows(), 0.0);
+    for (int r = 0; model.has_drives() && r < model.n_rows(); ++r)
+        rates[r] = constraint_rate(model.row(r), at, X);
+    return rates;
+}
+
+Gap widest_gap(const Model& model, std::span<const Matrix34> X, std::span<const int> rows)
+{
+    const std::vector<double> phi = joint_values(model, X);
+    const std::vector<Matrix34> positive = absolute(X);
+    Gap gap;
+    for (const int r : rows) {
+        const ConstraintRow& row = model.row(r);
+        double terms = 0;
+        for_each_positive_form(row, X,
+                               [&](const ConstraintRow& form) { terms += constraint_value(form, positive); });
+        const double level = std::abs(phi[r]) / (4 * eps * std::max(terms, row.scale));
+        const double violation = std::abs(phi[r]) / row.scale;
+        if (gap.row < 0 || violation > gap.violation) gap.row = r, gap.violation = violation;
+        gap.level = std::max(gap.level, level);
+        gap.near = gap.near && (level <= 1 || violation <= 1e-9);
+    }
+    return gap;
+}
+
+RowWrenches row_wrenches(const Model& model, std::span<const Matrix34> X)
+{
+    RowWrenches wrenches(model.n_rows());
+    const std::vector<Matrix34> positive = absolute(X);
+    for (int r = 0; r < model.n_rows(); ++r) {
+        const Joint& joint = model.joints()[model.row_joint(r)];
+        const RowGradient g = constraint_gradient(model.row(r), X);
+        RowGradient terms{g.bodies};
+        for_each_positive_form(model.row(r), X, [&](const ConstraintRow& form) {
+            const RowGradient of_form = constraint_gradient(form, positive);
+            for (const int body : of_form.bodies) terms.by[g.bodies.find(body)] += of_form.of(body);
+        });
+        for (const int body : g.bodies) {
+            const Vector3 at = body == joint.second  ? joint.point_second
+                               : body == joint.first ? joint.point_first
+                                                     : Vector3{};
+            wrenches[r].push_back(wrench_of(body, at, X[body], g.of(body), terms.of(body)));
+        }
+    }
+    return wrenches;
+}
+
+Vector3 moment_about(const Wrench& wrench, const Matrix34& X, const Vector3& theta)
+{
+    return wrench.moment + cross(X * direction(wrench.at - theta), wrench.force);
+}
+
+}   // namespace livens

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// On which side of a singular position rows are.  (docs/theory.md, "Singular positions")
+#pragma once
+
+#include <vector>
+
+#include "livens/dynamics/rows/tables.h"
+
+namespace livens {
+
+/// The gradients G of some rows at one place, by scaled twists, each of norm 1.
+class Orientation {
+public:
+    /// X: 12 numbers for each body of the model, of which those of the rows' bodies are read.
+    void place(const Tables& tables, const std::vector<int>& rows, Instant at, const double* X);
+    /// Against another place of the same rows: the determinant of G G_before^T is negative, since what passed
+    /// zero on the way has changed its sign. Two that pass together are not seen.
+    bool is_turned_over(const Orientation& before);
+
+private:
+    struct Side {
+        int body, row;   // the latter by its place in the rows
+        double entries[6];
+    };
+
+    int n_rows_ = 0;
+    std::vector<Side> sides_;   // body by body
+    std::vector<double> gradient_, product_;
+};
+
+}   // namespace livens

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "livens/dynamics/start/prepared.h"
+
+#include <cstring>
+#include <span>
+
+#include "livens/dynamics/rows/tables.h"
+
+namespace livens {
+
+namespace {
+
+/// To the signs of zeros.
+bool are_same(const State& a, const State& b)
+{
+    const auto same = [](const auto& x, const auto& y) {
+        return x.size() == y.size() && (x.empty() || std::memcmp(&x[0], &y[0], x.size() * sizeof(x[0])) == 0);
+    };
+    return same(std::span(&a.t, 1), std::span(&b.t, 1)) && same(a.X, b.X) && same(a.V, b.V) &&
+           same(a.angles, b.angles);
+}
+
+}   // namespace
+
+Prepared::Prepared() = default;
+Prepared::~Prepared() = default;
+
+void Prepared::serve(const Model& model)
+{
+    if (version_ == model.version()) return;
+    version_ = model.version();
+    closed_.reset();
+    pattern_ = std::make_shared<KnownPattern>();
+}
+
+ClosedStart Prepared::close(const Model& model, const State& start, StartPolicy policy)
+{
+    serve(model);
+    if (!closed_ || closed_->policy != policy || !are_same(closed_->state, start))
+        closed_ = Closed{start, policy, close_start(model, start, policy)};
+    return closed_->closed;
+}
+
+std::shared_ptr<KnownPattern> Prepared::pattern(const Model& model)
+{
+    serve(model);
+    return pattern_;
+}
+
+}   // namespace livens

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What is found once of a model, for whoever solves it more than once.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+#include "livens/dynamics/start/closing.h"
+
+namespace [[gnu::visibility("default")]] livens {
+
+struct KnownPattern;   // inside of the engine
+
+/// What follows from a model alone and takes time to find: its last closed start and the pattern of its rows.
+/// It is passed from solution to solution in Problem::prepared, by one thread at a time; what was found of
+/// another model, or of this one before it changed (Model::version), is forgotten.
+class Prepared {
+public:
+    Prepared();
+    ~Prepared();
+    Prepared(const Prepared&) = delete;
+    Prepared& operator=(const Prepared&) = delete;
+
+    /// close_start(), which is not done anew for the state and policy that were given last.
+    ClosedStart close(const Model& model, const State& start, StartPolicy policy);
+    /// Where the Tables of this model keep the pattern of their rows.
+    std::shared_ptr<KnownPattern> pattern(const Model& model);
+
+private:
+    struct Closed {
+        State state;
+        StartPolicy policy;
+        ClosedStart closed;
+    };
+
+    void serve(const Model& model);
+
+    std::uint64_t version_ = 0;
+    std::optional<Closed> closed_;
+    std::shared_ptr<KnownPattern> pattern_;
+};
+
+}   // namespace livens

@@ -1,0 +1,334 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// [[body]], its shape, and where bodies are at both ends of time.
+#include <algorithm>
+#include <cmath>
+
+#include "livens/base/text.h"
+#include "livens/io/scenario/bodies/shapes.h"
+#include "livens/io/scenario/builder.h"
+
+namespace livens {
+
+namespace {
+
+constexpr double quaternion_slack = 1e-6;   // | |q| - 1 |: more than printed digits lose
+constexpr double symmetry_slack = 1e-12;    // of the size of a matrix: what rounding loses
+
+/// Keys of a body as it is stated, at the start and at the end alike.
+std::vector<Key> pose_keys(std::string_view otherwise)
+{
+    std::vector<Key> keys{
+        {"position", types::vector3, "Of the reference point, in the world.", "m", otherwise}};
+    for (const Key& key : orientation_keys()) keys.push_back(key);
+    keys.push_back({"velocity", types::vector3, "Of the reference point, world axes.", "m/s", otherwise});
+    keys.push_back({"angular_velocity", types::vector3, "World axes.", "rad/s"});
+    keys.push_back({"angular_velocity_body", types::vector3, "Body axes.", "rad/s"});
+    return keys;
+}
+
+void check_point_mass(const Section& body)
+{
+    body.refuse({"density", "center_of_mass", "inertia", "first_moment", "second_moment", "directors",
+                 "quaternion", "rotation_vector", "angular_velocity", "angular_velocity_body",
+                 "director_rates"},
+                "point-mass", "a point mass has a mass, a position and a velocity, nothing else");
+    if (!body.has("mass"))
+        body.error("shape", "mass-missing", body.label() + " is a point mass without 'mass'");
+}
+
+/// The paper's M, S, E.
+bool has_moments(const Section& body) { return body.has("first_moment") || body.has("second_moment"); }
+
+void check_moments(const Section& body)
+{
+    body.refuse({"shape", "density", "center_of_mass", "inertia"}, "mass-conflict",
+                "'first_moment' and 'second_moment' say it already");
+    for (const std::string key : {"mass", "first_moment", "second_moment"})
+        if (!body.has(key))
+            body.error("", "mass-missing", body.label() + " has no '" + key + "'",
+                       {"M, S and E are stated by 'mass', 'first_moment' and 'second_moment' together", ""});
+    const Value* E = body.find("second_moment");
+    if (E == nullptr || E->n_rows != 3) return;
+    const Matrix3 m = body.columns("second_moment");
+    if (norm(m - transpose(m)) > symmetry_slack * norm(m))
+        body.error("second_moment", "inertia-not-symmetric",
+                   "'second_moment' of " + body.label() + " must be symmetric");
+}
+
+/// Mass and inertia must follow from exactly one set of keys.
+void check_mass(const Section& body)
+{
+    if (has_moments(body)) return check_moments(body);
+    if (body.has("shape")) {
+        body.at_most_one({"density", "mass"}, "mass-conflict");
+        body.refuse({"inertia"}, "mass-conflict", "it follows from the shape");
+        const Section* shape = only_section(body, "shape");
+        const DensityBy by = shape != nullptr ? density_by(*shape) : DensityBy::body;
+        if (by == DensityBy::shape)
+            body.refuse({"density", "mass"}, "mass-conflict",
+                        shape->has("densities") ? "the regions of the mesh have their own densities"
+                                                : "'density_field' of the shape says it already");
+        else if (by == DensityBy::both && body.has("mass"))
+            body.refuse({"mass"}, "mass-conflict", "'density_field' says what parts weigh");
+        else if (by == DensityBy::both && !body.has("density"))
+            body.error("shape", "mass-missing",
+                       body.label() + " has no 'density', and parts of its shape have no 'density_field'");
+        else if (!body.has("density") && !body.has("mass"))
+            body.error("shape", "mass-missing",
+                       body.label() + " has a shape, but neither 'density' nor 'mass'");
+        return;
+    }
+    body.refuse({"density"}, "mass-conflict", "the body has no shape");
+    for (const std::string key : {"mass", "inertia"})
+        if (!body.has(key))
+            body.error("", "mass-missing", body.label() + " has no shape and no '" + key + "'",
+                       {"without a shape a body needs both 'mass' and 'inertia'",
+                        "add 'shape' with 'density' or 'mass', 'shape = { point = true }' for a point mass, "
+                        "or 'mass' and 'inertia'"});
+}
+
+bool check_quaternion(const Section& body)
+{
+    const Value* given = body.find("quaternion");
+    if (given == nullptr) return true;
+    const std::vector<double>& q = given->numbers;
+    const double size = std::hypot(std::hypot(q[0], q[1]), std::hypot(q[2], q[3]));
+    if (std::abs(size - 1) <= quaternion_slack) return true;
+    std::string help;
+    if (size > 0 && std::isfinite(size)) {
+        for (const double x : q)
+            help += (help.empty() ? "to keep its direction write [" : ", ") + to_text(x / size);
+        help += "]";
+    }
+    return body.error("quaternion", "quaternion-norm",
+                      "the quaternion of " + body.label() + " has norm " + to_text(size) + ", not 1",
+                      {"rotations are quaternions (w, x, y, z) of norm 1", help});
+}
+
+bool check_body(const Section& body, Findings& findings)
+{
+    const int before = findings.n_errors();
+    check_name(body);
+    if (const Section* shape = only_section(body, "shape")) check_shape(*shape);
+    if (is_point_mass(body))
+        check_point_mass(body);
+    else
+        check_mass(body);
+    check_pose(body);
+    return findings.n_errors() == before && body.is_valid();
+}
+
+/// A matrix, or its diagonal.
+Matrix3 read_symmetric(const Section& body, const char* key)
+{
+    if (body.find(key)->n_rows != 1) return body.columns(key);   // rows or columns: it must be symmetric
+    Matrix3 m{};
+    for (int i = 0; i < 3; ++i) m(i, i) = body.vector(key)[i];
+    return m;
+}
+
+Matrix4 read_moments(const Section& body)
+{
+    Matrix4 m{};
+    m(0, 0) = body.number("mass");
+    const Vector3 S = body.vector("first_moment");
+    const Matrix3 E = read_symmetric(body, "second_moment");
+    for (int i = 0; i < 3; ++i) {
+        m(0, i + 1) = m(i + 1, 0) = S[i];
+        for (int j = 0; j < 3; ++j) m(i + 1, j + 1) = 0.5 * (E(i, j) + E(j, i));
+    }
+    return m;
+}
+
+MassProperties read_mass(const Section& body, const Solid& shape)
+{
+    if (only_section(body, "shape") != nullptr) {
+        const MassProperties all =
+            body.has("mass") ? with_mass(shape.properties, body.number("mass")) : shape.properties;
+        return shape.has_own_origin && !body.has("center_of_mass")
+                   ? all
+                   : with_center(all, body.vector("center_of_mass"));
+    }
+    return {body.number("mass"), body.vector("center_of_mass"), read_symmetric(body, "inertia")};
+}
+
+/// Where `center_of_mass` moves the shape to.
+std::vector<NamedSurface> surfaces_in_body(const Section& body, const Solid& shape)
+{
+    std::vector<NamedSurface> surfaces = shape.surfaces;
+    if (!body.has("center_of_mass")) return surfaces;
+    const Vector3 d = body.vector("center_of_mass") - shape.properties.center_of_mass;
+    for (NamedSurface& s : surfaces) s.moments = moved(s.moments, identity<3>(), d);
+    return surfaces;
+}
+
+/// Likewise, and with the body's mass where that is stated.
+std::vector<ShapePart> parts_in_body(const Section& body, const Solid& shape)
+{
+    std::vector<ShapePart> parts = shape.parts;
+    for (ShapePart& part : parts) {
+        if (body.has("mass")) part.mass *= body.number("mass") / shape.properties.mass;
+        if (body.has("center_of_mass"))
+            part.center += body.vector("center_of_mass") - shape.properties.center_of_mass;
+    }
+    return parts;
+}
+
+/// Directors that are skew by so little were meant perpendicular, and rounded.
+void warn_of_rounded_directors(Builder& builder, const Section& body)
+{
+    if (!has_moments(body) || !body.has("directors")) return;
+    const double gap = skewness(body.columns("directors"));
+    if (gap <= 1e-10 || gap > 1e-3) return;
+    builder.findings().warning(
+        body.place("directors"), "directors-nearly-orthonormal",
+        "the directors of " + body.label() + " are perpendicular unit vectors but for " + to_text(gap, 2),
+        {"they are taken as they are, with 'first_moment' and 'second_moment' in components along them",
+         "give more digits, or a quaternion"});
+}
+
+Body build_body(const Section& section, const std::string& name, const Solid& shape)
+{
+    const Placement placement = read_placement(section);
+    if (is_point_mass(section))
+        return point_mass(name, section.number("mass"), placement.position, placement.velocity);
+    Body body = has_moments(section) ? skew_body(name, read_moments(section), placement)
+                                     : rigid_body(name, read_mass(section, shape), placement);
+    body.volume = shape.volume;
+    if (section.has("director_rates")) {
+        const Matrix3 rates = section.columns("director_rates") * inverse(body.stretch);
+        for (int i = 0; i < 3; ++i) body.V.set_column(i + 1, rates.column(i));
+    }
+    return body;
+}
+
+}   // namespace
+
+Table body_table()
+{
+    Table end{"[body.end]",
+              "The body at the end of time, below its `[[body]]`; needed for all bodies if `given` of "
+              "`[end]` is not `nothing`. Momenta are those of the positions and velocities stated here.",
+              pose_keys("[0, 0, 0]")};
+    Table start{
+        "[body.start]",
+        "The body at the start of time, below its `[[body]]`, where it is not as stated there: joints, "
+        "`at`, default lengths of rods and what coordinates count from refer to `[[body]]`. What is "
+        "left out is as stated. Angles count on by the shorter way; "
+        "`[[start.coordinates]]` leads on from there.",
+        pose_keys({})};
+    Table body{
+        "[[body]]",
+        "A rigid body or a point mass. Body coordinates have their origin at the reference point and their "
+        "axes along the three directors. Mass comes from `shape` with `density` or `mass`, or from `mass` "
+        "and `inertia` without a shape. Orientation is given by one of `directors`, `quaternion`, "
+        "`rotation_vector`; without any the axes are those of the world. Position, orientation and "
+        "velocities are those at the start.",
+        {Key{"name", types::text, "How joints, loads and results call the body; not `world`."}.needed(),
+         Key{"shape", types::table, "Solid, for mass and inertia."}.holding(shape_table()),
+         Key{"density", types::number, "Of the shape; instead of `mass`.", "kg/m^3"}.within(positive),
+         Key{"mass", types::number, "Of the body; instead of `density`.", "kg"}.within(positive),
+         Key{"center_of_mass", types::vector3,
+             "In body coordinates. With a shape: where its centre of mass lies; meshes and unions lie as "
+             "they are without it.",
+             "m", "[0, 0, 0]"},
+         Key{"inertia", types::principal_or_full,
+             "About the centre of mass, in body axes: three principal moments or the matrix. Without a shape "
+             "only.",
+             "kg m^2"},
+         {"first_moment", types::vector3,
+          "S of the paper: the mass times the place of its centre from the reference point, in body "
+          "coordinates; with "
+          "`mass` (M) and `second_moment` (E), instead of a shape or `inertia`.",
+          "kg m"},
+         {"second_moment", types::principal_or_full,
+          "E of the paper about the reference point: the integral of the density times x x^T, the matrix or "
+          "its diagonal "
+          "(not the inertia, which is tr(E) I - E). With it `directors` may be skew and of any length: "
+          "coordinates of the body then are components along them, those of frames' axes along the nearest "
+          "perpendicular unit vectors.",
+          "kg m^2"},
+         Key{"director_rates", types::triple,
+             "Time derivatives of the directors, [d1', d2', d3'], as they are. Rates that deform the triad "
+             "need `initial = \"project\"`.",
+             "1/s"},
+         Key{"start", types::table, "The body at the start of time, if that is another place."}.holding(
+             start),
+         Key{"end", types::table, "The body at the end of time."}.holding(end)}};
+    body.keys.insert(body.keys.begin() + 6, end.keys.begin(), end.keys.end());
+    return body;
+}
+
+std::vector<Key> orientation_keys()
+{
+    return {{"directors", types::triple,
+             "Axes of the body or frame, [d1, d2, d3], each in those of the world or "
+             "body."},
+            {"quaternion", types::vector4, "Orientation (w, x, y, z) in the world or body, of norm 1."},
+            {"rotation_vector", types::vector3, "Orientation: axis times angle.", "rad"}};
+}
+
+bool check_orientation(const Section& section)
+{
+    const bool is_one =
+        section.at_most_one({"directors", "quaternion", "rotation_vector"}, "orientation-conflict");
+    return check_quaternion(section) && is_one;
+}
+
+Matrix3 read_orientation(const Section& body)
+{
+    if (body.has("directors")) return body.columns("directors");
+    if (const Value* q = body.find("quaternion"))
+        return directors_from_quaternion({q->numbers[0], q->numbers[1], q->numbers[2], q->numbers[3]});
+    if (body.has("rotation_vector")) return directors_from_rotation_vector(body.vector("rotation_vector"));
+    return identity<3>();
+}
+
+bool check_pose(const Section& body)
+{
+    const bool is_one_spin =
+        body.at_most_one({"angular_velocity", "angular_velocity_body", "director_rates"}, "rates-conflict");
+    return check_orientation(body) && is_one_spin;
+}
+
+Placement read_placement(const Section& body, const Matrix3& stretch)
+{
+    Placement placement;
+    placement.position = body.vector("position");
+    placement.velocity = body.vector("velocity");
+    placement.directors = read_orientation(body);
+    if (!body.has("directors")) placement.directors = placement.directors * stretch;
+    placement.angular_velocity = body.has("angular_velocity_body")
+                                     ? placement.directors * body.vector("angular_velocity_body")
+                                     : body.vector("angular_velocity");
+    return placement;
+}
+
+void read_bodies(Builder& builder)
+{
+    std::unordered_set<std::string> taken;
+    const bool with_surfaces = std::ranges::any_of(builder.top().sections("load"),
+                                                   [](const Section& load) { return load.takes("surface"); });
+    for (const Section& section : builder.top().sections("body")) {
+        const bool is_good = check_body(section, builder.findings());
+        const Value* named = section.find("name");
+        if (named == nullptr ||
+            !claim_name(section, "body", named->text, taken,
+                        {"joints, loads and results refer to bodies by name", "rename one of them"}))
+            continue;
+        BodyReference& body = builder.bodies()[named->text];
+        const std::string path = "body[" + named->text + "]";
+        builder.remember(path, section);
+        body.is_usable = is_good && builder.guard(path, [&] {
+            const Solid shape = read_shape(section, builder.meshes(), with_surfaces);
+            body.index = builder.model().add_body(build_body(section, named->text, shape));
+            warn_of_rounded_directors(builder, section);
+            builder.outlines().push_back(shape.outline);
+            builder.parts().push_back(parts_in_body(section, shape));
+            builder.surfaces().push_back(surfaces_in_body(section, shape));
+        });
+    }
+    builder.close_bodies();
+}
+
+}   // namespace livens

@@ -1,0 +1,279 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "livens/io/scenario/bodies/meshes.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <optional>
+#include <string_view>
+
+#include "livens/base/error.h"
+#include "livens/base/text.h"
+#include "livens/geometry/soundness.h"
+#include "livens/io/scenario/bodies/density_fields.h"
+#include "livens/io/scenario/text/findings.h"
+
+namespace livens {
+
+namespace {
+
+[[noreturn]] void refuse(const char* code, const std::string& path, const std::string& why,
+                         const char* help = "")
+{
+    throw InputError({code, "", "the mesh '" + path + "' " + why, "", "", "", help});
+}
+
+/// The surface of a mesh about a point; quadrilaterals as two triangles, curved faces by their corners.
+Surface picture_of(const Mesh& surface, const Vector3& about)
+{
+    Surface picture;
+    std::vector<int> indices(surface.points.size(), -1);
+    const auto index = [&](std::int32_t point) {
+        if (indices[point] < 0) {
+            indices[point] = static_cast<int>(picture.points.size());
+            picture.points.push_back(surface.points[point] - about);
+        }
+        return indices[point];
+    };
+    for (const ElementBlock& b : surface.blocks)
+        for (std::int64_t e = 0; dimension(b.kind) == 2 && e < b.size(); ++e)
+            for (int k = 1; k + 1 < n_corners(b.kind); ++k)
+                picture.triangles.push_back(
+                    {index(b.element(e)[0]), index(b.element(e)[k]), index(b.element(e)[k + 1])});
+    return thinned(std::move(picture), most_shown);
+}
+
+/// One line of numbers, then what is left.
+class Line {
+public:
+    explicit Line(std::string_view text) : text_(text) {}
+
+    template <class Number>
+    bool read(Number& x)
+    {
+        const auto [end, error] = std::from_chars(text_.data(), text_.data() + text_.size(), x);
+        if (error != std::errc{}) return false;
+        text_.remove_prefix(end - text_.data());
+        if (text_.starts_with(' ')) text_.remove_prefix(1);
+        return true;
+    }
+    bool read(Vector3& v) { return read(v[0]) && read(v[1]) && read(v[2]) && std::isfinite(norm(v)); }
+    bool read(Moments& m)
+    {
+        Vector3 diagonal, off;
+        if (!(read(m.volume) && std::isfinite(m.volume) && read(m.centroid) && read(diagonal) && read(off)))
+            return false;
+        for (int i = 0; i < 3; ++i) {
+            m.second(i, i) = diagonal[i];
+            m.second(i, (i + 1) % 3) = m.second((i + 1) % 3, i) = off[i];
+        }
+        return true;
+    }
+    template <int R, int C>
+    bool read_all(Matrix<R, C>& m)
+    {
+        for (double& x : m.a)
+            if (!read(x) || !std::isfinite(x)) return false;
+        return true;
+    }
+    /// A name, as in_line() wrote it.
+    std::string rest() const
+    {
+        std::string name;
+        for (std::size_t i = 0; i < text_.size(); ++i) {
+            const char next = text_[i] == '\\' && i + 1 < text_.size() ? text_[i + 1] : ' ';
+            const bool is_escaped = next == 'n' || next == '\\';
+            name += !is_escaped ? text_[i] : next == 'n' ? '\n' : '\\';
+            i += is_escaped ? 1 : 0;
+        }
+        return name;
+    }
+
+private:
+    std::string_view text_;
+};
+
+/// Names and densities end their lines, and may have breaks of lines in them.
+std::string in_line(const std::string& name)
+{
+    std::string text;
+    for (const char c : name) text += c == '\n' ? "\\n" : c == '\\' ? "\\\\" : std::string(1, c);
+    return text + "\n";
+}
+
+template <int R, int C>
+std::string numbers_of(const Matrix<R, C>& m)
+{
+    std::string text;
+    for (const double x : m.a) text += to_text(x) + " ";
+    return text;
+}
+
+std::string numbers_of(const Moments& m)
+{
+    const Matrix3& E = m.second;
+    return to_text(m.volume) + " " + numbers_of(m.centroid) + numbers_of(Vector3{E(0, 0), E(1, 1), E(2, 2)}) +
+           numbers_of(Vector3{E(0, 1), E(1, 2), E(2, 0)});
+}
+
+/// One line of what kept() writes. False if it is none: a run's file is a stranger.
+bool read_line(std::string_view text, std::map<std::pair<std::string, bool>, ReducedMesh>& meshes,
+               ReducedMesh*& mesh)
+{
+    const std::string_view word = text.substr(0, text.find(' '));
+    Line line(text.substr(std::min(text.size(), word.size() + 1)));
+    if (word == "mesh") {
+        int is_turned = 0;
+        Moments whole;
+        if (!line.read(is_turned) || !line.read(whole)) return false;
+        mesh = &meshes[{line.rest(), is_turned != 0}];
+        mesh->whole = whole;
+        return true;
+    }
+    if (mesh == nullptr) return false;
+    if (word == "region") {
+        Moments m;
+        if (!line.read(m)) return false;
+        mesh->regions.emplace_back(line.rest(), m);
+        return true;
+    }
+    if (word == "surface") {
+        SurfaceMoments m;
+        if (!line.read_all(m.area)) return false;
+        for (Matrix4& of : m.normal)
+            if (!line.read_all(of)) return false;
+        mesh->surfaces.push_back({line.rest(), m});
+        return true;
+    }
+    if (word == "weighted") {
+        Moments m;
+        double unit = 0;
+        if (!line.read(m) || !line.read(unit) || !std::isfinite(unit)) return false;
+        mesh->weighted[{unit, line.rest()}] = m;
+        return true;
+    }
+    Surface& picture = mesh->picture;
+    if (word == "thinned")
+        return line.read(picture.n_left_out) && line.read(picture.moved) &&
+               picture.n_left_out <= max_mesh_bytes && picture.moved >= 0 && std::isfinite(picture.moved);
+    if (word == "point") return line.read(picture.points.emplace_back());
+    std::array<int, 3> t;
+    if (word != "face" || !line.read(t[0]) || !line.read(t[1]) || !line.read(t[2])) return false;
+    for (const int i : t)
+        if (i < 0 || i >= static_cast<int>(picture.points.size())) return false;
+    picture.triangles.push_back(t);
+    return true;
+}
+
+bool is_inside(const std::filesystem::path& file, const std::filesystem::path& folder)
+{
+    const auto [at, end] = std::mismatch(folder.begin(), folder.end(), file.begin(), file.end());
+    return at == folder.end();
+}
+
+}   // namespace
+
+ReducedMesh reduced(const Mesh& mesh)
+{
+    ReducedMesh r;
+    r.whole = moments(mesh);
+    r.surfaces = surface_moments(mesh);
+    if (!mesh.is_volume()) {
+        r.picture = picture_of(mesh, r.whole.centroid);
+        return r;
+    }
+    const std::vector<Moments> of = region_moments(mesh);
+    for (std::size_t k = 0; k < of.size(); ++k)
+        if (of[k].volume > 0)
+            r.regions.emplace_back(mesh.regions[k].names.empty() ? "" : mesh.regions[k].names.front(), of[k]);
+    r.picture = picture_of(boundary_of(mesh), r.whole.centroid);
+    return r;
+}
+
+MeshStore::MeshStore(MeshSource source) : source_(std::move(source))
+{
+    ReducedMesh* mesh = nullptr;
+    for (std::string_view text = source_.kept; !text.empty();) {
+        const std::size_t end = std::min(text.find('\n'), text.size());
+        if (!read_line(text.substr(0, end), kept_, mesh)) {
+            kept_.clear();   // damaged: nothing of it can be trusted
+            return;
+        }
+        text.remove_prefix(std::min(end + 1, text.size()));
+    }
+}
+
+ReducedMesh& MeshStore::entry(const std::string& path, bool is_turned)
+{
+    const auto known = known_.find({path, is_turned});
+    if (known != known_.end()) return known->second;
+    const auto kept = kept_.find({path, is_turned});
+    ReducedMesh mesh = kept != kept_.end() ? kept->second : reduced(read(path, is_turned));
+    return known_.emplace(Key{path, is_turned}, std::move(mesh)).first->second;
+}
+
+const ReducedMesh& MeshStore::find(const std::string& path, bool is_turned) { return entry(path, is_turned); }
+
+const Moments& MeshStore::weighted(const std::string& path, bool is_turned, double unit,
+                                   const std::string& density)
+{
+    std::map<std::pair<double, std::string>, Moments>& weighted = entry(path, is_turned).weighted;
+    const auto known = weighted.find({unit, density});
+    if (known != weighted.end()) return known->second;
+    return weighted.emplace(std::pair(unit, density), weighted_by_field(read(path, is_turned), unit, density))
+        .first->second;
+}
+
+Mesh MeshStore::read(const std::string& path, bool is_turned)
+{
+    namespace fs = std::filesystem;
+    const fs::path relative(path);
+    if (path.empty() || relative.is_absolute())
+        refuse("mesh-path", path, "must be a path from the scenario's folder on");
+    if (const std::string culprit = first_invisible(path); !culprit.empty())
+        refuse("mesh-path", path, "must not contain " + culprit, "give the file a name without it");
+    for (const fs::path& part : relative)
+        if (part == "..")
+            refuse("mesh-path", path, "leaves the scenario's folder", "put the mesh beside the scenario");
+    if (!source_.folder) refuse("mesh-file", path, "cannot be read: this scenario stands in no folder");
+    std::error_code error;
+    const fs::path folder =
+        fs::weakly_canonical(source_.folder->empty() ? fs::path(".") : *source_.folder, error);
+    const fs::path file = error ? fs::path() : fs::weakly_canonical(folder / relative, error);
+    if (error) refuse("mesh-file", path, "cannot be read: " + error.message());
+    if (!is_inside(file, folder)) refuse("mesh-path", path, "leaves the scenario's folder by a link");
+    files_.push_back(file);
+    Mesh mesh = read_mesh_file(file, path);
+    if (is_turned) turn_outwards(mesh);
+    require_sound(mesh);
+    return mesh;
+}
+
+std::string MeshStore::kept() const
+{
+    std::string text;
+    for (const auto& [key, mesh] : known_) {
+        text +=
+            "mesh " + std::to_string(key.second ? 1 : 0) + " " + numbers_of(mesh.whole) + in_line(key.first);
+        for (const auto& [name, m] : mesh.regions) text += "region " + numbers_of(m) + in_line(name);
+        for (const NamedSurface& s : mesh.surfaces) {
+            text += "surface " + numbers_of(s.moments.area);
+            for (const Matrix4& of : s.moments.normal) text += numbers_of(of);
+            text += in_line(s.name);
+        }
+        for (const auto& [field, m] : mesh.weighted)
+            text += "weighted " + numbers_of(m) + to_text(field.first) + " " + in_line(field.second);
+        const Surface& picture = mesh.picture;
+        if (picture.n_left_out > 0)
+            text += "thinned " + std::to_string(picture.n_left_out) + " " + to_text(picture.moved) + "\n";
+        for (const Vector3& p : picture.points) text += "point " + numbers_of(p) + "\n";
+        for (const auto& t : picture.triangles)
+            text += "face " + std::to_string(t[0]) + " " + std::to_string(t[1]) + " " + std::to_string(t[2]) +
+                    "\n";
+    }
+    return text;
+}
+
+}   // namespace livens

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "livens/io/scenario/bodies/primitives.h"
+
+#include <algorithm>
+#include <array>
+#include <numbers>
+
+#include "livens/base/elementary.h"
+
+namespace livens {
+
+namespace {
+
+/// From one angle above the equator to another, in rad, of radius 1 about a height.
+std::vector<std::array<double, 2>> arc(double from, double to, double radius, double height)
+{
+    constexpr int steps = 6;   // a quarter of the way round has as many as the equator
+    std::vector<std::array<double, 2>> points;
+    for (int i = 0; i <= steps; ++i) {
+        const auto [sine, cosine] = sine_cosine(from + (to - from) * i / steps);
+        points.push_back({cosine > 1e-9 ? radius * cosine : 0, height + radius * sine});
+    }
+    return points;
+}
+
+Outline capsule_outline(double radius, double length)
+{
+    constexpr double pole = std::numbers::pi / 2;
+    Outline outline{arc(-pole, 0, radius, -0.5 * length), 24, {1, 1, 1}};
+    const auto upper = arc(0, pole, radius, 0.5 * length);
+    outline.profile.insert(outline.profile.end(), upper.begin() + (length > 0 ? 0 : 1), upper.end());
+    return outline;
+}
+
+Outline stretched(Outline outline, const Vector3& stretch)
+{
+    outline.stretch = stretch;
+    return outline;
+}
+
+Outline box_outline(const Vector3& edges)
+{
+    const double r = std::numbers::sqrt2 / 2;
+    return {{{0, -0.5}, {r, -0.5}, {r, 0.5}, {0, 0.5}}, 4, edges};
+}
+
+/// The centre of mass is a quarter of the height above the base.
+Outline cone_outline(double radius, double height)
+{
+    return {{{0, -0.25 * height}, {radius, -0.25 * height}, {0, 0.75 * height}}, 24, {1, 1, 1}};
+}
+
+Outline cylinder_outline(double radius, double length, double bore)
+{
+    const double h = 0.5 * length;
+    Outline outline{{{bore, -h}, {radius, -h}, {radius, h}, {bore, h}}, 24, {1, 1, 1}};
+    if (bore > 0) outline.profile.push_back({bore, -h});
+    return outline;
+}
+
+Key length(std::string_view name, const std::string& doc)
+{
+    return Key{name, types::number, doc, "m"}.needed().within(positive);
+}
+
+double radius_of_sphere(const Section& shape)
+{
+    const Section* table = only_section(shape, "sphere");
+    return table != nullptr ? table->number("radius") : shape.number("sphere");
+}
+
+Outline outline_of_cylinder(const Section& shape)
+{
+    const Section& c = *only_section(shape, "cylinder");
+    return cylinder_outline(c.number("radius"), c.number("length"), c.number("inner_radius"));
+}
+
+PrimitiveSolid solid_of_cylinder(const Section& shape)
+{
+    const Section& c = *only_section(shape, "cylinder");
+    return cylinder_solid(c.number("radius"), c.number("length"), c.number("inner_radius"));
+}
+
+Outline outline_of_capsule(const Section& shape)
+{
+    const Section& c = *only_section(shape, "capsule");
+    return capsule_outline(c.number("radius"), c.number("length"));
+}
+
+PrimitiveSolid solid_of_capsule(const Section& shape)
+{
+    const Section& c = *only_section(shape, "capsule");
+    return capsule_solid(c.number("radius"), c.number("length"));
+}
+
+Outline outline_of_cone(const Section& shape)
+{
+    const Section& c = *only_section(shape, "cone");
+    return cone_outline(c.number("radius"), c.number("height"));
+}
+
+PrimitiveSolid solid_of_cone(const Section& shape)
+{
+    const Section& c = *only_section(shape, "cone");
+    return cone_solid(c.number("radius"), c.number("height"));
+}
+
+}   // namespace
+
+const std::vector<Primitive>& primitives()
+{
+    static const std::vector<Primitive> all{
+        {Key{"box", types::vector3, "Edges along d1, d2, d3.", "m"}.within(positive),
+         [](double density, const Section& shape) { return box(density, shape.vector("box")); },
+         [](const Section& shape) { return box_outline(shape.vector("box")); },
+         [](const Section& shape) { return box_solid(shape.vector("box")); }},
+        {Key{"sphere", types::number_or_table, "Radius, or a table with it.", "m"}.within(positive).holding(
+             {"sphere of shape", "", {length("radius", "Of the sphere.")}}),
+         [](double density, const Section& shape) { return sphere(density, radius_of_sphere(shape)); },
+         [](const Section& shape) {
+             const double r = radius_of_sphere(shape);
+             return stretched(ball_outline(), {r, r, r});
+         },
+         [](const Section& shape) {
+             const double r = radius_of_sphere(shape);
+             return ellipsoid_solid({r, r, r});
+         }},
+        {Key{"cylinder", types::table, "Solid or tube."}.holding(
+             {"cylinder of shape",
+              "",
+              {length("radius", "Outer radius."), length("length", "Along d3."),
+               Key{"inner_radius", types::number, "Of the bore of a tube.", "m", "0"}.within(not_negative)}}),
+         [](double density, const Section& shape) {
+             const Section& c = *only_section(shape, "cylinder");
+             return cylinder(density, c.number("radius"), c.number("length"), c.number("inner_radius"));
+         },
+         outline_of_cylinder, solid_of_cylinder},
+        {Key{"capsule", types::table, "Cylinder between two half spheres."}.holding(
+             {"capsule of shape",
+              "",
+              {length("radius", "Of cylinder and half spheres."),
+               length("length", "Of the cylindrical part, along d3.")}}),
+         [](double density, const Section& shape) {
+             const Section& c = *only_section(shape, "capsule");
+             return capsule(density, c.number("radius"), c.number("length"));
+         },
+         outline_of_capsule, solid_of_capsule},
+        {Key{"ellipsoid", types::vector3, "Semi-axes along d1, d2, d3.", "m"}.within(positive),
+         [](double density, const Section& shape) { return ellipsoid(density, shape.vector("ellipsoid")); },
+         [](const Section& shape) { return stretched(ball_outline(), shape.vector("ellipsoid")); },
+         [](const Section& shape) { return ellipsoid_solid(shape.vector("ellipsoid")); }},
+        {Key{"cone", types::table, "Solid cone, apex along +d3, origin at its centre of mass."}.holding(
+             {"cone of shape",
+              "",
+              {length("radius", "Of the base."), length("height", "From base to apex, along d3.")}}),
+         [](double density, const Section& shape) {
+             const Section& c = *only_section(shape, "cone");
+             return cone(density, c.number("radius"), c.number("height"));
+         },
+         outline_of_cone, solid_of_cone},
+    };
+    return all;
+}
+
+const Primitive* find_primitive(std::string_view key)
+{
+    const auto found = std::ranges::find(primitives(), key, [](const Primitive& p) { return p.key.name; });
+    return found == primitives().end() ? nullptr : &*found;
+}
+
+Outline ball_outline() { return capsule_outline(1, 0); }
+
+}   // namespace livens

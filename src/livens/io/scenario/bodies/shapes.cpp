@@ -1,0 +1,357 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "livens/io/scenario/bodies/shapes.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "livens/base/text.h"
+#include "livens/io/scenario/bodies/density_fields.h"
+#include "livens/io/scenario/bodies/primitives.h"
+#include "livens/io/scenario/text/units.h"
+
+namespace livens {
+
+namespace {
+
+/// Of the mesh's numbers, m.
+double unit_of(const Section& shape)
+{
+    return (shape.has("scale") ? shape.number("scale") : 1) * unit_of_length(shape.text("unit"));
+}
+
+std::vector<Key> mesh_keys(bool is_part)
+{
+    std::vector<Key> keys{
+        {"mesh", types::text,
+         "A file of the solid: STL, OBJ or PLY (its closed surface), Gmsh's MSH (elements of volume, or a "
+         "closed "
+         "surface); a path from the scenario's folder on, which it does not leave. Its coordinates are those "
+         "of the body."},
+        {"unit", types::text, "Of the mesh's numbers, a length such as `\"mm\"`; a mesh needs it."},
+        Key{"scale", types::number, "The mesh is made so many times larger.", "", "1"}.within(positive),
+        {"turn", types::flag,
+         "Faces of the mesh that look inwards, and elements that are inside out, are turned instead of "
+         "refused."}};
+    if (!is_part)
+        keys.push_back(
+            {"densities", types::named_texts,
+             "Of the mesh's regions of volume by their names in the file, each a text with a unit: "
+             "`{ steel = \"7850 kg/m^3\" }`; all of them, instead of `density` and `mass`."});
+    return keys;
+}
+
+Key density_field_key(bool is_part)
+{
+    return {
+        "density_field", types::text,
+        std::string("The density in kg/m^3 as an expression in `x`, `y` and `z`, the place in m in the ") +
+            (is_part ? "part's own axes, before `position` and orientation" : "axes of the shape") +
+            " (of a mesh after `unit` and `scale`): `\"2000 + 300*z\"`; " +
+            (is_part ? "times `density`, whose sign makes it a hole, and without that of the body."
+                     : "instead of `density` and `mass`; of a union at its parts.") +
+            " A mesh that is a surface takes linear ones."};
+}
+
+/// The key that says what a shape or part is; null after an error.
+const Key* kind_of(const Section& shape)
+{
+    const Key* first = nullptr;
+    std::string known;
+    const auto is_kind = [](std::string_view name) {
+        return name == "point" || name == "mesh" || name == "parts" || find_primitive(name) != nullptr;
+    };
+    for (const Value& v : shape.values()) {
+        if (!is_kind(v.key->name)) continue;
+        if (first != nullptr) return shape.at_most_one({first->name, v.key->name}, "shape"), nullptr;
+        first = v.key;
+    }
+    if (first != nullptr || !shape.is_valid()) return first;
+    for (const Primitive& p : primitives())
+        known += (known.empty() ? "give one of " : ", ") + std::string(p.key.name);
+    known += shape.takes("parts") ? ", point, mesh, parts" : ", mesh";
+    shape.error("", "shape", shape.label() + " is empty", {"", known});
+    return nullptr;
+}
+
+bool check_density_field(const Section& shape, std::string_view kind)
+{
+    if (kind == "point") return shape.refuse({"density_field"}, "shape", "a point mass has no extent");
+    if (kind == "parts") return shape.refuse({"density_field"}, "shape", "it stands at the parts of a union");
+    return true;
+}
+
+bool check_mesh(const Section& shape)
+{
+    if (!shape.has("mesh"))
+        return shape.refuse({"unit", "scale", "turn", "densities"}, "shape", "the shape is no mesh");
+    if (!shape.has("unit"))
+        return shape.error(
+            "mesh", "mesh-unit", shape.label() + " has a mesh without 'unit'",
+            {"files of meshes do not say what their numbers mean", "add unit = \"mm\", or \"m\""});
+    if (shape.takes("densities") && !shape.at_most_one({"density_field", "densities"}, "mass-conflict"))
+        return false;
+    if (unit_of_length(shape.text("unit")) > 0) return true;
+    return shape.error("unit", "mesh-unit",
+                       "'unit' of " + shape.label() + " must be a unit of length, not \"" +
+                           shape.text("unit") + "\"");
+}
+
+/// A solid in its own coordinates.
+struct Part {
+    Moments moments;    ///< at density 1
+    Moments weighted;   ///< by its density if it states that, else likewise
+    Outline outline;    ///< about the centroid
+    std::vector<NamedSurface> surfaces = {};
+};
+
+std::vector<NamedSurface> surfaces_of(const ReducedMesh& mesh, double unit)
+{
+    std::vector<NamedSurface> surfaces = mesh.surfaces;
+    for (NamedSurface& s : surfaces) s.moments = scaled(s.moments, unit);
+    return surfaces;
+}
+
+void add_surface(std::vector<NamedSurface>& to, const std::string& name, const SurfaceMoments& m)
+{
+    const auto known = std::ranges::find(to, name, &NamedSurface::name);
+    if (known == to.end())
+        to.push_back({name, m});
+    else
+        known->moments = known->moments + m;
+}
+
+/// Those of a part; surfaces with one name become one, and the whole of a union is not known. A part with a
+/// name has its whole surface by that, and those with names as name/surface besides.
+void add_surfaces(std::vector<NamedSurface>& to, const Part& part, const std::string& name,
+                  const Matrix3& axes, const Vector3& place)
+{
+    for (const NamedSurface& s : part.surfaces) {
+        const SurfaceMoments m = moved(s.moments, axes, place);
+        if (!s.name.empty()) add_surface(to, s.name, m);
+        if (!name.empty()) add_surface(to, s.name.empty() ? name : name + "/" + s.name, m);
+    }
+}
+
+Outline outline_of(const ReducedMesh& mesh, double unit)
+{
+    Outline outline;
+    outline.points = mesh.picture.points;
+    outline.triangles = mesh.picture.triangles;
+    outline.n_left_out = mesh.picture.n_left_out;
+    outline.moved = mesh.picture.moved;
+    outline.stretch = {unit, unit, unit};
+    return outline;
+}
+
+/// With the densities of its regions, which must all be stated.
+Moments weighted(const Section& shape, const ReducedMesh& mesh, double unit)
+{
+    const Value& value = *shape.find("densities");
+    const std::vector<Entry>& entries = value.node->entries();
+    std::vector<Moments> parts;
+    std::vector<double> densities(mesh.regions.size(), -1);
+    std::string known;
+    for (const auto& [name, m] : mesh.regions) {
+        parts.push_back(scaled(m, unit));
+        known += (known.empty() ? "'" : ", '") + name + "'";
+    }
+    for (std::size_t i = 0; i < entries.size(); ++i) {
+        const Quantity density = parse_quantity(value.texts[i], "kg/m^3");
+        if (!density.error.empty() || !(density.value > 0))
+            throw InputError({"unit", "body.shape",
+                              "the density of '" + entries[i].key + "' cannot be \"" + value.texts[i] + "\"" +
+                                  (density.error.empty() ? "" : ": " + density.error),
+                              "", "> 0 kg/m^3", "", density.help});
+        bool is_found = false;
+        for (std::size_t r = 0; r < mesh.regions.size(); ++r)
+            if (mesh.regions[r].first == entries[i].key) densities[r] = density.value, is_found = true;
+        if (!is_found)
+            throw InputError({"mesh-region", "body.shape",
+                              "the mesh has no region of volume '" + entries[i].key + "'", "", "",
+                              known.empty() ? "it has no regions of volume" : "it has " + known, ""});
+    }
+    for (std::size_t r = 0; r < densities.size(); ++r)
+        if (densities[r] < 0)
+            throw InputError({"mesh-region", "body.shape",
+                              "the region '" + mesh.regions[r].first + "' of the mesh has no density", "", "",
+                              "", "'densities' states those of all regions"});
+    return combined(parts, densities);
+}
+
+Part read_mesh_part(const Section& shape, MeshStore& meshes)
+{
+    const ReducedMesh& mesh = meshes.find(shape.text("mesh"), shape.has("turn"));
+    const double unit = unit_of(shape);
+    const Moments whole = scaled(mesh.whole, unit);
+    Part part{whole, whole, outline_of(mesh, unit), surfaces_of(mesh, unit)};
+    if (shape.has("density_field"))
+        part.weighted =
+            meshes.weighted(shape.text("mesh"), shape.has("turn"), unit, shape.text("density_field"));
+    else if (shape.takes("densities") && shape.has("densities"))
+        part.weighted = weighted(shape, mesh, unit);
+    return part;
+}
+
+Part read_part(const Section& shape, MeshStore& meshes, bool with_surfaces)
+{
+    const Key& key = *kind_of(shape);
+    if (key.name == "mesh") return read_mesh_part(shape, meshes);
+    const Primitive& p = *find_primitive(key.name);
+    const Moments whole = moments(p.make(1, shape));
+    Part part{whole, whole, p.outline(shape)};
+    if (shape.has("density_field"))
+        part.weighted = weighted_by_field(p.solid(shape), shape.text("density_field"));
+    if (with_surfaces) part.surfaces = {{"", surface_moments(p.solid(shape), whole)}};
+    return part;
+}
+
+Solid read_union(const Section& shape, double density, MeshStore& meshes, bool with_surfaces)
+{
+    std::vector<Moments> parts;
+    std::vector<double> densities;
+    Solid solid;
+    solid.has_own_origin = true;
+    double mass = 0, size = 0;
+    for (const Section& section : shape.sections("parts")) {
+        Part part = read_part(section, meshes, with_surfaces);
+        const std::string name = section.has("name") ? section.text("name") : "";
+        const Matrix3 axes = read_orientation(section);
+        const Vector3 place = section.vector("position");
+        const double factor = section.number("density");
+        parts.push_back(moved(part.weighted, axes, place));
+        densities.push_back(section.has("density_field") ? factor : density * factor);
+        mass += densities.back() * parts.back().volume;
+        size += std::abs(densities.back()) * parts.back().volume;
+        solid.volume += std::copysign(part.moments.volume, factor);
+        solid.parts.push_back({name, densities.back() * parts.back().volume, parts.back().centroid});
+        if (factor < 0) continue;   // a picture cannot take away, and a hole has another surface
+        add_surfaces(solid.surfaces, part, name, axes, place);
+        part.outline.axes = axes;
+        part.outline.place = moved(part.moments, axes, place).centroid;
+        solid.outline.parts.push_back(std::move(part.outline));
+    }
+    if (!(mass > 1e-12 * size))
+        throw InputError({"shape", "body.shape", "the parts leave no mass", to_text(mass), "> 0",
+                          "parts with a negative density are holes in others", ""});
+    const Moments whole = combined(parts, densities);
+    solid.properties = livens::solid(1, whole);
+    for (Outline& part : solid.outline.parts) part.place -= whole.centroid;
+    return solid;
+}
+
+/// Where the density is not the same all over, the centre of mass is not the centroid.
+Outline about(const Vector3& center_of_mass, const Part& part)
+{
+    Outline whole;
+    whole.parts = {part.outline};
+    whole.parts.front().place = part.moments.centroid - center_of_mass;
+    return whole;
+}
+
+}   // namespace
+
+double unit_of_length(const std::string& text)
+{
+    std::string reason;
+    const std::optional<Unit> unit = parse_unit(text, reason);
+    if (!unit || unit->dimension != Dimension{1, 0, 0, 0}) return 0;
+    const double ratio = unit->numerator / unit->denominator,
+                 power = std::pow(10, std::abs(unit->power_of_ten));
+    return unit->power_of_ten < 0 ? ratio / power : ratio * power;   // 1e-3 is no double, 1e3 is
+}
+
+Table shape_table()
+{
+    Table part{
+        "parts of shape",
+        "Solids that are united, each with exactly one of the shapes. They must not overlap, but for holes.",
+        {}};
+    for (const Primitive& p : primitives()) part.keys.push_back(p.key);
+    for (const Key& key : mesh_keys(true)) part.keys.push_back(key);
+    part.keys.push_back(density_field_key(true));
+    part.keys.push_back(
+        {"name", types::text,
+         "Of the part: loads find its whole surface by that, and a surface of its mesh as `name/surface`; "
+         "`livens mass` tells what it weighs."});
+    part.keys.push_back(
+        {"position", types::vector3, "Of the part's origin in body coordinates.", "m", "[0, 0, 0]"});
+    for (const Key& key : orientation_keys()) part.keys.push_back(key);
+    part.keys.push_back({"density", types::number,
+                         "Relative to that of the body; -1 for holes in parts of density 1.", "", "1"});
+    Table shape{"shape of [[body]]",
+                "Exactly one of the shapes. Axes of revolution lie along d3. Primitives have their origin at "
+                "their centre of mass.",
+                {}};
+    for (const Primitive& p : primitives()) shape.keys.push_back(p.key);
+    shape.keys.push_back(
+        Key{"point", types::flag, "A point mass: no orientation, no inertia; needs `mass`."});
+    for (const Key& key : mesh_keys(false)) shape.keys.push_back(key);
+    shape.keys.push_back(density_field_key(false));
+    shape.keys.push_back(Key{"parts", types::tables, "A union of shapes."}.holding(part));
+    return shape;
+}
+
+bool is_point_mass(const Section& body)
+{
+    const Section* shape = only_section(body, "shape");
+    return shape != nullptr && shape->has("point");
+}
+
+bool check_shape(const Section& shape)
+{
+    const Key* kind = kind_of(shape);
+    if (kind == nullptr || !shape.is_valid() || !check_mesh(shape)) return false;
+    if (!check_density_field(shape, kind->name)) return false;
+    const Section* tube = kind->name == "cylinder" ? only_section(shape, "cylinder") : nullptr;
+    if (tube != nullptr && tube->number("inner_radius") >= tube->number("radius"))
+        return tube->error("inner_radius", "size-inner-radius",
+                           "'inner_radius' of " + tube->label() + " must be smaller than its radius");
+    if (kind->name != "parts") return true;
+    if (shape.sections("parts").empty())
+        return shape.error("parts", "shape", shape.label() + " has no parts");
+    return std::ranges::all_of(shape.sections("parts"), [](const Section& part) {
+        return (part.number("density") != 0 ||
+                part.error("density", "out-of-range", "'density' of " + part.label() + " must not be 0")) &&
+               check_orientation(part) && check_shape(part);
+    });
+}
+
+DensityBy density_by(const Section& shape)
+{
+    const auto has_field = [](const Section& s) { return s.has("density_field"); };
+    if (shape.has("densities") || has_field(shape)) return DensityBy::shape;
+    const auto parts = shape.sections("parts");
+    if (!std::ranges::any_of(parts, has_field)) return DensityBy::body;
+    return std::ranges::all_of(parts, has_field) ? DensityBy::shape : DensityBy::both;
+}
+
+Solid read_shape(const Section& body, MeshStore& meshes, bool with_surfaces)
+{
+    const Section* shape = only_section(body, "shape");
+    if (shape == nullptr || is_point_mass(body)) return {};
+    const double density = body.has("density") ? body.number("density") : 1;
+    try {
+        const Key& key = *kind_of(*shape);
+        if (key.name == "parts") return read_union(*shape, density, meshes, with_surfaces);
+        const Part part = read_part(*shape, meshes, with_surfaces);
+        const bool has_density = density_by(*shape) == DensityBy::shape;
+        Solid whole{solid(has_density ? 1 : density, part.weighted),
+                    true,
+                    part.outline,
+                    part.surfaces,
+                    {},
+                    part.moments.volume};
+        if (has_density) whole.outline = about(whole.properties.center_of_mass, part);
+        const Primitive* p = find_primitive(key.name);
+        if (p == nullptr || has_density) return whole;
+        whole.properties = p->make(density, *shape);
+        whole.has_own_origin = false;
+        return whole;
+    } catch (const InputError& error) {
+        Complaint complaint = error.complaint();
+        if (complaint.path.empty()) complaint.path = "body.shape";
+        throw InputError(complaint);
+    }
+}
+
+}   // namespace livens

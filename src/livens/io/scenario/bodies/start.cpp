@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// [body.start], `coordinates` of [start], and `rate` of joints: the bodies are led there, with the joints
+// that they have where they are stated, before anything else refers to them.
+#include <algorithm>
+#include <cmath>
+
+#include "livens/dynamics/start/start_coordinates.h"
+#include "livens/io/scenario/builder.h"
+
+namespace livens {
+
+namespace {
+
+/// A number in the unit of the coordinate; one without a unit is.
+std::optional<double> read_number(const Section& section, const std::string& path, std::string_view key,
+                                  bool is_angle)
+{
+    const Value* v = section.find(key);
+    if (v == nullptr) return {};
+    if (is_angle ? v->has_other_unit : v->has_unit)
+        throw InputError({"start-coordinate", path + "." + std::string(key),
+                          "the coordinate is " + std::string(is_angle ? "an angle" : "a displacement"), "",
+                          "", "", "give it in " + std::string(is_angle ? v->key->unit : v->key->other_unit)});
+    return v->numbers.front();
+}
+
+StartCoordinate read_coordinate(const Builder& builder, const Section& section, const std::string& path)
+{
+    const JointReference of = find_coordinate(builder, section, path);
+    StartCoordinate wanted;
+    wanted.path = path;
+    wanted.joint = builder.model().find_joint(of.joint->name);
+    wanted.coordinate = static_cast<int>(of.coordinate - of.joint->coordinates.data());
+    const bool is_angle = of.coordinate->coordinate.is_angle();
+    wanted.value = read_number(section, path, "value", is_angle);
+    wanted.rate = read_number(section, path, "rate", is_angle);
+    if (!wanted.value && !wanted.rate)
+        throw InputError({"start-coordinate", path, "neither 'value' nor 'rate' is given", "", "", "",
+                          "give one of them, or both"});
+    return wanted;
+}
+
+/// What is wanted, place by place; false after an error.
+bool read_wanted(Builder& builder, std::vector<StartCoordinate>& wanted)
+{
+    const int before = builder.findings().n_errors();
+    for (const Section& joint : builder.top().sections("joint")) {
+        if (joint.find("rate") == nullptr) continue;
+        const std::string name = joint.has("name") ? joint.text("name") : default_name(joint);
+        wanted.push_back(
+            {builder.model().find_joint(name), 0, {}, joint.number("rate"), "joint[" + name + "].rate"});
+    }
+    const Section* start = only_section(builder.top(), "start");
+    if (start == nullptr) return true;
+    int n = 0;
+    for (const Section& section : start->sections("coordinates")) {
+        const std::string path = "start.coordinates[" + std::to_string(n++) + "]";
+        builder.remember(path, section);
+        if (section.is_valid())
+            builder.guard(path, [&] { wanted.push_back(read_coordinate(builder, section, path)); });
+    }
+    return builder.findings().n_errors() == before;
+}
+
+/// Bodies where [body.start] has them; false after an error. Of `wanted` goes what tells turns alone.
+bool restate_bodies(Builder& builder, std::vector<StartCoordinate>& wanted)
+{
+    const int before = builder.findings().n_errors();
+    State state = builder.model().start();
+    bool is_other = false;
+    for (const Section& body : builder.top().sections("body"))
+        for (const Section& start : body.sections("start")) {
+            read_pose_of(builder, body.text("name"), start, "start", state);
+            is_other = true;
+        }
+    if (builder.findings().n_errors() > before) return false;
+    if (!is_other) return true;
+    builder.model() = restated(builder.model(), state, wanted);
+    std::erase_if(wanted, [&](const StartCoordinate& one) {
+        const Joint& joint = builder.model().joints()[static_cast<std::size_t>(one.joint)];
+        const double now = joint.coordinates[static_cast<std::size_t>(one.coordinate)].at_stated;
+        return !one.rate && std::abs(*one.value - now) <= same_angle;
+    });
+    return true;
+}
+
+}   // namespace
+
+void move_bodies(Builder& builder)
+{
+    if (builder.findings().n_errors() > 0) return;
+    std::vector<StartCoordinate> wanted;
+    if (!read_wanted(builder, wanted) || !restate_bodies(builder, wanted) || wanted.empty()) return;
+    const Section* start = only_section(builder.top(), "start");
+    const Section* time = only_section(builder.top(), "time");
+    const bool projects = start != nullptr && start->text("initial") == "project";
+    builder.guard("start", [&] {
+        MovedStart moved =
+            move_start(builder.model(), wanted, projects ? StartPolicy::project : StartPolicy::check,
+                       time == nullptr ? 0 : time->number("start"));
+        builder.model() = std::move(moved.model);
+        for (const std::string& change : moved.changed)
+            builder.findings().warning(start == nullptr ? SourceLocation{} : start->place(), "start-changed",
+                                       change,
+                                       {"", "leave these velocities out, or state them so that they fit"});
+    });
+}
+
+}   // namespace livens

@@ -1,0 +1,330 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// [[drive]]: one table of kinds, and of laws over time.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "livens/base/text.h"
+#include "livens/io/scenario/builder.h"
+#include "livens/multibody/joints/drives.h"
+#include "livens/time/time_laws.h"
+
+namespace livens {
+
+namespace {
+
+const std::vector<Kind>& kinds()
+{
+    static const std::vector<Kind> all{
+        {"joint",
+         "a coordinate of a joint",
+         {Key{"joint", types::text, "The joint whose coordinate follows the law."}.needed(),
+          coordinate_key()}},
+        {"distance",
+         "the distance of two points",
+         {Key{"between", types::names, "Two different bodies, or one and `\"world\"`."}.needed(),
+          Key{"points", types::pair,
+              "One on each body, in its coordinates. Default: the reference points, for the world its "
+              "origin.",
+              "m"}}},
+        {"point",
+         "a point of a body, from where it stands, in world axes",
+         {Key{"body", types::text, "The body."}.needed(),
+          Key{"point", types::vector3, "In body coordinates.", "m", "[0, 0, 0]"}}},
+        {"body",
+         "a point of a body, which does not turn",
+         {Key{"body", types::text, "The body."}.needed(),
+          Key{"point", types::vector3, "In body coordinates.", "m", "[0, 0, 0]"}}}};
+    return all;
+}
+
+bool is_path(const Section& drive)
+{
+    return kinds()[static_cast<std::size_t>(drive.kind())].keys[0].name == "body";
+}
+
+constexpr std::array<std::string_view, 7> laws{"value",      "rate",  "harmonic",  "step",
+                                               "polynomial", "table", "expression"};
+
+/// Exactly one law.
+bool check_law(const Section& drive)
+{
+    std::vector<std::string_view> given;
+    for (const std::string_view law : laws)
+        if (drive.has(law)) given.push_back(law);
+    if (given.empty())
+        return drive.error("", "drive-law", drive.label() + " has no law",
+                           {"", "give one of value, rate, harmonic, step, polynomial, table, expression"});
+    if (given.size() > 1) return drive.at_most_one({given[0], given[1]}, "drive-law");
+    return true;
+}
+
+/// A path needs three numbers where others have one.
+bool check_sizes(const Section& drive)
+{
+    const std::size_t n = is_path(drive) ? 3 : 1;
+    const auto check = [&](const Section& section, std::string_view key) {
+        const Value* v = section.find(key);
+        if (v == nullptr || v->numbers.size() == n) return true;
+        return section.error(key, "drive-size",
+                             "'" + std::string(key) + "' of " + section.label() + " has " +
+                                 std::to_string(v->numbers.size()) + " numbers, not " + std::to_string(n),
+                             {"", n == 3 ? "the path of a point has three components" : "give one number"});
+    };
+    bool is_good = check(drive, "value") && check(drive, "rate");
+    if (const Section* one = only_section(drive, "harmonic")) is_good = check(*one, "amplitude") && is_good;
+    if (const Section* one = only_section(drive, "step")) is_good = check(*one, "rise") && is_good;
+    const auto is_multiple = [&](const Section& section, std::string_view key, std::size_t of) {
+        const Value* v = section.find(key);
+        if (v == nullptr || (v->numbers.size() % n == 0 && (of == 0 || v->numbers.size() == n * of)))
+            return true;
+        return section.error(key, "drive-size",
+                             "'" + std::string(key) + "' of " + section.label() + " has " +
+                                 std::to_string(v->numbers.size()) + " numbers",
+                             {"", of == 0 ? "three for each power of t, one component after the other"
+                                          : "one for each time; for a path three, x, y, z of each time"});
+    };
+    is_good = is_multiple(drive, "polynomial", 0) && is_good;
+    if (const Value* v = drive.find("expression");
+        v != nullptr && (v->texts.empty() ? 1 : v->texts.size()) != n)
+        is_good =
+            drive.error("expression", "drive-size",
+                        "'expression' of " + drive.label() + " is " +
+                            (v->texts.empty() ? "one text" : std::to_string(v->texts.size()) + " texts"),
+                        {"", n == 3 ? "the path of a point has three components" : "give one text"});
+    if (const Section* one = only_section(drive, "table"))
+        if (const Value* times = one->find("times"))
+            is_good = is_multiple(*one, "values", times->numbers.size()) && is_good;
+    return is_good;
+}
+
+double component(const Section& section, std::string_view key, std::size_t c)
+{
+    const Value* v = section.find(key);
+    return v == nullptr || c >= v->numbers.size() ? 0 : v->numbers[c];
+}
+
+std::string drive_name(const Section& drive)
+{
+    if (drive.has("name")) return drive.text("name");
+    if (drive.find("joint") != nullptr) return "drive of " + drive.text("joint");
+    if (drive.find("body") != nullptr) return "drive of " + drive.text("body");
+    const Value* between = drive.find("between");
+    return between == nullptr ? "" : "drive " + between->texts[0] + "-" + between->texts[1];
+}
+
+/// Of the motion, s.
+struct Duration {
+    double start, end;
+    double begins;   ///< the drive, at the start or later
+};
+
+/// With its kinks as breaks, so that the model refuses what a drive cannot follow.
+TimeFunction by_formula(const Expression& expression, const Duration& during)
+{
+    std::vector<double> events;
+    if (during.end > during.start) events = expression.events(during.start, during.end);
+    return expression_of_time(expression, events);
+}
+
+/// Component c of the law; `now` is the value at the start, where a rate begins.
+TimeFunction read_law(const Section& drive, std::size_t c, std::size_t n, double now, const Duration& during)
+{
+    if (drive.has("value")) return component(drive, "value", c);
+    if (drive.has("rate")) return ramp(now, component(drive, "rate", c), during.begins);
+    if (const Section* one = only_section(drive, "harmonic"))
+        return harmonic(component(*one, "amplitude", c), one->number("frequency"), one->number("phase"));
+    if (drive.has("expression"))
+        return by_formula(read_expressions(drive, {}, "drive[" + drive_name(drive) + "]")[c], during);
+    if (const Section* one = only_section(drive, "step")) {
+        const TimeFunction step =
+            smooth_step(one->number("from"), one->number("until"), component(*one, "rise", c));
+        return shifted(step, now - step({during.start}).value);
+    }
+    const bool is_table = drive.has("table");
+    const Section* table = only_section(drive, "table");
+    const std::vector<double>& all = (is_table ? table->find("values") : drive.find("polynomial"))->numbers;
+    std::vector<double> own;
+    for (std::size_t i = c; i < all.size(); i += n) own.push_back(all[i]);
+    if (!is_table) return polynomial(std::move(own));
+    const std::vector<double>& times = table->find("times")->numbers;
+    return straight_on(spline_table(times, std::move(own)), times.front(), times.back());
+}
+
+std::array<TimeFunction, 3> read_path(const Section& drive, const Duration& during)
+{
+    return {read_law(drive, 0, 3, 0, during), read_law(drive, 1, 3, 0, during),
+            read_law(drive, 2, 3, 0, during)};
+}
+
+/// Positions do not tell whole turns: a joint that stands further than half a turn from where its drive
+/// begins is led there by the shorter way, and counts on from where it is said to stand.
+void warn_of_turns(Builder& builder, const Section& drive, const std::string& name,
+                   const NamedCoordinate& coordinate, const TimeFunction& law, const Duration& during)
+{
+    if (!coordinate.coordinate.is_angle() || during.begins > during.start) return;
+    const double begins = law({during.start, Side::right}).value, gap = begins - coordinate.at_stated;
+    constexpr double half = std::numbers::pi * (1 - 1e-9);
+    if (!(std::abs(gap) >= half)) return;
+    const double turns = std::max(1.0, std::round(std::abs(gap) / (2 * std::numbers::pi)));
+    builder.findings().warning(
+        drive.place(), "drive-turns",
+        "'" + name + "' begins at " + to_text(begins, 4) + " rad, but its joint stands at " +
+            to_text(coordinate.at_stated, 4) + " rad, half a turn away or more",
+        {"positions do not tell whole turns: the joint counts on from where it stands, and may read " +
+             to_text(turns) + (turns == 1 ? " turn" : " turns") + " more or less than the drive",
+         "give the joint a 'coordinate' within half a turn of where the drive begins, or the drive an "
+         "offset"});
+}
+
+Joint make_on_joint(Builder& builder, const Section& drive, const std::string& name, const Duration& during,
+                    const Configurations& X)
+{
+    const JointReference of = find_coordinate(builder, drive, "drive[" + name + "]");
+    const TimeFunction law = read_law(drive, 0, 1, of.coordinate->at_stated, during);
+    warn_of_turns(builder, drive, name, *of.coordinate, law, during);
+    return driven_coordinate(name, *of.joint, *of.coordinate, law, X);
+}
+
+Joint make_drive(Builder& builder, const Section& drive, const std::string& name, const BodyReference& first,
+                 const BodyReference& second)
+{
+    const Section* time = only_section(builder.top(), "time");
+    const double start = time == nullptr ? 0 : time->number("start");
+    const Duration during{start, time == nullptr ? start : time->number("end"),
+                          std::max(start, drive.has("from") ? drive.number("from") : start)};
+    std::vector<Matrix34> all;
+    for (const Body& body : builder.model().bodies()) all.push_back(body.X);
+    const Configurations X(all);
+    const std::string type = drive.text("type");
+    if (type == "joint") return make_on_joint(builder, drive, name, during, X);
+    if (type == "distance") {
+        const Vector3 a = builder.in_axes(first.index, drive.row("points", 0)),
+                      b = builder.in_axes(second.index, drive.row("points", 1));
+        const double now = norm(X[second.index] * point(b) - X[first.index] * point(a));
+        const TimeFunction length = read_law(drive, 0, 1, now, during);
+        const double end = during.end;
+        constexpr int n_looks = 1000;   // what passes between them is no number, see driven_distance()
+        for (int i = 0; i <= n_looks; ++i) {
+            const double t = start + (end - start) * i / n_looks, l = length({t}).value;
+            if (l > 0) continue;
+            throw InputError({"drive-distance", "drive[" + name + "]", "a driven distance is not positive",
+                              to_text(l) + " at t = " + to_text(t, 6) + " s", "> 0",
+                              "points that coincide have no direction to be held along",
+                              "drive a point, or a joint's displacement"});
+        }
+        return driven_distance(name, first.index, a, second.index, b, length, X);
+    }
+    const Vector3 at = builder.in_axes(first.index, drive.vector("point"));
+    const auto make = type == "point" ? driven_point : driven_body;
+    return make(name, first.index, at, read_path(drive, during), X, builder.length());
+}
+
+void read_drive(Builder& builder, const Section& drive, std::unordered_set<std::string>& taken)
+{
+    Findings& findings = builder.findings();
+    const int before = findings.n_errors();
+    const std::string name = drive_name(drive), path = "drive[" + name + "]";
+    check_name(drive);
+    if (!name.empty())
+        claim_name(drive, "joint or drive", name, taken,
+                   {"results refer to drives as to joints", "give it another 'name'"});
+    builder.remember(path, drive);
+    builder.remember("joint[" + name + "]", drive);
+    if (drive.kind() == any_kind) return;
+    check_law(drive);
+    check_sizes(drive);
+    BodyReference first, second;
+    if (drive.takes("between")) {
+        if (!builder.find_pair(drive, "drive-self", first, second)) return;
+    } else if (const Value* named = drive.find("body")) {
+        first = builder.find_body(named->text, named->node->place, drive);
+        if (named->text == "world")
+            drive.error("body", "drive-self", drive.label() + " drives the world, which does not move");
+    }
+    if (findings.n_errors() > before || !drive.is_valid()) return;
+    builder.guard(path, [&] {
+        Joint joint = make_drive(builder, drive, name, first, second);
+        read_times(builder, drive, joint);
+        builder.model().add_joint(std::move(joint));
+    });
+}
+
+}   // namespace
+
+void read_times(const Builder& builder, const Section& section, Joint& joint)
+{
+    const Section* time = only_section(builder.top(), "time");
+    if (section.has("from")) joint.from = section.number("from");
+    if (section.has("until")) joint.until = section.number("until");
+    if (time == nullptr) return;
+    const double start = time->number("start"), end = time->number("end");
+    const double gap = 1e-8 * (end - start);   // nothing happens in so short a time
+    const bool is_over = joint.until <= start + gap;
+    if (is_over || joint.from >= end - gap)
+        throw InputError({"joint-time", "joint[" + joint.name + "]." + (is_over ? "until" : "from"),
+                          "'" + joint.name + "' never acts",
+                          to_text(is_over ? joint.until : joint.from) + " s",
+                          to_text(start) + " s to " + to_text(end) + " s", "", "leave it out"});
+    if (joint.from <= start + gap) joint.from = -std::numeric_limits<double>::infinity();
+    if (joint.until >= end - gap) joint.until = std::numeric_limits<double>::infinity();
+}
+
+Table drive_table()
+{
+    const KeyType numbers = types::number_or_list;
+    const Key table =
+        Key{"table", types::table, "A cubic spline through values over time, straight on before and after."}
+            .holding({"table of a drive",
+                      "Two continuous derivatives: a drive cannot jump or kink.",
+                      {Key{"times", types::list, "Ascending, two or more.", "s"}.needed(),
+                       Key{"values", types::list,
+                           "One for each time; for a path x, y, z of each, one after the other."}
+                           .needed()}});
+    const Key wave = Key{"harmonic", types::table, "amplitude sin(2 pi frequency t + phase)."}.holding(
+        {"harmonic of a drive",
+         "A sine over time.",
+         {Key{"amplitude", numbers, "rad or m."}.needed(), Key{"frequency", types::number, "", "Hz"}.needed(),
+          Key{"phase", types::number, "", "rad", "0"}}});
+    const Key step = Key{"step", types::table, "A smooth change, with two continuous derivatives."}.holding(
+        {"step of a drive",
+         "The rest of the time nothing changes.",
+         {Key{"from", types::number, "Begins.", "s"}.needed(),
+          Key{"until", types::number, "Ends.", "s"}.needed(), Key{"rise", numbers, "rad or m."}.needed()}});
+    return Table{
+        "[[drive]]",
+        "What follows a function of time: angles in rad and displacements in m as joints count them, "
+        "distances in m, paths as displacements from where the point stands, in m and world axes, with three "
+        "numbers for each one below. Exactly one law is given. What holds the bodies is the drive's "
+        "reaction, on the second body; its power is in the balance of energy. Velocities of the bodies at "
+        "the start must fit, or `[start]` says `initial = \"project\"`.",
+        {Key{"name", types::text, "Results refer to drives as to joints. Default: `drive of` joint or body."},
+         Key{"type", types::choice, ""}.needed(),
+         Key{"from", types::number,
+             "When it begins to act; the motion has to meet it then, in position and rate. Default: the "
+             "start.",
+             "s"},
+         Key{"until", types::number, "When it lets go: velocities go on. Default: never.", "s"},
+         Key{"value", numbers, "Constant."}.or_formulas(formulas_for_value),
+         Key{"rate", numbers,
+             "Constant rate, from what the coordinate is at the start of the motion, beginning with the "
+             "drive; rad/s or m/s. A rate over time is an `expression` of its integral."}
+             .or_formulas("a rate over time is said by 'expression', a formula of its integral: the angle or "
+                          "displacement itself"),
+         wave, step,
+         Key{"expression", types::text_or_list,
+             "A formula of t, in rad or m: `0.1*sin(2*pi*t)`; without kinks."},
+         Key{"polynomial", types::list, "Coefficients of 1, t, t^2, ..; of a path x, y, z of each."}, table}}
+        .with_kinds("type", kinds());
+}
+
+void read_drives(Builder& builder)
+{
+    std::unordered_set<std::string> taken;
+    for (const Joint& joint : builder.model().joints()) taken.insert(joint.name);
+    for (const Section& drive : builder.top().sections("drive")) read_drive(builder, drive, taken);
+}
+
+}   // namespace livens

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// [[load]]: names, bodies, and what may be wrong with them.
+#include <cmath>
+
+#include "livens/io/scenario/builder.h"
+#include "livens/io/scenario/loads/load_kinds.h"
+
+namespace livens {
+
+namespace {
+
+bool check_interval(const Builder& builder, const Section& load, Findings& findings)
+{
+    const Interval acts = read_interval(load);
+    if (acts.until <= acts.from)
+        return load.error("until", "window-order",
+                          "'until' of " + load.label() + " must be later than 'from'");
+    const Section* time = only_section(builder.top(), "time");
+    if (time == nullptr || !time->is_valid()) return true;
+    if (acts.from >= time->number("end") || acts.until <= time->number("start"))
+        findings.warning(load.place(load.has("from") ? "from" : "until"), "load-never-acts",
+                         load.label() + " never acts: its time lies outside the motion's",
+                         {"", "the motion lasts from 'start' to 'end' of [time]"});
+    return true;
+}
+
+/// A load without name is called by its type and bodies, and numbered if there are more of the kind.
+std::string claim_load_name(const Section& load, std::unordered_set<std::string>& taken)
+{
+    if (load.has("name")) {
+        if (load.find("name") != nullptr)
+            claim_name(load, "load", load.text("name"), taken,
+                       {"", "rename one of them, or leave out the name"});
+        return load.text("name");
+    }
+    const std::string base = default_name(load);
+    std::string name = base;
+    for (int i = 2; !taken.insert(name).second; ++i) name = base + " " + std::to_string(i);
+    return name;
+}
+
+/// The bodies that it names by `between` or `body`; false unless they can be used.
+bool find_bodies(Builder& builder, const Section& load, BodyReference& first, BodyReference& second)
+{
+    if (load.has("joint")) return load.find("joint") != nullptr;
+    if (load.has("between")) return builder.find_pair(load, "load-self", first, second);
+    const Value* named = load.find("body");
+    if (named == nullptr) return false;
+    if (named->text == "world")
+        return load.error("body", "load-self", load.label() + " acts on the world, which does not move");
+    first = builder.find_body(named->text, named->node->place, load);
+    return first.is_usable;
+}
+
+void read_load(Builder& builder, const Section& load, const std::string& name, bool has_good_name)
+{
+    const std::string path = "load[" + name + "]";
+    builder.remember(path, load);
+    if (load.kind() == any_kind) return;
+    bool is_good = load.is_valid() && has_good_name;
+    const LoadKind& kind = load_kinds()[static_cast<std::size_t>(load.kind())];
+    if (kind.check != nullptr) is_good = kind.check(load) && is_good;
+    if (load.takes("from")) is_good = check_interval(builder, load, builder.findings()) && is_good;
+    BodyReference first, second;
+    if (!find_bodies(builder, load, first, second) || !is_good) return;
+    builder.guard(path, [&] {
+        builder.model().add_load(kind.make({load, name, first.index, second.index, builder}));
+        warn_of_world_points(builder, load, {first.index, second.index});
+    });
+}
+
+}   // namespace
+
+Table load_table()
+{
+    return Table{"[[load]]",
+                 "Gravity is not a load: it stands at the top of the file.",
+                 {Key{"name", types::text, "For messages; default: type and bodies."},
+                  Key{"type", types::choice, ""}.needed()}}
+        .with_kinds("type", {load_kinds().begin(), load_kinds().end()});
+}
+
+namespace {
+
+/// What is no number at the start would end the motion before it begins.
+void check_start(Builder& builder)
+{
+    const Section *start = only_section(builder.top(), "start"), *time = only_section(builder.top(), "time");
+    if (start != nullptr && start->text("initial") == "project") return;   // from another place
+    const Model& model = builder.model();
+    const State state = model.start();
+    for (const Load& load : model.loads()) {
+        const Instant at{time == nullptr ? 0 : time->number("start"), Side::right};
+        LoadForces F{};
+        load.forces(load_arguments(load, at, state.X, state.V), F);
+        double sum = 0;
+        for (const Matrix34& of_body : F)
+            for (const double f : of_body.a) sum += std::abs(f);
+        const std::string path = "load[" + load.name + "]";
+        if (!std::isfinite(sum))
+            builder.guard(path, [&] {
+                throw InputError(
+                    {"load-not-finite", path, not_finite(load) + " at the start", "", "", "", ""});
+            });
+    }
+}
+
+}   // namespace
+
+void read_loads(Builder& builder)
+{
+    const std::span<const Section> sections = builder.top().sections("load");
+    // Known names come first, so that a default does not take one of them.
+    std::unordered_set<std::string> taken;
+    std::vector<std::string> names(sections.size());
+    std::vector<bool> is_good(sections.size());
+    for (const bool given : {true, false})
+        for (std::size_t i = 0; i < sections.size(); ++i) {
+            if (sections[i].has("name") != given) continue;
+            const int before = builder.findings().n_errors();
+            check_name(sections[i]);
+            names[i] = claim_load_name(sections[i], taken);
+            is_good[i] = builder.findings().n_errors() == before;
+        }
+    for (std::size_t i = 0; i < sections.size(); ++i) read_load(builder, sections[i], names[i], is_good[i]);
+    check_start(builder);
+}
+
+}   // namespace livens

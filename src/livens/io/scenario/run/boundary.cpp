@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// [start], [end] and [body.end]: what is known at the ends of time.
+#include "livens/base/text.h"
+#include "livens/dynamics/start/singular.h"
+#include "livens/io/scenario/builder.h"
+
+namespace livens {
+
+namespace {
+
+Key given(std::string_view otherwise, const std::string& doc)
+{
+    return {"given", types::choice, doc, "", otherwise, false, {"nothing", "positions", "momenta", "state"}};
+}
+
+bool check_pose_of(const Section& pose, bool is_point)
+{
+    if (!pose.is_valid() || !check_pose(pose)) return false;
+    return !is_point || pose.refuse({"directors", "quaternion", "rotation_vector", "angular_velocity",
+                                     "angular_velocity_body"},
+                                    "point-mass", "a point mass has no orientation");
+}
+
+/// The core knows one state of a body: what it says of `body[a].directors` is meant for `when`.
+InputError at_the(const std::string& when, const InputError& error)
+{
+    Complaint complaint = error.complaint();
+    const std::size_t close = complaint.path.find(']');
+    if (complaint.path.starts_with("body[") && close != std::string::npos)
+        complaint.path.insert(close + 1, "." + when);
+    const std::string start = "at the start", there = "at the " + when + " of time";
+    const std::size_t at = complaint.message.find(start);
+    if (at != std::string::npos)
+        complaint.message.replace(at, start.size(), there);
+    else
+        complaint.message += ", " + there;
+    return InputError(std::move(complaint));
+}
+
+/// What it says of the end of time: of joints that are open there it is the end of a body that is wrong.
+InputError at_the_end(const Model& model, const InputError& error)
+{
+    Complaint complaint = at_the("end", error).complaint();
+    const bool is_place = complaint.code == "start-position";
+    if (!is_place && complaint.code != "start-velocity") return InputError(std::move(complaint));
+    complaint.code = is_place ? "end-position" : "end-velocity";
+    for (const Joint& joint : model.joints())
+        if (complaint.path.starts_with("joint[" + joint.name + "]"))
+            complaint.path = "body[" + model.body_name(joint.second) + "].end";
+    complaint.help =
+        is_place ? "state places there that the joints allow, or let them be projected onto the joints"
+                 : "state velocities that fit, or let them be projected onto the joints";
+    return InputError(std::move(complaint));
+}
+
+/// The orthonormal triad of directors that are those of the start, turned.
+Matrix3 straightened(const Matrix3& directors, const Matrix3& stretch, const std::string& name)
+{
+    const Matrix3 triad = directors * inverse(stretch);
+    if (skewness(triad) > 1e-10)
+        throw InputError(
+            {"directors-metric", "body[" + name + "].directors",
+             "skew directors must keep their lengths and angles",
+             "they differ by " + to_text(skewness(triad), 3) + ", relative to those stated first", "<= 1e-10",
+             "a rigid body turns, no more", "a quaternion says by how much"});
+    return triad;
+}
+
+/// What a pose leaves out is as it is in the state.
+Placement completed(Placement given, const Section& pose, const Matrix34& X, const Matrix34& V)
+{
+    if (!pose.has("position")) given.position = X.column(0);
+    if (!pose.has("velocity")) given.velocity = V.column(0);
+    if (!pose.has("directors") && !pose.has("quaternion") && !pose.has("rotation_vector"))
+        given.directors = directors(X);
+    if (pose.has("angular_velocity_body"))
+        given.angular_velocity = given.directors * pose.vector("angular_velocity_body");
+    else if (!pose.has("angular_velocity"))
+        given.angular_velocity = angular_velocity(X, V);
+    return given;
+}
+
+}   // namespace
+
+void read_pose_of(Builder& builder, const std::string& name, const Section& pose, const std::string& when,
+                  State& state)
+{
+    const int index = builder.bodies()[name].index;
+    const Matrix3& stretch = builder.stretch(index);
+    const bool is_point = builder.is_point(index);
+    if (!check_pose_of(pose, is_point)) return;
+    const std::string path = "body[" + name + "]." + when;
+    builder.remember(path, pose);
+    builder.guard(path, [&] {
+        try {
+            Matrix34 &X = state.X[static_cast<std::size_t>(index)],
+                     &V = state.V[static_cast<std::size_t>(index)];
+            Placement placement = read_placement(pose, stretch);
+            if (!(stretch == identity<3>()))
+                placement.directors = straightened(placement.directors, stretch, name);
+            if (when == "start") placement = completed(placement, pose, X, V);
+            // Masses do not matter here, so any that are possible will do.
+            const Body body = is_point ? point_mass(name, 1, placement.position, placement.velocity)
+                                       : rigid_body(name, {1, {}, identity<3>()}, placement);
+            X = body.X;
+            V = body.V;
+        } catch (const InputError& error) {
+            throw at_the(when, error);
+        }
+    });
+}
+
+Table start_table()
+{
+    return {
+        "[start]",
+        "What is known at the start, and what to do with a start that does not fit the joints. What is not "
+        "given there is a first guess: positions and velocities of `[[body]]` are needed all the same, and "
+        "joints placed by `at` refer to them.",
+        {given("state", "state: positions and velocities; positions or momenta: those alone, the others are "
+                        "first guesses; nothing: all are."),
+         choice("initial", {"check", "project"},
+                "check: refuse it, naming the joint; project: move positions and velocities to the nearest "
+                "that fit, in the metric of the masses."),
+         choice(
+             "joints", {"fixed", "fit"},
+             "fixed: as stated; fit: points and axes on the second body of a joint are moved by the least "
+             "that closes it where the bodies stand, at most 1e-6 of the model's length, and that is said: "
+             "for drawings that are rounded."),
+         Key{"coordinates", types::tables,
+             "Where joints stand at the start, and how fast they move: the bodies are led there along the "
+             "joints. Independent coordinates that are not listed stay as the bodies are stated; what no "
+             "coordinate tells moves by the least, in the metric of the masses."}
+             .holding(
+                 {"[[start.coordinates]]",
+                  "A coordinate of a joint at the start.",
+                  {Key{"joint", types::text, "The joint."}.needed(), coordinate_key(),
+                   Key{"value", types::number, "As the joint counts it. Default: as it is stated.", "rad"}
+                       .or_in("m"),
+                   Key{"rate", types::number, "Default: that of the bodies' velocities.", "rad/s"}.or_in(
+                       "m/s")}})}};
+}
+
+Table end_table()
+{
+    return {
+        "[end]",
+        "What is known at the end of time, by `[body.end]` of every body. In all, positions and momenta must "
+        "be given once each, at one end or at both: a state at the end alone asks where the motion came "
+        "from, positions at both ends how to get from one to the other. Conditions at the end need the "
+        "family lobatto or mixed.",
+        {given("nothing", "Likewise, of `[body.end]`.")}};
+}
+
+void read_boundary(Builder& builder, Conditions& boundary)
+{
+    const Section* const start = only_section(builder.top(), "start");
+    const Section* const end = only_section(builder.top(), "end");
+    boundary.at_start = start != nullptr ? start->pick<Known>("given") : Known::state;
+    boundary.at_end = end != nullptr ? end->pick<Known>("given") : Known::nothing;
+    if (end != nullptr && !end->is_valid()) return;   // then bodies cannot be judged
+    const bool is_given = boundary.at_end != Known::nothing;
+    if (is_given) {
+        boundary.end.X.resize(builder.model().bodies().size());
+        boundary.end.V.resize(builder.model().bodies().size());
+    }
+    for (const Section& body : builder.top().sections("body")) {
+        if (!is_given) {
+            body.refuse({"end"}, "boundary-conditions", "[end] does not say that anything is given there");
+            continue;
+        }
+        if (!body.has("end")) {
+            body.error("", "missing-key", body.label() + " lacks 'end'",
+                       {"[end] says that something is given at the end of time, which then concerns every "
+                        "body",
+                        "add a table [body.end] below it"});
+            continue;
+        }
+        const Value* name = body.find("name");
+        if (name == nullptr || !builder.bodies()[name->text].is_usable) continue;   // told already
+        for (const Section& at_end : body.sections("end"))
+            read_pose_of(builder, name->text, at_end, "end", boundary.end);
+    }
+}
+
+void check_ends(Builder& builder, const Conditions& boundary, StartPolicy policy, Prepared& prepared)
+{
+    const auto close = [&](State state, Known given) {
+        if (given == Known::nothing) return;
+        if (given == Known::positions)
+            for (Matrix34& V : state.V) V = {};   // a guess, which need not fit
+        const Model model =
+            builder.model().has_events() ? acting_at(builder.model(), state.t).model : builder.model();
+        const ClosedStart closed = prepared.close(model, state, policy);
+        if (given == Known::state) refuse_singular_start(model, closed);
+    };
+    builder.guard("start", [&] { close(boundary.start, boundary.at_start); });
+    builder.guard("end", [&] {
+        try {
+            close(boundary.end, boundary.at_end);
+        } catch (const InputError& error) {
+            throw at_the_end(builder.model(), error);
+        }
+    });
+}
+
+}   // namespace livens

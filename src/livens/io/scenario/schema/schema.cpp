@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "livens/io/scenario/schema/schema.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "livens/base/text.h"
+
+namespace livens {
+
+namespace {
+
+Table time_table()
+{
+    return {
+        "[time]",
+        "What is solved: from `start` to `end`, to an `accuracy`, from which time elements follow, or in at "
+        "least `elements` of them.",
+        {Key{"start", types::number, "Of the motion.", "s", "0"},
+         Key{"end", types::number, "Of the motion, after `start`.", "s"}.needed(),
+         Key{"elements", types::integer,
+             "Of equal length (end - start) / elements; output times and jumps of loads add some where they "
+             "do not fall on that grid. Instead of `accuracy`."}
+             .within({1, max_elements}),
+         Key{"output", types::number_or_list,
+             "Interval between output times (start and end are output times, too), or their ascending list. "
+             "They become element ends, where results are most accurate. Default: all element ends.", "s"},
+         choice("breaks", {"from_loads", "ignore"}, "Whether elements end where loads jump or bend."),
+         Key{"accuracy", types::number,
+             "Largest error of centres of mass, in lengths of the model, and of orientations, in rad, at all "
+             "element ends; elements and, unless it is stated, the degree follow from it. For the families "
+             "lobatto and radau with the state at the start. Default where neither `elements` nor `knots` of "
+             "`[method]` stand.", "", "1e-6"}
+             .within({0, 0.1, true})}};
+}
+
+void collect(const Table& table, std::vector<const Table*>& all)
+{
+    if (std::ranges::find(all, &table) != all.end()) return;   // kinds share tables
+    all.push_back(&table);
+    for (const Key* key : table.keys_of(any_kind))
+        if (key->child != nullptr) collect(*key->child, all);
+}
+
+}   // namespace
+
+Key choice(std::string_view name, Words words, const std::string& doc)
+{
+    return {name, types::choice, doc, "", words.front(), false, words};
+}
+
+Key Key::holding(Table t) && { return child = std::make_shared<const Table>(std::move(t)), std::move(*this); }
+
+const Table& root_table()
+{
+    static const Table table{
+        "top of the file",
+        "Stands before the first table header; `format` comes first.",
+        {Key{"format", types::integer, "Version of this file format."}.needed().within({1, 1}),
+         Key{"title", types::text, "One line for people; copied to results."},
+         Key{"gravity", types::vector3, "Acceleration of free fall, world axes.", "m/s^2", "[0, 0, 0]"},
+         Key{"body", types::tables, "Bodies, at least one."}.needed().holding(body_table()),
+         Key{"joint", types::tables, "Joints."}.holding(joint_table()),
+         Key{"drive", types::tables, "Coordinates, distances and points that follow time."}.holding(
+             drive_table()),
+         Key{"load", types::tables, "Forces, torques and springs."}.holding(load_table()),
+         Key{"sensor", types::tables, "What is read of the motion."}.holding(sensor_table()),
+         Key{"time", types::table, "Interval, elements and output."}.needed().holding(time_table()),
+         Key{"method", types::table, "Discretisation and its tolerances."}.holding(method_table()),
+         Key{"start", types::table, "Conditions at the start."}.holding(start_table()),
+         Key{"end", types::table, "Conditions at the end of time."}.holding(end_table())}};
+    return table;
+}
+
+std::vector<const Table*> schema_tables()
+{
+    std::vector<const Table*> all;
+    collect(root_table(), all);
+    return all;
+}
+
+Table Table::with_kinds(std::string_view choosing_key, std::vector<Kind> all) &&
+{
+    chooser = choosing_key;
+    kinds = std::move(all);
+    for (Key& key : keys) {
+        if (key.name != chooser) continue;
+        for (const Kind& kind : kinds) {
+            key.choices.push_back(kind.word);
+            key.doc += (key.doc.empty() ? "" : "; ") + std::string(kind.word) + ": " + std::string(kind.doc);
+        }
+        key.doc += ".";
+    }
+    return std::move(*this);
+}
+
+std::vector<const Key*> Table::keys_of(int kind) const
+{
+    std::vector<const Key*> all;
+    for (const Key& key : keys) all.push_back(&key);
+    for (std::size_t i = 0; i < kinds.size(); ++i)
+        if (kind == any_kind || kind == static_cast<int>(i))
+            for (const Key& key : kinds[i].keys) all.push_back(&key);
+    return all;
+}
+
+std::string Range::text() const
+{
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    const auto number = [](double x) {   // whole numbers without exponent
+        const bool is_whole = x == std::floor(x) && std::abs(x) < 1e15;
+        return is_whole ? std::to_string(static_cast<long long>(x)) : to_text(x);
+    };
+    const std::string below = (above ? "> " : ">= ") + number(low);
+    if (low == high) return number(low);
+    if (high == infinity) return below;
+    if (low == -infinity) return "<= " + number(high);
+    return above ? below + " and <= " + number(high) : number(low) + " to " + number(high);
+}
+
+const Key* find_key(const std::vector<const Key*>& keys, std::string_view name)
+{
+    const auto found = std::find_if(keys.begin(), keys.end(), [&](const Key* k) { return k->name == name; });
+    return found == keys.end() ? nullptr : *found;
+}
+
+int index_of(const Words& words, std::string_view word)
+{
+    const auto found = std::find(words.begin(), words.end(), word);
+    return found == words.end() ? -1 : static_cast<int>(found - words.begin());
+}
+
+std::string quoted_alternatives(const Words& words)
+{
+    std::string text;
+    for (const std::string_view& word : words) {
+        if (!text.empty()) text += &word == &words.back() ? " or " : ", ";
+        text += '"' + std::string(word) + '"';
+    }
+    return text;
+}
+
+std::string describe_type(const Key& key)
+{
+    std::string text(key.type.words);
+    if (!key.unit.empty()) text += " in " + std::string(key.unit);
+    if (!key.other_unit.empty()) text += " or " + std::string(key.other_unit);
+    const bool is_one = key.type.form == Form::number || key.type.form == Form::integer;
+    if (key.range.is_limited())
+        text += (is_one && key.type.other != Form::table ? ", " : ", each ") + key.range.text();
+    if (!key.choices.empty()) text += (text.empty() ? "" : ", or ") + quoted_alternatives(key.choices);
+    return text;
+}
+
+std::vector<double> fallback_numbers(const Key& key)
+{
+    std::vector<double> numbers;
+    const char* p = key.fallback.data();
+    const char* const end = p + key.fallback.size();
+    while (p < end) {
+        double x = 0;
+        const std::from_chars_result r = std::from_chars(p, end, x);
+        if (r.ec == std::errc()) numbers.push_back(x);
+        p = r.ec == std::errc() ? r.ptr : p + 1;
+    }
+    return numbers;
+}
+
+}   // namespace livens

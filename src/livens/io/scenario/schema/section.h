@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A table of the scenario after the schema has been applied: known keys with values in SI units.
+#pragma once
+
+#include <initializer_list>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "livens/base/linear.h"
+#include "livens/io/scenario/schema/schema.h"
+#include "livens/io/scenario/text/document.h"
+#include "livens/io/scenario/text/findings.h"
+
+namespace livens {
+
+class Section;
+
+/// What one key was given; which member counts follows from the key's type.
+struct Value {
+    const Key* key = nullptr;
+    const Node* node = nullptr;
+    bool is_valid = false;
+    std::vector<double> numbers;      ///< SI; rows one after the other; truth: 0 or 1
+    int n_rows = 0;                   ///< 0: a plain number
+    bool has_unit = false;            ///< it was a text with the key's unit
+    bool has_other_unit = false;      ///< it was one with the key's other unit
+    std::string text;                 ///< text, choice
+    std::vector<std::string> texts;   ///< names
+    std::vector<Section> sections;    ///< table, tables, number_or_table
+};
+
+class Section {
+public:
+    /// Applies the schema: unknown, misplaced, mistyped, missing keys and values out of range go to
+    /// `findings`. `label` names the table in messages: "body 'upper'".
+    Section(const Node& node, const Table& table, std::string label, Findings& findings);
+
+    const std::string& label() const { return label_; }
+    SourceLocation place() const { return node_->place; }
+    /// Nothing was wrong with this table and those inside it.
+    bool is_valid() const { return is_valid_; }
+    /// Index of its kind in the schema's table; any_kind if there is none or the file's word is none.
+    int kind() const { return kind_; }
+    /// Whether its kind has the key, given or not.
+    bool takes(std::string_view key) const { return schema_key(key) != nullptr; }
+
+    /// The key stands in the file, in order or not.
+    bool has(std::string_view key) const { return value(key) != nullptr; }
+    /// The key's value; null if it is missing or not valid.
+    const Value* find(std::string_view key) const;
+    /// Of the value; of the table if the key is missing.
+    SourceLocation place(std::string_view key) const;
+
+    // Values, or the schema's fallback (zero without one) where the key is missing or not valid.
+    double number(std::string_view key) const;
+    int integer(std::string_view key) const { return static_cast<int>(number(key)); }
+    bool truth(std::string_view key) const { return number(key) != 0; }
+    std::string text(std::string_view key) const;
+    Vector3 vector(std::string_view key) const { return row(key, 0); }
+    Vector3 row(std::string_view key, int i) const;
+    /// Rows of the value as the columns of a matrix: [d1, d2, d3].
+    Matrix3 columns(std::string_view key) const;
+    /// The enumerator that stands where the word does among the key's choices.
+    template <class Enum>
+    Enum pick(std::string_view key) const
+    {
+        return static_cast<Enum>(index_of(schema_key(key)->choices, text(key)));
+    }
+    std::span<const Section> sections(std::string_view key) const;
+
+    /// All keys with values, for the table of places.
+    const std::vector<Value>& values() const { return values_; }
+
+    // What else may be wrong. All return false after an error.
+    /// An error at the value of a key, or at the table without one.
+    bool error(std::string_view key, std::string_view code, std::string message, Advice advice = {}) const;
+    /// Reports the second of those keys that stands here.
+    bool at_most_one(std::initializer_list<std::string_view> keys, std::string_view code) const;
+    /// Reports all of those keys that stand here, with the reason.
+    bool refuse(std::initializer_list<std::string_view> keys, std::string_view code,
+                const std::string& reason) const;
+
+private:
+    const Value* value(std::string_view key) const;
+    const Key* schema_key(std::string_view key) const { return find_key(table_->keys_of(kind_), key); }
+    std::vector<double> numbers(std::string_view key) const;
+    void read(const Entry& entry, const std::vector<const Key*>& keys);
+    void report_unknown(const Entry& entry, const std::vector<const Key*>& keys) const;
+
+    const Table* table_;
+    const Node* node_;
+    std::string label_;
+    Findings* findings_;
+    int kind_;
+    std::vector<Value> values_;
+    bool is_valid_ = true;
+};
+
+/// The table `key` of a section; null if it is not there.
+const Section* only_section(const Section& section, std::string_view key);
+
+}   // namespace livens

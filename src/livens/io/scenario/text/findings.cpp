@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "livens/io/scenario/text/findings.h"
+
+#include <algorithm>
+#include <cassert>
+#include <tuple>
+
+namespace livens {
+
+namespace {
+
+constexpr int most_shown = 20;
+constexpr int most_kept = 2000;            // of a file with a million mistakes
+constexpr std::size_t longest_word = 64;   // the distance costs the product of the lengths
+
+int distance(std::string_view a, std::string_view b)
+{
+    const std::size_t n = b.size() + 1;
+    std::vector<int> rows(3 * n);
+    const auto at = [&](std::size_t i, std::size_t j) -> int& { return rows[(i % 3) * n + j]; };
+    for (std::size_t i = 0; i <= a.size(); ++i) {
+        for (std::size_t j = 0; j < n; ++j) {
+            if (i == 0 || j == 0) {
+                at(i, j) = static_cast<int>(i + j);
+                continue;
+            }
+            const int replaced = at(i - 1, j - 1) + (a[i - 1] == b[j - 1] ? 0 : 1);
+            int d = std::min({replaced, at(i - 1, j) + 1, at(i, j - 1) + 1});
+            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+                d = std::min(d, at(i - 2, j - 2) + 1);
+            at(i, j) = d;
+        }
+    }
+    return at(a.size(), b.size());
+}
+
+}   // namespace
+
+void Findings::add(Severity severity, const SourceLocation& place, std::string_view code, std::string message,
+                   Advice advice)
+{
+    assert(!explain(code).empty() && "every code has a page");
+    if (severity == Severity::error) ++n_errors_;
+    if (found_.size() >= most_kept) {
+        ++n_dropped_;
+        return;
+    }
+    found_.push_back({severity,
+                      std::string(code),
+                      std::move(message),
+                      {},
+                      place.line,
+                      place.column,
+                      std::max(1, place.length),
+                      std::move(advice.note),
+                      std::move(advice.help)});
+}
+
+bool Findings::error(const SourceLocation& place, std::string_view code, std::string message, Advice advice)
+{
+    add(Severity::error, place, code, std::move(message), std::move(advice));
+    return false;
+}
+
+void Findings::warning(const SourceLocation& place, std::string_view code, std::string message, Advice advice)
+{
+    add(Severity::warning, place, code, std::move(message), std::move(advice));
+}
+
+std::vector<Diagnostic> Findings::take(const std::string& file)
+{
+    const auto in_file = [](const Diagnostic& a, const Diagnostic& b) {
+        return std::tie(a.line, a.column) < std::tie(b.line, b.column);
+    };
+    const auto by_severity = [](const Diagnostic& a, const Diagnostic& b) { return a.severity < b.severity; };
+    std::stable_sort(found_.begin(), found_.end(), in_file);
+    if (found_.size() > most_shown) {
+        std::stable_sort(found_.begin(), found_.end(), by_severity);
+        n_dropped_ += static_cast<int>(found_.size()) - most_shown;
+        found_.resize(most_shown);
+        std::stable_sort(found_.begin(), found_.end(), in_file);
+        std::string& note = found_.back().note;
+        note += (note.empty() ? "" : "; ") + std::to_string(n_dropped_) + " more are not shown";
+    }
+    for (Diagnostic& d : found_) d.file = file;
+    return std::move(found_);
+}
+
+std::string_view closest(std::string_view word, std::span<const std::string_view> candidates)
+{
+    if (word.empty() || word.size() > longest_word) return {};
+    std::string_view best;
+    int least = std::max(word.size() < 4 ? 1 : 2, static_cast<int>(word.size()) / 3) + 1;
+    for (const std::string_view candidate : candidates) {
+        if (candidate.size() > longest_word) continue;
+        const int d = distance(word, candidate);
+        if (d < least) {
+            least = d;
+            best = candidate;
+        }
+    }
+    return best;
+}
+
+std::string suggest(std::string_view word, std::span<const std::string_view> candidates)
+{
+    const std::string_view best = closest(word, candidates);
+    if (!best.empty()) return "did you mean '" + std::string(best) + "'?";
+    if (candidates.empty()) return {};
+    constexpr std::size_t most_listed = 30;
+    std::string text = "known here: ";
+    for (std::size_t i = 0; i < std::min(candidates.size(), most_listed); ++i) {
+        if (i > 0) text += ", ";
+        text += candidates[i];
+    }
+    if (candidates.size() > most_listed) text += ", ...";
+    return text;
+}
+
+}   // namespace livens

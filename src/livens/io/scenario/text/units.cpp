@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "livens/io/scenario/text/units.h"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <numbers>
+
+#include "livens/base/text.h"
+
+namespace livens {
+
+namespace {
+
+struct Symbol {
+    std::string_view name;
+    Unit unit;
+    bool takes_prefix = true;
+};
+
+constexpr double pi = std::numbers::pi;
+constexpr std::array symbols{
+    Symbol{"1", {}, false},
+    Symbol{"m", {1, 1, 0, {1, 0, 0, 0}}},
+    Symbol{"g", {1, 1, -3, {0, 1, 0, 0}}},
+    Symbol{"s", {1, 1, 0, {0, 0, 1, 0}}},
+    Symbol{"N", {1, 1, 0, {1, 1, -2, 0}}},
+    Symbol{"J", {1, 1, 0, {2, 1, -2, 0}}},
+    Symbol{"W", {1, 1, 0, {2, 1, -3, 0}}},
+    Symbol{"Pa", {1, 1, 0, {-1, 1, -2, 0}}},
+    Symbol{"Hz", {1, 1, 0, {0, 0, -1, 0}}},
+    Symbol{"rad", {1, 1, 0, {0, 0, 0, 1}}},
+    Symbol{"t", {1, 1, 3, {0, 1, 0, 0}}, false},
+    Symbol{"min", {60, 1, 0, {0, 0, 1, 0}}, false},
+    Symbol{"h", {3600, 1, 0, {0, 0, 1, 0}}, false},
+    Symbol{"deg", {pi, 180, 0, {0, 0, 0, 1}}, false},
+    Symbol{"rev", {2 * pi, 1, 0, {0, 0, 0, 1}}, false},
+    Symbol{"rpm", {2 * pi, 60, 0, {0, 0, -1, 1}}, false},
+};
+
+struct Prefix {
+    std::string_view name;
+    int power_of_ten;
+};
+constexpr std::array prefixes{
+    Prefix{"n", -9}, Prefix{"u", -6}, Prefix{"\xc2\xb5", -6}, Prefix{"\xce\xbc", -6}, Prefix{"m", -3},
+    Prefix{"c", -2}, Prefix{"d", -1}, Prefix{"k", 3},         Prefix{"M", 6},         Prefix{"G", 9}};
+constexpr int largest_exponent = 9;
+constexpr std::string_view known_units =
+    "units are m, g, s, N, J, W, Pa, Hz, rad with the prefixes n u m c d k M G, and t, "
+    "min, h, deg, rev, rpm";
+
+std::optional<Unit> find_symbol(std::string_view name)
+{
+    for (const Symbol& s : symbols)
+        if (s.name == name) return s.unit;
+    for (const Prefix& p : prefixes) {
+        if (name.substr(0, p.name.size()) != p.name) continue;
+        for (const Symbol& s : symbols) {
+            if (!s.takes_prefix || s.name != name.substr(p.name.size())) continue;
+            Unit unit = s.unit;
+            unit.power_of_ten += p.power_of_ten;
+            return unit;
+        }
+    }
+    return std::nullopt;
+}
+
+void multiply(Unit& unit, const Unit& factor, int exponent)
+{
+    for (int i = 0; i < std::abs(exponent); ++i) {
+        unit.numerator *= exponent > 0 ? factor.numerator : factor.denominator;
+        unit.denominator *= exponent > 0 ? factor.denominator : factor.numerator;
+    }
+    unit.power_of_ten += exponent * factor.power_of_ten;
+    for (std::size_t i = 0; i < unit.dimension.size(); ++i)
+        unit.dimension[i] += exponent * factor.dimension[i];
+}
+
+/// unit = product [ "/" ( factor | "(" product ")" ) ];  product = factor { (" " | "*" | "·") factor };
+/// factor = symbol [ "^" [ "-" ] digit ]
+class UnitParser {
+public:
+    explicit UnitParser(std::string_view text) : rest_(text) {}
+
+    std::optional<Unit> parse(std::string& reason)
+    {
+        Unit unit;
+        product(unit, 1);
+        if (reason_.empty() && take("/")) quotient(unit);
+        skip_blanks();
+        if (reason_.empty() && !rest_.empty())
+            reason_ = "'" + std::string(rest_) + "' cannot be read as a unit";
+        reason = reason_;
+        return reason_.empty() ? std::optional(unit) : std::nullopt;
+    }
+
+private:
+    void skip_blanks()
+    {
+        while (!rest_.empty() && (rest_.front() == ' ' || rest_.front() == '\t')) rest_.remove_prefix(1);
+    }
+    bool take(std::string_view word)
+    {
+        skip_blanks();
+        if (rest_.substr(0, word.size()) != word) return false;
+        rest_.remove_prefix(word.size());
+        return true;
+    }
+    bool ends_product()
+    {
+        skip_blanks();
+        return rest_.empty() || rest_.front() == '/' || rest_.front() == ')';
+    }
+
+    void product(Unit& unit, int sign)
+    {
+        factor(unit, sign);
+        while (reason_.empty() && (take("*") || take("\xc2\xb7") || !ends_product())) factor(unit, sign);
+    }
+
+    void quotient(Unit& unit)
+    {
+        if (take("(")) {
+            product(unit, -1);
+            if (reason_.empty() && !take(")")) reason_ = "a parenthesis is not closed";
+        } else {
+            factor(unit, -1);
+        }
+        skip_blanks();
+        if (reason_.empty() && !rest_.empty())
+            reason_ = "what a slash divides by is ambiguous: put it in parentheses, as in kg/(m s)";
+    }
+
+    void factor(Unit& unit, int sign)
+    {
+        skip_blanks();
+        const std::size_t end = std::min(rest_.find_first_of(" \t*/^()\xc2"), rest_.size());
+        // The first byte of a micro sign is that of a middle dot.
+        const std::size_t length = rest_.substr(0, 2) == "\xc2\xb5"
+                                       ? 2 + std::min(rest_.substr(2).find_first_of(" \t*/^()\xc2"),
+                                                      rest_.size() - 2)
+                                       : end;
+        const std::string_view name = rest_.substr(0, length);
+        const std::optional<Unit> found = find_symbol(name);
+        if (!found) {
+            reason_ = name.empty() ? "a unit is missing"
+                                   : "'" + std::string(name) + "' is no unit known here";
+            return;
+        }
+        rest_.remove_prefix(length);
+        int exponent = 1;
+        if (!rest_.empty() && rest_.front() == '^') {
+            const std::from_chars_result r = std::from_chars(rest_.data() + 1, rest_.data() + rest_.size(),
+                                                             exponent);
+            if (r.ec != std::errc() || exponent < -largest_exponent || exponent > largest_exponent) {
+                reason_ = "an exponent is a whole number from -9 to 9";
+                return;
+            }
+            rest_.remove_prefix(static_cast<std::size_t>(r.ptr - rest_.data()));
+        }
+        multiply(unit, *found, sign * exponent);
+    }
+
+    std::string_view rest_;
+    std::string reason_;
+};
+
+double to_si(double number, const Unit& unit)
+{
+    const double ten = std::pow(10.0, std::abs(unit.power_of_ten));   // exact up to 10^22
+    return unit.power_of_ten < 0 ? number * unit.numerator / (unit.denominator * ten)
+                                 : number * unit.numerator * ten / unit.denominator;
+}
+
+}   // namespace
+
+std::optional<Unit> parse_unit(std::string_view text, std::string& reason)
+{
+    return UnitParser(text).parse(reason);
+}
+
+Quantity parse_quantity(std::string_view text, std::string_view si_unit)
+{
+    const std::string wanted(si_unit);
+    std::string_view rest = text.substr(std::min(text.find_first_not_of(" \t"), text.size()));
+    if (rest.size() > 1 && rest[0] == '+' && rest[1] != '-') rest.remove_prefix(1);
+    double number = 0;
+    const std::from_chars_result r = std::from_chars(rest.data(), rest.data() + rest.size(), number);
+    if (r.ec == std::errc::result_out_of_range) return {0, "the number does not fit into 64 bits", ""};
+    if (r.ec != std::errc())
+        return {0, "it does not begin with a number", "write it like \"1.5 " + wanted + "\""};
+    if (!std::isfinite(number)) return {0, "the number is not finite", ""};
+    rest.remove_prefix(static_cast<std::size_t>(r.ptr - rest.data()));
+    rest.remove_prefix(std::min(rest.find_first_not_of(" \t"), rest.size()));
+    if (rest.empty())
+        return {
+            0, "the unit is missing",
+            "leave out the quotes for " + wanted + ", or write \"" + to_text(number) + " " + wanted + "\""};
+    std::string reason;
+    const std::optional<Unit> unit = parse_unit(rest, reason);
+    if (!unit) return {0, reason, std::string(known_units)};
+    const std::optional<Unit> expected = parse_unit(si_unit, reason);
+    if (!expected || unit->dimension != expected->dimension)
+        return {0, "'" + std::string(rest) + "' is not a unit of this quantity",
+                "it is measured in " + wanted};
+    const double value = to_si(number, *unit);
+    if (!std::isfinite(value)) return {0, "the number does not fit into 64 bits", ""};
+    return {value, "", ""};
+}
+
+}   // namespace livens

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "livens/multibody/joints/drives.h"
+
+#include <limits>
+#include <utility>
+
+#include "livens/base/elementary.h"
+#include "livens/base/error.h"
+#include "livens/multibody/joints/joint_frame.h"
+#include "livens/multibody/wording.h"
+#include "livens/time/time_laws.h"
+
+namespace livens {
+
+namespace {
+
+double value_of(const PairForm& form, const Configurations& X)
+{
+    return form_value(form, form.body_i, form.body_j, X);
+}
+
+}   // namespace
+
+/// An angle q = atan2(s, c) follows f by cos(f) s - sin(f) c = 0, which also admits half a turn more.
+Joint driven_coordinate(const std::string& name, const Joint& joint, const NamedCoordinate& coordinate,
+                        const TimeFunction& law, const Configurations& X)
+{
+    const std::vector<PairForm>& forms = coordinate.coordinate.forms;
+    Joint driven;
+    driven.name = name;
+    driven.type = "drive";
+    driven.first = joint.first;
+    driven.second = joint.second;
+    driven.point_first = joint.point_first;
+    driven.point_second = joint.point_second;
+    ConstraintRow row;
+    row.body_i = forms[0].body_i;
+    row.body_j = forms[0].body_j;
+    row.label = "driven " + coordinate.name;
+    if (!coordinate.coordinate.is_angle()) {
+        const TimeFunction raw = shifted(law, value_of(forms[0], X) - coordinate.at_stated);
+        static_cast<PairForm&>(row) = forms[0];
+        QuadraticForm one;
+        one.c = -1;
+        row.drives.push_back({raw, one});
+        driven.rows = {row};
+        return driven;
+    }
+    const double now = arc_tangent(value_of(forms[1], X), value_of(forms[0], X));
+    const TimeFunction angle = shifted(law, now - coordinate.at_stated);
+    const auto sine = [=](Instant at) {
+        const TimeValue f = angle(at);
+        const auto [s, c] = sine_cosine(f.value);
+        return TimeValue{s, c * f.first, c * f.second - s * f.first * f.first};
+    };
+    const auto cosine = [=](Instant at) {
+        const TimeValue f = angle(at);
+        const auto [s, c] = sine_cosine(f.value);
+        return TimeValue{c, -s * f.first, -s * f.second - c * f.first * f.first};
+    };
+    const auto negative = [=](Instant at) {
+        const TimeValue f = sine(at);
+        return TimeValue{-f.value, -f.first, -f.second};
+    };
+    ConstraintRow branch = row;
+    row.drives = {{{cosine, law.breaks()}, forms[1]}, {{negative, law.breaks()}, forms[0]}};
+    branch.drives = {{{cosine, law.breaks()}, forms[0]}, {{sine, law.breaks()}, forms[1]}};
+    driven.rows = {row};
+    driven.branches = {branch};
+    return driven;
+}
+
+Joint driven_distance(const std::string& name, int first, const Vector3& point_first, int second,
+                      const Vector3& point_second, const TimeFunction& length, const Configurations& X)
+{
+    JointFrame frame{point_first, point_second};
+    const double now = norm(X[second] * point(point_second) - X[first] * point(point_first));
+    Joint joint = start_joint(name, "drive", first, second, frame, 1);
+    if (!(now > 0))
+        throw InputError({"drive-distance", "drive[" + name + "]", "the points of a driven distance coincide",
+                          to_text(now), "> 0", "they have no direction to be held along",
+                          "drive a point, or a joint's displacement"});
+    const auto positive = [length](Instant at) {   // a row of squares would take the other sign as well
+        const TimeValue l = length(at);
+        return l.value > 0 ? l : TimeValue{std::numeric_limits<double>::quiet_NaN(), 0, 0};
+    };
+    joint.rows = {driven_distance_row(joint.first, point(joint.point_first), joint.second,
+                                      point(joint.point_second), {positive, length.breaks()}, now)};
+    return joint;
+}
+
+Joint driven_point(const std::string& name, int body, const Vector3& at,
+                   const std::array<TimeFunction, 3>& path, const Configurations& X, double scale)
+{
+    const Vector3 now = X[body] * point(at);
+    JointFrame frame{now, at};
+    Joint joint = start_joint(name, "drive", world, body, frame, scale);
+    joint.rows = driven_point_rows(world, point(now), body, point(at), path, scale);
+    return joint;
+}
+
+Joint driven_body(const std::string& name, int body, const Vector3& at,
+                  const std::array<TimeFunction, 3>& path, const Configurations& X, double scale)
+{
+    Joint joint = driven_point(name, body, at, path, X, scale);
+    const Joint held = weld(name, world, body, {joint.point_first, at}, world_configuration, X[body], scale);
+    joint.rows.insert(joint.rows.end(), held.rows.begin() + 3, held.rows.end());
+    joint.branches = held.branches;
+    return joint;
+}
+
+}   // namespace livens

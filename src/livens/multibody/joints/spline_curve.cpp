@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "livens/multibody/joints/spline_curve.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+
+#include "livens/base/elementary.h"
+#include "livens/base/error.h"
+#include "livens/base/text.h"
+#include "livens/time/quadrature.h"
+#include "livens/time/time_function.h"
+#include "livens/time/time_laws.h"
+
+namespace livens {
+
+namespace {
+
+constexpr int steps_a_piece = 8;   // of the normals' turn, whose error is rounding then
+constexpr int overlap = 30;        // knots, by which what a spline does at its ends has died away
+
+[[noreturn]] void refuse(const std::string& message, const std::string& value, const std::string& bound,
+                         const std::string& code = "curve-points")
+{
+    throw InputError({code, "joint.curve", message, value, bound, "", ""});
+}
+
+Vector3 unit(const Vector3& v) { return 1 / norm(v) * v; }
+
+class Spline {
+public:
+    Spline(const std::vector<Vector3>& points, bool is_closed) : is_closed_(is_closed)
+    {
+        const int n = static_cast<int>(points.size()), least = is_closed ? 3 : 2;
+        if (n < least)
+            refuse("a curve has too few points", std::to_string(n), "at least " + std::to_string(least));
+        for (const Vector3& point : points)
+            if (!std::isfinite(norm(point))) refuse("a curve needs finite points", "", "");
+        // A closed one goes on beyond its seam, far enough for both sides of it to be the same.
+        const int around = is_closed ? overlap : 0, n_knots = n + (is_closed ? 1 : 0) + 2 * around;
+        const auto point = [&](int k) {
+            return points[static_cast<std::size_t>((k - around + n * overlap) % n)];
+        };
+        std::vector<double> knots{0};
+        for (int k = 1; k < n_knots; ++k) {
+            const double chord = norm(point(k) - point(k - 1));
+            if (!(chord > 0))
+                refuse("a curve has a point twice in a row", "point " + std::to_string(k + 1), "");
+            knots.push_back(knots.back() + chord);
+        }
+        const double begin = knots[static_cast<std::size_t>(around)];
+        for (double& knot : knots) knot -= begin;
+        first_ = 0;
+        last_ = knots[static_cast<std::size_t>(n_knots - 1 - around)];
+        keep_knots(knots, around);
+        for (std::size_t c = 0; c < 3; ++c) {
+            std::vector<double> values;
+            for (int k = 0; k < n_knots; ++k) values.push_back(point(k)[static_cast<int>(c)]);
+            components_[c] = straight_on(spline_table(knots, std::move(values)), knots.front(), knots.back());
+        }
+        for (int k = around; k + 1 < n_knots - around; ++k)
+            for (int i = 0; i < steps_a_piece; ++i)
+                places_.push_back(knots[k] + (knots[k + 1] - knots[k]) * i / steps_a_piece);
+        places_.push_back(last_);
+        carry_normals();
+    }
+
+    double last() const { return last_; }
+    /// Of one round, or with both ends.
+    const std::vector<double>& knots() const { return knots_; }
+
+    /// The parameter on this round.
+    double inside(double s) const { return is_closed_ ? s - last_ * std::floor(s / last_) : s; }
+
+    CurvePoint at(double s) const
+    {
+        s = inside(s);
+        const auto next = std::upper_bound(places_.begin() + 1, places_.end() - 1, s);
+        const auto sample = static_cast<std::size_t>(next - places_.begin() - 1);
+        CurvePoint here = shape(s);
+        here.normals[0] = carried(normals_[sample], places_[sample], s);
+        here.normals[1] = cross(unit(here.first), here.normals[0]);
+        return here;
+    }
+
+    /// Without normals.
+    CurvePoint shape(double s) const
+    {
+        CurvePoint here;
+        for (std::size_t c = 0; c < 3; ++c) {
+            const TimeValue value = components_[c]({s});
+            const int i = static_cast<int>(c);
+            here.x[i] = value.value;
+            here.first[i] = value.first;
+            here.second[i] = value.second;
+        }
+        return here;
+    }
+
+private:
+    /// The normal carried on from where it is n: with the part a of n across the tangent t and b = t x a it
+    /// is cos(angle) a + sin(angle) b, where angle' = -a'.b = (n . t) (gamma'' . b) / (|gamma'| |n - (n . t)
+    /// t|).
+    Vector3 carried(const Vector3& n, double from, double until) const
+    {
+        struct Across {
+            Vector3 a{}, b{};
+            double turning = 0;
+        };
+        const auto across = [&](double s) {
+            const CurvePoint here = shape(s);
+            const Vector3 t = unit(here.first), part = n - dot(n, t) * t;
+            const Vector3 a = unit(part), b = cross(t, a);
+            return Across{a, b, dot(n, t) * dot(here.second, b) / (norm(here.first) * norm(part))};
+        };
+        double angle = 0;
+        for (std::size_t i = 0; i < rule_.points.size(); ++i)
+            angle +=
+                (until - from) * rule_.weights[i] * across(from + rule_.points[i] * (until - from)).turning;
+        const Across there = across(until);
+        const auto [sine, cosine] = sine_cosine(angle);
+        return cosine * there.a + sine * there.b;
+    }
+
+    void keep_knots(const std::vector<double>& knots, int around)
+    {
+        if (!is_closed_) {
+            knots_ = knots_of_spline(knots);
+            return;
+        }
+        knots_.assign(knots.begin() + around, knots.end() - around - 1);   // the seam is its first
+    }
+
+    /// The first normal lies in the plane of the curve where it has one.
+    void carry_normals()
+    {
+        Vector3 plane{};
+        double widest = 0;
+        const Vector3 begin = unit(shape(first_).first);
+        for (const double s : places_) {
+            const CurvePoint here = shape(s);
+            if (!(norm(here.first) > 0.05))   // by chord lengths it is one where the curve is straight
+                refuse("the curve turns back on itself", "at the parameter " + to_text(s, 6),
+                       "more points there", "curve-straight-back");
+            const Vector3 normal = cross(begin, here.first);
+            if (norm(normal) > widest) {
+                widest = norm(normal);
+                plane = normal;
+            }
+        }
+        if (widest < 1e-9) {   // a straight line
+            const Vector3 x{1, 0, 0}, y{0, 1, 0};
+            plane = cross(begin, std::abs(begin[0]) < 0.7 ? x : y);
+        }
+        normals_.push_back(cross(unit(plane), begin));
+        for (std::size_t i = 1; i < places_.size(); ++i)
+            normals_.push_back(carried(normals_.back(), places_[i - 1], places_[i]));
+    }
+
+    std::array<TimeFunction, 3> components_;
+    Quadrature rule_ = gauss(5);
+    bool is_closed_;
+    double first_ = 0, last_ = 0;
+    std::vector<double> knots_;
+    std::vector<double> places_;
+    std::vector<Vector3> normals_;   ///< there
+};
+
+}   // namespace
+
+Curve spline_curve(const std::vector<Vector3>& points, bool is_closed)
+{
+    const auto spline = std::make_shared<const Spline>(points, is_closed);
+    return {[spline](double s) { return spline->at(s); },
+            0,
+            spline->last(),
+            is_closed,
+            [spline](double s) { return spline->shape(spline->inside(s)); },
+            spline->knots()};
+}
+
+}   // namespace livens

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "livens/multibody/loads/load_laws.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "livens/base/error.h"
+#include "livens/multibody/loads/load_coordinate.h"
+#include "livens/multibody/loads/load_values.h"
+
+namespace livens {
+
+namespace {
+
+/// What a load is made of, and how it is evaluated.
+struct Modulated {
+    LoadParts parts;
+    std::vector<LoadCoordinate> coordinates;
+
+    struct Seen {
+        std::vector<double> values, rates;
+        LawArguments arguments(Instant at) const { return {at, values, rates}; }
+    };
+
+    Seen look(const LoadArguments& arguments) const
+    {
+        Seen seen;
+        for (const LoadCoordinate& coordinate : coordinates) {
+            const CoordinateState q = coordinate.look(arguments);
+            seen.values.push_back(q.value);
+            seen.rates.push_back(q.rate);
+        }
+        return seen;
+    }
+
+    void forces(const LoadArguments& arguments, LoadForces& F) const
+    {
+        const Seen seen = look(arguments);
+        std::vector<double> factors(parts.units.size());
+        parts.law(seen.arguments(arguments.at), factors, {});
+        for (std::size_t k = 0; k < factors.size(); ++k) {
+            LoadForces unit{};
+            parts.units[k].forces(arguments, unit);
+            for (std::size_t b = 0; b < 2; ++b) F[b] += factors[k] * unit[b];
+        }
+    }
+
+    LawInside inside() const
+    {
+        const std::size_t m = coordinates.size();
+        LawInside law;
+        law.n_numbers = 2 * m;
+        law.n_factors = parts.units.size();
+        law.numbers = [all = *this, m](const LoadArguments& arguments, std::span<double> numbers) {
+            const Seen seen = all.look(arguments);
+            std::ranges::copy(seen.values, numbers.begin());
+            std::ranges::copy(seen.rates, numbers.begin() + static_cast<std::ptrdiff_t>(m));
+        };
+        law.factors = [of = parts.law, m](Instant at, std::span<const double> numbers,
+                                          std::span<double> factors) {
+            of({at, numbers.first(m), numbers.subspan(m)}, factors, {});
+        };
+        law.unit = [units = parts.units](const LoadArguments& arguments, std::size_t k, LoadForces& F) {
+            units[k].forces(arguments, F);
+        };
+        law.steepest = parts.steepest;
+        return law;
+    }
+
+    /// dF_b/dX_c = sum_k f_k dF_bk/dX_c + F_bk df_k/dX_c, and dF_b/dV_c likewise.
+    void tangent(const LoadArguments& arguments, LoadTangent& tangent) const
+    {
+        const std::size_t n = arguments.X.size(), m = coordinates.size();
+        const Seen seen = look(arguments);
+        std::vector<double> factors(parts.units.size()), slopes(factors.size() * 2 * m);
+        parts.law(seen.arguments(arguments.at), factors, slopes);
+        for (std::size_t k = 0; k < factors.size(); ++k) {
+            PerBody<Matrix34> by_X(n), by_V(n);
+            const double* slope = slopes.data() + 2 * m * k;
+            for (std::size_t i = 0; i < m; ++i)
+                coordinates[i].add_slopes(arguments, slope[i], slope[m + i], by_X, by_V);
+            LoadForces unit{};
+            parts.units[k].forces(arguments, unit);
+            LoadTangent of_unit(n);
+            if (parts.units[k].depends_on_X) parts.units[k].tangent(arguments, of_unit);
+            for (std::size_t b = 0; b < 2; ++b)
+                for (std::size_t c = 0; c < n; ++c) {
+                    tangent.X[b][c] += factors[k] * of_unit.X[b][c];
+                    add_outer(tangent.X[b][c], unit[b], by_X[c]);
+                    add_outer(tangent.V[b][c], unit[b], by_V[c]);
+                }
+        }
+    }
+};
+
+/// The bodies of the units, and behind them others that the law looks at.
+void collect_bodies(Load& load, const std::vector<LoadCoordinate>& coordinates)
+{
+    for (const LoadCoordinate& coordinate : coordinates)
+        for (const int body : coordinate.bodies())
+            if (body != world && std::ranges::find(load.bodies, body) == load.bodies.end())
+                load.bodies.push_back(body);
+}
+
+}   // namespace
+
+Load modulated(const std::string& name, const std::string& type, const LoadParts& parts,
+               const Configurations& X)
+{
+    const auto refuse = [&](const std::string& message) {
+        throw InputError({"load-empty", "load[" + name + "]", message, "", "", "", ""});
+    };
+    if (parts.units.empty() || !parts.law) refuse("a load needs units and a law");
+    for (const Load& unit : parts.units)
+        if (unit.bodies != parts.units[0].bodies || unit.depends_on_V)
+            refuse("units of a load act on the same bodies, whatever their velocity");
+    const std::vector<int>& bodies = parts.units[0].bodies;
+    Load load = start_load(name, type.c_str(), {bodies[0], bodies[1]});
+    Modulated all{parts, {}};
+    for (const LawCoordinate& q : parts.coordinates)
+        all.coordinates.emplace_back(q.coordinate, q.at_stated, X);
+    collect_bodies(load, all.coordinates);
+    for (std::size_t i = 0; i < all.coordinates.size(); ++i)
+        all.coordinates[i].place(load, parts.coordinates[i].is_needed);
+    load.depends_on_X = !parts.coordinates.empty();
+    load.depends_on_V = parts.depends_on_rates;
+    load.breaks = parts.breaks;
+    std::ranges::sort(load.breaks);
+    load.domain = parts.domain;
+    for (const Load& unit : parts.units) {
+        load.depends_on_X = load.depends_on_X || unit.depends_on_X;
+        for (std::size_t b = 0; b < 2; ++b)
+            load.needs_directors[b] = load.needs_directors[b] || unit.needs_directors[b];
+    }
+    load.forces = [all](const LoadArguments& arguments, LoadForces& F) { all.forces(arguments, F); };
+    load.tangent = [all](const LoadArguments& arguments, LoadTangent& tangent) {
+        all.tangent(arguments, tangent);
+    };
+    const auto energy = [&](const LawEnergy& of) -> std::function<double(const LoadArguments&)> {
+        if (!of) return nullptr;
+        return [all, of](const LoadArguments& arguments) {
+            return of(all.look(arguments).arguments(arguments.at));
+        };
+    };
+    for (const LawReading& reading : parts.readings)
+        load.readings.push_back({reading.name, reading.unit, energy(reading.value)});
+    load.is_smooth = parts.is_smooth;
+    if (!load.is_smooth) load.inside = all.inside();
+    load.guards = parts.guards.guards;
+    if (parts.guards.values)
+        load.guarded = [all](const LoadArguments& arguments, std::span<double> numbers) {
+            all.parts.guards.values(all.look(arguments).arguments(arguments.at), numbers);
+        };
+    load.bends_at_centre = static_cast<bool>(parts.guards.centre);
+    if (parts.guards.centre)
+        load.centre = [all](const LoadArguments& arguments) {
+            return all.parts.guards.centre(all.look(arguments).arguments(arguments.at));
+        };
+    load.potential = energy(parts.potential);
+    load.power = energy(parts.power);
+    return load;
+}
+
+LawReading factor_reading(const std::string& name, const std::string& unit, const LoadLaw& law, std::size_t k,
+                          std::size_t n_factors)
+{
+    return {name, unit, [law, k, n_factors](const LawArguments& at) {
+                std::vector<double> factors(n_factors);
+                law(at, factors, {});
+                return factors[k];
+            }};
+}
+
+Load unit_along(const std::string& name, const JointCoordinate& coordinate, const Configurations& X)
+{
+    LoadCoordinate along(coordinate, 0, X);
+    Load load = start_load(name, "unit", along.bodies());
+    along.place(load, false);   // its direction is the same in every turn
+    load.depends_on_X = true;
+    load.needs_directors = along.needs_directors();
+    load.forces = [along](const LoadArguments& arguments, LoadForces& F) {
+        along.add_forces(arguments, 1, F);
+    };
+    load.tangent = [along](const LoadArguments& arguments, LoadTangent& tangent) {
+        along.add_tangent(arguments, {1, 0, 0}, tangent);
+    };
+    return load;
+}
+
+}   // namespace livens

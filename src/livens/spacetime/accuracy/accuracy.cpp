@@ -1,0 +1,373 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A motion as accurate as is asked for: elements found while marching, judged by the second solution.
+#include "livens/spacetime/accuracy/accuracy.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "livens/base/elementary.h"
+#include "livens/base/text.h"
+#include "livens/multibody/body.h"
+#include "livens/spacetime/accuracy/measured_growth.h"
+#include "livens/spacetime/accuracy/second.h"
+#include "livens/spacetime/march/window_notes.h"
+#include "livens/spacetime/march/windows.h"
+#include "livens/spacetime/nodal/window.h"
+
+namespace livens {
+
+namespace {
+
+// Measured on 436 cases of twelve problems (docs/theory.md, "To an accuracy").
+constexpr double first_share = 0.03;   // of the accuracy: what the elements of the first try lose
+constexpr double target = 0.2;         // of the accuracy: what the next try aims at
+constexpr double hopeless = 30;        // times the accuracy: where a try is broken off
+constexpr int most_tries = 6;
+constexpr double well_helped = 0.5;    // error by the least before, whose elements lost three times more
+constexpr double finest = 1e-22;       // that an element can be asked to lose
+constexpr double blind_share = 0.01;   // of the tolerance, for the next try where the second solution failed
+constexpr int preferred_degree = 7, high_degree = 12, lowest_degree = 3;
+// Rounding of an element grows with its degree, and elements of half the length add less of it.
+constexpr int quiet_degree = 9;
+constexpr double far_off = 3;   // accuracies of a try in vain, after which another may be good by chance
+constexpr int preferred_radau = 5, high_radau = 8;
+constexpr double high_accuracy = 1e-9;   // below, the high degree
+constexpr double fine_accuracy = 1e-8;   // below, rounding counts
+constexpr double all_digits = 1e-15;     // of the iteration
+constexpr double fit = 1.5;              // times the time between stops: longer elements are of no use
+constexpr int looked_at = 8;             // elements that tell whether they fit between stops
+constexpr int least_piece = 16;          // elements that the second solution solves together
+
+const int& degree_of(const Method& method)
+{
+    if (const auto* radau = std::get_if<Radau>(&method)) return radau->degree;
+    return std::get<Lobatto>(method).degree;
+}
+int& degree_of(Method& method) { return const_cast<int&>(degree_of(std::as_const(method))); }
+
+/// What the iteration leaves in an element grows like rounding does, and would be the larger of the two.
+/// Elements of the high degree are few, so that it counts only where a try was not enough: or elements would
+/// be shortened in vain.
+SolveOptions with_tolerance_for(double accuracy, int tries, SolveOptions options)
+{
+    if (accuracy <= fine_accuracy && (tries > 1 || accuracy >= high_accuracy))
+        options.tolerance = std::min(options.tolerance, all_digits);
+    return options;
+}
+
+/// What becomes an element end: start, end, output times, jumps of loads and drives.
+std::vector<double> stops_of(const Model& model, const Span& span)
+{
+    std::vector<double> required = model.load_breaks();
+    required.insert(required.end(), span.output.begin(), span.output.end());
+    return make_time_mesh(span.start, span.end, 1, required).ends;
+}
+
+/// Of these, where a state is wanted and nothing jumps.
+std::vector<double> samples_of(const Model& model, const Span& span)
+{
+    std::vector<double> samples = span.output;
+    std::ranges::sort(samples);
+    const std::vector<double> breaks = model.load_breaks();
+    std::erase_if(samples, [&](double t) { return std::ranges::binary_search(breaks, t); });
+    return samples;
+}
+
+/// One march over the time.
+struct Try {
+    Solution solution;
+    bool is_broken_off = false;   // the error became hopeless
+    bool fits_badly = false;      // the degree is too high for the stops; nothing else counts then
+    std::optional<Pace> pace{};   // what was learnt of lengths
+};
+
+/// What shorter elements brought.
+struct Tries {
+    double least = std::numeric_limits<double>::infinity();   // error
+    double in_vain = 0;                                       // largest error of those below
+    bool helps = true;                                        // that the last one had shorter elements
+    bool is_once_good = false;                                // the last one, perhaps by chance
+
+    void count(const Try& one)
+    {
+        const double error = one.solution.estimate.largest;
+        helps = one.is_broken_off || error < well_helped * least;
+        if (!helps) in_vain = std::max(in_vain, error);
+        if (!one.is_broken_off) least = std::min(least, error);
+    }
+};
+
+class ToAccuracy {
+public:
+    ToAccuracy(const Model& model, const Problem& problem, const Span& span, const Method& method,
+               const SolveOptions& options, const Doubt& doubt)
+        : model_(model), problem_(problem), span_(span),
+          options_(with_tolerance_for(span.accuracy, 1, options)), doubt_(doubt),
+          ends_(close_ends(model, problem, span.start, span.end, options.initial)),
+          tables_(model, ends_.independent, false, problem.prepared->pattern(model)),
+          stops_(stops_of(model, span)), method_(method), is_free_(degree_of(method) == 0),
+          tolerance_(first_share * span.accuracy),
+          length_(std::min(0.01 * (span.end - span.start), time_of_motion(model, ends_.start)))
+    {
+        const bool is_high = span.accuracy < high_accuracy;
+        if (is_free_ && std::holds_alternative<Radau>(method_))
+            degree_of(method_) = is_high ? high_radau : preferred_radau;
+        else if (is_free_)
+            degree_of(method_) = is_high ? high_degree : preferred_degree;
+        if (is_free_) highest_degree_ = degree_of(method_);
+    }
+
+    Solution run()
+    {
+        long long evaluations = 0;
+        double seconds = 0;
+        for (int tries = 1;; ++tries) {
+            Try one = march();
+            SolveReport& report = one.solution.report;
+            report.evaluations_in_all = evaluations += report.evaluations_in_all;
+            one.solution.estimate_seconds = seconds += one.solution.estimate_seconds;
+            if (one.fits_badly) {
+                degree_of(method_) = fitting_degree(*one.pace);
+                is_free_ = false;
+                --tries;
+                continue;
+            }
+            report.tries = tries;
+            report.accuracy = span_.accuracy;
+            if (!report.converged()) return std::move(one.solution);
+            const ErrorEstimate& found = one.solution.estimate;
+            if (!one.is_broken_off && look_at_rounding(one.solution, tries)) {
+                if (grown_.least_rounding() > span_.accuracy || options_.tolerance <= all_digits)
+                    return give_up(std::move(one));
+                options_.tolerance = all_digits;   // what the iteration leaves is the most of it
+                continue;
+            }
+            const bool is_good = !one.is_broken_off && found.largest <= span_.accuracy;
+            if (is_good && (so_far_.is_once_good || !may_be_chance())) return std::move(one.solution);
+            if (!is_good) so_far_.count(one);
+            if (!is_good && (tries >= most_tries || tolerance_ <= finest)) return give_up(std::move(one));
+            so_far_.is_once_good = is_good;
+            const double over = found.largest / span_.accuracy * (one.is_broken_off ? 3 : 1);
+            const double share = over > 0 ? power(target / over, 1 + 0.5 / degree_of(method_)) : blind_share;
+            tolerance_ *= std::min(0.3, share);
+            if (!so_far_.helps && is_noisy()) {
+                highest_degree_ = degree_of(method_) = quiet_degree;
+                tolerance_ *= power(0.5, 2 * quiet_degree + 1);
+            }
+            if (!is_good)
+                tolerance_ = std::max(finest, tolerance_);   // good once more has to be on another mesh
+            // a degree that was too high for the stops may not be too high for shorter elements
+            if (!is_free_ && highest_degree_ > 0) degree_of(method_) = fitting_degree(*one.pace);
+            length_ = std::min(length_, one.pace->mean_length(degree_of(method_), tolerance_));
+            options_ = with_tolerance_for(span_.accuracy, tries + 1, std::move(options_));
+        }
+    }
+
+private:
+    Try march()
+    {
+        Try one;
+        SolveReport& report = one.solution.report;
+        TimeMesh mesh{{span_.start}};
+        LobattoWindow window(tables_, mesh, ends_, rule_of(method_));
+        if (!options_.look_at_laws) window.ignore_laws();
+        Second second(model_, problem_, method_, options_, *window.so_far());
+        const ElementRule rule = rule_of(method_);
+        Pace pace(rule.points, rule.degree, tolerance_, length_, stops_);
+        pace.sample_at(samples_of(model_, span_), span_.accuracy);
+        WindowOptions w;
+        w.tolerance = options_.tolerance;
+        w.by_newton = options_.by_newton;
+        w.max_iterations = options_.max_iterations;
+        w.progress = options_.progress;
+        w.length_of_model = model_.length();
+        w.pace = &pace;
+        w.locking = [this](const State& first, const State& last) { return of_locking(model_, first, last); };
+        w.ends_at_bends = options_.end_at_bends && model_.has_pieces();
+        w.goes_on = [&] {
+            const int n = mesh.n_elements();
+            if (is_free_ && n == looked_at) {
+                one.fits_badly = fitting_degree(pace) < degree_of(method_);
+                if (one.fits_badly) return false;
+            }
+            if (n % 256 == 0 && static_cast<double>(window.so_far()->n_bytes()) > options_.most_bytes)
+                return say_too_long(mesh, report);
+            const bool is_piece = n - second.reached() >= std::max(least_piece, second.reached() / 4);
+            if (!is_piece && n != looked_at) return true;
+            window.describe(report);
+            const Look look{*window.so_far(), pace.mean_length(), report.evaluations + second.evaluations()};
+            if (doubt_ && doubt_(look)) {
+                report.status = SolveStatus::cancelled;
+                return false;
+            }
+            if (!is_piece) return true;
+            one.is_broken_off = !second.advance(n) || is_hopeless(second);
+            return !one.is_broken_off;
+        };
+        report.notes = ends_.notes;
+        solve_windows(window, mesh, w, report);
+        one.pace = std::move(pace);
+        finish(one, second, window.so_far()->n_elements());
+        one.solution.unseen = window.take_unseen();
+        one.solution.motion = window.take_motion();
+        one.solution.method = method_;
+        if (report.converged() && !one.is_broken_off) {
+            add_lost_vibrations(model_, one.solution.motion, one.solution.estimate);
+            add_inside(model_, one.solution.motion, one.pace->left(), one.solution.estimate);
+        }
+        return one;
+    }
+
+    /// The rest of the second solution, and what it says.
+    void finish(Try& one, Second& second, int n) const
+    {
+        SolveReport& report = one.solution.report;
+        const SolveReport& of_second = second.report();
+        const bool is_wanted = !one.fits_badly && n > 0 && report.status != SolveStatus::cancelled;
+        if (is_wanted && second.reached() < n && of_second.converged() && !second.advance(n))
+            one.is_broken_off = true;
+        report.evaluations_in_all = report.evaluations + second.evaluations();
+        one.solution.estimate_seconds = second.seconds();
+        if (of_second.status == SolveStatus::cancelled) {
+            report.status = SolveStatus::cancelled;
+            report.message = of_second.message;
+        } else if (!of_second.converged()) {
+            report.estimate_failed = "the second solution failed: " + of_second.message;
+        }
+        if (second.reached() > 0) one.solution.estimate = second.take(n);
+    }
+
+    bool say_too_long(const TimeMesh& mesh, SolveReport& report) const
+    {
+        report.status = SolveStatus::not_converged;
+        report.failed_at = mesh.end();
+        report.message = "the motion takes more memory than it may (" +
+                         to_text(options_.most_bytes / 1e9, 3) + " GB) by t = " + to_text(mesh.end(), 6) +
+                         " s, with elements of " + to_text(mesh.length(mesh.n_elements() - 1), 3) +
+                         " s; try: an earlier end of time, a larger error in accuracy, or the family radau "
+                         "if a stiff spring or a light body vibrates";
+        return false;
+    }
+
+    bool is_hopeless(const Second& second) const
+    {
+        return !(second.so_far().largest <= hopeless * span_.accuracy);
+    }
+
+    bool is_fine() const { return span_.accuracy < fine_accuracy; }
+    /// Another degree may have less rounding.
+    bool is_noisy() const
+    {
+        return is_fine() && is_free_ && highest_degree_ != quiet_degree &&
+               std::holds_alternative<Lobatto>(method_);
+    }
+    /// Solutions that differ by rounding alone come near each other by chance, and of many tries one would be
+    /// believed: it has to happen twice.
+    bool may_be_chance() const { return is_fine() && so_far_.in_vain > far_off * span_.accuracy; }
+
+    /// The highest whose elements are not much longer than the time between stops, by what was learnt.
+    int fitting_degree(const Pace& pace) const
+    {
+        int degree = highest_degree_;
+        if (!pace.tells_length() && !model_.load_breaks().empty()) return degree;   // calm before what comes
+        while (degree > lowest_degree && pace.mean_length(degree, tolerance_) > fit * pace.mean_stop())
+            --degree;
+        return degree;
+    }
+
+    /// True if no mesh can be as accurate, because rounding grows to more. Asked where a try came to the end.
+    bool look_at_rounding(Solution& solution, int tries)
+    {
+        const bool is_good = solution.estimate.largest <= span_.accuracy;
+        if (!options_.growth || !(is_good || (tries > 1 && !grown_.is_asked()))) return false;
+        grown_.tell(model_, problem_, options_, span_.accuracy, solution);
+        return grown_.rounding() > span_.accuracy;
+    }
+
+    /// Why ever shorter elements were not enough.
+    std::string in_vain(const SolveReport& report) const
+    {
+        const std::string tried = ", with ever shorter elements";
+        if (so_far_.helps && tolerance_ > finest) return tried;
+        const std::string vain = tried + ", which help no more: ";
+        if (!report.steep_load.empty())
+            return vain + "the law of load '" + report.steep_load + "' changes too fast inside them";
+        const bool is_smooth = model_.loads().empty() && !model_.has_drives();
+        if (!is_smooth && !is_fine()) return vain + "a law may bend or jump inside them";
+        const std::string left =
+            vain + "rounding is left" + (is_smooth ? "" : ", or a law bends inside them");
+        if (!grown_.is_asked()) return left;
+        return left + "; what is off at the start grows by " + to_text(grown_.largest(), 3) + ", most in " +
+               grown_.in_words(model_);
+    }
+
+    Solution give_up(Try&& last)
+    {
+        if (options_.growth && last.solution.growth.empty())
+            grown_.tell(model_, problem_, options_, span_.accuracy, last.solution);
+        const ErrorEstimate& found = last.solution.estimate;
+        SolveReport& report = last.solution.report;
+        const Motion& motion = last.solution.motion;
+        int good = 0;
+        while (!found.empty() && good < motion.n_elements() && found.error(good + 1) <= span_.accuracy)
+            ++good;
+        report.status = SolveStatus::inaccurate;
+        report.failed_at = motion.mesh.ends[good];
+        report.message = "the accuracy " + to_text(span_.accuracy, 6) +
+                         " holds up to t = " + to_text(report.failed_at, 6) + " s";
+        if (motion.end() >= span_.end)
+            report.message += ", the motion is whole up to " + to_text(span_.end, 6) + " s";
+        report.message += "; ";
+        if (found.largest > span_.accuracy)
+            report.message += "the error of body '" + model_.body_name(found.body) + "' is about " +
+                              to_text(found.largest, 3) + " at " + to_text(found.time, 6) + " s";
+        else
+            report.message += "behind, nothing tells the error, since " + report.estimate_failed;
+        report.message += " (try " + std::to_string(report.tries);
+        if (grown_.rounding() > span_.accuracy)
+            report.message += "; the rounding of numbers grows to " + to_text(grown_.rounding(), 3) +
+                              ", most in " + grown_.in_words(model_);
+        else
+            report.message += in_vain(report);
+        report.message += "); try: an earlier end of time, or a larger error in accuracy";
+        return std::move(last.solution);
+    }
+
+    const Model& model_;
+    const Problem& problem_;
+    const Span& span_;
+    SolveOptions options_;
+    const Doubt& doubt_;
+    Ends ends_;
+    Tables tables_;
+    std::vector<double> stops_;
+    Method method_;
+    bool is_free_;             // the degree, which has not been lowered yet
+    int highest_degree_ = 0;   // that is tried where it is not stated
+    double tolerance_, length_;
+    MeasuredGrowth grown_;
+    Tries so_far_;
+};
+
+}   // namespace
+
+double time_of_motion(const Model& model, const State& state)
+{
+    const double length = model.length();
+    double rate = std::sqrt(norm(model.gravity()) / length);
+    for (const Matrix34& V : state.V) rate = std::max({rate, norm(V.column(0)) / length, norm(directors(V))});
+    return 0.5 / rate;
+}
+
+Solution solve_to_accuracy(const Model& model, const Problem& problem, const Span& span, const Method& method,
+                           const SolveOptions& options, const Doubt& doubt)
+{
+    if (const auto* either = std::get_if<Auto>(&method))
+        return solve_to_accuracy(model, problem, span, *either, options);
+    return ToAccuracy(model, problem, span, method, options, doubt).run();
+}
+
+}   // namespace livens

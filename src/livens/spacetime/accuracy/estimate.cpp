@@ -1,0 +1,355 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The error of a motion by a second solution on the same elements.
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <new>
+#include <string>
+#include <utility>
+#include <variant>
+
+#include "livens/base/elementary.h"
+#include "livens/base/error.h"
+#include "livens/base/text.h"
+#include "livens/diagnostics/diagnostics.h"
+#include "livens/diagnostics/largest.h"
+#include "livens/solvers/patience.h"
+#include "livens/spacetime/accuracy/accuracy.h"
+#include "livens/spacetime/accuracy/second.h"
+#include "livens/spacetime/march/ends.h"
+#include "livens/spacetime/phases.h"
+#include "livens/statics/frequencies.h"
+
+namespace livens {
+
+namespace {
+
+/// Elements of a second solution that are kept in memory together.
+constexpr int elements_at_once = 4096;
+
+/// The degree whose distance from a degree p of lobatto tells the error of elements with such a velocity jump
+/// J = rho^(p + 1). From degree to degree errors fall by rho^2; where rho is not small, in stairs, and those
+/// of p and p + 1 may be alike (docs/theory.md, "The estimated error").
+int finer_degree(int degree, double jump)
+{
+    constexpr double small = 0.3;   // rho
+    return degree < 4 || jump <= power(small, degree + 1) ? degree + 1 : degree + 2;
+}
+
+/// The largest of these elements; infinite where laws of loads and drives may bend inside of one, of which J
+/// tells nothing.
+double telling_jump(const Model& model, const Motion& motion, int first, int last)
+{
+    if (!model.loads().empty() || model.has_drives()) return std::numeric_limits<double>::infinity();
+    double jump = 0;
+    for (const double of_element : velocity_jumps(model, motion, first, last)) raise_to(jump, of_element);
+    return jump;
+}
+
+/// Whether an element end that is neither the first nor the last is where a law bends.
+bool has_bend(const Motion& motion, const TimeMesh& mesh, double end)
+{
+    return end > mesh.start() && end < mesh.end() && std::ranges::binary_search(motion.mesh.bends, end);
+}
+
+}   // namespace
+
+Second::Second(const Model& model, const Problem& problem, const Method& method, const SolveOptions& options,
+               const Motion& first)
+    : model_(model), problem_(problem), method_(witness_of(method)), options_(options), first_(first),
+      meter_(model, first), is_backwards_(problem.conditions.at_end == Known::state),
+      is_lobatto_(std::holds_alternative<Lobatto>(method)), at_(is_backwards_ ? first.n_elements() : 0)
+{
+    problem_.guess = [&first](double t) { return first.at(t); };
+    problem_.near = &first;
+    options_.condition = options_.judge = false;
+    options_.meeting = std::numeric_limits<double>::infinity();   // both meet it within their errors
+    if (const auto* radau = std::get_if<Radau>(&method)) method_ = Radau{radau->degree + 1};
+    if (!is_nodal(method))   // the given number is one for blocks or steps
+        options_.max_iterations = SolveOptions{}.max_iterations;
+}
+
+bool Second::advance(int end)
+{
+    const int first = std::min(at_, end), last = std::max(at_, end);
+    if (is_lobatto_)
+        std::get<Lobatto>(method_).degree =
+            finer_degree(first_.X.degree, telling_jump(model_, first_, first, last));
+    TimeMesh mesh{{first_.mesh.ends.begin() + first, first_.mesh.ends.begin() + last + 1}};
+    for (const double t : mesh.ends)   // it bends at instants of its own, near those of the first
+        (has_bend(first_, mesh, t) ? mesh.bends : mesh.required).push_back(t);
+    for (const double t : missed(mesh, model_.load_breaks()))   // what one solution missed, two would
+        mesh.ends.insert(std::ranges::upper_bound(mesh.ends, t), t);
+    const auto begin = std::chrono::steady_clock::now();
+    Solution second;
+    try {
+        second = solve(model_, problem_, mesh, method_, options_);
+    } catch (const InputError& error) {   // about a state that the last piece made, not one that was given
+        second.report.status = SolveStatus::singular;
+        second.report.message =
+            error.complaint().message + " of a piece at t = " + to_text(mesh.start(), 6) + " s";
+    }
+    seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    report_ = std::move(second.report);
+    evaluations_ += report_.evaluations;
+    if (!report_.converged()) return false;
+    meter_.compare(second.motion, first, last);
+    if (!is_backwards_) meter_.add(second.unseen, first, last);
+    (is_backwards_ ? problem_.conditions.end : problem_.conditions.start) =
+        second.motion.at_end(is_backwards_ ? 0 : second.motion.n_elements());
+    options_.initial = StartPolicy::project;   // an end state holds its constraints to rounding
+    at_ = end;
+    return true;
+}
+
+namespace {
+
+/// Of the joints that act before an element end.
+std::vector<Vibration> vibrations_beside(const Model& model, const Motion& motion, int end)
+{
+    if (!model.has_events()) return vibrations(model, motion.at_end(end));
+    const int element = std::max(end - 1, 0);
+    const double middle = motion.mesh.ends[element] + 0.5 * motion.mesh.length(element);
+    return vibrations(acting_at(model, middle).model, motion.at_end(end));
+}
+
+/// Element ends where events are.
+std::vector<int> event_ends(const Model& model, const Motion& motion)
+{
+    std::vector<int> ends;
+    for (const double t : model.events()) {
+        const int end = element_end_at(motion.mesh, snap_to_element_end(motion.mesh, t));
+        if (end > 0 && end < motion.n_elements()) ends.push_back(end);
+    }
+    return ends;
+}
+
+/// Adds what grows from an event on: errors of place, and of rates that go on.
+void add_from(int event, const Miss& off, const Model& model, const Motion& motion, ErrorEstimate& found)
+{
+    const auto n = static_cast<std::size_t>(found.n_bodies);
+    for (std::size_t i = static_cast<std::size_t>(event) * n; i < found.position.size(); ++i) {
+        const double since = motion.mesh.ends[i / n] - motion.mesh.ends[event];
+        found.position[i] += off.shift + off.speed * since;
+        if (!model.bodies()[i % n].is_point) found.orientation[i] += off.turn + off.spin * since;
+        found.velocity[i] += off.speed * found.length;
+    }
+    found.find_largest(motion.mesh);
+}
+
+}   // namespace
+
+void add_events(const Model& model, const Motion& motion, ErrorEstimate& found)
+{
+    if (!model.has_events() || found.empty()) return;
+    const std::vector<double> jumps = velocity_jumps(model, motion);
+    const double root = motion.damps() ? std::sqrt(2 * std::max(balance(model, motion).energy_loss, 0.0)) : 0;
+    int before = 0;
+    for (const int event : event_ends(model, motion)) {
+        Miss off = miss_at_event(model, motion, event);
+        double slowest = std::numeric_limits<double>::infinity(), shift = 0, turn = 0;
+        for (const Vibration& one : vibrations_beside(model, motion, event)) {
+            if (one.rate * motion.mesh.length(event - 1) < motion.X.degree || one.decay > one.rate) continue;
+            slowest = std::min(slowest, one.rate);
+            raise_to(shift, one.shift);
+            raise_to(turn, one.turn);
+        }
+        if (motion.damps()) {
+            off.speed += root * shift / found.length;
+            off.spin += root * turn;
+        }
+        const bool is_unresolved = std::isfinite(slowest) && !motion.damps();
+        for (int e = before; e < event && is_unresolved; ++e) {
+            const double h = motion.mesh.length(e);
+            if (slowest * h < motion.X.degree) continue;
+            raise_to(off.speed, jumps[e] / h);
+            raise_to(off.spin, jumps[e] / h);
+        }
+        add_from(event, off, model, motion, found);
+        before = event;
+    }
+}
+
+void add_lost_vibrations(const Model& model, const Motion& motion, ErrorEstimate& found)
+{
+    if (!motion.damps() || found.empty()) return;
+    double longest = 0;
+    for (int e = 0; e < motion.n_elements(); ++e) raise_to(longest, motion.mesh.length(e));
+    double shift = 0, turn = 0, speed = 0;   // by the root of twice the energy
+    for (const int end : {0, motion.n_elements() / 2, motion.n_elements()}) {
+        for (const Vibration& one : vibrations_beside(model, motion, end)) {
+            if (one.rate * longest < motion.X.degree || one.rate < one.decay) continue;
+            raise_to(shift, one.shift / one.rate);
+            raise_to(turn, one.turn / one.rate);
+            raise_to(speed, one.shift);
+        }
+    }
+    if (shift == 0 && turn == 0) return;
+    const double root = std::sqrt(2 * std::max(balance(model, motion).energy_loss, 0.0));
+    for (double& error : found.position) error += root * shift / found.length;
+    for (double& error : found.velocity) error += root * speed;
+    for (std::size_t i = 0; i < found.orientation.size(); ++i)
+        if (!model.bodies()[i % model.bodies().size()].is_point) found.orientation[i] += root * turn;
+    found.find_largest(motion.mesh);
+}
+
+void add_inside(const Model& model, const Motion& motion, const std::vector<double>& instants,
+                ErrorEstimate& found)
+{
+    if (instants.empty() || found.empty()) return;
+    const std::vector<double> jumps = velocity_jumps(model, motion);
+    const auto n = static_cast<std::size_t>(found.n_bodies);
+    for (const double t : instants) {
+        const int e = motion.mesh.element_at(t);
+        for (std::size_t i = static_cast<std::size_t>(e) * n; i < (static_cast<std::size_t>(e) + 2) * n;
+             ++i) {
+            raise_to(found.position[i], jumps[e]);
+            if (!model.bodies()[i % n].is_point) raise_to(found.orientation[i], jumps[e]);
+            raise_to(found.velocity[i], jumps[e] * found.length / motion.mesh.length(e));
+        }
+    }
+    found.find_largest(motion.mesh);
+}
+
+namespace {
+
+/// Where what a law did unseen in the first solution makes much of the error, the estimate has its name.
+void name_law(const Solution& solution, ErrorEstimate& found)
+{
+    constexpr double much = 0.3;
+    double most = much * found.largest;
+    for (const Unseen& one : solution.unseen) {
+        double kick = 0;
+        for (std::size_t b = 0; b < one.shift.size(); ++b)
+            raise_to(kick, std::max(one.shift[b], one.turn[b]));
+        if (!raise_to(most, kick * (solution.motion.end() - one.t + one.duration))) continue;
+        raise_to(found.unseen, most);
+        found.unseen_load = one.load;
+        found.unseen_time = one.t;
+    }
+}
+
+void measure_error(const Model& model, const Problem& problem, const Method& method,
+                   const SolveOptions& options, Solution& solution)
+{
+    const int n = solution.motion.n_elements();
+    const Conditions& given = problem.conditions;
+    const bool is_march = given.at_end == Known::state || given.at_start == Known::state;
+    const int piece = is_march ? std::min(n, elements_at_once) : n;
+    Second second(model, problem, method, options, solution.motion);
+    for (int done = piece;; done = std::min(done + piece, n)) {
+        const bool is_good = second.advance(given.at_end == Known::state ? n - done : done);
+        solution.estimate_seconds = second.seconds();
+        if (!is_good) {
+            if (second.report().status == SolveStatus::cancelled)
+                solution.report.notes.push_back("stopped as asked before the error was estimated");
+            else
+                solution.report.estimate_failed = "the second solution failed: " + second.report().message;
+            return;
+        }
+        if (done == n) break;
+    }
+    solution.estimate = second.take(n);
+    name_law(solution, solution.estimate);
+    add_lost_vibrations(model, solution.motion, solution.estimate);
+    add_events(model, solution.motion, solution.estimate);
+}
+
+/// E_e = E_(e-1) g_e / g_(e-1) + 20 C_p J^q + rounding, with the largest growth g that there was by then. On
+/// mechanisms that did not calibrate C_p elements lose up to 35 times as much in the median.
+ErrorEstimate grown_errors(const Model& model, const Solution& solution)
+{
+    const Motion& motion = solution.motion;
+    const std::vector<double>& growth = solution.growth;
+    constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+    ErrorEstimate found;
+    if (growth.size() != motion.mesh.ends.size()) return found;
+    const std::vector<double> jumps = velocity_jumps(model, motion);
+    found.n_bodies = model.n_bodies();
+    found.length = model.length();
+    double error = 0, largest = growth[0];
+    std::size_t next = 0;   // of what laws did unseen
+    const double time = time_of_motion(model, motion.at_end(0));
+    for (std::size_t end = 0; end < growth.size(); ++end) {
+        if (end > 0) {
+            error *= std::max(1.0, growth[end] / largest);
+            error += 20 * local_error(motion.X.points, motion.X.degree, jumps[end - 1]) + 1e-16;
+            for (; next < solution.unseen.size() && solution.unseen[next].t <= motion.mesh.ends[end];
+                 ++next) {
+                const Unseen& one = solution.unseen[next];   // a kick goes on as long as the motion has time
+                error += one.error * std::max(1.0, time / one.duration);
+                if (!(one.error > found.unseen)) continue;
+                found.unseen = one.error;
+                found.unseen_load = one.load;
+                found.unseen_time = one.t;
+            }
+        }
+        raise_to(largest, growth[end]);
+        for (const Body& body : model.bodies()) {
+            found.position.push_back(error);
+            found.orientation.push_back(body.is_point ? 0 : error);
+            found.velocity.push_back(unknown);
+        }
+    }
+    found.find_largest(motion.mesh);
+    add_lost_vibrations(model, motion, found);
+    add_events(model, motion, found);
+    return found;
+}
+
+void estimate_all(const Model& model, const Problem& problem, const Method& method,
+                  const SolveOptions& options, Solution& solution)
+{
+    const bool is_local = options.estimate == SolveOptions::Estimate::local;
+    if (options.estimate == SolveOptions::Estimate::second && solution.estimate.empty())
+        measure_error(model, problem, method, options, solution);
+    if (!options.growth && !is_local) return;
+    const auto begin = std::chrono::steady_clock::now();
+    if (solution.growth.empty()) {
+        Growth grown = growth(model, problem, solution.method, options, solution.motion,
+                              told_without_rounding(solution.estimate));
+        solution.growth = std::move(grown.factors);
+        solution.growing = grown.part;
+        solution.rounding = told_of_rounding(grown, options.tolerance);
+        solution.rounding_in = grown.rounding_in;
+    }
+    if (is_local) {
+        solution.estimate = grown_errors(model, solution);
+        if (solution.estimate.empty())
+            solution.report.estimate_failed = "no neighbouring motion tells to the end how errors grow";
+    }
+    if (!solution.estimate.empty())
+        count_rounding(model, grown_rounding(solution.growth, solution.rounding), solution.motion.mesh,
+                       solution.estimate);
+    solution.estimate_seconds +=
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+}   // namespace
+
+void estimate(const Model& model, const Problem& stated, const Method& method, const SolveOptions& options,
+              Solution& solution)
+{
+    const Problem problem = with_prepared(stated);
+    SolveReport& report = solution.report;
+    if (!report.converged()) return;
+    const int n = solution.motion.n_elements();
+    std::function<bool()> goes_on;
+    if (options.progress)
+        goes_on = [&] { return options.progress({n, n, solution.motion.end(), 0, report.residual_norm}); };
+    const Patience patience(goes_on);
+    const std::string before = " before the error was estimated";
+    try {
+        estimate_all(model, problem, method, options, solution);
+    } catch (const Stopped&) {
+        solution.estimate = {};
+        report.notes.push_back("stopped as asked" + before);
+    } catch (const std::bad_alloc&) {
+        solution.estimate = {};
+        report.estimate_failed = "memory ended" + before;
+    }
+}
+
+}   // namespace livens

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What solve() does last: the verdict, and what beside it only the engine knows.
+#include <functional>
+#include <new>
+#include <numbers>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "livens/base/text.h"
+#include "livens/solvers/patience.h"
+#include "livens/spacetime/accuracy/accuracy.h"
+#include "livens/spacetime/accuracy/load_limits.h"
+#include "livens/spacetime/accuracy/turning_springs.h"
+#include "livens/spacetime/march/ends.h"
+#include "livens/spacetime/solve.h"
+#include "livens/statics/frequencies.h"
+
+namespace livens {
+
+namespace {
+
+/// Conditions that the motion found for them does not meet.
+std::vector<std::string> missed_conditions(const Model& model, const Problem& problem,
+                                           const SolveOptions& options, const Solution& solution)
+{
+    if (!solution.report.converged() || solution.motion.n_elements() == 0) return {};
+    const double start = solution.motion.start(), end = solution.motion.end();
+    const auto closed = [&](const Model& acting) {
+        return close_ends(acting, problem, start, end, options.initial);
+    };
+    const Ends ends = model.has_events() ? closed(acting_at(model, start).model) : closed(model);
+    return unmet(model, ends, solution.motion, solution.estimate);
+}
+
+/// Energy that nobody supplied has a reason that no other check knows. Where an accuracy was asked for and is
+/// told to be met the vibrations are below it.
+void blame_turning_springs(const Model& model, Solution& solution)
+{
+    const auto* lobatto = std::get_if<Lobatto>(&solution.method);
+    const bool is_midpoint = std::holds_alternative<Midpoint>(solution.method);
+    const int degree = lobatto != nullptr ? lobatto->degree : static_cast<int>(is_midpoint);
+    SolveReport& report = solution.report;
+    Verdict& verdict = solution.verdict;
+    const bool is_failed = report.status == SolveStatus::not_converged;
+    if (degree == 0 || !EnergyWatch::serves(model) || !(is_failed || report.converged()) ||
+        !(verdict.energy_drift > doubtful_energy))
+        return;
+    const std::string why = of_turning_springs(model, solution.motion, degree);
+    if (is_failed && !why.empty())
+        report.message = why;
+    else if (!why.empty() && (report.accuracy == 0 || !verdict.reasons.empty()))
+        verdict.reasons.insert(verdict.reasons.begin(), why);
+    else if (!verdict.reasons.empty())
+        if (std::string perhaps = of_unsteady_springs(model, solution.motion, degree); !perhaps.empty())
+            verdict.reasons.push_back(std::move(perhaps));
+}
+
+/// An accuracy that lobatto did not reach may be what radau is for.
+void advise_radau(const Model& model, Solution& solution)
+{
+    const SolveReport& report = solution.report;
+    const bool is_said = report.message.find("radau") != std::string::npos;
+    if (report.status != SolveStatus::inaccurate || is_said ||
+        !std::holds_alternative<Lobatto>(solution.method) || !EnergyWatch::serves(model))
+        return;
+    const State start = solution.motion.at_end(0);
+    const Frequency vibration = highest_frequencies(model, start).fastest_vibration();
+    if (vibration.rate * time_of_motion(model, start) > fast_vibration)
+        solution.report.message += ", or the family radau, since " + vibration.where(model) +
+                                   " vibrates at " + to_text(vibration.rate, 3) + " rad/s";
+}
+
+/// What bodies turn by that a load can no longer follow, and conditions that are not met, beside the verdict.
+void judge_beside(const Model& model, const Problem& problem, const SolveOptions& options, Solution& solution)
+{
+    for (const std::string& reason : missed_conditions(model, problem, options, solution))
+        solution.verdict.reasons.push_back(reason);
+    constexpr double degree = std::numbers::pi / 180;
+    const bool is_solved = solution.report.converged();
+    std::string limit = turned_too_far(model, solution.motion, 175 * degree);
+    if (limit.empty() && !is_solved)   // which may break off before it
+        limit = turned_too_far(model, solution.motion, 165 * degree);
+    if (!limit.empty() && is_solved)   // first, as the others may follow from it
+        solution.verdict.reasons.insert(solution.verdict.reasons.begin(), limit);
+    if (!limit.empty() && !is_solved) solution.report.message += "; " + limit;
+    blame_turning_springs(model, solution);
+    advise_radau(model, solution);
+}
+
+}   // namespace
+
+void judge(const Model& model, const Problem& problem, const SolveOptions& options, Solution& solution,
+           const std::function<bool()>& goes_on)
+{
+    // Most motions are judged by then; of the others the writing alone takes as long as anybody waits.
+    constexpr std::size_t large = 2'000'000;   // numbers
+    const double grace = solution.motion.X.values.size() > large ? 0 : 0.5;   // s of CPU time
+    SolveReport& report = solution.report;
+    const auto give_up = [&](SolveStatus status, const std::string& why) {
+        solution.verdict = {};
+        const std::string what = why + " before the motion was checked";
+        report.notes.push_back(what);
+        if (!report.converged()) return;   // the status says why it is short
+        report.status = status;
+        report.message = what;
+    };
+    try {
+        const Patience patience(goes_on, grace);
+        solution.verdict = judge(model, solution.motion, report, solution.estimate, solution.growth,
+                                 solution.growing, solution.rounding, solution.rounding_in);
+        judge_beside(model, problem, options, solution);
+    } catch (const Stopped&) {
+        return give_up(SolveStatus::cancelled, "stopped as asked");
+    } catch (const std::bad_alloc&) {
+        return give_up(SolveStatus::suspect, "memory ended");
+    }
+    if (solution.verdict.reasons.empty()) return;
+    report.status = SolveStatus::suspect;
+    report.message = solution.verdict.reasons.front();
+}
+
+}   // namespace livens

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "livens/spacetime/accuracy/neighbour.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "livens/base/error.h"
+#include "livens/multibody/body.h"
+#include "livens/spacetime/march/windows.h"
+#include "livens/spacetime/nodal/window.h"
+
+namespace livens {
+
+namespace {
+
+/// Of the iteration. Less is rounding, for which no steps are to be taken; more would be seen in differences.
+constexpr double least_tolerance = 1e-14, most_tolerance = 1e-10;
+
+/// With triads that are none by what bends as such.
+State rigid(const Model& model, State state)
+{
+    for (int b = 0; b < model.n_bodies(); ++b) {
+        if (model.bodies()[b].is_point) continue;
+        const Vector3 w = angular_velocity(state.X[b], state.V[b]);
+        state.X[b] = configuration(state.X[b].column(0), project_directors(directors(state.X[b])));
+        state.V[b] = rate(state.X[b], state.V[b].column(0), w);
+    }
+    return state;
+}
+
+}   // namespace
+
+/// A window that goes on from piece to piece: what is made once is made once, and its guesses know the past.
+struct Neighbour::March {
+    Ends ends;
+    Tables tables;
+    LobattoWindow window;
+
+    March(const Model& model, Prepared& prepared, const Method& method, const Ends& closed,
+          const TimeMesh& mesh)
+        : ends(closed), tables(model, ends.independent, false, prepared.pattern(model)),
+          window(tables, mesh, ends, rule_of(method))
+    {}
+};
+
+Neighbour::Neighbour(const Model& model, const Method& method, const SolveOptions& options,
+                     const Motion& beside, std::shared_ptr<Prepared> prepared, const Ends* closed,
+                     bool has_bends)
+    : model_(model), method_(method), options_(options), beside_(beside), prepared_(std::move(prepared)),
+      closed_(closed), has_bends_(has_bends)
+{}
+Neighbour::Neighbour(Neighbour&&) noexcept = default;
+Neighbour::~Neighbour() = default;
+
+bool Neighbour::march(const State& start, const Motion& near, double left)
+{
+    const bool is_new = march_ == nullptr;
+    if (is_new) march_ = std::make_unique<March>(model_, *prepared_, method_, *closed_, mesh_);
+    march_->ends.start = rigid(model_, start);
+    if (!is_new) march_->window.restart();
+    march_->window.follow(near);
+    WindowOptions w;
+    w.by_newton = options_.by_newton;
+    w.tolerance = std::clamp(left, least_tolerance, most_tolerance);
+    w.max_iterations = options_.max_iterations;
+    w.progress = options_.progress;
+    w.length_of_model = model_.length();
+    w.may_divide = options_.divide;
+    w.trust = {acceptable_velocity_jump, true, true};
+    w.ends_at_bends = !mesh_.bends.empty();
+    SolveReport report;
+    solve_windows(march_->window, mesh_, w, report);
+    motion_ = march_->window.take_motion();
+    return report.converged();
+}
+
+bool Neighbour::solve(const State& start, const Motion& near, int first, int last, double left)
+{
+    mesh_.ends.assign(beside_.mesh.ends.begin() + first, beside_.mesh.ends.begin() + last + 1);
+    mesh_.required = mesh_.ends;
+    mesh_.bends.clear();
+    if (has_bends_)
+        for (const double t : beside_.mesh.bends)
+            if (t > mesh_.start() && t <= mesh_.end()) mesh_.bends.push_back(t);
+    try {
+        if (closed_ != nullptr) return march(start, near, left);
+        Solution one = livens::solve(model_, {{start}, {}, &near, prepared_}, mesh_, method_, options_);
+        motion_ = std::move(one.motion);
+        return one.report.converged();
+    } catch (const InputError&) {
+        // Of the motion all was right: it has come to a singular position, or no start beside it closes.
+        return false;
+    }
+}
+
+}   // namespace livens

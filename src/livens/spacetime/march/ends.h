@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The ends of time as the engine sees them: conditions, closed and consistent.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "livens/diagnostics/estimate.h"
+#include "livens/dynamics/start/closing.h"
+#include "livens/spacetime/problem.h"
+
+namespace livens {
+
+/// States at both ends that fulfil the joints where they are known.
+struct Ends {
+    Known at_start = Known::state, at_end = Known::nothing;
+    State start, end;   ///< V of known positions without momenta, and X of known momenta, are guesses
+    std::vector<int> independent;   ///< rows, chosen where X is known
+    std::vector<int> redundant;
+    std::vector<std::string> notes;
+
+    bool has_state() const { return at_start == Known::state || at_end == Known::state; }
+    /// Windows follow each other from the end of time.
+    bool is_backwards() const { return at_end == Known::state; }
+};
+
+/// The problem, with room for what is found of its model.
+Problem with_prepared(Problem problem);
+
+/// Closes the mechanism at the known ends; throws InputError, see close_start().
+Ends close_ends(const Model& model, const Problem& problem, double start, double end, StartPolicy policy);
+
+/// What was stated at the ends of a whole motion and is not there: positions to 1e-8 (lengths of the model,
+/// or of directors), linear momenta and moments of momentum in world axes to 1e-6 of what the largest speed
+/// of the motion makes of the body, or ten estimated errors; without an estimate to 1e-3. A sentence for each
+/// end; empty: all is met. Of momenta at a place that is not known joints leave only a part to choose, and
+/// solving compares that part.
+std::vector<std::string> unmet(const Model& model, const Ends& ends, const Motion& motion,
+                               const ErrorEstimate& estimate);
+
+}   // namespace livens

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "livens/spacetime/march/window_notes.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "livens/base/text.h"
+#include "livens/dynamics/start/locking.h"
+
+namespace livens {
+
+namespace {
+
+/// Below, a tolerance that rounding did not let be met deserves a word; down to here it asks for all digits
+/// that there are, as an accuracy of many digits does.
+constexpr double finest_tolerance = 1e-15;
+
+/// "joints 'A', 'B' and 'C'"
+std::string named(const std::string& kind, const std::vector<std::string>& names)
+{
+    std::string text = kind + (names.size() == 1 ? " " : "s ");
+    for (std::size_t i = 0; i < names.size(); ++i)
+        text += (i == 0 ? "" : i + 1 == names.size() ? " and " : ", ") + names[i];
+    return text;
+}
+
+}   // namespace
+
+double distance_between(std::span<const Matrix34> X, std::span<const Matrix34> others, double length)
+{
+    double distance = 0;
+    for (std::size_t b = 0; b < X.size(); ++b)
+        for (int c = 0; c < 4; ++c)
+            distance = std::max(distance, norm(X[b].column(c) - others[b].column(c)) / (c == 0 ? length : 1));
+    return distance;
+}
+
+std::string count(int n, const char* what) { return std::to_string(n) + " " + what + (n == 1 ? "" : "s"); }
+
+std::string window_at(const TimeMesh& mesh, int first, int last)
+{
+    const std::string name = last - first == 1 ? "element " + std::to_string(first)
+                                               : "the window of elements " + std::to_string(first) + " to " +
+                                                     std::to_string(last - 1);
+    return name + " (t = " + to_text(mesh.ends[first], 6) + " to " + to_text(mesh.ends[last], 6) + " s)";
+}
+
+std::string of_failure(const NewtonReport& outcome, int max_iterations, const std::string& window,
+                       const WorstResidual& worst, std::string advice)
+{
+    if (outcome.status == SolveStatus::cancelled)
+        return "stopped as asked in " + window + "; the motion up to there is complete";
+    std::string what = "Newton's iteration found no way on after " + count(outcome.iterations, "iteration");
+    std::string fitting = "more and shorter elements, or a lower degree";
+    if (outcome.iterations == 0) what = "Newton's iteration found no way on from any guess";
+    if (outcome.reached_limit)   // of one attempt; there may have been several
+        what =
+            "Newton's iteration did not converge in " + count(max_iterations, "iteration") + ", the limit,";
+    if (outcome.status == SolveStatus::singular) {
+        what = "the tangent is singular";
+        fitting = "the mechanism may pass a singular position; shift the element ends or use more elements";
+    } else if (outcome.status == SolveStatus::not_finite) {
+        what = worst.bad_load.empty() ? "a number became infinite or undefined" : worst.bad_load;
+        fitting = "look at the loads near that time; use more elements";
+    }
+    if (advice.empty()) advice = std::move(fitting);
+    const std::string where =
+        worst.name.empty() ? "" : "; worst: " + worst.name + " near t = " + to_text(worst.t, 6) + " s";
+    return what + " in " + window + where + "; try: " + advice;
+}
+
+std::string of_lie(const std::string& window)
+{
+    return window + " meets its equations, but leaves the velocity that its momentum has, or turns a body by "
+                    "more than "
+                    "90 degrees between nodes; try: more and shorter elements";
+}
+
+std::string of_stop(double t)
+{
+    return "stopped at t = " + to_text(t, 6) + " s as asked; the motion up to there is complete";
+}
+
+std::string of_vanishing(double t, const std::string& load)
+{
+    if (!load.empty())
+        return "the elements vanish near t = " + to_text(t, 6) + " s: the law of load '" + load +
+               "' changes there faster than the shortest of them, or jumps; try: a law that is less steep, a "
+               "larger error in accuracy, or an earlier end";
+    return "the elements vanish near t = " + to_text(t, 6) +
+           " s: however short they are, each loses more than it may; try: a larger error in accuracy, an "
+           "earlier end (none is shorter than a billionth of the whole time), or look for a load that jumps "
+           "there";
+}
+
+std::string of_sticking(const std::string& load, double t)
+{
+    return "the motion rests near t = " + to_text(t, 6) + " s where the law of load '" + load +
+           "' jumps, or slides along that, as dry friction lets it, and no law says what the force is then; "
+           "try: a smooth law, such as tanh(w/0.001) for the sign of w";
+}
+
+std::string of_singular_end(double t)
+{
+    return "the joints lose rank at t = " + to_text(t, 6) +
+           " s, where an element must end, for time does or a load jumps: velocities and reactions are not "
+           "determined there; try: that instant a little earlier or later";
+}
+
+std::string of_locking(const Model& model, const State& first, const State& last)
+{
+    const Lock lock = joints_that_lock(model, first, last);
+    if (lock.empty()) return {};
+    std::vector<std::string> driven, held;
+    for (const int j : lock.drives) driven.push_back("'" + model.joints()[j].name + "'");
+    for (const int j : lock.joints) held.push_back("'" + model.joints()[j].name + "'");
+    const std::string when = " near t = " + to_text(last.t, 6) + " s",
+                      by = held.empty() ? "" : named("joint", held) + " lose rank there";
+    if (driven.empty())
+        return "the mechanism locks, or runs away, or its motion parts into branches" + when + ": " + by +
+               "; try: an earlier end, or lengths, loads or starts that keep away from that position";
+    return "the mechanism locks" + when + ": what " + named("drive", driven) +
+           (driven.size() == 1 ? " asks for is" : " ask for is") + " beyond what can be reached" +
+           (by.empty() ? "" : " (" + by + ")") +
+           "; try: another course of the drive, other lengths, or an earlier end";
+}
+
+void add_notes(SolveReport& report, const WindowCounts& counts)
+{
+    if (counts.rounded > 0 && counts.tolerance < finest_tolerance)
+        report.notes.push_back("the tolerance " + to_text(counts.tolerance, 6) +
+                               " is below rounding: " + count(counts.rounded, "window") + " of " +
+                               std::to_string(report.iterations.size()) +
+                               " ended where rounding left nothing to gain");
+    if (counts.splits > 0)
+        report.notes.push_back(count(counts.splits, "window") +
+                               " failed as a whole and were solved in halves");
+    if (counts.bends > 0)
+        report.notes.push_back("elements end at " + count(counts.bends, "instant") +
+                               " where a law of a load bends or jumps");
+    if (report.divided > 0)
+        report.notes.push_back(
+            count(report.divided, "element") +
+            " were too long for the motion and were divided into two, the first near t = " +
+            to_text(report.divided_at, 6) + " s");
+    if (report.shifted > 0)
+        report.notes.push_back(
+            count(report.shifted, "element end") +
+            " fell elsewhere than asked for, to keep nodes off singular positions of the joints, the "
+            "first near t = " +
+            to_text(report.shifted_at, 6) + " s");
+    if (report.rescued > 0)
+        report.notes.push_back(count(report.rescued, "window") + " of " +
+                               std::to_string(report.iterations.size()) +
+                               " needed a guess from many small elements; more elements would be cheaper");
+}
+
+}   // namespace livens

@@ -1,0 +1,313 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "livens/spacetime/nodal/elimination.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+
+#include "livens/solvers/patience.h"
+
+namespace livens {
+
+namespace {
+
+/// Rows of radau(p) are numbered with the node before their own, as a march has them.
+int place_of_row(const Stretch& stretch, int A) { return stretch.points == Points::radau ? A - 1 : A; }
+
+BlockStructure structure_of(const Stretch& stretch, int freedoms)
+{
+    BlockStructure structure;
+    structure.n_rows.assign(static_cast<std::size_t>(stretch.n_nodes()), 0);
+    for (int A = 0; A < stretch.n_nodes(); ++A) {
+        structure.n_unknowns.push_back(stretch.is_unknown(A) ? freedoms : 0);
+        if (stretch.is_active(A)) structure.n_rows[place_of_row(stretch, A)] = freedoms;
+    }
+    for (int e = 0; e < stretch.n_elements(); ++e)
+        structure.elements.push_back({e * stretch.degree, (e + 1) * stretch.degree});
+    return structure;
+}
+
+class NullSpaces final : public Elimination {
+public:
+    NullSpaces(const Tables& tables, const Stretch& stretch, std::unique_ptr<LinearSolver> solver)
+        : tables_(tables), f_(tables.freedoms()), structure_(structure_of(stretch, tables.freedoms())),
+          solver_(std::move(solver))
+    {
+        const auto n = static_cast<std::size_t>(tables.n_twists * f_);
+        if (f_ == 0) return;   // nothing moves but what is driven
+        matrix_.resize(structure_);
+        solver_->analyse(structure_);
+        product_.assign(n, 0.0);
+        z_.assign(n * static_cast<std::size_t>(stretch.n_nodes()), 0.0);
+    }
+
+    void begin(const Stretch& stretch, const Nodes& nodes) override
+    {
+        stretch_ = &stretch;
+        nodes_ = &nodes;
+        for (int A = 0; A < stretch.n_nodes(); ++A)
+            if (stretch.is_active(A) || stretch.is_unknown(A))
+                nodes.basis(A).q.null_space(z_.data() + place(A));
+    }
+    void open(int e, int A, int B) override
+    {
+        e_ = e;
+        A_ = A;
+        B_ = B;
+        std::fill(product_.begin(), product_.end(), 0.0);
+    }
+    void mass(int body, double factor, const double* H) override;
+    void block(int body_i, int body_j, const double* values) override;
+    void close() override;
+    bool factorise() override { return f_ == 0 || solver_->factorise(matrix_) == Outcome::regular; }
+    void solve(std::span<const double> rows, const double* range, double* y) override;
+    void describe(SolveReport& report) const override
+    {
+        if (f_ > 0 && structure_.n_elements() > 1) report.factor_entries = solver_->report().factor_entries;
+    }
+    void measure_condition(SolveReport& report, const std::function<bool()>& goes_on) override;
+
+private:
+    std::size_t place(int A) const
+    {
+        return static_cast<std::size_t>(A) * static_cast<std::size_t>(tables_.n_twists * f_);
+    }
+    const double* null_space(int A, int body) const
+    {
+        return z_.data() + place(A) + tables_.bodies[body].first * f_;
+    }
+    void multiply_pair(int r, double* u, double* w) const;
+
+    const Tables& tables_;
+    const Stretch* stretch_ = nullptr;   // current
+    const Nodes* nodes_ = nullptr;
+    int f_;
+    BlockStructure structure_;
+    std::unique_ptr<LinearSolver> solver_;
+    BlockMatrix matrix_;
+    int e_ = 0, A_ = 0, B_ = 1;     // the open pair
+    std::vector<double> z_;         // null space of every node, n x f
+    std::vector<double> product_;   // block of the tangent times the null space at B, n x f
+    std::vector<double> x_;         // reduced unknowns
+};
+
+void NullSpaces::mass(int body, double factor, const double* H)
+{
+    const double* __restrict z = null_space(B_, body);
+    const int first = tables_.bodies[body].first, f = f_;
+    double* __restrict v = product_.data() + first * f;
+    for (int j = 0; j < 3 * f; ++j) v[j] += factor * z[j];
+    if (tables_.bodies[body].dofs == 3) return;
+    const double* __restrict z0 = z + 3 * f;
+    const double* __restrict z1 = z + 4 * f;
+    const double* __restrict z2 = z + 5 * f;
+    for (int i = 0; i < 3; ++i) {
+        const double a = factor * H[i], b = factor * H[i + 3], c = factor * H[i + 6];
+        double* __restrict w = v + (3 + i) * f;
+        for (int j = 0; j < f; ++j) w[j] += a * z0[j] + b * z1[j] + c * z2[j];
+    }
+}
+
+void NullSpaces::block(int body_i, int body_j, const double* values)
+{
+    const double* z = null_space(B_, body_j);
+    for (int i = 0; i < tables_.bodies[body_i].dofs; ++i) {
+        double* __restrict v = product_.data() + (tables_.bodies[body_i].first + i) * f_;
+        for (int k = 0; k < tables_.bodies[body_j].dofs; ++k) {
+            const double s = values[6 * i + k];
+            if (s == 0) continue;
+            const double* __restrict row = z + k * f_;
+            for (int j = 0; j < f_; ++j) v[j] += s * row[j];
+        }
+    }
+}
+
+/// Rows r and r + 1 of Z_A^T product, three terms at a time: n is a multiple of three.
+void NullSpaces::multiply_pair(int r, double* __restrict u, double* __restrict w) const
+{
+    const int f = f_, n = tables_.n_twists;
+    const double* z = z_.data() + place(A_) + r;
+    std::fill(u, u + f, 0.0);
+    std::fill(w, w + f, 0.0);
+    for (int i = 0; i + 2 < n; i += 3) {
+        const double* __restrict v0 = product_.data() + i * f;
+        const double* __restrict v1 = v0 + f;
+        const double* __restrict v2 = v1 + f;
+        const double *a = z + i * f, *b = a + f, *c = b + f;
+        const double a0 = a[0], b0 = b[0], c0 = c[0], a1 = a[1], b1 = b[1], c1 = c[1];
+        for (int j = 0; j < f; ++j) {
+            u[j] += a0 * v0[j] + b0 * v1[j] + c0 * v2[j];
+            w[j] += a1 * v0[j] + b1 * v1[j] + c1 * v2[j];
+        }
+    }
+}
+
+/// The block at (A, B) <- Z_A^T product.
+void NullSpaces::close()
+{
+    if (f_ == 0) return;
+    const int f = f_, n = tables_.n_twists, stride = matrix_.stride(e_);
+    double* block = matrix_.block(e_, place_of_row(*stretch_, A_), B_);
+    int r = 0;
+    for (; r + 1 < f; r += 2) {
+        if (f >= 64) Patience::ask();
+        multiply_pair(r, block + r * stride, block + (r + 1) * stride);
+    }
+    if (r == f) return;
+    double* __restrict u = block + r * stride;
+    std::fill(u, u + f, 0.0);
+    for (int i = 0; i < n; ++i) {
+        const double s = null_space(A_, 0)[i * f + r];
+        const double* __restrict v = product_.data() + i * f;
+        for (int j = 0; j < f; ++j) u[j] += s * v[j];
+    }
+}
+
+void NullSpaces::solve(std::span<const double> rows, const double*, double* y)
+{
+    const int n = tables_.n_twists, k = tables_.rank;
+    x_.assign(rows.begin(), rows.end());
+    if (f_ > 0) solver_->solve(x_);
+    const double* x = x_.data();
+    for (int A = 0; A < structure_.n_nodes(); ++A) {
+        if (!stretch_->is_unknown(A)) continue;
+        std::fill(y, y + k, 0.0);
+        std::copy(x, x + f_, y + k);
+        nodes_->basis(A).q.apply(y);
+        x += f_;
+        y += n;
+    }
+}
+
+/// Nothing is scaled: rows and unknowns are in mass-orthonormal coordinates. The 2-norm knows no choice of
+/// units, axes and bases; the 1-norm feels the bases of the free motions (a factor of f^2 at the very most).
+/// The blocks go before vectors come.
+void NullSpaces::measure_condition(SolveReport& report, const std::function<bool()>& goes_on)
+{
+    const SparseMatrix whole = to_sparse(structure_, matrix_);
+    if (solver_->factorise(matrix_) != Outcome::regular) {
+        report.notes.push_back(
+            "the whole matrix is singular to its factorisation: it has no condition number");
+        return;
+    }
+    matrix_ = {};
+    z_ = {};
+    const auto map = [this](void (LinearSolver::*apply)(std::span<double>) const) -> LinearMap {
+        return [this, apply](std::span<const double> x, std::span<double> y) {
+            std::copy(x.begin(), x.end(), y.begin());
+            ((*solver_).*apply)(y);
+        };
+    };
+    const ConditionNumbers condition =
+        condition_numbers(whole, map(&LinearSolver::solve), map(&LinearSolver::solve_transposed), goes_on);
+    report.condition_1 = report.scaled_condition = condition.one;
+    report.condition_2 = condition.two;
+    report.factor_entries = solver_->report().factor_entries;
+}
+
+/// J y + Y_0 nu = x, Y_1^T y = 0, with the Schur complement Y_1^T J^-1 Y_0.
+class Bodies final : public Elimination {
+public:
+    explicit Bodies(const Tables& tables) : tables_(tables)
+    {
+        const auto n = static_cast<std::size_t>(tables.n_twists);
+        work_.assign(n, 0.0);
+        inverse_.resize(tables.bodies.size());
+        columns_.assign(n * static_cast<std::size_t>(tables.rank), 0.0);
+        schur_.resize(tables.rank);
+    }
+
+    void begin(const Stretch&, const Nodes& nodes) override
+    {
+        first_ = &nodes.basis(0).q;
+        last_ = &nodes.basis(1).q;
+    }
+    void open(int, int, int) override {}
+    void mass(int body, double factor, const double* H) override
+    {
+        factor_ = factor;
+        if (tables_.bodies[body].dofs == 3) return;
+        Matrix3 h;
+        std::copy(H, H + 9, h.a);
+        inverse_[body] = inverse(h);
+    }
+    void block(int, int, const double*) override {}   // nothing but mass comes to this element
+    void close() override {}
+    bool factorise() override;
+    void solve(std::span<const double> rows, const double* range, double* y) override;
+    bool takes_constraints() const override { return true; }
+    void describe(SolveReport&) const override {}
+    void measure_condition(SolveReport&, const std::function<bool()>&) override {}
+
+private:
+    void invert_bodies(double* y) const;
+
+    const Tables& tables_;
+    const OrthogonalBasis *first_ = nullptr, *last_ = nullptr;
+    double factor_ = 1;              // of the mass
+    std::vector<Matrix3> inverse_;   // of H
+    DenseLU schur_;
+    std::vector<double> columns_;   // J^-1 Y_0, rank columns of length n
+    std::vector<double> work_;
+};
+
+/// y <- J^-1 y, body by body.
+void Bodies::invert_bodies(double* y) const
+{
+    const double s = 1 / factor_;
+    for (int body = 0; body < tables_.n_bodies(); ++body) {
+        double* v = y + tables_.bodies[body].first;
+        for (int i = 0; i < 3; ++i) v[i] *= s;
+        if (tables_.bodies[body].dofs == 3) continue;
+        const double* h = inverse_[body].a;
+        const double a = s * v[3], b = s * v[4], c = s * v[5];
+        for (int i = 0; i < 3; ++i) v[3 + i] = h[i] * a + h[3 + i] * b + h[6 + i] * c;
+    }
+}
+
+bool Bodies::factorise()
+{
+    const int k = tables_.rank, n = tables_.n_twists;
+    for (int c = 0; c < k; ++c) {
+        double* column = columns_.data() + c * n;
+        std::fill(column, column + n, 0.0);
+        column[c] = 1;
+        first_->apply(column);
+        invert_bodies(column);
+        std::copy(column, column + n, work_.data());
+        last_->apply_transposed(work_.data());
+        for (int r = 0; r < k; ++r) schur_.row(r)[c] = work_[r];
+    }
+    return factor_ != 0 && schur_.factorise();
+}
+
+void Bodies::solve(std::span<const double> rows, const double* range, double* y)
+{
+    const int k = tables_.rank, n = tables_.n_twists;
+    double* nu = work_.data();
+    std::fill(y, y + k, 0.0);
+    std::copy(rows.begin(), rows.end(), y + k);
+    first_->apply(y);
+    invert_bodies(y);
+    std::copy(y, y + n, nu);
+    last_->apply_transposed(nu);
+    for (int c = 0; range != nullptr && c < k; ++c) nu[c] -= range[c];
+    schur_.solve(nu);
+    for (int c = 0; c < k; ++c)
+        for (int i = 0; i < n; ++i) y[i] -= nu[c] * columns_[c * n + i];
+}
+
+}   // namespace
+
+std::unique_ptr<Elimination> null_space_elimination(const Tables& tables, const Stretch& stretch,
+                                                    std::unique_ptr<LinearSolver> solver)
+{
+    return std::make_unique<NullSpaces>(tables, stretch, std::move(solver));
+}
+
+std::unique_ptr<Elimination> body_elimination(const Tables& tables)
+{
+    return std::make_unique<Bodies>(tables);
+}
+
+}   // namespace livens

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The linear algebra of a window behind a small interface: blocks of the tangent go in, increments of the
+// null-space unknowns come out.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "livens/solvers/linear_solver.h"
+#include "livens/solvers/report.h"
+#include "livens/spacetime/nodal/tangent.h"
+
+namespace livens {
+
+/// Reduced systems: rows Z_A^T at active nodes, columns Z_B at unknown ones.
+class Elimination : public TangentSink {
+public:
+    /// Takes the null spaces of all nodes, before a tangent is formed.
+    virtual void begin(const Stretch& stretch, const Nodes& nodes) = 0;
+    virtual bool factorise() = 0;
+    /// y <- the scaled twists of unknown nodes, node after node, that the reduced rows of active nodes ask
+    /// for.
+    virtual void solve(std::span<const double> rows, const double* range, double* y) = 0;
+    /// Whether solve() can take violations of the constraints in; else they are taken off before. `range`
+    /// then holds the part of y across the null space at node 1 (in the basis), or null.
+    virtual bool takes_constraints() const { return false; }
+    virtual void describe(SolveReport& report) const = 0;
+    /// Of the tangent that was formed; uses it up.
+    virtual void measure_condition(SolveReport& report, const std::function<bool()>& goes_on) = 0;
+};
+
+/// Blocks on null spaces, for a LinearSolver.
+std::unique_ptr<Elimination> null_space_elimination(const Tables& tables, const Stretch& stretch,
+                                                    std::unique_ptr<LinearSolver> solver);
+
+/// One element of degree 1 with a known start and without loads that have a tangent: the tangent couples no
+/// bodies. They are inverted one by one, and the constraints added by their Schur complement, which is small.
+std::unique_ptr<Elimination> body_elimination(const Tables& tables);
+
+}   // namespace livens

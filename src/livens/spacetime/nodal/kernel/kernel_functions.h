@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The functions of the march kernel, which each set of instructions has of its own.
+#pragma once
+
+#include "livens/dynamics/lanes/lanes.h"
+
+namespace livens::lanes {
+
+/// The numbers of one element; lanes over rows, one for each node of a column, or as said.
+struct Rule {
+    const double* k;          ///< k_AB / h
+    const double* inverse;    ///< - h K^-1, lanes over columns
+    const double* weights;    ///< h w_A; one
+    const double* M;          ///< M_B(s_c), lanes over load points
+    const double* dM;         ///< M_B'(s_c) / h
+    const double* M_rows;     ///< M_A(s_c), one for each load point
+    const double* momentum;   ///< at the start, n_twists scalars
+    double length;
+    bool in_still_axes = false;   ///< turns, on the way from rows to a step
+};
+
+struct Sizes {
+    double rows = 0;     ///< largest row once multipliers have taken their part
+    double terms = 0;    ///< before
+    double step = 0;     ///< in lengths and radians
+    double motion = 0;   ///< inside the element
+    double finite = 0;   ///< not finite if something is not
+};
+
+/// The functions of one set of instructions for W lanes.
+struct Functions {
+    int width;
+    /// Places of n nodes from those of the element before: weights, for each of its lanes and last for its
+    /// start a row of lanes. Lanes that stand for no node stay at the start.
+    void (*extrapolate)(int n_bodies, int n, const double* before, const double* weights, double* place);
+    /// Numbers and increments from places; then gradients and violations.
+    void (*configure)(const Pattern&, const Values& start, const Values& nodes);
+    /// The factor, from gradients.
+    void (*factorise)(const Pattern&, const Values& nodes);
+    /// X and X' at the load points.
+    void (*interpolate)(const Pattern&, const Values& start, const Values& nodes, const Rule&);
+    /// Balances, less what multipliers take.
+    void (*balance)(const Pattern&, const Values& start, const Values& nodes, const Rule&, bool first,
+                    Sizes&);
+    /// A step onto the solution.
+    void (*propose)(const Pattern&, const Values& nodes, const Rule&);
+    /// Places moved by the step.
+    void (*move)(const Pattern&, const Values& nodes, const Rule&, Sizes&);
+    /// Twist rows, about the centres, of what multipliers take at all nodes: 6 scalars a body.
+    void (*sum_impulses)(const Pattern&, const Values& start, const Values& nodes, double* sum);
+};
+
+/// For at least so many lanes; null: there are none.
+const Functions* sse2(int n);
+const Functions* avx2(int n);
+const Functions* avx512(int n);
+
+}   // namespace livens::lanes

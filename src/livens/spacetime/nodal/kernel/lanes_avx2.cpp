@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The march kernel on registers of 4 doubles; compiled for AVX2 alone, see CMakeLists.txt.
+#ifdef LIVENS_X86_SETS
+#define LIVENS_REGISTER 4
+#include "livens/spacetime/nodal/kernel/lane_kernel.h"
+
+namespace livens::lanes {
+
+const Functions* avx2(int n) { return functions_for(n); }
+
+}   // namespace livens::lanes
+#else
+#include "livens/spacetime/nodal/kernel/kernel_functions.h"
+
+namespace livens::lanes {
+
+const Functions* avx2(int) { return nullptr; }
+
+}   // namespace livens::lanes
+#endif

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "livens/spacetime/nodal/system.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace livens {
+
+LobattoSystem::LobattoSystem(const Tables& tables, const ElementRule& rule)
+    : tables_(tables), rule_(rule), nodes_(tables, rule_), rows_(tables, rule_), tangent_(tables, rule_)
+{
+    for (double k : rule.k) largest_k_ = std::max(largest_k_, std::abs(k));
+    range_.assign(static_cast<std::size_t>(tables.rank), 0.0);
+    work_.assign(static_cast<std::size_t>(tables.n_twists), 0.0);
+}
+
+void LobattoSystem::open(const Stretch& stretch, const InstantState* first, const InstantState* last)
+{
+    const bool is_alike = stretch.n_nodes() == stretch_.n_nodes() && stretch.X_first == stretch_.X_first &&
+                          stretch.P_first == stretch_.P_first && stretch.X_last == stretch_.X_last &&
+                          stretch.P_last == stretch_.P_last;
+    stretch_ = stretch;
+    nodes_.open(stretch_);
+    if (!is_alike) rows_.open(stretch_);
+    if (first != nullptr) nodes_.fix(0, *first);
+    if (last != nullptr) nodes_.fix(stretch_.n_nodes() - 1, *last);
+    if (first != nullptr) rows_.start_with(*first);
+    if (!is_alike) elimination_.reset();
+}
+
+void LobattoSystem::choose_elimination()
+{
+    if (rule_.degree == 1 && rule_.points == Points::lobatto && stretch_.n_elements() == 1 &&
+        stretch_.is_march() && tables_.loads_with_tangent.empty())
+        elimination_ = body_elimination(tables_);
+    else
+        elimination_ = null_space_elimination(
+            tables_, stretch_, stretch_.is_march() ? forward_solver() : whole_solver(SparseBackend::eigen));
+}
+
+bool LobattoSystem::settle()
+{
+    if (elimination_ == nullptr) choose_elimination();
+    in_use_ = pending_ = false;
+    for (int round = 0; round < 6; ++round) {
+        if (!nodes_.constrain(stretch_, false)) return false;
+        pending_ = nodes_.is_near() && elimination_->takes_constraints();
+        correction_ = 0;
+        if (pending_) break;
+        correction_ = nodes_.correct(stretch_);
+        if (correction_ < 1e-3) break;
+    }
+    return true;
+}
+
+int LobattoSystem::n_unknowns() const
+{
+    const int n_known = (stretch_.X_first ? 1 : 0) + (stretch_.X_last ? 1 : 0);
+    return (stretch_.n_nodes() - n_known) * tables_.n_twists;
+}
+
+bool LobattoSystem::factorise()
+{
+    in_use_ = true;
+    elimination_->begin(stretch_, nodes_);
+    tangent_.form(stretch_, nodes_, rows_, *elimination_);
+    return elimination_->factorise();
+}
+
+void LobattoSystem::solve(std::span<double> dx)
+{
+    if (pending_) {   // one node: its violations go into the linear system with the rows
+        for (int c = 0; c < tables_.rank; ++c) range_[c] = -nodes_.violations(1)[c];
+        nodes_.basis(1).q.solve_R_transposed(range_.data());
+    }
+    elimination_->solve(rows_.reduced(), pending_ ? range_.data() : nullptr, dx.data());
+    double* twist = dx.data();
+    for (int A = 0; A < stretch_.n_nodes(); ++A) {
+        if (!stretch_.is_unknown(A)) continue;
+        tables_.to_twist(nodes_.maps(A), twist, twist);
+        twist += tables_.n_twists;
+    }
+}
+
+bool LobattoSystem::move(std::span<const double> dx, double damping)
+{
+    nodes_.begin_move();
+    const double* twist = dx.data();
+    for (int A = 0; A < stretch_.n_nodes(); ++A) {
+        if (!stretch_.is_unknown(A)) continue;
+        nodes_.move(A, twist, damping);
+        twist += tables_.n_twists;
+    }
+    pending_ = false;
+    if (!nodes_.constrain(stretch_, in_use_)) return false;
+    correction_ = damping > 0 ? nodes_.correct(stretch_) : 0;   // the way back changes nothing
+    measure();
+    return true;
+}
+
+/// Motion and impulse inside the elements.
+void LobattoSystem::measure()
+{
+    largest_.motion = largest_.impulse = 0;
+    for (int e = 0; e < stretch_.n_elements(); ++e) {
+        const double inverse = 1 / std::abs(stretch_.h(e));
+        for (int B = 1; B <= rule_.degree; ++B) {
+            for (int b = 0; b < tables_.n_bodies(); ++b) {
+                const double* d = nodes_.dX(e, B) + 12 * b;
+                const auto& body = tables_.bodies[b];
+                double u = 0, turn = 0;
+                for (int i = 0; i < 3; ++i) u = std::max(u, std::abs(d[i]));
+                for (int i = 3; i < 12; ++i) turn = std::max(turn, std::abs(d[i]));
+                largest_.motion = std::max(largest_.motion, std::max(u / tables_.length, turn));
+                largest_.impulse = std::max(
+                    largest_.impulse,
+                    ((u + body.reach * turn) / body.inverse_root_mass + body.root_inertia * turn) * inverse);
+            }
+        }
+    }
+}
+
+double LobattoSystem::size_of(std::span<const double> dx) const
+{
+    double size = 0;
+    for (std::size_t i = 0; i < dx.size(); i += static_cast<std::size_t>(tables_.n_twists)) {
+        const double here = nodes_.size_of(dx.data() + i);
+        if (!(here <= size) && !std::isnan(size)) size = here;
+    }
+    return size;
+}
+
+/// A body may fly many lengths while its turns need their digits all the same.
+double LobattoSystem::scale() const { return std::clamp(largest_.motion, 1e-6, 1.0); }
+
+/// The sums over k_AB cancel: their rounding is that of their largest term.
+NewtonProblem::Rows LobattoSystem::rows() const
+{
+    return {rows_.size(), std::max(largest_.impulse, rows_.terms()),
+            1e-16 * (largest_k_ * largest_.impulse + rows_.terms() + tangent_.load_rounding()),
+            stretch_.n_elements() == 1, correction_};
+}
+
+}   // namespace livens

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The equations of lobatto(p) or radau(p) on one window, as Newton's iteration sees them.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "livens/solvers/newton.h"
+#include "livens/spacetime/nodal/elimination.h"
+
+namespace livens {
+
+/// Rows and constraints of a stretch of elements, whose unknowns are the twists of its unknown nodes, one
+/// node after the other. Multipliers are eliminated; every move ends with a pull back onto the constraints.
+class LobattoSystem final : public NewtonProblem {
+public:
+    LobattoSystem(const Tables& tables, const ElementRule& rule);
+
+    /// Makes a stretch current, with the states known at its ends (null: X is unknown there). To be followed
+    /// by places for all unknown nodes, and settle().
+    void open(const Stretch& stretch, const InstantState* first, const InstantState* last);
+    /// Placed nodes may lie far from the constraints: pulls until the bases fit the nodes. False: not finite.
+    bool settle();
+
+    const ElementRule& rule() const { return rule_; }
+    const Stretch& stretch() const { return stretch_; }
+    Nodes& nodes() { return nodes_; }
+    const Nodes& nodes() const { return nodes_; }
+    livens::Rows& balances() { return rows_; }
+    const livens::Rows& balances() const { return rows_; }
+    /// Null before settle().
+    const Elimination* elimination() const { return elimination_.get(); }
+    /// Its memory; nothing is solved any more until the window is opened as another one.
+    void release_elimination() { elimination_.reset(); }
+    /// Room for a twist of all bodies.
+    std::vector<double>& scratch() { return work_; }
+    /// Forms the tangent at the current point into another sink, for tests.
+    void form_tangent(TangentSink& sink) { tangent_.form(stretch_, nodes_, rows_, sink); }
+    /// The bases fit the nodes to rounding: nothing was pulled since they were made.
+    bool bases_fit() const { return correction_ < 1e-15; }
+
+    int n_unknowns() const override;
+    bool residual() override
+    {
+        evaluations_ += stretch_.n_nodes();
+        return rows_.evaluate(stretch_, nodes_);
+    }
+    /// Of the equations at a node, so far.
+    long long evaluations() const { return evaluations_; }
+    bool factorise() override;
+    void solve(std::span<double> dx) override;
+    bool move(std::span<const double> dx, double damping) override;
+    void keep() override { nodes_.keep(); }
+    double size_of(std::span<const double> dx) const override;
+    double scale() const override;
+    NewtonProblem::Rows rows() const override;
+
+private:
+    struct Largest {
+        double motion = 0;    // inside an element, in lengths and radians
+        double impulse = 0;   // mass times motion over h, in scaled rows
+    };
+
+    void choose_elimination();
+    void measure();
+
+    const Tables& tables_;
+    ElementRule rule_;
+    Stretch stretch_;
+    Nodes nodes_;
+    livens::Rows rows_;
+    Tangent tangent_;
+    std::unique_ptr<Elimination> elimination_;
+    double largest_k_ = 0;
+    bool in_use_ = false;     // a tangent is: null spaces vary smoothly
+    bool pending_ = false;    // violations are left to the next linear step
+    double correction_ = 0;   // largest pull of the last move
+    Largest largest_;
+    long long evaluations_ = 0;
+    std::vector<double> work_, range_;
+};
+
+}   // namespace livens

@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "livens/spacetime/nodal/tangent.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "livens/dynamics/rows/twist.h"
+#include "livens/solvers/patience.h"
+
+namespace livens {
+
+namespace {
+
+/// The map D of one body, column by column, 6 x 6.
+void fill_map(const Tables::BodyTable& body, const double* maps, double* D)
+{
+    std::fill(D, D + 36, 0.0);
+    for (int c = 0; c < 3; ++c) D[7 * c] = body.inverse_root_mass;
+    if (body.dofs == 3) return;
+    for (int c = 0; c < 3; ++c) {
+        const double* w = maps + 3 * c;
+        double* column = D + 18 + 6 * c;
+        column[0] = maps[10] * w[2] - maps[11] * w[1];
+        column[1] = maps[11] * w[0] - maps[9] * w[2];
+        column[2] = maps[9] * w[1] - maps[10] * w[0];
+        for (int r = 0; r < 3; ++r) column[3 + r] = w[r];
+    }
+}
+
+/// out <- D_i^T block D_j, 6 x 6 row by row.
+void scale_block(const Tables& tables, const double* maps_A, int i, const double* maps_B, int j,
+                 const double* block, double* out)
+{
+    double left[36], right[36], columns[36];
+    fill_map(tables.bodies[i], maps_A + 12 * i, left);
+    fill_map(tables.bodies[j], maps_B + 12 * j, right);
+    for (int r = 0; r < 6; ++r) {
+        for (int c = 0; c < 6; ++c) {
+            double sum = 0;
+            for (int k = 0; k < 6; ++k) sum += block[6 * r + k] * right[6 * c + k];
+            columns[6 * r + c] = sum;
+        }
+    }
+    for (int r = 0; r < 6; ++r) {
+        for (int c = 0; c < 6; ++c) {
+            double sum = 0;
+            for (int k = 0; k < 6; ++k) sum += left[6 * r + k] * columns[6 * k + c];
+            out[6 * r + c] = sum;
+        }
+    }
+}
+
+/// block += N(X_row)^T K N(X_column), 6 x 6 row by row.
+void add_reduced(const Matrix<12, 12>& K, const double* X_row, const double* X_column, int dofs,
+                 double* block)
+{
+    for (int j = 0; j < dofs; ++j) {
+        double unit[6] = {0, 0, 0, 0, 0, 0}, dX[12], dF[12], row[6] = {0, 0, 0, 0, 0, 0};
+        unit[j] = 1;
+        twist::columns(X_column, unit, dX);
+        for (int r = 0; r < 12; ++r) {
+            dF[r] = 0;
+            for (int c = 0; c < 12; ++c) dF[r] += K(r, c) * dX[c];
+        }
+        twist::rows(X_row, dF, row);
+        for (int r = 0; r < 6; ++r) block[6 * r + j] += row[r];
+    }
+}
+
+}   // namespace
+
+Tangent::Tangent(const Tables& tables, const ElementRule& rule) : tables_(tables), rule_(rule)
+{
+    const std::size_t size = 12 * tables.bodies.size();
+    blocks_.assign(3 * size, 0.0);
+    for (auto* v : {&total_, &X_, &V_}) v->assign(size, 0.0);
+}
+
+void Tangent::form(const Stretch& stretch, const Nodes& nodes, const Rows& rows, TangentSink& sink)
+{
+    double H[9] = {};
+    load_rounding_ = 0;
+    for (int e = 0; e < stretch.n_elements(); ++e) {
+        Patience::ask();
+        if (!tables_.loads_with_tangent.empty()) evaluate_loads(stretch, nodes, rows, e);
+        for (int a = 0; a < rule_.size(); ++a) {
+            const int A = e * rule_.degree + a;
+            if (!stretch.is_active(A)) continue;
+            for (int b = 0; b < rule_.size(); ++b) {
+                const int B = e * rule_.degree + b;
+                if (!stretch.is_unknown(B)) continue;
+                sink.open(e, A, B);
+                const double factor = rule_.k[a * rule_.size() + b] / stretch.h(e);
+                for (int body = 0; body < tables_.n_bodies(); ++body) {
+                    if (tables_.bodies[body].dofs == 6) tables_.spin_mass(body, nodes.X(A), nodes.X(B), H);
+                    sink.mass(body, factor, H);
+                }
+                if (A == B && (a > 0 || e == 0)) add_node_terms(nodes, rows, A, sink);
+                if (!tables_.loads_with_tangent.empty()) add_loads(stretch, nodes, e, a, b, sink);
+                sink.close();
+            }
+        }
+    }
+}
+
+/// What stands at (A, A) besides mass and loads: rows that turn with the bodies, Hessians of constraints.
+void Tangent::add_node_terms(const Nodes& nodes, const Rows& rows, int A, TangentSink& sink)
+{
+    std::copy_n(rows.raw(A), total_.size(), total_.data());
+    rows.subtract(nodes.basis(A), rows.impulses(A), total_.data());
+    std::fill(blocks_.begin(), blocks_.end(), 0.0);
+    for (int b = 0; b < tables_.n_bodies(); ++b)
+        if (tables_.bodies[b].dofs == 6)
+            twist::add_geometric(nodes.X(A) + 12 * b, total_.data() + 12 * b, blocks_.data() + 36 * b, 6);
+    add_constraints(nodes, rows, A, sink);
+    double scaled[36];
+    for (int b = 0; b < tables_.n_bodies(); ++b) {
+        scale_block(tables_, nodes.maps(A), b, nodes.maps(A), b, blocks_.data() + 36 * b, scaled);
+        sink.block(b, b, scaled);
+    }
+}
+
+/// - W_A sum lambda K: of bodies with themselves into blocks_, the others to the sink.
+void Tangent::add_constraints(const Nodes& nodes, const Rows& rows, int A, TangentSink& sink)
+{
+    double cross[36], scaled[36];
+    const ConstraintBasis& basis = nodes.basis(A);
+    for (int c = 0; c < tables_.rank; ++c) {
+        const auto& table = tables_.rows[basis.rows[c]];
+        if (table.form.empty() && table.is_quadratic) continue;
+        for (int r = 0; r < table.n_sides; ++r) {
+            for (int s = 0; s < table.n_sides; ++s) {
+                const int i = table.bodies[r], j = table.bodies[s];
+                double* to = r == s ? blocks_.data() + 36 * i : cross;
+                if (r != s) std::fill(cross, cross + 36, 0.0);
+                const double *X_i = nodes.X(A) + 12 * i, *X_j = nodes.X(A) + 12 * j;
+                const double factor = -rows.impulses(A)[c];
+                if (table.is_quadratic)
+                    twist::add_block(table.K[r][s].data(), X_i, X_j, factor, to, 6);
+                else
+                    add_reduced(factor * constraint_hessian(*table.row, nodes.at(A),
+                                                            Configurations(nodes.X(A)), i, j),
+                                X_i, X_j, tables_.bodies[j].dofs, to);
+                if (r == s) continue;
+                scale_block(tables_, nodes.maps(A), i, nodes.maps(A), j, cross, scaled);
+                sink.block(i, j, scaled);
+            }
+        }
+    }
+}
+
+double Tangent::rounding_of(const Load& load, const LoadArguments& at, const LoadTangent& tangent) const
+{
+    double size = 0;
+    for (int r = 0; r < 2; ++r) {
+        if (load.bodies[r] == world) continue;
+        const auto& body = tables_.bodies[load.bodies[r]];
+        double root = 0;
+        for (const double l : body.spin) root = std::max(root, std::abs(l));
+        for (int i = 0; i < 12; ++i) {
+            double term = 0;
+            for (std::size_t c = 0; c < load.bodies.size(); ++c)
+                for (int k = 0; k < 12; ++k)
+                    term += std::abs(tangent.X[r][c](i, k) * at.X[c].a[k]) +
+                            std::abs(tangent.V[r][c](i, k) * at.V[c].a[k]);
+            size = std::max(size, term * (i < 3 ? body.inverse_root_mass + body.reach * root : root));
+        }
+    }
+    return size;
+}
+
+/// dF/dX and dF/dX' of all loads at the load points of an element.
+void Tangent::evaluate_loads(const Stretch& stretch, const Nodes& nodes, const Rows& rows, int e)
+{
+    const std::size_t n = tables_.loads_with_tangent.size();
+    load_tangents_.resize(n * rule_.loads.points.size());
+    for (int c = 0; c < rule_.degree; ++c) {
+        rows.interpolate(stretch, nodes, e, c, X_.data(), V_.data());
+        for (std::size_t l = 0; l < n; ++l) {
+            const Load& load = tables_.model->loads()[tables_.loads_with_tangent[l]];
+            const Instant at = stretch.load_point(rule_, e, c);
+            const LoadArguments arguments =
+                tables_.arguments(tables_.loads_with_tangent[l], at, X_.data(), V_.data(), rows.angles(e, c));
+            LoadTangent& tangent = load_tangents_[c * n + l];
+            tangent = LoadTangent(load.bodies.size());
+            load.tangent(arguments, tangent);
+            const double size = std::abs(stretch.h(e)) * rounding_of(load, arguments, tangent);
+            load_rounding_ = std::max(load_rounding_, size);
+        }
+    }
+}
+
+/// sum_c h w_c M_A(s_c) N_A^T [ M_B(s_c) dF/dX + h^-1 M_B'(s_c) dF/dX' ] N_B.
+void Tangent::add_loads(const Stretch& stretch, const Nodes& nodes, int e, int a, int b, TangentSink& sink)
+{
+    const std::size_t n = tables_.loads_with_tangent.size();
+    const int A = e * rule_.degree + a, B = e * rule_.degree + b, size = rule_.size();
+    double block[36], scaled[36];
+    for (std::size_t l = 0; l < n; ++l) {
+        const Load& load = tables_.model->loads()[tables_.loads_with_tangent[l]];
+        for (std::size_t r = 0; r < 2; ++r) {
+            for (std::size_t s = 0; s < load.bodies.size(); ++s) {
+                const int i = load.bodies[r], j = load.bodies[s];
+                if (i == world || j == world) continue;
+                Matrix<12, 12> K{};
+                for (int c = 0; c < rule_.degree; ++c) {
+                    const LoadTangent& tangent = load_tangents_[c * n + l];
+                    const double w = rule_.loads.weights[c] * rule_.M[c * size + a];
+                    const double by_X = load.depends_on_X ? stretch.h(e) * w * rule_.M[c * size + b] : 0.0;
+                    const double by_V = load.depends_on_V ? w * rule_.dM[c * size + b] : 0.0;
+                    for (int k = 0; k < 144; ++k)
+                        K.a[k] += by_X * tangent.X[r][s].a[k] + by_V * tangent.V[r][s].a[k];
+                }
+                std::fill(block, block + 36, 0.0);
+                add_reduced(K, nodes.X(A) + 12 * i, nodes.X(B) + 12 * j, tables_.bodies[j].dofs, block);
+                scale_block(tables_, nodes.maps(A), i, nodes.maps(B), j, block, scaled);
+                sink.block(i, j, scaled);
+            }
+        }
+    }
+}
+
+}   // namespace livens

@@ -1,0 +1,399 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "livens/statics/equilibrium.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <utility>
+
+#include <Eigen/Dense>
+
+#include "livens/base/text.h"
+#include "livens/dynamics/instant/reactions.h"
+#include "livens/dynamics/rows/projection.h"
+#include "livens/dynamics/rows/rows.h"
+#include "livens/dynamics/rows/twist.h"
+#include "livens/dynamics/start/singular.h"
+#include "livens/multibody/body.h"
+#include "livens/multibody/joint_coordinates.h"
+#include "livens/statics/statics.h"
+
+namespace livens {
+
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double balance_tolerance = 1e-10;   // residual from which on only Newton's steps polish
+constexpr double largest_step = 0.5;          // lengths of the model, rad
+constexpr double smallest_step = 1e-13;
+constexpr int most_unrestored = 25;   // steps in a row that nothing opposes
+
+/// One configuration at rest. Of those that are searched from also the principal stiffnesses.
+struct RestPoint {
+    std::vector<Matrix34> X;
+    std::vector<double> maps;
+    std::unique_ptr<const Statics> statics;
+    MatrixXd directions;   // scaled twists by the coordinates of principal stiffness
+    VectorXd stiffness;    // principal ones, ascending
+    MatrixXd skew;         // of the tangent, in these coordinates; empty where it has none
+    VectorXd forces;       // along them
+    double scale = 0;      // Statics::largest_stiffness
+
+    double residual() const { return statics->residual; }
+};
+
+class Search {
+public:
+    Search(const Model& model, const ClosedStart& closed)
+        : model_(model), tables_(model, closed.independent), instant_(tables_), rows_(all_rows(model)),
+          t_(closed.start.t)
+    {
+        state_.resize(tables_);
+        state_.angles = tables_.turns.begin(closed.start);
+        const std::vector<Matrix34> stated = model.start().X;
+        for (const Joint& joint : model.joints())
+            for (const NamedCoordinate& q : joint.coordinates) {
+                const double value = coordinate_value(q.coordinate, stated);
+                counted_.push_back({&q, value, value});
+            }
+    }
+
+    const Tables& tables() const { return tables_; }
+
+    /// Forces in this configuration; false if they are no numbers or a free motion has no inertia.
+    bool look(std::vector<Matrix34> X, RestPoint& point)
+    {
+        point.X = std::move(X);
+        state_.t = t_;
+        std::copy_n(point.X.data()->data(), state_.X.size(), state_.X.begin());
+        std::fill(state_.velocity.begin(), state_.velocity.end(), 0.0);
+        tables_.turns.follow(point.X, state_.angles);
+        follow_joints(point.X);
+        if (!instant_.prepare(state_, tables_.independent)) return false;
+        instant_.accelerate(state_, Side::right);
+        acceleration_ = state_.acceleration[1];
+        instant_.add_basis(state_);
+        point.maps = state_.maps;
+        point.statics = std::make_unique<const Statics>(tables_, state_, Side::right);
+        return std::isfinite(point.residual());
+    }
+
+    /// Coordinates of each joint where it looked last, with the turns on the way there.
+    std::vector<std::vector<double>> coordinates() const
+    {
+        std::vector<std::vector<double>> all(model_.joints().size());
+        auto next = counted_.begin();
+        for (std::size_t j = 0; j < all.size(); ++j)
+            for (const NamedCoordinate& q : model_.joints()[j].coordinates)
+                all[j].push_back(q.at_stated + next->value - next->stated), ++next;
+        return all;
+    }
+
+    /// Principal stiffnesses, at the configuration that was looked at last.
+    void add_stiffness(RestPoint& point) const
+    {
+        const Statics& statics = *point.statics;
+        const int f = statics.free.n;
+        if (f == 0) return;
+        const std::vector<double> reduced = statics.free.reduced(tables_, statics.stiffness);
+        const Eigen::Map<const MatrixXd> K(reduced.data(), f, f),
+            Z(statics.free.Z.data(), tables_.n_twists, f);
+        const Eigen::SelfAdjointEigenSolver<MatrixXd> principal(0.5 * (K + K.transpose()));
+        point.scale = statics.largest_stiffness;
+        point.stiffness = principal.eigenvalues();
+        point.directions = Z * principal.eigenvectors();
+        const Eigen::Map<const VectorXd> rows(statics.rows.data(), tables_.n_twists);
+        point.forces = point.directions.transpose() * rows;
+        const MatrixXd skew = 0.5 * (K - K.transpose());
+        point.skew.resize(0, 0);
+        if (skew.cwiseAbs().maxCoeff() > 1e-13 * point.scale)
+            point.skew = principal.eigenvectors().transpose() * skew * principal.eigenvectors();
+    }
+
+    /// Largest displacement of a body, in lengths of the model, or turn.
+    double size_of(const RestPoint& point, const VectorXd& step) const
+    {
+        const VectorXd y = point.directions * step;
+        std::vector<double> xi(static_cast<std::size_t>(tables_.n_twists));
+        tables_.to_twist(point.maps.data(), y.data(), xi.data());
+        return largest_displacement(tables_, xi.data());
+    }
+
+    /// Where a step leads to, joints closed. False if they do not close.
+    bool move(const RestPoint& from, const VectorXd& step, std::vector<Matrix34>& X) const
+    {
+        const VectorXd y = from.directions * step;
+        std::vector<double> xi(static_cast<std::size_t>(tables_.n_twists));
+        tables_.to_twist(from.maps.data(), y.data(), xi.data());
+        X = from.X;
+        for (int b = 0; b < tables_.n_bodies(); ++b) {
+            const double* v = xi.data() + tables_.bodies[b].first;
+            const Vector3 shift{v[0], v[1], v[2]};
+            if (tables_.bodies[b].dofs == 3) {
+                X[b].set_column(0, X[b].column(0) + shift);
+                continue;
+            }
+            X[b] = twist::moved(X[b], shift, {v[3], v[4], v[5]});
+            const Matrix3 D = directors(X[b]);   // rounding does not gather
+            X[b] = configuration(X[b].column(0), 0.5 * (D * (3.0 * identity<3>() - transpose(D) * D)));
+        }
+        Closing closing = close_rows(model_, X, rows_, false);
+        X = std::move(closing.X);
+        return closing.closed;
+    }
+
+    /// Work of weight and loads on the straight way between two configurations, by the trapezoidal rule:
+    /// exact for weight and for forces that are constant or linear in X. What is small is the difference of
+    /// large numbers there, and taken from what joints leave free.
+    double work(const RestPoint& from, const RestPoint& to, const VectorXd& step, double size) const
+    {
+        if (size < 1e-3) {
+            const VectorXd y = from.directions * step;
+            const Eigen::Map<const VectorXd> first(from.statics->rows.data(), y.size()),
+                last(to.statics->rows.data(), y.size());
+            return 0.5 * y.dot(first + last);
+        }
+        double sum = 0;
+        for (std::size_t b = 0; b < from.X.size(); ++b)
+            for (int i = 0; i < 12; ++i)
+                sum += 0.5 * (from.statics->given[12 * b + i] + to.statics->given[12 * b + i]) *
+                       (to.X[b].a[i] - from.X[b].a[i]);
+        return sum;
+    }
+
+    /// The state that was looked at last.
+    const InstantState& state() const { return state_; }
+    const std::vector<double>& acceleration() const { return acceleration_; }
+    int bad_load(const std::vector<Matrix34>& X) const
+    {
+        const std::vector<double> V(12 * X.size(), 0.0);
+        return tables_.bad_load({t_, Side::right}, X.data()->data(), V.data(), state_.angles);
+    }
+
+private:
+    struct Counted {
+        const NamedCoordinate* q;
+        double stated, value;
+    };
+    /// Each angle the shorter way.
+    void follow_joints(std::span<const Matrix34> X)
+    {
+        for (Counted& one : counted_) {
+            const double x = coordinate_value(one.q->coordinate, X);
+            one.value = one.q->coordinate.is_angle() ? turned_to(x, one.value) : x;
+        }
+    }
+
+    const Model& model_;
+    Tables tables_;
+    InstantSystem instant_;
+    InstantState state_;
+    std::vector<int> rows_;
+    std::vector<double> acceleration_;
+    std::vector<Counted> counted_;   // of all joints
+    double t_;
+};
+
+/// Coordinates that nothing restores, and in which nothing pulls: they stay.
+bool is_idle(const RestPoint& point, Eigen::Index i)
+{
+    return std::abs(point.stiffness(i)) <= 1e-11 * point.scale &&
+           std::abs(point.forces(i)) <= balance_tolerance * point.statics->level;
+}
+
+/// With the force over |k| + mu, or for mu < 0 Newton's own step.
+VectorXd damped_step(const RestPoint& point, double mu)
+{
+    const Eigen::Index f = point.stiffness.size();
+    const double least = std::max(1e-14 * point.scale, 1e-12 * point.forces.cwiseAbs().maxCoeff());
+    VectorXd divisor(f), forces = point.forces;
+    for (Eigen::Index i = 0; i < f; ++i) {
+        const double k = point.stiffness(i), size = std::max(std::abs(k), least);
+        divisor(i) = mu < 0 ? std::copysign(size, k) : size + mu;
+        if (is_idle(point, i)) {
+            forces(i) = 0;
+            divisor(i) = 1;
+        }
+    }
+    if (point.skew.size() == 0) return forces.cwiseQuotient(divisor);
+    MatrixXd tangent = point.skew;
+    tangent.diagonal() += divisor;
+    return tangent.partialPivLu().solve(forces);
+}
+
+/// The step with the least mu that is not longer than the radius. A shorter one goes on to the radius in the
+/// coordinates of negative stiffness: the way out of an unstable equilibrium is long.
+VectorXd step_within(const Search& search, const RestPoint& point, double radius)
+{
+    VectorXd step = damped_step(point, 0);
+    const double whole = search.size_of(point, step);
+    if (whole <= radius) {
+        const VectorXd outwards = (point.stiffness.array() < -1e-11 * point.scale).select(step, 0.0);
+        const double size = search.size_of(point, outwards);
+        if (size > 0) step += (radius - whole) / size * outwards;
+        return step;
+    }
+    double low = 0,
+           high = 1e-6 * (point.stiffness.cwiseAbs().maxCoeff() + point.forces.cwiseAbs().maxCoeff());
+    for (int i = 0; i < 200; ++i) {
+        step = damped_step(point, high);
+        if (search.size_of(point, step) <= radius) break;
+        low = std::exchange(high, 4 * high);
+    }
+    for (int i = 0; i < 20; ++i) {
+        const double mu = 0.5 * (low + high);
+        const VectorXd tried = damped_step(point, mu);
+        const double size = search.size_of(point, tried);
+        if (size > radius) {
+            low = mu;
+            continue;
+        }
+        high = mu;
+        step = tried;
+        if (size > 0.8 * radius) break;
+    }
+    return step;
+}
+
+/// Whether most of what pulls does so where nothing restores.
+bool is_unrestored(const RestPoint& point)
+{
+    double unrestored = 0;
+    for (Eigen::Index i = 0; i < point.forces.size(); ++i)
+        if (std::abs(point.stiffness(i)) <= 1e-9 * point.scale)
+            unrestored += point.forces(i) * point.forces(i);
+    return unrestored > 0.25 * point.forces.squaredNorm();
+}
+
+enum class Outcome { balanced, no_numbers, unrestored, stuck, limit, cancelled };
+
+/// Down the work of the forces to where they are balanced.
+Outcome descend(Search& search, const EquilibriumOptions& options, RestPoint& here, int& iterations)
+{
+    double radius = largest_step;
+    int n_unrestored = 0;
+    search.add_stiffness(here);
+    while (here.residual() > balance_tolerance) {
+        if (options.goes_on && !options.goes_on()) return Outcome::cancelled;
+        if (iterations == options.max_iterations) return Outcome::limit;
+        if (radius < smallest_step) return Outcome::stuck;
+        ++iterations;
+        const VectorXd step = step_within(search, here, radius);
+        const double size = search.size_of(here, step);
+        const double foretold = step.dot(here.forces) - 0.5 * step.dot(here.stiffness.cwiseProduct(step));
+        RestPoint there;
+        std::vector<Matrix34> X;
+        const bool is_there = search.move(here, step, X) && search.look(std::move(X), there);
+        const double share = is_there ? search.work(here, there, step, size) / foretold : -1;
+        if (!(share > 0.05)) {
+            radius = 0.25 * size;
+            continue;
+        }
+        n_unrestored = is_unrestored(here) ? n_unrestored + 1 : 0;
+        here = std::move(there);
+        search.add_stiffness(here);
+        if (n_unrestored == most_unrestored) return Outcome::unrestored;
+        radius = share < 0.25  ? 0.5 * size
+                 : share > 0.7 ? std::min(largest_step, 2 * std::max(radius, size))
+                               : radius;
+    }
+    return Outcome::balanced;
+}
+
+/// Newton's steps, whatever the signs of the stiffness, as long as they halve the residual.
+void polish(Search& search, RestPoint& here, int& iterations)
+{
+    for (int i = 0; i < 10 && here.residual() > 0; ++i) {
+        const VectorXd step = damped_step(here, -1);
+        if (!(search.size_of(here, step) < 1e-3)) return;
+        RestPoint there;
+        std::vector<Matrix34> X;
+        if (!search.move(here, step, X) || !search.look(std::move(X), there)) return;
+        if (!(there.residual() < 0.5 * here.residual())) return;
+        ++iterations;
+        here = std::move(there);
+        search.add_stiffness(here);
+    }
+}
+
+std::string why_not(const Model& model, const Search& search, const RestPoint& here, Outcome outcome,
+                    const Equilibrium& result)
+{
+    if (outcome == Outcome::cancelled) return "cancelled";
+    if (outcome == Outcome::no_numbers) {
+        const int load = search.bad_load(here.X);
+        return load < 0 ? "the forces are not finite at the start" : not_finite(model.loads()[load]);
+    }
+    const std::string body = "body '" + model.body_name(std::max(0, result.worst_body)) + "'";
+    const std::string rate = result.angular_acceleration * model.length() > result.acceleration
+                                 ? to_text(result.angular_acceleration, 3) + " rad/s^2"
+                                 : to_text(result.acceleration, 3) + " m/s^2";
+    const std::string still = body + " still accelerates by " + rate;
+    switch (outcome) {
+    case Outcome::unrestored:
+        return still + ", and nothing restores it: hold it by a joint or a spring";
+    case Outcome::stuck:
+        return still + ", but no step, however short, goes with the forces: start nearer to the equilibrium";
+    default:
+        return still + " after " + std::to_string(result.iterations) +
+               " iterations: there may be no equilibrium, or start nearer to it";
+    }
+}
+
+void describe_worst(const Search& search, const RestPoint& here, Equilibrium& result)
+{
+    result.residual = here.residual();
+    result.worst_body = here.statics->body;
+    if (result.worst_body < 0) return;
+    const auto& body = search.tables().bodies[result.worst_body];
+    const double* a = search.acceleration().data() + body.first;
+    result.acceleration = norm(Vector3{a[0], a[1], a[2]});
+    if (body.dofs == 6) result.angular_acceleration = norm(Vector3{a[3], a[4], a[5]});
+}
+
+}   // namespace
+
+Equilibrium find_equilibrium(const Model& the_model, const State& start, const EquilibriumOptions& options)
+{
+    const Model model = frozen(the_model, {start.t});
+    State at_rest = start;
+    for (Matrix34& V : at_rest.V) V = {};
+    const ClosedStart closed = close_start(model, at_rest, options.initial);
+
+    Equilibrium result;
+    result.state = closed.start;
+    result.degrees_of_freedom = closed.degrees_of_freedom;
+    result.notes = closed.notes;
+    if (model.n_bodies() == 0) {
+        result.is_found = true;
+        return result;
+    }
+    Search search(model, closed);
+    RestPoint here;
+    Outcome outcome = Outcome::no_numbers;
+    if (search.look(closed.start.X, here)) outcome = descend(search, options, here, result.iterations);
+    if (outcome == Outcome::stuck && here.residual() <= equilibrium_tolerance) outcome = Outcome::balanced;
+    if (outcome == Outcome::balanced) polish(search, here, result.iterations);
+    if (outcome != Outcome::no_numbers) search.look(std::vector<Matrix34>(here.X), here);
+    describe_worst(search, here, result);
+    result.state.X = here.X;
+    result.state.angles = search.state().angles;
+    result.coordinates = search.coordinates();
+    result.is_found = outcome == Outcome::balanced;
+    const UniqueReactions least =
+        least_reactions(model, here.X, search.state().multipliers[1], search.tables().independent);
+    result.multipliers = least.multipliers;
+    result.joint_is_unique = least.joint_is_unique;
+    result.shared = least.shared;
+    if (!result.is_found) {
+        result.message = why_not(model, search, here, outcome, result);
+        return result;
+    }
+    refuse_singular_start(model, close_start(model, result.state, StartPolicy::project));
+    result.stability = stability(linearise(model, result.state));
+    return result;
+}
+
+}   // namespace livens

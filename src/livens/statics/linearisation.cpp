@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "livens/statics/linearisation.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Dense>
+
+#include "livens/base/error.h"
+#include "livens/base/text.h"
+#include "livens/multibody/body.h"
+#include "livens/statics/statics.h"
+
+namespace livens {
+
+namespace {
+
+using Eigen::MatrixXd;
+using ByRows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+constexpr double rest_tolerance = 1e-9;       // lengths of the model a second, rad/s
+constexpr double rounding_of_terms = 1e-12;   // of the largest of them, where they cancel
+
+std::vector<double> by_rows(const MatrixXd& A)
+{
+    std::vector<double> out(static_cast<std::size_t>(A.size()));
+    Eigen::Map<ByRows>(out.data(), A.rows(), A.cols()) = A;
+    return out;
+}
+
+void refuse_motion(const Model& model, const State& state)
+{
+    for (int b = 0; b < model.n_bodies(); ++b) {
+        const Matrix34 &X = state.X[b], &V = state.V[b];
+        const double speed = norm(V.column(0));
+        const double spin = model.bodies()[b].is_point ? 0 : norm(angular_velocity(X, V));
+        if (speed <= rest_tolerance * model.length() && spin <= rest_tolerance) continue;
+        throw InputError({"not-at-rest", "body[" + model.body_name(b) + "]",
+                          "body '" + model.body_name(b) + "' moves, and only states of rest are linearised",
+                          to_text(speed, 3) + " m/s, " + to_text(spin, 3) + " rad/s", "", "",
+                          "find the equilibrium first, with drives held, or let the start be at rest"});
+    }
+}
+
+void refuse_imbalance(const Model& model, const Statics& statics)
+{
+    if (statics.residual <= equilibrium_tolerance) return;
+    const std::string name = model.body_name(std::max(0, statics.body));
+    throw InputError({"not-in-equilibrium", "body[" + name + "]",
+                      "the forces on body '" + name + "' are not balanced: it would begin to move",
+                      to_text(statics.residual, 3) + " of the largest forces", to_text(equilibrium_tolerance),
+                      "", "find the equilibrium first, and linearise there"});
+}
+
+/// [dphi; w] of all bodies by the free coordinates, six rows a body.
+MatrixXd twists_of(const Tables& tables, const InstantState& state, const FreeMotions& free)
+{
+    MatrixXd twists = MatrixXd::Zero(6 * tables.n_bodies(), free.n);
+    for (int k = 0; k < free.n; ++k) {
+        const std::vector<double> xi = free.twists(tables, state, k);
+        for (int b = 0; b < tables.n_bodies(); ++b)
+            std::copy_n(xi.data() + tables.bodies[b].first, tables.bodies[b].dofs,
+                        twists.col(k).data() + static_cast<std::ptrdiff_t>(6) * b);
+    }
+    return twists;
+}
+
+bool is_symmetric(const MatrixXd& A, double rounding)
+{
+    return A.size() == 0 || (A - A.transpose()).cwiseAbs().maxCoeff() <= rounding;
+}
+
+}   // namespace
+
+Linearisation linearise(const Model& the_model, const State& state, Side side)
+{
+    refuse_motion(the_model, close_start(the_model, state, StartPolicy::project).start);
+    const Model model = frozen(the_model, {state.t, side});
+    State rest = state;
+    for (Matrix34& V : rest.V) V = {};
+    const PreparedState at(model, rest, side, true);
+    Linearisation linear;
+    linear.state = rest;
+    for (int b = 0; b < model.n_bodies(); ++b)
+        std::copy_n(at.state.X.begin() + 12 * b, 12, linear.state.X[b].data());
+    linear.length = model.length();
+    if (model.n_bodies() == 0) return linear;
+
+    const Statics statics(at.tables, at.state, side);
+    refuse_imbalance(model, statics);
+    TwistTerms mass;
+    SmallMotions(at.tables, at.state, side).add_mass(mass);
+    const FreeMotions& free = statics.free;
+    linear.n = free.n;
+    const auto matrix = [&](const TwistTerms& terms) -> MatrixXd {
+        const std::vector<double> reduced = free.reduced(at.tables, terms);
+        return Eigen::Map<const MatrixXd>(reduced.data(), free.n, free.n);
+    };
+    const MatrixXd M = matrix(mass), C = matrix(statics.damping), K = matrix(statics.stiffness);
+    linear.M = by_rows(0.5 * (M + M.transpose()));
+    linear.C = by_rows(C);
+    linear.K = by_rows(K);
+    linear.twists = by_rows(twists_of(at.tables, at.state, free));
+    linear.rounding = rounding_of_terms * statics.largest_stiffness;
+    linear.damping_rounding = rounding_of_terms * statics.largest_damping;
+    linear.is_conservative = is_symmetric(K, linear.rounding) && is_symmetric(C, linear.damping_rounding);
+    if (linear.n > 0 && linear.is_conservative) {
+        const Eigen::SelfAdjointEigenSolver<MatrixXd> damping(0.5 * (C + C.transpose()),
+                                                              Eigen::EigenvaluesOnly);
+        linear.is_conservative = damping.eigenvalues()(0) >= -linear.damping_rounding;
+    }
+    return linear;
+}
+
+// --- ports
+
+namespace {
+
+/// Rates of all bodies when coordinate k goes by one a second.
+std::vector<Matrix34> rates_of(const Linearisation& linear, int k)
+{
+    std::vector<Matrix34> V;
+    const auto n = static_cast<std::size_t>(linear.n);
+    for (std::size_t b = 0; b < linear.state.X.size(); ++b) {
+        double t[6];
+        for (std::size_t i = 0; i < 6; ++i)
+            t[i] = linear.twists[(6 * b + i) * n + static_cast<std::size_t>(k)];
+        V.push_back(rate(linear.state.X[b], {t[0], t[1], t[2]}, {t[3], t[4], t[5]}));
+    }
+    return V;
+}
+
+Eigen::RowVectorXd gradient_of(const Linearisation& linear, const JointCoordinate& coordinate)
+{
+    Eigen::RowVectorXd row(linear.n);
+    for (int k = 0; k < linear.n; ++k)
+        row(k) = coordinate_rate(coordinate, linear.state.X, rates_of(linear, k));
+    return row;
+}
+
+[[noreturn]] void refuse_port(const std::string& name, const std::string& message)
+{
+    throw InputError({"no-such-port", "", "'" + name + "' " + message, "", "",
+                      "ports are JOINT.angle, JOINT.displacement, BODY.x, BODY.y and BODY.z; outputs also "
+                      "their rates, such as JOINT.angle_rate",
+                      ""});
+}
+
+/// The row c of a quantity c q.
+Eigen::RowVectorXd row_of(const Model& model, const Linearisation& linear, const std::string& name,
+                          const std::string& whose, const std::string& what)
+{
+    static const std::string axes = "xyz";
+    if (what.size() == 1 && axes.find(what) != std::string::npos) {
+        const int body = model.find_body(whose);
+        if (body < 0) refuse_port(name, "names no body");
+        const Eigen::Map<const ByRows> twists(linear.twists.data(), 6 * model.n_bodies(), linear.n);
+        return twists.row(6 * body + static_cast<int>(axes.find(what)));
+    }
+    if (what != "angle" && what != "displacement") refuse_port(name, "is no quantity of a joint or a body");
+    const int joint = model.find_joint(whose);
+    if (joint < 0) refuse_port(name, "names no joint");
+    const NamedCoordinate* coordinate = find_coordinate(model.joints()[joint], what);
+    if (coordinate == nullptr) refuse_port(name, "is no coordinate of its joint");
+    return gradient_of(linear, coordinate->coordinate);
+}
+
+struct Port {
+    Eigen::RowVectorXd row;
+    bool is_rate = false;
+};
+
+Port port(const Model& model, const Linearisation& linear, const std::string& name)
+{
+    static const std::string rate = "_rate";
+    const std::size_t dot = name.rfind('.');
+    if (dot == std::string::npos) refuse_port(name, "names no quantity of a joint or a body");
+    std::string what = name.substr(dot + 1);
+    const bool is_rate = what.ends_with(rate);
+    if (is_rate) what.resize(what.size() - rate.size());
+    return {row_of(model, linear, name, name.substr(0, dot), what), is_rate};
+}
+
+}   // namespace
+
+std::complex<double> amplitude(const Linearisation& linear, const VibrationMode& mode,
+                               const JointCoordinate& coordinate)
+{
+    std::vector<Matrix34> re, im;
+    for (std::size_t b = 0; b < mode.bodies.size(); ++b) {
+        const auto &d = mode.bodies[b].displacement, &w = mode.bodies[b].rotation;
+        const Matrix34& X = linear.state.X[b];
+        re.push_back(
+            rate(X, {d[0].real(), d[1].real(), d[2].real()}, {w[0].real(), w[1].real(), w[2].real()}));
+        im.push_back(
+            rate(X, {d[0].imag(), d[1].imag(), d[2].imag()}, {w[0].imag(), w[1].imag(), w[2].imag()}));
+    }
+    return {coordinate_rate(coordinate, linear.state.X, re), coordinate_rate(coordinate, linear.state.X, im)};
+}
+
+StateMatrices state_matrices(const Model& model, const Linearisation& linear,
+                             const std::vector<std::string>& inputs, const std::vector<std::string>& outputs)
+{
+    const Eigen::Index n = linear.n, m = static_cast<Eigen::Index>(inputs.size()),
+                       p = static_cast<Eigen::Index>(outputs.size());
+    const auto square = [n](const std::vector<double>& A) -> MatrixXd {
+        return Eigen::Map<const ByRows>(A.data(), n, n);
+    };
+    const MatrixXd mass = square(linear.M);
+    const Eigen::LLT<MatrixXd> M(mass);
+    MatrixXd A = MatrixXd::Zero(2 * n, 2 * n), B = MatrixXd::Zero(2 * n, m), C = MatrixXd::Zero(p, 2 * n);
+    A.topRightCorner(n, n).setIdentity();
+    A.bottomLeftCorner(n, n) -= M.solve(square(linear.K));
+    A.bottomRightCorner(n, n) -= M.solve(square(linear.C));
+    for (Eigen::Index j = 0; j < m; ++j) {
+        const std::string& name = inputs[static_cast<std::size_t>(j)];
+        const Port input = port(model, linear, name);
+        if (input.is_rate) refuse_port(name, "is a rate, and inputs are forces");
+        B.col(j).tail(n) = M.solve(input.row.transpose());   // virtual work u c dq
+    }
+    for (Eigen::Index i = 0; i < p; ++i) {
+        const Port output = port(model, linear, outputs[static_cast<std::size_t>(i)]);
+        C.row(i).segment(output.is_rate ? n : 0, n) = output.row;
+    }
+    return {static_cast<int>(2 * n),
+            inputs,
+            outputs,
+            by_rows(A),
+            by_rows(B),
+            by_rows(C),
+            std::vector<double>(static_cast<std::size_t>(p * m), 0.0)};
+}
+
+}   // namespace livens

@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "livens/statics/small_motions.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Dense>
+
+#include "livens/dynamics/rows/twist.h"
+#include "livens/multibody/body.h"
+
+namespace livens {
+
+namespace {
+
+using Eigen::MatrixXd;
+using Block = Eigen::Matrix<double, 6, 6>;
+using Columns = Eigen::Matrix<double, 12, 6>;
+
+Eigen::Map<const Block> block(const Matrix<6, 6>& K) { return Eigen::Map<const Block>(K.data()); }
+Eigen::Map<const Columns> block(const BodyColumns& c) { return Eigen::Map<const Columns>(c.data()); }
+
+template <int R, int C>
+Matrix<R, C> stored(const Eigen::Matrix<double, R, C>& from)
+{
+    Matrix<R, C> to;
+    std::copy_n(from.data(), R * C, to.data());
+    return to;
+}
+
+}   // namespace
+
+SmallMotions::SmallMotions(const Tables& tables, const InstantState& state, Side side)
+    : tables_(tables), state_(state), at_{state.t, side}
+{
+    std::vector<double> y(static_cast<std::size_t>(tables.n_twists), 0.0), xi(y.size());
+    for (int k = 0; k < 6; ++k) {   // of all bodies at once
+        std::fill(y.begin(), y.end(), 0.0);
+        for (const auto& body : tables.bodies)
+            if (k < body.dofs) y[body.first + k] = 1;
+        tables.to_twist(state.maps.data(), y.data(), xi.data());
+        columns_.resize(tables.bodies.size(), BodyColumns{});
+        maps_.resize(tables.bodies.size(), Matrix<6, 6>{});
+        for (int b = 0; b < tables.n_bodies(); ++b) {
+            const auto& body = tables.bodies[b];
+            if (k >= body.dofs) continue;
+            double twist[6] = {};
+            std::copy_n(xi.data() + body.first, body.dofs, twist);
+            std::copy_n(twist, body.dofs, maps_[b].data() + 6 * k);
+            twist::columns(state.X.data() + 12 * b, twist, columns_[b].data() + 12 * k);
+        }
+    }
+}
+
+void SmallMotions::add_loads(TwistTerms& springs, TwistTerms& dampers) const
+{
+    std::vector<double> V(state_.X.size());
+    tables_.rates_of(state_.X.data(), state_.velocity.data(), V.data());
+    for (const int l : tables_.loads_with_tangent) {
+        const Load& load = tables_.model->loads()[l];
+        LoadTangent tangent(load.bodies.size());
+        load.tangent(tables_.arguments(l, at_, state_.X.data(), V.data(), state_.angles), tangent);
+        for (std::size_t r = 0; r < 2; ++r)
+            for (std::size_t s = 0; s < load.bodies.size(); ++s) {
+                const int i = load.bodies[r], j = load.bodies[s];
+                if (i == world || j == world) continue;
+                springs.push_back(term(l, tangent.X[r][s], -1, i, j));
+                dampers.push_back(term(l, tangent.V[r][s], -1, i, j));
+            }
+    }
+}
+
+void SmallMotions::add_constraints(TwistTerms& terms) const
+{
+    const int s = at_.side == Side::left ? 0 : 1;
+    const std::vector<double>& lambda = state_.multipliers[s];
+    std::vector<double> r = forces_less_inertia(s);
+    for (int c = 0; c < tables_.n_rows(); ++c) {
+        if (lambda[c] == 0) continue;
+        const Tables::RowTable& row = tables_.rows[c];
+        double gradient[Tables::gradient_size] = {};
+        tables_.gradient(c, at_, state_.X.data(), gradient);
+        for (int k = 0; k < row.n_sides; ++k) {
+            const int i = row.bodies[k];
+            for (const int a : row.columns[k])
+                for (int n = a; n < a + 3; ++n) r[12 * i + n] -= lambda[c] * gradient[12 * k + n];
+            for (int m = 0; m < row.n_sides; ++m) {
+                const int j = row.bodies[m];
+                const auto K = constraint_hessian(*row.row, at_, Configurations(state_.X.data()), i, j);
+                terms.push_back(term(tables_.model->row_joint(c), K, lambda[c], i, j));
+            }
+        }
+    }
+    for (int b = 0; b < tables_.n_bodies(); ++b) {
+        if (tables_.bodies[b].dofs == 3) continue;
+        Block K = Block::Zero();   // symmetric where the moments balance
+        twist::add_geometric(state_.X.data() + 12 * b, r.data() + 12 * b, K.data(), 6);
+        K.transposeInPlace();   // written row by row
+        const Block turned = block(maps_[b]).transpose() * K * block(maps_[b]);
+        const Block size = block(maps_[b]).cwiseAbs().transpose() * K.cwiseAbs() * block(maps_[b]).cwiseAbs();
+        terms.push_back({-1, b, b, stored<6, 6>(-turned), stored<6, 6>(size)});
+    }
+}
+
+void SmallMotions::add_mass(TwistTerms& terms) const
+{
+    for (int b = 0; b < tables_.n_bodies(); ++b) {
+        Block M = Block::Identity();
+        if (tables_.bodies[b].dofs == 6) {
+            Eigen::Matrix3d inertia;
+            tables_.spin_mass(b, state_.X.data(), state_.X.data(), inertia.data());
+            M.bottomRightCorner<3, 3>() = inertia;
+        }
+        terms.push_back({-1, b, b, stored<6, 6>(M)});
+    }
+}
+
+TwistTerm SmallMotions::term(int source, const Matrix<12, 12>& K, double factor, int i, int j) const
+{
+    const Eigen::Map<const Eigen::Matrix<double, 12, 12>> full(K.data());
+    const Columns left = block(columns_[i]), right = block(columns_[j]);
+    const Block size = std::abs(factor) * left.cwiseAbs().transpose() * full.cwiseAbs() * right.cwiseAbs();
+    return {source, i, j, stored<6, 6>(factor * left.transpose() * full * right), stored<6, 6>(size)};
+}
+
+std::vector<double> SmallMotions::forces_less_inertia(int side) const
+{
+    std::vector<double> V(state_.X.size()), A(V.size()), r(V.size());
+    tables_.rates_of(state_.X.data(), state_.velocity.data(), V.data());
+    tables_.rates_of(state_.X.data(), state_.acceleration[side].data(), A.data());
+    for (int b = 0; b < tables_.n_bodies(); ++b) {
+        const auto& body = tables_.bodies[b];
+        if (body.dofs == 3) continue;
+        double spin[6] = {}, centripetal[12];
+        std::copy_n(state_.velocity.data() + body.first + 3, 3, spin + 3);
+        twist::columns(V.data() + 12 * b, spin, centripetal);
+        for (int i = 0; i < 12; ++i) A[12 * b + i] += centripetal[i];
+    }
+    tables_.times_mass(A.data(), -1.0, r.data());
+    tables_.add_weight(1.0, r.data());
+    tables_.add_loads(at_, state_.X.data(), V.data(), 1.0, r.data(), state_.angles);
+    return r;
+}
+
+FreeMotions::FreeMotions(const Tables& tables, const InstantState& state)
+    : n_twists(tables.n_twists), n(tables.freedoms()),
+      Z(static_cast<std::size_t>(n_twists) * static_cast<std::size_t>(n))
+{
+    if (n == 0) return;
+    std::vector<double> by_rows(Z.size());
+    state.basis.q.null_space(by_rows.data());
+    using ByRows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+    Eigen::Map<MatrixXd>(Z.data(), n_twists, n) = Eigen::Map<const ByRows>(by_rows.data(), n_twists, n);
+}
+
+std::vector<double> FreeMotions::reduced(const Tables& tables, const TwistTerms& terms) const
+{
+    if (n == 0) return {};
+    const Eigen::Map<const MatrixXd> z(Z.data(), n_twists, n);
+    MatrixXd KZ = MatrixXd::Zero(n_twists, n);
+    for (const TwistTerm& t : terms) {
+        const auto &i = tables.bodies[t.i], &j = tables.bodies[t.j];
+        KZ.middleRows(i.first, i.dofs) +=
+            block(t.K).topLeftCorner(i.dofs, j.dofs) * z.middleRows(j.first, j.dofs);
+    }
+    std::vector<double> K(static_cast<std::size_t>(n) * static_cast<std::size_t>(n));
+    Eigen::Map<MatrixXd>(K.data(), n, n).noalias() = z.transpose() * KZ;
+    return K;
+}
+
+std::vector<double> FreeMotions::sizes(const Tables& tables, const TwistTerms& terms) const
+{
+    if (n == 0) return {};
+    const MatrixXd z = Eigen::Map<const MatrixXd>(Z.data(), n_twists, n).cwiseAbs();
+    Eigen::RowVectorXd sum = Eigen::RowVectorXd::Zero(n);
+    for (const TwistTerm& t : terms) {
+        const auto &i = tables.bodies[t.i], &j = tables.bodies[t.j];
+        const MatrixXd Kz =
+            block(t.K).topLeftCorner(i.dofs, j.dofs).cwiseAbs() * z.middleRows(j.first, j.dofs);
+        sum += z.middleRows(i.first, i.dofs).cwiseProduct(Kz).colwise().sum();
+    }
+    return {sum.begin(), sum.end()};
+}
+
+std::vector<double> FreeMotions::twists(const Tables& tables, const InstantState& state, int k) const
+{
+    std::vector<double> xi(static_cast<std::size_t>(n_twists));
+    tables.to_twist(state.maps.data(), Z.data() + static_cast<std::ptrdiff_t>(k) * n_twists, xi.data());
+    return xi;
+}
+
+namespace {
+
+constexpr int many_freedoms = 60;   // from here on a basis of them costs more than it gives
+
+}   // namespace
+
+PreparedState::PreparedState(const Model& model, const State& given, Side side, bool by_basis)
+    : PreparedState(model, close_start(model, given, StartPolicy::project), side, by_basis)
+{}
+
+PreparedState::PreparedState(const Model& model, const ClosedStart& closed, Side side, bool by_basis)
+    : tables(model, closed.independent)
+{
+    const bool is_sparse = !by_basis && tables.freedoms() > many_freedoms && JointFactor::serves(tables);
+    InstantSystem instant(tables, is_sparse);
+    state.resize(tables);
+    state.t = closed.start.t;
+    for (int b = 0; b < tables.n_bodies(); ++b) {
+        const Matrix34 &X = closed.start.X[b], &V = closed.start.V[b];
+        std::copy_n(X.a, 12, state.X.begin() + 12 * b);
+        const auto& body = tables.bodies[b];
+        const Vector3 w = body.dofs == 6 ? angular_velocity(X, V) : Vector3{};
+        for (int i = 0; i < body.dofs; ++i) state.velocity[body.first + i] = i < 3 ? V(i, 0) : w[i - 3];
+    }
+    state.angles = tables.turns.begin(closed.start);
+    tables.turns.follow(closed.start.X, state.angles);
+    is_fit = instant.prepare(state, tables.independent);
+    if (is_fit) instant.accelerate(state, side);
+}
+
+}   // namespace livens

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "livens/statics/statics.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Dense>
+
+namespace livens {
+
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// Rows of 12 numbers a body in scaled twists.
+VectorXd scaled_rows(const Tables& tables, const InstantState& state, const std::vector<double>& raw)
+{
+    std::vector<double> q(static_cast<std::size_t>(tables.n_twists));
+    tables.twist_rows(state.X.data(), state.maps.data(), raw.data(), q.data());
+    VectorXd y(tables.n_twists);
+    tables.to_scaled_rows(state.maps.data(), q.data(), y.data());
+    return y;
+}
+
+double on_body(const Tables& tables, const Eigen::Ref<const VectorXd>& y, int body)
+{
+    return y.segment(tables.bodies[body].first, tables.bodies[body].dofs).norm();
+}
+
+}   // namespace
+
+Statics::Statics(const Tables& tables, InstantState& state, Side side) : free(tables, state)
+{
+    auto& acceleration = state.acceleration[side == Side::left ? 0 : 1];
+    std::fill(acceleration.begin(), acceleration.end(), 0.0);
+    const SmallMotions motions(tables, state, side);
+    motions.add_loads(stiffness, damping);
+    motions.add_constraints(stiffness);
+    add_forces(tables, state, {state.t, side});
+    add_levels(tables, state);
+}
+
+void Statics::add_forces(const Tables& tables, const InstantState& state, Instant at)
+{
+    const double* X = state.X.data();
+    const std::vector<double>& lambda = state.multipliers[at.side == Side::left ? 0 : 1];
+    const std::vector<double> V(state.X.size(), 0.0);
+    given.assign(V.size(), 0.0);
+    tables.add_weight(1.0, given.data());
+    const VectorXd of_weight = scaled_rows(tables, state, given);
+    tables.add_loads(at, X, V.data(), 1.0, given.data(), state.angles);
+
+    VectorXd y = scaled_rows(tables, state, given), row(tables.n_twists);
+    VectorXd sizes = of_weight.cwiseAbs() + (y - of_weight).cwiseAbs();
+    for (int r = 0; r < tables.n_rows(); ++r) {
+        if (lambda[r] == 0) continue;
+        double g[Tables::gradient_size];
+        tables.gradient(r, at, X, g);
+        tables.scaled_gradient(r, X, state.maps.data(), g, row.data());
+        y -= lambda[r] * row;
+        sizes += std::abs(lambda[r]) * row.cwiseAbs();
+    }
+    rows.assign(y.begin(), y.end());
+    sizes_.assign(sizes.begin(), sizes.end());
+}
+
+void Statics::add_levels(const Tables& tables, const InstantState& state)
+{
+    const Eigen::Map<const MatrixXd> Z(free.Z.data(), free.n_twists, free.n);
+    const Eigen::Map<const VectorXd> y(rows.data(), free.n_twists), sizes(sizes_.data(), free.n_twists);
+    double on_bodies = 0;
+    for (int b = 0; b < tables.n_bodies(); ++b) on_bodies = std::max(on_bodies, on_body(tables, sizes, b));
+    level = 1e-4 * on_bodies;
+    if (free.n > 0) level = std::max(level, (Z.cwiseAbs().transpose() * sizes).maxCoeff());
+    const std::vector<double> of_stiffness = free.sizes(tables, stiffness);
+    for (int k = 0; k < free.n; ++k) {
+        const double moved = largest_displacement(tables, free.twists(tables, state, k).data()),
+                     size = of_stiffness[static_cast<std::size_t>(k)];
+        largest_stiffness = std::max({largest_stiffness, size, 1e-2 * on_bodies * moved});
+        level = std::max(level, size * 1e-5 / moved);
+    }
+    for (const double size : free.sizes(tables, damping)) largest_damping = std::max(largest_damping, size);
+    if (!y.allFinite() || !std::isfinite(level)) {
+        residual = std::nan("");
+        return;
+    }
+    const VectorXd left = Z * (Z.transpose() * y);
+    for (int b = 0; b < tables.n_bodies(); ++b) {
+        if (!(on_body(tables, left, b) > residual * level)) continue;
+        residual = on_body(tables, left, b) / level;
+        body = b;
+    }
+}
+
+double largest_displacement(const Tables& tables, const double* twists)
+{
+    double size = 0;
+    for (const auto& body : tables.bodies)
+        for (int part = 0; part < body.dofs; part += 3) {
+            const double* v = twists + body.first + part;
+            const double now = norm(Vector3{v[0], v[1], v[2]}) / (part == 0 ? tables.length : 1);
+            if (!(now <= size)) size = now;   // nan too
+        }
+    return size;
+}
+
+}   // namespace livens
