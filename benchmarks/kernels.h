@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "livens/dynamics/start/prepared.h"
 #include "livens/spacetime/solve.h"
 
 namespace livens::benchmarks {

@@ -4,6 +4,7 @@
 
 #include "livens/io/results.h"
 #include "livens/io/scenario.h"
+#include "livens/spacetime/solve.h"
 
 namespace livens::program {
 

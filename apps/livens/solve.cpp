@@ -17,6 +17,7 @@
 #include "interrupt.h"
 #include "livens/base/version.h"
 #include "livens/io/results.h"
+#include "livens/io/solve_scenario.h"
 #include "livens/spacetime/ensemble.h"
 #include "memory.h"
 #include "places.h"
@@ -121,40 +122,28 @@ struct Job {
 };
 
 /// `share` of the memory, and perhaps a line of progress.
-Solved solve_scenario(Job& job, double share, ProgressLine& line)
+Solved solve_job(Job& job, double share, ProgressLine& line)
 {
     const Scenario& scenario = job.scenario;
-    Solved solved;
-    Solution solution;
     Reserve reserve(scenario);
     SolveOptions options = scenario.options;
-    options.judge = false;   // not part of what is timed, nor is the estimate
     options.most_bytes = std::min(options.most_bytes, 0.5 * share * memory_left());
     options.progress = [&line](const Progress& progress) {
         line.show(progress);
         return InterruptWatch::signal() == 0;
     };
-    const Problem problem{scenario.conditions, {}, nullptr, scenario.prepared};
-    Clock::time_point begin = Clock::now();
-    solution = solve(scenario.model, problem, scenario.time, scenario.method, options);
-    if (solution.motion.mesh.ends.empty())   // nothing may replace an older result
-        throw failure(exit_signal + InterruptWatch::signal(), solution.report.message);
-    solved.solve_seconds = seconds_since(begin) - solution.estimate_seconds;
-    estimate(scenario.model, problem, scenario.method, options, solution);
-    solved.estimate_seconds = solution.estimate_seconds;
+    SolvedScenario motion = solve_scenario(scenario, options, scenario.prepared);
+    if (motion.solution.motion.mesh.ends.empty())   // nothing may replace an older result
+        throw failure(exit_signal + InterruptWatch::signal(), motion.solution.report.message);
+    Solved solved;
+    solved.solve_seconds = motion.solve_seconds;
+    solved.estimate_seconds = motion.solution.estimate_seconds;
     line.clear();
     job.detail(fmt::format("solved in {:.3g} s", solved.solve_seconds));
 
-    begin = Clock::now();
+    const Clock::time_point begin = Clock::now();
     reserve.give_back();
-    judge(scenario.model, problem, options, solution, [] { return InterruptWatch::signal() == 0; });
-    const Method method = solution.method;
-    solved.run = make_run(scenario.model, std::move(solution), method);
-    solved.run.scenario_text = scenario.text;
-    solved.run.meshes = scenario.meshes;
-    solved.run.title = scenario.title;
-    solved.run.resolved = scenario.resolved;
-    solved.run.output = scenario.output.empty() ? solved.run.motion.mesh.ends : scenario.output;
+    solved.run = judged_run(scenario, std::move(motion), [] { return InterruptWatch::signal() == 0; });
     job.detail(fmt::format("checked in {:.3g} s", seconds_since(begin)));
     solved.signal = InterruptWatch::signal();   // also where it came too late to stop anything
     return solved;
@@ -299,7 +288,7 @@ std::vector<Job> read_jobs(const SolveArguments& arguments, const Common& common
 /// result stays.
 void do_job(Job& job, const Common& common, double share, ProgressLine& line)
 {
-    const Solved solved = solve_scenario(job, share, line);
+    const Solved solved = solve_job(job, share, line);
     const Places& p = job.places;
     job.exit_code = exit_code_of(solved);
     const SolveReport& report = solved.run.report;

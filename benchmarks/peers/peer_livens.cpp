@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // livens. Settings: "DEGREE:ELEMENTS[:TOLERANCE]" is lobatto; "accuracy:A" leaves degree and elements open.
+#include "livens/dynamics/start/prepared.h"
 #include "livens/spacetime/solve.h"
 
 #include "serve.h"

@@ -14,7 +14,9 @@
 #include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/string.h>
 
+#include "livens/dynamics/start/prepared.h"
 #include "livens/io/scenario/text/tree.h"
+#include "livens/io/solve_scenario.h"
 #include "livens/solvers/patience.h"
 #include "livens/spacetime/ensemble.h"
 #include "python_load.h"
@@ -148,45 +150,28 @@ private:
 /// A motion that was solved and is to be judged.
 struct Unjudged {
     Shared scenario;
-    Solution solution;
-    double seconds = 0;
+    SolvedScenario solved;
 };
 
-/// What solve() and estimate() make.
 Unjudged solved(const Shared& scenario, const ProgressCallback& progress, double most_bytes)
 {
     SolveOptions options = scenario->options;
     options.progress = progress;
-    options.judge = false;
     options.most_bytes = std::min(options.most_bytes, most_bytes);
-    const Problem problem{scenario->conditions};
-    const Clock::time_point begin = Clock::now();
-    Unjudged motion{scenario, solve(scenario->model, problem, scenario->time, scenario->method, options)};
-    motion.seconds = seconds_since(begin) - motion.solution.estimate_seconds;
-    if (motion.solution.report.status != SolveStatus::cancelled)
-        estimate(scenario->model, problem, scenario->method, options, motion.solution);
-    return motion;
+    // of its own: threads may solve one scenario at the same time
+    return {scenario, solve_scenario(*scenario, std::move(options), std::make_shared<Prepared>())};
 }
 
 /// What `livens solve` does between solving and writing. Once `goes_on` says no it is given up at once,
 /// without the grace that the program has: nobody will see a motion that was interrupted.
 Result judged(Unjudged&& motion, const std::function<bool()>& goes_on)
 {
-    const Scenario& scenario = *motion.scenario;
-    Solution& solution = motion.solution;
-    const double estimate_seconds = solution.estimate_seconds;
-    {
-        const Patience patience(goes_on);
-        judge(scenario.model, {scenario.conditions}, scenario.options, solution);
-    }
-    const Method method = solution.method;
-    Run run = make_run(scenario.model, std::move(solution), method);
-    run.scenario_text = scenario.text;
-    run.meshes = scenario.meshes;
-    run.title = scenario.title;
-    run.resolved = scenario.resolved;
-    run.output = scenario.output.empty() ? run.motion.mesh.ends : scenario.output;
-    return {motion.scenario, std::move(run), method, motion.seconds, estimate_seconds};
+    const Method method = motion.solved.solution.method;
+    const double seconds = motion.solved.solve_seconds,
+                 estimate_seconds = motion.solved.solution.estimate_seconds;
+    const Patience patience(goes_on);
+    return {motion.scenario, judged_run(*motion.scenario, std::move(motion.solved), {}), method, seconds,
+            estimate_seconds};
 }
 
 /// Before the process ends.

@@ -66,7 +66,7 @@ TIES = [
     ("(from «100» twists on", f"{KERNEL}/march_kernel.h", r"many_twists = (\d+)"),
     ("after «150» steps, or «20» without a smaller one", f"{KERNEL}/march_kernel.cpp",
      r"most_combinations = (\d+), most_slow_combinations = (\d+)"),
-    ("and above «1e11» the conditions are said", f"{TIME}/solve.cpp", r"undetermined = ([^;]+);"),
+    ("and above «1e11» the conditions are said", f"{TIME}/solve_mesh.cpp", r"undetermined = ([^;]+);"),
     ("is divided, at «0.4» of its length", f"{TIME}/march/windows.cpp", r"uneven = ([^;]+);"),
     ("(Tests hold a parallelogram to $«10^{-12}»$", "tests/convergence/singular.cpp", r"turn\), degree == 3 \? 1e-9 : ([^)]+)\)"),
     ("fall $«10^{-12}»$ to $«10^{-5}»$ s beside", "tests/convergence/singular.cpp", r"off : \{0\.0, ([^,]+),.*?(1e-5)\}"),

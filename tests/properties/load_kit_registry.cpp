@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Every load of the library in every variant, one entry each: the kit runs over this list.
+#include "livens/multibody/joints.h"
 #include "livens/multibody/loads/load_laws.h"
 #include "livens/multibody/loads/surface_loads.h"
 #include "livens/time/expression.h"

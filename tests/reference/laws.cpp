@@ -487,7 +487,7 @@ TEST(Laws, AnglesAreCountedWhileMarching)
     options.length_of_model = model.length();
     options.pace = &pace;
     options.goes_on = [&] {
-        const Motion& so_far = *window.so_far();
+        const Motion& so_far = *window.monitor().so_far();
         for (const int end : {so_far.n_elements() / 2, so_far.n_elements()})
             seen.emplace_back(so_far.mesh.ends[end], so_far.at(so_far.mesh.ends[end]).angles);
         return true;

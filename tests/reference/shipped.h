@@ -12,6 +12,7 @@
 #include <string>
 
 #include "livens/io/scenario.h"
+#include "livens/spacetime/solve.h"
 
 namespace livens::tests {
 

@@ -144,10 +144,9 @@ SideOfRigidity rigidity_on(const Model& model, const State& state, Side side)
 {
     const std::size_t n = model.bodies().size(), s = side == Side::left ? 0 : 1;
     std::optional<PreparedState> prepared;
-    try {
-        prepared.emplace(model, state, side, false);
-    } catch (const InputError&) {   // it is too far from any that the joints allow
-    }
+    const TriedStart tried = try_close_start(model, state, StartPolicy::project);
+    if (tried.closed)
+        prepared.emplace(model, *tried.closed, side, false);   // else the joints allow none near
     if (!prepared || !prepared->is_fit || !are_numbers(prepared->state.multipliers[s])) return unbounded(n);
     const InstantState& at = prepared->state;
     std::vector<Matrix34> X(n), V(n), A(n);

@@ -12,9 +12,11 @@
 #include "livens/multibody/model.h"
 #include "livens/multibody/motion.h"
 #include "livens/solvers/report.h"
-#include "livens/spacetime/solve.h"
+#include "livens/spacetime/method.h"
 
 namespace [[gnu::visibility("default")]] livens {
+
+struct Solution;
 
 class JsonWriter;
 

@@ -12,7 +12,8 @@
 
 #include "livens/io/diagnostic.h"
 #include "livens/multibody/model.h"
-#include "livens/spacetime/solve.h"
+#include "livens/spacetime/options.h"
+#include "livens/spacetime/problem.h"
 
 namespace [[gnu::visibility("default")]] livens {
 

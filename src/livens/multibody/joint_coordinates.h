@@ -19,6 +19,20 @@ struct JointCoordinate {
     bool is_angle() const { return forms.size() == 2; }
 };
 
+/// A coordinate of a joint: how far its second body is from its first, as the maker of the joint was told
+/// them, right-handed about the axis. Turns are counted from where the
+/// model has its bodies.
+struct NamedCoordinate {
+    std::string name;   ///< "angle" (rad) or "displacement" (m)
+    JointCoordinate coordinate;
+    double at_stated = 0;   ///< what it is said to be where the model has its bodies
+    /// The same while the joint holds, and what takes its place in a joint that does not always
+    /// (Model::add_joint): of an angle the turn about the axis that is left when the shortest turn from axis
+    /// to axis is taken off, so that no direction across the axis matters, which nobody stated. Empty:
+    /// nothing else is needed.
+    JointCoordinate apart{};
+};
+
 /// (X_i n) . (X_j b - X_i a): how far the point b of body j is beyond the point a of body i along the
 /// direction n of body i.
 JointCoordinate displacement_along(int body_i, const Vector4& n, const Vector4& a, int body_j,

@@ -13,20 +13,6 @@
 
 namespace [[gnu::visibility("default")]] livens {
 
-/// A coordinate of a joint: how far its second body is from its first, as the maker of the joint was told
-/// them, right-handed about the axis. Turns are counted from where the
-/// model has its bodies.
-struct NamedCoordinate {
-    std::string name;   ///< "angle" (rad) or "displacement" (m)
-    JointCoordinate coordinate;
-    double at_stated = 0;   ///< what it is said to be where the model has its bodies
-    /// The same while the joint holds, and what takes its place in a joint that does not always
-    /// (Model::add_joint): of an angle the turn about the axis that is left when the shortest turn from axis
-    /// to axis is taken off, so that no direction across the axis matters, which nobody stated. Empty:
-    /// nothing else is needed.
-    JointCoordinate apart{};
-};
-
 /// A joint between `first` (a body or the world) and `second` (a body). A new kind of joint is a new function
 /// that fills in rows; nothing else in livens asks for the kind.
 ///

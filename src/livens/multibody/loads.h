@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "livens/base/linear.h"
-#include "livens/multibody/joints.h"
+#include "livens/multibody/joint_coordinates.h"
 #include "livens/time/enclosure.h"
 #include "livens/time/guard.h"
 #include "livens/time/time_function.h"

@@ -4,6 +4,8 @@
 #include <array>
 
 #include "livens/base/error.h"
+#include "livens/multibody/joints.h"
+#include "livens/multibody/loads.h"
 
 namespace livens {
 

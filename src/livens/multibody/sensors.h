@@ -5,10 +5,12 @@
 #include <string>
 #include <vector>
 
-#include "livens/multibody/joints.h"
-#include "livens/multibody/loads.h"
+#include "livens/multibody/joint_coordinates.h"
 
 namespace [[gnu::visibility("default")]] livens {
+
+struct Joint;
+struct Load;
 
 /// A number that a sensor reads: of a coordinate, or else by a function.
 struct SensorComponent {

@@ -51,6 +51,9 @@ public:
     /// What the tolerance is relative to, at the current point; asked after residual().
     virtual double scale() const { return 1; }
     virtual Rows rows() const = 0;
+    /// Condition numbers of the matrix at the current point, or a note on why there are none; 0 once
+    /// `goes_on` says false.
+    virtual void measure_condition(SolveReport&, const std::function<bool()>& /*goes_on*/) {}
 };
 
 struct NewtonOptions {

@@ -20,42 +20,62 @@ enum class SolveStatus {
 
 const char* to_string(SolveStatus status);
 
-struct SolveReport {
-    SolveStatus status = SolveStatus::converged;
-    std::string message;             ///< one line for a person: which joint or body, when, what to try
+/// Work. It adds up, but for what is the most of one.
+struct SolveCounters {
     int n_elements = 0;              ///< solved
-    int unknowns = 0;                ///< of one window, after elimination
+    int unknowns = 0;                ///< of one window, after elimination: the most
     long newton_iterations = 0;      ///< over all windows, all guesses counted
     int most_iterations = 0;         ///< in one window
     long factorisations = 0;         ///< of the tangent of a window
     long guess_factorisations = 0;   ///< of the smaller tangents behind first guesses
     int rescued = 0;                 ///< windows that converged only from another guess than the first
-    int divided = 0;                 ///< elements that were too long and were divided into two
-    double divided_at = 0;           ///< near end of the first of them, s
-    int shifted = 0;                 ///< element ends put elsewhere, off singular positions of the joints
-    double shifted_at = 0;           ///< where the first of them was to be, s
-    std::string steep_load;          ///< whose law most elements were refused or divided for; empty: none
     int refused = 0;                 ///< elements that were solved again, shorter, for the accuracy asked for
-    double accuracy = 0;             ///< that was asked for; 0: none
-    int tries = 0;                   ///< motions until it was reached
+    int tries = 0;                   ///< motions until the accuracy was reached: the most
     long long evaluations = 0;       ///< of the equations at a node of an element, in the motion
     long long evaluations_in_all = 0;   ///< of all tries and their second solutions
-    double residual_norm = 0;           ///< largest scaled residual at acceptance
-    double smallest_pivot = 1;          ///< of the scaled constraint Jacobian; below 1e-6 deserves a look
-    double failed_at = 0;               ///< near end of the failed window, s; only if not converged
-    std::vector<int> iterations;        ///< per window; stepping: per element
-    std::vector<std::string> notes;     ///< redundant rows, projections, ...
-    std::string estimate_failed;        ///< why nothing tells the error: "the second solution failed: ..."
-    double condition_1 = 0;             ///< of the whole matrix in the 1-norm, if asked for
-    double condition_2 = 0;             ///< and in the 2-norm
-    double scaled_condition = 0;        ///< in the 1-norm, as it is factorised: rows and columns scaled
-    long long factor_entries = 0;       ///< stored numbers of a window's sparse factors; 0: dense
+
+    SolveCounters& operator+=(const SolveCounters& next);
+};
+
+/// How the mesh became another than the one that was given.
+struct MeshChanges {
+    int divided = 0;          ///< elements that were too long and were divided into two
+    double divided_at = 0;    ///< near end of the first of them, s
+    int shifted = 0;          ///< element ends put elsewhere, off singular positions of the joints
+    double shifted_at = 0;    ///< where the first of them was to be, s
+    std::string steep_load;   ///< whose law most elements were refused or divided for; empty: none
+
+    MeshChanges& operator+=(const MeshChanges& next);
+};
+
+/// How well the equations were solved, and could be: the worst of all windows.
+struct Conditioning {
+    double residual_norm = 0;         ///< largest scaled residual at acceptance
+    double smallest_pivot = 1;        ///< of the scaled constraint Jacobian; below 1e-6 deserves a look
+    double condition_1 = 0;           ///< of the whole matrix in the 1-norm, if asked for
+    double condition_2 = 0;           ///< and in the 2-norm
+    double scaled_condition = 0;      ///< in the 1-norm, as it is factorised: rows and columns scaled
+    long long factor_entries = 0;     ///< stored numbers of a window's sparse factors; 0: dense
     double guess_distance = 0;        ///< largest distance of the motion from the march it was guessed by: of
                                       ///< points by the model's length, of directors; 0: not guessed so
     double guess_distance_time = 0;   ///< when it first exceeds 0.05, else when it is largest, s
 
+    Conditioning& operator+=(const Conditioning& next);
+};
+
+struct SolveReport : SolveCounters, MeshChanges, Conditioning {
+    SolveStatus status = SolveStatus::converged;
+    std::string message;              ///< one line for a person: which joint or body, when, what to try
+    double failed_at = 0;             ///< near end of the failed window, s; only if not converged
+    double accuracy = 0;              ///< that was asked for; 0: none
+    std::vector<int> iterations;      ///< per window; stepping: per element
+    std::vector<std::string> notes;   ///< redundant rows, projections, ...
+    std::string estimate_failed;      ///< why nothing tells the error: "the second solution failed: ..."
+
     bool converged() const { return status == SolveStatus::converged; }
     bool reached_end() const { return converged() || status == SolveStatus::suspect; }
+    /// Of a motion that goes on where this one ended, whose outcome is that of both.
+    SolveReport& operator+=(SolveReport next);
 };
 
 /// Called after each window, and between Newton's iterations on one (`done` and `t` are then as before it);

@@ -81,7 +81,9 @@ MarchGuess guess_from_state(const Model& model, const State& state, std::span<co
     if (!is_forwards) std::swap(problem.conditions.at_start, problem.conditions.at_end);
     TimeMesh mesh{{times.begin(), times.end()}};
     if (!is_forwards) std::reverse(mesh.ends.begin(), mesh.ends.end());
-    const Ends ends = close_ends(model, problem, mesh.start(), mesh.end(), StartPolicy::project);
+    const TriedEnds tried = try_close_ends(model, problem, mesh.start(), mesh.end(), StartPolicy::project);
+    if (!tried.ends) return {guess_steady(state), times.front(), false};
+    const Ends& ends = *tried.ends;
     const Tables tables(model, ends.independent);
     LobattoWindow window(tables, mesh, ends, lobatto_rule(degree));
     SolveReport report;
@@ -143,13 +145,7 @@ Guess guess_from_ends(const Model& model, const Ends& ends, std::span<const doub
     const Known at_far = from_start ? ends.at_end : ends.at_start;
     std::vector<double> march(times.begin(), times.end());
     if (!from_start) std::reverse(march.begin(), march.end());
-    const auto motion_from = [&](const State& begin) {
-        try {
-            return guess_from_state(model, begin, march).motion;
-        } catch (const InputError&) {
-            return guess_steady(begin);   // the stated rates are far from any that the joints allow
-        }
-    };
+    const auto motion_from = [&](const State& begin) { return guess_from_state(model, begin, march).motion; };
     if (knows_positions(at_far))
         return is_moving(near) ? bent(motion_from(near), near.t, far) : guess_between(ends.start, ends.end);
     Guess motion = motion_from(near);

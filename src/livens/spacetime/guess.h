@@ -14,7 +14,8 @@ namespace livens {
 /// them, dividing elements as solve() does, and where that fails straight on from its last good element.
 struct MarchGuess {
     Guess motion;
-    double reached = 0;   ///< s; the last instant if all went well
+    double reached = 0;      ///< s; the last instant if all went well
+    bool is_closed = true;   ///< else no march begins near the state, and the motion is a steady one
 };
 MarchGuess guess_from_state(const Model& model, const State& state, std::span<const double> times,
                             int degree = 2);

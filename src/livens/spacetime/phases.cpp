@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// layout allows long-file: phases, how they are joined and what they are judged by are one story
 #include "livens/spacetime/phases.h"
 
 #include <algorithm>
@@ -129,43 +128,6 @@ void join(Motion& whole, Motion&& next)
     std::ranges::sort(whole.redundant_rows);
 }
 
-/// Counts add up, the rest is of the worse or the later.
-void join(SolveReport& whole, SolveReport&& next)
-{
-    next.n_elements += whole.n_elements;
-    next.unknowns = std::max(next.unknowns, whole.unknowns);
-    next.newton_iterations += whole.newton_iterations;
-    next.most_iterations = std::max(next.most_iterations, whole.most_iterations);
-    next.factorisations += whole.factorisations;
-    next.guess_factorisations += whole.guess_factorisations;
-    next.rescued += whole.rescued;
-    if (whole.divided > 0) next.divided_at = whole.divided_at;
-    next.divided += whole.divided;
-    if (whole.shifted > 0) next.shifted_at = whole.shifted_at;
-    next.shifted += whole.shifted;
-    next.refused += whole.refused;
-    next.tries = std::max(next.tries, whole.tries);
-    next.evaluations += whole.evaluations;
-    next.evaluations_in_all += whole.evaluations_in_all;
-    next.residual_norm = std::max(next.residual_norm, whole.residual_norm);
-    next.smallest_pivot = std::min(next.smallest_pivot, whole.smallest_pivot);
-    next.iterations.insert(next.iterations.begin(), whole.iterations.begin(), whole.iterations.end());
-    std::vector<std::string> notes = std::move(whole.notes);
-    for (std::string& note : next.notes)
-        if (std::ranges::find(notes, note) == notes.end()) notes.push_back(std::move(note));
-    next.notes = std::move(notes);
-    if (next.estimate_failed.empty()) next.estimate_failed = std::move(whole.estimate_failed);
-    next.condition_1 = std::max(next.condition_1, whole.condition_1);
-    next.condition_2 = std::max(next.condition_2, whole.condition_2);
-    next.scaled_condition = std::max(next.scaled_condition, whole.scaled_condition);
-    next.factor_entries = std::max(next.factor_entries, whole.factor_entries);
-    if (whole.guess_distance > next.guess_distance) {
-        next.guess_distance = whole.guess_distance;
-        next.guess_distance_time = whole.guess_distance_time;
-    }
-    whole = std::move(next);
-}
-
 }   // namespace
 
 Miss miss_at_event(const Model& model, const Motion& motion, int end)
@@ -177,17 +139,16 @@ Miss miss_at_event(const Model& model, const Motion& motion, int end)
     if (!begins) return miss;
     const State state = motion.at_end(end);
     const ActingModel acting = acting_at(model, t + 0.5 * near_end * (motion.end() - motion.start()));
-    try {
-        const ClosedStart closed = close_start(acting.model, state, StartPolicy::project);
-        for (std::size_t b = 0; b < state.X.size(); ++b) {
-            const Matrix34 dX = closed.start.X[b] - state.X[b], dV = closed.start.V[b] - state.V[b];
-            raise_to(miss.shift, norm(dX.column(0)) / model.length());
-            raise_to(miss.turn, norm(directors(dX)) / std::numbers::sqrt2);
-            raise_to(miss.speed, norm(dV.column(0)) / model.length());
-            raise_to(miss.spin, norm(directors(dV)) / std::numbers::sqrt2);
-        }
-    } catch (const InputError&) {   // no place near holds them
+    const TriedStart tried = try_close_start(acting.model, state, StartPolicy::project);
+    if (!tried.closed)   // no place near holds them
         miss.shift = std::numeric_limits<double>::infinity();
+    for (std::size_t b = 0; tried.closed && b < state.X.size(); ++b) {
+        const State& closed = tried.closed->start;
+        const Matrix34 dX = closed.X[b] - state.X[b], dV = closed.V[b] - state.V[b];
+        raise_to(miss.shift, norm(dX.column(0)) / model.length());
+        raise_to(miss.turn, norm(directors(dX)) / std::numbers::sqrt2);
+        raise_to(miss.speed, norm(dV.column(0)) / model.length());
+        raise_to(miss.spin, norm(directors(dV)) / std::numbers::sqrt2);
     }
     return miss;
 }
@@ -229,7 +190,8 @@ public:
                     if (std::ranges::find(whole.report.notes, note) == whole.report.notes.end())
                         note = "from " + to_text(first, 6) + " s on: " + note;
             if (next.motion.mesh.ends.empty()) {
-                join(whole.report, std::move(next.report));
+                whole.report += std::move(next.report);
+                whole.cannot_begin = std::move(next.cannot_begin);
                 return whole;
             }
             method = next.method;   // what was open is chosen once
@@ -240,7 +202,7 @@ public:
             widen(next.motion, model_, acting);
             whole.method = next.method;
             whole.estimate_seconds += next.estimate_seconds;
-            join(whole.report, std::move(next.report));
+            whole.report += std::move(next.report);
             join(whole.motion, std::move(next.motion));
             if (!whole.report.converged()) return whole;
             if (k + 2 == ends_.size()) break;
@@ -303,20 +265,20 @@ private:
         const Time part = part_of(time_, first, last, accuracy);
         const auto solve = [&] { return solve_phase_(acting.model, problem, part, method, options); };
         if (first == ends_.front()) return solve();
-        Solution none;
-        none.method = method;
-        none.report.failed_at = first;
         try {
-            return solve();
-        } catch (const InputError& error) {
-            none.report.status = SolveStatus::singular;
-            none.report.message = "behind the event at " + to_text(first, 6) +
-                                  " s the motion cannot begin: " + error.complaint().message;
+            Solution next = solve();
+            if (std::exchange(next.cannot_begin, {}))
+                next.report.message = "behind the event at " + to_text(first, 6) +
+                                      " s the motion cannot begin: " + next.report.message;
+            return next;
         } catch (const Stopped&) {
+            Solution none;
+            none.method = method;
+            none.report.failed_at = first;
             none.report.status = SolveStatus::cancelled;
             none.report.message = of_stop(first);
+            return none;
         }
-        return none;
     }
 
     const Model& model_;

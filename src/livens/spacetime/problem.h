@@ -5,11 +5,12 @@
 #include <functional>
 #include <memory>
 
-#include "livens/dynamics/start/prepared.h"
 #include "livens/multibody/model.h"
 #include "livens/multibody/motion.h"
 
 namespace [[gnu::visibility("default")]] livens {
+
+class Prepared;
 
 /// What is known at one end of time.
 enum class Known {

@@ -69,13 +69,11 @@ struct FreeMotions {
 struct PreparedState {
     /// `by_basis`: with a basis of what is free, however much that is.
     PreparedState(const Model& model, const State& given, Side side, bool by_basis);
+    PreparedState(const Model& model, const ClosedStart& closed, Side side, bool by_basis);
 
     Tables tables;
     mutable InstantState state;   // which projects in room of its own
     bool is_fit;                  // else close_start() has refused it
-
-private:
-    PreparedState(const Model& model, const ClosedStart& closed, Side side, bool by_basis);
 };
 
 }   // namespace livens

@@ -10,9 +10,11 @@
 #include <string>
 #include <vector>
 
+#include "livens/dynamics/instant/instant.h"
 #include "livens/dynamics/start/closing.h"
 #include "livens/multibody/joints.h"
 #include "livens/spacetime/instructions.h"
+#include "livens/spacetime/nodal/system.h"
 #include "livens/spacetime/solve.h"
 #include "unit/multibody/random_states.h"
 #include "unit/spacetime/mechanisms.h"

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "livens/base/error.h"
+#include "livens/dynamics/start/prepared.h"
 #include "livens/spacetime/solve.h"
 #include "unit/spacetime/mechanisms.h"
 

@@ -8,7 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "livens/dynamics/instant/instant.h"
 #include "livens/dynamics/start/closing.h"
+#include "livens/spacetime/nodal/nodes.h"
 #include "livens/spacetime/nodal/system.h"
 #include "livens/spacetime/solve.h"
 #include "unit/spacetime/mechanisms.h"

@@ -16,8 +16,9 @@ namespace {
 
 /// One unknown a window: x = its number of elements, from x = 0; windows longer than `longest` have no root,
 /// and so has the element `broken`.
-class Counting final : public Window {
+class Counting final : public Window, private ElementMonitor {
 public:
+    Counting() : Window(static_cast<ElementMonitor&>(*this)) {}
     bool open(int first, int last, SolveReport& report) override
     {
         if (refuses == first) {
@@ -32,13 +33,12 @@ public:
         return true;
     }
     NewtonProblem& equations() override { return problem_; }
-    bool predict() override { return has_own_guess; }
     bool start_from(const Guess& guess) override
     {
+        if (!guess) return has_own_guess;
         problem_.has_root = problem_.has_root || guess(0).t == 1;
         return true;
     }
-    bool near_state(State&) const override { return true; }
     Closed close(const Trust& trust, SolveReport&) override
     {
         if (!can_close) return {};
@@ -58,11 +58,9 @@ public:
         closed.push_back(opened.back());
         return {last - first, false};
     }
-    void divided(int element) override { divisions.push_back(element); }
-    std::vector<Matrix34> positions(int) const override { return {Matrix34{1, 0, 0}}; }
+    State at(int) const override { return {0, {Matrix34{1, 0, 0}}, {}}; }
     WorstResidual worst() const override { return {"joint 'elbow' (row 'x')", 0.5, ""}; }
     void describe(SolveReport& report) const override { report.unknowns = 1; }
-    void measure_condition(SolveReport&, const std::function<bool()>&) override {}
     Motion take_motion() override { return {}; }
 
     int longest = 100, broken = -1, refuses = -1, refused = -1;
@@ -72,6 +70,8 @@ public:
     std::vector<int> divisions;
 
 private:
+    void divided(int element) override { divisions.push_back(element); }
+
     struct Problem final : NewtonProblem {
         double x = 0, kept = 0, goal = 1;
         bool has_root = true;

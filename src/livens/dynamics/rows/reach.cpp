@@ -98,11 +98,16 @@ Closing nearest_from(const Model& model, Closing found, std::span<const Matrix34
 
 constexpr double closed_to = 1e-9;
 
-[[noreturn]] void complain(const Model& model, int row, const char* code, const std::string& message,
-                           double violation, const std::string& note, const std::string& help)
+Complaint complaint(const Model& model, int row, const char* code, const std::string& message,
+                    double violation, const std::string& note, const std::string& help)
 {
-    throw InputError({code, "joint[" + model.joints()[model.row_joint(row)].name + "]", message,
-                      "violation " + to_text(violation, 3), to_text(closed_to), note, help});
+    return {code,
+            "joint[" + model.joints()[model.row_joint(row)].name + "]",
+            message,
+            "violation " + to_text(violation, 3),
+            to_text(closed_to),
+            note,
+            help};
 }
 
 /// What the law of a drive is to be more at the start, rad or m; empty: it is no single number.
@@ -132,23 +137,24 @@ bool drives_are_turned(const Model& model, std::span<const Matrix34> X)
     });
 }
 
-void refuse_other_branches(const Model& model, std::span<const Matrix34> X)
+std::optional<Complaint> why_in_other_branch(const Model& model, std::span<const Matrix34> X)
 {
     for (int j = 0; j < static_cast<int>(model.joints().size()); ++j) {
         const Joint& joint = model.joints()[j];
         if (const ConstraintRow* row = other_branch(joint, X))
-            throw InputError(
-                {"joint-branch", "joint[" + joint.name + "]." + row->label,
+            return Complaint{
+                "joint-branch", "joint[" + joint.name + "]." + row->label,
                  "the " + row->label + " of joint '" + joint.name + "' is off by half a turn at the start",
                  "", "", "its rows would hold, but in another branch",
-                 drive_help(model, model.first_row(j), X) + "turn one of the bodies"});
+                 drive_help(model, model.first_row(j), X) + "turn one of the bodies"};
         if (has_opposite_axes(joint, X))
-            throw InputError(
-                {"joint-branch", "joint[" + joint.name + "].axes",
+            return Complaint{
+                "joint-branch", "joint[" + joint.name + "].axes",
                  "the axes of joint '" + joint.name + "' point in opposite directions at the start", "", "",
                  "its rows would hold, but turned by half a turn",
-                 "reverse one of the two axes, or turn one of the bodies"});
+                 "reverse one of the two axes, or turn one of the bodies"};
     }
+    return {};
 }
 
 Reach reach(const Model& model, std::span<const Matrix34> X)
@@ -176,7 +182,7 @@ Reach reach(const Model& model, std::span<const Matrix34> X)
     return reached;
 }
 
-void refuse_open(const Model& model, const Closing& open, std::span<const Matrix34> X, int n_tries)
+Complaint why_open(const Model& model, const Closing& open, std::span<const Matrix34> X, int n_tries)
 {
     const std::string tried = "looked for from the start as it is stated and from " +
                               std::to_string(n_tries) + " that were disturbed";
@@ -185,7 +191,7 @@ void refuse_open(const Model& model, const Closing& open, std::span<const Matrix
     if (rest.closed) {
         const Gap worst = widest_gap(model, rest.X, rank.dependent);
         if (worst.violation > closed_to)
-            complain(model, worst.row, "joint-contradiction",
+            return complaint(model, worst.row, "joint-contradiction",
                      "no position was found in which " + model.row_name(worst.row) +
                          " holds together with the other joints" + drive_words(model, worst.row, X),
                      worst.violation, tried,
@@ -194,7 +200,7 @@ void refuse_open(const Model& model, const Closing& open, std::span<const Matrix
                          "nearer to where the mechanism closes");
     }
     const Gap worst = widest_gap(model, open.X, all_rows(model));
-    complain(model, worst.row, "start-position",
+    return complaint(model, worst.row, "start-position",
              model.row_name(worst.row) + " stays open: no position was found that closes the joints" +
                  drive_words(model, worst.row, X),
              worst.violation, tried,

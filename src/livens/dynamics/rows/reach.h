@@ -3,9 +3,11 @@
 // were meant.  (docs/theory.md, "Closing the mechanism")
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 
+#include "livens/base/error.h"
 #include "livens/dynamics/rows/projection.h"
 
 namespace livens {
@@ -16,9 +18,9 @@ namespace livens {
 bool is_in_its_branch(const Model& model, std::span<const Matrix34> X);
 /// Of drives alone, whose rows hold there as well.
 bool drives_are_turned(const Model& model, std::span<const Matrix34> X);
-/// Throws InputError `joint-branch`: rows a . b = 0 hold for an axis turned end for end as well; a start in
-/// that branch was not meant.
-void refuse_other_branches(const Model& model, std::span<const Matrix34> X);
+/// `joint-branch`, where a start is in one: rows a . b = 0 hold for an axis turned end for end as well; a
+/// start in that branch was not meant.
+std::optional<Complaint> why_in_other_branch(const Model& model, std::span<const Matrix34> X);
 
 struct Reach {
     Closing closing;   ///< closed: in its branch
@@ -30,10 +32,9 @@ struct Reach {
 /// and more, always the same; from what closes, the nearest to X.
 Reach reach(const Model& model, std::span<const Matrix34> X);
 
-/// Throws InputError where nothing closed: `joint-contradiction` if the other rows can be fulfilled, else
+/// What to say where nothing closed: `joint-contradiction` if the other rows can be fulfilled, else
 /// `start-position`. `open`: as near as the rows came from X.
-[[noreturn]] void refuse_open(const Model& model, const Closing& open, std::span<const Matrix34> X,
-                              int n_tries);
+Complaint why_open(const Model& model, const Closing& open, std::span<const Matrix34> X, int n_tries);
 
 /// Of a row that is open at X: by how much the law of a drive is off, and what its writer can do. Empty for
 /// other joints.

@@ -33,31 +33,28 @@ std::string joint_path(const Model& model, int row)
     return "joint[" + model.joints()[model.row_joint(row)].name + "]";
 }
 
-/// Of a violation above the tolerance.
-[[noreturn]] void complain(const std::string& code, const std::string& path, const std::string& message,
-                           const std::string& value, const std::string& help)
-{
-    throw InputError({code, path, message, value, number(start_tolerance), "", help});
-}
+/// Why a start is refused; none: it is in order.
+using Fault = std::optional<Complaint>;
 
 /// Columns of point masses that must be zero are zero from here on; numbers are numbers.
-void clean(const Model& model, State& state)
+Fault clean(const Model& model, State& state)
 {
     const std::size_t n = model.bodies().size();
     if (state.X.size() != n || state.V.size() != n) {
-        throw InputError({"start-position", "start", "the start does not have one X and one V for every body",
-                          std::to_string(state.X.size()) + " and " + std::to_string(state.V.size()),
-                          std::to_string(n), "", "begin with Model::start()"});
+        return Complaint{"start-position", "start", "the start does not have one X and one V for every body",
+                         std::to_string(state.X.size()) + " and " + std::to_string(state.V.size()),
+                         std::to_string(n), "", "begin with Model::start()"};
     }
     for (int b = 0; b < model.n_bodies(); ++b) {
         const std::string path = "body[" + model.body_name(b) + "]";
         for (const auto& [m, code] :
              {std::pair{&state.X[b], "start-position"}, {&state.V[b], "start-velocity"}}) {
             if (!all_finite(*m))
-                throw InputError({code, path, "the start is not finite", "", "finite numbers", "", ""});
+                return Complaint{code, path, "the start is not finite", "", "finite numbers", "", ""};
             if (model.bodies()[b].is_point) *m = configuration(m->column(0), Matrix3{});
         }
     }
+    return {};
 }
 
 // --- rigidity
@@ -85,7 +82,7 @@ Worst worst_product(const Matrix3& A, const Matrix3& B, double target)
 
 /// Directors orthonormal to rounding. Small violations leave by D <- D (3 I - D^T D) / 2, which keeps exact
 /// zeros.
-void settle_directors(const Model& model, StartPolicy policy, State& state, std::vector<std::string>& notes)
+Fault settle_directors(const Model& model, StartPolicy policy, State& state, std::vector<std::string>& notes)
 {
     for (int b = 0; b < model.n_bodies(); ++b) {
         if (model.bodies()[b].is_point) continue;
@@ -94,15 +91,15 @@ void settle_directors(const Model& model, StartPolicy policy, State& state, std:
         if (std::abs(worst.value) <= 4 * eps && determinant(D) > 0) continue;
         const std::string path = "body[" + model.body_name(b) + "].directors";
         if (determinant(D) <= 0) {
-            throw InputError({"start-position", path, "the directors are not a right-handed triad",
-                              "determinant " + number(determinant(D)), "1", "d1 x d2 = d3",
-                              "change the sign of one director"});
+            return Complaint{"start-position", path, "the directors are not a right-handed triad",
+                             "determinant " + number(determinant(D)), "1", "d1 x d2 = d3",
+                             "change the sign of one director"};
         }
         if (std::abs(worst.value) > start_tolerance) {
             if (policy == StartPolicy::check) {
-                complain("start-position", path,
-                         "the directors are not orthonormal: " + worst.name + " is wrong",
-                         number(worst.value), project_help);
+                return Complaint{"start-position", path,
+                                 "the directors are not orthonormal: " + worst.name + " is wrong",
+                                 number(worst.value), number(start_tolerance), "", project_help};
             }
             D = project_directors(D);
             notes.push_back("the directors of body '" + model.body_name(b) + "' were made orthonormal (" +
@@ -113,6 +110,7 @@ void settle_directors(const Model& model, StartPolicy policy, State& state, std:
         }
         state.X[b] = configuration(state.X[b].column(0), D);
     }
+    return {};
 }
 
 // --- positions
@@ -132,26 +130,30 @@ void note_moves(const Model& model, std::span<const Matrix34> before, std::span<
     }
 }
 
-void settle_positions(const Model& model, StartPolicy policy, State& state, std::vector<std::string>& notes)
+Fault settle_positions(const Model& model, StartPolicy policy, State& state, std::vector<std::string>& notes)
 {
     const Gap gap = widest_gap(model, state.X, all_rows(model));
     const bool projects = policy == StartPolicy::project;
-    if (gap.level <= 1 && !(projects && drives_are_turned(model, state.X))) return;
+    if (gap.level <= 1 && !(projects && drives_are_turned(model, state.X))) return {};
     const bool is_open = !gap.near || gap.level <= 1;
     Closing closing = close_rows(model, state.X, all_rows(model), is_open);
     const bool is_other = projects && closing.closed && !is_in_its_branch(model, closing.X);
     if (is_open && (!closing.closed || is_other)) {
         Reach other = reach(model, state.X);
-        if (!other.closing.closed && !closing.closed) refuse_open(model, closing, state.X, other.n_tries);
+        if (!other.closing.closed && !closing.closed)
+            return why_open(model, closing, state.X, other.n_tries);
         if (other.closing.closed) closing = std::move(other.closing);
         if (projects && !other.how.empty()) notes.push_back(other.how);
     }
     if (!gap.near && !projects) {
-        throw InputError(
-            {"start-position", joint_path(model, gap.row),
-             model.row_name(gap.row) + " is open at the start" + drive_words(model, gap.row, state.X),
-             "violation " + number(gap.violation), number(start_tolerance), "",
-             drive_help(model, gap.row, state.X) + project_help});
+        return Complaint{"start-position",
+                         joint_path(model, gap.row),
+                         model.row_name(gap.row) + " is open at the start" +
+                             drive_words(model, gap.row, state.X),
+                         "violation " + number(gap.violation),
+                         number(start_tolerance),
+                         "",
+                         drive_help(model, gap.row, state.X) + project_help};
     }
     note_moves(model, state.X, closing.X, notes);
     for (int b = 0; b < model.n_bodies(); ++b) {
@@ -166,22 +168,23 @@ void settle_positions(const Model& model, StartPolicy policy, State& state, std:
         }
         state.X[b] = closing.X[b];
     }
+    return {};
 }
 
 // --- velocities
 
 /// Largest inconsistency relative to what the largest speed can make; names what it is.
-struct RateFault {
+struct RateGap {
     double relative = 0;
     Complaint complaint;
 };
 
 /// `drives`: drive_rates(). The bound is of G V alone: a drive that is slower than bodies move does not
 /// matter, and one that is faster is a fault.
-RateFault worst_rate(const Model& model, const State& state, const RowWrenches& wrenches,
+RateGap worst_rate(const Model& model, const State& state, const RowWrenches& wrenches,
                      std::span<const Vector3> centers, std::span<const double> drives, double speed)
 {
-    RateFault fault;
+    RateGap fault;
     const double length = model.length();
     for (int b = 0; b < model.n_bodies(); ++b) {
         if (model.bodies()[b].is_point) continue;
@@ -219,7 +222,7 @@ RateFault worst_rate(const Model& model, const State& state, const RowWrenches& 
 }
 
 /// `model`: of positions, frozen; `the_model`: with its drives.
-void settle_velocities(const Model& model, const Model& the_model, StartPolicy policy,
+Fault settle_velocities(const Model& model, const Model& the_model, StartPolicy policy,
                        const RowWrenches& wrenches, std::span<const int> independent,
                        std::span<const double> drives, State& state, std::vector<std::string>& notes)
 {
@@ -227,34 +230,35 @@ void settle_velocities(const Model& model, const Model& the_model, StartPolicy p
     const double stated = largest_speed(model, state, centers),
                  speed = std::max(stated, speed_by_weight(model));
     const bool is_driven = std::ranges::any_of(drives, [](double rate) { return rate != 0; });
-    if (stated == 0 && !is_driven) return;
-    RateFault fault = worst_rate(model, state, wrenches, centers, drives, speed);
-    if (fault.relative <= 8 * eps) return;
+    if (stated == 0 && !is_driven) return {};
+    RateGap fault = worst_rate(model, state, wrenches, centers, drives, speed);
+    if (fault.relative <= 8 * eps) return {};
     if (fault.relative > start_tolerance) {
         const double least = speed_of_rounding(the_model, state, wrenches, centers);
         if (least > speed) fault = worst_rate(model, state, wrenches, centers, drives, least);
     }
-    if (fault.relative > start_tolerance && policy == StartPolicy::check) throw InputError(fault.complaint);
+    if (fault.relative > start_tolerance && policy == StartPolicy::check) return fault.complaint;
     const std::vector<Matrix34> before = state.V;
     state.V = nearest_rates(model, state.X, state.V, independent, drives);
-    if (fault.relative <= start_tolerance) return;
+    if (fault.relative <= start_tolerance) return {};
     const std::string changes = rate_changes(model, state.X, before, state.V);
     notes.push_back("the velocities at the start were projected: " + fault.complaint.message + " (" +
                     fault.complaint.value + ")" +
                     (changes.empty() ? "" : "; by the least that fits, rates became " + changes));
+    return {};
 }
 
 // --- inertia
 
-void refuse_weightless_spin(const Model& model, std::span<const Matrix34> X)
+Fault why_weightless(const Model& model, std::span<const Matrix34> X)
 {
     const std::optional<WeightlessSpin> spin = weightless_spin(model, X);
-    if (!spin) return;
+    if (!spin) return {};
     Vector3 axis = spin->axis;
     for (double& a : axis.a) a = std::abs(a) < 1e-9 ? 0.0 : a;
     const std::string name = model.body_name(spin->body);
-    throw InputError(
-        {"spin-without-inertia", "body[" + name + "].inertia",
+    return Complaint{
+        "spin-without-inertia", "body[" + name + "].inertia",
          "body '" + name + "' can spin about an axis without inertia, and no joint holds this spin",
          "axis (" + number(axis[0]) + ", " + number(axis[1]) + ", " + number(axis[2]) + ") in the world", "",
          spin->by_digits ? "the reference point is so far from the centre of mass that the mass matrix holds "
@@ -262,7 +266,7 @@ void refuse_weightless_spin(const Model& model, std::span<const Matrix34> X)
                          : "its motion has no equation",
          spin->by_digits ? "choose a reference point near the body"
                          : "give the body inertia about this axis, hold the spin by a joint, or use a point "
-                           "mass"});
+                           "mass"};
 }
 
 /// One sentence a joint on its redundant rows, which ascend.
@@ -283,37 +287,44 @@ void note_redundancy(const Model& model, ClosedStart& assembly)
 
 }   // namespace
 
-ClosedStart close_start(const Model& the_model, const State& start, StartPolicy policy)
+TriedStart try_close_start(const Model& the_model, const State& start, StartPolicy policy)
 {
-    ClosedStart assembly;
-    assembly.start = start;
+    ClosedStart closed;
+    closed.start = start;
     std::optional<Model> now;
     if (the_model.has_drives()) now = frozen(the_model, {start.t});
     const Model& model = now ? *now : the_model;
-    clean(model, assembly.start);
-    settle_directors(model, policy, assembly.start, assembly.notes);
-    settle_positions(model, policy, assembly.start, assembly.notes);
-
-    refuse_other_branches(model, assembly.start.X);
+    Fault fault = clean(model, closed.start);
+    if (!fault) fault = settle_directors(model, policy, closed.start, closed.notes);
+    if (!fault) fault = settle_positions(model, policy, closed.start, closed.notes);
+    if (!fault) fault = why_in_other_branch(model, closed.start.X);
+    if (fault) return {{}, std::move(*fault)};
 
     const std::vector<int> rows = all_rows(model);
-    const RowWrenches wrenches = row_wrenches(model, assembly.start.X);
-    const RowRank rank =
-        row_rank(twist_rows(model, assembly.start.X, rows, wrenches), model.n_bodies(), rows);
-    refuse_weightless_spin(model, assembly.start.X);
-    assembly.independent = rank.independent;
-    for (const Body& body : model.bodies()) assembly.degrees_of_freedom += body.is_point ? 3 : 6;
-    assembly.degrees_of_freedom -= static_cast<int>(rank.independent.size());
-    assembly.redundant = rank.dependent;
-    note_redundancy(model, assembly);
-    if (rank.smallest_pivot < 1e-6) {
-        assembly.notes.push_back("the joints are close to a singular configuration at the start (pivot " +
-                                 number(rank.smallest_pivot) + ")");
-    }
-    const std::vector<double> drives = drive_rates(the_model, {start.t}, assembly.start.X);
-    settle_velocities(model, the_model, policy, wrenches, assembly.independent, drives, assembly.start,
-                      assembly.notes);
-    return assembly;
+    const RowWrenches wrenches = row_wrenches(model, closed.start.X);
+    const RowRank rank = row_rank(twist_rows(model, closed.start.X, rows, wrenches), model.n_bodies(), rows);
+    fault = why_weightless(model, closed.start.X);
+    if (fault) return {{}, std::move(*fault)};
+    closed.independent = rank.independent;
+    for (const Body& body : model.bodies()) closed.degrees_of_freedom += body.is_point ? 3 : 6;
+    closed.degrees_of_freedom -= static_cast<int>(rank.independent.size());
+    closed.redundant = rank.dependent;
+    note_redundancy(model, closed);
+    if (rank.smallest_pivot < 1e-6)
+        closed.notes.push_back("the joints are close to a singular configuration at the start (pivot " +
+                               number(rank.smallest_pivot) + ")");
+    const std::vector<double> drives = drive_rates(the_model, {start.t}, closed.start.X);
+    fault = settle_velocities(model, the_model, policy, wrenches, closed.independent, drives, closed.start,
+                              closed.notes);
+    if (fault) return {{}, std::move(*fault)};
+    return {std::move(closed), {}};
+}
+
+ClosedStart close_start(const Model& model, const State& start, StartPolicy policy)
+{
+    TriedStart tried = try_close_start(model, start, policy);
+    if (!tried.closed) throw InputError(std::move(tried.why));
+    return std::move(*tried.closed);
 }
 
 }   // namespace livens

@@ -2,9 +2,11 @@
 // Closing the mechanism: independent rows, and a start that fulfils them.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "livens/base/error.h"
 #include "livens/multibody/model.h"
 
 namespace [[gnu::visibility("default")]] livens {
@@ -32,5 +34,12 @@ struct ClosedStart {
 ///   `joint-contradiction` a redundant row that cannot be fulfilled with the others
 ///   `spin-without-inertia` a motion that no joint holds and that carries no inertia (a needle's free spin)
 ClosedStart close_start(const Model& model, const State& start, StartPolicy policy);
+
+/// A closed start, or what close_start() would throw.
+struct TriedStart {
+    std::optional<ClosedStart> closed;
+    Complaint why;   ///< where there is none
+};
+TriedStart try_close_start(const Model& model, const State& start, StartPolicy policy);
 
 }   // namespace livens

@@ -3,6 +3,7 @@
 
 #include <cstring>
 #include <span>
+#include <utility>
 
 #include "livens/dynamics/rows/tables.h"
 
@@ -33,12 +34,20 @@ void Prepared::serve(const Model& model)
     pattern_ = std::make_shared<KnownPattern>();
 }
 
-ClosedStart Prepared::close(const Model& model, const State& start, StartPolicy policy)
+TriedStart Prepared::try_close(const Model& model, const State& start, StartPolicy policy)
 {
     serve(model);
-    if (!closed_ || closed_->policy != policy || !are_same(closed_->state, start))
-        closed_ = Closed{start, policy, close_start(model, start, policy)};
-    return closed_->closed;
+    if (closed_ && closed_->policy == policy && are_same(closed_->state, start)) return {closed_->closed, {}};
+    TriedStart tried = try_close_start(model, start, policy);
+    if (tried.closed) closed_ = Closed{start, policy, *tried.closed};
+    return tried;
+}
+
+ClosedStart Prepared::close(const Model& model, const State& start, StartPolicy policy)
+{
+    TriedStart tried = try_close(model, start, policy);
+    if (!tried.closed) throw InputError(std::move(tried.why));
+    return std::move(*tried.closed);
 }
 
 std::shared_ptr<KnownPattern> Prepared::pattern(const Model& model)

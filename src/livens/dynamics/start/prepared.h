@@ -22,7 +22,9 @@ public:
     Prepared(const Prepared&) = delete;
     Prepared& operator=(const Prepared&) = delete;
 
-    /// close_start(), which is not done anew for the state and policy that were given last.
+    /// try_close_start(), which is not done anew for the state and policy that were given last.
+    TriedStart try_close(const Model& model, const State& start, StartPolicy policy);
+    /// The same, thrown as close_start() does.
     ClosedStart close(const Model& model, const State& start, StartPolicy policy);
     /// Where the Tables of this model keep the pattern of their rows.
     std::shared_ptr<KnownPattern> pattern(const Model& model);

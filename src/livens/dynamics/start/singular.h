@@ -3,6 +3,7 @@
 // positions")
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "livens/dynamics/start/closing.h"
@@ -33,8 +34,10 @@ struct Mobility {
 /// the second tells is not seen.
 Mobility mobility(const Model& model, const ClosedStart& closed);
 
-/// Throws InputError (`start-singular`) where the joints are in a singular position: no motion goes on from
-/// rest there, or several do, and rows that are independent beside it are not so there.
+/// `start-singular`, where the joints are in a singular position: no motion goes on from rest there, or
+/// several do, and rows that are independent beside it are not so there.
+std::optional<Complaint> why_singular(const Model& model, const ClosedStart& closed);
+/// Throws it as InputError.
 void refuse_singular_start(const Model& model, const ClosedStart& closed);
 
 }   // namespace livens

@@ -37,10 +37,10 @@ std::string words_of(const Model& model, const State& state, const std::vector<M
 
 }   // namespace
 
-void refuse_singular_start(const Model& model, const ClosedStart& closed)
+std::optional<Complaint> why_singular(const Model& model, const ClosedStart& closed)
 {
     const Mobility m = mobility(model, closed);
-    if (!m.is_singular()) return;
+    if (!m.is_singular()) return {};
     const std::size_t n = m.branches.size();
     const auto count = [](std::size_t k, const std::string& what) {
         return std::to_string(k) + " " + what + (k == 1 ? "" : "s");
@@ -57,13 +57,18 @@ void refuse_singular_start(const Model& model, const ClosedStart& closed)
     for (std::size_t i = 0; i < std::min<std::size_t>(n, 2); ++i)
         help += (i > 0 ? "; or " : "") + words_of(model, closed.start, m.branches[i]);
     if (n > 2) help += "; or another";
-    throw InputError({"start-singular", "joint[" + model.joints()[model.row_joint(m.row)].name + "]",
+    return Complaint{"start-singular", "joint[" + model.joints()[model.row_joint(m.row)].name + "]",
                       "the joints are in a singular position at the start" +
                           std::string(!m.are_possible   ? ", and velocities lead out of them in second order"
                                       : m.choose_branch ? ", from which no method starts"
                                                         : ", and the velocities choose no motion"),
                       what, "", "the joints hold less there than beside it, and several motions may meet",
-                      help});
+                      help};
+}
+
+void refuse_singular_start(const Model& model, const ClosedStart& closed)
+{
+    if (std::optional<Complaint> why = why_singular(model, closed)) throw InputError(std::move(*why));
 }
 
 }   // namespace livens

@@ -8,6 +8,7 @@
 #include "livens/io/results/figures.h"
 #include "livens/io/results/writing.h"
 #include "livens/multibody/turns.h"
+#include "livens/spacetime/solve.h"
 
 namespace livens {
 

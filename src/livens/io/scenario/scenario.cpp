@@ -5,8 +5,10 @@
 #include <fstream>
 #include <new>
 
+#include "livens/dynamics/start/prepared.h"
 #include "livens/io/scenario/builder.h"
 #include "livens/io/scenario/text/tree.h"
+#include "livens/spacetime/solve.h"
 
 namespace livens {
 

@@ -10,6 +10,7 @@
 
 #include "livens/base/elementary.h"
 #include "livens/base/text.h"
+#include "livens/dynamics/start/prepared.h"
 #include "livens/multibody/body.h"
 #include "livens/spacetime/accuracy/measured_growth.h"
 #include "livens/spacetime/accuracy/second.h"
@@ -102,11 +103,11 @@ struct Tries {
 
 class ToAccuracy {
 public:
-    ToAccuracy(const Model& model, const Problem& problem, const Span& span, const Method& method,
-               const SolveOptions& options, const Doubt& doubt)
+    ToAccuracy(const Model& model, const Problem& problem, const Ends& ends, const Span& span,
+               const Method& method, const SolveOptions& options, const Doubt& doubt)
         : model_(model), problem_(problem), span_(span),
           options_(with_tolerance_for(span.accuracy, 1, options)), doubt_(doubt),
-          ends_(close_ends(model, problem, span.start, span.end, options.initial)),
+          ends_(ends),
           tables_(model, ends_.independent, false, problem.prepared->pattern(model)),
           stops_(stops_of(model, span)), method_(method), is_free_(degree_of(method) == 0),
           tolerance_(first_share * span.accuracy),
@@ -174,7 +175,7 @@ private:
         TimeMesh mesh{{span_.start}};
         LobattoWindow window(tables_, mesh, ends_, rule_of(method_));
         if (!options_.look_at_laws) window.ignore_laws();
-        Second second(model_, problem_, method_, options_, *window.so_far());
+        Second second(model_, problem_, method_, options_, *window.monitor().so_far());
         const ElementRule rule = rule_of(method_);
         Pace pace(rule.points, rule.degree, tolerance_, length_, stops_);
         pace.sample_at(samples_of(model_, span_), span_.accuracy);
@@ -193,12 +194,14 @@ private:
                 one.fits_badly = fitting_degree(pace) < degree_of(method_);
                 if (one.fits_badly) return false;
             }
-            if (n % 256 == 0 && static_cast<double>(window.so_far()->n_bytes()) > options_.most_bytes)
+            if (n % 256 == 0 &&
+                static_cast<double>(window.monitor().so_far()->n_bytes()) > options_.most_bytes)
                 return say_too_long(mesh, report);
             const bool is_piece = n - second.reached() >= std::max(least_piece, second.reached() / 4);
             if (!is_piece && n != looked_at) return true;
             window.describe(report);
-            const Look look{*window.so_far(), pace.mean_length(), report.evaluations + second.evaluations()};
+            const Look look{*window.monitor().so_far(), pace.mean_length(),
+                            report.evaluations + second.evaluations()};
             if (doubt_ && doubt_(look)) {
                 report.status = SolveStatus::cancelled;
                 return false;
@@ -210,8 +213,8 @@ private:
         report.notes = ends_.notes;
         solve_windows(window, mesh, w, report);
         one.pace = std::move(pace);
-        finish(one, second, window.so_far()->n_elements());
-        one.solution.unseen = window.take_unseen();
+        finish(one, second, window.monitor().so_far()->n_elements());
+        one.solution.unseen = window.monitor().take_unseen();
         one.solution.motion = window.take_motion();
         one.solution.method = method_;
         if (report.converged() && !one.is_broken_off) {
@@ -341,7 +344,7 @@ private:
     const Span& span_;
     SolveOptions options_;
     const Doubt& doubt_;
-    Ends ends_;
+    const Ends& ends_;
     Tables tables_;
     std::vector<double> stops_;
     Method method_;
@@ -362,12 +365,12 @@ double time_of_motion(const Model& model, const State& state)
     return 0.5 / rate;
 }
 
-Solution solve_to_accuracy(const Model& model, const Problem& problem, const Span& span, const Method& method,
-                           const SolveOptions& options, const Doubt& doubt)
+Solution solve_to_accuracy(const Model& model, const Problem& problem, const Ends& ends, const Span& span,
+                           const Method& method, const SolveOptions& options, const Doubt& doubt)
 {
     if (const auto* either = std::get_if<Auto>(&method))
-        return solve_to_accuracy(model, problem, span, *either, options);
-    return ToAccuracy(model, problem, span, method, options, doubt).run();
+        return solve_to_accuracy(model, problem, ends, span, *either, options);
+    return ToAccuracy(model, problem, ends, span, method, options, doubt).run();
 }
 
 }   // namespace livens

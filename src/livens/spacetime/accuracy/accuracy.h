@@ -4,6 +4,7 @@
 
 #include <functional>
 
+#include "livens/spacetime/march/ends.h"
 #include "livens/spacetime/solve.h"
 
 namespace livens {
@@ -27,11 +28,12 @@ double time_of_motion(const Model& model, const State& state);
 /// shorter ones until the global estimate is within the accuracy: six times at most, and once more where that
 /// may be chance. What comes back is not judged. The method is nodal, the state given at the start; degree 0
 /// is chosen.
-Solution solve_to_accuracy(const Model& model, const Problem& problem, const Span& span, const Method& method,
-                           const SolveOptions& options, const Doubt& doubt = {});
+/// `ends`: closed.
+Solution solve_to_accuracy(const Model& model, const Problem& problem, const Ends& ends, const Span& span,
+                           const Method& method, const SolveOptions& options, const Doubt& doubt = {});
 
 /// The same by lobatto or radau; a note says why radau was taken, and of which body, spring or joint.
-Solution solve_to_accuracy(const Model& model, const Problem& problem, const Span& span, const Auto& either,
-                           const SolveOptions& options);
+Solution solve_to_accuracy(const Model& model, const Problem& problem, const Ends& ends, const Span& span,
+                           const Auto& either, const SolveOptions& options);
 
 }   // namespace livens

@@ -25,11 +25,11 @@ constexpr double small_tangent = 15;
 
 class Choice {
 public:
-    Choice(const Model& model, const Problem& problem, const Span& span, const Auto& either,
-           const SolveOptions& options)
+    Choice(const Model& model, const Problem& problem, const Ends& ends, const Span& span,
+           const Auto& either, const SolveOptions& options)
         : model_(model), problem_(problem), span_(span),
           options_(options), lobatto_{either.degree, 1}, radau_{std::min(either.degree, highest_radau)},
-          ends_(close_ends(model, problem, span.start, span.end, options.initial)),
+          ends_(ends),
           start_(ends_.start), freedoms_(Tables(model, ends_.independent).freedoms()),
           at_start_(highest_frequencies(model, start_)),
           length_(std::min(time_of_motion(model, start_), span.end - span.start))
@@ -38,7 +38,7 @@ public:
     Solution run()
     {
         if (decays(at_start_, length_)) return by_radau({});
-        Solution solution = solve_to_accuracy(model_, problem_, span_, lobatto_, options_,
+        Solution solution = solve_to_accuracy(model_, problem_, ends_, span_, lobatto_, options_,
                                               [this](const Look& look) { return doubts(look); });
         if (!why_.empty()) return by_radau(std::move(solution));
         if (solution.report.status == SolveStatus::cancelled || is_good(solution)) return solution;
@@ -65,7 +65,7 @@ private:
         const auto spend = [&](const Look& other) {
             return static_cast<double>(other.evaluations) > allowed;
         };
-        const Solution trial = solve_to_accuracy(model_, problem_, part, radau_, options_, spend);
+        const Solution trial = solve_to_accuracy(model_, problem_, ends_, part, radau_, options_, spend);
         if (!trial.report.converged() || static_cast<double>(trial.report.evaluations_in_all) > allowed)
             return false;
         say(vibration, "vibrates at " + to_text(vibration.rate, 3) +
@@ -103,7 +103,7 @@ private:
 
     Solution by_radau(const Solution& before) const
     {
-        Solution solution = solve_to_accuracy(model_, problem_, span_, radau_, options_);
+        Solution solution = solve_to_accuracy(model_, problem_, ends_, span_, radau_, options_);
         solution.report.notes.push_back(why_);
         solution.report.evaluations_in_all += before.report.evaluations_in_all;
         solution.estimate_seconds += before.estimate_seconds;
@@ -116,7 +116,7 @@ private:
     const SolveOptions& options_;
     Lobatto lobatto_;
     Radau radau_;
-    Ends ends_;
+    const Ends& ends_;
     const State& start_;
     double freedoms_;
     HighestFrequencies at_start_;
@@ -127,10 +127,10 @@ private:
 
 }   // namespace
 
-Solution solve_to_accuracy(const Model& model, const Problem& problem, const Span& span, const Auto& either,
-                           const SolveOptions& options)
+Solution solve_to_accuracy(const Model& model, const Problem& problem, const Ends& ends, const Span& span,
+                           const Auto& either, const SolveOptions& options)
 {
-    return Choice(model, problem, span, either, options).run();
+    return Choice(model, problem, ends, span, either, options).run();
 }
 
 }   // namespace livens

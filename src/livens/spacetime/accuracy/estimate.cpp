@@ -20,6 +20,7 @@
 #include "livens/spacetime/accuracy/second.h"
 #include "livens/spacetime/march/ends.h"
 #include "livens/spacetime/phases.h"
+#include "livens/spacetime/solve_mesh.h"
 #include "livens/statics/frequencies.h"
 
 namespace livens {
@@ -83,14 +84,9 @@ bool Second::advance(int end)
     for (const double t : missed(mesh, model_.load_breaks()))   // what one solution missed, two would
         mesh.ends.insert(std::ranges::upper_bound(mesh.ends, t), t);
     const auto begin = std::chrono::steady_clock::now();
-    Solution second;
-    try {
-        second = solve(model_, problem_, mesh, method_, options_);
-    } catch (const InputError& error) {   // about a state that the last piece made, not one that was given
-        second.report.status = SolveStatus::singular;
-        second.report.message =
-            error.complaint().message + " of a piece at t = " + to_text(mesh.start(), 6) + " s";
-    }
+    Solution second = solve_unjudged(model_, problem_, mesh, method_, options_);
+    if (second.cannot_begin)   // a state that the last piece made, not one that was given
+        second.report.message += " of a piece at t = " + to_text(mesh.start(), 6) + " s";
     seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     report_ = std::move(second.report);
     evaluations_ += report_.evaluations;

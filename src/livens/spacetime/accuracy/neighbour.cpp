@@ -5,9 +5,11 @@
 #include <utility>
 
 #include "livens/base/error.h"
+#include "livens/dynamics/start/prepared.h"
 #include "livens/multibody/body.h"
 #include "livens/spacetime/march/windows.h"
 #include "livens/spacetime/nodal/window.h"
+#include "livens/spacetime/solve_mesh.h"
 
 namespace livens {
 
@@ -82,15 +84,11 @@ bool Neighbour::solve(const State& start, const Motion& near, int first, int las
     if (has_bends_)
         for (const double t : beside_.mesh.bends)
             if (t > mesh_.start() && t <= mesh_.end()) mesh_.bends.push_back(t);
-    try {
-        if (closed_ != nullptr) return march(start, near, left);
-        Solution one = livens::solve(model_, {{start}, {}, &near, prepared_}, mesh_, method_, options_);
-        motion_ = std::move(one.motion);
-        return one.report.converged();
-    } catch (const InputError&) {
-        // Of the motion all was right: it has come to a singular position, or no start beside it closes.
-        return false;
-    }
+    if (closed_ != nullptr) return march(start, near, left);
+    // where no start beside the motion closes, or it has come to a singular position, there is none
+    Solution one = solve_unjudged(model_, {{start}, {}, &near, prepared_}, mesh_, method_, options_);
+    motion_ = std::move(one.motion);
+    return one.report.converged();
 }
 
 }   // namespace livens

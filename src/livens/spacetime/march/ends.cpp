@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "livens/dynamics/start/prepared.h"
 #include "livens/dynamics/start/singular.h"
 
 namespace livens {
@@ -10,23 +11,27 @@ namespace livens {
 namespace {
 
 /// One end: rates that are guesses need not fit the joints, places that are guesses are brought onto them.
-void close_end(const Model& model, State& state, Known known, StartPolicy policy, Prepared* prepared,
-               Ends& ends)
+std::optional<Complaint> close_end(const Model& model, State& state, Known known, StartPolicy policy,
+                                   Prepared* prepared, Ends& ends)
 {
-    if (known == Known::nothing) return;
+    if (known == Known::nothing) return {};
     const std::vector<Matrix34> guessed = state.V;
     if (known == Known::positions) state.V.assign(guessed.size(), Matrix34{});
     // positions alone need not move as drives do
     const bool is_still = known == Known::positions && model.has_drives();
-    ClosedStart closed = is_still              ? close_start(frozen(model, {state.t}), state, policy)
-                         : prepared != nullptr ? prepared->close(model, state, policy)
-                                               : close_start(model, state, policy);
-    if (known == Known::state) refuse_singular_start(model, closed);
+    TriedStart tried = is_still              ? try_close_start(frozen(model, {state.t}), state, policy)
+                       : prepared != nullptr ? prepared->try_close(model, state, policy)
+                                             : try_close_start(model, state, policy);
+    if (!tried.closed) return std::move(tried.why);
+    ClosedStart& closed = *tried.closed;
+    if (known == Known::state)
+        if (std::optional<Complaint> why = why_singular(model, closed)) return why;
     state = std::move(closed.start);
     if (known == Known::positions) state.V = guessed;
     ends.independent = std::move(closed.independent);
     ends.redundant = std::move(closed.redundant);
     ends.notes.insert(ends.notes.end(), closed.notes.begin(), closed.notes.end());
+    return {};
 }
 
 }   // namespace
@@ -37,7 +42,8 @@ Problem with_prepared(Problem problem)
     return problem;
 }
 
-Ends close_ends(const Model& model, const Problem& problem, double start, double end, StartPolicy policy)
+TriedEnds try_close_ends(const Model& model, const Problem& problem, double start, double end,
+                         StartPolicy policy)
 {
     const Conditions& conditions = problem.conditions;
     Prepared* const prepared = problem.prepared.get();
@@ -48,9 +54,17 @@ Ends close_ends(const Model& model, const Problem& problem, double start, double
     ends.end = conditions.end;
     ends.start.t = start;
     ends.end.t = end;
-    close_end(model, ends.end, ends.at_end, policy, prepared, ends);
-    close_end(model, ends.start, ends.at_start, policy, prepared, ends);
-    return ends;
+    std::optional<Complaint> why = close_end(model, ends.end, ends.at_end, policy, prepared, ends);
+    if (!why) why = close_end(model, ends.start, ends.at_start, policy, prepared, ends);
+    if (why) return {{}, std::move(*why)};
+    return {std::move(ends), {}};
+}
+
+Ends close_ends(const Model& model, const Problem& problem, double start, double end, StartPolicy policy)
+{
+    TriedEnds tried = try_close_ends(model, problem, start, end, policy);
+    if (!tried.ends) throw InputError(std::move(tried.why));
+    return std::move(*tried.ends);
 }
 
 }   // namespace livens

@@ -27,7 +27,15 @@ struct Ends {
 /// The problem, with room for what is found of its model.
 Problem with_prepared(Problem problem);
 
-/// Closes the mechanism at the known ends; throws InputError, see close_start().
+/// The mechanism closed at the known ends, or what close_ends() would throw.
+struct TriedEnds {
+    std::optional<Ends> ends;
+    Complaint why;   ///< where there are none
+};
+TriedEnds try_close_ends(const Model& model, const Problem& problem, double start, double end,
+                         StartPolicy policy);
+
+/// Throws InputError, see close_start().
 Ends close_ends(const Model& model, const Problem& problem, double start, double end, StartPolicy policy);
 
 /// What was stated at the ends of a whole motion and is not there: positions to 1e-8 (lengths of the model,

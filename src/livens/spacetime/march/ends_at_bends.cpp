@@ -26,7 +26,7 @@ bool EndsAtBends::moves(Window& window, double start, double end)
     constexpr double spacings = 4 * std::numeric_limits<double>::epsilon();
     const bool was_found = is_found(end);
     const double length = end - start, margin = std::max(before * length, spacings * std::abs(end));
-    const double bend = start + length * window.bend(was_found ? beyond : 1);
+    const double bend = start + length * window.monitor().bend(was_found ? beyond : 1);
     is_met_ = was_found && std::abs(bend - end) <= 3 * margin;
     if (std::isinf(bend) && std::exchange(is_expected_, false)) at_ = -infinite;   // an end like others
     if (is_met_ || std::isinf(bend) || (!was_found && end - bend <= margin) || bend - start < shortest_)

@@ -33,7 +33,7 @@ void March::run_at_pace(Pace& pace)
         const bool end_may_move = !pace.is_stop(end) || pace.may_leave(end);
         if (!closed.is_refused)
             closed = close({most, true, true}, end_may_move, true);
-        else if (window_.rank_loss() == RankLoss::at_end)
+        else if (window_.monitor().rank_loss() == RankLoss::at_end)
             closed.loss = loss_of_failed(end, end_may_move);
         if (closed.loss != RankLoss::none) {
             count_shift(end);
@@ -46,8 +46,8 @@ void March::run_at_pace(Pace& pace)
             pace.accepted(length, closed.velocity_jump, outcome.iterations);
             if (options_.ends_at_bends && bends_.accepted(start, end)) count_bend(end);
             if (!take(e, e + 1, closed, outcome) || (options_.goes_on && !options_.goes_on())) return;
-            if (options_.ends_at_bends && bends_.is_stuck() && !window_.jumping_load().empty())
-                return stop_at_jump(window_.jumping_load());
+            if (options_.ends_at_bends && bends_.is_stuck() && !window_.monitor().jumping_load().empty())
+                return stop_at_jump(window_.monitor().jumping_load());
             continue;
         }
         ++report_.refused;

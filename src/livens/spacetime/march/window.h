@@ -51,41 +51,18 @@ struct Closed {
     std::string load{};
 };
 
-/// A family of elements on a mesh: it states the equations of any stretch of elements, a window, and keeps
-/// what was solved of them. Which windows are solved, in which order and from which guess, is not its
-/// business.
-///
-/// Windows are opened one after the other from the end of time where the state is known; with conditions at
-/// both ends there is one window of all elements.
-class Window {
+/// What a family may know of single elements of a march forwards or backwards, beyond their equations. As it
+/// stands here it knows nothing.
+class ElementMonitor {
 public:
-    Window() = default;
-    Window(const Window&) = delete;
-    Window& operator=(const Window&) = delete;
-    virtual ~Window() = default;
+    virtual ~ElementMonitor() = default;
 
-    /// Makes elements first..last - 1 current, with what the window closed last hands on (or with the
-    /// conditions) at its near end. False: there is no state to go on from; the report says why.
-    virtual bool open(int first, int last, SolveReport& report) = 0;
-    /// The family's own way to the solution of the open window, where it has one that is quicker than
-    /// Newton's iteration: the same equations, to the same digits. False: nothing was found, the window is as
-    /// before. `soon`: or nothing at all, since shorter elements are free to be tried.
+    /// A way to the solution of the open window that is quicker than Newton's iteration: the same equations,
+    /// to the same digits. False: nothing was found, the window is as before. `soon`: or nothing at all,
+    /// since shorter elements are free to be tried.
     virtual bool solve(const NewtonOptions&, bool /*soon*/, NewtonReport&) { return false; }
     /// What a tangent of the open window costs, in elements that solve() solves; 0: it solves none.
     virtual double tangent_cost() const { return 0; }
-    /// The equations of the open window.
-    virtual NewtonProblem& equations() = 0;
-    /// The family's own guess, cheap and good for short windows. False: it has none here.
-    virtual bool predict() = 0;
-    /// False: the guess is not finite.
-    virtual bool start_from(const Guess& guess) = 0;
-    /// The state known at the near end of the open window; false if it is not all known.
-    virtual bool near_state(State& state) const = 0;
-    /// Takes the solution at hand into the motion, and its far end as the near end of the next window:
-    /// element by element from the near end, up to one that is not to be believed (a velocity jump or a turn
-    /// between nodes beyond `trust`), or whose end is no state to go on from (the report says why). What was
-    /// refused for its rank may be closed all the same, without asking for that.
-    virtual Closed close(const Trust& trust, SolveReport& report) = 0;
     /// Where the only element of the open window, as iterations left it, is too near to a singular position:
     /// at one Newton's iteration converges by chance.
     virtual RankLoss rank_loss() const { return RankLoss::none; }
@@ -96,20 +73,56 @@ public:
     virtual std::string jumping_load() const { return ""; }
     /// The mesh has one element more: `element`, which is not closed, was divided in two.
     virtual void divided(int) {}
-    /// X of all bodies at an end of an element of the open window.
-    virtual std::vector<Matrix34> positions(int element_end) const = 0;
+    /// What laws of loads did unseen inside of the elements closed so far, in the order of their solution.
+    virtual std::vector<Unseen> take_unseen() { return {}; }
+    /// What was closed so far; null: the family cannot say.
+    virtual const Motion* so_far() { return nullptr; }
+};
+
+/// A family of elements on a mesh: it states the equations of any stretch of elements, a window, and keeps
+/// what was solved of them. Which windows are solved, in which order and from which guess, is not its
+/// business.
+///
+/// Windows are opened one after the other from the end of time where the state is known; with conditions at
+/// both ends there is one window of all elements.
+class Window {
+public:
+    Window() = default;
+    /// A family that knows more of elements than the equations of windows.
+    explicit Window(ElementMonitor& monitor) : monitor_(&monitor) {}
+    Window(const Window&) = delete;
+    Window& operator=(const Window&) = delete;
+    virtual ~Window() = default;
+
+    ElementMonitor& monitor() { return monitor_ != nullptr ? *monitor_ : none_; }
+    const ElementMonitor& monitor() const { return monitor_ != nullptr ? *monitor_ : none_; }
+
+    /// Makes elements first..last - 1 current, with what the window closed last hands on (or with the
+    /// conditions) at its near end. False: there is no state to go on from; the report says why.
+    virtual bool open(int first, int last, SolveReport& report) = 0;
+    /// The equations of the open window.
+    virtual NewtonProblem& equations() = 0;
+    /// False: the guess is not finite. An empty one is the family's own, cheap and good for short windows;
+    /// false: it has none here.
+    virtual bool start_from(const Guess& guess) = 0;
+    /// X of all bodies at an end of an element of the open window; at its near end, where the state is known,
+    /// all of that.
+    virtual State at(int element_end) const = 0;
+    /// Takes the solution at hand into the motion, and its far end as the near end of the next window:
+    /// element by element from the near end, up to one that is not to be believed (a velocity jump or a turn
+    /// between nodes beyond `trust`), or whose end is no state to go on from (the report says why). What was
+    /// refused for its rank may be closed all the same, without asking for that.
+    virtual Closed close(const Trust& trust, SolveReport& report) = 0;
     /// Where the residual is worst, or the load that is not finite.
     virtual WorstResidual worst() const = 0;
     /// Figures that only the family knows: unknowns, pivots, entries of factors.
     virtual void describe(SolveReport& report) const = 0;
-    /// Condition numbers of the open window's matrix at the current point; 0 once `goes_on` says false.
-    virtual void measure_condition(SolveReport& report, const std::function<bool()>& goes_on) = 0;
-    /// What laws of loads did unseen inside of the elements closed so far, in the order of their solution.
-    virtual std::vector<Unseen> take_unseen() { return {}; }
-    /// What was closed so far of a march forwards; null: the family cannot say.
-    virtual const Motion* so_far() { return nullptr; }
     /// Everything closed so far.
     virtual Motion take_motion() = 0;
+
+private:
+    ElementMonitor* monitor_ = nullptr;
+    ElementMonitor none_;
 };
 
 }   // namespace livens

@@ -84,7 +84,7 @@ bool March::solve(int first, int last)
     }
     if (may_divide(first, last, outcome)) {
         const int end = options_.direction > 0 ? last : first;
-        const bool is_singular = window_.rank_loss() == RankLoss::at_end &&
+        const bool is_singular = window_.monitor().rank_loss() == RankLoss::at_end &&
                                  loss_of_failed(mesh_.ends[end], can_move(end)) != RankLoss::none;
         return is_singular ? solve_shorter(first) : divide_element(first, 0.5);
     }
@@ -125,7 +125,7 @@ bool March::divide_element(int element, double share)
     else if (report_.divided++ == 0)
         report_.divided_at = options_.direction > 0 ? start : end;
     mesh_.ends.insert(mesh_.ends.begin() + element + 1, start + share * (end - start));
-    window_.divided(element);
+    window_.monitor().divided(element);
     return solve_parts(element, element + 1, element + 2);
 }
 
@@ -143,7 +143,7 @@ int March::end_at_bend(int first, int last)
         return 1;
     }
     mesh_.ends.insert(mesh_.ends.begin() + last, is_long ? wanted : bends_.found());
-    window_.divided(first);
+    window_.monitor().divided(first);
     return 2;
 }
 
@@ -161,14 +161,14 @@ NewtonReport March::attempt(int first, int last)
     };
     const bool soon = options_.pace != nullptr && troubles_.shortened < most_shortened &&
                       is_tangent_too_costly(first, last, outcome);
-    const bool is_solved = !options_.by_newton && window_.solve(newton_options_, soon, outcome);
+    const bool is_solved = !options_.by_newton && window_.monitor().solve(newton_options_, soon, outcome);
     if (!is_solved) outcome.status = SolveStatus::not_converged;
     if (is_solved) iterations = outcome.iterations;
     if (is_solved) troubles_.shortened = 0;
     const bool is_shortened =
         !is_solved && !options_.by_newton && is_tangent_too_costly(first, last, outcome);
     if (is_shortened) ++troubles_.shortened;
-    if (!is_solved && !is_shortened && window_.predict()) run();
+    if (!is_solved && !is_shortened && window_.start_from({})) run();
     const auto goes_on = [&] {
         return !is_shortened && outcome.status != SolveStatus::converged &&
                outcome.status != SolveStatus::cancelled;
@@ -191,7 +191,7 @@ NewtonReport March::attempt(int first, int last)
 
 bool March::is_tangent_too_costly(int first, int last, const NewtonReport& outcome) const
 {
-    const double cost = window_.tangent_cost();
+    const double cost = window_.monitor().tangent_cost();
     if (options_.pace == nullptr) return cost > too_costly && may_divide(first, last, outcome);
     const double most = troubles_.shortened < most_shortened ? costly : too_costly;
     return cost > most && mesh_.length(first) > 1e-6 * options_.pace->end();   // else Newton says why
@@ -287,7 +287,7 @@ void March::set_cancelled()
 
 bool March::is_stopped_by_watch()
 {
-    const Motion* motion = options_.direction > 0 ? window_.so_far() : nullptr;
+    const Motion* motion = options_.direction > 0 ? window_.monitor().so_far() : nullptr;
     if (motion == nullptr) return false;
     report_.message = options_.watch(*motion, mesh_.end());
     if (report_.message.empty()) return false;
@@ -322,7 +322,7 @@ void March::compare(int first, int last)
 {
     for (int end = first; end <= last; ++end) {
         const double distance =
-            distance_between(window_.positions(end), guess_(mesh_.ends[end]).X, options_.length_of_model);
+            distance_between(window_.at(end).X, guess_(mesh_.ends[end]).X, options_.length_of_model);
         if (!(distance > report_.guess_distance)) continue;
         if (report_.guess_distance <= doubtful_distance) report_.guess_distance_time = mesh_.ends[end];
         report_.guess_distance = distance;
@@ -367,7 +367,7 @@ bool March::explain(int first, int last, const NewtonReport& outcome)
 
 std::string March::locking_in_words() const
 {
-    const Motion* motion = options_.locking ? window_.so_far() : nullptr;
+    const Motion* motion = options_.locking ? window_.monitor().so_far() : nullptr;
     if (motion == nullptr || motion->n_elements() <= 0) return "";
     const int n = motion->n_elements(), start = options_.direction > 0 ? 0 : n,
               now = options_.direction > 0 ? n : element_end_at(motion->mesh, time_);

@@ -26,7 +26,7 @@ public:
     Worst worst() const { return equations_.worst(residual_, row_scale_); }
     long long factor_entries() const { return lu_.factor_entries(); }
     /// Of the matrix as published, and of the scaled one that is factorised, at the current point.
-    void measure_condition(SolveReport& report, const std::function<bool()>& goes_on);
+    void measure_condition(SolveReport& report, const std::function<bool()>& goes_on) override;
 
     int n_unknowns() const override { return equations_.size(); }
     bool residual() override;

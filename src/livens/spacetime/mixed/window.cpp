@@ -117,15 +117,9 @@ bool MixedWindow::open(int first, int last, SolveReport&)
     return true;
 }
 
-bool MixedWindow::near_state(State& state) const
-{
-    if (!ends_.has_state()) return false;
-    state = ends_.is_backwards() ? end_.state : start_.state;
-    return true;
-}
-
 bool MixedWindow::start_from(const Guess& guess)
 {
+    if (!guess) return false;
     take_guess(guess);
     fix_known();
     block_->begin();
@@ -220,25 +214,29 @@ bool MixedWindow::hand_on(SolveReport& report)
     end.P = block_->equations().end_momentum(block_->fields(), !backwards);
     for (std::size_t b = 0; b < end.P.size(); ++b) end.state.V[b] = end.P[b] * coordinates_.inverse_masses[b];
     if (method_.interfaces == Mixed::Interfaces::carry) return true;
-    try {
-        end.state = close_start(*tables_.model, end.state, StartPolicy::project).start;
-    } catch (const InputError& error) {   // about a state that a block made, not one that was given
+    TriedStart tried = try_close_start(*tables_.model, end.state, StartPolicy::project);
+    if (!tried.closed) {
         report.status = SolveStatus::not_converged;
         report.message = "what the block before t = " + to_text(end.state.t, 6) +
-                         " s hands on is no state to go on from: " + error.what();
+                         " s hands on is no state to go on from: " + InputError(tried.why).what();
         return false;
     }
+    end.state = std::move(tried.closed->start);
     for (std::size_t b = 0; b < end.P.size(); ++b)
         end.P[b] = end.state.V[b] * tables_.model->bodies()[b].mass;
     return true;
 }
 
-std::vector<Matrix34> MixedWindow::positions(int element_end) const
+State MixedWindow::at(int element_end) const
 {
+    if (ends_.has_state() && element_end == (ends_.is_backwards() ? last_ : first_))
+        return ends_.is_backwards() ? end_.state : start_.state;
     const int e = element_end - first_;
     std::vector<double> x(static_cast<std::size_t>(coordinates_.size));
     block_->equations().evaluate_X(block_->fields(), e == 0 ? 0 : e - 1, e == 0 ? 0 : 1, x.data());
-    return coordinates_.bodies(x.data());
+    State state;
+    state.X = coordinates_.bodies(x.data());
+    return state;
 }
 
 WorstResidual MixedWindow::worst() const

@@ -28,17 +28,11 @@ public:
 
     bool open(int first, int last, SolveReport& report) override;
     NewtonProblem& equations() override { return *block_; }
-    bool predict() override { return false; }
     bool start_from(const Guess& guess) override;
-    bool near_state(State& state) const override;
+    State at(int element_end) const override;
     Closed close(const Trust& trust, SolveReport& report) override;
-    std::vector<Matrix34> positions(int element_end) const override;
     WorstResidual worst() const override;
     void describe(SolveReport& report) const override;
-    void measure_condition(SolveReport& report, const std::function<bool()>& goes_on) override
-    {
-        block_->measure_condition(report, goes_on);
-    }
     Motion take_motion() override;
 
 private:

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "livens/spacetime/nodal/nodes.h"
+
 namespace livens {
 
 namespace {

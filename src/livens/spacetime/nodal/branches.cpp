@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "livens/spacetime/nodal/nodes.h"
+
 namespace livens {
 
 namespace {

@@ -7,11 +7,12 @@
 #include <vector>
 
 #include "livens/dynamics/start/orientation.h"
-#include "livens/spacetime/nodal/nodes.h"
 #include "livens/spacetime/nodal/stretch.h"
 #include "livens/time/basis.h"
 
 namespace livens {
+
+class Nodes;
 
 /// A mechanism may come near a singular position and turn back, or pass through it: nodes on both sides know
 /// neither. What passes through holds its joints and is rigid there; what jumped over is not (docs/theory.md,

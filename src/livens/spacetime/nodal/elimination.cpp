@@ -5,7 +5,10 @@
 #include <cstddef>
 #include <utility>
 
+#include "livens/dynamics/instant/instant.h"
+#include "livens/solvers/dense.h"
 #include "livens/solvers/patience.h"
+#include "livens/spacetime/nodal/nodes.h"
 
 namespace livens {
 

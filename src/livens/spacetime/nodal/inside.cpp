@@ -6,6 +6,8 @@
 #include <utility>
 
 #include "livens/diagnostics/largest.h"
+#include "livens/dynamics/instant/instant.h"
+#include "livens/spacetime/nodal/nodes.h"
 
 namespace livens {
 
@@ -351,8 +353,7 @@ Unseen InsideLaws::look(const Stretch& stretch, const Nodes& nodes, int e, const
         for (std::size_t i = 0; i < moments.size(); ++i)
             own = std::max(own, std::abs(moments[i]) * law.mobility[i % m] * h_ * h_);
         if (own <= rounding) continue;
-        if (own > largest) found.load = law.load;
-        largest = std::max(largest, own);
+        if (raise_to(largest, own)) found.load = law.load;
         tables_.rates_of(end.X.data(), end.velocity.data(), V.data());
         const LoadArguments at = tables_.arguments(law.load, {end.t}, end.X.data(), V.data(), end.angles);
         const Load& load = tables_.model->loads()[static_cast<std::size_t>(law.load)];

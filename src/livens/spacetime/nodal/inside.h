@@ -6,10 +6,12 @@
 #include <vector>
 
 #include "livens/diagnostics/estimate.h"
-#include "livens/dynamics/instant/instant.h"
 #include "livens/spacetime/nodal/way.h"
 
 namespace livens {
+
+class InstantSystem;
+struct InstantState;
 
 /// Compares, along the polynomials of a solved element, the impulse of every law that need not be smooth with
 /// what the element's quadrature took of it (docs/theory.md, "Looks at laws"). The way is divided where a law

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "livens/dynamics/instant/instant.h"
 #include "livens/dynamics/rows/twist.h"
 #include "livens/solvers/patience.h"
 
@@ -22,8 +23,9 @@ void Nodes::open(const Stretch& stretch)
     pivots_.assign(n, 1.0);
     times_.resize(n);
     for (int A = 0; A < stretch.n_nodes(); ++A) times_[A] = stretch.time(rule_, A);
-    if (known_.size() == n) {
-        known_.front() = known_.back() = nullptr;
+    if (known_.bases.size() == n) {
+        known_.bases.front() = known_.bases.back() = nullptr;
+        known_.rows = nullptr;
         return;
     }
     const auto rank = static_cast<std::size_t>(tables_.rank);
@@ -37,7 +39,8 @@ void Nodes::open(const Stretch& stretch)
     maps_.assign(n * size_, 0.0);
     phi_.scaled.assign(n * rank, 0.0);
     phi_.values.assign(n * rank, 0.0);
-    known_.assign(n, nullptr);
+    known_.bases.assign(n, nullptr);
+    known_.rows = nullptr;
     bases_.clear();
 }
 
@@ -49,7 +52,8 @@ void Nodes::fix(int A, const InstantState& state)
                   set.low.begin() + static_cast<std::ptrdiff_t>(place(A)));
     }
     std::copy(state.maps.begin(), state.maps.end(), maps_.begin() + static_cast<std::ptrdiff_t>(place(A)));
-    known_[A] = &state;
+    known_.bases[A] = &state.basis;
+    if (A == 0) known_.rows = &state.rows;
     pivots_[A] = state.smallest_pivot;
     phi_.has_start = false;
 }
@@ -58,13 +62,14 @@ void Nodes::fix(int A, const InstantState& state)
 void Nodes::begin_constraining()
 {
     if (bases_.empty()) {
-        bases_.resize(known_.size());
+        bases_.resize(known_.bases.size());
         for (ConstraintBasis& basis : bases_) basis.resize(tables_, false);
     }
-    if (phi_.has_start || known_[0] == nullptr) return;
+    if (phi_.has_start || known_.bases[0] == nullptr) return;
     phi_.has_start = true;
-    pivots_[0] = known_[0]->basis.smallest_pivot;
-    for (int c = 0; c < tables_.rank; ++c) phi_.values[c] = tables_.value(known_[0]->rows[c], at(0), X(0));
+    pivots_[0] = known_.bases[0]->smallest_pivot;
+    for (int c = 0; c < tables_.rank; ++c)
+        phi_.values[c] = tables_.value((*known_.rows)[static_cast<std::size_t>(c)], at(0), X(0));
 }
 
 void Nodes::place_at(int A, const double* X)

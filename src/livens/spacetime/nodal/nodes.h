@@ -4,10 +4,12 @@
 
 #include <vector>
 
-#include "livens/dynamics/instant/instant.h"
+#include "livens/dynamics/rows/constraint_basis.h"
 #include "livens/spacetime/nodal/stretch.h"
 
 namespace livens {
+
+struct InstantState;
 
 /// X of every node is the sum X + low of two doubles, so that differences of neighbours keep the digits of a
 /// small motion (docs/theory.md, "Increments").
@@ -29,11 +31,14 @@ public:
     /// X less that of the element's first node, B = 0..p.
     const double* dX(int e, int B) const { return dX_.data() + place(e * (rule_.degree + 1) + B); }
     const double* maps(int A) const { return maps_.data() + place(A); }
-    const ConstraintBasis& basis(int A) const { return known_[A] != nullptr ? known_[A]->basis : bases_[A]; }
+    const ConstraintBasis& basis(int A) const
+    {
+        return known_.bases[A] != nullptr ? *known_.bases[A] : bases_[A];
+    }
     /// The independent rows, alike at all nodes of a march.
     const std::vector<int>& rows() const
     {
-        return known_[0] != nullptr ? known_[0]->rows : tables_.independent;
+        return known_.rows != nullptr ? *known_.rows : tables_.independent;
     }
     /// For taking a node's own basis away.
     ConstraintBasis& own_basis(int A) { return bases_[A]; }
@@ -77,6 +82,11 @@ private:
         std::vector<double> X, low;
     };
 
+    /// States that do not move: at the ends of a stretch.
+    struct Known {
+        std::vector<const ConstraintBasis*> bases;   // by node, null: not known
+        const std::vector<int>* rows = nullptr;      // of the first node
+    };
     struct Violations {
         std::vector<double> scaled, values;   // times the scales of the bases, and as they are
         bool has_start = false;               // those of the first node
@@ -98,7 +108,7 @@ private:
     std::vector<double> times_;
     std::vector<double> dX_, maps_;
     std::vector<ConstraintBasis> bases_;
-    std::vector<const InstantState*> known_;
+    Known known_;
     Violations phi_;
     std::vector<double> work_;
     bool near_ = true;

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "livens/dynamics/instant/instant.h"
+
 namespace livens {
 
 Record::Record(const Tables& tables, const TimeMesh& mesh, const ElementRule& rule)

@@ -5,11 +5,14 @@
 #include <span>
 #include <vector>
 
-#include "livens/dynamics/instant/instant.h"
+#include "livens/dynamics/rows/tables.h"
 #include "livens/multibody/motion.h"
 #include "livens/spacetime/nodal/rule.h"
 
 namespace livens {
+
+class InstantSystem;
+struct InstantState;
 
 /// Fills a motion element by element; elements that were never closed are cut off at the end.
 class Record {

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <string>
 
+#include "livens/dynamics/instant/instant.h"
 #include "livens/solvers/patience.h"
+#include "livens/spacetime/nodal/nodes.h"
 
 namespace livens {
 

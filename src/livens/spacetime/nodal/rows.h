@@ -5,9 +5,14 @@
 #include <string>
 #include <vector>
 
-#include "livens/spacetime/nodal/nodes.h"
+#include "livens/dynamics/rows/tables.h"
+#include "livens/spacetime/nodal/stretch.h"
 
 namespace livens {
+
+class Nodes;
+struct ConstraintBasis;
+struct InstantState;
 
 /// For every active node A
 ///

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "livens/dynamics/instant/instant.h"
 #include "livens/dynamics/rows/twist.h"
+#include "livens/spacetime/nodal/system.h"
 #include "livens/time/basis.h"
 
 namespace livens {
@@ -22,6 +24,13 @@ constexpr double far = 0.5;
 int side_of(double h) { return h > 0 ? 1 : 0; }
 
 }   // namespace
+
+Series::~Series() = default;
+
+long long Series::evaluations() const
+{
+    return coarse_ ? coarse_->evaluations() + coarse_series_->evaluations() : 0;
+}
 
 Series::Series(const Tables& tables, const ElementRule& rule) : tables_(tables)
 {

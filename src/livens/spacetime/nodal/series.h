@@ -5,10 +5,14 @@
 #include <memory>
 #include <vector>
 
+#include "livens/dynamics/rows/tables.h"
 #include "livens/solvers/newton.h"
-#include "livens/spacetime/nodal/system.h"
+#include "livens/spacetime/nodal/stretch.h"
 
 namespace livens {
+
+class LobattoSystem;
+struct InstantState;
 
 /// Twists from the start by their Taylor series. Where that bends by more than about a radian within h, or by
 /// half a length (a stiff spring that vibrates within the element), constant twist is the safer guess.
@@ -30,6 +34,7 @@ private:
 class Series {
 public:
     Series(const Tables& tables, const ElementRule& rule);
+    ~Series();
 
     /// Places all nodes of the open system.
     void place(LobattoSystem& system, const InstantState& start);
@@ -39,10 +44,7 @@ public:
         return factorisations_ + (coarse_series_ ? coarse_series_->factorisations() : 0);
     }
     /// Evaluations of the equations at a node so far.
-    long long evaluations() const
-    {
-        return coarse_ ? coarse_->evaluations() + coarse_series_->evaluations() : 0;
-    }
+    long long evaluations() const;
 
 private:
     void predict(LobattoSystem& system, const InstantState& start) const;

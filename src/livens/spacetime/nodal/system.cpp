@@ -3,8 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+
+#include "livens/dynamics/instant/instant.h"
+#include "livens/spacetime/nodal/elimination.h"
 
 namespace livens {
+
+LobattoSystem::~LobattoSystem() = default;
 
 LobattoSystem::LobattoSystem(const Tables& tables, const ElementRule& rule)
     : tables_(tables), rule_(rule), nodes_(tables, rule_), rows_(tables, rule_), tangent_(tables, rule_)
@@ -139,6 +145,22 @@ NewtonProblem::Rows LobattoSystem::rows() const
     return {rows_.size(), std::max(largest_.impulse, rows_.terms()),
             1e-16 * (largest_k_ * largest_.impulse + rows_.terms() + tangent_.load_rounding()),
             stretch_.n_elements() == 1, correction_};
+}
+
+void LobattoSystem::measure_condition(SolveReport& report, const std::function<bool()>& goes_on)
+{
+    const double f = tables_.freedoms(), p = stretch_.degree;
+    if (f == 0) return;   // nothing moves: there is no matrix
+    if (stretch_.n_elements() * p * (2 * p + 1) * f * f > std::numeric_limits<int>::max()) {
+        report.notes.push_back("the whole matrix is too large for its condition number; use fewer elements");
+        return;
+    }
+    elimination_.reset();
+    const std::unique_ptr<Elimination> elimination = null_space_elimination(
+        tables_, stretch_, stretch_.is_march() ? forward_solver() : whole_solver(SparseBackend::eigen));
+    elimination->begin(stretch_, nodes_);
+    form_tangent(*elimination);
+    elimination->measure_condition(report, goes_on);
 }
 
 }   // namespace livens

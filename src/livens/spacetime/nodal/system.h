@@ -6,15 +6,20 @@
 #include <vector>
 
 #include "livens/solvers/newton.h"
-#include "livens/spacetime/nodal/elimination.h"
+#include "livens/spacetime/nodal/nodes.h"
+#include "livens/spacetime/nodal/rows.h"
+#include "livens/spacetime/nodal/tangent.h"
 
 namespace livens {
+
+class Elimination;
 
 /// Rows and constraints of a stretch of elements, whose unknowns are the twists of its unknown nodes, one
 /// node after the other. Multipliers are eliminated; every move ends with a pull back onto the constraints.
 class LobattoSystem final : public NewtonProblem {
 public:
     LobattoSystem(const Tables& tables, const ElementRule& rule);
+    ~LobattoSystem() override;
 
     /// Makes a stretch current, with the states known at its ends (null: X is unknown there). To be followed
     /// by places for all unknown nodes, and settle().
@@ -30,8 +35,6 @@ public:
     const livens::Rows& balances() const { return rows_; }
     /// Null before settle().
     const Elimination* elimination() const { return elimination_.get(); }
-    /// Its memory; nothing is solved any more until the window is opened as another one.
-    void release_elimination() { elimination_.reset(); }
     /// Room for a twist of all bodies.
     std::vector<double>& scratch() { return work_; }
     /// Forms the tangent at the current point into another sink, for tests.
@@ -54,6 +57,8 @@ public:
     double size_of(std::span<const double> dx) const override;
     double scale() const override;
     NewtonProblem::Rows rows() const override;
+    /// Its factors are lost: nothing is solved any more until the window is opened as another one.
+    void measure_condition(SolveReport& report, const std::function<bool()>& goes_on) override;
 
 private:
     struct Largest {

@@ -6,6 +6,8 @@
 
 #include "livens/dynamics/rows/twist.h"
 #include "livens/solvers/patience.h"
+#include "livens/spacetime/nodal/nodes.h"
+#include "livens/spacetime/nodal/rows.h"
 
 namespace livens {
 

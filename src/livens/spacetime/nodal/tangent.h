@@ -4,9 +4,13 @@
 
 #include <vector>
 
-#include "livens/spacetime/nodal/rows.h"
+#include "livens/dynamics/rows/tables.h"
+#include "livens/spacetime/nodal/stretch.h"
 
 namespace livens {
+
+class Nodes;
+class Rows;
 
 /// Takes a tangent pair by pair of nodes A, B that share element e: open(), then mass() and block() in any
 /// number, then close(). Where two elements share both nodes their blocks add up.

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "livens/spacetime/nodal/nodes.h"
+
 namespace livens {
 
 Way::Way(const Tables& tables, const ElementRule& rule)

@@ -5,10 +5,13 @@
 #include <optional>
 #include <vector>
 
-#include "livens/spacetime/nodal/nodes.h"
+#include "livens/dynamics/rows/tables.h"
+#include "livens/spacetime/nodal/stretch.h"
 #include "livens/time/basis.h"
 
 namespace livens {
+
+class Nodes;
 
 /// X and V = X' of bodies along an element of a window, at any share of its length.
 class Way {

@@ -12,6 +12,7 @@
 #include "livens/multibody/body.h"
 #include "livens/solvers/patience.h"
 #include "livens/spacetime/march/pace.h"
+#include "livens/spacetime/nodal/elimination.h"
 
 namespace livens {
 
@@ -25,9 +26,9 @@ constexpr double least_for_reactions = 1e-4;
 
 LobattoWindow::LobattoWindow(const Tables& tables, const TimeMesh& mesh, const Ends& ends,
                              const ElementRule& rule)
-    : tables_(tables), ends_(ends), system_(tables, rule), series_(tables, system_.rule()),
-      kernel_(tables, system_.rule()), instant_(tables, kernel_.serves() && ends.has_state()),
-      record_(tables, mesh, system_.rule()),
+    : Window(static_cast<ElementMonitor&>(*this)), tables_(tables), ends_(ends), system_(tables, rule),
+      series_(tables, system_.rule()), kernel_(tables, system_.rule()),
+      instant_(tables, kernel_.serves() && ends.has_state()), record_(tables, mesh, system_.rule()),
       front_(tables), breaks_{tables.model->load_breaks(), Bends(tables, rule), {}, {}}, rank_{Branches(
                                                                                              tables,
                                                                                              system_.rule())}
@@ -161,7 +162,7 @@ void LobattoWindow::begin_newton()
     if (stretch_.X_first) instant_.add_basis(front_.here());
 }
 
-bool LobattoWindow::predict()
+bool LobattoWindow::start_by_series()
 {
     if (!stretch_.is_march() || stretch_.n_elements() > 1) return false;
     begin_newton();
@@ -171,6 +172,7 @@ bool LobattoWindow::predict()
 
 bool LobattoWindow::start_from(const Guess& guess)
 {
+    if (!guess) return start_by_series();
     begin_newton();
     const ElementRule& rule = system_.rule();
     std::vector<double> X(12 * tables_.bodies.size());
@@ -190,21 +192,27 @@ bool LobattoWindow::start_from(const Guess& guess)
     return system_.settle();
 }
 
-bool LobattoWindow::near_state(State& state) const
+State LobattoWindow::at(int element_end) const
 {
-    if (!front_.is_ready) return false;
+    State state;
+    state.X.resize(tables_.bodies.size());
+    const int end = ends_.is_backwards() ? last_ - element_end : element_end - first_;
+    if (end > 0 || !front_.is_ready) {
+        const double* X = system_.nodes().X(end * stretch_.degree);
+        for (std::size_t b = 0; b < state.X.size(); ++b) std::copy_n(X + 12 * b, 12, state.X[b].a);
+        return state;
+    }
     const InstantState& here = front_.here();
     std::vector<double> V(here.X.size());
     tables_.rates_of(here.X.data(), here.velocity.data(), V.data());
     state.t = here.t;
     state.angles = here.angles;
-    state.X.resize(tables_.bodies.size());
     state.V.resize(tables_.bodies.size());
     for (std::size_t b = 0; b < state.X.size(); ++b) {
         std::copy_n(here.X.data() + 12 * b, 12, state.X[b].a);
         std::copy_n(V.data() + 12 * b, 12, state.V[b].a);
     }
-    return true;
+    return state;
 }
 
 /// Both sides of an instant where loads jump, else one for both.
@@ -354,15 +362,6 @@ void LobattoWindow::record_element(int e)
         }
         record_.multipliers(element, place, work_.lambda.data());
     }
-}
-
-std::vector<Matrix34> LobattoWindow::positions(int element_end) const
-{
-    const int e = ends_.is_backwards() ? last_ - element_end : element_end - first_;
-    std::vector<Matrix34> X(tables_.bodies.size());
-    for (std::size_t b = 0; b < X.size(); ++b)
-        std::copy_n(system_.nodes().X(e * system_.rule().degree) + 12 * b, 12, X[b].a);
-    return X;
 }
 
 }   // namespace livens

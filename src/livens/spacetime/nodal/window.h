@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "livens/dynamics/instant/instant.h"
 #include "livens/spacetime/march/ends.h"
 #include "livens/spacetime/march/window.h"
 #include "livens/spacetime/nodal/bends.h"
@@ -12,12 +13,13 @@
 #include "livens/spacetime/nodal/kernel/march_kernel.h"
 #include "livens/spacetime/nodal/record.h"
 #include "livens/spacetime/nodal/series.h"
+#include "livens/spacetime/nodal/system.h"
 
 namespace livens {
 
 /// Windows from the end where the state is known, or one window of all elements; radau: single elements from
 /// the state at the start.
-class LobattoWindow final : public Window {
+class LobattoWindow final : public Window, private ElementMonitor {
 public:
     /// References must outlive the window.
     LobattoWindow(const Tables& tables, const TimeMesh& mesh, const Ends& ends, const ElementRule& rule);
@@ -30,31 +32,29 @@ public:
     /// motion. What was learnt of the last element stays.
     void restart();
     bool open(int first, int last, SolveReport& report) override;
+    NewtonProblem& equations() override { return system_; }
+    bool start_from(const Guess& guess) override;
+    State at(int element_end) const override;
+    Closed close(const Trust& trust, SolveReport& report) override;
+    WorstResidual worst() const override;
+    void describe(SolveReport& report) const override;
+    Motion take_motion() override { return record_.take(ends_.start); }
+
+private:
     bool solve(const NewtonOptions& options, bool soon, NewtonReport& report) override;
     double tangent_cost() const override;
-    NewtonProblem& equations() override { return system_; }
-    bool predict() override;
-    bool start_from(const Guess& guess) override;
-    bool near_state(State& state) const override;
-    Closed close(const Trust& trust, SolveReport& report) override;
     /// Nodes that are far from their constraints say nothing of it.
     RankLoss rank_loss() const override { return system_.nodes().is_near() ? rank_loss(0) : RankLoss::none; }
     double bend(double until) override
     {
-        return breaks_.bends.empty() ? Window::bend(until)
+        return breaks_.bends.empty() ? ElementMonitor::bend(until)
                                      : breaks_.bends.first(stretch_, system_.nodes(), until);
     }
     std::string jumping_load() const override { return breaks_.bends.jumping_load(); }
     void divided(int element) override { record_.divided(element); }
-    std::vector<Matrix34> positions(int element_end) const override;
-    WorstResidual worst() const override;
-    void describe(SolveReport& report) const override;
-    void measure_condition(SolveReport& report, const std::function<bool()>& goes_on) override;
     std::vector<Unseen> take_unseen() override { return std::move(breaks_.unseen); }
     const Motion* so_far() override { return &record_.so_far(); }
-    Motion take_motion() override { return record_.take(ends_.start); }
 
-private:
     /// What is passed on from element to element.
     struct Front {
         explicit Front(const Tables& tables)
@@ -92,6 +92,7 @@ private:
     void set_momenta(const State& given, std::vector<double>& momenta) const;
     bool set_state(InstantState& state, const State& given, SolveReport& report);
     bool begin_front(SolveReport& report);
+    bool start_by_series();
     bool find_first_state(SolveReport& report);
     void begin_newton();
     void accelerate(InstantState& state);

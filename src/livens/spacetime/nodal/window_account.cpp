@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "livens/diagnostics/largest.h"
+#include "livens/spacetime/nodal/elimination.h"
 #include "livens/spacetime/nodal/window.h"
 
 namespace livens {
@@ -116,22 +117,6 @@ void LobattoWindow::describe(SolveReport& report) const
     report.guess_factorisations = series_.factorisations();
     report.evaluations = system_.evaluations() + series_.evaluations() + kernel_.evaluations();
     if (system_.elimination() != nullptr) system_.elimination()->describe(report);
-}
-
-void LobattoWindow::measure_condition(SolveReport& report, const std::function<bool()>& goes_on)
-{
-    const double f = tables_.freedoms(), p = stretch_.degree;
-    if (f == 0) return;   // nothing moves: there is no matrix
-    if (stretch_.n_elements() * p * (2 * p + 1) * f * f > std::numeric_limits<int>::max()) {
-        report.notes.push_back("the whole matrix is too large for its condition number; use fewer elements");
-        return;
-    }
-    system_.release_elimination();
-    const auto elimination = null_space_elimination(
-        tables_, stretch_, stretch_.is_march() ? forward_solver() : whole_solver(SparseBackend::eigen));
-    elimination->begin(stretch_, system_.nodes());
-    system_.form_tangent(*elimination);
-    elimination->measure_condition(report, goes_on);
 }
 
 }   // namespace livens

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "livens/base/text.h"
+#include "livens/spacetime/nodal/elimination.h"
 #include "livens/spacetime/nodal/window.h"
 
 namespace livens {

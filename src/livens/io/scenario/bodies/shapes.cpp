@@ -7,6 +7,7 @@
 #include "livens/base/text.h"
 #include "livens/io/scenario/bodies/density_fields.h"
 #include "livens/io/scenario/bodies/primitives.h"
+#include "livens/io/scenario/builder.h"
 #include "livens/io/scenario/text/units.h"
 
 namespace livens {

@@ -2,7 +2,8 @@
 // `shape` of a body: primitives, meshes and unions of both.
 #pragma once
 
-#include "livens/io/scenario/builder.h"
+#include "livens/io/scenario/bodies/meshes.h"
+#include "livens/io/scenario/schema/section.h"
 #include "livens/multibody/solid.h"
 
 namespace livens {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // [[load]] type = "bushing".
+#include "livens/io/scenario/builder.h"
 #include "livens/io/scenario/loads/load_makers.h"
 
 namespace livens {

@@ -2,6 +2,7 @@
 // What the keys of a [[load]] have to be together.
 #include <string>
 
+#include "livens/io/scenario/builder.h"
 #include "livens/io/scenario/loads/load_makers.h"
 
 namespace livens {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "livens/io/scenario/loads/load_kinds.h"
 
+#include "livens/io/scenario/builder.h"
 #include "livens/io/scenario/loads/load_makers.h"
 
 namespace livens {

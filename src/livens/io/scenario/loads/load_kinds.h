@@ -6,9 +6,12 @@
 #include <string>
 #include <vector>
 
-#include "livens/io/scenario/builder.h"
+#include "livens/io/scenario/schema/section.h"
+#include "livens/multibody/loads/load_laws.h"
 
 namespace livens {
+
+class Builder;
 
 /// When a load acts.
 struct Interval {

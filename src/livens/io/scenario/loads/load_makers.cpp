@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "livens/base/text.h"
+#include "livens/io/scenario/builder.h"
 #include "livens/multibody/loads/surface_loads.h"
 #include "livens/time/time_laws.h"
 

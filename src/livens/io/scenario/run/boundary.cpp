@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // [start], [end] and [body.end]: what is known at the ends of time.
 #include "livens/base/text.h"
+#include "livens/dynamics/start/prepared.h"
 #include "livens/dynamics/start/singular.h"
 #include "livens/io/scenario/builder.h"
 

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "livens/dynamics/instant/instant.h"
+
 namespace livens {
 
 namespace {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "livens/base/elementary.h"
+#include "livens/dynamics/instant/instant.h"
 #include "livens/dynamics/rows/twist.h"
 #include "livens/spacetime/nodal/kernel/march_kernel.h"
 

@@ -5,8 +5,10 @@
 #include <cmath>
 
 #include "livens/base/elementary.h"
+#include "livens/dynamics/instant/instant.h"
 #include "livens/dynamics/rows/twist.h"
 #include "livens/spacetime/instructions.h"
+#include "livens/spacetime/nodal/system.h"
 
 namespace livens {
 

@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "livens/dynamics/lanes/joint_factor.h"
 #include "livens/solvers/newton.h"
 #include "livens/spacetime/nodal/kernel/acceleration.h"
 #include "livens/spacetime/nodal/kernel/extrapolation.h"

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// From a scenario to a run that can be written: what programs that read scenarios do between both.
+#pragma once
+
+#include <functional>
+#include <memory>
+
+#include "livens/io/results.h"
+#include "livens/io/scenario.h"
+#include "livens/spacetime/solve.h"
+
+namespace [[gnu::visibility("default")]] livens {
+
+/// A motion that is not judged yet.
+struct SolvedScenario {
+    Solution solution;
+    Problem problem;
+    double solve_seconds = 0;   ///< without what the estimate of the error took
+};
+
+/// solve() and estimate() of a scenario, with its options or others (whose `judge` does not count). Throws
+/// what solve() throws.
+SolvedScenario solve_scenario(const Scenario& scenario, SolveOptions options,
+                              const std::shared_ptr<Prepared>& prepared);
+
+/// judge(), and the run with all that the scenario says of it. `goes_on`: see judge().
+Run judged_run(const Scenario& scenario, SolvedScenario&& solved, const std::function<bool()>& goes_on);
+
+}   // namespace livens
