@@ -17,7 +17,6 @@
 
 #include "livens/base/error.h"
 #include "livens/solvers/sparse.h"
-#include "sanitized.h"
 #include "sparse_matrices.h"
 
 namespace livens {
@@ -332,7 +331,15 @@ TEST_P(EverySparseLU, SaysWhatItIsAndHowMuchItStores)
     EXPECT_GT(lu.factor_entries(), A.n_entries());
 }
 
-// Where address space can be bounded. Not under a sanitizer, which needs it for itself.
+// Where address space can be bounded. Not under a sanitizer, which needs it for itself: GCC says that it is
+// there by a macro, Clang by a feature.
+#if defined(__SANITIZE_ADDRESS__)
+#define LIVENS_SANITIZED 1
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer)
+#define LIVENS_SANITIZED 1
+#endif
+#endif
 #if defined(__linux__) && !defined(LIVENS_SANITIZED)
 /// Ends the process: 0 if `n_bytes` more than it has now were enough, 1 if std::bad_alloc said that they were
 /// not.
