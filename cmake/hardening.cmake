@@ -16,11 +16,8 @@ function(livens_harden target)
     if("STACKS" IN_LIST ARGN)
         list(APPEND flags -fstack-protector-strong)
         # An index beyond a vector ends the program instead of reading on. Of functions that are not inlined the linker
-        # may keep the checked ones for the engine too: instructions of solve() grow by less than a thousandth. The wheel
-        # has no room for them.
-        if(NOT LIVENS_BUILD_PYTHON)
-            target_compile_definitions(${target} PRIVATE _GLIBCXX_ASSERTIONS)
-        endif()
+        # may keep the checked ones for the engine too: instructions of solve() grow by less than a thousandth.
+        target_compile_definitions(${target} PRIVATE _GLIBCXX_ASSERTIONS)
     endif()
     foreach(flag ${flags})
         string(MAKE_C_IDENTIFIER "LIVENS_HAS${flag}" has)

@@ -182,12 +182,21 @@ function(livens_test name)
     endforeach()
 endfunction()
 
-# Every header compiles alone, and twice.
+# Every header compiles alone, and twice. Not again those that a source includes first: it proves them alone in every build
+# without precompiled headers, and twice, as others include them, too.
 function(livens_check_headers)
+    file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/livens/*.cpp)
+    set(proved)
+    foreach(source ${sources})
+        file(STRINGS ${source} first REGEX "^[^/]" LIMIT_COUNT 1)   # after comments
+        if(first MATCHES "^#include \"(livens/.*)\"")
+            list(APPEND proved ${CMAKE_MATCH_1})
+        endif()
+    endforeach()
     file(GLOB_RECURSE headers CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}/src ${PROJECT_SOURCE_DIR}/src/livens/*.h)
     set(sources)
     foreach(header ${headers})
-        if(header MATCHES "livens/io/" AND NOT LIVENS_BUILD_PROGRAM)
+        if(header IN_LIST proved OR (header MATCHES "livens/io/" AND NOT LIVENS_BUILD_PROGRAM))
             continue()
         endif()
         string(MAKE_C_IDENTIFIER ${header} id)

@@ -13,7 +13,7 @@ set_tests_properties(report.page_is_what_its_sources_make PROPERTIES LABELS fast
 set(report_tests report.page_is_what_its_sources_make)
 if(LIVENS_BUILD_PROGRAM AND LIVENS_SLOW_TESTS)
     add_test(NAME report.in_a_browser COMMAND ${run_node} ${PROJECT_SOURCE_DIR}/report/test/browser.mjs)
-    set_tests_properties(report.in_a_browser PROPERTIES LABELS slow TIMEOUT 900 COST 100
+    set_tests_properties(report.in_a_browser PROPERTIES LABELS "slow;browser" TIMEOUT 900 COST 100
                          ENVIRONMENT "LIVENS_PROGRAM=$<TARGET_FILE:livens>")
     list(APPEND report_tests report.in_a_browser)
 endif()

@@ -12,6 +12,8 @@ struct Order {
     double tolerance;
 };
 
+void PrintTo(const Order& order, std::ostream* out) { *out << order.name; }
+
 class MixedOrders : public ::testing::TestWithParam<Order> {};
 
 /// Slope of the straight line through (log n, -log error) of errors between 1e-3 and 1e-9, by least squares.

@@ -52,7 +52,7 @@ livens() {   # a server serves until it is told to stop: here for a moment
     if [ "$1" = view ]; then timeout 3 livens "$@" --address > view.log 2>&1 || [ $? = 124 ]; else command livens "$@"; fi
 }
 scripts/demo() { LIVENS=$(command -v livens) command scripts/demo "$@" > demo.log 2>&1 || { cat demo.log; return 1; }; }   # builds nothing
-scripts/test() { [ -x scripts/test ] && [ $# = 0 ]; }   # what runs this
+scripts/test() { local option; for option; do grep -q "^ *$option) " scripts/test || return 1; done; }   # what runs this
 scripts/check() { local room; for room; do grep -q "^rooms=.*[( ]$room[ )]" scripts/check || return 1; done; }   # builds: here only whether there are such rooms
 scripts/setup() { [ -x scripts/setup ] && grep -q "^    ${1:-test}) " scripts/setup; }
 scripts/paper() { LIVENS=$(command -v livens) command scripts/paper --list "$@" > list.log; }   # minutes: here only whether there is what is named
@@ -315,6 +315,7 @@ CONTROLS = {
     "no such preset": "```sh\ncmake --preset fast\n```\n",
     "no such figure": "```sh\nscripts/paper fig99\n```\n",
     "no such room": "```sh\nscripts/check time kitchen\n```\n",
+    "no such option of the tests": "```sh\nscripts/test --everything\n```\n",
     "no such option of peers": "```sh\nscripts/peers --slow\n```\n",
     "an exception": "```python\nassert 1 == 2\n```\n",
     "C++ that is wrong": "```cpp\nint main() { return nothing; }\n```\n",

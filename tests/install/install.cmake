@@ -19,7 +19,7 @@ add_test(NAME install.shares_no_eigen_symbols
 set_tests_properties(install.shares_no_eigen_symbols PROPERTIES
                      FIXTURES_REQUIRED livens_installed LABELS slow TIMEOUT 60)
 
-function(livens_install_test name flags prefix installed)
+function(livens_install_test name flags prefix installed labels)
     add_test(NAME install.free_box_${name}
              COMMAND ${CMAKE_COMMAND} -DPROJECT=${CMAKE_CURRENT_FUNCTION_LIST_DIR}/outside
                      -DBUILD=${CMAKE_CURRENT_BINARY_DIR}/install/${name} -DPREFIX=${prefix}
@@ -27,7 +27,7 @@ function(livens_install_test name flags prefix installed)
                      "-DFLAGS=${CMAKE_CXX_FLAGS} ${flags}"
                      -P ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/run_outside.cmake)
     set_tests_properties(install.free_box_${name} PROPERTIES
-                         FIXTURES_REQUIRED ${installed} LABELS slow TIMEOUT 300)
+                         FIXTURES_REQUIRED ${installed} LABELS "${labels}" TIMEOUT 300)
 endfunction()
 
 # A flag is tried only where the machine can run its code.
@@ -35,13 +35,13 @@ function(livens_install_test_if_supported name flags feature)
     set(source "int main() { return __builtin_cpu_supports(\"${feature}\") ? 0 : 1; }")
     check_cxx_source_runs("${source}" LIVENS_HAS_${feature})
     if(LIVENS_HAS_${feature})
-        livens_install_test(${name} "${flags}" ${livens_install_prefix} livens_installed)
+        livens_install_test(${name} "${flags}" ${livens_install_prefix} livens_installed "slow;installs")
     endif()
 endfunction()
 
 if(LIVENS_SLOW_TESTS)
-    livens_install_test(default "" ${livens_install_prefix} livens_installed)
-    livens_install_test(native "-march=native" ${livens_install_prefix} livens_installed)
+    livens_install_test(default "" ${livens_install_prefix} livens_installed slow)
+    livens_install_test(native "-march=native" ${livens_install_prefix} livens_installed "slow;installs")
     livens_install_test_if_supported(mavx "-mavx" avx)
     livens_install_test_if_supported(x86_64_v3 "-march=x86-64-v3" avx2)
 endif()
@@ -62,10 +62,10 @@ if(LIVENS_SLOW_TESTS AND LIVENS_BUILD_PROGRAM)
                      -DWARNINGS_AS_ERRORS=${LIVENS_WARNINGS_AS_ERRORS}
                      -P ${CMAKE_CURRENT_LIST_DIR}/install_shared.cmake)
     set_tests_properties(install.shared_libraries PROPERTIES
-                         FIXTURES_SETUP livens_installed_shared LABELS slow TIMEOUT 3600)
+                         FIXTURES_SETUP livens_installed_shared LABELS "slow;shared" TIMEOUT 3600)
     add_test(NAME install.shared_libraries_export_what_is_declared
              COMMAND ${check_binaries} exported ${shared}/prefix)
     set_tests_properties(install.shared_libraries_export_what_is_declared PROPERTIES
-                         FIXTURES_REQUIRED livens_installed_shared LABELS slow TIMEOUT 60 SKIP_RETURN_CODE 77)
-    livens_install_test(shared "" ${shared}/prefix livens_installed_shared)
+                         FIXTURES_REQUIRED livens_installed_shared LABELS "slow;shared" TIMEOUT 60 SKIP_RETURN_CODE 77)
+    livens_install_test(shared "" ${shared}/prefix livens_installed_shared "slow;shared")
 endif()

@@ -11,6 +11,10 @@
 #
 # A mutant is linked from its own object, the test program's objects and the libraries; the linker takes the
 # faulty object and leaves the good one in the archive. Only the faulty source is compiled again.
+#
+# LIVENS_MUTANTS says which of them are built: all, none, or names. scripts/needs names those that a change concerns.
+set(LIVENS_MUTANTS "all" CACHE STRING "Mutants to build: all, none, or a list of names")
+set_property(GLOBAL PROPERTY livens_mutants "")
 
 function(livens_mutant)
     # PARSE_ARGV keeps semicolons in the texts.
@@ -20,6 +24,10 @@ function(livens_mutant)
             message(FATAL_ERROR "mutant '${arg_NAME}': ${required} is missing")
         endif()
     endforeach()
+    set_property(GLOBAL APPEND PROPERTY livens_mutants ${arg_NAME})
+    if(NOT LIVENS_MUTANTS STREQUAL "all" AND NOT arg_NAME IN_LIST LIVENS_MUTANTS)
+        return()
+    endif()
     set(original ${PROJECT_SOURCE_DIR}/src/livens/${arg_FILE})
     if(arg_FILE MATCHES "^apps/")
         set(original ${PROJECT_SOURCE_DIR}/${arg_FILE})
@@ -95,4 +103,10 @@ endfunction()
 
 if(LIVENS_SLOW_TESTS AND NOT BUILD_SHARED_LIBS)   # which would keep their insides to themselves
     include(${CMAKE_CURRENT_LIST_DIR}/faults.cmake)
+    get_property(known GLOBAL PROPERTY livens_mutants)
+    set(unknown ${LIVENS_MUTANTS})
+    list(REMOVE_ITEM unknown all none ${known})
+    if(unknown)
+        message(FATAL_ERROR "LIVENS_MUTANTS: no such mutants: ${unknown}")
+    endif()
 endif()

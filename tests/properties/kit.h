@@ -11,6 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "sanitized.h"
+
 namespace livens {
 
 /// Empty if nothing is wrong.
@@ -33,17 +35,7 @@ inline std::string test_name(std::string what)
 
 /// Of `states`, what a study goes through: a tenth under sanitizers, where the code is walked through but the
 /// figures are those of every other build.
-constexpr int of_states(int states)
-{
-#if defined(__SANITIZE_ADDRESS__)
-    return states / 10;
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer)
-    return states / 10;
-#endif
-#endif
-    return states;
-}
+constexpr int of_states(int states) { return is_sanitized ? states / 10 : states; }
 
 /// Every source of a folder, `apart` from what they share, is called by the type of a case; `fewest` of them.
 template <typename Cases>

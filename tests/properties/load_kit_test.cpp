@@ -6,6 +6,9 @@
 #include "properties/load_kit.h"
 
 namespace livens {
+
+static void PrintTo(const LoadCase& load, std::ostream* out) { *out << load.type << ", " << load.what; }
+
 namespace {
 
 class EveryLoad : public testing::TestWithParam<LoadCase> {};

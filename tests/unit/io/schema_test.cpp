@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "livens/io/scenario/text/units.h"
+#include "sanitized.h"
 #include "unit/io/scenario_text.h"
 
 namespace livens {
@@ -133,6 +134,15 @@ std::vector<Occurrence> occurrences()
     return all;
 }
 
+/// Those that are spoilt: a quarter under sanitizers, which walk through the same code for every key.
+std::vector<Occurrence> spoilt()
+{
+    std::vector<Occurrence> some;
+    const std::vector<Occurrence> all = occurrences();
+    for (std::size_t i = 0; i < all.size(); i += is_sanitized ? 4 : 1) some.push_back(all[i]);
+    return some;
+}
+
 void expect_at(const std::string& text, std::string_view code, std::size_t line, int column)
 {
     const ScenarioResult result = read(text);
@@ -163,7 +173,7 @@ TEST(Schema, DocumentsAreValidAndUseEveryKey)
 
 TEST(Schema, EveryMisspelledKeyIsUnknownAndTheRightOneProposed)
 {
-    for (const Occurrence& o : occurrences()) {
+    for (const Occurrence& o : spoilt()) {
         const std::string name(o.key->name), line = o.lines[o.line];
         std::string wrong = name;
         wrong.insert(name.size() - 1, "q");
@@ -180,7 +190,7 @@ TEST(Schema, EveryMisspelledKeyIsUnknownAndTheRightOneProposed)
 
 TEST(Schema, EveryKeyGivenTwiceIsAnErrorAtTheSecond)
 {
-    for (const Occurrence& o : occurrences()) {
+    for (const Occurrence& o : spoilt()) {
         SCOPED_TRACE(o.key->name);
         expect_at(o.with_line(o.lines[o.line] + "\n" + o.lines[o.line]), "duplicate-key", o.line + 1, 1);
     }
@@ -188,7 +198,7 @@ TEST(Schema, EveryKeyGivenTwiceIsAnErrorAtTheSecond)
 
 TEST(Schema, LONG_EveryValueOfAnotherTypeIsAnErrorAtTheValue)
 {
-    for (const Occurrence& o : occurrences()) {
+    for (const Occurrence& o : spoilt()) {
         SCOPED_TRACE(o.key->name);
         const bool is_text = o.key->type.form == Form::text || o.key->type == types::choice;
         for (const char* wrong : {"1979-05-27", "{ x = 1 }", "[[[1]]]", is_text ? "1.5" : "\"\"", "[]"}) {
@@ -217,7 +227,7 @@ TEST(Schema, EveryTableGivenAsANumberIsAnError)
 
 TEST(Schema, EveryNeededKeyIsMissedAtTheHeaderOfItsTable)
 {
-    for (const Occurrence& o : occurrences()) {
+    for (const Occurrence& o : spoilt()) {
         if (!o.key->required) continue;
         SCOPED_TRACE(o.key->name);
         expect_at(o.with_line(""), "missing-key", o.header, 1);
@@ -229,7 +239,7 @@ TEST(Schema, EveryNeededKeyIsMissedAtTheHeaderOfItsTable)
 
 TEST(Schema, EveryRangeIsKept)
 {
-    for (const Occurrence& o : occurrences()) {
+    for (const Occurrence& o : spoilt()) {
         const Range& range = o.key->range;
         if (!range.is_limited()) continue;
         SCOPED_TRACE(o.key->name);
@@ -259,7 +269,7 @@ TEST(Schema, EveryRangeIsKept)
 
 TEST(Schema, EveryChoiceRefusesOtherWords)
 {
-    for (const Occurrence& o : occurrences()) {
+    for (const Occurrence& o : spoilt()) {
         if (o.key->type != types::choice) continue;
         SCOPED_TRACE(o.key->name);
         expect_at(o.with_value("\"nonsense\""), "unknown-choice", o.line, o.value_column());
@@ -268,7 +278,7 @@ TEST(Schema, EveryChoiceRefusesOtherWords)
 
 TEST(Schema, EveryNumberMustBeFinite)
 {
-    for (const Occurrence& o : occurrences()) {
+    for (const Occurrence& o : spoilt()) {
         const std::string value = o.value();
         const bool is_number = o.key->type == types::number || o.key->type == types::number_or_list ||
                                o.key->type == types::number_or_table;
@@ -288,7 +298,7 @@ TEST(Schema, EveryNumberMustBeFinite)
 
 TEST(Schema, EveryQuantityChecksTheDimensionOfItsUnit)
 {
-    for (const Occurrence& o : occurrences()) {
+    for (const Occurrence& o : spoilt()) {
         if (o.key->unit.empty()) continue;
         SCOPED_TRACE(o.key->name);
         const std::string value = o.value();

@@ -23,6 +23,8 @@ struct Case {
     std::vector<BlockStructure> structures;
 };
 
+void PrintTo(const Case& c, std::ostream* out) { *out << c.solver; }
+
 std::vector<BlockStructure> forward_structures()
 {
     std::vector<BlockStructure> found = {{},

@@ -173,4 +173,6 @@ inline const char* name_of(SparseBackend backend)
     return backend == SparseBackend::eigen ? "Eigen" : "Umfpack";
 }
 
+inline void PrintTo(SparseBackend backend, std::ostream* out) { *out << name_of(backend); }
+
 }   // namespace livens

@@ -28,6 +28,8 @@ struct Case {
     Given given;
 };
 
+void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
+
 const Given all_conditions[] = {
     {true, true, false, false}, {false, false, true, true}, {true, false, true, false},
     {true, false, false, true}, {false, true, true, false}, {false, true, false, true},

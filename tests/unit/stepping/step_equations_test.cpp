@@ -7,6 +7,15 @@
 
 #include "stepping_models.h"
 
+namespace livens {
+
+static void PrintTo(SteppingRule rule, std::ostream* out)
+{
+    *out << (rule == SteppingRule::midpoint ? "midpoint" : "endpoint");
+}
+
+}   // namespace livens
+
 namespace {
 
 using namespace livens;
