@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The same of SparseLU's factors while they grow: Eigen's own frees the old array before it asks for the new
-// one, and where it gets none it frees it once more: a crash where std::bad_alloc is due. It also copies
-// twice.
+// The same of SparseLU, in its factors while they grow: Eigen's own frees the old array before it asks for
+// the new one, and where it gets none it frees it once more: a crash where std::bad_alloc is due. It also
+// copies twice.
 #pragma once
 
 #include <algorithm>
 #include <cstdint>
+#include <cstdlib>
 #include <new>
 
 namespace Eigen::internal {
@@ -48,3 +49,17 @@ LIVENS_EIGEN_EXPAND(std::int64_t, std::int64_t)
 #undef LIVENS_EIGEN_EXPAND
 
 }   // namespace Eigen::internal
+
+namespace Eigen {
+
+/// Where columns are exchanged. Eigen's does not look whether it got what it asked for.
+template <>
+inline void SparseMatrix<double, ColMajor, int>::uncompress()
+{
+    if (m_innerNonZeros != nullptr) return;
+    m_innerNonZeros = static_cast<int*>(std::malloc(static_cast<std::size_t>(m_outerSize) * sizeof(int)));
+    if (m_innerNonZeros == nullptr) internal::throw_std_bad_alloc();
+    for (Index i = 0; i < m_outerSize; ++i) m_innerNonZeros[i] = m_outerIndex[i + 1] - m_outerIndex[i];
+}
+
+}   // namespace Eigen

@@ -193,6 +193,14 @@ livens_mutant(NAME reflections_without_choice
               TESTS_OF conservation
               MUST_FAIL Lobatto.KeepsPlanarMotionsPlanarByNewtonToo)
 
+# What a factorisation came to before it met a pivot that is not positive taken for the whole.
+livens_mutant(NAME cholesky_of_any_matrix
+              FILE solvers/factors.cpp
+              OLD [[if (factor.info() != Eigen::Success) return all_nan(A.rows, A.cols);]]
+              NEW [[if (factor.info() == Eigen::InvalidInput) return all_nan(A.rows, A.cols);]]
+              TESTS_OF unit_solvers
+              MUST_FAIL CholeskyFactor.WantsAPositiveMatrix)
+
 # --- Radau points
 
 # The momentum at the start shared out by the weights: right for degree 1 only.

@@ -54,8 +54,6 @@ DenseMatrix columns_of_Q(const QR& qr, Index first, Index n)
 struct PivotedQR::Factors {
     int rows, cols;
     std::optional<Eigen::ColPivHouseholderQR<MatrixXd>> qr;   // not of what is empty or not finite
-
-    double missing() const { return rows > 0 && cols > 0 ? nan : 0; }
 };
 
 PivotedQR::PivotedQR(DenseView A) : factors_(std::make_unique<Factors>(A.rows, A.cols, std::nullopt))
@@ -92,8 +90,9 @@ DenseMatrix PivotedQR::basis(int first, int n) const
 std::vector<double> PivotedQR::solve(std::span<const double> b) const
 {
     assert(static_cast<int>(b.size()) == factors_->rows);
-    if (!factors_->qr || !livens::all_finite(b))
-        return std::vector<double>(static_cast<std::size_t>(factors_->cols), factors_->missing());
+    const bool is_zero = n_pivots() == 0 || pivot(0) == 0;
+    if (is_zero || !factors_->qr || !livens::all_finite(b))
+        return std::vector<double>(static_cast<std::size_t>(factors_->cols), is_zero ? 0 : nan);
     return values_of(factors_->qr->solve(VectorXd(seen(b))));
 }
 
