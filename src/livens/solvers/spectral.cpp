@@ -7,6 +7,8 @@
 
 #include <Eigen/Dense>
 
+#include "livens/solvers/factors.h"
+
 namespace livens {
 
 namespace {
@@ -66,16 +68,17 @@ SymmetricSpectrum generalised(DenseView K, DenseView M, bool with_vectors)
 {
     assert(K.rows == K.cols && M.rows == K.rows && M.cols == K.cols);
     if (K.rows == 0) return {};
-    if (!all_finite(K.entries()) || !all_finite(M.entries())) return not_found(K.rows, with_vectors);
-    const Eigen::LLT<MatrixXd> factor(seen(M));
-    if (factor.info() != Eigen::Success) return not_found(K.rows, with_vectors);
+    const DenseMatrix factor = cholesky(M);
+    if (!all_finite(K.entries()) || !all_finite(factor.a)) return not_found(K.rows, with_vectors);
+    const auto L = seen(factor).triangularView<Eigen::Lower>();
+    const auto U = seen(factor).adjoint().triangularView<Eigen::Upper>();
     MatrixXd C = seen(K).selfadjointView<Eigen::Lower>();
-    factor.matrixL().solveInPlace<Eigen::OnTheLeft>(C);
-    factor.matrixU().solveInPlace<Eigen::OnTheRight>(C);
+    L.solveInPlace<Eigen::OnTheLeft>(C);
+    U.solveInPlace<Eigen::OnTheRight>(C);
     const Symmetric solver(C, with_vectors ? Eigen::ComputeEigenvectors : Eigen::EigenvaluesOnly);
     SymmetricSpectrum spectrum = result_of(solver, with_vectors);
     if (with_vectors && spectrum.is_found)
-        factor.matrixU().solveInPlace(Eigen::Map<MatrixXd>(spectrum.vectors.a.data(), K.rows, K.rows));
+        U.solveInPlace(Eigen::Map<MatrixXd>(spectrum.vectors.a.data(), K.rows, K.rows));
     return spectrum;
 }
 
