@@ -40,9 +40,8 @@ function(livens_precompile target common)
 endfunction()
 
 # How hard sources are optimised, after the flags of the build: the wheel is small because most of them are not
-# unrolled and inlined to the last, and because what nobody calls is left out by the linker. Kernels have Eigen under
-# another name: of inline functions in several objects the linker keeps one, which may be the small one.
-set(livens_fast $<$<CONFIG:Release>:-O3> -UEigen -DEigen=livens_fast_eigen)
+# unrolled and inlined to the last, and because what nobody calls is left out by the linker.
+set(livens_fast $<$<CONFIG:Release>:-O3>)
 set(livens_usual $<$<CONFIG:Release>:-O2>)
 set(livens_small $<$<CONFIG:Release>:-Os>)
 if(NOT MSVC)
@@ -57,9 +56,9 @@ endif()
 
 # livens_room(NAME [EIGEN] [STACKS] [FAST | SMALL] [LIBRARIES lib...]): FAST is for kernels, SMALL for what reads, writes
 # and is asked once. LIBRARIES are linked by whatever the room is linked into. STACKS:
-# see livens_harden(). EIGEN rooms use Eigen inside their sources, never in a header. Eigen is given another namespace
-# there: its inline functions depend on processor flags, and a program that uses Eigen with other flags must not share
-# them through the linker. cmake/eigen mends what Eigen does where memory ends.
+# see livens_harden(). EIGEN: the room that uses Eigen inside its sources, never in a header. Eigen is given another
+# namespace there: its inline functions depend on processor flags, and a program that uses Eigen with other flags must
+# not share them through the linker. cmake/eigen mends what Eigen does where memory ends.
 function(livens_room name)
     cmake_parse_arguments(arg "EIGEN;STACKS;FAST;SMALL" "" "LIBRARIES" ${ARGN})
     file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/livens/${name}/*.cpp)

@@ -6,8 +6,6 @@
 // this one, which are found before Eigen's own.
 #pragma once
 
-#include <complex>
-
 namespace Eigen {
 
 /// DIMENSIONS: what a change of size sets where the number of entries stays.
@@ -34,8 +32,6 @@ namespace Eigen {
     LIVENS_EIGEN_RESIZE(T, 1, Dynamic, RowMajor, m_cols, m_cols = columns)
 
 LIVENS_EIGEN_RESIZE_ALL(double)
-LIVENS_EIGEN_RESIZE_ALL(std::complex<double>)
-LIVENS_EIGEN_RESIZE_ALL(bool)
 LIVENS_EIGEN_RESIZE_ALL(int)
 LIVENS_EIGEN_RESIZE_ALL(long)
 LIVENS_EIGEN_RESIZE_ALL(long long)

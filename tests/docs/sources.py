@@ -96,7 +96,7 @@ TIES = [
     ("Equal rows are scaled down by up to «1e-3»", f"{DYNAMICS}/rows/rank.cpp", r"favour\(.*?1 - (\S+) \*"),
     ("A row that adds less than «1e-3» there", f"{DYNAMICS}/rows/rank.cpp", r"well_held = ([^;]+);"),
     ("columns: above «1e-3» a row is new", f"{DYNAMICS}/rows/rank.cpp", r"well_held = ([^;]+);"),
-    ("which is why the factor is trusted down to «1e-5»", f"{DYNAMICS}/rows/sparse_rows.h", r"well_held = ([^;]+);"),
+    ("which is why the factor is trusted down to «1e-5»", "src/livens/solvers/sparse_rows.h", r"well_held = ([^;]+);"),
     ("pivots below «1e-9» are zero", f"{DYNAMICS}/rows/rank.cpp", r"setThreshold\(([^)]+)\)"),
     ("has a part above «1e-9» in it", f"{DYNAMICS}/instant/reactions.cpp", r"least_part = (\S+);"),
     ("Tests hold it to a factor of «5» of the true error over degrees «1» to «5»", "tests/convergence/mixed_estimates.cpp",

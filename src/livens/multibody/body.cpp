@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "livens/multibody/body.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
+#include <cmath>
 
 #include "livens/base/elementary.h"
 #include "livens/base/error.h"
 #include "livens/multibody/directors.h"
 #include "livens/multibody/wording.h"
+#include "livens/solvers/spectral.h"
 
 namespace livens {
 
@@ -176,11 +177,7 @@ Matrix3 project_directors(const Matrix3& directors)
         }
     }
     // Nearly singular: no inverse to trust. The factor is U V^T, one of many if two directors are parallel.
-    using Map = Eigen::Map<const Eigen::Matrix3d>;
-    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(Map(directors.data()),
-                                                Eigen::ComputeFullU | Eigen::ComputeFullV);
-    Eigen::Map<Eigen::Matrix3d>(D.data()) = svd.matrixU() * svd.matrixV().transpose();
-    return D;
+    return orthogonal_factor(directors);
 }
 
 Matrix34 rate(const Matrix34& X, const Vector3& velocity, const Vector3& angular_velocity)

@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "livens/multibody/mass_properties.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <limits>
 #include <numbers>
 
 #include "livens/base/error.h"
 #include "livens/multibody/wording.h"
+#include "livens/solvers/factors.h"
+#include "livens/solvers/spectral.h"
 
 namespace livens {
 
 namespace {
-
-using Map4 = Eigen::Map<const Eigen::Matrix4d>;
 
 constexpr double relative_slack = 1e-12;   // of the largest moment, in every inequality on moments below
 
@@ -28,15 +28,27 @@ void require_size(double size, const char* shape, const char* what)
 }
 
 /// s with s_i^2 m_ii = 1: scaled by it, m does not depend on the unit of length nor on the body's size.
-Eigen::Vector4d unit_scaling(const Eigen::Matrix4d& m) { return m.diagonal().cwiseSqrt().cwiseInverse(); }
+Vector4 unit_scaling(const Matrix4& m)
+{
+    Vector4 s;
+    for (int i = 0; i < 4; ++i) s[i] = 1 / std::sqrt(m(i, i));
+    return s;
+}
+
+/// s_i m_ij s_j
+Matrix4 scaled_both_ways(const Matrix4& m, const Vector4& s)
+{
+    Matrix4 scaled;
+    for (int j = 0; j < 4; ++j)
+        for (int i = 0; i < 4; ++i) scaled(i, j) = s[i] * m(i, j) * s[j];
+    return scaled;
+}
 
 void check_principal_moments(const Matrix3& inertia, const std::string& path)
 {
-    using Map = Eigen::Map<const Eigen::Matrix3d>;
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(Map(inertia.data()), Eigen::EigenvaluesOnly);
-    const Eigen::Vector3d j = solver.eigenvalues();   // ascending
-    const double slack = relative_slack * j.cwiseAbs().maxCoeff();
-    const std::string moments = to_text(Vector3{j[0], j[1], j[2]});
+    const Vector3 j = symmetric_values(inertia);   // ascending
+    const double slack = relative_slack * std::max(std::abs(j[0]), std::abs(j[2]));
+    const std::string moments = to_text(j);
     if (j[0] < -slack)
         throw InputError({"inertia-negative", path, "a principal moment of inertia is negative", moments,
                           ">= 0", "the moment about an axis is the sum of m r^2 over the body", ""});
@@ -92,21 +104,18 @@ MassProperties mass_properties(const Matrix4& mass_matrix)
 bool is_singular(const Matrix4& mass_matrix, bool is_point)
 {
     if (is_point) return !(mass_matrix(0, 0) > 0);
-    const Eigen::Matrix4d m = Map4(mass_matrix.data());
-    const Eigen::Vector4d diagonal = m.diagonal();
+    const Matrix4& m = mass_matrix;
     // Negations, so that a mass that is not a number is singular.
-    if (!(diagonal[0] > 0)) return true;
-    const double trace_E = diagonal[1] + diagonal[2] + diagonal[3];
+    if (!(m(0, 0) > 0)) return true;
+    const double trace_E = m(1, 1) + m(2, 2) + m(3, 3);
     for (int i = 1; i < 4; ++i)
-        if (!(diagonal[i] > 1e-14 * trace_E)) return true;
-    const Eigen::Vector4d s = unit_scaling(m);
-    const Eigen::Matrix4d scaled = s.asDiagonal() * m * s.asDiagonal();
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> solver(scaled, Eigen::EigenvaluesOnly);
+        if (!(m(i, i) > 1e-14 * trace_E)) return true;
+    const Vector4 values = symmetric_values(scaled_both_ways(m, unit_scaling(m)));
     // Scaled, the rounding of the matrix itself is as large as this where a lamina lies almost across an
     // axis.
     const double rounding =
-        8 * std::numeric_limits<double>::epsilon() * trace_E / diagonal.tail<3>().minCoeff();
-    return !(solver.eigenvalues()[0] > std::max(1e-12, rounding));
+        8 * std::numeric_limits<double>::epsilon() * trace_E / std::min({m(1, 1), m(2, 2), m(3, 3)});
+    return !(values[0] > std::max(1e-12, rounding));
 }
 
 Matrix4 inverse_mass(const Matrix4& mass_matrix, bool is_point)
@@ -117,11 +126,8 @@ Matrix4 inverse_mass(const Matrix4& mass_matrix, bool is_point)
         inverse(0, 0) = 1 / mass_matrix(0, 0);
         return inverse;
     }
-    const Eigen::Matrix4d m = Map4(mass_matrix.data());
-    const Eigen::Vector4d s = unit_scaling(m);
-    const Eigen::Matrix4d scaled = s.asDiagonal() * m * s.asDiagonal();
-    const Eigen::Matrix4d raw =
-        s.asDiagonal() * scaled.llt().solve(Eigen::Matrix4d::Identity()) * s.asDiagonal();
+    const Vector4 s = unit_scaling(mass_matrix);
+    const Matrix4 raw = scaled_both_ways(inverse_of_positive(scaled_both_ways(mass_matrix, s)), s);
     for (int i = 0; i < 4; ++i)
         for (int j = 0; j < 4; ++j) inverse(i, j) = 0.5 * (raw(i, j) + raw(j, i));
     return inverse;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "livens/multibody/model.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -10,6 +9,7 @@
 #include "livens/base/error.h"
 #include "livens/multibody/directors.h"
 #include "livens/multibody/wording.h"
+#include "livens/solvers/spectral.h"
 
 namespace livens {
 
@@ -44,10 +44,12 @@ void refuse(const std::string& code, const std::string& path, const std::string&
 }
 
 /// Second moments about the centre of mass, E - S S^T / M.
-Eigen::Matrix3d central_moments(const Matrix4& m)
+Matrix3 central_moments(const Matrix4& m)
 {
-    const Eigen::Map<const Eigen::Matrix4d> whole(m.data());
-    return whole.bottomRightCorner<3, 3>() - whole.block<3, 1>(1, 0) * whole.block<1, 3>(0, 1) / whole(0, 0);
+    Matrix3 central;
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) central(i, j) = m(i + 1, j + 1) - m(i + 1, 0) * m(0, j + 1) / m(0, 0);
+    return central;
 }
 
 bool uses_directors(const Matrix34& m)
@@ -79,9 +81,9 @@ void check_mass(const Body& body, const std::string& path)
     // Second moments that are not negative say the same as the triangle inequality of J = tr(E) I - E. The
     // slack is relative to the moments about the reference point, whose rounding the shift to the centre lays
     // bare.
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(central_moments(m), Eigen::EigenvaluesOnly);
+    const double smallest = symmetric_values(central_moments(m))[0];
     const double slack = 1e-12 * (m(1, 1) + m(2, 2) + m(3, 3));
-    if (solver.eigenvalues()[0] < -std::abs(slack))
+    if (smallest < -std::abs(slack))
         throw InputError(
             {"inertia-triangle", path + ".mass",
              "the largest principal moment exceeds the sum of the other two", "", "J1 + J2 >= J3",

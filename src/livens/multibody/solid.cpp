@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "livens/multibody/solid.h"
 
-#include <Eigen/Dense>
+#include "livens/solvers/spectral.h"
 
 namespace livens {
 
@@ -17,13 +17,8 @@ Moments moments(const MassProperties& p)
 
 PrincipalAxes principal_axes(const Matrix3& inertia)
 {
-    using Map = Eigen::Map<const Eigen::Matrix3d>;
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(Map(inertia.data()));
-    PrincipalAxes found;
-    for (int i = 0; i < 3; ++i) {
-        found.moments[i] = solver.eigenvalues()[i];
-        for (int j = 0; j < 3; ++j) found.axes(j, i) = solver.eigenvectors()(j, i);
-    }
+    const PrincipalValues principal = symmetric_spectrum(inertia);
+    PrincipalAxes found{principal.values, principal.vectors};
     if (determinant(found.axes) < 0) found.axes.set_column(2, -found.axes.column(2));
     return found;
 }

@@ -21,45 +21,6 @@
 
 namespace Eigen::internal {
 
-/// Takes the place of Eigen's own growth of the factors, in the namespace that is livens' alone
-/// (cmake/rooms.cmake). Eigen's frees the old array before it asks for the new one, and where it gets none it
-/// frees it once more: a crash where std::bad_alloc is due. It also copies twice. Returns as Eigen's does: -1
-/// makes memInit ask for less.
-template <typename Vector>
-Index grow(Vector& vector, Index& length, Index n_used, bool keep_length, Index& n_expansions)
-{
-    const bool first = n_expansions == 0;
-    const Index wanted = first || keep_length ? length : std::max(length + 1, length + length / 2);
-    if (first) vector.resize(0);   // of the factorisation before
-    try {
-        Vector grown(wanted);
-        grown.head(n_used) = vector.head(n_used);
-        vector.swap(grown);
-    } catch (const std::bad_alloc&) {
-        if (first) return -1;
-        throw;
-    }
-    length = wanted;
-    if (!first) ++n_expansions;
-    return 0;
-}
-
-template <>
-template <>
-Index SparseLUImpl<double, std::int64_t>::expand(Matrix<double, Dynamic, 1>& vector, Index& length,
-                                                 Index n_used, Index keep_length, Index& n_expansions)
-{
-    return grow(vector, length, n_used, keep_length != 0, n_expansions);
-}
-
-template <>
-template <>
-Index SparseLUImpl<double, std::int64_t>::expand(Matrix<std::int64_t, Dynamic, 1>& vector, Index& length,
-                                                 Index n_used, Index keep_length, Index& n_expansions)
-{
-    return grow(vector, length, n_used, keep_length != 0, n_expansions);
-}
-
 /// Eigen's own, but for the question: one is made for every panel of columns, and a large factorisation has
 /// no other place at which it could be stopped. What it throws goes through factorize() as memory that ends.
 template <>

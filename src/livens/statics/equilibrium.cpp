@@ -6,8 +6,6 @@
 #include <memory>
 #include <utility>
 
-#include <Eigen/Dense>
-
 #include "livens/base/text.h"
 #include "livens/dynamics/instant/reactions.h"
 #include "livens/dynamics/rows/projection.h"
@@ -16,14 +14,15 @@
 #include "livens/dynamics/start/singular.h"
 #include "livens/multibody/body.h"
 #include "livens/multibody/joint_coordinates.h"
+#include "livens/solvers/factors.h"
+#include "livens/solvers/spectral.h"
 #include "livens/statics/statics.h"
 
 namespace livens {
 
 namespace {
 
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
+using Values = std::vector<double>;
 
 constexpr double balance_tolerance = 1e-10;   // residual from which on only Newton's steps polish
 constexpr double largest_step = 0.5;          // lengths of the model, rad
@@ -35,11 +34,11 @@ struct RestPoint {
     std::vector<Matrix34> X;
     std::vector<double> maps;
     std::unique_ptr<const Statics> statics;
-    MatrixXd directions;   // scaled twists by the coordinates of principal stiffness
-    VectorXd stiffness;    // principal ones, ascending
-    MatrixXd skew;         // of the tangent, in these coordinates; empty where it has none
-    VectorXd forces;       // along them
-    double scale = 0;      // Statics::largest_stiffness
+    DenseMatrix directions;   // scaled twists by the coordinates of principal stiffness
+    Values stiffness;         // principal ones, ascending
+    DenseMatrix skew;         // of the tangent, in these coordinates; empty where it has none
+    Values forces;            // along them
+    double scale = 0;         // Statics::largest_stiffness
 
     double residual() const { return statics->residual; }
 };
@@ -95,37 +94,33 @@ public:
     void add_stiffness(RestPoint& point) const
     {
         const Statics& statics = *point.statics;
-        const int f = statics.free.n;
-        if (f == 0) return;
-        const std::vector<double> reduced = statics.free.reduced(tables_, statics.stiffness);
-        const Eigen::Map<const MatrixXd> K(reduced.data(), f, f),
-            Z(statics.free.Z.data(), tables_.n_twists, f);
-        const Eigen::SelfAdjointEigenSolver<MatrixXd> principal(0.5 * (K + K.transpose()));
+        if (statics.free.n == 0) return;
+        const DenseMatrix K = statics.free.reduced(tables_, statics.stiffness);
+        const SymmetricSpectrum principal = symmetric_spectrum(symmetric_part(K));
         point.scale = statics.largest_stiffness;
-        point.stiffness = principal.eigenvalues();
-        point.directions = Z * principal.eigenvectors();
-        const Eigen::Map<const VectorXd> rows(statics.rows.data(), tables_.n_twists);
-        point.forces = point.directions.transpose() * rows;
-        const MatrixXd skew = 0.5 * (K - K.transpose());
-        point.skew.resize(0, 0);
-        if (skew.cwiseAbs().maxCoeff() > 1e-13 * point.scale)
-            point.skew = principal.eigenvectors().transpose() * skew * principal.eigenvectors();
+        point.stiffness = principal.values;
+        point.directions = product(statics.free.Z, principal.vectors);
+        point.forces = transposed_product(point.directions, statics.rows);
+        const DenseMatrix skew = skew_part(K);
+        point.skew = {};
+        if (largest_size(skew.a) > 1e-13 * point.scale)
+            point.skew = product(transposed_product(principal.vectors, skew), principal.vectors);
     }
 
     /// Largest displacement of a body, in lengths of the model, or turn.
-    double size_of(const RestPoint& point, const VectorXd& step) const
+    double size_of(const RestPoint& point, const Values& step) const
     {
-        const VectorXd y = point.directions * step;
-        std::vector<double> xi(static_cast<std::size_t>(tables_.n_twists));
+        const Values y = product(point.directions, step);
+        Values xi(static_cast<std::size_t>(tables_.n_twists));
         tables_.to_twist(point.maps.data(), y.data(), xi.data());
         return largest_displacement(tables_, xi.data());
     }
 
     /// Where a step leads to, joints closed. False if they do not close.
-    bool move(const RestPoint& from, const VectorXd& step, std::vector<Matrix34>& X) const
+    bool move(const RestPoint& from, const Values& step, std::vector<Matrix34>& X) const
     {
-        const VectorXd y = from.directions * step;
-        std::vector<double> xi(static_cast<std::size_t>(tables_.n_twists));
+        const Values y = product(from.directions, step);
+        Values xi(static_cast<std::size_t>(tables_.n_twists));
         tables_.to_twist(from.maps.data(), y.data(), xi.data());
         X = from.X;
         for (int b = 0; b < tables_.n_bodies(); ++b) {
@@ -147,13 +142,12 @@ public:
     /// Work of weight and loads on the straight way between two configurations, by the trapezoidal rule:
     /// exact for weight and for forces that are constant or linear in X. What is small is the difference of
     /// large numbers there, and taken from what joints leave free.
-    double work(const RestPoint& from, const RestPoint& to, const VectorXd& step, double size) const
+    double work(const RestPoint& from, const RestPoint& to, const Values& step, double size) const
     {
         if (size < 1e-3) {
-            const VectorXd y = from.directions * step;
-            const Eigen::Map<const VectorXd> first(from.statics->rows.data(), y.size()),
-                last(to.statics->rows.data(), y.size());
-            return 0.5 * y.dot(first + last);
+            Values both = from.statics->rows;
+            add_scaled(both, 1, to.statics->rows);
+            return 0.5 * dot(product(from.directions, step), both);
         }
         double sum = 0;
         for (std::size_t b = 0; b < from.X.size(); ++b)
@@ -197,46 +191,49 @@ private:
 };
 
 /// Coordinates that nothing restores, and in which nothing pulls: they stay.
-bool is_idle(const RestPoint& point, Eigen::Index i)
+bool is_idle(const RestPoint& point, std::size_t i)
 {
-    return std::abs(point.stiffness(i)) <= 1e-11 * point.scale &&
-           std::abs(point.forces(i)) <= balance_tolerance * point.statics->level;
+    return std::abs(point.stiffness[i]) <= 1e-11 * point.scale &&
+           std::abs(point.forces[i]) <= balance_tolerance * point.statics->level;
 }
 
 /// With the force over |k| + mu, or for mu < 0 Newton's own step.
-VectorXd damped_step(const RestPoint& point, double mu)
+Values damped_step(const RestPoint& point, double mu)
 {
-    const Eigen::Index f = point.stiffness.size();
-    const double least = std::max(1e-14 * point.scale, 1e-12 * point.forces.cwiseAbs().maxCoeff());
-    VectorXd divisor(f), forces = point.forces;
-    for (Eigen::Index i = 0; i < f; ++i) {
-        const double k = point.stiffness(i), size = std::max(std::abs(k), least);
-        divisor(i) = mu < 0 ? std::copysign(size, k) : size + mu;
+    const double least = std::max(1e-14 * point.scale, 1e-12 * largest_size(point.forces));
+    Values divisor(point.stiffness.size()), forces = point.forces;
+    for (std::size_t i = 0; i < forces.size(); ++i) {
+        const double k = point.stiffness[i], size = std::max(std::abs(k), least);
+        divisor[i] = mu < 0 ? std::copysign(size, k) : size + mu;
         if (is_idle(point, i)) {
-            forces(i) = 0;
-            divisor(i) = 1;
+            forces[i] = 0;
+            divisor[i] = 1;
         }
     }
-    if (point.skew.size() == 0) return forces.cwiseQuotient(divisor);
-    MatrixXd tangent = point.skew;
-    tangent.diagonal() += divisor;
-    return tangent.partialPivLu().solve(forces);
+    if (point.skew.is_empty()) {
+        for (std::size_t i = 0; i < forces.size(); ++i) forces[i] /= divisor[i];
+        return forces;
+    }
+    DenseMatrix tangent = point.skew;
+    for (int i = 0; i < tangent.rows; ++i) tangent(i, i) += divisor[i];
+    return lu_solution(tangent, forces).x;
 }
 
 /// The step with the least mu that is not longer than the radius. A shorter one goes on to the radius in the
 /// coordinates of negative stiffness: the way out of an unstable equilibrium is long.
-VectorXd step_within(const Search& search, const RestPoint& point, double radius)
+Values step_within(const Search& search, const RestPoint& point, double radius)
 {
-    VectorXd step = damped_step(point, 0);
+    Values step = damped_step(point, 0);
     const double whole = search.size_of(point, step);
     if (whole <= radius) {
-        const VectorXd outwards = (point.stiffness.array() < -1e-11 * point.scale).select(step, 0.0);
+        Values outwards = step;
+        for (std::size_t i = 0; i < step.size(); ++i)
+            if (!(point.stiffness[i] < -1e-11 * point.scale)) outwards[i] = 0;
         const double size = search.size_of(point, outwards);
-        if (size > 0) step += (radius - whole) / size * outwards;
+        if (size > 0) add_scaled(step, (radius - whole) / size, outwards);
         return step;
     }
-    double low = 0,
-           high = 1e-6 * (point.stiffness.cwiseAbs().maxCoeff() + point.forces.cwiseAbs().maxCoeff());
+    double low = 0, high = 1e-6 * (largest_size(point.stiffness) + largest_size(point.forces));
     for (int i = 0; i < 200; ++i) {
         step = damped_step(point, high);
         if (search.size_of(point, step) <= radius) break;
@@ -244,7 +241,7 @@ VectorXd step_within(const Search& search, const RestPoint& point, double radius
     }
     for (int i = 0; i < 20; ++i) {
         const double mu = 0.5 * (low + high);
-        const VectorXd tried = damped_step(point, mu);
+        const Values tried = damped_step(point, mu);
         const double size = search.size_of(point, tried);
         if (size > radius) {
             low = mu;
@@ -261,10 +258,10 @@ VectorXd step_within(const Search& search, const RestPoint& point, double radius
 bool is_unrestored(const RestPoint& point)
 {
     double unrestored = 0;
-    for (Eigen::Index i = 0; i < point.forces.size(); ++i)
-        if (std::abs(point.stiffness(i)) <= 1e-9 * point.scale)
-            unrestored += point.forces(i) * point.forces(i);
-    return unrestored > 0.25 * point.forces.squaredNorm();
+    for (std::size_t i = 0; i < point.forces.size(); ++i)
+        if (std::abs(point.stiffness[i]) <= 1e-9 * point.scale)
+            unrestored += point.forces[i] * point.forces[i];
+    return unrestored > 0.25 * squared_norm(point.forces);
 }
 
 enum class Outcome { balanced, no_numbers, unrestored, stuck, limit, cancelled };
@@ -280,9 +277,11 @@ Outcome descend(Search& search, const EquilibriumOptions& options, RestPoint& he
         if (iterations == options.max_iterations) return Outcome::limit;
         if (radius < smallest_step) return Outcome::stuck;
         ++iterations;
-        const VectorXd step = step_within(search, here, radius);
+        const Values step = step_within(search, here, radius);
         const double size = search.size_of(here, step);
-        const double foretold = step.dot(here.forces) - 0.5 * step.dot(here.stiffness.cwiseProduct(step));
+        Values restored = step;
+        for (std::size_t i = 0; i < step.size(); ++i) restored[i] *= here.stiffness[i];
+        const double foretold = dot(step, here.forces) - 0.5 * dot(step, restored);
         RestPoint there;
         std::vector<Matrix34> X;
         const bool is_there = search.move(here, step, X) && search.look(std::move(X), there);
@@ -306,7 +305,7 @@ Outcome descend(Search& search, const EquilibriumOptions& options, RestPoint& he
 void polish(Search& search, RestPoint& here, int& iterations)
 {
     for (int i = 0; i < 10 && here.residual() > 0; ++i) {
-        const VectorXd step = damped_step(here, -1);
+        const Values step = damped_step(here, -1);
         if (!(search.size_of(here, step) < 1e-3)) return;
         RestPoint there;
         std::vector<Matrix34> X;

@@ -8,8 +8,7 @@
 #include <random>
 #include <vector>
 
-#include <Eigen/Dense>
-
+#include "livens/solvers/spectral.h"
 #include "livens/statics/small_motions.h"
 
 namespace livens {
@@ -22,14 +21,7 @@ struct Mode {
     int body = -1, source = -1;
 };
 
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
-
-Eigen::Map<const Eigen::Matrix<double, 6, 6>> block(const Matrix<6, 6>& K)
-{
-    return Eigen::Map<const Eigen::Matrix<double, 6, 6>>(K.data());
-}
-Eigen::Map<const Eigen::Matrix<double, 6, 6>> block(const TwistTerm& term) { return block(term.K); }
+using Values = std::vector<double>;
 
 /// Terms on the free motions: by a basis of these, or by what projects onto them.
 class Spectrum {
@@ -39,7 +31,6 @@ public:
     {
         if (state.by_joints) return;
         free_.emplace(tables, state);
-        z_ = Eigen::Map<const MatrixXd>(free_->Z.data(), free_->n_twists, free_->n);
         mass_ = on_free_motions(mass);
     }
 
@@ -48,20 +39,22 @@ public:
                                       const std::vector<BodyColumns>& columns) const
     {
         std::vector<Vibration> found;
-        if (terms.empty() || z_.cols() == 0) return found;
-        const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> solver(on_free_motions(terms), mass_);
-        if (solver.info() != Eigen::Success) return found;
-        for (int i = 0; i < solver.eigenvalues().size(); ++i) {
-            if (!(solver.eigenvalues()(i) > 0)) continue;
-            Vibration one{std::sqrt(solver.eigenvalues()(i))};
-            const VectorXd y = z_ * solver.eigenvectors().col(i);
-            one.decay = y.dot(times(dampers, y));
+        if (terms.empty() || !free_ || free_->n == 0) return found;
+        const SymmetricSpectrum spectrum = generalised_spectrum(on_free_motions(terms), mass_);
+        if (!spectrum.is_found) return found;
+        for (int i = 0; i < free_->n; ++i) {
+            if (!(spectrum.values[i] > 0)) continue;
+            Vibration one{std::sqrt(spectrum.values[i])};
+            const Values y = product(free_->Z, spectrum.vectors.column(i));
+            one.decay = dot(y, times(dampers, y));
             for (int b = 0; b < tables_.n_bodies(); ++b) {
-                const VectorXd moved = Eigen::Map<const Eigen::Matrix<double, 12, 6>>(columns[b].data())
-                                           .leftCols(tables_.bodies[b].dofs) *
-                                       part(y, b);
-                one.shift = std::max(one.shift, moved.head(3).norm());
-                one.turn = std::max(one.turn, moved.tail(9).norm() / std::sqrt(2.0));
+                const auto twist = part(y, b);
+                Matrix34 moved{};
+                for (int k = 0; k < tables_.bodies[b].dofs; ++k)
+                    for (int r = 0; r < 12; ++r) moved[r] += columns[b](r, k) * twist[k];
+                const std::span<const double> all(moved.a);
+                one.shift = std::max(one.shift, norm(all.first(3)));
+                one.turn = std::max(one.turn, norm(all.last(9)) / std::sqrt(2.0));
             }
             found.push_back(one);
         }
@@ -78,8 +71,8 @@ public:
         mode.value = value;
         double most = 0;
         for (int b = 0; b < tables_.n_bodies(); ++b) {
-            if (part(y, b).squaredNorm() <= most) continue;
-            most = part(y, b).squaredNorm();
+            if (squared_norm(part(y, b)) <= most) continue;
+            most = squared_norm(part(y, b));
             mode.body = b;
         }
         mode.source = most_active(terms, y);
@@ -89,29 +82,28 @@ public:
 private:
     struct Pair {
         double value = 0;
-        VectorXd y{};
+        Values y{};
     };
 
     Pair by_basis(const TwistTerms& terms) const
     {
-        const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> solver(on_free_motions(terms), mass_);
-        if (solver.info() != Eigen::Success) return {};
-        for (int i = static_cast<int>(z_.cols()) - 1; i >= 0; --i) {
-            const Pair found{solver.eigenvalues()(i), z_ * solver.eigenvectors().col(i)};
+        const SymmetricSpectrum spectrum = generalised_spectrum(on_free_motions(terms), mass_);
+        if (!spectrum.is_found) return {};
+        for (int i = free_->n - 1; i >= 0; --i) {
+            const Pair found{spectrum.values[i], product(free_->Z, spectrum.vectors.column(i))};
             if (!(found.value > 0) || !is_rounding(found.value, found.y, terms)) return found;
         }
         return {};
     }
 
     /// Whether y^T K y, y^T M y = 1, is no more than the rounding of what is summed to it.
-    bool is_rounding(double value, const VectorXd& y, const TwistTerms& terms) const
+    bool is_rounding(double value, const Values& y, const TwistTerms& terms) const
     {
         constexpr double rounding = 32 * std::numeric_limits<double>::epsilon();   // of sums of 144 products
+        Values sizes = y;
+        for (double& entry : sizes) entry = std::abs(entry);
         double size = 0;
-        for (const TwistTerm& t : terms) {
-            const VectorXd left = part(y, t.i).cwiseAbs(), right = part(y, t.j).cwiseAbs();
-            size += left.dot(block(t.size).topLeftCorner(left.size(), right.size()) * right);
-        }
+        for (const TwistTerm& t : terms) size += work(t.size, t, sizes);
         return value <= rounding * size;
     }
 
@@ -121,76 +113,78 @@ private:
         constexpr int most_vectors = 120;    // what is found then is a lower bound, and good to a few digits
         constexpr double tolerance = 1e-6;   // of the residual; the eigenvalue has its square
         const int most = std::min(most_vectors, tables_.freedoms());
-        MatrixXd V(tables_.n_twists, most);
-        VectorXd alpha(most), beta(most);
-        VectorXd w(tables_.n_twists);
+        DenseMatrix V;
+        Values alpha, beta, w(static_cast<std::size_t>(tables_.n_twists));
         std::minstd_rand random(1);
         for (double& x : w) x = static_cast<double>(random()) / static_cast<double>(random.max()) - 0.5;
         project(w);
         for (int k = 0;; ++k) {
-            V.col(k) = w / w.norm();
-            w = times(terms, V.col(k));
+            const double length = norm(w);
+            for (double& entry : w) entry /= length;
+            V.append_column(w);
+            w = times(terms, V.column(k));
             project(w);
-            alpha(k) = w.dot(V.col(k));
-            for (int pass = 0; pass < 2; ++pass)
-                w -= (V.leftCols(k + 1) * (V.leftCols(k + 1).transpose() * w)).eval();
-            beta(k) = w.norm();
-            const double size = alpha.head(k + 1).cwiseAbs().maxCoeff();
-            const bool is_last = k + 1 == most || !(beta(k) > 1e-13 * size);
+            alpha.push_back(dot(w, V.column(k)));
+            for (int pass = 0; pass < 2; ++pass) add_scaled(w, -1, product(V, transposed_product(V, w)));
+            beta.push_back(norm(w));
+            const bool is_last = k + 1 == most || !(beta[k] > 1e-13 * largest_size(alpha));
             if (!is_last && k % 10 != 9) continue;
-            Eigen::SelfAdjointEigenSolver<MatrixXd> small;
-            small.computeFromTridiagonal(alpha.head(k + 1), beta.head(k));
-            if (small.info() != Eigen::Success) return {};
-            const double left = beta(k) * std::abs(small.eigenvectors()(k, k)),
-                         value = small.eigenvalues()(k);
+            const SymmetricSpectrum small = tridiagonal_spectrum(alpha, std::span(beta).first(k));
+            if (!small.is_found) return {};
+            const double left = beta[k] * std::abs(small.vectors(k, k)), value = small.values[k];
             if (is_last || left <= tolerance * std::abs(value))
-                return {value, V.leftCols(k + 1) * small.eigenvectors().col(k)};
+                return {value, product(V, small.vectors.column(k))};
         }
     }
 
-    void project(VectorXd& y) const
+    void project(Values& y) const
     {
-        std::vector<double> mu(state_.rows.size());
+        Values mu(state_.rows.size());
         state_.joints.project(y.data(), nullptr, mu.data());
     }
 
     /// The symmetric part of K y.
-    VectorXd times(const TwistTerms& terms, const VectorXd& y) const
+    Values times(const TwistTerms& terms, std::span<const double> y) const
     {
-        VectorXd out = VectorXd::Zero(y.size());
+        Values out(y.size(), 0.0);
         for (const TwistTerm& t : terms) {
             const auto &i = tables_.bodies[t.i], &j = tables_.bodies[t.j];
-            const auto K = block(t).topLeftCorner(i.dofs, j.dofs);
-            out.segment(i.first, i.dofs) += 0.5 * (K * y.segment(j.first, j.dofs));
-            out.segment(j.first, j.dofs) += 0.5 * (K.transpose() * y.segment(i.first, i.dofs));
+            const Matrix<6, 1> Ky = livens::times(t.K, part(y, t.j));
+            for (int r = 0; r < i.dofs; ++r) out[i.first + r] += 0.5 * Ky[r];
+            for (int k = 0; k < j.dofs; ++k)
+                out[j.first + k] += 0.5 * dot(std::span(t.K.a).subspan(6 * k, i.dofs), part(y, t.i));
         }
         return out;
     }
 
-    VectorXd part(const VectorXd& y, int body) const
+    /// y^T K y of a term.
+    double work(const Matrix<6, 6>& K, const TwistTerm& t, std::span<const double> y) const
     {
-        return y.segment(tables_.bodies[body].first, tables_.bodies[body].dofs);
+        const Matrix<6, 1> Ky = livens::times(K, part(y, t.j));
+        return dot(part(y, t.i), std::span(Ky.a).first(tables_.bodies[t.i].dofs));
     }
 
-    MatrixXd on_free_motions(const TwistTerms& terms) const
+    std::span<const double> part(std::span<const double> y, int body) const
     {
-        const std::vector<double> K = free_->reduced(tables_, terms);
-        const Eigen::Map<const MatrixXd> reduced(K.data(), free_->n, free_->n);
-        return 0.5 * (reduced + reduced.transpose());
+        return y.subspan(tables_.bodies[body].first, tables_.bodies[body].dofs);
     }
 
-    int most_active(const TwistTerms& terms, const VectorXd& y) const
+    DenseMatrix on_free_motions(const TwistTerms& terms) const
+    {
+        return symmetric_part(free_->reduced(tables_, terms));
+    }
+
+    int most_active(const TwistTerms& terms, const Values& y) const
     {
         int most = -1;
-        double largest = 0, work = 0;
+        double largest = 0, sum = 0;
         for (std::size_t k = 0; k < terms.size(); ++k) {   // terms of a source follow each other
             const TwistTerm& t = terms[k];
-            if (k == 0 || t.source != terms[k - 1].source) work = 0;
-            const int m = tables_.bodies[t.i].dofs, n = tables_.bodies[t.j].dofs;
-            work += part(y, t.i).dot(block(t).topLeftCorner(m, n) * part(y, t.j));
+            if (k == 0 || t.source != terms[k - 1].source) sum = 0;
+            sum += work(t.K, t, y);
             const bool is_last = k + 1 == terms.size() || terms[k + 1].source != t.source;
-            if (!is_last || work <= largest) continue;
-            largest = work;
+            if (!is_last || sum <= largest) continue;
+            largest = sum;
             most = t.source;
         }
         return most;
@@ -199,7 +193,7 @@ private:
     const Tables& tables_;
     InstantState& state_;
     std::optional<FreeMotions> free_;   // where the state has a basis
-    MatrixXd z_, mass_;
+    DenseMatrix mass_;
 };
 
 }   // namespace

@@ -4,29 +4,23 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Dense>
-
 #include "livens/base/error.h"
 #include "livens/base/text.h"
 #include "livens/multibody/body.h"
+#include "livens/solvers/factors.h"
+#include "livens/solvers/spectral.h"
 #include "livens/statics/statics.h"
 
 namespace livens {
 
 namespace {
 
-using Eigen::MatrixXd;
-using ByRows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+using Values = std::vector<double>;
 
 constexpr double rest_tolerance = 1e-9;       // lengths of the model a second, rad/s
 constexpr double rounding_of_terms = 1e-12;   // of the largest of them, where they cancel
 
-std::vector<double> by_rows(const MatrixXd& A)
-{
-    std::vector<double> out(static_cast<std::size_t>(A.size()));
-    Eigen::Map<ByRows>(out.data(), A.rows(), A.cols()) = A;
-    return out;
-}
+Values by_rows(const DenseMatrix& A) { return transpose(A).a; }
 
 void refuse_motion(const Model& model, const State& state)
 {
@@ -53,21 +47,21 @@ void refuse_imbalance(const Model& model, const Statics& statics)
 }
 
 /// [dphi; w] of all bodies by the free coordinates, six rows a body.
-MatrixXd twists_of(const Tables& tables, const InstantState& state, const FreeMotions& free)
+DenseMatrix twists_of(const Tables& tables, const InstantState& state, const FreeMotions& free)
 {
-    MatrixXd twists = MatrixXd::Zero(6 * tables.n_bodies(), free.n);
+    DenseMatrix twists(6 * tables.n_bodies(), free.n);
     for (int k = 0; k < free.n; ++k) {
         const std::vector<double> xi = free.twists(tables, state, k);
         for (int b = 0; b < tables.n_bodies(); ++b)
             std::copy_n(xi.data() + tables.bodies[b].first, tables.bodies[b].dofs,
-                        twists.col(k).data() + static_cast<std::ptrdiff_t>(6) * b);
+                        twists.column(k).data() + static_cast<std::ptrdiff_t>(6) * b);
     }
     return twists;
 }
 
-bool is_symmetric(const MatrixXd& A, double rounding)
+bool is_symmetric(const DenseMatrix& A, double rounding)
 {
-    return A.size() == 0 || (A - A.transpose()).cwiseAbs().maxCoeff() <= rounding;
+    return 2 * largest_size(skew_part(A).a) <= rounding;
 }
 
 }   // namespace
@@ -92,23 +86,17 @@ Linearisation linearise(const Model& the_model, const State& state, Side side)
     SmallMotions(at.tables, at.state, side).add_mass(mass);
     const FreeMotions& free = statics.free;
     linear.n = free.n;
-    const auto matrix = [&](const TwistTerms& terms) -> MatrixXd {
-        const std::vector<double> reduced = free.reduced(at.tables, terms);
-        return Eigen::Map<const MatrixXd>(reduced.data(), free.n, free.n);
-    };
-    const MatrixXd M = matrix(mass), C = matrix(statics.damping), K = matrix(statics.stiffness);
-    linear.M = by_rows(0.5 * (M + M.transpose()));
+    const DenseMatrix C = free.reduced(at.tables, statics.damping),
+                      K = free.reduced(at.tables, statics.stiffness);
+    linear.M = by_rows(symmetric_part(free.reduced(at.tables, mass)));
     linear.C = by_rows(C);
     linear.K = by_rows(K);
     linear.twists = by_rows(twists_of(at.tables, at.state, free));
     linear.rounding = rounding_of_terms * statics.largest_stiffness;
     linear.damping_rounding = rounding_of_terms * statics.largest_damping;
     linear.is_conservative = is_symmetric(K, linear.rounding) && is_symmetric(C, linear.damping_rounding);
-    if (linear.n > 0 && linear.is_conservative) {
-        const Eigen::SelfAdjointEigenSolver<MatrixXd> damping(0.5 * (C + C.transpose()),
-                                                              Eigen::EigenvaluesOnly);
-        linear.is_conservative = damping.eigenvalues()(0) >= -linear.damping_rounding;
-    }
+    if (linear.n > 0 && linear.is_conservative)
+        linear.is_conservative = symmetric_values(symmetric_part(C))[0] >= -linear.damping_rounding;
     return linear;
 }
 
@@ -130,11 +118,11 @@ std::vector<Matrix34> rates_of(const Linearisation& linear, int k)
     return V;
 }
 
-Eigen::RowVectorXd gradient_of(const Linearisation& linear, const JointCoordinate& coordinate)
+Values gradient_of(const Linearisation& linear, const JointCoordinate& coordinate)
 {
-    Eigen::RowVectorXd row(linear.n);
+    Values row;
     for (int k = 0; k < linear.n; ++k)
-        row(k) = coordinate_rate(coordinate, linear.state.X, rates_of(linear, k));
+        row.push_back(coordinate_rate(coordinate, linear.state.X, rates_of(linear, k)));
     return row;
 }
 
@@ -147,15 +135,15 @@ Eigen::RowVectorXd gradient_of(const Linearisation& linear, const JointCoordinat
 }
 
 /// The row c of a quantity c q.
-Eigen::RowVectorXd row_of(const Model& model, const Linearisation& linear, const std::string& name,
-                          const std::string& whose, const std::string& what)
+Values row_of(const Model& model, const Linearisation& linear, const std::string& name,
+              const std::string& whose, const std::string& what)
 {
     static const std::string axes = "xyz";
     if (what.size() == 1 && axes.find(what) != std::string::npos) {
         const int body = model.find_body(whose);
         if (body < 0) refuse_port(name, "names no body");
-        const Eigen::Map<const ByRows> twists(linear.twists.data(), 6 * model.n_bodies(), linear.n);
-        return twists.row(6 * body + static_cast<int>(axes.find(what)));
+        const auto row = linear.twists.begin() + linear.n * (6 * body + static_cast<int>(axes.find(what)));
+        return {row, row + linear.n};
     }
     if (what != "angle" && what != "displacement") refuse_port(name, "is no quantity of a joint or a body");
     const int joint = model.find_joint(whose);
@@ -166,7 +154,7 @@ Eigen::RowVectorXd row_of(const Model& model, const Linearisation& linear, const
 }
 
 struct Port {
-    Eigen::RowVectorXd row;
+    Values row;
     bool is_rate = false;
 };
 
@@ -201,34 +189,32 @@ std::complex<double> amplitude(const Linearisation& linear, const VibrationMode&
 StateMatrices state_matrices(const Model& model, const Linearisation& linear,
                              const std::vector<std::string>& inputs, const std::vector<std::string>& outputs)
 {
-    const Eigen::Index n = linear.n, m = static_cast<Eigen::Index>(inputs.size()),
-                       p = static_cast<Eigen::Index>(outputs.size());
-    const auto square = [n](const std::vector<double>& A) -> MatrixXd {
-        return Eigen::Map<const ByRows>(A.data(), n, n);
-    };
-    const MatrixXd mass = square(linear.M);
-    const Eigen::LLT<MatrixXd> M(mass);
-    MatrixXd A = MatrixXd::Zero(2 * n, 2 * n), B = MatrixXd::Zero(2 * n, m), C = MatrixXd::Zero(p, 2 * n);
-    A.topRightCorner(n, n).setIdentity();
-    A.bottomLeftCorner(n, n) -= M.solve(square(linear.K));
-    A.bottomRightCorner(n, n) -= M.solve(square(linear.C));
-    for (Eigen::Index j = 0; j < m; ++j) {
-        const std::string& name = inputs[static_cast<std::size_t>(j)];
-        const Port input = port(model, linear, name);
-        if (input.is_rate) refuse_port(name, "is a rate, and inputs are forces");
-        B.col(j).tail(n) = M.solve(input.row.transpose());   // virtual work u c dq
+    const int n = linear.n, m = static_cast<int>(inputs.size()), p = static_cast<int>(outputs.size());
+    const auto square = [n](const Values& by_rows) { return transpose({n, n, by_rows.data()}); };
+    const DenseMatrix L = cholesky(square(linear.M)), K = cholesky_solution(L, square(linear.K)),
+                      damping = cholesky_solution(L, square(linear.C));
+    DenseMatrix A(2 * n, 2 * n), B(2 * n, m), C(p, 2 * n);
+    for (int j = 0; j < n; ++j) {
+        A(j, n + j) = 1;
+        for (int i = 0; i < n; ++i) A(n + i, j) -= K(i, j), A(n + i, n + j) -= damping(i, j);
     }
-    for (Eigen::Index i = 0; i < p; ++i) {
-        const Port output = port(model, linear, outputs[static_cast<std::size_t>(i)]);
-        C.row(i).segment(output.is_rate ? n : 0, n) = output.row;
+    for (int j = 0; j < m; ++j) {
+        const Port input = port(model, linear, inputs[j]);
+        if (input.is_rate) refuse_port(inputs[j], "is a rate, and inputs are forces");
+        const Values accelerations = cholesky_solution(L, input.row);   // virtual work u c dq
+        std::ranges::copy(accelerations, B.column(j).subspan(n).begin());
     }
-    return {static_cast<int>(2 * n),
+    for (int i = 0; i < p; ++i) {
+        const Port output = port(model, linear, outputs[i]);
+        for (int k = 0; k < n; ++k) C(i, (output.is_rate ? n : 0) + k) = output.row[k];
+    }
+    return {2 * n,
             inputs,
             outputs,
             by_rows(A),
             by_rows(B),
             by_rows(C),
-            std::vector<double>(static_cast<std::size_t>(p * m), 0.0)};
+            Values(static_cast<std::size_t>(p * m), 0.0)};
 }
 
 }   // namespace livens

@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Dense>
-
 #include "livens/dynamics/rows/twist.h"
 #include "livens/multibody/body.h"
 
@@ -13,22 +11,22 @@ namespace livens {
 
 namespace {
 
-using Eigen::MatrixXd;
-using Block = Eigen::Matrix<double, 6, 6>;
-using Columns = Eigen::Matrix<double, 12, 6>;
-
-Eigen::Map<const Block> block(const Matrix<6, 6>& K) { return Eigen::Map<const Block>(K.data()); }
-Eigen::Map<const Columns> block(const BodyColumns& c) { return Eigen::Map<const Columns>(c.data()); }
-
 template <int R, int C>
-Matrix<R, C> stored(const Eigen::Matrix<double, R, C>& from)
+Matrix<R, C> sizes_of(Matrix<R, C> A)
 {
-    Matrix<R, C> to;
-    std::copy_n(from.data(), R * C, to.data());
-    return to;
+    for (double& entry : A.a) entry = std::abs(entry);
+    return A;
 }
 
 }   // namespace
+
+Matrix<6, 1> times(const Matrix<6, 6>& K, std::span<const double> y)
+{
+    Matrix<6, 1> Ky{};
+    for (int k = 0; k < static_cast<int>(y.size()); ++k)
+        for (int i = 0; i < 6; ++i) Ky[i] += K(i, k) * y[k];
+    return Ky;
+}
 
 SmallMotions::SmallMotions(const Tables& tables, const InstantState& state, Side side)
     : tables_(tables), state_(state), at_{state.t, side}
@@ -93,34 +91,32 @@ void SmallMotions::add_constraints(TwistTerms& terms) const
     }
     for (int b = 0; b < tables_.n_bodies(); ++b) {
         if (tables_.bodies[b].dofs == 3) continue;
-        Block K = Block::Zero();   // symmetric where the moments balance
+        Matrix<6, 6> K{};   // symmetric where the moments balance
         twist::add_geometric(state_.X.data() + 12 * b, r.data() + 12 * b, K.data(), 6);
-        K.transposeInPlace();   // written row by row
-        const Block turned = block(maps_[b]).transpose() * K * block(maps_[b]);
-        const Block size = block(maps_[b]).cwiseAbs().transpose() * K.cwiseAbs() * block(maps_[b]).cwiseAbs();
-        terms.push_back({-1, b, b, stored<6, 6>(-turned), stored<6, 6>(size)});
+        K = transpose(K);   // written row by row
+        terms.push_back({-1, b, b, -congruence(maps_[b], K), congruence(sizes_of(maps_[b]), sizes_of(K))});
     }
 }
 
 void SmallMotions::add_mass(TwistTerms& terms) const
 {
     for (int b = 0; b < tables_.n_bodies(); ++b) {
-        Block M = Block::Identity();
+        Matrix<6, 6> M = identity<6>();
         if (tables_.bodies[b].dofs == 6) {
-            Eigen::Matrix3d inertia;
+            Matrix3 inertia;
             tables_.spin_mass(b, state_.X.data(), state_.X.data(), inertia.data());
-            M.bottomRightCorner<3, 3>() = inertia;
+            for (int i = 0; i < 3; ++i)
+                for (int j = 0; j < 3; ++j) M(3 + i, 3 + j) = inertia(i, j);
         }
-        terms.push_back({-1, b, b, stored<6, 6>(M)});
+        terms.push_back({-1, b, b, M});
     }
 }
 
 TwistTerm SmallMotions::term(int source, const Matrix<12, 12>& K, double factor, int i, int j) const
 {
-    const Eigen::Map<const Eigen::Matrix<double, 12, 12>> full(K.data());
-    const Columns left = block(columns_[i]), right = block(columns_[j]);
-    const Block size = std::abs(factor) * left.cwiseAbs().transpose() * full.cwiseAbs() * right.cwiseAbs();
-    return {source, i, j, stored<6, 6>(factor * left.transpose() * full * right), stored<6, 6>(size)};
+    const BodyColumns &left = columns_[i], &right = columns_[j];
+    return {source, i, j, congruence(factor, left, K, right),
+            congruence(std::abs(factor), sizes_of(left), sizes_of(K), sizes_of(right))};
 }
 
 std::vector<double> SmallMotions::forces_less_inertia(int side) const
@@ -143,49 +139,47 @@ std::vector<double> SmallMotions::forces_less_inertia(int side) const
 }
 
 FreeMotions::FreeMotions(const Tables& tables, const InstantState& state)
-    : n_twists(tables.n_twists), n(tables.freedoms()),
-      Z(static_cast<std::size_t>(n_twists) * static_cast<std::size_t>(n))
+    : n_twists(tables.n_twists), n(tables.freedoms()), Z(n_twists, n)
 {
     if (n == 0) return;
-    std::vector<double> by_rows(Z.size());
-    state.basis.q.null_space(by_rows.data());
-    using ByRows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-    Eigen::Map<MatrixXd>(Z.data(), n_twists, n) = Eigen::Map<const ByRows>(by_rows.data(), n_twists, n);
+    DenseMatrix by_rows(n, n_twists);
+    state.basis.q.null_space(by_rows.a.data());
+    Z = transpose(by_rows);
 }
 
-std::vector<double> FreeMotions::reduced(const Tables& tables, const TwistTerms& terms) const
+DenseMatrix FreeMotions::reduced(const Tables& tables, const TwistTerms& terms) const
 {
-    if (n == 0) return {};
-    const Eigen::Map<const MatrixXd> z(Z.data(), n_twists, n);
-    MatrixXd KZ = MatrixXd::Zero(n_twists, n);
+    DenseMatrix KZ(n_twists, n);
     for (const TwistTerm& t : terms) {
         const auto &i = tables.bodies[t.i], &j = tables.bodies[t.j];
-        KZ.middleRows(i.first, i.dofs) +=
-            block(t.K).topLeftCorner(i.dofs, j.dofs) * z.middleRows(j.first, j.dofs);
+        for (int k = 0; k < n; ++k) {
+            const Matrix<6, 1> Kz = times(t.K, Z.column(k).subspan(j.first, j.dofs));
+            for (int r = 0; r < i.dofs; ++r) KZ(i.first + r, k) += Kz[r];
+        }
     }
-    std::vector<double> K(static_cast<std::size_t>(n) * static_cast<std::size_t>(n));
-    Eigen::Map<MatrixXd>(K.data(), n, n).noalias() = z.transpose() * KZ;
-    return K;
+    return transposed_product(Z, KZ);
 }
 
 std::vector<double> FreeMotions::sizes(const Tables& tables, const TwistTerms& terms) const
 {
-    if (n == 0) return {};
-    const MatrixXd z = Eigen::Map<const MatrixXd>(Z.data(), n_twists, n).cwiseAbs();
-    Eigen::RowVectorXd sum = Eigen::RowVectorXd::Zero(n);
+    DenseMatrix z = Z;
+    for (double& entry : z.a) entry = std::abs(entry);
+    std::vector<double> sum(static_cast<std::size_t>(n), 0.0);
     for (const TwistTerm& t : terms) {
         const auto &i = tables.bodies[t.i], &j = tables.bodies[t.j];
-        const MatrixXd Kz =
-            block(t.K).topLeftCorner(i.dofs, j.dofs).cwiseAbs() * z.middleRows(j.first, j.dofs);
-        sum += z.middleRows(i.first, i.dofs).cwiseProduct(Kz).colwise().sum();
+        const Matrix<6, 6> K = sizes_of(t.K);
+        for (int k = 0; k < n; ++k) {
+            const Matrix<6, 1> Kz = times(K, z.column(k).subspan(j.first, j.dofs));
+            sum[k] += dot(z.column(k).subspan(i.first, i.dofs), std::span(Kz.a).first(i.dofs));
+        }
     }
-    return {sum.begin(), sum.end()};
+    return sum;
 }
 
 std::vector<double> FreeMotions::twists(const Tables& tables, const InstantState& state, int k) const
 {
     std::vector<double> xi(static_cast<std::size_t>(n_twists));
-    tables.to_twist(state.maps.data(), Z.data() + static_cast<std::ptrdiff_t>(k) * n_twists, xi.data());
+    tables.to_twist(state.maps.data(), Z.column(k).data(), xi.data());
     return xi;
 }
 

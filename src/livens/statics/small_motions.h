@@ -3,10 +3,12 @@
 // source, and on what the joints leave free.  (docs/theory.md, "Small motions")
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "livens/dynamics/instant/instant.h"
 #include "livens/dynamics/start/closing.h"
+#include "livens/solvers/dense_matrix.h"
 
 namespace livens {
 
@@ -17,6 +19,9 @@ struct TwistTerm {
     Matrix<6, 6> size{};   ///< what its rounding is relative to: by absolute values of all that is summed
 };
 using TwistTerms = std::vector<TwistTerm>;
+
+/// What a matrix makes of the first numbers of `y`, six at most: of K or size of a term.
+Matrix<6, 1> times(const Matrix<6, 6>& K, std::span<const double> y);
 
 /// N D of a body: its X by its scaled twist.
 using BodyColumns = Matrix<12, 6>;
@@ -51,14 +56,14 @@ private:
 /// A basis Z of what the joints leave free, orthonormal in scaled twists.
 struct FreeMotions {
     int n_twists = 0;
-    int n = 0;               ///< how many
-    std::vector<double> Z;   ///< n_twists x n, column by column
+    int n = 0;       ///< how many
+    DenseMatrix Z;   ///< n_twists x n
 
     /// Of a prepared state that has a basis.
     FreeMotions(const Tables& tables, const InstantState& state);
 
-    /// Z^T K Z, n x n, column by column.
-    std::vector<double> reduced(const Tables& tables, const TwistTerms& terms) const;
+    /// Z^T K Z, n x n.
+    DenseMatrix reduced(const Tables& tables, const TwistTerms& terms) const;
     /// The diagonal of |Z|^T |K| |Z|: what rounding of Z^T K Z is relative to.
     std::vector<double> sizes(const Tables& tables, const TwistTerms& terms) const;
     /// Column k as plain twists, n_twists numbers.

@@ -4,28 +4,23 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Dense>
-
 namespace livens {
 
 namespace {
 
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
-
 /// Rows of 12 numbers a body in scaled twists.
-VectorXd scaled_rows(const Tables& tables, const InstantState& state, const std::vector<double>& raw)
+std::vector<double> scaled_rows(const Tables& tables, const InstantState& state,
+                                const std::vector<double>& raw)
 {
-    std::vector<double> q(static_cast<std::size_t>(tables.n_twists));
+    std::vector<double> q(static_cast<std::size_t>(tables.n_twists)), y(q.size());
     tables.twist_rows(state.X.data(), state.maps.data(), raw.data(), q.data());
-    VectorXd y(tables.n_twists);
     tables.to_scaled_rows(state.maps.data(), q.data(), y.data());
     return y;
 }
 
-double on_body(const Tables& tables, const Eigen::Ref<const VectorXd>& y, int body)
+double on_body(const Tables& tables, std::span<const double> y, int body)
 {
-    return y.segment(tables.bodies[body].first, tables.bodies[body].dofs).norm();
+    return norm(y.subspan(tables.bodies[body].first, tables.bodies[body].dofs));
 }
 
 }   // namespace
@@ -48,31 +43,32 @@ void Statics::add_forces(const Tables& tables, const InstantState& state, Instan
     const std::vector<double> V(state.X.size(), 0.0);
     given.assign(V.size(), 0.0);
     tables.add_weight(1.0, given.data());
-    const VectorXd of_weight = scaled_rows(tables, state, given);
+    const std::vector<double> of_weight = scaled_rows(tables, state, given);
     tables.add_loads(at, X, V.data(), 1.0, given.data(), state.angles);
 
-    VectorXd y = scaled_rows(tables, state, given), row(tables.n_twists);
-    VectorXd sizes = of_weight.cwiseAbs() + (y - of_weight).cwiseAbs();
+    rows = scaled_rows(tables, state, given);
+    sizes_.resize(rows.size());
+    std::vector<double> row(rows.size());
+    for (std::size_t i = 0; i < rows.size(); ++i)
+        sizes_[i] = std::abs(of_weight[i]) + std::abs(rows[i] - of_weight[i]);
     for (int r = 0; r < tables.n_rows(); ++r) {
         if (lambda[r] == 0) continue;
         double g[Tables::gradient_size];
         tables.gradient(r, at, X, g);
         tables.scaled_gradient(r, X, state.maps.data(), g, row.data());
-        y -= lambda[r] * row;
-        sizes += std::abs(lambda[r]) * row.cwiseAbs();
+        add_scaled(rows, -lambda[r], row);
+        for (std::size_t i = 0; i < row.size(); ++i) sizes_[i] += std::abs(lambda[r]) * std::abs(row[i]);
     }
-    rows.assign(y.begin(), y.end());
-    sizes_.assign(sizes.begin(), sizes.end());
 }
 
 void Statics::add_levels(const Tables& tables, const InstantState& state)
 {
-    const Eigen::Map<const MatrixXd> Z(free.Z.data(), free.n_twists, free.n);
-    const Eigen::Map<const VectorXd> y(rows.data(), free.n_twists), sizes(sizes_.data(), free.n_twists);
     double on_bodies = 0;
-    for (int b = 0; b < tables.n_bodies(); ++b) on_bodies = std::max(on_bodies, on_body(tables, sizes, b));
+    for (int b = 0; b < tables.n_bodies(); ++b) on_bodies = std::max(on_bodies, on_body(tables, sizes_, b));
     level = 1e-4 * on_bodies;
-    if (free.n > 0) level = std::max(level, (Z.cwiseAbs().transpose() * sizes).maxCoeff());
+    DenseMatrix of_motions = free.Z;
+    for (double& entry : of_motions.a) entry = std::abs(entry);
+    for (int k = 0; k < free.n; ++k) level = std::max(level, dot(of_motions.column(k), sizes_));
     const std::vector<double> of_stiffness = free.sizes(tables, stiffness);
     for (int k = 0; k < free.n; ++k) {
         const double moved = largest_displacement(tables, free.twists(tables, state, k).data()),
@@ -81,11 +77,11 @@ void Statics::add_levels(const Tables& tables, const InstantState& state)
         level = std::max(level, size * 1e-5 / moved);
     }
     for (const double size : free.sizes(tables, damping)) largest_damping = std::max(largest_damping, size);
-    if (!y.allFinite() || !std::isfinite(level)) {
+    if (!all_finite(rows) || !std::isfinite(level)) {
         residual = std::nan("");
         return;
     }
-    const VectorXd left = Z * (Z.transpose() * y);
+    const std::vector<double> left = product(free.Z, transposed_product(free.Z, rows));
     for (int b = 0; b < tables.n_bodies(); ++b) {
         if (!(on_body(tables, left, b) > residual * level)) continue;
         residual = on_body(tables, left, b) / level;

@@ -5,16 +5,14 @@
 #include <cmath>
 #include <utility>
 
-#include <Eigen/Dense>
-
+#include "livens/solvers/spectral.h"
 #include "livens/statics/small_motions.h"
 
 namespace livens {
 
 namespace {
 
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
+using Values = std::vector<double>;
 
 constexpr int most_freedoms = 600;
 constexpr double small_turn = 1e-3;   // lengths of the model or rad, over which a difference is taken
@@ -31,70 +29,72 @@ public:
         TwistTerms dampers, mass;
         forms_.add_loads(terms_, dampers);
         forms_.add_mass(mass);
-        z_ = Eigen::Map<const MatrixXd>(free_.Z.data(), free_.n_twists, free_.n);
         if (terms_.empty() || free_.n == 0) return;
-        mass_ = symmetric(mass);
-        const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> solver(symmetric(terms_), mass_);
-        if (solver.info() != Eigen::Success) return;
-        squares_ = solver.eigenvalues();
-        forms_of_all_ = solver.eigenvectors();
+        mass_ = symmetric_part(free_.reduced(tables_, mass));
+        SymmetricSpectrum spectrum =
+            generalised_spectrum(symmetric_part(free_.reduced(tables_, terms_)), mass_);
+        if (spectrum.is_found) all_ = std::move(spectrum);
     }
 
-    bool is_empty() const { return squares_.size() == 0; }
+    bool is_empty() const { return all_.values.empty(); }
     /// Of the rates of all forms, ascending; negative where loads drive apart.
-    const VectorXd& squares() const { return squares_; }
-    VectorXd form(Eigen::Index i) const { return forms_of_all_.col(i); }
+    const Values& squares() const { return all_.values; }
+    std::span<const double> form(int i) const { return all_.vectors.column(i); }
     /// What the first `n` forms have of a motion.
-    VectorXd slow_part(const VectorXd& q, Eigen::Index n) const
+    Values slow_part(const Values& q, int n) const
     {
-        return forms_of_all_.leftCols(n) * (forms_of_all_.leftCols(n).transpose() * (mass_ * q));
+        const DenseView slow = all_.vectors.left_columns(n);
+        return product(slow, transposed_product(slow, product(mass_, q)));
     }
-    double size(const VectorXd& q) const { return std::sqrt(q.dot(mass_ * q)); }
+    double size(const Values& q) const { return std::sqrt(dot(q, product(mass_, q))); }
 
     /// Of the state, as a form.
-    VectorXd velocity() const
+    Values velocity() const
     {
-        VectorXd V(12 * tables_.n_bodies());
+        Values V(state_.X.size());
         tables_.rates_of(state_.X.data(), state_.velocity.data(), V.data());
         return form_of(V);
     }
 
     /// What a form moves, 12 numbers a body.
-    VectorXd moved(const VectorXd& form) const
+    Values moved(std::span<const double> form) const
     {
-        const VectorXd y = z_ * form;
-        VectorXd dX = VectorXd::Zero(12 * tables_.n_bodies());
-        for (int b = 0; b < tables_.n_bodies(); ++b) dX.segment<12>(12 * b) = columns(b) * part(y, b);
+        const Values y = product(free_.Z, form);
+        Values dX;
+        for (int b = 0; b < tables_.n_bodies(); ++b) {
+            const Values of_body = product(columns(b), part(y, b));
+            dX.insert(dX.end(), of_body.begin(), of_body.end());
+        }
         return dX;
     }
 
     /// The form that moves bodies so, as near as rigid bodies and joints can here: its turn is the least.
-    VectorXd form_of(const VectorXd& dX) const
+    Values form_of(const Values& dX) const
     {
-        VectorXd y(free_.n_twists), mdX(dX.size());
+        Values y, mdX(dX.size());
         tables_.times_mass(dX.data(), 1.0, mdX.data());
-        for (int b = 0; b < tables_.n_bodies(); ++b)
-            y.segment(tables_.bodies[b].first, tables_.bodies[b].dofs) =
-                columns(b).transpose() * mdX.segment<12>(12 * b);
-        return z_.transpose() * y;
+        for (int b = 0; b < tables_.n_bodies(); ++b) {
+            const Values of_body = transposed_product(columns(b), std::span(mdX).subspan(12 * b, 12));
+            y.insert(y.end(), of_body.begin(), of_body.end());   // bodies follow each other
+        }
+        return transposed_product(free_.Z, y);
     }
 
     /// The body that moves most, and the load that does most of the work.
-    Frequency name(double rate, const VectorXd& form) const
+    Frequency name(double rate, std::span<const double> form) const
     {
-        const VectorXd y = z_ * form;
+        const Values y = product(free_.Z, form);
         Frequency found{rate};
         double most = 0;
         for (int b = 0; b < tables_.n_bodies(); ++b) {
-            if (part(y, b).squaredNorm() <= most) continue;
-            most = part(y, b).squaredNorm();
+            if (squared_norm(part(y, b)) <= most) continue;
+            most = squared_norm(part(y, b));
             found.body = b;
         }
-        std::vector<double> work(tables_.model->loads().size(), 0.0);
+        Values work(tables_.model->loads().size(), 0.0);
         for (const TwistTerm& t : terms_) {
-            const Eigen::Map<const Eigen::Matrix<double, 6, 6>> K(t.K.data());
-            const int m = tables_.bodies[t.i].dofs, n = tables_.bodies[t.j].dofs;
-            work[t.source] += part(y, t.i).dot(K.topLeftCorner(m, n) * part(y, t.j));
+            const Matrix<6, 1> Ky = times(t.K, part(y, t.j));
+            work[t.source] += dot(part(y, t.i), std::span(Ky.a).first(tables_.bodies[t.i].dofs));
         }
         const auto hardest = std::max_element(work.begin(), work.end());
         found.name = "load '" + tables_.model->loads()[hardest - work.begin()].name + "'";
@@ -102,21 +102,11 @@ public:
     }
 
 private:
-    MatrixXd symmetric(const TwistTerms& terms) const
-    {
-        const std::vector<double> K = free_.reduced(tables_, terms);
-        const Eigen::Map<const MatrixXd> reduced(K.data(), free_.n, free_.n);
-        return 0.5 * (reduced + reduced.transpose());
-    }
+    DenseView columns(int b) const { return {12, tables_.bodies[b].dofs, forms_.columns()[b].data()}; }
 
-    Eigen::Map<const Eigen::Matrix<double, 12, Eigen::Dynamic>> columns(int b) const
+    std::span<const double> part(const Values& y, int b) const
     {
-        return {forms_.columns()[b].data(), 12, tables_.bodies[b].dofs};
-    }
-
-    VectorXd part(const VectorXd& y, int b) const
-    {
-        return y.segment(tables_.bodies[b].first, tables_.bodies[b].dofs);
+        return std::span(y).subspan(tables_.bodies[b].first, tables_.bodies[b].dofs);
     }
 
     const Tables& tables_;
@@ -124,22 +114,35 @@ private:
     SmallMotions forms_;
     FreeMotions free_;
     TwistTerms terms_;
-    MatrixXd z_, mass_, forms_of_all_;
-    VectorXd squares_;
+    DenseMatrix mass_;
+    SymmetricSpectrum all_;   // empty where there is none
 };
 
+/// |x| of nine numbers, added as four pairs and one.
+double norm_of_nine(const double* x)
+{
+    const auto square = [x](int i) { return x[i] * x[i]; };
+    return std::sqrt(((square(0) + square(2)) + (square(4) + square(6))) +
+                     ((square(1) + square(3)) + (square(5) + square(7))) + square(8));
+}
+
 /// A little further on with these velocities, and by which time; 0: nothing moves.
-std::pair<State, double> moved(const Model& model, State state, const VectorXd& V)
+std::pair<State, double> moved(const Model& model, State state, const Values& V)
 {
     double rate = 0;
     for (int b = 0; b < model.n_bodies(); ++b)
-        rate =
-            std::max({rate, V.segment<3>(12 * b).norm() / model.length(), V.segment<9>(12 * b + 3).norm()});
+        rate = std::max({rate, norm(std::span(V).subspan(12 * b, 3)) / model.length(),
+                         norm_of_nine(V.data() + 12 * b + 3)});
     if (rate == 0) return {std::move(state), 0};
     const double time = small_turn / rate;
     for (int b = 0; b < model.n_bodies(); ++b)
-        for (int i = 0; i < 12; ++i) state.X[b].a[i] += time * V(12 * b + i);
+        for (int i = 0; i < 12; ++i) state.X[b].a[i] += time * V[12 * b + i];
     return {std::move(state), time};
+}
+
+int n_below(const Values& ascending, double bound)
+{
+    return static_cast<int>(std::ranges::lower_bound(ascending, bound) - ascending.begin());
 }
 
 }   // namespace
@@ -151,22 +154,21 @@ std::vector<TurningVibration> turning_vibrations(const Model& model, const State
     if (!now.is_fit) return {};
     const Springs springs(now);
     if (springs.is_empty()) return {};
-    const VectorXd& squares = springs.squares();
-    const auto n_slow = std::lower_bound(squares.begin(), squares.end(), slowest * slowest) - squares.begin();
-    const VectorXd V = springs.moved(springs.slow_part(springs.velocity(), n_slow));
+    const Values& squares = springs.squares();
+    const int n_slow = n_below(squares, slowest * slowest), n = static_cast<int>(squares.size());
+    const Values V = springs.moved(springs.slow_part(springs.velocity(), n_slow));
     const auto [then, time] = moved(model, state, V);
     const PreparedState soon(model, then, Side::right, true);
-    if (n_slow == squares.size() || !(time > 0) || !soon.is_fit) return {};
+    if (n_slow == n || !(time > 0) || !soon.is_fit) return {};
     const Springs later(soon);
     std::vector<TurningVibration> found;
-    for (auto i = n_slow; i < squares.size(); ++i) {
-        const VectorXd form = springs.form(i), q = later.form_of(springs.moved(form));
-        const auto softer =
-            std::lower_bound(later.squares().begin(), later.squares().end(), much_softer * squares(i)) -
-            later.squares().begin();
-        const VectorXd left = later.slow_part(q, softer);
-        const double turn = std::atan2(later.size(left), later.size(q - left));
-        found.push_back({springs.name(std::sqrt(squares(i)), form), turn / time});
+    for (int i = n_slow; i < n; ++i) {
+        const Values q = later.form_of(springs.moved(springs.form(i)));
+        const Values left = later.slow_part(q, n_below(later.squares(), much_softer * squares[i]));
+        Values stays = q;
+        add_scaled(stays, -1, left);
+        const double turn = std::atan2(later.size(left), later.size(stays));
+        found.push_back({springs.name(std::sqrt(squares[i]), springs.form(i)), turn / time});
     }
     return found;
 }

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Dense>
-
+#include "livens/solvers/factors.h"
+#include "livens/solvers/spectral.h"
 #include "livens/statics/linearisation.h"
 
 namespace livens {
@@ -12,15 +12,12 @@ namespace livens {
 namespace {
 
 using Complex = std::complex<double>;
-using Eigen::MatrixXcd;
-using Eigen::MatrixXd;
-using Eigen::VectorXcd;
-using Eigen::VectorXd;
-using ByRows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+using Shape = std::vector<Complex>;
 
-MatrixXd square(const Linearisation& linear, const std::vector<double>& A)
+/// Of entries row by row.
+DenseMatrix square(const Linearisation& linear, const std::vector<double>& A)
 {
-    return Eigen::Map<const ByRows>(A.data(), linear.n, linear.n);
+    return transpose({linear.n, linear.n, A.data()});
 }
 
 bool is_undamped(const Linearisation& linear)
@@ -28,63 +25,59 @@ bool is_undamped(const Linearisation& linear)
     return std::ranges::all_of(linear.C, [&](double c) { return std::abs(c) <= linear.damping_rounding; });
 }
 
-/// Roots of the upper half plane, each with its shape in q.
-struct Roots {
-    VectorXcd s;
-    MatrixXcd q;
+/// A root of the upper half plane and its shape in q.
+struct Root {
+    Complex s;
+    Shape q;
 };
+using Roots = std::vector<Root>;
 
 /// Of a symmetric K without damping: s^2 = -k, of which one root stands for both.
 Roots undamped_roots(const Linearisation& linear)
 {
-    const MatrixXd K = square(linear, linear.K);
-    const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> solver(0.5 * (K + K.transpose()),
-                                                                    square(linear, linear.M));
-    Roots roots{VectorXcd(linear.n), solver.eigenvectors().cast<Complex>()};
+    const SymmetricSpectrum spectrum =
+        generalised_spectrum(symmetric_part(square(linear, linear.K)), square(linear, linear.M));
+    Roots roots;
     for (int i = 0; i < linear.n; ++i) {
-        const double k = solver.eigenvalues()(i);
-        roots.s(i) = std::abs(k) <= linear.rounding ? Complex{}
-                     : k > 0                        ? Complex{0, std::sqrt(k)}
-                                                    : Complex{std::sqrt(-k), 0};
+        const double k = spectrum.values[i];
+        const Complex s = std::abs(k) <= linear.rounding ? Complex{}
+                          : k > 0                        ? Complex{0, std::sqrt(k)}
+                                                         : Complex{std::sqrt(-k), 0};
+        const auto q = spectrum.vectors.column(i);
+        roots.push_back({s, {q.begin(), q.end()}});
     }
     return roots;
 }
 
 /// Directions that nothing restores: K q = 0.
-MatrixXd idle_directions(const Linearisation& linear)
+DenseMatrix idle_directions(const Linearisation& linear)
 {
-    const Eigen::JacobiSVD<MatrixXd> svd(square(linear, linear.K), Eigen::ComputeFullV);
-    const auto n_idle = (svd.singularValues().array() <= linear.rounding).count();
-    return svd.matrixV().rightCols(n_idle);
+    return null_directions(square(linear, linear.K), linear.rounding);
 }
 
 /// Of all else. Roots that are zero are told by K: rounding parts those that come twice.
 Roots general_roots(const Linearisation& linear)
 {
     const int n = linear.n;
-    const MatrixXd mass = square(linear, linear.M);
-    const Eigen::LLT<MatrixXd> M(mass);
-    const MatrixXd K = M.solve(square(linear, linear.K)), C = M.solve(square(linear, linear.C));
-    const double largest = std::max(std::sqrt(K.cwiseAbs().maxCoeff()), C.cwiseAbs().maxCoeff()),
+    const DenseMatrix L = cholesky(square(linear, linear.M)),
+                      K = cholesky_solution(L, square(linear, linear.K)),
+                      C = cholesky_solution(L, square(linear, linear.C));
+    const double largest = std::max(std::sqrt(largest_size(K.a)), largest_size(C.a)),
                  unit = largest > 0 ? largest : 1;
-    MatrixXd A = MatrixXd::Zero(2 * n, 2 * n);   // on (unit q, q'), whose entries are of one size
-    A.topRightCorner(n, n).diagonal().setConstant(unit);
-    A.bottomLeftCorner(n, n) = -K / unit;
-    A.bottomRightCorner(n, n) = -C;
-    const Eigen::EigenSolver<MatrixXd> solver(A);
-    VectorXcd s = solver.eigenvalues();
-    const MatrixXd idle = idle_directions(linear);
-    std::vector<int> kept;
-    for (int i = 0; i < 2 * n; ++i) {
-        if (s(i).imag() >= 0 && std::norm(s(i)) > linear.rounding) kept.push_back(i);
-        if (std::abs(s(i).real()) <= 1e-13 * unit) s(i).real(0);
+    DenseMatrix A(2 * n, 2 * n);   // on (unit q, q'), whose entries are of one size
+    for (int j = 0; j < n; ++j) {
+        A(j, n + j) = unit;
+        for (int i = 0; i < n; ++i) A(n + i, j) = -K(i, j) / unit, A(n + i, n + j) = -C(i, j);
     }
-    const auto n_kept = static_cast<Eigen::Index>(kept.size());
-    Roots roots{VectorXcd::Zero(idle.cols() + n_kept), MatrixXcd(n, idle.cols() + n_kept)};
-    roots.q.leftCols(idle.cols()) = idle.cast<Complex>();
-    for (Eigen::Index i = 0; i < n_kept; ++i) {
-        roots.s(idle.cols() + i) = s(kept[static_cast<std::size_t>(i)]);
-        roots.q.col(idle.cols() + i) = solver.eigenvectors().col(kept[static_cast<std::size_t>(i)]).head(n);
+    const GeneralSpectrum spectrum = general_spectrum(A);
+    const DenseMatrix idle = idle_directions(linear);
+    Roots roots;
+    for (int k = 0; k < idle.cols; ++k) roots.push_back({{}, {idle.column(k).begin(), idle.column(k).end()}});
+    for (int i = 0; i < 2 * n; ++i) {
+        Complex s = spectrum.values[i];
+        if (!(s.imag() >= 0 && std::norm(s) > linear.rounding)) continue;
+        if (std::abs(s.real()) <= 1e-13 * unit) s.real(0);
+        roots.push_back({s, {spectrum.vectors[i].begin(), spectrum.vectors[i].begin() + n}});
     }
     return roots;
 }
@@ -95,21 +88,32 @@ Roots roots_of(const Linearisation& linear)
 }
 
 /// Turns and scales the displacements of all bodies as VibrationMode says.
-void normalise(VectorXcd& twists, double length)
+void normalise(Shape& twists, double length)
 {
     double largest = 0;
-    Eigen::Index first = 0;
-    for (Eigen::Index i = 0; i < twists.size(); i += 3) {
-        const double size = twists.segment(i, 3).norm() / (i % 6 == 0 ? length : 1);
+    std::size_t first = 0;
+    for (std::size_t i = 0; i < twists.size(); i += 3) {
+        const double squares = std::norm(twists[i]) + std::norm(twists[i + 1]) + std::norm(twists[i + 2]),
+                     size = std::sqrt(squares) / (i % 6 == 0 ? length : 1);
         if (!(size > largest * (1 + 1e-9))) continue;   // of equal ones the first, whatever rounding says
         largest = size;
         first = i;
     }
     if (largest == 0) return;
-    Eigen::Index most = first;
-    for (Eigen::Index i = first; i < first + 3; ++i)
-        if (std::abs(twists(i)) > std::abs(twists(most)) * (1 + 1e-9)) most = i;
-    twists *= std::conj(twists(most)) / (std::abs(twists(most)) * largest);
+    std::size_t most = first;
+    for (std::size_t i = first; i < first + 3; ++i)
+        if (std::abs(twists[i]) > std::abs(twists[most]) * (1 + 1e-9)) most = i;
+    const Complex factor = std::conj(twists[most]) / (std::abs(twists[most]) * largest);
+    for (Complex& entry : twists) entry *= factor;
+}
+
+/// The displacements and rotations of all bodies, row by row in `twists`.
+Shape moved(const Linearisation& linear, const Shape& q)
+{
+    Shape all(6 * linear.state.X.size());
+    for (std::size_t i = 0; i < all.size(); ++i)
+        for (std::size_t k = 0; k < q.size(); ++k) all[i] += linear.twists[i * q.size() + k] * q[k];
+    return all;
 }
 
 }   // namespace
@@ -118,18 +122,14 @@ std::vector<VibrationMode> vibration_modes(const Linearisation& linear)
 {
     std::vector<VibrationMode> modes;
     if (linear.n == 0) return modes;
-    const Roots roots = roots_of(linear);
     const auto n_bodies = linear.state.X.size();
-    const Eigen::Map<const ByRows> twists(linear.twists.data(), static_cast<Eigen::Index>(6 * n_bodies),
-                                          linear.n);
-    for (Eigen::Index i = 0; i < roots.s.size(); ++i) {
-        VectorXcd moved = twists * roots.q.col(i);
-        normalise(moved, linear.length);
-        VibrationMode mode{roots.s(i), std::vector<BodyShape>(n_bodies)};
+    for (const Root& root : roots_of(linear)) {
+        Shape shape = moved(linear, root.q);
+        normalise(shape, linear.length);
+        VibrationMode mode{root.s, std::vector<BodyShape>(n_bodies)};
         for (std::size_t b = 0; b < n_bodies; ++b) {
-            const auto first = static_cast<Eigen::Index>(6 * b);
-            std::copy_n(moved.data() + first, 3, mode.bodies[b].displacement.begin());
-            std::copy_n(moved.data() + first + 3, 3, mode.bodies[b].rotation.begin());
+            std::copy_n(shape.data() + 6 * b, 3, mode.bodies[b].displacement.begin());
+            std::copy_n(shape.data() + 6 * b + 3, 3, mode.bodies[b].rotation.begin());
         }
         modes.push_back(std::move(mode));
     }
@@ -154,19 +154,18 @@ StabilityReport stability(const Linearisation& linear)
     StabilityReport report;
     if (linear.n == 0) return report;
     if (linear.is_conservative) {
-        const MatrixXd K = square(linear, linear.K);
-        const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> solver(
-            0.5 * (K + K.transpose()), square(linear, linear.M), Eigen::EigenvaluesOnly);
-        for (const double k : solver.eigenvalues()) {
+        for (const double k :
+             generalised_values(symmetric_part(square(linear, linear.K)), square(linear, linear.M))) {
             report.n_unstable += k < -linear.rounding;
             report.n_neutral += std::abs(k) <= linear.rounding;
         }
     } else {
         const Roots roots = general_roots(linear);
-        const double largest = roots.s.cwiseAbs().maxCoeff();
-        for (const Complex& s : roots.s)   // a pair grows in two directions
+        double largest = 0;
+        for (const Root& root : roots) largest = std::max(largest, std::abs(root.s));
+        for (const auto& [s, q] : roots)   // a pair grows in two directions
             report.n_unstable += s.real() > 1e-10 * largest ? (s.imag() > 0 ? 2 : 1) : 0;
-        report.n_neutral = static_cast<int>(idle_directions(linear).cols());
+        report.n_neutral = idle_directions(linear).cols;
     }
     report.stability = report.n_unstable > 0  ? Stability::unstable
                        : report.n_neutral > 0 ? Stability::neutral

@@ -3,14 +3,16 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string>
-
-#include <Eigen/Dense>
-#include <Eigen/SparseLU>
+#include <utility>
+#include <vector>
 
 #include "livens/base/error.h"
 #include "livens/base/text.h"
 #include "livens/multibody/mass_properties.h"
+#include "livens/solvers/factors.h"
+#include "livens/solvers/sparse_rows.h"
 #include "livens/stepping/step_equations.h"
 #include "livens/stepping/stepping.h"
 
@@ -24,54 +26,41 @@ using System = StepEquations::System;
 /// the choice of pivots does not depend on the units.
 class LinearSolver {
 public:
-    explicit LinearSolver(int size) : size_(size) {}
+    explicit LinearSolver(int size) : size_(static_cast<std::size_t>(size)) {}
 
     bool solve(const System& system, std::vector<double>& solution)
     {
-        Eigen::VectorXd largest = Eigen::VectorXd::Zero(size_);
-        for (const MatrixEntry& e : system.tangent)
+        std::vector<double> largest(size_, 0.0), rhs(size_);
+        for (const SparseEntry& e : system.tangent)
             largest[e.row] = std::max(largest[e.row], std::abs(e.value));
-        if (size_ > 0 && !(largest.minCoeff() > 0 && largest.allFinite())) return false;
-        const Eigen::VectorXd rhs =
-            Eigen::Map<const Eigen::VectorXd>(system.residual.data(), size_).cwiseQuotient(largest);
-        Eigen::VectorXd x;
-        if (!(size_ <= dense_until ? dense(system, largest, rhs, x) : sparse(system, largest, rhs, x)))
+        if (!std::ranges::all_of(largest, [](double size) { return size > 0 && std::isfinite(size); }))
             return false;
-        solution.assign(x.data(), x.data() + x.size());
-        return x.allFinite();
+        for (std::size_t i = 0; i < rhs.size(); ++i) rhs[i] = system.residual[i] / largest[i];
+        std::vector<SparseEntry> scaled = system.tangent;
+        for (SparseEntry& e : scaled) e.value /= largest[e.row];
+        auto x = rhs.size() <= dense_until ? dense(scaled, rhs) : sparse_solution(scaled, rhs);
+        if (!x) return false;
+        solution = std::move(*x);
+        return all_finite(solution);
     }
 
 private:
-    static constexpr int dense_until = 200;
+    static constexpr std::size_t dense_until = 200;
 
-    bool dense(const System& system, const Eigen::VectorXd& scale, const Eigen::VectorXd& rhs,
-               Eigen::VectorXd& x) const
+    std::optional<std::vector<double>> dense(const std::vector<SparseEntry>& entries,
+                                             const std::vector<double>& rhs) const
     {
-        Eigen::MatrixXd A = Eigen::MatrixXd::Zero(size_, size_);
-        for (const MatrixEntry& e : system.tangent) A(e.row, e.column) += e.value / scale[e.row];
-        const Eigen::PartialPivLU<Eigen::MatrixXd> lu(A);
-        x = lu.solve(rhs);
-        const auto pivots = lu.matrixLU().diagonal().cwiseAbs();
-        return size_ == 0 ||
-               pivots.minCoeff() > std::numeric_limits<double>::epsilon() * 1e-3 * pivots.maxCoeff();
+        const int n = static_cast<int>(rhs.size());
+        DenseMatrix A(n, n);
+        for (const SparseEntry& e : entries) A(e.row, e.column) += e.value;
+        LUSolution solution = lu_solution(A, rhs);
+        if (!(solution.smallest_pivot >
+              std::numeric_limits<double>::epsilon() * 1e-3 * solution.largest_pivot))
+            return {};
+        return std::move(solution.x);
     }
 
-    bool sparse(const System& system, const Eigen::VectorXd& scale, const Eigen::VectorXd& rhs,
-                Eigen::VectorXd& x) const
-    {
-        std::vector<Eigen::Triplet<double>> entries;
-        entries.reserve(system.tangent.size());
-        for (const MatrixEntry& e : system.tangent)
-            entries.emplace_back(e.row, e.column, e.value / scale[e.row]);
-        Eigen::SparseMatrix<double> A(size_, size_);
-        A.setFromTriplets(entries.begin(), entries.end());
-        Eigen::SparseLU<Eigen::SparseMatrix<double>> lu(A);
-        if (lu.info() != Eigen::Success) return false;
-        x = lu.solve(rhs);
-        return true;
-    }
-
-    int size_;
+    std::size_t size_;
 };
 
 /// Below, a tolerance that rounding did not let be met deserves a word; the default is no promise of digits.

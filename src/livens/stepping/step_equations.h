@@ -7,16 +7,10 @@
 
 #include "livens/dynamics/start/closing.h"
 #include "livens/multibody/model.h"
+#include "livens/solvers/sparse_rows.h"
 #include "livens/stepping/stepping.h"
 
 namespace livens {
-
-/// One entry of a sparse matrix; entries of one place add up.
-struct MatrixEntry {
-    int row;
-    int column;
-    double value;
-};
 
 /// Where a step begins.
 struct StepStart {
@@ -48,7 +42,7 @@ public:
 
     struct System {
         std::vector<double> residual;
-        std::vector<MatrixEntry> tangent;
+        std::vector<SparseEntry> tangent;
         std::string not_finite;   ///< the load whose force or tangent is not finite; empty: none
     };
     System evaluate(const StepStart& start, const std::vector<double>& unknowns) const;

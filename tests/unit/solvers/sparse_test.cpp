@@ -2,21 +2,13 @@
 // Sparse factorisations: every backend of the build against dense ones and against its defining equations.
 #include <gtest/gtest.h>
 
-#ifdef __linux__
-#include <sys/resource.h>
-#include <sys/wait.h>
-#include <unistd.h>
-#endif
-
-#include <cstdlib>
-#include <fstream>
 #include <limits>
-#include <new>
 #include <numeric>
 #include <utility>
 
 #include "livens/base/error.h"
 #include "livens/solvers/sparse.h"
+#include "short_memory.h"
 #include "sparse_matrices.h"
 
 namespace livens {
@@ -331,56 +323,18 @@ TEST_P(EverySparseLU, SaysWhatItIsAndHowMuchItStores)
     EXPECT_GT(lu.factor_entries(), A.n_entries());
 }
 
-// Where address space can be bounded. Not under a sanitizer, which needs it for itself: GCC says that it is
-// there by a macro, Clang by a feature.
-#if defined(__SANITIZE_ADDRESS__)
-#define LIVENS_SANITIZED 1
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer)
-#define LIVENS_SANITIZED 1
-#endif
-#endif
-#if defined(__linux__) && !defined(LIVENS_SANITIZED)
-/// Ends the process: 0 if `n_bytes` more than it has now were enough, 1 if std::bad_alloc said that they were
-/// not.
-[[noreturn]] void factorise_with(const SparseMatrix& A, rlim_t n_bytes)
-{
-    long n_pages = 0;
-    std::ifstream("/proc/self/statm") >> n_pages;
-    rlimit unlimited{};
-    getrlimit(RLIMIT_AS, &unlimited);
-    const rlimit limit{.rlim_cur = static_cast<rlim_t>(n_pages * sysconf(_SC_PAGESIZE)) + n_bytes,
-                       .rlim_max = unlimited.rlim_max};
-    setrlimit(RLIMIT_AS, &limit);
-    SparseLU lu(SparseBackend::eigen);
-    try {
-        lu.analyse(A);
-        for (int i = 0; i < 2; ++i)
-            if (!lu.factorise(A)) std::_Exit(2);
-    } catch (const std::bad_alloc&) {
-        // Once more with memory: nothing was left in disorder.
-        setrlimit(RLIMIT_AS, &unlimited);
-        lu.analyse(A);
-        std::_Exit(lu.factorise(A) ? 1 : 2);
-    }
-    std::_Exit(0);
-}
-
+#ifdef LIVENS_SHORT_MEMORY
 TEST(SparseLUDeathTest, RunsOutOfMemoryByBadAllocAlone)
 {
     // Eigen as it comes frees its arrays twice in the middle of this range.
     const SparseMatrix A = sparse(random_matrix(500, 0.01, 98));
-    bool enough = false, too_little = false;
-    for (rlim_t megabytes : {1, 2, 3, 4, 6, 8, 12, 16, 64}) {
-        const auto by_exit = [&](int status) {
-            enough |= WIFEXITED(status) && WEXITSTATUS(status) == 0;
-            too_little |= WIFEXITED(status) && WEXITSTATUS(status) == 1;
-            return WIFEXITED(status) && WEXITSTATUS(status) < 2;
-        };
-        EXPECT_EXIT(factorise_with(A, megabytes << 20), by_exit, "") << megabytes << " MiB";
-    }
-    EXPECT_TRUE(enough);
-    EXPECT_TRUE(too_little);
+    SparseLU lu(SparseBackend::eigen);   // nothing is left in disorder
+    expect_bad_alloc_alone(
+        [&] {
+            lu.analyse(A);
+            return lu.factorise(A) && lu.factorise(A);
+        },
+        {1 << 10, 2 << 10, 3 << 10, 4 << 10, 6 << 10, 8 << 10, 12 << 10, 16 << 10, 64 << 10});
 }
 #endif
 

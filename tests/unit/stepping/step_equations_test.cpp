@@ -56,7 +56,7 @@ TEST_P(StepTangent, MatchesDifferences)
 
     const int n = equations.size();
     std::vector<double> tangent(n * n, 0.0);
-    for (const MatrixEntry& e : equations.evaluate(start, x).tangent)
+    for (const SparseEntry& e : equations.evaluate(start, x).tangent)
         tangent[e.row + n * e.column] += e.value;
     double largest = 0;
     for (int c = 0; c < n; ++c) {

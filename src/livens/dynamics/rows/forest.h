@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "livens/dynamics/rows/sparse_rows.h"
+#include "livens/solvers/sparse_rows.h"
 
 namespace livens {
 

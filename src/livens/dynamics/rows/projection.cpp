@@ -9,9 +9,9 @@
 
 #include "livens/dynamics/rows/rank.h"
 #include "livens/dynamics/rows/rows.h"
-#include "livens/dynamics/rows/sparse_rows.h"
 #include "livens/dynamics/rows/twist.h"
 #include "livens/solvers/dense.h"
+#include "livens/solvers/sparse_rows.h"
 
 namespace livens {
 

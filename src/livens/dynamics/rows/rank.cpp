@@ -9,18 +9,14 @@
 #include <numeric>
 #include <optional>
 
-#include <Eigen/Dense>
-
 #include "livens/dynamics/rows/forest.h"
-#include "livens/dynamics/rows/sparse_rows.h"
+#include "livens/solvers/factors.h"
+#include "livens/solvers/sparse_rows.h"
+#include "livens/solvers/spectral.h"
 
 namespace livens {
 
 namespace {
-
-using Eigen::Index;
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
 
 constexpr double eps = std::numeric_limits<double>::epsilon();
 
@@ -38,17 +34,14 @@ struct FreeAxis {
 void add_free_axes(int b, const Body& body, const Matrix34& X, std::vector<FreeAxis>& free)
 {
     const MassProperties known = mass_properties(body.mass);
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> J(
-        Eigen::Map<const Eigen::Matrix3d>(known.inertia.data()));
+    const PrincipalValues J = symmetric_spectrum(known.inertia);
     const double level = 16 * eps * (body.mass(1, 1) + body.mass(2, 2) + body.mass(3, 3));
-    const double gyration = std::sqrt(std::max(J.eigenvalues()[2], 0.0) / known.mass);
+    const double gyration = std::sqrt(std::max(J.values[2], 0.0) / known.mass);
     int n = 0;
-    while (n < 3 && J.eigenvalues()[n] <= level) ++n;
-    const double doubt = n < 3 ? level / J.eigenvalues()[n] : 0;
-    for (int k = 0; k < n; ++k) {
-        const Eigen::Vector3d a = J.eigenvectors().col(k);
-        free.push_back({b, X * direction({a[0], a[1], a[2]}), known.center_of_mass, gyration, doubt});
-    }
+    while (n < 3 && J.values[n] <= level) ++n;
+    const double doubt = n < 3 ? level / J.values[n] : 0;
+    for (int k = 0; k < n; ++k)
+        free.push_back({b, X * direction(J.vectors.column(k)), known.center_of_mass, gyration, doubt});
 }
 
 /// The moment of a row about the axis; zero if it is not above what is known.
@@ -61,21 +54,28 @@ double hold_of(const Wrench& w, const Matrix34& X, const FreeAxis& free)
     return std::abs(moment) > (1e-9 + free.doubt) * size + digits ? moment : 0;
 }
 
-/// Spins about the free axes that no row holds, a combination in each column.
-MatrixXd unheld_spins(std::span<const Matrix34> X, const RowWrenches& wrenches,
-                      const std::vector<FreeAxis>& free)
+void normalise_row(DenseMatrix& A, int row)
 {
-    MatrixXd H = MatrixXd::Zero(static_cast<Index>(std::max<std::size_t>(wrenches.size(), 1)),
-                                static_cast<Index>(free.size()));
-    for (std::size_t r = 0; r < wrenches.size(); ++r)
-        for (std::size_t k = 0; k < free.size(); ++k)
+    double largest = 0, square = 0;
+    for (int j = 0; j < A.cols; ++j) largest = std::max(largest, std::abs(A(row, j)));
+    for (int j = 0; j < A.cols; ++j) square += (A(row, j) / largest) * (A(row, j) / largest);
+    if (!(square > 0)) return;   // nan where all are zero
+    const double size = std::sqrt(square) * largest;
+    for (int j = 0; j < A.cols; ++j) A(row, j) /= size;
+}
+
+/// Spins about the free axes that no row holds, a combination in each column.
+DenseMatrix unheld_spins(std::span<const Matrix34> X, const RowWrenches& wrenches,
+                         const std::vector<FreeAxis>& free)
+{
+    const int n_rows = static_cast<int>(wrenches.size()), n_columns = static_cast<int>(free.size());
+    DenseMatrix H(std::max(n_rows, 1), n_columns);
+    for (int r = 0; r < n_rows; ++r)
+        for (int k = 0; k < n_columns; ++k)
             for (const Wrench& w : wrenches[r])
-                if (w.body == free[k].body)
-                    H(static_cast<Index>(r), static_cast<Index>(k)) += hold_of(w, X[w.body], free[k]);
-    for (auto row : H.rowwise()) row.stableNormalize();
-    Eigen::FullPivLU<MatrixXd> lu(H);
-    lu.setThreshold(1e-9);
-    return lu.dimensionOfKernel() > 0 ? MatrixXd(lu.kernel()) : MatrixXd(H.cols(), 0);
+                if (w.body == free[k].body) H(r, k) += hold_of(w, X[w.body], free[k]);
+    for (int r = 0; r < n_rows; ++r) normalise_row(H, r);
+    return null_space(H, 1e-9);
 }
 
 // --- rank
@@ -169,7 +169,7 @@ namespace {
 constexpr double well_held = 1e-3;
 
 /// Ties go to the row that comes first.
-double favour(Index row, Index n) { return 1 - 1e-3 * static_cast<double>(row) / static_cast<double>(n); }
+double favour(int row, int n) { return 1 - 1e-3 * static_cast<double>(row) / static_cast<double>(n); }
 
 /// Of rows of norm 1 those that depend on others, ascending, if all others are clearly independent: joint by
 /// joint along trees, and where loops close by what they add to that. Else nothing.
@@ -180,23 +180,23 @@ std::optional<std::vector<int>> clearly_dependent(const std::vector<BodyRow>& ro
     smallest_pivot = forest.smallest_pivot;
     std::vector<int> dependent;
     if (forest.closing.empty()) return dependent;
-    const Index n = 6 * n_bodies, n_closing = static_cast<Index>(forest.closing.size());
+    const int n_closing = static_cast<int>(forest.closing.size());
     const SparseRows held(static_cast<int>(forest.rows.size()), 6 * n_bodies, entries_of(rows, forest.rows));
     if (!(held.smallest_pivot() > SparseRows::well_held)) return {};
     const std::vector<double> nothing(forest.rows.size(), 0.0);
-    MatrixXd added = MatrixXd::Zero(n, n_closing);
+    DenseMatrix added(6 * n_bodies, n_closing);
     for (const auto& entry : entries_of(rows, forest.closing)) added(entry.column, entry.row) = entry.value;
-    for (Index k = 0; k < n_closing; ++k) {
-        held.project({added.col(k).data(), static_cast<std::size_t>(n)}, nothing);
-        added.col(k) *= favour(k, n_closing);
+    for (int k = 0; k < n_closing; ++k) {
+        held.project(added.column(k), nothing);
+        for (double& entry : added.column(k)) entry *= favour(k, n_closing);
     }
-    const Eigen::ColPivHouseholderQR<MatrixXd> qr(added);
-    for (Index k = 0; k < n_closing; ++k) {
-        const double pivot = k < n ? std::abs(qr.matrixQR()(k, k)) : 0;   // n directions are all there are
+    const PivotedQR qr(added);
+    for (int k = 0; k < n_closing; ++k) {
+        const double pivot = k < qr.n_pivots() ? qr.pivot(k) : 0;   // no more directions are there
         if (pivot > well_held)
             smallest_pivot = std::min(smallest_pivot, pivot);
         else if (pivot <= threshold)
-            dependent.push_back(forest.closing[qr.colsPermutation().indices()[k]]);
+            dependent.push_back(forest.closing[qr.column(k)]);
         else
             return {};
     }
@@ -216,17 +216,16 @@ std::vector<int> judge(const TwistRows& twists, int n_bodies, double threshold, 
     const auto clear = clearly_dependent(twists.rows, n_bodies, threshold, smallest_pivot);
     if (clear && fits(*clear)) return *clear;
     smallest_pivot = 1;
-    MatrixXd G = MatrixXd::Zero(6 * n_bodies, static_cast<Index>(twists.rows.size()));
-    for (Index r = 0; r < G.cols(); ++r)
+    DenseMatrix G(6 * n_bodies, static_cast<int>(twists.rows.size()));
+    for (int r = 0; r < G.cols; ++r)
         for (const auto& part : twists.rows[r].parts)
-            for (int i = 0; i < 6; ++i) G(6 * part.body + i, r) = favour(r, G.cols()) * part.entries[i];
-    const Eigen::ColPivHouseholderQR<MatrixXd> qr(G);
-    const VectorXd pivots = qr.matrixQR().diagonal().cwiseAbs();
-    Index k = 0;
-    while (k < pivots.size() && is_independent(k, pivots[k] / pivots[0])) ++k;
-    if (k > 0) smallest_pivot = pivots[k - 1] / pivots[0];
+            for (int i = 0; i < 6; ++i) G(6 * part.body + i, r) = favour(r, G.cols) * part.entries[i];
+    const PivotedQR qr(G);
+    int k = 0;
+    while (k < qr.n_pivots() && is_independent(k, qr.pivot(k) / qr.pivot(0))) ++k;
+    if (k > 0) smallest_pivot = qr.pivot(k - 1) / qr.pivot(0);
     std::vector<int> dependent;
-    for (; k < G.cols(); ++k) dependent.push_back(qr.colsPermutation().indices()[k]);
+    for (; k < G.cols; ++k) dependent.push_back(qr.column(k));
     std::ranges::sort(dependent);
     return dependent;
 }
@@ -255,7 +254,7 @@ RowRank row_rank(const TwistRows& twists, int n_bodies, std::span<const int> row
     part(rows,
          judge(
              twists, n_bodies, threshold, rank.smallest_pivot, [](const std::vector<int>&) { return true; },
-             [threshold](Index, double ratio) { return ratio > threshold; }),
+             [threshold](int, double ratio) { return ratio > threshold; }),
          rank);
     return rank;
 }
@@ -265,7 +264,7 @@ namespace {
 /// Chooses as many rows as `result` names, which does not hold well.
 void choose_again(const TwistRows& twists, int n_bodies, Dependencies& result)
 {
-    const Index n_independent = static_cast<Index>(result.independent.size());
+    const int n_independent = static_cast<int>(result.independent.size());
     std::vector<int> rows(twists.rows.size());
     std::iota(rows.begin(), rows.end(), 0);
     RowRank rank;
@@ -273,7 +272,7 @@ void choose_again(const TwistRows& twists, int n_bodies, Dependencies& result)
          judge(
              twists, n_bodies, std::max(1e-9, std::min(twists.doubt, 1e-4)), rank.smallest_pivot,
              [&](const std::vector<int>& dependent) { return dependent.size() == result.dependent.size(); },
-             [n_independent](Index k, double) { return k < n_independent; }),
+             [n_independent](int k, double) { return k < n_independent; }),
          rank);
     result.independent = std::move(rank.independent);
     result.dependent = std::move(rank.dependent);
@@ -296,20 +295,19 @@ Dependencies dependencies(const Model& model, std::span<const Matrix34> X, std::
         held = std::make_unique<SparseRows>(n_independent, n_columns,
                                             entries_of(twists.rows, result.independent));
     }
-    MatrixXd rest = MatrixXd::Zero(n_columns, static_cast<Index>(result.dependent.size()));
+    DenseMatrix rest(n_columns, static_cast<int>(result.dependent.size()));
     for (const auto& entry : entries_of(twists.rows, result.dependent))
         rest(entry.column, entry.row) = entry.value;
     if (held->smallest_pivot() > SparseRows::well_held) {
         const std::vector<double> nothing(result.independent.size(), 0.0);
-        for (auto column : rest.colwise())
-            result.factors.push_back(
-                held->project({column.data(), static_cast<std::size_t>(n_columns)}, nothing));
+        for (int k = 0; k < rest.cols; ++k) result.factors.push_back(held->project(rest.column(k), nothing));
     } else {
-        MatrixXd G = MatrixXd::Zero(n_columns, n_independent);
+        DenseMatrix G(n_columns, n_independent);
         for (const auto& entry : entries_of(twists.rows, result.independent))
             G(entry.column, entry.row) = entry.value;
-        const MatrixXd factors = Eigen::HouseholderQR<MatrixXd>(G).solve(rest);
-        for (const auto column : factors.colwise()) result.factors.emplace_back(column.begin(), column.end());
+        const DenseMatrix factors = least_squares(G, rest);
+        for (int k = 0; k < factors.cols; ++k)
+            result.factors.emplace_back(factors.column(k).begin(), factors.column(k).end());
     }
     for (std::size_t k = 0; k < result.dependent.size(); ++k)   // of rows as they are, not scaled to one
         for (std::size_t i = 0; i < result.independent.size(); ++i)
@@ -323,11 +321,11 @@ std::optional<WeightlessSpin> weightless_spin(const Model& model, std::span<cons
     for (int b = 0; b < model.n_bodies(); ++b)
         if (!model.bodies()[b].is_point) add_free_axes(b, model.bodies()[b], X[b], free);
     if (free.empty()) return {};
-    const MatrixXd spins = unheld_spins(X, row_wrenches(model, X), free);
-    if (spins.cols() == 0) return {};
+    const DenseMatrix spins = unheld_spins(X, row_wrenches(model, X), free);
+    if (spins.cols == 0) return {};
     std::vector<Vector3> w(X.size());
     for (std::size_t k = 0; k < free.size(); ++k)
-        w[free[k].body] += spins(static_cast<Index>(k), 0) * free[k].axis;
+        w[free[k].body] += spins(static_cast<int>(k), 0) * free[k].axis;
     const auto fastest = std::ranges::max_element(w, {}, [](const Vector3& v) { return norm(v); });
     WeightlessSpin spin;
     spin.body = static_cast<int>(fastest - w.begin());

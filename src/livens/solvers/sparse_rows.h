@@ -1,13 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Rows that each touch few columns, and solutions with G G^T by elimination: their cost grows with their
-// number where they hang together like the joints of a tree.
+// Sparse matrices by their entries. Rows that each touch few columns, and solutions with G G^T by
+// elimination: their cost grows with their number where they hang together like the joints of a tree. Square
+// matrices that are solved with once.
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
 namespace livens {
+
+/// Entries of the same place are added.
+struct SparseEntry {
+    int row, column;
+    double value;
+};
 
 /// The rows of a sparse matrix G and a Cholesky factor of G G^T.
 class SparseRows {
@@ -15,11 +23,7 @@ public:
     /// The smallest pivot at which project() comes to rounding.
     static constexpr double well_held = 1e-5;
 
-    struct Entry {
-        int row, column;
-        double value;
-    };
-    /// Entries of the same place are added.
+    using Entry = SparseEntry;
     SparseRows(int n_rows, int n_columns, std::span<const Entry> entries);
     ~SparseRows();
     SparseRows(const SparseRows&) = delete;
@@ -37,5 +41,10 @@ private:
     std::unique_ptr<Matrices> matrices_;
     double smallest_pivot_ = 0;
 };
+
+/// A^-1 b of a square matrix, by LU with exchanges of rows for the size of pivots and of columns for sparse
+/// factors. Nothing where A is singular to the library or not
+/// finite. Throws std::bad_alloc alone.
+std::optional<std::vector<double>> sparse_solution(std::span<const SparseEntry> A, std::span<const double> b);
 
 }   // namespace livens

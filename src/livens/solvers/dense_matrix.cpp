@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "livens/solvers/dense_matrix.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+#include <Eigen/Core>
+
+namespace livens {
+
+namespace {
+
+/// The same entries in Eigen's eyes.
+Eigen::Map<const Eigen::MatrixXd> seen(DenseView A) { return {A.a, A.rows, A.cols}; }
+Eigen::Map<Eigen::MatrixXd> seen(DenseMatrix& A) { return {A.a.data(), A.rows, A.cols}; }
+Eigen::Map<const Eigen::VectorXd> seen(std::span<const double> x)
+{
+    return {x.data(), static_cast<Eigen::Index>(x.size())};
+}
+Eigen::Map<Eigen::VectorXd> seen(std::vector<double>& x)
+{
+    return {x.data(), static_cast<Eigen::Index>(x.size())};
+}
+
+}   // namespace
+
+DenseMatrix::DenseMatrix(int n_rows, int n_columns)
+    : rows(n_rows), cols(n_columns), a(static_cast<std::size_t>(rows) * static_cast<std::size_t>(cols), 0.0)
+{}
+
+DenseMatrix::DenseMatrix(DenseView from)
+    : rows(from.rows), cols(from.cols), a(from.entries().begin(), from.entries().end())
+{}
+
+void DenseMatrix::append_column(std::span<const double> entries)
+{
+    if (cols == 0) rows = static_cast<int>(entries.size());
+    assert(static_cast<int>(entries.size()) == rows);
+    a.insert(a.end(), entries.begin(), entries.end());
+    ++cols;
+}
+
+DenseMatrix DenseMatrix::middle_rows(int first, int n) const
+{
+    assert(first >= 0 && first + n <= rows);
+    DenseMatrix part(n, cols);
+    for (int j = 0; j < cols; ++j) std::copy_n(column(j).data() + first, n, part.column(j).data());
+    return part;
+}
+
+void DenseMatrix::set_rows(int first, DenseView from)
+{
+    assert(first >= 0 && first + from.rows <= rows && from.cols == cols);
+    for (int j = 0; j < cols; ++j) std::ranges::copy(from.column(j), column(j).data() + first);
+}
+
+DenseMatrix transpose(DenseView A)
+{
+    DenseMatrix T(A.cols, A.rows);
+    for (int j = 0; j < A.cols; ++j)
+        for (int i = 0; i < A.rows; ++i) T(j, i) = A(i, j);
+    return T;
+}
+
+namespace {
+
+DenseMatrix half_with_transposed(DenseView A, double sign)
+{
+    assert(A.rows == A.cols);
+    DenseMatrix S(A.rows, A.cols);
+    for (int j = 0; j < A.cols; ++j)
+        for (int i = 0; i < A.rows; ++i) S(i, j) = 0.5 * (A(i, j) + sign * A(j, i));
+    return S;
+}
+
+}   // namespace
+
+DenseMatrix symmetric_part(DenseView A) { return half_with_transposed(A, 1); }
+DenseMatrix skew_part(DenseView A) { return half_with_transposed(A, -1); }
+
+DenseMatrix product(DenseView A, DenseView B)
+{
+    assert(A.cols == B.rows);
+    DenseMatrix C(A.rows, B.cols);
+    seen(C).noalias() = seen(A) * seen(B);
+    return C;
+}
+
+DenseMatrix transposed_product(DenseView A, DenseView B)
+{
+    assert(A.rows == B.rows);
+    DenseMatrix C(A.cols, B.cols);
+    seen(C).noalias() = seen(A).transpose() * seen(B);
+    return C;
+}
+
+std::vector<double> product(DenseView A, std::span<const double> x)
+{
+    assert(A.cols == static_cast<int>(x.size()));
+    std::vector<double> y(static_cast<std::size_t>(A.rows), 0.0);
+    seen(y).noalias() = seen(A) * seen(x);
+    return y;
+}
+
+std::vector<double> transposed_product(DenseView A, std::span<const double> x)
+{
+    assert(A.rows == static_cast<int>(x.size()));
+    std::vector<double> y(static_cast<std::size_t>(A.cols), 0.0);
+    seen(y).noalias() = seen(A).transpose() * seen(x);
+    return y;
+}
+
+namespace {
+
+template <int R, int C>
+Eigen::Map<const Eigen::Matrix<double, R, C>> seen(const Matrix<R, C>& A)
+{
+    return Eigen::Map<const Eigen::Matrix<double, R, C>>(A.data());
+}
+Eigen::Map<Eigen::Matrix<double, 6, 6>> seen(Matrix<6, 6>& A)
+{
+    return Eigen::Map<Eigen::Matrix<double, 6, 6>>(A.data());
+}
+
+}   // namespace
+
+Matrix<6, 6> congruence(double factor, const Matrix<12, 6>& A, const Matrix<12, 12>& K,
+                        const Matrix<12, 6>& B)
+{
+    Matrix<6, 6> C;
+    seen(C) = factor * seen(A).transpose() * seen(K) * seen(B);
+    return C;
+}
+
+Matrix<6, 6> congruence(const Matrix<6, 6>& A, const Matrix<6, 6>& K)
+{
+    Matrix<6, 6> C;
+    seen(C) = seen(A).transpose() * seen(K) * seen(A);
+    return C;
+}
+
+double dot(std::span<const double> x, std::span<const double> y)
+{
+    assert(x.size() == y.size());
+    return seen(x).dot(seen(y));
+}
+
+double norm(std::span<const double> x) { return seen(x).norm(); }
+
+double squared_norm(std::span<const double> x) { return seen(x).squaredNorm(); }
+
+std::vector<double> row_norms(DenseView A)
+{
+    std::vector<double> norms(static_cast<std::size_t>(A.rows), 0.0);
+    if (A.cols > 0) seen(norms) = seen(A).rowwise().norm();
+    return norms;
+}
+
+double largest_size(std::span<const double> x)
+{
+    double largest = 0;
+    for (const double entry : x) {
+        if (std::isnan(entry)) return entry;
+        largest = std::max(largest, std::abs(entry));
+    }
+    return largest;
+}
+
+bool all_finite(std::span<const double> x)
+{
+    return std::ranges::all_of(x, [](double entry) { return std::isfinite(entry); });
+}
+
+void add_scaled(std::span<double> y, double factor, std::span<const double> x)
+{
+    assert(x.size() == y.size());
+    for (std::size_t i = 0; i < y.size(); ++i) y[i] += factor * x[i];
+}
+
+}   // namespace livens

@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "livens/solvers/factors.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include <Eigen/Dense>
+
+namespace livens {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+Eigen::Map<const MatrixXd> seen(DenseView A) { return {A.a, A.rows, A.cols}; }
+Eigen::Map<const VectorXd> seen(std::span<const double> x)
+{
+    return {x.data(), static_cast<Index>(x.size())};
+}
+
+DenseMatrix stored(const MatrixXd& A)
+{
+    return DenseMatrix({static_cast<int>(A.rows()), static_cast<int>(A.cols()), A.data()});
+}
+std::vector<double> values_of(const VectorXd& x) { return {x.begin(), x.end()}; }
+
+bool all_finite(DenseView A) { return livens::all_finite(A.entries()); }
+
+DenseMatrix all_nan(int rows, int cols)
+{
+    DenseMatrix A(rows, cols);
+    std::ranges::fill(A.a, nan);
+    return A;
+}
+
+/// Q applied to the columns first, first + 1, .. of the identity.
+template <typename QR>
+DenseMatrix columns_of_Q(const QR& qr, Index first, Index n)
+{
+    MatrixXd Q = MatrixXd::Identity(qr.rows(), first + n).rightCols(n);
+    if (Q.size() > 0) Q.applyOnTheLeft(qr.householderQ());   // Eigen would step into what has no memory
+    return stored(Q);
+}
+
+}   // namespace
+
+struct PivotedQR::Factors {
+    int rows, cols;
+    std::optional<Eigen::ColPivHouseholderQR<MatrixXd>> qr;   // not of what is empty or not finite
+};
+
+PivotedQR::PivotedQR(DenseView A) : factors_(std::make_unique<Factors>(A.rows, A.cols, std::nullopt))
+{
+    if (A.rows > 0 && A.cols > 0 && all_finite(A)) factors_->qr.emplace(seen(A));
+}
+
+PivotedQR::~PivotedQR() = default;
+
+int PivotedQR::n_pivots() const { return std::min(factors_->rows, factors_->cols); }
+
+double PivotedQR::pivot(int k) const
+{
+    assert(k >= 0 && k < n_pivots());
+    return factors_->qr ? std::abs(factors_->qr->matrixQR()(k, k)) : nan;
+}
+
+int PivotedQR::column(int k) const
+{
+    assert(k >= 0 && k < factors_->cols);
+    return factors_->qr ? factors_->qr->colsPermutation().indices()[k] : k;
+}
+
+DenseMatrix PivotedQR::basis(int first, int n) const
+{
+    assert(first >= 0 && n >= 0 && first + n <= factors_->rows);
+    if (factors_->qr) return columns_of_Q(*factors_->qr, first, n);
+    if (factors_->cols > 0) return all_nan(factors_->rows, n);
+    DenseMatrix of_nothing(factors_->rows, n);
+    for (int k = 0; k < n; ++k) of_nothing(first + k, k) = 1;
+    return of_nothing;
+}
+
+std::vector<double> PivotedQR::solve(std::span<const double> b) const
+{
+    assert(static_cast<int>(b.size()) == factors_->rows);
+    const bool is_zero = n_pivots() == 0 || pivot(0) == 0;
+    if (is_zero || !factors_->qr || !livens::all_finite(b))
+        return std::vector<double>(static_cast<std::size_t>(factors_->cols), is_zero ? 0 : nan);
+    return values_of(factors_->qr->solve(VectorXd(seen(b))));
+}
+
+DenseMatrix orthonormal_columns(DenseView A)
+{
+    assert(A.rows >= A.cols);
+    if (A.cols == 0) return {A.rows, 0};
+    if (!all_finite(A)) return all_nan(A.rows, A.cols);
+    const Eigen::HouseholderQR<MatrixXd> qr(seen(A));
+    return stored(qr.householderQ() * MatrixXd::Identity(A.rows, A.cols));
+}
+
+DenseMatrix upper_factor(DenseView A)
+{
+    assert(A.rows >= A.cols);
+    if (A.cols == 0) return {};
+    if (!all_finite(A)) return all_nan(A.cols, A.cols);
+    const Eigen::HouseholderQR<MatrixXd> qr(seen(A));
+    return stored(qr.matrixQR().topRows(A.cols).triangularView<Eigen::Upper>());
+}
+
+DenseMatrix least_squares(DenseView A, DenseView B)
+{
+    assert(A.rows == B.rows && A.rows >= A.cols);
+    if (A.cols == 0 || B.cols == 0) return {A.cols, B.cols};
+    if (!all_finite(A) || !all_finite(B)) return all_nan(A.cols, B.cols);
+    return stored(Eigen::HouseholderQR<MatrixXd>(seen(A)).solve(MatrixXd(seen(B))));
+}
+
+DenseMatrix upper_solution(DenseView R, DenseView B)
+{
+    assert(R.rows == R.cols && R.rows == B.rows);
+    if (R.rows == 0 || B.cols == 0) return {R.rows, B.cols};
+    return stored(seen(R).triangularView<Eigen::Upper>().solve(MatrixXd(seen(B))));
+}
+
+std::vector<double> upper_solution(DenseView R, std::span<const double> b)
+{
+    assert(R.rows == R.cols && R.rows == static_cast<int>(b.size()));
+    if (R.rows == 0) return {};
+    return values_of(seen(R).triangularView<Eigen::Upper>().solve(VectorXd(seen(b))));
+}
+
+DenseMatrix null_space(DenseView A, double threshold)
+{
+    if (A.cols == 0 || !all_finite(A)) return {A.cols, 0};
+    if (A.rows == 0) return stored(MatrixXd::Identity(A.cols, A.cols));
+    Eigen::FullPivLU<MatrixXd> lu(seen(A));
+    lu.setThreshold(threshold);
+    if (lu.dimensionOfKernel() == 0) return {A.cols, 0};
+    return stored(lu.kernel());
+}
+
+DenseMatrix cholesky(DenseView A)
+{
+    assert(A.rows == A.cols);
+    if (A.rows == 0) return {};
+    if (!all_finite(A)) return all_nan(A.rows, A.cols);
+    const Eigen::LLT<MatrixXd> factor(seen(A));
+    if (factor.info() != Eigen::Success) return all_nan(A.rows, A.cols);
+    return stored(factor.matrixL());
+}
+
+DenseMatrix cholesky_solution(DenseView L, DenseView B)
+{
+    assert(L.rows == L.cols && L.rows == B.rows);
+    MatrixXd X = seen(B);
+    seen(L).triangularView<Eigen::Lower>().solveInPlace(X);
+    seen(L).adjoint().triangularView<Eigen::Upper>().solveInPlace(X);
+    return stored(X);
+}
+
+std::vector<double> cholesky_solution(DenseView L, std::span<const double> b)
+{
+    assert(L.rows == L.cols && L.rows == static_cast<int>(b.size()));
+    VectorXd x = seen(b);
+    seen(L).triangularView<Eigen::Lower>().solveInPlace(x);
+    seen(L).adjoint().triangularView<Eigen::Upper>().solveInPlace(x);
+    return values_of(x);
+}
+
+Matrix4 inverse_of_positive(const Matrix4& A)
+{
+    Matrix4 inverse;
+    std::ranges::fill(inverse.a, nan);
+    if (!livens::all_finite(A.a)) return inverse;
+    const Eigen::Matrix4d copy = Eigen::Map<const Eigen::Matrix4d>(A.data());
+    const Eigen::LLT<Eigen::Matrix4d> factor(copy);
+    if (factor.info() != Eigen::Success) return inverse;
+    Eigen::Map<Eigen::Matrix4d>(inverse.data()) = factor.solve(Eigen::Matrix4d::Identity());
+    return inverse;
+}
+
+LUSolution lu_solution(DenseView A, std::span<const double> b)
+{
+    assert(A.rows == A.cols && A.rows == static_cast<int>(b.size()));
+    if (A.rows == 0) return {};
+    if (!all_finite(A) || !livens::all_finite(b)) return {std::vector<double>(b.size(), nan), nan, nan};
+    const Eigen::PartialPivLU<MatrixXd> lu(seen(A));
+    const VectorXd pivots = lu.matrixLU().diagonal().cwiseAbs();
+    return {values_of(lu.solve(VectorXd(seen(b)))), pivots.minCoeff(), pivots.maxCoeff()};
+}
+
+}   // namespace livens

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "livens/solvers/spectral.h"
+
+#include <algorithm>
+#include <cassert>
+#include <limits>
+
+#include <Eigen/Dense>
+
+#include "livens/solvers/factors.h"
+
+namespace livens {
+
+namespace {
+
+using Eigen::MatrixXd;
+using Map3 = Eigen::Map<const Eigen::Matrix3d>;
+using Symmetric = Eigen::SelfAdjointEigenSolver<MatrixXd>;
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+Eigen::Map<const MatrixXd> seen(DenseView A) { return {A.a, A.rows, A.cols}; }
+Eigen::Map<const Eigen::VectorXd> seen(std::span<const double> x)
+{
+    return {x.data(), static_cast<Eigen::Index>(x.size())};
+}
+
+DenseMatrix stored(const MatrixXd& A)
+{
+    return DenseMatrix({static_cast<int>(A.rows()), static_cast<int>(A.cols()), A.data()});
+}
+
+template <int N>
+Matrix<N, 1> all_nan()
+{
+    Matrix<N, 1> values;
+    std::ranges::fill(values.a, nan);
+    return values;
+}
+
+SymmetricSpectrum not_found(int n, bool with_vectors)
+{
+    SymmetricSpectrum spectrum{false, std::vector<double>(static_cast<std::size_t>(n), nan), {}};
+    if (with_vectors) spectrum.vectors = DenseMatrix(n, n);
+    std::ranges::fill(spectrum.vectors.a, nan);
+    return spectrum;
+}
+
+SymmetricSpectrum result_of(const Symmetric& solver, bool with_vectors)
+{
+    const Eigen::VectorXd& values = solver.eigenvalues();
+    if (solver.info() != Eigen::Success) return not_found(static_cast<int>(values.size()), with_vectors);
+    return {
+        true, {values.begin(), values.end()}, with_vectors ? stored(solver.eigenvectors()) : DenseMatrix{}};
+}
+
+SymmetricSpectrum symmetric(DenseView A, bool with_vectors)
+{
+    assert(A.rows == A.cols);
+    if (A.rows == 0) return {};
+    if (!all_finite(A.entries())) return not_found(A.rows, with_vectors);
+    const Symmetric solver(seen(A), with_vectors ? Eigen::ComputeEigenvectors : Eigen::EigenvaluesOnly);
+    return result_of(solver, with_vectors);
+}
+
+/// With M = L L^T: L^-1 K L^-T w = value w and v = L^-T w.
+SymmetricSpectrum generalised(DenseView K, DenseView M, bool with_vectors)
+{
+    assert(K.rows == K.cols && M.rows == K.rows && M.cols == K.cols);
+    if (K.rows == 0) return {};
+    const DenseMatrix factor = cholesky(M);
+    if (!all_finite(K.entries()) || !all_finite(factor.a)) return not_found(K.rows, with_vectors);
+    const auto L = seen(factor).triangularView<Eigen::Lower>();
+    const auto U = seen(factor).adjoint().triangularView<Eigen::Upper>();
+    MatrixXd C = seen(K).selfadjointView<Eigen::Lower>();
+    L.solveInPlace<Eigen::OnTheLeft>(C);
+    U.solveInPlace<Eigen::OnTheRight>(C);
+    const Symmetric solver(C, with_vectors ? Eigen::ComputeEigenvectors : Eigen::EigenvaluesOnly);
+    SymmetricSpectrum spectrum = result_of(solver, with_vectors);
+    if (with_vectors && spectrum.is_found)
+        U.solveInPlace(Eigen::Map<MatrixXd>(spectrum.vectors.a.data(), K.rows, K.rows));
+    return spectrum;
+}
+
+}   // namespace
+
+SymmetricSpectrum symmetric_spectrum(DenseView A) { return symmetric(A, true); }
+std::vector<double> symmetric_values(DenseView A) { return symmetric(A, false).values; }
+SymmetricSpectrum generalised_spectrum(DenseView K, DenseView M) { return generalised(K, M, true); }
+std::vector<double> generalised_values(DenseView K, DenseView M) { return generalised(K, M, false).values; }
+
+SymmetricSpectrum tridiagonal_spectrum(std::span<const double> diagonal, std::span<const double> beside)
+{
+    if (diagonal.empty()) return {};
+    assert(beside.size() + 1 == diagonal.size());
+    if (!all_finite(diagonal) || !all_finite(beside))
+        return not_found(static_cast<int>(diagonal.size()), true);
+    Symmetric solver;
+    solver.computeFromTridiagonal(seen(diagonal), seen(beside));
+    return result_of(solver, true);
+}
+
+PrincipalValues symmetric_spectrum(const Matrix3& A)
+{
+    if (!all_finite(A.a)) return {all_nan<3>(), nan * identity<3>()};
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(Map3(A.data()));
+    PrincipalValues found{};
+    std::copy_n(solver.eigenvalues().data(), 3, found.values.data());
+    std::copy_n(solver.eigenvectors().data(), 9, found.vectors.data());
+    return found;
+}
+
+namespace {
+
+template <int N>
+Matrix<N, 1> small_values(const Matrix<N, N>& A)
+{
+    if (!all_finite(A.a)) return all_nan<N>();
+    using Fixed = Eigen::Matrix<double, N, N>;
+    const Fixed copy = Eigen::Map<const Fixed>(A.data());
+    const Eigen::SelfAdjointEigenSolver<Fixed> solver(copy, Eigen::EigenvaluesOnly);
+    Matrix<N, 1> values;
+    std::copy_n(solver.eigenvalues().data(), N, values.data());
+    return solver.info() == Eigen::Success ? values : all_nan<N>();
+}
+
+}   // namespace
+
+Vector3 symmetric_values(const Matrix3& A) { return small_values(A); }
+Vector4 symmetric_values(const Matrix4& A) { return small_values(A); }
+
+GeneralSpectrum general_spectrum(DenseView A)
+{
+    assert(A.rows == A.cols);
+    const auto n = static_cast<std::size_t>(A.rows);
+    GeneralSpectrum spectrum{std::vector<std::complex<double>>(n, {nan, nan}), {}};
+    spectrum.vectors.assign(n, spectrum.values);
+    if (n == 0 || !all_finite(A.entries())) return spectrum;
+    const Eigen::EigenSolver<MatrixXd> solver(seen(A));
+    if (solver.info() != Eigen::Success) return spectrum;
+    std::copy_n(solver.eigenvalues().data(), n, spectrum.values.begin());
+    const Eigen::MatrixXcd vectors = solver.eigenvectors();
+    for (std::size_t k = 0; k < n; ++k) std::copy_n(vectors.data() + n * k, n, spectrum.vectors[k].begin());
+    return spectrum;
+}
+
+std::vector<double> singular_values(DenseView A)
+{
+    const auto n = static_cast<std::size_t>(std::min(A.rows, A.cols));
+    if (n == 0 || !all_finite(A.entries())) return std::vector<double>(n, nan);
+    const Eigen::JacobiSVD<MatrixXd> svd(seen(A));
+    return {svd.singularValues().begin(), svd.singularValues().end()};
+}
+
+DenseMatrix null_directions(DenseView A, double level)
+{
+    assert(A.rows == A.cols);
+    if (A.rows == 0 || !all_finite(A.entries())) return {A.rows, 0};
+    const Eigen::JacobiSVD<MatrixXd> svd(seen(A), Eigen::ComputeFullV);
+    return stored(svd.matrixV().rightCols((svd.singularValues().array() <= level).count()));
+}
+
+Matrix3 orthogonal_factor(const Matrix3& A)
+{
+    Matrix3 Q = nan * identity<3>();
+    if (!all_finite(A.a)) return Q;
+    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(Map3(A.data()), Eigen::ComputeFullU | Eigen::ComputeFullV);
+    Eigen::Map<Eigen::Matrix3d>(Q.data()) = svd.matrixU() * svd.matrixV().transpose();
+    return Q;
+}
+
+}   // namespace livens
