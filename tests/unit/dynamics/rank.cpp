@@ -10,7 +10,6 @@
 #include "livens/dynamics/rows/rows.h"
 #include "livens/dynamics/start/closing.h"
 #include "livens/dynamics/start/singular.h"
-#include "livens/spacetime/nodal/elimination.h"
 
 namespace livens {
 namespace {
