@@ -56,7 +56,7 @@ struct PivotedQR::Factors {
     std::optional<Eigen::ColPivHouseholderQR<MatrixXd>> qr;   // not of what is empty or not finite
 };
 
-PivotedQR::PivotedQR(DenseView A) : factors_(std::make_unique<Factors>(A.rows, A.cols, std::nullopt))
+PivotedQR::PivotedQR(DenseView A) : factors_(new Factors{A.rows, A.cols, std::nullopt})
 {
     if (A.rows > 0 && A.cols > 0 && all_finite(A)) factors_->qr.emplace(seen(A));
 }
