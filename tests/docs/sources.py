@@ -25,7 +25,7 @@ TIES = [
     ("with $h^4$, in volume and in second moments (tests: «4» within «0.15»)", "tests/unit/geometry/density_test.cpp",
      r"log2\(errors\[1\] / errors\[2\]\), (\d), ([\d.]+)\)"),
     ("Separation must exceed «1e-13» of the pair's size", f"{GEOMETRY}/contacts.cpp", r"touch = ([^;]+);"),
-    ("what that moves is compared with «1e-6», or the accuracy", f"{TIME}/solve.h", r"double meeting = ([^;]+);"),
+    ("what that moves is compared with «1e-6», or the accuracy", f"{TIME}/options.h", r"double meeting = ([^;]+);"),
     ("beyond «3.05» rad the load is not a number", f"{BODIES}/loads/load_coordinate.cpp", r"widest_angle = ([^;]+);"),
     ("stay in use while they contract by «0.3»", "src/livens/solvers/newton.cpp", r"slow_contraction = ([^;]+);"),
     ("(smallest scaled pivot above «1e-6»)", f"{DYNAMICS}/instant/instant.cpp", r"smallest_pivot > std::max\(([\de-]+),"),
