@@ -30,11 +30,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using Shared = std::shared_ptr<const Scenario>;
 
-double seconds_since(Clock::time_point begin)
-{
-    return std::chrono::duration<double>(Clock::now() - begin).count();
-}
-
 nb::object shared(std::optional<Scenario>& scenario)
 {
     if (!scenario) return nb::none();
