@@ -14,6 +14,7 @@
 #include "livens/diagnostics/coordinates.h"
 #include "livens/diagnostics/rigidity.h"
 #include "livens/diagnostics/sample.h"
+#include "livens/spacetime/solve.h"
 #include "result.h"
 
 namespace livens::python {
