@@ -354,7 +354,7 @@ def add_notebook(site: Site, file: pathlib.Path, pages: list[str], cards: list[s
 
 ROOMS = {"base": "Errors, small matrices, version", "time": "Time: elements, bases, quadrature, functions, expressions",
          "solvers": "Solvers", "geometry": "Meshes and their moments", "multibody": "Bodies, joints, loads, sensors",
-         "spacetime": "The engine", "diagnostics": "What is said of a motion", "io": "Files"}
+         "dynamics": "Starts and reactions", "statics": "States of rest, small motions", "spacetime": "The engine", "diagnostics": "What is said of a motion", "io": "Files"}
 
 
 def add_reference(site: Site) -> None:

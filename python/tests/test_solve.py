@@ -199,7 +199,7 @@ def test_ctrl_c_while_a_mesh_is_read(tmp_path: pathlib.Path) -> None:
 
 def test_progress(pendulum: lv.Model, capsys: pytest.CaptureFixture[str]) -> None:
     calls: list[tuple[int, int, float]] = []
-    lv.solve(chain(6), 20, elements=4000, estimate="none", progress=lambda *state: calls.append(state))
+    lv.solve(chain(6), 200, elements=40000, estimate="none", progress=lambda *state: calls.append(state))
     assert calls and all(0 <= done <= n for done, n, _ in calls) and sorted(calls) == calls
 
     class Stop(Exception):
@@ -210,7 +210,7 @@ def test_progress(pendulum: lv.Model, capsys: pytest.CaptureFixture[str]) -> Non
 
     with pytest.raises(Stop):
         lv.solve(chain(6), 50, elements=20000, progress=stop)
-    lv.solve(chain(6), 20, elements=4000, estimate="none", progress=True)
+    lv.solve(chain(6), 200, elements=40000, estimate="none", progress=True)
     assert "elements" in capsys.readouterr().err
 
 
