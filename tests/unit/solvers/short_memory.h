@@ -1,15 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What a task does where memory ends. Where address space can be bounded, and not under a sanitizer, which
-// needs it for itself: GCC says that it is there by a macro, Clang by a feature.
+// needs it for itself.
 #pragma once
 
-#if defined(__SANITIZE_ADDRESS__)
-#define LIVENS_SANITIZED 1
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer)
-#define LIVENS_SANITIZED 1
-#endif
-#endif
+#include "sanitized.h"
+
 #if defined(__linux__) && !defined(LIVENS_SANITIZED)
 #define LIVENS_SHORT_MEMORY 1
 
