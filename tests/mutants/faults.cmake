@@ -682,7 +682,7 @@ livens_mutant(NAME rounded_once
 
 # Nobody looks at the energy of stiff springs that turn: the march goes on until it dies.
 livens_mutant(NAME turning_springs_unwatched
-              FILE spacetime/march/windows.cpp
+              FILE spacetime/march/march.cpp
               OLD [[options_.watch && outcome.factorisations > 0]]
               NEW [[options_.watch && outcome.factorisations < 0]]
               TESTS_OF conservation

@@ -87,8 +87,10 @@ MarchGuess guess_from_state(const Model& model, const State& state, std::span<co
     const Tables tables(model, ends.independent);
     LobattoWindow window(tables, mesh, ends, lobatto_rule(degree));
     SolveReport report;
-    const WindowOptions options{
-        .direction = is_forwards ? 1 : -1, .may_divide = true, .trust = {acceptable_velocity_jump, true}};
+    WindowOptions options;
+    options.direction = is_forwards ? 1 : -1;
+    options.may_divide = true;
+    options.trust = {acceptable_velocity_jump, true};
     solve_windows(window, mesh, options, report);
     auto march = std::make_shared<Motion>(window.take_motion());
     const double reached = march->mesh.ends.empty() ? times.front()

@@ -5,25 +5,19 @@
 
 #include <functional>
 #include <string>
-#include <vector>
 
 #include "livens/spacetime/march/pace.h"
+#include "livens/spacetime/march/partition.h"
 #include "livens/spacetime/march/window.h"
 #include "livens/time/time_mesh.h"
 
 namespace livens {
 
-struct WindowOptions {
-    int length = 1;             ///< elements in a window; 0: all
-    int shortest = 1;           ///< a window of fewer elements has no equations (splines)
-    int direction = 1;          ///< -1: from the end of time
+struct WindowOptions : DivisionOptions {
     double tolerance = 1e-12;   ///< see NewtonOptions
     int max_iterations = 30;
     bool by_newton = false;       ///< whatever quicker way the window has
-    bool may_split = true;        ///< a window that fails is solved in two halves
-    bool may_divide = false;      ///< an element that fails or is refused is divided into two
     bool ends_at_bends = false;   ///< elements end where laws of loads bend, if forwards and alone
-    Trust trust{};
     double length_of_model = 1;   ///< m, what distances are relative to
     std::string advice{};         ///< what may help a window that failed; empty: what helps a march
     /// Guesses for the open window of elements first..last - 1, one attempt after the other from 0, where the
@@ -50,9 +44,5 @@ struct WindowOptions {
 /// Solves all windows of the mesh, or as many as go. What happened is in the report, what was solved in the
 /// window's motion. The mesh, which the window reads too, gets an end more for every element that is divided.
 void solve_windows(Window& window, TimeMesh& mesh, const WindowOptions& options, SolveReport& report);
-
-/// Element ends where windows of the given length begin and end; the last may be longer or shorter, but never
-/// shorter than `shortest`.
-std::vector<int> divide(int n_elements, int length, int shortest);
 
 }   // namespace livens
