@@ -12,6 +12,7 @@
 #include "livens/diagnostics/largest.h"
 #include "livens/diagnostics/sample.h"
 #include "livens/solvers/patience.h"
+#include "livens/spacetime/accuracy/until_accurate.h"
 #include "livens/spacetime/march/window_notes.h"
 
 namespace livens {
@@ -290,44 +291,44 @@ private:
     double gap_;
 };
 
-/// Phases to a part of the accuracy, until the whole is within.
-Solution solve_to_accuracy_of_all(const Chain& chain, const Model& model, const Problem& problem,
-                                  const Span& span, const Method& method, const SolveOptions& options)
-{
-    double part = first_share * span.accuracy, seconds = 0;
-    long long evaluations = 0;
-    for (int tries = 1;; ++tries) {
-        Solution whole = chain.solve(method, part, std::max(options.meeting, span.accuracy));
-        SolveReport& report = whole.report;
-        report.accuracy = span.accuracy;
-        report.evaluations_in_all += evaluations;
-        evaluations = report.evaluations_in_all;
-        whole.estimate_seconds = seconds += whole.estimate_seconds;
-        if (!report.converged()) return whole;
-        SolveOptions quiet = options;
-        quiet.growth = false;
-        estimate(model, problem, whole.method, quiet, whole);
-        seconds = whole.estimate_seconds;
-        const double error = whole.estimate.largest;
-        if (!whole.estimate.empty() && error <= span.accuracy) return whole;
-        if (whole.estimate.empty() || tries == most_tries) {
-            int good = 0;
-            while (!whole.estimate.empty() && good < whole.motion.n_elements() &&
-                   whole.estimate.error(good + 1) <= span.accuracy)
-                ++good;
-            report.status = SolveStatus::inaccurate;
-            report.failed_at = whole.motion.mesh.ends[good];
-            report.message =
-                "the accuracy " + to_text(span.accuracy, 6) +
-                " holds up to t = " + to_text(report.failed_at, 6) + " s, over events: " +
-                (whole.estimate.empty() ? "nothing tells the error, since " + report.estimate_failed
-                                        : "the error is about " + to_text(error, 3)) +
-                "; try: an earlier end of time, or a larger error in accuracy";
-            return whole;
-        }
-        part *= std::min(0.3, target * span.accuracy / error);
+/// Phases to a share of the accuracy each, until the whole is within.
+class PhasesToAccuracy final : public RepeatedMarch {
+public:
+    PhasesToAccuracy(const Chain& chain, const Model& model, const Problem& problem, const Span& span,
+                     const Method& method, const SolveOptions& options)
+        : chain_(chain), model_(model), problem_(problem), method_(method), options_(options),
+          accuracy_(span.accuracy), share_(first_share * span.accuracy)
+    {
+        options_.growth = false;   // of the whole motion once, when it is accepted
     }
-}
+
+    Solution solve() override
+    {
+        Solution whole = chain_.solve(method_, share_, std::max(options_.meeting, accuracy_));
+        if (whole.report.converged()) estimate(model_, problem_, whole.method, options_, whole);
+        return whole;
+    }
+
+    AfterTry judge(Solution& whole, int tries) override
+    {
+        const ErrorEstimate& found = whole.estimate;
+        if (!whole.report.converged() || (!found.empty() && found.largest <= accuracy_))
+            return AfterTry::accept;
+        if (found.empty() || tries == most_tries) return AfterTry::give_up;
+        share_ *= std::min(0.3, target * accuracy_ / found.largest);
+        return AfterTry::again;
+    }
+
+    std::string why_not(const Solution&) const override { return "over events, with ever shorter elements"; }
+
+private:
+    const Chain& chain_;
+    const Model& model_;
+    const Problem& problem_;
+    const Method& method_;
+    SolveOptions options_;
+    double accuracy_, share_;
+};
 
 }   // namespace
 
@@ -355,10 +356,12 @@ Solution solve_by_phases(const Model& model, const Problem& problem, const Time&
 {
     const Chain chain(model, problem, time, options, solve_phase);
     Solution solution;
-    if (const auto* span = std::get_if<Span>(&time))
-        solution = solve_to_accuracy_of_all(chain, model, problem, *span, method, options);
-    else
+    if (const auto* span = std::get_if<Span>(&time)) {
+        PhasesToAccuracy phases(chain, model, problem, *span, method, options);
+        solution = until_accurate(phases, model, span->accuracy, span->end);
+    } else {
         solution = chain.solve(method, 0, options.meeting);
+    }
     if (!std::isinf(options.meeting)) chain.tell(solution);
     return solution;
 }

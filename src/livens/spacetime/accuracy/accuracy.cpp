@@ -14,6 +14,7 @@
 #include "livens/multibody/body.h"
 #include "livens/spacetime/accuracy/measured_growth.h"
 #include "livens/spacetime/accuracy/second.h"
+#include "livens/spacetime/accuracy/until_accurate.h"
 #include "livens/spacetime/march/window_notes.h"
 #include "livens/spacetime/march/windows.h"
 #include "livens/spacetime/nodal/window.h"
@@ -77,9 +78,8 @@ std::vector<double> samples_of(const Model& model, const Span& span)
     return samples;
 }
 
-/// One march over the time.
+/// What the last march over the time is, beside its motion.
 struct Try {
-    Solution solution;
     bool is_broken_off = false;   // the error became hopeless
     bool fits_badly = false;      // the degree is too high for the stops; nothing else counts then
     std::optional<Pace> pace{};   // what was learnt of lengths
@@ -92,22 +92,20 @@ struct Tries {
     bool helps = true;                                        // that the last one had shorter elements
     bool is_once_good = false;                                // the last one, perhaps by chance
 
-    void count(const Try& one)
+    void count(double error, bool is_broken_off)
     {
-        const double error = one.solution.estimate.largest;
-        helps = one.is_broken_off || error < well_helped * least;
+        helps = is_broken_off || error < well_helped * least;
         if (!helps) in_vain = std::max(in_vain, error);
-        if (!one.is_broken_off) least = std::min(least, error);
+        if (!is_broken_off) least = std::min(least, error);
     }
 };
 
-class ToAccuracy {
+class ToAccuracy final : public RepeatedMarch {
 public:
     ToAccuracy(const Model& model, const Problem& problem, const Ends& ends, const Span& span,
                const Method& method, const SolveOptions& options, const Doubt& doubt)
         : model_(model), problem_(problem), span_(span),
-          options_(with_tolerance_for(span.accuracy, 1, options)), doubt_(doubt),
-          ends_(ends),
+          options_(with_tolerance_for(span.accuracy, 1, options)), doubt_(doubt), ends_(ends),
           tables_(model, ends_.independent, false, problem.prepared->pattern(model)),
           stops_(stops_of(model, span)), method_(method), is_free_(degree_of(method) == 0),
           tolerance_(first_share * span.accuracy),
@@ -121,57 +119,70 @@ public:
         if (is_free_) highest_degree_ = degree_of(method_);
     }
 
-    Solution run()
+    Solution solve() override
     {
-        long long evaluations = 0;
-        double seconds = 0;
-        for (int tries = 1;; ++tries) {
-            Try one = march();
-            SolveReport& report = one.solution.report;
-            report.evaluations_in_all = evaluations += report.evaluations_in_all;
-            one.solution.estimate_seconds = seconds += one.solution.estimate_seconds;
-            if (one.fits_badly) {
-                degree_of(method_) = fitting_degree(*one.pace);
-                is_free_ = false;
-                --tries;
-                continue;
-            }
-            report.tries = tries;
-            report.accuracy = span_.accuracy;
-            if (!report.converged()) return std::move(one.solution);
-            const ErrorEstimate& found = one.solution.estimate;
-            if (!one.is_broken_off && look_at_rounding(one.solution, tries)) {
-                if (grown_.least_rounding() > span_.accuracy || options_.tolerance <= all_digits)
-                    return give_up(std::move(one));
-                options_.tolerance = all_digits;   // what the iteration leaves is the most of it
-                continue;
-            }
-            const bool is_good = !one.is_broken_off && found.largest <= span_.accuracy;
-            if (is_good && (so_far_.is_once_good || !may_be_chance())) return std::move(one.solution);
-            if (!is_good) so_far_.count(one);
-            if (!is_good && (tries >= most_tries || tolerance_ <= finest)) return give_up(std::move(one));
-            so_far_.is_once_good = is_good;
-            const double over = found.largest / span_.accuracy * (one.is_broken_off ? 3 : 1);
-            const double share = over > 0 ? power(target / over, 1 + 0.5 / degree_of(method_)) : blind_share;
-            tolerance_ *= std::min(0.3, share);
-            if (!so_far_.helps && is_noisy()) {
-                highest_degree_ = degree_of(method_) = quiet_degree;
-                tolerance_ *= power(0.5, 2 * quiet_degree + 1);
-            }
-            if (!is_good)
-                tolerance_ = std::max(finest, tolerance_);   // good once more has to be on another mesh
-            // a degree that was too high for the stops may not be too high for shorter elements
-            if (!is_free_ && highest_degree_ > 0) degree_of(method_) = fitting_degree(*one.pace);
-            length_ = std::min(length_, one.pace->mean_length(degree_of(method_), tolerance_));
-            options_ = with_tolerance_for(span_.accuracy, tries + 1, std::move(options_));
+        last_ = {};
+        return march(last_);
+    }
+
+    AfterTry judge(Solution& solution, int tries) override
+    {
+        SolveReport& report = solution.report;
+        if (last_.fits_badly) {
+            degree_of(method_) = fitting_degree(*last_.pace);
+            is_free_ = false;
+            return AfterTry::uncounted;
         }
+        report.tries = tries;
+        if (!report.converged()) return AfterTry::accept;
+        if (!last_.is_broken_off && look_at_rounding(solution, tries)) {
+            if (grown_.least_rounding() > span_.accuracy || options_.tolerance <= all_digits)
+                return give_up(solution);
+            options_.tolerance = all_digits;   // what the iteration leaves is the most of it
+            return AfterTry::again;
+        }
+        const double error = solution.estimate.largest;
+        const bool is_good = !last_.is_broken_off && error <= span_.accuracy;
+        if (is_good && (so_far_.is_once_good || !may_be_chance())) return AfterTry::accept;
+        if (!is_good) so_far_.count(error, last_.is_broken_off);
+        if (!is_good && (tries >= most_tries || tolerance_ <= finest)) return give_up(solution);
+        so_far_.is_once_good = is_good;
+        aim_at(error / span_.accuracy * (last_.is_broken_off ? 3 : 1), is_good);
+        options_ = with_tolerance_for(span_.accuracy, tries + 1, std::move(options_));
+        return AfterTry::again;
+    }
+
+    std::string why_not(const Solution& solution) const override
+    {
+        const SolveReport& report = solution.report;
+        const std::string tries = "try " + std::to_string(report.tries);
+        if (grown_.rounding() > span_.accuracy)
+            return tries + "; the rounding of numbers grows to " + to_text(grown_.rounding(), 3) +
+                   ", most in " + grown_.in_words(model_);
+        return tries + in_vain(report);
     }
 
 private:
-    Try march()
+    /// What elements of the next try may lose, their degree and first length, by how many times this one was
+    /// off more than it may be.
+    void aim_at(double over, bool is_good)
     {
-        Try one;
-        SolveReport& report = one.solution.report;
+        const double share = over > 0 ? power(target / over, 1 + 0.5 / degree_of(method_)) : blind_share;
+        tolerance_ *= std::min(0.3, share);
+        if (!so_far_.helps && is_noisy()) {
+            highest_degree_ = degree_of(method_) = quiet_degree;
+            tolerance_ *= power(0.5, 2 * quiet_degree + 1);
+        }
+        if (!is_good) tolerance_ = std::max(finest, tolerance_);   // good once more has to be on another mesh
+        // a degree that was too high for the stops may not be too high for shorter elements
+        if (!is_free_ && highest_degree_ > 0) degree_of(method_) = fitting_degree(*last_.pace);
+        length_ = std::min(length_, last_.pace->mean_length(degree_of(method_), tolerance_));
+    }
+
+    Solution march(Try& one) const
+    {
+        Solution solution;
+        SolveReport& report = solution.report;
         TimeMesh mesh{{span_.start}};
         LobattoWindow window(tables_, mesh, ends_, rule_of(method_));
         if (!options_.look_at_laws) window.ignore_laws();
@@ -213,34 +224,34 @@ private:
         report.notes = ends_.notes;
         solve_windows(window, mesh, w, report);
         one.pace = std::move(pace);
-        finish(one, second, window.monitor().so_far()->n_elements());
-        one.solution.unseen = window.monitor().take_unseen();
-        one.solution.motion = window.take_motion();
-        one.solution.method = method_;
+        finish(solution, one, second, window.monitor().so_far()->n_elements());
+        solution.unseen = window.monitor().take_unseen();
+        solution.motion = window.take_motion();
+        solution.method = method_;
         if (report.converged() && !one.is_broken_off) {
-            add_lost_vibrations(model_, one.solution.motion, one.solution.estimate);
-            add_inside(model_, one.solution.motion, one.pace->left(), one.solution.estimate);
+            add_lost_vibrations(model_, solution.motion, solution.estimate);
+            add_inside(model_, solution.motion, one.pace->left(), solution.estimate);
         }
-        return one;
+        return solution;
     }
 
     /// The rest of the second solution, and what it says.
-    void finish(Try& one, Second& second, int n) const
+    void finish(Solution& solution, Try& one, Second& second, int n) const
     {
-        SolveReport& report = one.solution.report;
+        SolveReport& report = solution.report;
         const SolveReport& of_second = second.report();
         const bool is_wanted = !one.fits_badly && n > 0 && report.status != SolveStatus::cancelled;
         if (is_wanted && second.reached() < n && of_second.converged() && !second.advance(n))
             one.is_broken_off = true;
         report.evaluations_in_all = report.evaluations + second.evaluations();
-        one.solution.estimate_seconds = second.seconds();
+        solution.estimate_seconds = second.seconds();
         if (of_second.status == SolveStatus::cancelled) {
             report.status = SolveStatus::cancelled;
             report.message = of_second.message;
         } else if (!of_second.converged()) {
             report.estimate_failed = "the second solution failed: " + of_second.message;
         }
-        if (second.reached() > 0) one.solution.estimate = second.take(n);
+        if (second.reached() > 0) solution.estimate = second.take(n);
     }
 
     bool say_too_long(const TimeMesh& mesh, SolveReport& report) const
@@ -307,36 +318,11 @@ private:
                grown_.in_words(model_);
     }
 
-    Solution give_up(Try&& last)
+    AfterTry give_up(Solution& last)
     {
-        if (options_.growth && last.solution.growth.empty())
-            grown_.tell(model_, problem_, options_, span_.accuracy, last.solution);
-        const ErrorEstimate& found = last.solution.estimate;
-        SolveReport& report = last.solution.report;
-        const Motion& motion = last.solution.motion;
-        int good = 0;
-        while (!found.empty() && good < motion.n_elements() && found.error(good + 1) <= span_.accuracy)
-            ++good;
-        report.status = SolveStatus::inaccurate;
-        report.failed_at = motion.mesh.ends[good];
-        report.message = "the accuracy " + to_text(span_.accuracy, 6) +
-                         " holds up to t = " + to_text(report.failed_at, 6) + " s";
-        if (motion.end() >= span_.end)
-            report.message += ", the motion is whole up to " + to_text(span_.end, 6) + " s";
-        report.message += "; ";
-        if (found.largest > span_.accuracy)
-            report.message += "the error of body '" + model_.body_name(found.body) + "' is about " +
-                              to_text(found.largest, 3) + " at " + to_text(found.time, 6) + " s";
-        else
-            report.message += "behind, nothing tells the error, since " + report.estimate_failed;
-        report.message += " (try " + std::to_string(report.tries);
-        if (grown_.rounding() > span_.accuracy)
-            report.message += "; the rounding of numbers grows to " + to_text(grown_.rounding(), 3) +
-                              ", most in " + grown_.in_words(model_);
-        else
-            report.message += in_vain(report);
-        report.message += "); try: an earlier end of time, or a larger error in accuracy";
-        return std::move(last.solution);
+        if (options_.growth && last.growth.empty())
+            grown_.tell(model_, problem_, options_, span_.accuracy, last);
+        return AfterTry::give_up;
     }
 
     const Model& model_;
@@ -353,6 +339,7 @@ private:
     double tolerance_, length_;
     MeasuredGrowth grown_;
     Tries so_far_;
+    Try last_;
 };
 
 }   // namespace
@@ -370,7 +357,8 @@ Solution solve_to_accuracy(const Model& model, const Problem& problem, const End
 {
     if (const auto* either = std::get_if<Auto>(&method))
         return solve_to_accuracy(model, problem, ends, span, *either, options);
-    return ToAccuracy(model, problem, ends, span, method, options, doubt).run();
+    ToAccuracy march(model, problem, ends, span, method, options, doubt);
+    return until_accurate(march, model, span.accuracy, span.end);
 }
 
 }   // namespace livens
