@@ -78,6 +78,10 @@ function(livens_room name)
         set(level ${livens_small})
     endif()
     target_compile_options(livens_room_${name} PRIVATE ${level} ${livens_sections})
+    if(LIVENS_UNITY AND NOT arg_EIGEN)   # where the same names stand for other things
+        set_target_properties(livens_room_${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
+        target_compile_options(livens_room_${name} PRIVATE -Wno-shadow)   # of constants of other sources
+    endif()
     livens_harden(livens_room_${name} ${stacks})
     target_link_libraries(livens_room_${name} PRIVATE $<BUILD_INTERFACE:livens_flags> ${arg_LIBRARIES})
     set_target_properties(livens_room_${name} PROPERTIES LIVENS_LIBRARIES "${arg_LIBRARIES}")

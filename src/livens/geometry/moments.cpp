@@ -127,7 +127,7 @@ void add_face(Sums& sums, const Mesh& mesh, ElementKind kind, const std::int32_t
 }
 
 /// Parts of fixed size are summed by themselves: the sum does not depend on the number of threads.
-constexpr std::size_t some = 65536;
+constexpr std::size_t part_size = 65536;
 
 Moments moments_of_surface(const Mesh& mesh)
 {
@@ -135,8 +135,8 @@ Moments moments_of_surface(const Mesh& mesh)
     Sums sums;
     for (const ElementBlock& b : mesh.blocks) {
         if (dimension(b.kind) != 2) continue;
-        std::vector<Sums> of_parts(b.size() / some + 1);
-        in_parts(b.size(), some, [&](std::size_t begin, std::size_t end, int part) {
+        std::vector<Sums> of_parts(b.size() / part_size + 1);
+        in_parts(b.size(), part_size, [&](std::size_t begin, std::size_t end, int part) {
             if (b.kind == ElementKind::triangle)
                 return add_triangles(of_parts[part], mesh, b.nodes.data() + 3 * begin,
                                      b.nodes.data() + 3 * end, middle);

@@ -19,13 +19,12 @@ namespace livens {
 
 namespace {
 
-constexpr double near_end = 1e-9;                   // of the whole time, see make_time_mesh()
 constexpr double first_share = 0.3, target = 0.3;   // of the accuracy
 constexpr int most_tries = 4;
 
 std::vector<double> events_inside(const Model& model, double start, double end)
 {
-    const double gap = near_end * (end - start);
+    const double gap = nearest_ends * (end - start);
     std::vector<double> inside;
     for (const double t : model.events())
         if (t > start + gap && t < end - gap) inside.push_back(t);
@@ -134,12 +133,12 @@ void join(Motion& whole, Motion&& next)
 Miss miss_at_event(const Model& model, const Motion& motion, int end)
 {
     Miss miss;
-    const double t = motion.mesh.ends[end], gap = near_end * (motion.end() - motion.start());
+    const double t = motion.mesh.ends[end], gap = nearest_ends * (motion.end() - motion.start());
     const bool begins = std::ranges::any_of(
         model.joints(), [&](const Joint& joint) { return std::abs(joint.from - t) <= gap; });
     if (!begins) return miss;
     const State state = motion.at_end(end);
-    const ActingModel acting = acting_at(model, t + 0.5 * near_end * (motion.end() - motion.start()));
+    const ActingModel acting = acting_at(model, t + 0.5 * nearest_ends * (motion.end() - motion.start()));
     const TriedStart tried = try_close_start(acting.model, state, StartPolicy::project);
     if (!tried.closed)   // no place near holds them
         miss.shift = std::numeric_limits<double>::infinity();
@@ -169,7 +168,7 @@ public:
     Chain(const Model& model, const Problem& problem, const Time& time, const SolveOptions& options,
           const SolvePhase& solve_phase)
         : model_(model), problem_(problem), time_(time), options_(options), solve_phase_(solve_phase),
-          ends_(phase_ends(model, time)), gap_(near_end * (ends_.back() - ends_.front()))
+          ends_(phase_ends(model, time)), gap_(nearest_ends * (ends_.back() - ends_.front()))
     {
         options_.judge = false;
         options_.growth = false;   // of a part from its own start: it says nothing of the whole

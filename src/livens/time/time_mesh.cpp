@@ -15,9 +15,6 @@
 namespace livens {
 namespace {
 
-constexpr double merge_fraction = 1e-9;        // of end - start; closer instants are one
-constexpr double max_elements = 100'000'000;   // 0.8 GB of element ends; above it is a slip of the pen
-
 void check_interval(double start, double end, int n_elements)
 {
     if (!std::isfinite(start)) {
@@ -36,16 +33,16 @@ void check_interval(double start, double end, int n_elements)
         throw InputError({"time-end", "time.end", "the time from start to end is beyond all numbers",
                           to_text(end), "", "", ""});
     }
-    if (n_elements < 1 || n_elements > max_elements) {
+    if (n_elements < 1 || n_elements > most_elements) {
         throw InputError({"time-elements", "time.elements", "the number of time elements is out of range",
-                          std::to_string(n_elements), "1 .. " + to_text(max_elements), "", ""});
+                          std::to_string(n_elements), "1 .. " + to_text(most_elements), "", ""});
     }
 }
 
 /// Start, end and the required instants between them, merged.
 std::vector<double> fixed_ends(double start, double end, std::span<const double> required)
 {
-    const double gap = merge_fraction * (end - start);
+    const double gap = nearest_ends * (end - start);
     std::set<double> fixed{start, end};
     for (const double t : required) {
         if (!std::isfinite(t)) {
@@ -85,7 +82,7 @@ double end_of(const Time& time)
 
 std::vector<double> missed(const TimeMesh& mesh, std::span<const double> instants)
 {
-    const double reach = merge_fraction * (mesh.end() - mesh.start());
+    const double reach = nearest_ends * (mesh.end() - mesh.start());
     std::vector<double> inside;
     for (const double t : instants) {
         if (!(t >= mesh.start() && t <= mesh.end())) continue;
@@ -108,7 +105,7 @@ TimeMesh make_time_mesh(double start, double end, int n_elements, std::span<cons
         // An instant on the grid may be off it by rounding or by a merge; that must not cost an element.
         const double parts = length / (end - start) * n_elements;
         const std::int64_t n =
-            std::max<std::int64_t>(1, std::llround(std::ceil(parts - merge_fraction * n_elements)));
+            std::max<std::int64_t>(1, std::llround(std::ceil(parts - nearest_ends * n_elements)));
         for (std::int64_t k = 1; k < n; ++k) {
             mesh.ends.push_back(from + length * static_cast<double>(k) / static_cast<double>(n));
         }

@@ -16,6 +16,11 @@ struct Instant {
     Side side = Side::middle;
 };
 
+/// Of the whole time: instants that are closer are one.
+inline constexpr double nearest_ends = 1e-9;
+/// Takes 0.8 GB of element ends; more is a slip of the pen.
+inline constexpr double most_elements = 100'000'000;
+
 /// Element e spans [ends[e], ends[e + 1]]; ends ascend strictly.
 struct TimeMesh {
     std::vector<double> ends;

@@ -10,14 +10,13 @@
 
 #include "livens/base/error.h"
 #include "livens/base/text.h"
+#include "livens/time/time_mesh.h"
 
 namespace livens {
 namespace {
 
 constexpr int max_degree = 8;
 constexpr std::size_t max_functions = max_degree + 1;   // of one element
-constexpr double max_elements = 100'000'000;            // as in a time mesh
-constexpr double merge_fraction = 1e-9;                 // as in a time mesh; of the whole time
 // Within these bounds no slope overflows: the largest is 8 / 1e-150 times a quotient of weights, 1e100.
 constexpr double latest = 1e150, shortest = 1e-150;
 constexpr double lightest = 1e-50, heaviest = 1e50;
@@ -38,9 +37,9 @@ void check_degree(int degree)
 
 void check_count(double n_elements)
 {
-    if (n_elements >= 1 && n_elements <= max_elements) return;
+    if (n_elements >= 1 && n_elements <= most_elements) return;
     throw InputError({"time-elements", "time.elements", "the number of time elements is out of range",
-                      to_text(n_elements), "1 .. " + to_text(max_elements), "", ""});
+                      to_text(n_elements), "1 .. " + to_text(most_elements), "", ""});
 }
 
 void check_ends(std::span<const double> ends)
@@ -360,7 +359,7 @@ std::vector<double> clamped_knots(int degree, std::span<const double> ends, std:
 {
     check_degree(degree);
     check_ends(ends);
-    const double reach = merge_fraction * (ends.back() - ends.front());
+    const double reach = nearest_ends * (ends.back() - ends.front());
     std::vector<int> times(ends.size(), 1);
     times.front() = times.back() = degree + 1;
     for (const double kink : kinks) {

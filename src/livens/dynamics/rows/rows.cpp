@@ -10,7 +10,7 @@ namespace livens {
 
 namespace {
 
-constexpr double eps = std::numeric_limits<double>::epsilon();
+constexpr double spacing = std::numeric_limits<double>::epsilon();
 
 template <int R, int C>
 Matrix<R, C> absolute(Matrix<R, C> m)
@@ -53,9 +53,9 @@ Wrench wrench_of(int body, const Vector3& at, const Matrix34& X, const Matrix34&
         wrench.moment += cross(X.column(i), g.column(i) - at[i - 1] * g.column(0));
         level += norm(terms.column(i)) + std::abs(at[i - 1]) * norm(terms.column(0));
     }
-    if (norm(wrench.moment) <= 8 * eps * level) wrench.moment = {};
+    if (norm(wrench.moment) <= 8 * spacing * level) wrench.moment = {};
     const double force = norm(wrench.force);
-    if (force > 0) wrench.doubt = 4 * eps * norm(terms.column(0)) / force;
+    if (force > 0) wrench.doubt = 4 * spacing * norm(terms.column(0)) / force;
     return wrench;
 }
 
@@ -103,7 +103,7 @@ Gap widest_gap(const Model& model, std::span<const Matrix34> X, std::span<const 
         double terms = 0;
         for_each_positive_form(row, X,
                                [&](const ConstraintRow& form) { terms += constraint_value(form, positive); });
-        const double level = std::abs(phi[r]) / (4 * eps * std::max(terms, row.scale));
+        const double level = std::abs(phi[r]) / (4 * spacing * std::max(terms, row.scale));
         const double violation = std::abs(phi[r]) / row.scale;
         if (gap.row < 0 || violation > gap.violation) gap.row = r, gap.violation = violation;
         gap.level = std::max(gap.level, level);

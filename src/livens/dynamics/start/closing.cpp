@@ -22,7 +22,7 @@ namespace livens {
 
 namespace {
 
-constexpr double eps = std::numeric_limits<double>::epsilon();
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr double start_tolerance = 1e-9;
 constexpr const char* project_help = "correct it, or let the start be projected onto the joints";
 
@@ -88,7 +88,7 @@ Fault settle_directors(const Model& model, StartPolicy policy, State& state, std
         if (model.bodies()[b].is_point) continue;
         Matrix3 D = directors(state.X[b]);
         const Worst worst = worst_product(D, D, 1);
-        if (std::abs(worst.value) <= 4 * eps && determinant(D) > 0) continue;
+        if (std::abs(worst.value) <= 4 * epsilon && determinant(D) > 0) continue;
         const std::string path = "body[" + model.body_name(b) + "].directors";
         if (determinant(D) <= 0) {
             return Complaint{"start-position", path, "the directors are not a right-handed triad",
@@ -105,7 +105,7 @@ Fault settle_directors(const Model& model, StartPolicy policy, State& state, std
             notes.push_back("the directors of body '" + model.body_name(b) + "' were made orthonormal (" +
                             worst.name + " was wrong by " + number(std::abs(worst.value)) + ")");
         }
-        for (int pass = 0; pass < 3 && std::abs(worst_product(D, D, 1).value) > 4 * eps; ++pass) {
+        for (int pass = 0; pass < 3 && std::abs(worst_product(D, D, 1).value) > 4 * epsilon; ++pass) {
             D = 0.5 * (D * (3.0 * identity<3>() - transpose(D) * D));
         }
         state.X[b] = configuration(state.X[b].column(0), D);
@@ -232,7 +232,7 @@ Fault settle_velocities(const Model& model, const Model& the_model, StartPolicy 
     const bool is_driven = std::ranges::any_of(drives, [](double rate) { return rate != 0; });
     if (stated == 0 && !is_driven) return {};
     RateGap fault = worst_rate(model, state, wrenches, centers, drives, speed);
-    if (fault.relative <= 8 * eps) return {};
+    if (fault.relative <= 8 * epsilon) return {};
     if (fault.relative > start_tolerance) {
         const double least = speed_of_rounding(the_model, state, wrenches, centers);
         if (least > speed) fault = worst_rate(model, state, wrenches, centers, drives, least);

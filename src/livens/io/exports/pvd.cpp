@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string escaped(std::string_view text)
+std::string xml_text(std::string_view text)
 {
     std::string out;
     for (const char c : text)
@@ -145,7 +145,7 @@ void write_pvd(const fs::path& file, const ExportInput& input)
                                  to_text(t) + "</DataArray>\n";
         replace_file(file.parent_path() / piece, file_of(picture, time + names));
         list += "<DataSet timestep=\"" + to_text(t) + "\" group=\"\" part=\"0\" file=\"" +
-                escaped(piece.generic_string()) + "\"/>\n";
+                xml_text(piece.generic_string()) + "\"/>\n";
     }
     replace_file(file, list + "</Collection>\n</VTKFile>\n");
 }

@@ -50,7 +50,7 @@ std::string for_html(std::string_view json)
 }
 
 /// Text between tags.
-std::string escaped(std::string_view text)
+std::string html_text(std::string_view text)
 {
     std::string out;
     for (const char c : text)
@@ -116,7 +116,7 @@ std::string report_page(const ReportInput& run, const ReportInput* other, const 
     const std::string_view page = shipped_page();
     const std::size_t title = page.find(place_of_title), data = page.find(place_of_data);
     std::string out(page.substr(0, title));
-    out += escaped(run.run.title.empty() ? run.name : run.run.title);
+    out += html_text(run.run.title.empty() ? run.name : run.run.title);
     const std::size_t after = title + place_of_title.size();
     out += page.substr(after, data - after);
     out += "<script type=\"application/json\" id=\"program\">{\"version\":\"" + for_html(version) +

@@ -10,7 +10,7 @@ namespace livens {
 namespace {
 
 template <class Word>
-void put(std::string& out, Word x)
+void put_word(std::string& out, Word x)
 {
     x = big_endian(x);
     out.append(reinterpret_cast<const char*>(&x), sizeof x);
@@ -67,7 +67,7 @@ int ClassicWriter::variable(ClassicVariable variable)
 
 void ClassicWriter::put_count(std::uint64_t n)
 {
-    is_wide_ ? put(header_, n) : put(header_, static_cast<std::uint32_t>(n));
+    is_wide_ ? put_word(header_, n) : put_word(header_, static_cast<std::uint32_t>(n));
 }
 
 void ClassicWriter::put_name(const std::string& name)
@@ -82,10 +82,10 @@ std::size_t ClassicWriter::put_attributes(const std::vector<Attribute>& attribut
 {
     const auto put_head = [&](const std::string& name, NumberType type, std::size_t n) {
         put_name(name);
-        put(header_, static_cast<std::uint32_t>(type));
+        put_word(header_, static_cast<std::uint32_t>(type));
         put_count(n);
     };
-    put(header_, attribute_tag);
+    put_word(header_, attribute_tag);
     put_count(attributes.size() + 1);
     for (const Attribute& attribute : attributes) {
         if (const auto* text = std::get_if<std::string>(&attribute.value)) {
@@ -94,10 +94,10 @@ std::size_t ClassicWriter::put_attributes(const std::vector<Attribute>& attribut
             header_.resize(padded(header_.size()));
         } else if (const int* integer = std::get_if<int>(&attribute.value)) {
             put_head(attribute.name, NumberType::integer, 1);
-            put(header_, static_cast<std::uint32_t>(*integer));
+            put_word(header_, static_cast<std::uint32_t>(*integer));
         } else {
             put_head(attribute.name, NumberType::real, 1);
-            put(header_, std::bit_cast<std::uint64_t>(std::get<double>(attribute.value)));
+            put_word(header_, std::bit_cast<std::uint64_t>(std::get<double>(attribute.value)));
         }
     }
     put_head(checksum, NumberType::text, no_checksum.size());
@@ -112,14 +112,14 @@ void ClassicWriter::put_header()
                std::ranges::any_of(dimensions_, wide, &ClassicDimension::length);
     header_ = is_wide_ ? "CDF\5" : "CDF\2";
     put_count(0);   // no records
-    put(header_, dimensions_.empty() ? 0 : dimension_tag);
+    put_word(header_, dimensions_.empty() ? 0 : dimension_tag);
     put_count(dimensions_.size());
     for (const ClassicDimension& dimension : dimensions_) {
         put_name(dimension.name);
         put_count(dimension.length);
     }
     checksum_place_ = put_attributes(attributes_, checksum_name.data());
-    put(header_, variables_.empty() ? 0 : variable_tag);
+    put_word(header_, variables_.empty() ? 0 : variable_tag);
     put_count(variables_.size());
     std::vector<std::size_t> begins;
     for (const ClassicVariable& variable : variables_) {
@@ -130,10 +130,10 @@ void ClassicWriter::put_header()
         }
         progress_.push_back({});
         progress_.back().checksum_place = put_attributes(variable.attributes, "checksum");
-        put(header_, static_cast<std::uint32_t>(variable.type));
+        put_word(header_, static_cast<std::uint32_t>(variable.type));
         put_count(variable.n_bytes);
         begins.push_back(header_.size());
-        put(header_, std::uint64_t{0});
+        put_word(header_, std::uint64_t{0});
     }
     std::uint64_t begin = header_.size();
     for (std::size_t i = 0; i < variables_.size(); ++i) {

@@ -10,14 +10,14 @@ namespace livens {
 
 namespace {
 
-constexpr double spacing = 0x1p-53;   // of numbers, by half
+constexpr double half_spacing = 0x1p-53;   // of numbers, by half
 
 }   // namespace
 
 double rounded_by(double tolerance)
 {
     constexpr double some = 2, left = 0.1;
-    return std::max(some * spacing, left * tolerance);
+    return std::max(some * half_spacing, left * tolerance);
 }
 
 std::vector<double> told_of_rounding(const Growth& grown, double tolerance)
@@ -32,10 +32,10 @@ std::vector<double> grown_rounding(std::span<const double> growth, std::span<con
     std::vector<double> grown;
     double largest = 0;
     for (std::size_t e = 0; e < growth.size(); ++e) {
-        raise_to(largest, e < measured.size() ? measured[e] : spacing * growth[e]);
+        raise_to(largest, e < measured.size() ? measured[e] : half_spacing * growth[e]);
         // behind the horizon nothing is told
         grown.push_back(growth[e] < growth_at_horizon ? largest
-                                                      : std::min(largest, spacing * growth_at_horizon));
+                                                      : std::min(largest, half_spacing * growth_at_horizon));
     }
     return grown;
 }

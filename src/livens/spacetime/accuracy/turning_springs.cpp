@@ -36,15 +36,15 @@ constexpr double looked_back = 16;
 /// The product of h omega and the turn in an element beyond which vibrations grow.
 double bound_of_product(int degree) { return std::sqrt(8.0 * degree * (degree + 1) * (2 * degree - 1)); }
 
-struct Growing {
+struct GrowingTurn {
     TurningVibration vibration;
     double growth = 0;                                          // an element
     double longest = std::numeric_limits<double>::infinity();   // element without growth, of all vibrations
 };
 
-Growing fastest_growing(const Model& model, const Motion& motion, int end, double h, int degree)
+GrowingTurn fastest_growing(const Model& model, const Motion& motion, int end, double h, int degree)
 {
-    Growing found;
+    GrowingTurn found;
     const double slowest = bound_of_product(degree) / (largest_turn * h);
     for (const TurningVibration& one : turning_vibrations(model, motion.at_end(end), slowest)) {
         const double growth = growth_of_turning(degree, h * one.spring.rate, h * one.turn);
@@ -98,7 +98,8 @@ private:
     std::vector<double> moving_;   // the most up to each end
 };
 
-std::string in_words(const Model& model, const Growing& found, double h, int degree, const std::string& so)
+std::string in_words(const Model& model, const GrowingTurn& found, double h, int degree,
+                     const std::string& so)
 {
     const TurningVibration& one = found.vibration;
     return one.spring.where(model) + " vibrates at " + to_text(one.spring.rate, 3) + " rad/s and turns by " +
@@ -133,7 +134,7 @@ std::string of_turning_springs(const Model& model, const Motion& motion, int deg
     for (int end = std::max(1, first_end); end <= n; ++end) {
         if (!surplus.is_noticeable(end)) continue;
         const double h = length_before(motion.mesh, end);
-        const Growing found = fastest_growing(model, motion, end, h, degree);
+        const GrowingTurn found = fastest_growing(model, motion, end, h, degree);
         if (found.growth > slowest_growth && surplus.grows(end, h / found.growth, until))
             return in_words(model, found, h, degree,
                             ", and energy grows so by t = " + to_text(motion.mesh.ends[end], 6) + " s");
@@ -146,7 +147,7 @@ std::string of_unsteady_springs(const Model& model, const Motion& motion, int de
 {
     if (motion.n_elements() < 1) return "";
     const double h = length_before(motion.mesh, 1);
-    const Growing found = fastest_growing(model, motion, 0, h, degree);
+    const GrowingTurn found = fastest_growing(model, motion, 0, h, degree);
     const double time = motion.end() - motion.start();
     if (!(found.growth * time > least_growth * h)) return "";
     return in_words(model, found, h, degree, "");

@@ -49,7 +49,7 @@ constexpr std::array<std::string_view, 7> laws{"value",      "rate",  "harmonic"
                                                "polynomial", "table", "expression"};
 
 /// Exactly one law.
-bool check_law(const Section& drive)
+bool check_drive_law(const Section& drive)
 {
     std::vector<std::string_view> given;
     for (const std::string_view law : laws)
@@ -234,7 +234,7 @@ void read_drive(Builder& builder, const Section& drive, std::unordered_set<std::
     builder.remember(path, drive);
     builder.remember("joint[" + name + "]", drive);
     if (drive.kind() == any_kind) return;
-    check_law(drive);
+    check_drive_law(drive);
     check_sizes(drive);
     BodyReference first, second;
     if (drive.takes("between")) {

@@ -59,7 +59,7 @@ Sensor make_load_sensor(const SensorSources& s)
 
 Sensor make_energy(const SensorSources& s) { return energy_sensor(s.name, s.first); }
 
-const std::vector<SensorKind>& kinds()
+const std::vector<SensorKind>& sensor_kinds()
 {
     const Key body = Key{"body", types::text, "The body."}.needed();
     static const std::vector<SensorKind> all{
@@ -119,7 +119,7 @@ void read_sensor(Builder& builder, const Section& section, std::unordered_set<st
     if (findings.n_errors() > before || !section.is_valid()) return;
     std::vector<Matrix34> X;
     for (const Body& body : builder.model().bodies()) X.push_back(body.X);
-    const auto make = kinds()[static_cast<std::size_t>(section.kind())].make;
+    const auto make = sensor_kinds()[static_cast<std::size_t>(section.kind())].make;
     builder.guard(path, [&] {
         builder.model().add_sensor(make({section, name, first.index, second.index, builder, X}));
     });
@@ -134,7 +134,7 @@ Table sensor_table()
                  "all but those of loads and energies as inputs of expressions, as in `\"tip.x\"`.",
                  {Key{"name", types::text, "Results and expressions refer to sensors by name."}.needed(),
                   Key{"type", types::choice, ""}.needed()}}
-        .with_kinds("type", {kinds().begin(), kinds().end()});
+        .with_kinds("type", {sensor_kinds().begin(), sensor_kinds().end()});
 }
 
 void read_sensors(Builder& builder, bool of_loads)
