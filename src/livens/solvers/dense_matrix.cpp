@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Dense matrices whose size is known when they are made, in plain arrays, column by column. Eigen computes
+// the products; it is seen in the sources of this room alone (docs/architecture.md, "The rooms").
 #include "livens/solvers/dense_matrix.h"
 
 #include <algorithm>
@@ -35,6 +37,7 @@ DenseMatrix::DenseMatrix(DenseView from)
 
 void DenseMatrix::append_column(std::span<const double> entries)
 {
+    // The first column says how long all are: matrices are often gathered column by column.
     if (cols == 0) rows = static_cast<int>(entries.size());
     assert(static_cast<int>(entries.size()) == rows);
     a.insert(a.end(), entries.begin(), entries.end());
@@ -161,6 +164,7 @@ double largest_size(std::span<const double> x)
 {
     double largest = 0;
     for (const double entry : x) {
+        // std::max drops a nan, and a caller would take the largest of the others for finite.
         if (std::isnan(entry)) return entry;
         largest = std::max(largest, std::abs(entry));
     }

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Factorisations of dense matrices on plain arrays: pivoted QR for rank (theory.md, "Rank is geometry"),
+// least squares, null spaces, Cholesky and LU. What is not finite comes out as nan instead of whatever a
+// pivot search would make of it.
 #include "livens/solvers/factors.h"
 
 #include <algorithm>
@@ -44,6 +47,7 @@ DenseMatrix all_nan(int rows, int cols)
 template <typename QR>
 DenseMatrix columns_of_Q(const QR& qr, Index first, Index n)
 {
+    // Only the columns that are asked for are formed: a null space of a long chain has few of many.
     MatrixXd Q = MatrixXd::Identity(qr.rows(), first + n).rightCols(n);
     if (Q.size() > 0) Q.applyOnTheLeft(qr.householderQ());   // Eigen would step into what has no memory
     return stored(Q);
@@ -90,6 +94,7 @@ DenseMatrix PivotedQR::basis(int first, int n) const
 std::vector<double> PivotedQR::solve(std::span<const double> b) const
 {
     assert(static_cast<int>(b.size()) == factors_->rows);
+    // A matrix of zeros has rank 0, for which the solution of least size is zero; Eigen would divide 0 by 0.
     const bool is_zero = n_pivots() == 0 || pivot(0) == 0;
     if (is_zero || !factors_->qr || !livens::all_finite(b))
         return std::vector<double>(static_cast<std::size_t>(factors_->cols), is_zero ? 0 : nan);
