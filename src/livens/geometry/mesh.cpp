@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Meshes as files state them: points, blocks of elements and named regions, without any claim that they are
+// sound. The ending of the name chooses the reader, since contents of STL and PLY may look alike at first.
 #include "livens/geometry/mesh.h"
 
 #include <algorithm>
@@ -102,6 +104,8 @@ void MeshBuilder::add_polygon(const std::vector<std::int32_t>& corners, std::int
             size = std::max({size, norm(a), norm(b)});
         }
         for (const std::int32_t corner : corners)
+            // Inequality: distance of a corner from the mean plane <= 1e-6 of the polygon's size. Beyond, the
+            // choice of triangles would change the solid.
             if (std::abs(dot(area, p[corner] - p[corners[0]])) > 1e-6 * size * norm(area))
                 cursor.fail("a face with " + std::to_string(corners.size()) +
                             " corners is not flat; divide it into triangles");

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Gmsh's MSH, versions 2.2 and 4.1, ASCII and binary [Gmsh manual, File formats].
+// Physical names become regions; the elements that are read are those with shape functions in elements.cpp.
+// All counts are held against the bytes left before anything is reserved.
 #include <array>
 #include <cmath>
 #include <map>
@@ -68,6 +70,8 @@ public:
             else if (section == "$PartitionedEntities")
                 cursor_.fail("a partitioned mesh is not read; save it unpartitioned");
             else {
+                // Sections that say nothing of the shape are passed over, so that files of newer programs are
+                // read as well.
                 cursor_.skip_behind(end);
                 continue;
             }
@@ -126,6 +130,7 @@ private:
     /// Of things that take at least so many numbers each.
     std::int64_t count(std::int64_t n, int numbers_each, int bytes_each, const char* what) const
     {
+        // In a text a number takes at least a digit and a blank, but for the last one.
         const int least = is_text_ ? std::max(1, 2 * numbers_each - 1) : bytes_each;
         cursor_.require(n, least, what);
         return n;

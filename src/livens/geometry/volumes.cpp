@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Elements of volume: their Jacobians, how they hang together by faces, and their boundary.
+// A Jacobian has to be positive wherever it is probed: moments by quadrature take its sign for granted
+// (theory.md, "Bodies from meshes").
 #include <algorithm>
 #include <array>
 #include <map>
@@ -138,6 +140,8 @@ void check_volumes(const Mesh& mesh, std::vector<Complaint>& faults)
     const std::vector<Side> sides = sides_of(mesh);
     for (std::size_t i = 0, end = 0; i < sides.size(); i = end) {
         while (end < sides.size() && sides[end].key == sides[i].key) ++end;
+        // Two elements see their common face from opposite sides, so their corners are permuted by opposite
+        // parities.
         if (end - i == 1 || (end - i == 2 && sides[i].is_even != sides[i + 1].is_even)) continue;
         const auto name = [&](const Side& s) {
             return name_of_element(mesh, mesh.blocks[s.block], s.element);
