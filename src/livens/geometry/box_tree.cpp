@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A binary tree of boxes over triangles in the order of a space-filling curve (Morton's), for the search of
 // contacts: theory.md, "Bodies from meshes", Is it a solid? Coordinates are packed into lanes of one word, so
-// that whether two boxes meet is one subtraction.
+// that two boxes are compared by a few operations.
 #include "livens/geometry/detail/box_tree.h"
 
 #include <algorithm>

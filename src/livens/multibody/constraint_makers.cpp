@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The makers of rows, see constraint.h.
+// Each is one line of algebra in the coordinates (1, theta) of points and (0, a) of directions: theory.md,
+// "Joints are quadratic forms". (P27) is a distance row, (P4) are the rigidity rows.
 #include <cmath>
 #include <utility>
 
@@ -86,6 +88,7 @@ ConstraintRow plane_row(int body_i, const Vector4& n, const Vector4& a, int body
                         double distance, double scale)
 {
     ConstraintRow row = empty_row(body_i, body_j, scale, "plane");
+    // n . (x_j - x_i): the part of body i alone is quadratic, since n and the point turn with the same body.
     row.c_ii = -(outer(n, a) + outer(a, n));
     row.c_ij = outer(n, b);
     row.c = -distance;
@@ -144,6 +147,7 @@ ConstraintRow driven_distance_row(int body_i, const Vector4& a, int body_j, cons
 {
     ConstraintRow row = distance_row(body_i, a, body_j, b, typical);
     row.label = "driven distance";
+    // The constant length of the row is taken back: the drive has -l(t)^2 / 2 instead.
     row.c += 0.5 * typical * typical;
     QuadraticForm one;
     one.c = -0.5;
@@ -157,6 +161,7 @@ ConstraintRow driven_angle_row(int body_i, const Vector4& a, int body_j, const V
 {
     ConstraintRow row = inner_product_row(body_i, a, body_j, Vector4{}, 0, 1);
     row.label = "driven angle";
+    // a . (cos b2 - sin b1) = 0 has a slope of one at every angle, where a . b = cos has none at 0 and pi.
     row.drives.push_back({composed(angle, cosine), inner_product_row(body_i, a, body_j, b2, 0, 1)});
     row.drives.push_back({composed(angle, sine), inner_product_row(body_i, a, body_j, -b1, 0, 1)});
     return row;

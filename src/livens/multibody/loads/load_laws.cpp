@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Loads as units times factors, F = sum f_k(t, q, q') F_k: theory.md, "Coordinates of joints", Laws.
+// Expressions, drag, attraction and bushings state their law; forces, tangents, looks and guards are made
+// here, once for all.
 #include "livens/multibody/loads/load_laws.h"
 
 #include <algorithm>
@@ -112,6 +115,7 @@ Load modulated(const std::string& name, const std::string& type, const LoadParts
     };
     if (parts.units.empty() || !parts.law) refuse("a load needs units and a law");
     for (const Load& unit : parts.units)
+        // The tangent above takes units for functions of X alone: rates enter by the factors.
         if (unit.bodies != parts.units[0].bodies || unit.depends_on_V)
             refuse("units of a load act on the same bodies, whatever their velocity");
     const std::vector<int>& bodies = parts.units[0].bodies;
@@ -145,6 +149,7 @@ Load modulated(const std::string& name, const std::string& type, const LoadParts
     for (const LawReading& reading : parts.readings)
         load.readings.push_back({reading.name, reading.unit, energy(reading.value)});
     load.is_smooth = parts.is_smooth;
+    // Smooth laws need no looks between the load points (theory.md, "Looks at laws").
     if (!load.is_smooth) load.inside = all.inside();
     load.guards = parts.guards.guards;
     if (parts.guards.values)

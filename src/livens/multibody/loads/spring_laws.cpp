@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Laws of springs by elongation: force, stiffness and energy, which belong together to rounding, since the
+// drift of energy is judged by them (theory.md, "What is diagnosed").
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
@@ -28,6 +30,7 @@ std::vector<double> bends_of_lines(const std::vector<double>& x, const std::vect
     for (std::size_t i = 2; i < std::min(x.size(), y.size()); ++i) {
         const double before = (y[i - 1] - y[i - 2]) / (x[i - 1] - x[i - 2]),
                      after = (y[i] - y[i - 1]) / (x[i] - x[i - 1]);
+        // Rows on one straight line are no bend, and no element has to end there.
         if (std::abs(after - before) > 1e-12 * (std::abs(after) + std::abs(before)))
             bends.push_back(x[i - 1]);
     }
