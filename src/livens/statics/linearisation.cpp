@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// The linear equations M q'' + C q' + K q = f about a rest, and state matrices with inputs and outputs by
+// name: theory.md, "Small motions". States that move or are not balanced are refused, as their K would depend
+// on coordinates.
 #include "livens/statics/linearisation.h"
 
 #include <algorithm>
@@ -92,8 +95,11 @@ Linearisation linearise(const Model& the_model, const State& state, Side side)
     linear.C = by_rows(C);
     linear.K = by_rows(K);
     linear.twists = by_rows(twists_of(at.tables, at.state, free));
+    // What counts as zero: entries of K are sums of terms that may cancel (theory.md, "Small motions").
     linear.rounding = rounding_of_terms * statics.largest_stiffness;
     linear.damping_rounding = rounding_of_terms * statics.largest_damping;
+    // Symmetric K and C, and no damper that feeds energy: then stability is a question of the signs of K
+    // alone.
     linear.is_conservative = is_symmetric(K, linear.rounding) && is_symmetric(C, linear.damping_rounding);
     if (linear.n > 0 && linear.is_conservative)
         linear.is_conservative = symmetric_values(symmetric_part(C))[0] >= -linear.damping_rounding;
@@ -201,6 +207,8 @@ StateMatrices state_matrices(const Model& model, const Linearisation& linear,
     for (int j = 0; j < m; ++j) {
         const Port input = port(model, linear, inputs[j]);
         if (input.is_rate) refuse_port(inputs[j], "is a rate, and inputs are forces");
+        // A force u along a coordinate c q has the generalised force c^T u; divided by M it is an
+        // acceleration.
         const Values accelerations = cholesky_solution(L, input.row);   // virtual work u c dq
         std::ranges::copy(accelerations, B.column(j).subspan(n).begin());
     }

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Values, rates and wrenches of all rows, each with the rounding of its own terms: what theory.md, "Rank is
+// geometry", calls a force and a moment at the joint point, and its doubt.
 #include "livens/dynamics/rows/rows.h"
 
 #include <algorithm>
@@ -53,6 +55,7 @@ Wrench wrench_of(int body, const Vector3& at, const Matrix34& X, const Matrix34&
         wrench.moment += cross(X.column(i), g.column(i) - at[i - 1] * g.column(0));
         level += norm(terms.column(i)) + std::abs(at[i - 1]) * norm(terms.column(0));
     }
+    // Inequality |m| <= 8 eps sum |terms|: far from the joint point the sum of large terms says nothing.
     if (norm(wrench.moment) <= 8 * eps * level) wrench.moment = {};
     const double force = norm(wrench.force);
     if (force > 0) wrench.doubt = 4 * eps * norm(terms.column(0)) / force;
@@ -103,6 +106,7 @@ Gap widest_gap(const Model& model, std::span<const Matrix34> X, std::span<const 
         double terms = 0;
         for_each_positive_form(row, X,
                                [&](const ConstraintRow& form) { terms += constraint_value(form, positive); });
+        // A violation of one level is rounding of the row itself; no iteration could take it off.
         const double level = std::abs(phi[r]) / (4 * eps * std::max(terms, row.scale));
         const double violation = std::abs(phi[r]) / row.scale;
         if (gap.row < 0 || violation > gap.violation) gap.row = r, gap.violation = violation;

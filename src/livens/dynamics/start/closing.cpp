@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Consistent initial conditions: directors, positions, branches, rank, inertia and velocities of a start, in
+// this order, as each step takes the ones before for granted. theory.md, "Starting".
 #include "livens/dynamics/start/closing.h"
 
 #include <algorithm>
@@ -134,6 +136,7 @@ Fault settle_positions(const Model& model, StartPolicy policy, State& state, std
 {
     const Gap gap = widest_gap(model, state.X, all_rows(model));
     const bool projects = policy == StartPolicy::project;
+    // Rows at their rounding level are closed; a step could only move the last digits about.
     if (gap.level <= 1 && !(projects && drives_are_turned(model, state.X))) return {};
     const bool is_open = !gap.near || gap.level <= 1;
     Closing closing = close_rows(model, state.X, all_rows(model), is_open);
@@ -234,6 +237,8 @@ Fault settle_velocities(const Model& model, const Model& the_model, StartPolicy 
     RateGap fault = worst_rate(model, state, wrenches, centers, drives, speed);
     if (fault.relative <= 8 * eps) return {};
     if (fault.relative > start_tolerance) {
+        // Rates that are zero but for rounding were computed from something; they are held against what moves
+        // soon.
         const double least = speed_of_rounding(the_model, state, wrenches, centers);
         if (least > speed) fault = worst_rate(model, state, wrenches, centers, drives, least);
     }
@@ -303,6 +308,7 @@ TriedStart try_close_start(const Model& the_model, const State& start, StartPoli
     const std::vector<int> rows = all_rows(model);
     const RowWrenches wrenches = row_wrenches(model, closed.start.X);
     const RowRank rank = row_rank(twist_rows(model, closed.start.X, rows, wrenches), model.n_bodies(), rows);
+    // After rank: a spin without inertia is no fault where a joint holds it.
     fault = why_weightless(model, closed.start.X);
     if (fault) return {{}, std::move(*fault)};
     closed.independent = rank.independent;

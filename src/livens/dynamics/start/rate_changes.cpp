@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// What a projection of velocities has changed, in words of joints and bodies, the largest changes first.
+// Users state rates of coordinates, so these are told and not twists.
 #include <algorithm>
 #include <cmath>
 #include <functional>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// The speeds that rates of a start are compared with: stated ones, those of weight, loads and drives after a
+// short while, or rounding. theory.md, "Starting", states the inequality.
 #include <algorithm>
 #include <cmath>
 
@@ -82,6 +84,8 @@ double rate_bound(const State& state, std::span<const Wrench> row, std::span<con
     double bound = 0;
     for (const Wrench& w : row) {
         const Vector3 moment = moment_about(w, state.X[w.body], centers[w.body]);
+        // The most that dPhi/dt can be with this speed at the centre and as much by turning at the model's
+        // length.
         bound += norm(w.force) * speed + norm(moment) * speed / length;
     }
     return bound;
