@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Coordinates of joints, sensors and loads along a motion, with unwrapped angles: theory.md, "Coordinates of
+// joints". Turns are counted from node to node, which no accepted element passes by half a turn.
 #include "livens/diagnostics/coordinates.h"
 
 #include <algorithm>
@@ -36,6 +38,7 @@ FollowedCoordinates::FollowedCoordinates(const Model& model, const Motion& motio
     for (int e = 0; e < motion.n_elements(); ++e) {
         Patience::ask();
         for (int node = 1; node <= motion.X.degree; ++node)
+            // Every node is visited once; element ends are kept, so that a sample looks at one element alone.
             now = turned(configurations(motion, e, node), now);
         at_ends_.insert(at_ends_.end(), now.begin(), now.end());
     }
@@ -222,6 +225,7 @@ double first_half_turn(const JointCoordinate& q, const Motion& motion)
             const std::vector<Matrix34> next = configurations(motion, e, node);
             turned += coordinate_change(q, X, next);
             X = next;
+            // Beyond half a turn a family that does not count takes the angle for another one.
             if (std::abs(turned) >= std::numbers::pi)
                 return motion.mesh.ends[e] + nodes[node] * motion.mesh.length(e);
         }

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// The multipliers of rigidity, which are the stress of a body summed over it: theory.md, "Bodies without
+// rotation parameters", Stress of rigidity. They come from the equations of motion at the instant, F - G^T
+// lambda - X'' m along the directors.
 #include "livens/diagnostics/rigidity.h"
 
 #include <algorithm>
@@ -121,6 +124,7 @@ SideOfRigidity rigidity_of(const Model& model, const Balanced& b, std::span<cons
 {
     SideOfRigidity all(b.X.size());
     for (std::size_t j = 0; j < joint_is_unique.size(); ++j) {
+        // A body on which a reaction is not unique has no unique stress either.
         if (joint_is_unique[j]) continue;
         for (const ConstraintRow& row : model.joints()[j].rows)
             for (const int body : row_bodies(row)) all.is_unique[static_cast<std::size_t>(body)] = false;
@@ -219,6 +223,7 @@ std::vector<RigiditySample> Rigidity::at_end(const State& state, int end) const
                       n_rows = static_cast<std::size_t>(motion_.n_rows);
     const std::span<const double> both =
         std::span(motion_.end_multipliers).subspan(2 * static_cast<std::size_t>(end) * n_rows, 2 * n_rows);
+    // Both sides of an instant have the same rows, so one decomposition serves both sets of multipliers.
     const bool is_shared = !model_.has_drives() && are_numbers(both);   // rows that do not move
     UniqueReactions least;
     if (is_shared) least = least_at(model_, {state.t}, state.X, both, independent);

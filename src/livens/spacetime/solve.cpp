@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// The entry: checks, consistent starts, the march or the search for elements, the estimate and the verdict, in
+// this order (docs/architecture.md, "The rooms"). What each of them does stands in a file of its own.
 #include "livens/spacetime/solve.h"
 
 #include <algorithm>
@@ -38,6 +40,7 @@ void lower_orders(const Model& model, Motion& motion)
         for (const Matrix34& v : state.V) V.insert(V.end(), std::begin(v.a), std::end(v.a));
         tables.add_loads({t, Side::right}, X.data(), V.data(), 1, jump.data(), state.angles);
         tables.add_loads({t, Side::left}, X.data(), V.data(), -1, jump.data(), state.angles);
+        // A force that jumps makes the velocity bend, order 1; one that only bends is seen one order later.
         const int order = std::ranges::any_of(jump, [](double f) { return f != 0; }) ? 1 : 2;
         for (int* stated : {&motion.order_at_ends, &motion.dense_order_X, &motion.dense_order_V})
             *stated = std::min(*stated, order);
@@ -58,6 +61,7 @@ Solution solve_phase(const Model& model, const Problem& problem, const Time& tim
         return none;
     }
     const auto* mesh = std::get_if<TimeMesh>(&time);
+    // Elements that are not stated are found for the accuracy: theory.md, "To an accuracy".
     if (mesh == nullptr)
         return solve_to_accuracy(model, problem, *tried.ends, std::get<Span>(time), method, options);
     return solve_mesh(model, problem, *mesh, *tried.ends, method, options);
@@ -163,6 +167,7 @@ ExactSample sample_exactly(const Model& model, const Motion& motion, const Metho
         StartPolicy::project;   // an end state holds its constraints to rounding; polish, never refuse
     Problem problem = with_prepared({{motion.at_end(element)}});
     problem.conditions.start.angles = LoadTurns(model, motion).at_end(element);   // files do not hold them
+    // One shortened element from the state before it: its end has the order 2p that the polynomial lacks.
     const TimeMesh one{{motion.mesh.ends[element], t}};
     quiet.judge = false;
     quiet.meeting = std::numeric_limits<double>::infinity();
