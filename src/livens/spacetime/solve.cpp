@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The entry: checks, consistent starts, the march or the search for elements, the estimate and the verdict, in
-// this order (docs/architecture.md, "The rooms"). What each of them does stands in a file of its own.
+// The entry: checks, consistent starts, the march or the search for elements, the estimate and the verdict,
+// in this order (docs/architecture.md, "The rooms"). What each of them does stands in a file of its own.
 #include "livens/spacetime/solve.h"
 
 #include <algorithm>
