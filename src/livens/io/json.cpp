@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// JSON is written and checked here without a library: results hold options of runs and travel into web pages,
+// so what is written must be valid whatever names a scenario has. Strings are checked as UTF-8.
 #include "livens/io/json.h"
 
 #include <algorithm>
@@ -52,6 +54,7 @@ public:
     bool value(int depth)
     {
         skip_blanks();
+        // A bound on the depth: brackets of a foreign file must not exhaust the stack.
         if (depth > 64 || rest_.empty()) return false;
         const char c = rest_.front();
         if (c == '{') return list('}', [&] { return text() && token(":") && value(depth + 1); });
@@ -251,6 +254,7 @@ JsonWriter& JsonWriter::value(std::string_view text)
     return *this;
 }
 
+// JSON knows no nan and no infinity; null stands for both.
 JsonWriter& JsonWriter::value(double number) { return std::isfinite(number) ? raw(to_text(number)) : null(); }
 
 JsonWriter& JsonWriter::value(std::span<const double> numbers)

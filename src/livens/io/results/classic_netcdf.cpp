@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The writer of the classic NetCDF format, and its checksum.
+// Header first with places for checksums, data one variable after the other, checksums last: a file can be
+// written without being held in memory (docs/results.md).
 #include <cassert>
 
 #include "livens/io/results.h"
@@ -108,6 +110,7 @@ std::size_t ClassicWriter::put_attributes(const std::vector<Attribute>& attribut
 void ClassicWriter::put_header()
 {
     const auto wide = [&](std::uint64_t n) { return n > largest_; };
+    // CDF-2 where sizes fit into 32 bits, since every reader knows it; CDF-5 only where it must be.
     is_wide_ = std::ranges::any_of(variables_, wide, &ClassicVariable::n_bytes) ||
                std::ranges::any_of(dimensions_, wide, &ClassicDimension::length);
     header_ = is_wide_ ? "CDF\5" : "CDF\2";
@@ -154,6 +157,7 @@ void ClassicWriter::begin(ByteSink sink)
 void ClassicWriter::write(int variable, std::string_view bytes)
 {
     Progress& progress = progress_[variable];
+    // The checksum takes words of eight bytes, so pieces may end elsewhere only at the very end.
     assert(progress.done % 8 == 0 && progress.done + bytes.size() <= variables_[variable].n_bytes);
     progress.checksum.add(bytes);
     sink_(variables_[variable].begin + progress.done, bytes);

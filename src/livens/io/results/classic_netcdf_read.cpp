@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The reader of the classic NetCDF format.
+// Nothing of a header is believed: counts are bounded by the file's size, offsets checked against overlap,
+// names against repetition, before any memory is taken (docs/results.md).
 #include <cassert>
 #include <limits>
 
@@ -185,6 +187,7 @@ void ClassicReader::read_variable(Header& header)
             damaged("variable '" + v.name + "' has a dimension that does not exist");
         const std::uint64_t length = dimensions_[id].length;
         v.dimensions.push_back(dimensions_[id].name);
+        // The product of dimensions may overflow; it is divided instead.
         if (length != 0 && v.n_values > std::numeric_limits<std::uint64_t>::max() / 16 / length)
             damaged("variable '" + v.name + "' is larger than any file");
         v.n_values *= length;
@@ -212,6 +215,7 @@ void ClassicReader::verify_header() const
     const std::size_t name = without.find(checksum_name);
     const std::size_t place = name == std::string::npos ? name : without.find(*text, name);
     if (place == std::string::npos) damaged("the checksum of its header is misplaced");
+    // The checksum of the header was made with zeros in its own place.
     without.replace(place, no_checksum.size(), no_checksum);
     Checksum checksum;
     checksum.add(without);

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Reads a run by the same walk that writes it (layout.h): each variable must have the type and the shape that
+// livens writes. Figures of later minor formats may be missing in older files (docs/results.md).
 #include <limits>
 #include <optional>
 #include <set>
@@ -181,6 +183,7 @@ Run read_run_from(ByteSource source, bool verify)
     visit_run(archive, run);
     archive.verify_rest();
     check_options(run);
+    // These follow from others, and are not stored twice.
     run.estimate.n_bodies = run.motion.n_bodies;
     run.estimate.n_joints = run.estimate.reaction.empty() ? 0 : static_cast<int>(run.joint_names.size());
     check_run(run);
