@@ -32,6 +32,7 @@ FollowedCoordinates::FollowedCoordinates(const Model& model, const Motion& motio
 {
     if (coordinates_.empty()) return;
     for (const Body& body : model.bodies()) stated_.push_back(body.X);
+    // The start may stand turns away from the stated bodies; the turn nearest to zero is taken there.
     std::vector<double> now =
         turned(sample_state(motion, motion.start()).X, std::vector<double>(coordinates_.size(), 0.0));
     at_ends_ = now;
@@ -73,6 +74,8 @@ std::vector<CoordinateValue> FollowedCoordinates::at(const State& state) const
         const std::vector<double> nodes = motion_.X.basis().nodes();
         const double s = (state.t - motion_.mesh.ends[element]) / motion_.mesh.length(element);
         const std::span<const double> begin = ends.subspan(static_cast<std::size_t>(element) * n, n);
+        // Inside an element the nodes before the instant are passed, so that its own turn is within half a
+        // turn of the last one.
         values.assign(begin.begin(), begin.end());
         for (int node = 1; node <= motion_.X.degree && nodes[node] <= s; ++node)
             values = turned(configurations(motion_, element, node), values);
@@ -143,6 +146,7 @@ void append_energy(const Model& model, int b, const State& state, std::vector<do
 {
     const Body& body = model.bodies()[b];
     values.push_back(0.5 * dot(state.V[b] * body.mass, state.V[b]));
+    // Weight is constant, so its potential is linear in X: -tr(F X^T).
     values.push_back(-dot(weight(body, model.gravity()), state.X[b]));
 }
 
@@ -152,6 +156,7 @@ LoadTurns::LoadTurns(const Model& model, const Motion& motion) : motion_(motion)
 {
     if (turns_.empty()) return;
     std::vector<double> now = turns_.begin();
+    // Turns are counted from node to node, as the march counts them.
     turns_.follow(sample_state(motion, motion.start()).X, now);
     at_ends_ = now;
     for (int e = 0; e < motion.n_elements(); ++e) {

@@ -97,6 +97,7 @@ Facets::Facets(const Mesh& of)
                                of.n_elements(2) == of.block(ElementKind::triangle)->size())
 {
     if (are_triangles) {
+        // The usual mesh of triangles alone is looked at where it is, without a copy.
         corners = of.block(ElementKind::triangle)->nodes;
         return;
     }
@@ -112,6 +113,7 @@ Facets::Facets(const Mesh& of)
             copied_.insert(copied_.end(), nodes, nodes + n);
             begins.push_back(static_cast<std::int32_t>(copied_.size()));
             for (int k = 0; is_curved && k < n; ++k)
+                // Curved neighbours must share the middle of their edge, or a gap opens between them.
                 middles.push_back(b.kind == ElementKind::triangle6 ? nodes[n + k] : -1);
         }
     }
@@ -146,6 +148,7 @@ Links link(const Facets& f, std::vector<Complaint>& faults)
                 if (f.corners[g] == f.corners[h])
                     linker.degenerate.add(name_of_face(*f.mesh, face) + " has the corner " +
                                           text_of(f.at(h)) + " twice");
+            // A counting sort: two passes over half-edges, linear in their number.
             ++begins[std::min(f.corners[h], f.corners[f.next(face, h)]) + 1];
         }
     for (std::size_t i = 1; i < begins.size(); ++i) begins[i] += begins[i - 1];

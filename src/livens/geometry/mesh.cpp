@@ -65,6 +65,7 @@ std::int64_t Mesh::n_elements(int of_dimension) const
 
 ElementBlock& MeshBuilder::block(ElementKind kind)
 {
+    // Elements of one kind share a block: loops over a block need no look at the kind of each element.
     for (ElementBlock& b : mesh_.blocks)
         if (b.kind == kind) return b;
     mesh_.blocks.push_back({kind, {}, {}});
@@ -100,6 +101,8 @@ void MeshBuilder::add_polygon(const std::vector<std::int32_t>& corners, std::int
         double size = 0;
         for (std::size_t i = 1; i + 1 < corners.size(); ++i) {
             const Vector3 a = p[corners[i]] - p[corners[0]], b = p[corners[i + 1]] - p[corners[0]];
+            // The sum of the cross products of a fan is twice the vector area, whose direction is the mean
+            // normal.
             area += cross(a, b);
             size = std::max({size, norm(a), norm(b)});
         }
@@ -154,6 +157,7 @@ Mesh read_mesh_file(const std::filesystem::path& file, std::string name)
     prefer_large_pages(bytes.get(), size);
     errno = 0;
     std::ifstream stream(file, std::ios::binary);
+    // Without memory for the buffer of a stream opening fails as well; that is no fault of the file.
     if (!stream.is_open() && errno == ENOMEM) throw std::bad_alloc();   // of the stream's own
     stream.read(bytes.get(), static_cast<std::streamsize>(size));
     if (!stream) refuse_file(name, "cannot be read");

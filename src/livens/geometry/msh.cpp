@@ -92,6 +92,7 @@ private:
         mesh_.format = std::string("MSH ") + (is_new_ ? "4.1" : "2.2") + (is_text_ ? ", ASCII" : ", binary");
         if (!is_text_) {
             cursor_.line();
+            // Binary files begin with the number 1, by which the order of bytes is told.
             const auto one = cursor_.raw<std::int32_t>(false);
             is_swapped_ = one == 0x01000000;
             if (one != 1 && !is_swapped_) cursor_.fail("the number that tells the order of bytes is not 1");
@@ -188,6 +189,7 @@ private:
         Region region{dimension, {}};
         for (std::int64_t i = 0; i < n; ++i) {
             const std::int64_t physical = number(INT32_MIN, INT32_MAX, "a physical tag");
+            // A negative physical tag reverses the orientation only, which the elements say themselves.
             region.names.push_back(physical_name(dimension, std::abs(physical)));
         }
         if (dimension > 0)
@@ -264,6 +266,7 @@ private:
             }
             n_read += n_here;
         }
+        // A count that disagrees is a sign of a truncated or edited file.
         if (n_read != n) cursor_.fail("the blocks have another number of elements than their head");
     }
 
@@ -318,6 +321,8 @@ private:
                                 "the number of elements");
             n_tags = number(0, 1000, "the number of tags");
             for (std::int64_t k = 0; k < n_here; ++k) {
+                // In binary files of version 2 the head is shared by a run of elements, and each has its own
+                // tag.
                 if (!is_text_) number(1, INT32_MAX, "the tag of an element");
                 read_old_element(kind, n_tags);
             }

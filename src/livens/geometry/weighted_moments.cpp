@@ -64,6 +64,7 @@ Moments about_centroid(const Sums& sums, const Vector3& about)
 {
     if (!(sums.mass > 0)) refuse_density("the density leaves no mass", to_text(sums.mass), "");
     const Vector3 off = (1 / sums.mass) * sums.first;
+    // The parallel axis theorem: the second moment is taken about the centroid, after sums about the middle.
     return {sums.mass, about + off, sums.second - sums.mass * outer(off, off)};
 }
 
@@ -87,6 +88,7 @@ Moments weighted_moments(const Mesh& mesh, const std::function<double(const Vect
                 return sums;
             };
             const Settled found = settled(length, sums_at);
+            // An element whose rules agree counts as exact; only what stays open is summed up.
             if (found.gap > same_sums * found.sums.size) missing += found.gap;
             whole.add(found.sums);
         }

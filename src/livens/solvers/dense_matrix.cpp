@@ -68,6 +68,7 @@ DenseMatrix transpose(DenseView A)
 
 namespace {
 
+// (A + A^T)/2 or (A - A^T)/2; their sum is A.
 DenseMatrix half_with_transposed(DenseView A, double sign)
 {
     assert(A.rows == A.cols);
@@ -86,6 +87,7 @@ DenseMatrix product(DenseView A, DenseView B)
 {
     assert(A.cols == B.rows);
     DenseMatrix C(A.rows, B.cols);
+    // The result is a new matrix and aliases nothing, so that Eigen needs no temporary one.
     seen(C).noalias() = seen(A) * seen(B);
     return C;
 }
@@ -136,6 +138,7 @@ Matrix<6, 6> congruence(double factor, const Matrix<12, 6>& A, const Matrix<12, 
     return C;
 }
 
+// A^T K A: the form K in the coordinates that A maps from.
 Matrix<6, 6> congruence(const Matrix<6, 6>& A, const Matrix<6, 6>& K)
 {
     Matrix<6, 6> C;

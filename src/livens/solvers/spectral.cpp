@@ -100,6 +100,7 @@ SymmetricSpectrum tridiagonal_spectrum(std::span<const double> diagonal, std::sp
     if (!all_finite(diagonal) || !all_finite(beside))
         return not_found(static_cast<int>(diagonal.size()), true);
     Symmetric solver;
+    // Of a tridiagonal matrix no reduction is needed.
     solver.computeFromTridiagonal(seen(diagonal), seen(beside));
     return result_of(solver, true);
 }
@@ -140,6 +141,7 @@ GeneralSpectrum general_spectrum(DenseView A)
     GeneralSpectrum spectrum{std::vector<std::complex<double>>(n, {nan, nan}), {}};
     spectrum.vectors.assign(n, spectrum.values);
     if (n == 0 || !all_finite(A.entries())) return spectrum;
+    // Damped motions have a general matrix: its values are complex, in conjugate pairs.
     const Eigen::EigenSolver<MatrixXd> solver(seen(A));
     if (solver.info() != Eigen::Success) return spectrum;
     std::copy_n(solver.eigenvalues().data(), n, spectrum.values.begin());
@@ -160,6 +162,7 @@ DenseMatrix null_directions(DenseView A, double level)
 {
     assert(A.rows == A.cols);
     if (A.rows == 0 || !all_finite(A.entries())) return {A.rows, 0};
+    // Singular values descend, so that the null directions are the last columns of V.
     const Eigen::JacobiSVD<MatrixXd> svd(seen(A), Eigen::ComputeFullV);
     return stored(svd.matrixV().rightCols((svd.singularValues().array() <= level).count()));
 }

@@ -38,6 +38,7 @@ void lower_orders(const Model& model, Motion& motion)
         std::vector<double> X, V, jump(12 * state.X.size(), 0.0);
         for (const Matrix34& x : state.X) X.insert(X.end(), std::begin(x.a), std::end(x.a));
         for (const Matrix34& v : state.V) V.insert(V.end(), std::begin(v.a), std::end(v.a));
+        // Loads right of the instant less those left of it, in the same state: what differs is the jump.
         tables.add_loads({t, Side::right}, X.data(), V.data(), 1, jump.data(), state.angles);
         tables.add_loads({t, Side::left}, X.data(), V.data(), -1, jump.data(), state.angles);
         // A force that jumps makes the velocity bend, order 1; one that only bends is seen one order later.
@@ -101,6 +102,7 @@ Solution solve_unjudged(const Model& model, const Problem& stated, const Time& t
     std::function<bool()> goes_on;
     if (given.progress) {
         options.progress = [&](const Progress& progress) {
+            // Work without a progress of its own asks with the last one whether to go on.
             last = progress;
             return given.progress(progress);
         };
@@ -124,11 +126,14 @@ Solution solve_unjudged(const Model& model, const Problem& stated, const Time& t
 Solution solve(const Model& model, const Problem& stated, const Time& time, const Method& method,
                const SolveOptions& options)
 {
+    // A method that cannot take the conditions or the drives is refused before any work.
     check_method(model, stated, time, method, options);
     const Problem problem = with_prepared(stated);
     Solution solution = solve_unjudged(model, problem, time, method, options);
+    // A start that does not close is an error of the input; inside of searches it is a result among others.
     if (solution.cannot_begin) throw InputError(std::move(*solution.cannot_begin));
     if (!options.judge || solution.motion.mesh.ends.empty()) return solution;
+    // The estimate comes first: whether rounding spoils the accuracy, and what is suspect, follow from it.
     estimate(model, problem, method, options, solution);
     refuse_rounding(model, solution);
     std::function<bool()> goes_on;

@@ -52,12 +52,14 @@ Wrench wrench_of(int body, const Vector3& at, const Matrix34& X, const Matrix34&
     Wrench wrench{body, at, g.column(0), {}, 0};
     double level = 0;
     for (int i = 1; i < 4; ++i) {
+        // The gradient by the directors, less what the force at the joint point explains, is a pure moment.
         wrench.moment += cross(X.column(i), g.column(i) - at[i - 1] * g.column(0));
         level += norm(terms.column(i)) + std::abs(at[i - 1]) * norm(terms.column(0));
     }
     // Inequality |m| <= 8 eps sum |terms|: far from the joint point the sum of large terms says nothing.
     if (norm(wrench.moment) <= 8 * eps * level) wrench.moment = {};
     const double force = norm(wrench.force);
+    // The doubt is the relative rounding of the force, from the sum of the sizes of its terms.
     if (force > 0) wrench.doubt = 4 * eps * norm(terms.column(0)) / force;
     return wrench;
 }
@@ -108,6 +110,7 @@ Gap widest_gap(const Model& model, std::span<const Matrix34> X, std::span<const 
                                [&](const ConstraintRow& form) { terms += constraint_value(form, positive); });
         // A violation of one level is rounding of the row itself; no iteration could take it off.
         const double level = std::abs(phi[r]) / (4 * eps * std::max(terms, row.scale));
+        // The scale makes rows of lengths and of angles comparable.
         const double violation = std::abs(phi[r]) / row.scale;
         if (gap.row < 0 || violation > gap.violation) gap.row = r, gap.violation = violation;
         gap.level = std::max(gap.level, level);

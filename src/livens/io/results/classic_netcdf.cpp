@@ -140,6 +140,7 @@ void ClassicWriter::put_header()
     }
     std::uint64_t begin = header_.size();
     for (std::size_t i = 0; i < variables_.size(); ++i) {
+        // The length of the header is known only now; offsets fill the places that were left for them.
         variables_[i].begin = begin;
         swap_numbers(&begin, 1, header_.data() + begins[i]);
         begin += variables_[i].n_bytes;
@@ -184,6 +185,7 @@ void ClassicWriter::append(int variable, std::string_view bytes)
     assert(bytes.size() == variables_[variable].n_values);
     const std::size_t whole = bytes.size() & ~std::size_t{7};
     write(variable, bytes.substr(0, whole));
+    // Bytes that fill the variable up to four belong to it, and to its checksum.
     std::string rest(bytes.substr(whole));
     rest.resize(padded(rest.size()));
     if (!rest.empty()) write(variable, rest);
@@ -196,6 +198,7 @@ void ClassicWriter::finish()
         header_.replace(progress_[i].checksum_place, no_checksum.size(), progress_[i].checksum.text());
     }
     Checksum of_header;
+    // The header's own checksum covers those of the variables, so that none can be exchanged unseen.
     of_header.add(header_);
     header_.replace(checksum_place_, no_checksum.size(), of_header.text());
     sink_(0, header_);

@@ -43,6 +43,7 @@ public:
         if (at_ + padded(n) > largest_header) damaged("its header is larger than 17 MiB");
         const std::size_t end = static_cast<std::size_t>(at_ + padded(n)), have = text_.size();
         if (end > have) {
+            // Memory grows with what is read, not with what a count claims.
             text_.resize(std::min<std::uint64_t>(std::max(end, have + buffer_size), source_.size));
             source_.read(have, std::span(text_).subspan(have));
         }
@@ -59,6 +60,7 @@ public:
     std::uint64_t count()
     {
         const std::uint64_t n = integer(count_size_);
+        // Counts are signed in the format.
         if (n >> (8 * count_size_ - 1) != 0) damaged("a count in its header is negative");
         return n;
     }
@@ -144,6 +146,8 @@ ClassicReader::ClassicReader(ByteSource source, bool verify) : source_(std::move
     std::uint64_t left = source_.size - header_.size();   // where variables share bytes, reading has no end
     for (const ClassicVariable& v : variables_) {
         if (v.begin < header_.size()) damaged("variable '" + v.name + "' begins within the header");
+        // Variables that fit between header and end by the sum of their sizes bound the work of reading them
+        // all.
         if (v.n_bytes > left) damaged("its variables lie upon each other");
         left -= v.n_bytes;
     }
@@ -207,6 +211,7 @@ void ClassicReader::read_variable(Header& header)
 void ClassicReader::verify_header() const
 {
     if (!verify_) return;
+    // Only runs of this format have one; the version was checked before, since other files have none.
     const AttributeValue* stored = attribute(checksum_name);
     const std::string* text = stored == nullptr ? nullptr : std::get_if<std::string>(stored);
     if (text == nullptr || text->size() != no_checksum.size())

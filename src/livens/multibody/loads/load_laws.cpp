@@ -44,6 +44,7 @@ struct Modulated {
         for (std::size_t k = 0; k < factors.size(); ++k) {
             LoadForces unit{};
             parts.units[k].forces(arguments, unit);
+            // Forces act on the first two bodies; further ones are only looked at by the law.
             for (std::size_t b = 0; b < 2; ++b) F[b] += factors[k] * unit[b];
         }
     }
@@ -85,6 +86,7 @@ struct Modulated {
             LoadForces unit{};
             parts.units[k].forces(arguments, unit);
             LoadTangent of_unit(n);
+            // The product rule: the factor times the unit's tangent, and the unit times the factor's slopes.
             if (parts.units[k].depends_on_X) parts.units[k].tangent(arguments, of_unit);
             for (std::size_t b = 0; b < 2; ++b)
                 for (std::size_t c = 0; c < n; ++c) {
