@@ -148,6 +148,7 @@ SideOfRigidity rigidity_on(const Model& model, const State& state, Side side)
 {
     const std::size_t n = model.bodies().size(), s = side == Side::left ? 0 : 1;
     std::optional<PreparedState> prepared;
+    // Between nodes rows hold to the order of the interpolation only: the state is closed first.
     const TriedStart tried = try_close_start(model, state, StartPolicy::project);
     if (tried.closed)
         prepared.emplace(model, *tried.closed, side, false);   // else the joints allow none near
@@ -207,6 +208,7 @@ std::vector<RigiditySample> Rigidity::at(const State& given) const
     state.angles = turns_.at(given);
     if (!model_.has_events())
         return of_both_sides(rigidity_on(model_, state, Side::left), rigidity_on(model_, state, Side::right));
+    // On the left act the joints of the instant just before, on the right those of the instant itself.
     const Model before = acting_at(model_, std::nextafter(state.t, -infinity)).model,
                 after = acting_at(model_, state.t).model;
     return of_both_sides(rigidity_on(before, state, Side::left), rigidity_on(after, state, Side::right));

@@ -99,6 +99,7 @@ BodySample sample_body(const Body& body, const Matrix34& X, const Matrix34& V, c
         s.directors = triad * body.stretch;
         s.angular_velocity_body = inverse(body.stretch) * s.angular_velocity_body;
     }
+    // With the directors of the motion, not the projected ones: the balance is that of the motion.
     s.angular_momentum = angular_momentum(std::span(&X, 1), std::span(&P, 1));
     return s;
 }
@@ -260,6 +261,7 @@ double beside(const Motion& motion, double t, int end, Side side)
 {
     if (end < 0) return t;
     const int element = std::clamp(side == Side::left ? end - 1 : end, 0, motion.n_elements() - 1);
+    // Events are element ends, so the middle of an element has the joints that act all over it.
     return motion.mesh.ends[element] + 0.5 * motion.mesh.length(element);
 }
 

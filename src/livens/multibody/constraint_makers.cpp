@@ -39,6 +39,7 @@ ConstraintRow with_world_folded(ConstraintRow row)
     }
     if (row.body_i != world) return row;
     const Matrix34& X_world = world_configuration;
+    // The world's configuration is constant: products with it are linear, and its own terms are constants.
     row.b_j += X_world * row.c_ij;
     row.c += 0.5 * dot(X_world * row.c_ii, X_world) + dot(row.b_i, X_world);
     row.c_ii = {};
@@ -77,6 +78,7 @@ std::vector<ConstraintRow> coincidence_rows(int body_i, const Vector4& a, int bo
 ConstraintRow distance_row(int body_i, const Vector4& a, int body_j, const Vector4& b, double length)
 {
     ConstraintRow row = empty_row(body_i, body_j, length * length, "distance");
+    // Half of the squared distance is a form, and its gradient vanishes only where the points coincide.
     row.c_ii = outer(a, a);
     row.c_ij = -outer(a, b);
     row.c_jj = outer(b, b);
@@ -136,6 +138,7 @@ std::vector<ConstraintRow> driven_point_rows(int body_i, const Vector4& a, int b
         row.label = labels[k];
         QuadraticForm one;
         one.c = -1;
+        // The form of the drive is the constant -1, by which the path is taken off.
         row.drives.push_back({path[static_cast<std::size_t>(k)], one});
         rows.push_back(std::move(row));
     }
@@ -172,6 +175,7 @@ ConstraintRow driven_angle_branch(int body_i, const Vector4& a, int body_j, cons
 {
     ConstraintRow row = inner_product_row(body_i, a, body_j, Vector4{}, 0, 1);
     row.label = "driven angle";
+    // a . (cos b1 + sin b2) is 1 on the branch that is meant, and -1 half a turn away.
     row.drives.push_back({composed(angle, cosine), inner_product_row(body_i, a, body_j, b1, 0, 1)});
     row.drives.push_back({composed(angle, sine), inner_product_row(body_i, a, body_j, b2, 0, 1)});
     return row;
@@ -188,6 +192,7 @@ std::vector<ConstraintRow> rigidity_rows(int body)
     std::vector<ConstraintRow> rows;
     for (const Pair& pair : pairs) {
         ConstraintRow row = empty_row(world, body, 1, pair.label);
+        // The form is 1/2 tr(X C X^T), so these entries give 1/2 d_a . d_b for both kinds of pairs.
         row.c_jj(pair.a, pair.b) += 0.5;
         row.c_jj(pair.b, pair.a) += 0.5;
         row.c = pair.a == pair.b ? -0.5 : 0.0;

@@ -102,6 +102,7 @@ MassProperties mass_properties(const Matrix4& mass_matrix)
     }
     const Vector3& c = properties.center_of_mass;
     E -= properties.mass * outer(c, c);
+    // The inverse of E = tr(J)/2 1 - J, since tr(E) = tr(J)/2.
     properties.inertia = trace(E) * identity<3>() - E;
     return properties;
 }
@@ -148,6 +149,7 @@ void check_mass_properties(const MassProperties& properties, const std::string& 
     if (!(properties.mass > 0))
         throw InputError({"mass-not-positive", path + ".mass", "the mass of a body must be positive",
                           to_text(properties.mass), "> 0", "", "a fixed body is the world"});
+    // Inequality: |J_ij - J_ji| <= 1e-12 of the largest entry.
     const double largest = std::ranges::max(J.a, {}, [](double entry) { return std::abs(entry); });
     for (int i = 0; i < 3; ++i)
         for (int j = 0; j < i; ++j)
@@ -221,6 +223,7 @@ MassProperties cone(double density, double radius, double height)
     require_size(radius, "cone", "the radius");
     require_size(height, "cone", "the height");
     const double mass = density * std::numbers::pi * radius * radius * height / 3;
+    // About the centre of mass, a quarter of the height above the base.
     const double across = mass * (3 * radius * radius / 20 + 3 * height * height / 80);
     return {mass, {}, diagonal(across, across, 3 * mass * radius * radius / 10)};
 }

@@ -169,11 +169,13 @@ Reaction joint_reaction(const Model& model, int joint, std::span<const Matrix34>
     Matrix34 F{};
     for (int k = 0; k < static_cast<int>(j.rows.size()); ++k) {
         const double multiplier = multipliers[model.first_row(joint) + k];
+        // Multipliers enter the law as forces -G^T lambda; on the second body that is the joint's reaction.
         if (multiplier != 0) F -= multiplier * constraint_gradient(j.rows[k], X).of(j.second);
     }
     const Matrix34& X_second = X[j.second];
     Reaction reaction;
     reaction.force = F.column(0);
+    // Forces on directors do work under a turn like the moment sum d_i x F_i.
     for (int i = 1; i < 4; ++i) reaction.torque += cross(X_second.column(i), F.column(i));
     // The moment of F about the reference point, moved to the joint point.
     const Vector3 arm = X_second * point(j.point_second) - X_second.column(0);

@@ -72,6 +72,7 @@ bool is_symmetric(const DenseMatrix& A, double rounding)
 Linearisation linearise(const Model& the_model, const State& state, Side side)
 {
     refuse_motion(the_model, close_start(the_model, state, StartPolicy::project).start);
+    // Drives are held where they are at the instant: the equations of a rest have no time.
     const Model model = frozen(the_model, {state.t, side});
     State rest = state;
     for (Matrix34& V : rest.V) V = {};
@@ -184,6 +185,7 @@ std::complex<double> amplitude(const Linearisation& linear, const VibrationMode&
     for (std::size_t b = 0; b < mode.bodies.size(); ++b) {
         const auto &d = mode.bodies[b].displacement, &w = mode.bodies[b].rotation;
         const Matrix34& X = linear.state.X[b];
+        // Rates are linear in twists, so real and imaginary parts are taken one by one.
         re.push_back(
             rate(X, {d[0].real(), d[1].real(), d[2].real()}, {w[0].real(), w[1].real(), w[2].real()}));
         im.push_back(
@@ -201,6 +203,7 @@ StateMatrices state_matrices(const Model& model, const Linearisation& linear,
                       damping = cholesky_solution(L, square(linear.C));
     DenseMatrix A(2 * n, 2 * n), B(2 * n, m), C(p, 2 * n);
     for (int j = 0; j < n; ++j) {
+        // The state is (q, q'), with M q'' = f - K q - C q'.
         A(j, n + j) = 1;
         for (int i = 0; i < n; ++i) A(n + i, j) -= K(i, j), A(n + i, n + j) -= damping(i, j);
     }

@@ -83,6 +83,7 @@ private:
         return v;
     }
 
+    // The standard fixes the numbers of this generator; distributions differ from library to library.
     std::minstd_rand random_{1};
 };
 
@@ -176,6 +177,7 @@ Reach reach(const Model& model, std::span<const Matrix34> X)
         ++reached.n_tries;
         Closing found = close_rows(led, shaken(model, X, size), rows, false);
         if (!is_good(found)) continue;
+        // A disturbed start closes anywhere on its branch; the nearest place to the stated one is meant.
         reached.closing = nearest_from(led, std::move(found), X, rows);
         reached.how = "the joints did not close from the start as it is stated; from one that was disturbed "
                       "by up to " +

@@ -26,6 +26,7 @@ namespace livens {
 namespace {
 
 constexpr double step = 0.1;   // of a coordinate, rad or lengths of the model
+// A thousand turns, which take some 63,000 steps.
 constexpr double farthest = 2000 * std::numbers::pi;
 constexpr int most_halvings = 12;
 constexpr double noticed = 1e-9;      // change of a stated velocity, of the largest
@@ -235,6 +236,7 @@ Way lead(const Model& led, const std::vector<Led>& all, const Model& model, cons
             way.done = next;
             way.X = closing.X;
             for (std::size_t i = 0; i < change.size(); ++i) way.change[i] += change[i];
+            // A step that was halved may grow again where closing is easy.
             length = std::min(whole, 2 * length);
             continue;
         }
@@ -320,6 +322,7 @@ MovedStart move_start(const Model& model, const std::vector<StartCoordinate>& wa
     Way way = lead(led, all, model, chosen.rows, closed.start.X);
     if (!way.is_whole && !chosen.kept.empty()) {   // what was to be kept may stand in the way
         std::vector<int> fewer = chosen.rows;
+        // Rows of kept coordinates stand last: without them the way is tried a second time.
         fewer.resize(fewer.size() - chosen.kept.size());
         const Way other = lead(led, all, model, fewer, closed.start.X);
         if (other.is_whole) moved.kept.clear();
@@ -335,6 +338,7 @@ MovedStart move_start(const Model& model, const std::vector<StartCoordinate>& wa
     for (std::size_t i = 0; i < all.size(); ++i) {
         Led& one = all[i];
         const NamedCoordinate& q = named(model, one);
+        // Rates that nobody wants are those of the stated velocities at the stated place.
         if (!one.has_rate) one.rate = coordinate_rate(q.coordinate, stated.X, V);
         one.from = one.to = one.has_value ? one.to : one.from + way.change[i];
     }

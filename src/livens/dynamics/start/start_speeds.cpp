@@ -21,6 +21,7 @@ double acceleration(const Body& body, const Matrix34& X, const Matrix34& F, doub
     if (body.is_point || !(trace(mass.inertia) > 0)) return most;
     Vector3 moment = cross(X.column(0) - X * point(mass.center_of_mass), force);
     for (int i = 1; i < 4; ++i) moment += cross(X.column(i), F.column(i));
+    // The trace is positive for a needle as well, whose moment about its axis is zero.
     return std::max(most, norm(moment) / trace(mass.inertia) * length);
 }
 
@@ -52,6 +53,7 @@ double acceleration_by_drives(const Model& model, const State& state, const RowW
             bend += std::abs(drive.factor({state.t}).second *
                              form_value(drive.form, row.body_i, row.body_j, state.X));
         const double by_speed = rate_bound(state, wrenches[r], centers, 1, model.length());
+        // A law that bends by this much asks for the acceleration that makes as much of the row.
         if (by_speed > 0 && std::isfinite(bend)) most = std::max(most, bend / by_speed);
     }
     return most;
@@ -101,6 +103,7 @@ double speed_of_rounding(const Model& model, const State& state, const RowWrench
 {
     const double most = std::max(acceleration_by_loads(model, state),
                                  acceleration_by_drives(model, state, wrenches, centers));
+    // A thousandth of sqrt(a L), reached within 5e-7 lengths, or 1e-6 lengths a second.
     return std::max(slowest * std::sqrt(most * model.length()), per_second * model.length());
 }
 

@@ -76,6 +76,7 @@ void normalise_axes(const Joint& joint, JointFrame& frame)
     frame.axis_second = unit_axis(frame.axis_second, "joint[" + joint.name + "]");
     const bool is_given =
         dot(frame.across_first, frame.across_first) > 0 && dot(frame.across_second, frame.across_second) > 0;
+    // A stated direction is made perpendicular to the axis; without one any will do, the same each time.
     const auto across = [&](const Vector3& given, const Vector3& axis) {
         return is_given ? unit_axis(given - dot(given, axis) * axis, "joint[" + joint.name + "]")
                         : across_axis(axis).u;
@@ -95,6 +96,7 @@ void fix_across(JointFrame& frame, int first, int second, const Matrix34& X_firs
     const Matrix34 &X = first == world ? world_configuration : X_first,
                    &Y = second == world ? world_configuration : X_second;
     const Vector3 a = X * direction(axis_first), b = Y * direction(axis_second);
+    // The turn below divides by 1 + a . b, which vanishes where the axes are opposite.
     constexpr double opposite = 1e-6;
     if (1 + dot(a, b) < opposite)
         throw InputError({"joint-bend", path + ".axes",

@@ -149,6 +149,7 @@ struct BushingLaw {
         for (int k = 0; k < 6; ++k) f[k] = force(m, k);
         for (std::size_t i = 0; i < n; ++i) {
             factors[i] = 0;
+            // Virtual work f . du = f . J dq: the factor of coordinate i is (J^T f)_i.
             for (std::size_t k = 0; k < 6; ++k) factors[i] += J(k, i).value * f[k];
         }
         if (slopes.empty()) return;
@@ -204,6 +205,7 @@ bool is_negative(Matrix<6, 6> A)
         const double slack = 1e-12 * std::abs(given(k, k));
         if (A(k, k) < -slack || !std::isfinite(A(k, k))) return true;
         for (int i = k + 1; i < 6; ++i) {
+            // Where a pivot is zero its row must be as well, or the form is negative somewhere.
             if (A(k, k) <= slack && std::abs(A(i, k)) > 1e-9 * std::sqrt(given(k, k) * given(i, i)))
                 return true;
             for (int j = k + 1; A(k, k) > slack && j < 6; ++j) A(i, j) -= A(i, k) * A(k, j) / A(k, k);
@@ -267,6 +269,7 @@ Load bushing(const std::string& name, int first, const BodyFrame& frame_first, i
     static_cast<PairForm&>(trace) = sum(trace, 1, product(1, 1));
     add(scaled(sum(trace, 1, product(2, 2)), 0.5, -0.5));
     for (LawCoordinate& q : parts.coordinates) {
+        // The law takes the values of the forms, not their changes since the start.
         q.at_stated =
             form_value(q.coordinate.forms[0], q.coordinate.forms[0].body_i, q.coordinate.forms[0].body_j, X);
         parts.units.push_back(unit_along(name, q.coordinate, X));

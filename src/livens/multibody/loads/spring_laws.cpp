@@ -59,6 +59,7 @@ SpringLaw tabulated_spring(const std::vector<double>& elongations, const std::ve
                               "two forces at " + to_text(elongations[i]), "ascending elongations", "", ""});
     const TimeFunction inside = (is_spline ? spline_table : linear_table)(elongations, forces);
     const TimeFunction force = straight_on(inside, elongations.front(), elongations.back());
+    // Sums at the rows: an energy then takes one integral, and not one for each row.
     std::vector<double> energies{0};   // at the rows, from the first
     for (std::size_t i = 1; i < elongations.size(); ++i)
         energies.push_back(energies.back() + integral(force, elongations[i - 1], elongations[i]));
@@ -67,6 +68,7 @@ SpringLaw tabulated_spring(const std::vector<double>& elongations, const std::ve
         const std::size_t row = next == elongations.begin() ? 0 : next - elongations.begin() - 1;
         return energies[row] + integral(force, elongations[row], e);
     };
+    // Energy counts from elongation zero, wherever the table begins.
     const double at_rest = energy(0);
     return {[force, energy, at_rest](double e) {
                 const TimeValue f = force({e});
