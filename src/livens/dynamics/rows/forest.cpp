@@ -119,7 +119,6 @@ Forest spanning_forest(const std::vector<BodyRow>& rows, int n_bodies, double le
     for (int root = world; root < n_bodies; ++root) {
         if (is_reached[root + 1]) continue;
         is_reached[root + 1] = true;
-        // The world comes first as a root; what floats begins at any of its bodies.
         for (front.assign(1, root); !front.empty();) {
             const int inner = front.back();
             front.pop_back();

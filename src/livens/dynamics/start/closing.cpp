@@ -136,7 +136,6 @@ Fault settle_positions(const Model& model, StartPolicy policy, State& state, std
 {
     const Gap gap = widest_gap(model, state.X, all_rows(model));
     const bool projects = policy == StartPolicy::project;
-    // Rows at their rounding level are closed; a step could only move the last digits about.
     if (gap.level <= 1 && !(projects && drives_are_turned(model, state.X))) return {};
     const bool is_open = !gap.near || gap.level <= 1;
     Closing closing = close_rows(model, state.X, all_rows(model), is_open);

@@ -334,8 +334,6 @@ Mobility mobility(const Model& model, const ClosedStart& closed)
     result.first_order = closed.degrees_of_freedom;
     if (closed.redundant.empty() || closed.degrees_of_freedom == 0) return result;
     const Curvatures curvatures(model, closed);
-    // Most redundant mechanisms are so in every position; for them this is all, at a cost that grows with the
-    // bodies.
     if (asks_nothing(curvatures, closed)) return result;
     const SecondOrder second(curvatures);
     double size = 0;

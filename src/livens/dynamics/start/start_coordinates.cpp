@@ -236,7 +236,6 @@ Way lead(const Model& led, const std::vector<Led>& all, const Model& model, cons
             way.done = next;
             way.X = closing.X;
             for (std::size_t i = 0; i < change.size(); ++i) way.change[i] += change[i];
-            // A step that was halved may grow again where closing is easy.
             length = std::min(whole, 2 * length);
             continue;
         }

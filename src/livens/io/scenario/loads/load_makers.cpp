@@ -103,15 +103,13 @@ Load by_formula(const LoadSources& p, const std::string& type, const std::string
     const TimeFunction acts = while_it_acts(p.section, 1.0);
     parts.law = [law, acts](const LawArguments& at, std::span<double> factors, std::span<double> slopes) {
         law(at, factors, slopes);
-        // Outside of its interval the load is off: its slopes must vanish with it, else Newton's matrix is
-        // wrong.
+        // Outside of its interval the load is off, and its slopes have to vanish with it.
         if (acts(at.at).value == 1) return;
         std::ranges::fill(factors, 0.0);
         std::ranges::fill(slopes, 0.0);
     };
     for (const Inputs::Read& read : inputs.reads) parts.depends_on_rates |= read.is_rate;
     parts.guards = guards_of(expressions, inputs);
-    // An affine law has no bend wherever the motion goes; others are looked at inside of elements.
     parts.is_smooth = std::ranges::all_of(expressions, [](const Expression& e) { return e.is_affine(); });
     parts.steepest = steepness_of(expressions, inputs);
     parts.breaks = acts.breaks();
