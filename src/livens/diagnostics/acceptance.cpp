@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// The verdict: reasons for which a motion that a solver calls converged is suspect, each with its bound.
+// theory.md, "What is diagnosed" and "The elements of the paper", Acceptance; bounds stand in
+// acceptance_bounds.h.
 #include "livens/diagnostics/acceptance.h"
 
 #include <algorithm>
@@ -51,6 +54,7 @@ public:
     void error(const ErrorEstimate& estimate, const Model& model, double bound)
     {
         if (estimate.largest <= bound) return;
+        // Blamed on a law only where what it did unseen makes up half of the error.
         const bool is_law = estimate.unseen_load >= 0 && !(estimate.unseen < 0.5 * estimate.largest);
         reasons_.push_back(
             "its estimated error is " + to_text(estimate.largest, 3) +
@@ -116,6 +120,7 @@ void measure(Verdict& v, const Model& model, const Motion& motion, bool holds_we
     v.balance = balance(model, motion, some, [&](Balance& piece) {
         if (motion.n_elements() < some) v.balances = std::make_shared<const Balance>(std::move(piece));
     });
+    // Radau loses energy by design; only a rise is held against it (theory.md, "What is diagnosed").
     v.energy_drift = motion.damps() ? v.balance.relative_energy_rise() : v.balance.relative_energy_drift();
     v.linear_momentum_drift = v.balance.relative_linear_momentum_drift();
     v.angular_momentum_drift = v.balance.relative_angular_momentum_drift();
@@ -146,6 +151,7 @@ namespace {
 void find_horizon(Verdict& v, const Model& model, const Motion& motion, std::span<const double> growth,
                   const Growing& part, std::span<const double> rounding, const Growing& rounding_in)
 {
+    // 2^-53: half a spacing of numbers at 1, the most that rounding to nearest takes.
     constexpr double spacing = 0.5 * std::numeric_limits<double>::epsilon();
     double first = Verdict::unknown;   // for any perturbation
     for (std::size_t e = 0; e < growth.size(); ++e) {
@@ -201,6 +207,7 @@ Verdict judge(const Model& model, const Motion& motion, const SolveReport& repor
         v.good_until = good.until;
     }
     find_horizon(v, model, motion, growth, part, rounding, rounding_in);
+    // A motion that was broken off has its reason already; its figures are told all the same.
     if (!report.converged()) return v;
     Reasons reasons(v.reasons);
     const bool counts_turns = motion.constraints_hold == "element nodes";

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Integrals of L, H and angular momentum over each element, as the paper plots them (P36): theory.md, "What
+// is diagnosed", and docs/paper.md, "Figures 9 and 13". H is the Legendre transform of the momentum field,
+// where there is one.
 #include <algorithm>
 #include <cassert>
 
@@ -46,6 +49,7 @@ public:
         }
         const double potential = potential_energy(model_, sampler_.instant(element, k), X_, V_, angles_);
         hamiltonian = kinetic + potential;
+        // L = tr(P X'^T) - T* - V: with P = X' m this is T - V, as usual.
         lagrangian = legendre - kinetic - potential;
         moment = angular_momentum(X_, P_);
     }

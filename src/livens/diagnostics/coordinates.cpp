@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Coordinates of joints, sensors and loads along a motion, with unwrapped angles: theory.md, "Coordinates of
+// joints". Turns are counted from node to node, which no accepted element passes by half a turn.
 #include "livens/diagnostics/coordinates.h"
 
 #include <algorithm>
@@ -30,12 +32,14 @@ FollowedCoordinates::FollowedCoordinates(const Model& model, const Motion& motio
 {
     if (coordinates_.empty()) return;
     for (const Body& body : model.bodies()) stated_.push_back(body.X);
+    // The start may stand turns away from the stated bodies; the turn nearest to zero is taken there.
     std::vector<double> now =
         turned(sample_state(motion, motion.start()).X, std::vector<double>(coordinates_.size(), 0.0));
     at_ends_ = now;
     for (int e = 0; e < motion.n_elements(); ++e) {
         Patience::ask();
         for (int node = 1; node <= motion.X.degree; ++node)
+            // Every node is visited once; element ends are kept, so that a sample looks at one element alone.
             now = turned(configurations(motion, e, node), now);
         at_ends_.insert(at_ends_.end(), now.begin(), now.end());
     }
@@ -70,6 +74,8 @@ std::vector<CoordinateValue> FollowedCoordinates::at(const State& state) const
         const std::vector<double> nodes = motion_.X.basis().nodes();
         const double s = (state.t - motion_.mesh.ends[element]) / motion_.mesh.length(element);
         const std::span<const double> begin = ends.subspan(static_cast<std::size_t>(element) * n, n);
+        // Inside an element the nodes before the instant are passed, so that its own turn is within half a
+        // turn of the last one.
         values.assign(begin.begin(), begin.end());
         for (int node = 1; node <= motion_.X.degree && nodes[node] <= s; ++node)
             values = turned(configurations(motion_, element, node), values);
@@ -140,6 +146,7 @@ void append_energy(const Model& model, int b, const State& state, std::vector<do
 {
     const Body& body = model.bodies()[b];
     values.push_back(0.5 * dot(state.V[b] * body.mass, state.V[b]));
+    // Weight is constant, so its potential is linear in X: -tr(F X^T).
     values.push_back(-dot(weight(body, model.gravity()), state.X[b]));
 }
 
@@ -149,6 +156,7 @@ LoadTurns::LoadTurns(const Model& model, const Motion& motion) : motion_(motion)
 {
     if (turns_.empty()) return;
     std::vector<double> now = turns_.begin();
+    // Turns are counted from node to node, as the march counts them.
     turns_.follow(sample_state(motion, motion.start()).X, now);
     at_ends_ = now;
     for (int e = 0; e < motion.n_elements(); ++e) {
@@ -222,6 +230,7 @@ double first_half_turn(const JointCoordinate& q, const Motion& motion)
             const std::vector<Matrix34> next = configurations(motion, e, node);
             turned += coordinate_change(q, X, next);
             X = next;
+            // Beyond half a turn a family that does not count takes the angle for another one.
             if (std::abs(turned) >= std::numbers::pi)
                 return motion.mesh.ends[e] + nodes[node] * motion.mesh.length(e);
         }

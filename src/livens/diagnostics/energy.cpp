@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Kinetic energy 1/2 tr(V m V^T), which does not depend on X (P7), and the potential of weight and loads:
+// theory.md, "Bodies without rotation parameters".
 #include <cassert>
 
 #include "livens/diagnostics/diagnostics.h"

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// The distance of a motion and a finer one at element ends, body by body and joint by joint: the estimated
+// error of theory.md, "The estimated error". What laws did unseen is added as kicks that go on ("Looks at
+// laws").
 #include "livens/diagnostics/estimate.h"
 
 #include <algorithm>
@@ -67,6 +70,8 @@ void ErrorMeter::compare(const Motion& finer, int first, int last)
     std::vector<int> missing;
     for (int end = first; end <= last; ++end) {
         Patience::ask();
+        // Compared at ends that both have; where laws bend each has its own instant, and the error there is
+        // that of the neighbours.
         const int there = element_end_at(finer.mesh, motion_.mesh.ends[end]);
         if (there < 0) {
             missing.push_back(end);
@@ -120,6 +125,7 @@ void ErrorMeter::compare_reactions(int end, const Motion& finer, Side side)
         }
         double& error = estimate_.reaction[static_cast<std::size_t>(end * estimate_.n_joints) + j];
         const double gap = gap_between(a[j], b[j], estimate_.length);
+        // Two pieces meet at one end: the larger error of both sides stays.
         error = side != Side::middle && error > gap ? error : gap;
         raise_to(estimate_.largest_reaction, size_of(a[j], estimate_.length));
     }
@@ -137,6 +143,8 @@ void ErrorMeter::add(const std::vector<Unseen>& unseen, int first, int last)
             const Unseen& one = unseen[next];
             const double since = one.t - one.duration, kick = one.error / one.duration;
             for (std::size_t b = 0; b < n; ++b) {
+                // A kick moves a body as long as the motion lasts: shift = rate (t - since), kept as two sums
+                // so that all kicks cost one pass.
                 shifts_[b].rate += one.shift[b], shifts_[b].moment += one.shift[b] * since;
                 turns_[b].rate += one.turn[b], turns_[b].moment += one.turn[b] * since;
             }
@@ -220,6 +228,7 @@ ErrorEstimate::Good ErrorEstimate::good(const TimeMesh& mesh) const
     for (int end = 0; end < static_cast<int>(mesh.ends.size()); ++end) {
         raise_to(error, this->error(end));
         const Good here{std::floor(digits_of(error)), mesh.ends[end]};
+        // Digits times the time for which they hold: the largest product says most in one sentence.
         const double said = here.digits * (here.until - mesh.start());
         if (said > 0 && said >= best.digits * (best.until - mesh.start())) best = here;
     }
@@ -231,6 +240,7 @@ double ErrorEstimate::at(const std::vector<double>& errors, int n, int index, co
     if (errors.empty()) return std::numeric_limits<double>::quiet_NaN();
     const int end = element_end_at(mesh, t), first = end >= 0 ? end : mesh.element_at(t);
     double error = errors[static_cast<std::size_t>(first * n + index)];
+    // Inside an element the larger error of its two ends stands.
     if (end < 0) raise_to(error, errors[static_cast<std::size_t>((first + 1) * n + index)]);
     return error;
 }

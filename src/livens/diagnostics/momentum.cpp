@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Linear momentum, and angular momentum about the origin as sum X_c x P_c over all columns: theory.md, "The
+// element", Momenta.
 #include <cassert>
 
 #include "livens/diagnostics/diagnostics.h"

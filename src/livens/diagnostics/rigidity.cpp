@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// The multipliers of rigidity, which are the stress of a body summed over it: theory.md, "Bodies without
+// rotation parameters", Stress of rigidity. They come from the equations of motion at the instant, F - G^T
+// lambda - X'' m along the directors.
 #include "livens/diagnostics/rigidity.h"
 
 #include <algorithm>
@@ -121,6 +124,7 @@ SideOfRigidity rigidity_of(const Model& model, const Balanced& b, std::span<cons
 {
     SideOfRigidity all(b.X.size());
     for (std::size_t j = 0; j < joint_is_unique.size(); ++j) {
+        // A body on which a reaction is not unique has no unique stress either.
         if (joint_is_unique[j]) continue;
         for (const ConstraintRow& row : model.joints()[j].rows)
             for (const int body : row_bodies(row)) all.is_unique[static_cast<std::size_t>(body)] = false;
@@ -144,6 +148,7 @@ SideOfRigidity rigidity_on(const Model& model, const State& state, Side side)
 {
     const std::size_t n = model.bodies().size(), s = side == Side::left ? 0 : 1;
     std::optional<PreparedState> prepared;
+    // Between nodes rows hold to the order of the interpolation only: the state is closed first.
     const TriedStart tried = try_close_start(model, state, StartPolicy::project);
     if (tried.closed)
         prepared.emplace(model, *tried.closed, side, false);   // else the joints allow none near
@@ -203,6 +208,7 @@ std::vector<RigiditySample> Rigidity::at(const State& given) const
     state.angles = turns_.at(given);
     if (!model_.has_events())
         return of_both_sides(rigidity_on(model_, state, Side::left), rigidity_on(model_, state, Side::right));
+    // On the left act the joints of the instant just before, on the right those of the instant itself.
     const Model before = acting_at(model_, std::nextafter(state.t, -infinity)).model,
                 after = acting_at(model_, state.t).model;
     return of_both_sides(rigidity_on(before, state, Side::left), rigidity_on(after, state, Side::right));
@@ -219,6 +225,7 @@ std::vector<RigiditySample> Rigidity::at_end(const State& state, int end) const
                       n_rows = static_cast<std::size_t>(motion_.n_rows);
     const std::span<const double> both =
         std::span(motion_.end_multipliers).subspan(2 * static_cast<std::size_t>(end) * n_rows, 2 * n_rows);
+    // Both sides of an instant have the same rows, so one decomposition serves both sets of multipliers.
     const bool is_shared = !model_.has_drives() && are_numbers(both);   // rows that do not move
     UniqueReactions least;
     if (is_shared) least = least_at(model_, {state.t}, state.X, both, independent);

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Samples of a motion at any instant: bodies with orthonormal triads, momenta, reactions of joints on both
+// sides. Which orders hold at ends and between is said in theory.md, "The element" and "Element ends".
 #include "livens/diagnostics/sample.h"
 
 #include <algorithm>
@@ -50,6 +52,8 @@ std::vector<Matrix34> momenta_at(const Model& model, const Motion& motion, const
 double snap_to_element_end(const TimeMesh& mesh, double t)
 {
     const double spread = std::max(std::abs(mesh.start()), std::abs(mesh.end()));
+    // An instant that was computed from an element end may be off it by rounding; the end itself has the
+    // better state.
     const double rounding = 8 * std::numeric_limits<double>::epsilon() * spread;
     if (!(t >= mesh.start() - rounding && t <= mesh.end() + rounding))
         throw InputError({"time-outside", "", "the motion is not known at this instant", to_text(t),
@@ -81,6 +85,7 @@ BodySample sample_body(const Body& body, const Matrix34& X, const Matrix34& V, c
         s.angular_velocity = s.angular_velocity_body = {nan, nan, nan};
         return s;
     }
+    // Between nodes directors are rigid to O(h^(p+1)) only; what is told as an orientation is a rotation.
     const Matrix3 triad = project_directors(directors(X));
     s.quaternion = quaternion_from_directors(triad);
     const Matrix34 rigid = configuration(s.position, triad);
@@ -94,6 +99,7 @@ BodySample sample_body(const Body& body, const Matrix34& X, const Matrix34& V, c
         s.directors = triad * body.stretch;
         s.angular_velocity_body = inverse(body.stretch) * s.angular_velocity_body;
     }
+    // With the directors of the motion, not the projected ones: the balance is that of the motion.
     s.angular_momentum = angular_momentum(std::span(&X, 1), std::span(&P, 1));
     return s;
 }
@@ -238,6 +244,7 @@ void forget_unbounded(const Model& model, const Motion& motion, const State& sta
         return row_rank(now, at.X, some, lost).dependent.size();
     };
     const std::size_t n = n_lost(state, rows);
+    // Rows that are dependent at the start of the element as well are redundant, not lost.
     if (n <= n_lost(start, rows)) return;
     for (int j = 0; j < static_cast<int>(acting.model.joints().size()); ++j) {
         std::vector<int> others = rows;
@@ -254,6 +261,7 @@ double beside(const Motion& motion, double t, int end, Side side)
 {
     if (end < 0) return t;
     const int element = std::clamp(side == Side::left ? end - 1 : end, 0, motion.n_elements() - 1);
+    // Events are element ends, so the middle of an element has the joints that act all over it.
     return motion.mesh.ends[element] + 0.5 * motion.mesh.length(element);
 }
 
@@ -263,6 +271,8 @@ std::vector<JointSample> sample_joints(const Model& model, const Motion& motion,
 {
     const State state = sample_state(motion, t);
     const int end = element_end_at(motion.mesh, state.t);
+    // Ends have multipliers of order 2p from the equations of motion; inside, those of the nodes are
+    // interpolated, of order p.
     const bool is_acceleration_level = end >= 0 && !motion.end_multipliers.empty();
     if (!is_acceleration_level && (motion.multipliers.empty() || motion.n_elements() == 0)) return {};
 

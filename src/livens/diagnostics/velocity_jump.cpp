@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// The velocity jump h |V - X_h'| of each element, the indicator of elements that do not see the motion, and
+// the local error C_p J^q that goes with it: theory.md, "Spurious elements" and "The local error".
 #include <algorithm>
 #include <cmath>
 #include <span>
@@ -21,6 +23,8 @@ std::vector<double> velocity_jumps(const Model& model, const Motion& motion, int
 {
     std::vector<double> jumps(static_cast<std::size_t>(last - first), 0.0);
     const double length = model.length();
+    // On Radau points the polynomial meets the velocity at its end but for a projection; the jump is at the
+    // start there.
     const bool at_start = motion.X.points == Points::radau;
     const ElementSampler ends(motion, {at_start ? 0.0 : 1.0});
     std::vector<Vector4> centres;
@@ -35,6 +39,7 @@ std::vector<double> velocity_jumps(const Model& model, const Motion& motion, int
         ends.velocities(e, 0, slopes);
         for (std::size_t b = 0; b < slopes.size(); ++b) {
             const Matrix34 gap = h * (V[b] - slopes[b]);
+            // At the centre of mass: a far reference point would multiply the jump by its lever.
             raise_to(jump, norm(gap * centres[b]) / length);
             for (int a = 1; a < 4; ++a) raise_to(jump, norm(gap.column(a)) / std::sqrt(2.0));
         }

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// How far constraints are off, each row over its scale: at nodes, at velocity level, between nodes and in the
+// mean over elements. theory.md, "What is diagnosed"; (P4) is rigidity, and means are what the weak form asks
+// for.
 #include <algorithm>
 #include <array>
 #include <cassert>

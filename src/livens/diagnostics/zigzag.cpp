@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Alternation from node to node, sin^2 of half the angle per step: solutions of the paper's elements that are
+// none (theory.md, "The elements of the paper", Acceptance). Second differences of an alternating function
+// are four times it, those of a smooth one are small.
 #include <algorithm>
 #include <array>
 #include <cassert>
@@ -50,6 +53,8 @@ struct Metric {
         for (const Body& body : model.bodies()) {
             Vector4 centre{};   // (1, theta): m (1, 0) = M (1, theta)
             for (int i = 0; i < 4; ++i) centre[i] = body.mass(i, 0) / body.mass(0, 0);
+            // Centres and spins apart: an alternating spin would be lost beside a large velocity of the
+            // centre.
             metric.add(body.mass, body.mass(0, 0) * outer(centre, centre));
         }
         return metric;
@@ -153,6 +158,8 @@ public:
         if (n < fewest_samples) return result;
         const std::array<double, 2> means{mean(parts_[0]), mean(parts_[1])};
         for (std::size_t p = 0; p < 2; ++p) {
+            // Against the mean over all time: where a motion rests for a while, noise would alternate by its
+            // own size.
             const double floor = std::max(means[p], smallest_part * smallest_part * (means[0] + means[1]));
             for (std::size_t first = 0; first + n <= times_.size(); ++first) {
                 const double value = parts_[p].alternation(first, n, std::max(floor, noise_square(first, n)));

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// A binary tree of boxes over triangles in the order of a space-filling curve (Morton's), for the search of
+// contacts: theory.md, "Bodies from meshes", Is it a solid? Coordinates are packed into lanes of one word, so
+// that two boxes are compared by a few operations.
 #include "livens/geometry/detail/box_tree.h"
 
 #include <algorithm>
@@ -68,6 +71,7 @@ Packed BoxTree::pack(const Vector3& p) const
     Packed packed = 0;
     for (int i = 0; i < 3; ++i) {   // points of no triangle may lie outside
         const double x = std::clamp(first + (0.5 * p[i] - 0.5 * low_[i]) * scale_[i], first, most);
+        // Corners are rounded down and boxes widened by one unit: a box may be too large, never too small.
         packed |= static_cast<Packed>(x) << (lane * i);
     }
     return packed;
@@ -86,6 +90,8 @@ std::uint64_t BoxTree::code_of(const std::int32_t* t) const
 {
     std::uint64_t code = 0;
     for (int i = 0; i < 3; ++i) {
+        // Scaled by the longest edge, cells of the curve are cubes; else flat parts would be cut into
+        // slivers.
         const auto x = static_cast<std::uint32_t>(packed_[t[0]] >> (lane * i) & lane_mask);
         code |= std::uint64_t{spread(x * shares_[i] >> 20)} << i;
     }
@@ -139,6 +145,8 @@ void BoxTree::make_leaf(std::size_t l, std::span<const std::uint64_t> order, con
 void BoxTree::join()
 {
     for (std::size_t k = n_leaves; k-- > 1;) {
+        // Children of node k are 2 k and 2 k + 1, so going down from the last one every child is ready before
+        // its parent.
         boxes[k] = boxes[2 * k];
         boxes[k].add(boxes[2 * k + 1]);
         directions[k] = directions[2 * k] & directions[2 * k + 1];

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Faces that touch or cross where they share no corner: pairs by a tree of boxes along a space-filling curve,
 // then separating directions.
+// theory.md, "Bodies from meshes", Is it a solid? For convex sets such as triangles the normals, the normals
+// of edges in the planes and the products of edges suffice as directions (separating axes).
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -39,6 +41,8 @@ public:
                     ++n_shared_;
                     break;
                 }
+        // Differences of near corners are exact or nearly so; far from the origin products of coordinates are
+        // not.
         const Vector3 about = points[of_a[0]];
         for (int i = 0; i < 3; ++i) {
             a_[i] = points[of_a[i]] - about;
@@ -53,6 +57,7 @@ public:
         const std::array<Vector3, 3> ea{a_[1] - a_[0], a_[2] - a_[1], a_[0] - a_[2]};
         const std::array<Vector3, 3> eb{b_[1] - b_[0], b_[2] - b_[1], b_[0] - b_[2]};
         const Vector3 na = cross(ea[0], ea[1]), nb = cross(eb[0], eb[1]);
+        // The order is by chance of success: nearly all pairs are told apart by one of the two planes.
         if (separates(na) || separates(nb)) return true;
         for (int i = 0; i < 3; ++i)
             if (separates(cross(ea[i], na)) || separates(cross(eb[i], nb))) return true;
@@ -76,6 +81,8 @@ private:
             widen(b_[i], low_b, high_b);
         }
         if (n_shared_ == 0 && !(low_b > high_a || low_a > high_b)) return false;
+        // Inequality: gap along n > 1e-13 |n| times the pair's size. Shared corners have gap zero by
+        // construction.
         const double gap = touch * std::sqrt(size_ * dot(n, n));
         if (n_shared_ == 0) return low_b - high_a > gap || low_a - high_b > gap;
         // Common corners lie at 0, if there is one; with a common edge so must the direction.
@@ -118,6 +125,8 @@ public:
     {
         std::vector<Task> tasks;
         divide(tasks, 1, 1, tree_.n_leaves < few_leaves ? 0 : 6);
+        // Nearly every surface ends here. Only where boxes meet too often are the pairs counted before they
+        // are looked at.
         if (run(tasks, many_)) return first_of(tasks);
         if (const auto found = first_of_many(tasks); found.first >= 0) return found;
         is_counting_ = true;

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// One reader of bytes for all formats of meshes: words, lines, numbers and raw values, each checked against
+// what the file still holds. Counts of a file are believed only when its bytes suffice for them, so that no
+// header can make livens reserve memory for what is not there.
 #include <charconv>
 #include <cmath>
 
@@ -82,6 +85,7 @@ double Cursor::to_number(std::string_view text, const char* what) const
 {
     double value = 0;
     const std::string_view digits = text.starts_with('+') ? text.substr(1) : text;
+    // from_chars knows no sign "+", which some programs write, and does not look at the locale.
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
     const bool is_read = error == std::errc{} && end == digits.data() + digits.size() && !text.empty();
     if (!is_read || !std::isfinite(value))
@@ -106,6 +110,7 @@ std::int64_t Cursor::to_integer(std::string_view text, std::int64_t low, std::in
 
 void Cursor::require(std::uint64_t count, std::uint64_t bytes_each, const char* what) const
 {
+    // Divided instead of multiplied: the product of two numbers of a file may overflow.
     if (count == 0 || count <= left() / bytes_each) return;
     fail("the file ends before its " + std::string(what) + ": " + std::to_string(count) + " of at least " +
          std::to_string(bytes_each) + " bytes are announced, " + std::to_string(left()) + " bytes are left");

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// In how many other pieces of a surface a point lies: theory.md, "Bodies from meshes", Is it a solid? A ray
+// along the first axis counts crossings with their sign; where it is not clear that it passes through the
+// inside of faces, the solid angle over 4 pi decides.
 #include "livens/geometry/detail/depths.h"
 
 #include <algorithm>
@@ -19,6 +22,7 @@ constexpr std::size_t entries_a_triangle = 8;
 /// Of the triangle 0, a, b seen along the first axis, doubled. 0 where it is not clear.
 double area(const Vector3& a, const Vector3& b)
 {
+    // Inequality: a doubled area below 1e-12 of the terms it is the difference of has no sign.
     const double one = a[1] * b[2], other = a[2] * b[1];
     return std::abs(one - other) <= unclear * (std::abs(one) + std::abs(other)) ? 0 : one - other;
 }
@@ -91,6 +95,7 @@ void Depths::make_grid()
                 n_entries += static_cast<std::size_t>(last[0] - first[0] + 1) *
                              static_cast<std::size_t>(last[1] - first[1] + 1);
             });
+        // Long needles lie in many cells; a coarser grid bounds memory at the price of more looks.
         if (grid_.n == 1 || n_entries <= entries_a_triangle * n) break;
     }
     std::vector<std::int32_t>& begins = grid_.begins;
@@ -134,6 +139,8 @@ void Depths::cross(const Vector3& point, std::size_t triangle, Wound& wound) con
     }
     const int turn = n_left > 0 ? 1 : -1;
     wound.in_all += turn;
+    // Crossings behind the point count alone; their sum over both sides has to vanish on a closed piece,
+    // which tells whether all were seen.
     if (away * turn > 0) wound.behind += turn;
 }
 
@@ -178,6 +185,8 @@ double share_of_view(const Facets& f, std::int32_t face, const Vector3& p)
     for (std::int32_t h = f.begin(face) + 1; h + 1 < f.begin(face + 1); ++h) {
         const Vector3 a = f.at(f.begin(face)) - p, b = f.at(h) - p, c = f.at(h + 1) - p;
         const double la = norm(a), lb = norm(b), lc = norm(c);
+        // The solid angle of a triangle by Van Oosterom and Strackee (1983): right up to 4 pi, as atan2 knows
+        // the quadrant.
         const double below = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb;
         angle += 2 * std::atan2(dot(a, cross(b, c)), below);
     }

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Shape functions of elements in space and their quadrature (P17): x = sum N_A x_A over the parent element.
+// Numbers of points are those that integrate (1, x, x x^T) exactly, as theory.md, "Bodies from meshes",
+// derives.
 #include "livens/geometry/detail/elements.h"
 
 #include "livens/time/quadrature.h"
@@ -105,6 +108,7 @@ std::vector<ShapeValues> rule_of(ElementKind kind, int n)
                 Vector3 p{rule.points[i], rule.points[j], dim == 3 ? rule.points[k] : 0};
                 double weight = rule.weights[i] * rule.weights[j] * (dim == 3 ? rule.weights[k] : 1);
                 if (is_simplex(kind)) {
+                    // The factors are the Jacobian of the fold from cube to simplex.
                     const double left = 1 - p[0], further = left * (1 - p[1]);
                     weight *= dim == 3 ? left * further : left;
                     p = {p[0], left * p[1], further * p[2]};
@@ -123,6 +127,7 @@ const std::vector<ShapeValues>& quadrature_of(ElementKind kind)
 const std::vector<ShapeValues>& probes_of(ElementKind kind)
 {
     return of_kind(kind, [](ElementKind k) {
+        // A Jacobian is least at corners, or inside where quadratic edges bulge: both are probed.
         std::vector<ShapeValues> probes = rule_of(k, n_points_of(k));
         for (int A = 0; A < n_corners(k); ++A) {
             const double* corner = is_simplex(k) ? corners_of_simplex[A] : corners_of_cube[A];
@@ -137,6 +142,8 @@ ElementPoint element_point(const ShapeValues& shape, const Mesh& mesh, ElementKi
 {
     ElementPoint at;
     for (int A = 0; A < n_nodes(kind); ++A) {
+        // F has no share of `about`, since slopes add up to zero; taken off first, it costs no digits far
+        // away.
         const Vector3 x = mesh.points[nodes[A]] - about;
         at.x += shape.N[A] * x;
         at.F += outer(x, shape.dN[A]);

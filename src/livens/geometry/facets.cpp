@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// A surface as half-edges: each edge of a closed one belongs to two faces that run along it in opposite
+// directions. What does not is told by kind, first place and number (theory.md, "Bodies from meshes", Is it a
+// solid?).
 #include <algorithm>
 #include <array>
 #include <numeric>
@@ -59,6 +62,7 @@ struct Linker {
                                 " faces, also to " + name_of_face(*f.mesh, other));
         links.twins[h] = g;
         links.twins[g] = h;
+        // Both run the same way: seen from outside, one of the faces goes round with the clock.
         if (is_forward(h) == is_forward(g))
             turned.add(text_of_edge(f, face, h) + " and of " + name_of_face(*f.mesh, other));
         if (!f.middles.empty() && f.middles[h] != f.middles[g])
@@ -93,6 +97,7 @@ Facets::Facets(const Mesh& of)
                                of.n_elements(2) == of.block(ElementKind::triangle)->size())
 {
     if (are_triangles) {
+        // The usual mesh of triangles alone is looked at where it is, without a copy.
         corners = of.block(ElementKind::triangle)->nodes;
         return;
     }
@@ -108,6 +113,7 @@ Facets::Facets(const Mesh& of)
             copied_.insert(copied_.end(), nodes, nodes + n);
             begins.push_back(static_cast<std::int32_t>(copied_.size()));
             for (int k = 0; is_curved && k < n; ++k)
+                // Curved neighbours must share the middle of their edge, or a gap opens between them.
                 middles.push_back(b.kind == ElementKind::triangle6 ? nodes[n + k] : -1);
         }
     }
@@ -142,6 +148,7 @@ Links link(const Facets& f, std::vector<Complaint>& faults)
                 if (f.corners[g] == f.corners[h])
                     linker.degenerate.add(name_of_face(*f.mesh, face) + " has the corner " +
                                           text_of(f.at(h)) + " twice");
+            // A counting sort: two passes over half-edges, linear in their number.
             ++begins[std::min(f.corners[h], f.corners[f.next(face, h)]) + 1];
         }
     for (std::size_t i = 1; i < begins.size(); ++i) begins[i] += begins[i - 1];
@@ -194,6 +201,8 @@ void check_fans(const Facets& f, const Links& links, std::vector<Complaint>& fau
         do {   // round the corner: across the edge that comes in, to the one that goes out of it beyond
             h = links.twins[f.previous(links.faces[h], h)];
             ++n;
+        // A ring that closes before all faces of the corner were met is one of several: the surface touches
+        // itself there.
         } while (h != first && h >= 0 && n <= n_at[corner]);
         if (n != n_at[corner])
             touching.add("at " + text_of(f.mesh->points[corner]) + ", a corner of " +
@@ -233,6 +242,7 @@ Pieces numbered(std::int32_t n_faces, std::size_t n_roots, Root root)
 {
     Pieces pieces;
     bool is_one = true;
+    // Most surfaces are one piece, for which no number need be kept for each face.
     const std::int32_t first = n_faces > 0 ? root(0) : 0;
     for (std::int32_t face = 1; face < n_faces && is_one; ++face) is_one = root(face) == first;
     if (is_one) {

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Meshes as files state them: points, blocks of elements and named regions, without any claim that they are
+// sound. The ending of the name chooses the reader, since contents of STL and PLY may look alike at first.
 #include "livens/geometry/mesh.h"
 
 #include <algorithm>
@@ -63,6 +65,7 @@ std::int64_t Mesh::n_elements(int of_dimension) const
 
 ElementBlock& MeshBuilder::block(ElementKind kind)
 {
+    // Elements of one kind share a block: loops over a block need no look at the kind of each element.
     for (ElementBlock& b : mesh_.blocks)
         if (b.kind == kind) return b;
     mesh_.blocks.push_back({kind, {}, {}});
@@ -98,10 +101,14 @@ void MeshBuilder::add_polygon(const std::vector<std::int32_t>& corners, std::int
         double size = 0;
         for (std::size_t i = 1; i + 1 < corners.size(); ++i) {
             const Vector3 a = p[corners[i]] - p[corners[0]], b = p[corners[i + 1]] - p[corners[0]];
+            // The sum of the cross products of a fan is twice the vector area, whose direction is the mean
+            // normal.
             area += cross(a, b);
             size = std::max({size, norm(a), norm(b)});
         }
         for (const std::int32_t corner : corners)
+            // Inequality: distance of a corner from the mean plane <= 1e-6 of the polygon's size. Beyond, the
+            // choice of triangles would change the solid.
             if (std::abs(dot(area, p[corner] - p[corners[0]])) > 1e-6 * size * norm(area))
                 cursor.fail("a face with " + std::to_string(corners.size()) +
                             " corners is not flat; divide it into triangles");
@@ -150,6 +157,7 @@ Mesh read_mesh_file(const std::filesystem::path& file, std::string name)
     prefer_large_pages(bytes.get(), size);
     errno = 0;
     std::ifstream stream(file, std::ios::binary);
+    // Without memory for the buffer of a stream opening fails as well; that is no fault of the file.
     if (!stream.is_open() && errno == ENOMEM) throw std::bad_alloc();   // of the stream's own
     stream.read(bytes.get(), static_cast<std::streamsize>(size));
     if (!stream) refuse_file(name, "cannot be read");

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Volume, centroid and second moments of solids: what (P19) leaves of a mesh. Over surfaces by the divergence
+// theorem, triangle by triangle in closed form; over elements of volume by quadrature. theory.md, "Bodies
+// from meshes", derives both.
 #include "livens/geometry/moments.h"
 
 #include <algorithm>
@@ -53,6 +56,8 @@ public:
             m.second(i, i) = scales[2] * total(4 + i);
             m.second(i, (i + 1) % 3) = m.second((i + 1) % 3, i) = scales[2] * total(7 + i);
         }
+        // Steiner's theorem. `off` is small, as the integrals are about the middle of the box: the difference
+        // keeps its digits.
         m.second -= m.volume * outer(off, off);
         m.centroid = about + off;
         return m;
@@ -113,6 +118,8 @@ void add_triangles(Sums& sums, const Mesh& mesh, const std::int32_t* first, cons
 /// In the scales of triangles: int x . n dA is three times the volume, and so on.
 void add_point(Sums& sums, const Vector3& x, double share)
 {
+    // The theorem divides by 3 + k for degree k; the scales of triangles are 6, 24 and 120, hence 2, 6 and
+    // 24.
     const double first = 6 * share, second = 24 * share;
     sums.add({2 * share, first * x[0], first * x[1], first * x[2], second * x[0] * x[0], second * x[1] * x[1],
               second * x[2] * x[2], second * x[0] * x[1], second * x[1] * x[2], second * x[2] * x[0]});
@@ -143,6 +150,7 @@ Moments moments_of_surface(const Mesh& mesh)
             for (std::size_t e = begin; e < end; ++e)
                 add_face(of_parts[part], mesh, b.kind, b.element(static_cast<std::int64_t>(e)), middle);
         });
+        // Parts are added in their order, so the bits do not depend on the number of threads.
         for (const Sums& of_part : of_parts) sums.add(of_part);
     }
     return sums.moments(middle, {1. / 6, 1. / 24, 1. / 120});

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Gmsh's MSH, versions 2.2 and 4.1, ASCII and binary [Gmsh manual, File formats].
+// Physical names become regions; the elements that are read are those with shape functions in elements.cpp.
+// All counts are held against the bytes left before anything is reserved.
 #include <array>
 #include <cmath>
 #include <map>
@@ -68,6 +70,8 @@ public:
             else if (section == "$PartitionedEntities")
                 cursor_.fail("a partitioned mesh is not read; save it unpartitioned");
             else {
+                // Sections that say nothing of the shape are passed over, so that files of newer programs are
+                // read as well.
                 cursor_.skip_behind(end);
                 continue;
             }
@@ -88,6 +92,7 @@ private:
         mesh_.format = std::string("MSH ") + (is_new_ ? "4.1" : "2.2") + (is_text_ ? ", ASCII" : ", binary");
         if (!is_text_) {
             cursor_.line();
+            // Binary files begin with the number 1, by which the order of bytes is told.
             const auto one = cursor_.raw<std::int32_t>(false);
             is_swapped_ = one == 0x01000000;
             if (one != 1 && !is_swapped_) cursor_.fail("the number that tells the order of bytes is not 1");
@@ -126,6 +131,7 @@ private:
     /// Of things that take at least so many numbers each.
     std::int64_t count(std::int64_t n, int numbers_each, int bytes_each, const char* what) const
     {
+        // In a text a number takes at least a digit and a blank, but for the last one.
         const int least = is_text_ ? std::max(1, 2 * numbers_each - 1) : bytes_each;
         cursor_.require(n, least, what);
         return n;
@@ -183,6 +189,7 @@ private:
         Region region{dimension, {}};
         for (std::int64_t i = 0; i < n; ++i) {
             const std::int64_t physical = number(INT32_MIN, INT32_MAX, "a physical tag");
+            // A negative physical tag reverses the orientation only, which the elements say themselves.
             region.names.push_back(physical_name(dimension, std::abs(physical)));
         }
         if (dimension > 0)
@@ -259,6 +266,7 @@ private:
             }
             n_read += n_here;
         }
+        // A count that disagrees is a sign of a truncated or edited file.
         if (n_read != n) cursor_.fail("the blocks have another number of elements than their head");
     }
 
@@ -313,6 +321,8 @@ private:
                                 "the number of elements");
             n_tags = number(0, 1000, "the number of tags");
             for (std::int64_t k = 0; k < n_here; ++k) {
+                // In binary files of version 2 the head is shared by a run of elements, and each has its own
+                // tag.
                 if (!is_text_) number(1, INT32_MAX, "the tag of an element");
                 read_old_element(kind, n_tags);
             }

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Wavefront OBJ: points and faces, with objects and groups as regions.
+// Polygons are divided into triangles if they are flat (mesh.cpp); what bears on colour and light is passed
+// over. Other statements are refused instead of ignored: a spline or a patch would be missing in the solid.
 #include <set>
 
 #include "livens/geometry/detail/cursor.h"
@@ -87,6 +89,7 @@ private:
             const auto n = static_cast<std::int64_t>(mesh_.points.size());
             std::int64_t i = cursor_.to_integer(word, -n, n, "the index of a point");
             if (i == 0) cursor_.fail("indices of points count from 1");
+            // Negative indices count back from the point that was read last.
             i = i < 0 ? n + i : i - 1;
             corners_.push_back(static_cast<std::int32_t>(i));
         }

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Pieces of a surface: which of them lie in each other, and whether they are turned as that asks for.
+// Volumes have the sign of their orientation: a piece outside of all others must be positive, a hollow in one
+// of them negative (theory.md, "Bodies from meshes", Is it a solid?).
 #include <algorithm>
 
 #include "livens/geometry/detail/depths.h"
@@ -87,6 +89,8 @@ std::vector<Piece> make_pieces(const Facets& f, const Pieces& numbers)
         for (std::int32_t h = f.begin(face); h < f.begin(face + 1); ++h) widen(piece, f.at(h));
     }
     for (Piece& piece : pieces) {
+        // Each piece about its own middle: cones from far away would cancel, and the sign of a small piece
+        // would be lost.
         const Vector3 middle = 0.5 * piece.low + 0.5 * piece.high;
         for (const std::int32_t face : piece.faces) piece.volume += six_volumes(f, face, middle) / 6;
     }
@@ -97,6 +101,8 @@ std::vector<Piece> make_pieces(const Facets& f, const Pieces& numbers)
 Vector3 point_of(const Facets& f, std::int32_t face)
 {
     const std::int32_t h = f.begin(face);
+    // Numbers without a pattern: centroids of regular meshes lie in line with corners of others again and
+    // again.
     return 0.4319 * f.at(h) + 0.3163 * f.at(h + 1) + 0.2518 * f.at(h + 2);
 }
 
@@ -130,6 +136,8 @@ void agree(const Facets& f, const Links& links, std::vector<bool>& is_turned)
                 if (g < 0 || is_known[links.faces[g]]) continue;
                 const std::int32_t other = links.faces[g];
                 is_known[other] = true;
+                // Half-edges that begin at one corner run the same way, so exactly one of the two faces has
+                // to turn.
                 is_turned[other] = is_turned[face] != (f.corners[h] == f.corners[g]);
                 waiting.push_back(other);
             }
@@ -195,6 +203,7 @@ void check_pieces(const Facets& f, const Pieces& numbers, std::vector<Complaint>
             faults.push_back({"mesh-inverted", "", name + ": " + which + " holds no volume", "", "", "", ""});
             return;
         }
+        // Inside-out pieces count down, so a part inside of a hollow lies at depth 0 again, as it should.
         if (piece.depth == (piece.volume > 0 ? 0 : 1)) continue;
         const bool is_in = piece.depth > 0;
         if (piece.volume < 0)
@@ -230,6 +239,8 @@ void turn_outwards(Mesh& mesh)
     if (!find_depths(f, numbers, pieces, true)) return;
     for (std::int32_t face = 0; face < f.n_faces(); ++face) {
         const Piece& piece = pieces[numbers.of(face)];
+        // Orientation is not known yet, so nesting counts without sign: even depths are solid, odd ones
+        // hollows.
         is_turned[face] = (piece.volume > 0) != (piece.depth % 2 == 0);
     }
     turn_faces(mesh, is_turned);

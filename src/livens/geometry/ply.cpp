@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // PLY: elements with properties as its header lists them; vertices and faces count, all others are passed
 // over.
+// The header tells sizes and types; two fast ways for rows of one length and for plain triangles read what
+// nearly all files have, with the same result as the general one.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -48,6 +50,7 @@ public:
         read_header();
         builder_.region(2, "");
         for (const Rows& rows : rows_) {
+            // Counts of the header are held against the bytes left before memory is reserved for them.
             if (rows.properties.empty()) continue;   // any number of them takes no byte
             cursor_.require(rows.count, least_bytes(rows), std::string(rows.name).c_str());
             if (rows.name == "vertex")
@@ -72,6 +75,7 @@ private:
         const bool is_big = format == "binary_big_endian";
         if (!is_text_ && !is_big && format != "binary_little_endian")
             cursor_.fail("an unknown format of PLY");
+        // Numbers are swapped where file and machine order their bytes differently.
         is_swapped_ = is_big != (std::endian::native == std::endian::big);
         mesh_.format = is_text_ ? "PLY, ASCII" : is_big ? "PLY, binary, big endian" : "PLY, binary";
         cursor_.expect("1.0");
@@ -233,6 +237,7 @@ private:
         const int corners = rows.find({"vertex_indices", "vertex_index"});
         if (corners < 0 || !rows.properties[corners].is_list)
             cursor_.fail("faces need a list vertex_indices");
+        // Indices are checked as they are read, which needs the number of points.
         if (mesh_.points.empty()) cursor_.fail("vertices must stand before the faces");
         ElementBlock& block = builder_.block(ElementKind::triangle);
         reserve(block.nodes, 3 * static_cast<std::size_t>(rows.count));
@@ -251,9 +256,11 @@ private:
     std::int64_t read_plain_triangles(const Rows& rows, ElementBlock& block)
     {
         const Property& p = rows.properties.front();
+        // Scans have millions of plain triangles, which are read here without a call for each number.
         if (is_text_ || rows.properties.size() > 1 || p.count_type != Number::u8 ||
             (p.type != Number::i32 && p.type != Number::u32))
             return 0;
+        // One byte that says 3, and three indices of four bytes.
         constexpr std::size_t bytes = 13;
         const std::string_view ahead = cursor_.ahead();
         const std::size_t n = std::min<std::size_t>(rows.count, ahead.size() / bytes);

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Moments and surface integrals of boxes and round solids without a mesh, by Gauss points in coordinates of
+// their own: theory.md, "Bodies from meshes", Primitives. Densities may be fields; parts on which two rules
+// do not agree are divided.
 #include "livens/geometry/primitive_solid.h"
 
 #include <algorithm>
@@ -33,6 +36,8 @@ ProfilePoint profile_point(const PrimitiveSolid::Piece& piece, double s)
     const auto [r0, z0] = piece.from;
     const auto [r1, z1] = piece.to;
     if (!piece.is_arc) return {r0 + s * (r1 - r0), z0 + s * (z1 - z0), r1 - r0, z1 - z0};
+    // An arc has the angle for its coordinate: by height the radius would be a root at the pole, which no
+    // rule integrates well.
     const auto [sine, cosine] = sine_cosine(quarter * s);
     if (r0 == 0)   // from the pole below
         return {r1 * sine, z1 - (z1 - z0) * cosine, quarter * r1 * cosine, quarter * (z1 - z0) * sine};
@@ -71,6 +76,8 @@ public:
             return {stretched(stretch, {u - 0.5, -0.5, v - 0.5}), {0, stretch[1], 0}, product(stretch), 0};
         const auto& [piece, turn] = pieces_[cell];
         const ProfilePoint p = profile_point(*piece, u);
+        // dV = det A r (R - r0) z' ds du dphi, with the quarter of the turn as Jacobian of the angle; r is
+        // linear in u, hence two factors.
         const double wide = p.r - solid_.bore, factor = quarter * wide * p.dz * product(stretch);
         const auto [sine, cosine] = sine_cosine(quarter * (turn + v));
         return {stretched(stretch, {solid_.bore * cosine, solid_.bore * sine, p.z}),
@@ -120,6 +127,8 @@ public:
     Moments result()
     {
         for (std::size_t c = 0; c < cells_.size(); ++c)
+            // A first coarse sum of the whole, to which parts are compared: a part without mass has no
+            // relative error of its own.
             for_each_half({}, [&](const Part& part) { size_ += at_level(c, part, 0).size; });
         for (std::size_t c = 0; c < cells_.size(); ++c)
             for_each_half({}, [&](const Part& part) { add(c, part); });
@@ -204,6 +213,7 @@ private:
             for (std::size_t k = 0; k < turned.points.size(); ++k) {
                 const auto [sine, cosine] =
                     sine_cosine(quarter * (turn + field.low[1] + field.edge[1] * turned.points[k]));
+                // n dA = cof A (z' cos, z' sin, -R') R ds dphi: normals stretch by the cofactors, not by A.
                 const Vector3 normal{stretch[1] * stretch[2] * p.dz * cosine,
                                      stretch[2] * stretch[0] * p.dz * sine, -stretch[0] * stretch[1] * p.dr};
                 const Vector4 at = point(stretched(stretch, {p.r * cosine, p.r * sine, p.z}));
@@ -236,6 +246,8 @@ private:
         }
         // In two, where a coarser rule makes more of a difference.
         const int which =
+            // Flat ellipsoids bend along the profile alone. Dividing both directions would square the number
+            // of points.
             gap(at_levels(turn, field, 1, finest), found) > gap(at_levels(turn, field, finest, 1), found) ? 0
                                                                                                           : 1;
         Field half = field;
@@ -259,6 +271,8 @@ Matrix4 area_of_box(const Vector3& edges)
     for (int i = 0; i < 3; ++i) {
         const double both = 2 * product(edges) / edges[i];
         area(0, 0) += both;
+        // Squares of the coordinate over a pair of sides: at distance half an edge across, a twelfth of the
+        // edge along.
         for (int j = 0; j < 3; ++j) area(j + 1, j + 1) += both * edges[j] * edges[j] / (i == j ? 4 : 12);
     }
     return area;
@@ -310,6 +324,8 @@ SurfaceMoments surface_moments(const PrimitiveSolid& solid, const Moments& whole
     for (const PrimitiveSolid::Piece& piece : solid.profile) m.area += Area(solid, piece).whole();
     for (int i = 0; i < 3; ++i) {
         Matrix4& normal = m.normal[i];
+        // Divergence theorem: int n_i (1, x)(1, x)^T dA = int d/dx_i of it, so one pressure gives no force to
+        // the last bit.
         normal(0, i + 1) = normal(i + 1, 0) = whole.volume;
         for (int j = 0; j < 3; ++j) {
             normal(i + 1, j + 1) += whole.volume * whole.centroid[j];

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Whether the faces around each point form one ring, and from which directions they are seen without a fold:
+// the first and cheapest test of theory.md, "Bodies from meshes", Is it a solid? Most points pass it, and
+// pairs of faces about them need no other look.
 #include "livens/geometry/detail/rings.h"
 
 #include <algorithm>
@@ -54,6 +57,7 @@ struct ArcTable {
 bool are_matched(const Arcs& arcs)
 {
     const std::size_t n = arcs.size();
+    // One bit for each arc suffices up to 64 of them; points of fans that are larger are sorted instead.
     if (n > 64) {
         std::vector<Index> next(arcs.next.begin(), arcs.next.end()),
             previous(arcs.previous.begin(), arcs.previous.end());
@@ -104,6 +108,7 @@ public:
             const double least = needle * dot(u, u) * dot(v, v);
             axis += n;
             for (int i = 0; i < 3; ++i) {
+                // Squares with their sign: the comparison with a sine needs no root.
                 const double square = n[i] * std::abs(n[i]);
                 const int z = (i + 2) % 3;
                 bits &= ~(static_cast<unsigned>(!(square > least)) << i);
@@ -113,6 +118,7 @@ public:
             }
         }
         for (int i = 0; i < 3; ++i)
+            // A fan may turn one way throughout and still go round twice, as a spiral stair does.
             if (rounds[i] != 1) bits &= ~(9u << i);
         if (bits == 0 && goes_round_once(axis)) bits = 64;
         return static_cast<std::uint8_t>(bits);

@@ -102,6 +102,8 @@ private:
             const Vector3& from = points_[t[k]];
             const Vector3 edge = points_[t[(k + 1) % 3]] - from, to = above_ - from;
             const double one = edge[x] * to[y], other = edge[y] * to[x];
+            // In doubt a triangle counts as lying above: two instead of one only means that the box is looked
+            // at pair by pair.
             if (sign_ * (one - other) < -1e-14 * (std::abs(one) + std::abs(other))) return false;
         }
         return true;

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// The order of tests of a mesh: theory.md, "Bodies from meshes", Is it a solid? Each test takes for granted
+// what the ones before have shown, so the first kind of fault that is found ends the search.
 #include "livens/geometry/soundness.h"
 
 #include "livens/geometry/detail/facets.h"

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // STL: triangles without indices. Equal corners, to the bit but for the sign of zero, become one point.
+// The solid is what counts, so normals of the file are not read: the order of corners tells outside from
+// inside. Equal corners must be one point, or no edge would have a second face.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -50,6 +52,7 @@ private:
     }
     std::int32_t index(const Vector3& p, std::uint64_t hash)
     {
+        // At most half full: linear probing then looks at few slots.
         if (2 * points_.size() >= slots_.size()) grow();
         std::int32_t& slot = find(p, hash);
         if (slot < 0) {

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Integrals over surfaces for loads (P20): (1, x)(1, x)^T weighted by the area for tractions, by the normal
+// for pressures. theory.md, "Bodies from meshes", Loads on surfaces.
 #include <algorithm>
 
 #include "livens/geometry/detail/elements.h"
@@ -44,6 +46,7 @@ SurfaceMoments operator+(const SurfaceMoments& a, const SurfaceMoments& b)
 
 std::vector<NamedSurface> surface_moments(const Mesh& mesh)
 {
+    // Elements of volume state no surface but named faces; the whole boundary is what one element alone has.
     const Mesh boundary = mesh.is_volume() ? boundary_of(mesh) : Mesh{};
     const Mesh& surface = mesh.is_volume() ? boundary : mesh;
     std::vector<SurfaceMoments> of(surface.regions.size());
@@ -71,6 +74,7 @@ SurfaceMoments scaled(const SurfaceMoments& m, double length)
     for (Matrix4* of : {&s.area, &s.normal[0], &s.normal[1], &s.normal[2]})
         for (int a = 0; a < 4; ++a)
             for (int b = 0; b < 4; ++b)
+                // An area, times one length for each factor x.
                 (*of)(a, b) *= length * length * (a > 0 ? length : 1) * (b > 0 ? length : 1);
     return s;
 }

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Elements of volume: their Jacobians, how they hang together by faces, and their boundary.
+// A Jacobian has to be positive wherever it is probed: moments by quadrature take its sign for granted
+// (theory.md, "Bodies from meshes").
 #include <algorithm>
 #include <array>
 #include <map>
@@ -20,6 +22,7 @@ struct Faces {
 };
 const Faces& faces_of(ElementKind kind)
 {
+    // Corners go round anticlockwise as seen from outside, in the order of nodes of Gmsh.
     static const Faces tetrahedron{ElementKind::triangle, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
     static const Faces curved{
         ElementKind::triangle6,
@@ -48,6 +51,7 @@ Corners sorted(const std::int32_t* nodes, int n, bool& is_even)
     is_even = true;
     for (int i = 0; i < n; ++i)
         for (int j = 0; j + 1 < n - i; ++j)
+            // Each swap of bubble sort changes the parity of the permutation.
             if (key[j] > key[j + 1]) std::swap(key[j], key[j + 1]), is_even = !is_even;
     if (n == 3) key = {-1, key[0], key[1], key[2]};
     return key;
@@ -79,6 +83,7 @@ std::vector<Side> sides_of(const Mesh& mesh)
                 sides.push_back(side);
             }
     }
+    // Equal faces stand side by side after sorting, which takes less memory than a table of faces.
     std::sort(sides.begin(), sides.end(), [](const Side& l, const Side& r) {
         return std::tie(l.key, l.block, l.element) < std::tie(r.key, r.block, r.element);
     });
@@ -138,6 +143,8 @@ void check_volumes(const Mesh& mesh, std::vector<Complaint>& faults)
     const std::vector<Side> sides = sides_of(mesh);
     for (std::size_t i = 0, end = 0; i < sides.size(); i = end) {
         while (end < sides.size() && sides[end].key == sides[i].key) ++end;
+        // Two elements see their common face from opposite sides, so their corners are permuted by opposite
+        // parities.
         if (end - i == 1 || (end - i == 2 && sides[i].is_even != sides[i + 1].is_even)) continue;
         const auto name = [&](const Side& s) {
             return name_of_element(mesh, mesh.blocks[s.block], s.element);
@@ -163,12 +170,15 @@ Mesh boundary_of(const Mesh& mesh)
     bool is_even = true;
     for (const ElementBlock& b : mesh.blocks)
         for (std::int64_t e = 0; dimension(b.kind) == 2 && e < b.size(); ++e)
+            // Elements of surface in the file give faces of the boundary their names, whatever their
+            // orientation.
             named.emplace(sorted(b.element(e), n_corners(b.kind), is_even), b.regions[e]);
     const auto nameless = static_cast<std::int32_t>(boundary.regions.size());
     boundary.regions.push_back({2, {}});
     const std::vector<Side> sides = sides_of(mesh);
     for (std::size_t i = 0, end = 0; i < sides.size(); i = end) {
         while (end < sides.size() && sides[end].key == sides[i].key) ++end;
+        // A face that one element has alone is part of the boundary.
         if (end - i != 1) continue;
         const ElementBlock& block = mesh.blocks[sides[i].block];
         const Faces& faces = faces_of(block.kind);
@@ -193,6 +203,7 @@ int n_pieces_of_volume(const Mesh& mesh)
     }
     for (std::int32_t e = 0; e < n; ++e) parents.push_back(e);
     const auto root = [&](std::int32_t e) {
+        // Union-find with path halving: pieces are sets of elements that share faces.
         while (parents[e] != e) e = parents[e] = parents[parents[e]];
         return e;
     };

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Integrals over solids whose density is a field.
+// theory.md, "Bodies from meshes", "A density that is a field": rules of rising order until two agree. What
+// stays unknown is summed up, and refused beyond 1e-9 of the mass.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -62,6 +64,7 @@ Moments about_centroid(const Sums& sums, const Vector3& about)
 {
     if (!(sums.mass > 0)) refuse_density("the density leaves no mass", to_text(sums.mass), "");
     const Vector3 off = (1 / sums.mass) * sums.first;
+    // The parallel axis theorem: the second moment is taken about the centroid, after sums about the middle.
     return {sums.mass, about + off, sums.second - sums.mass * outer(off, off)};
 }
 
@@ -85,6 +88,7 @@ Moments weighted_moments(const Mesh& mesh, const std::function<double(const Vect
                 return sums;
             };
             const Settled found = settled(length, sums_at);
+            // An element whose rules agree counts as exact; only what stays open is summed up.
             if (found.gap > same_sums * found.sums.size) missing += found.gap;
             whole.add(found.sums);
         }
@@ -114,6 +118,8 @@ Moments weighted_moments(const Mesh& mesh, const LinearDensity& density)
                 const ElementPoint at = element_point(point, mesh, b.kind, b.element(e), middle);
                 const double share = point.weight * dot(at.x, cross(at.F.column(0), at.F.column(1))),
                              slope = dot(density.gradient, at.x);
+                // The density is rho + g . x about the middle: each part is homogeneous, of degree k + 0 and
+                // k + 1, over 3 + k.
                 sums.mass += share * (rho / 3 + slope / 4);
                 sums.first += share * (rho / 4 + slope / 5) * at.x;
                 sums.second += share * (rho / 5 + slope / 6) * outer(at.x, at.x);

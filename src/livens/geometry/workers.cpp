@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Threads for the tests of large meshes. Work is divided into parts of fixed size, whose order of summation
+// does not depend on who did them: results have the same bits on every machine.
 #include "livens/geometry/detail/workers.h"
 
 #include <algorithm>
@@ -39,6 +41,7 @@ void in_parallel(int n, const std::function<void(int)>& work)
     std::mutex of_thrown;
     const auto work_off = [&] {
         try {
+            // One counter for all: whoever is done takes the next part, so uneven parts cost nothing.
             for (int i = next++; i < n; i = next++) work(i);
         } catch (...) {
             next = n;

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Messages about a scenario as people, editors and programs read them: with an excerpt of the line, as GNU
+// tools print them, or as JSON (docs/program.md). Nothing of a file reaches a terminal unseen: what is
+// invisible is written out.
 #include "livens/io/diagnostic.h"
 
 #include <algorithm>
@@ -57,6 +60,7 @@ int width(std::string_view text)
 
 std::string_view find_line(std::string_view source, int line)
 {
+    // A mark of the byte order counts as no column, as in editors.
     if (source.substr(0, 3) == "\xef\xbb\xbf") source.remove_prefix(3);
     for (int i = 1; i < line; ++i) {
         const std::size_t end = source.find('\n');
@@ -101,6 +105,7 @@ Excerpt excerpt(std::string_view line, int column, int length, int widest)
         e.text += shown;
         line.remove_prefix(character_length(line));
     }
+    // What is missing is said to be behind the end of the line: one mark stands there.
     if (column >= at) e.underline.assign(static_cast<std::size_t>(width(e.text)), ' ').append("^");
     if (!line.empty()) e.text += " ...";
     return e;

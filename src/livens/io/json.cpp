@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// JSON is written and checked here without a library: results hold options of runs and travel into web pages,
+// so what is written must be valid whatever names a scenario has. Strings are checked as UTF-8.
 #include "livens/io/json.h"
 
 #include <algorithm>
@@ -23,6 +25,8 @@ void append_escaped(std::string& out, std::string_view text)
         const int length = utf8_length(text);
         const unsigned char c = static_cast<unsigned char>(text.front());
         if (length == 0) {
+            // A byte that is no UTF-8 becomes the replacement character: output stays valid whatever a name
+            // holds.
             out += "\\ufffd";
         } else if (c == '"' || c == '\\') {
             out += '\\';
@@ -36,6 +40,7 @@ void append_escaped(std::string& out, std::string_view text)
         } else if (code < 0x10000) {
             append_unit(out, code);
         } else {
+            // Beyond the basic plane JSON escapes take two units of UTF-16.
             append_unit(out, 0xd800 + ((code - 0x10000) >> 10));
             append_unit(out, 0xdc00 + (code & 0x3ff));
         }
@@ -52,6 +57,7 @@ public:
     bool value(int depth)
     {
         skip_blanks();
+        // A bound on the depth: brackets of a foreign file must not exhaust the stack.
         if (depth > 64 || rest_.empty()) return false;
         const char c = rest_.front();
         if (c == '{') return list('}', [&] { return text() && token(":") && value(depth + 1); });
@@ -126,6 +132,7 @@ private:
     bool number()
     {
         word("-");
+        // JSON allows no leading zeros: after a zero only a point or an exponent may follow.
         if (!word("0") && !digits()) return false;
         if (word(".") && !digits()) return false;
         if (!word("e") && !word("E")) return true;
@@ -150,6 +157,7 @@ int utf8_length(std::string_view text)
     const unsigned char first = byte(0);
     if (first < 0x80) return 1;
     const int length = first >= 0xf0 ? 4 : first >= 0xe0 ? 3 : 2;
+    // Bytes c0, c1 and f5 to ff begin no character (RFC 3629).
     if (first < 0xc2 || first > 0xf4 || text.size() < static_cast<std::size_t>(length)) return 0;
     for (int i = 1; i < length; ++i)
         if ((byte(i) & 0xc0) != 0x80) return 0;
@@ -251,6 +259,7 @@ JsonWriter& JsonWriter::value(std::string_view text)
     return *this;
 }
 
+// JSON knows no nan and no infinity; null stands for both.
 JsonWriter& JsonWriter::value(double number) { return std::isfinite(number) ? raw(to_text(number)) : null(); }
 
 JsonWriter& JsonWriter::value(std::span<const double> numbers)

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// The state of a scenario at which its mechanism is looked at without being solved: that of the start, else
+// that of the end. Where only positions are known the bodies are taken at rest (docs/program.md).
 #include "livens/io/known_state.h"
 
 namespace livens {
@@ -18,6 +20,7 @@ KnownState known_state(const Scenario& scenario)
     KnownState known{at_end ? b.end : b.start, scenario.options.initial};
     if (b.at_start == Known::state || b.at_end == Known::state) return known;
     for (Matrix34& V : known.state.V) V = {};
+    // Nothing is known of places: the stated ones are a guess, which is projected instead of refused.
     if (!at_start && !at_end) known.initial = StartPolicy::project;
     return known;
 }

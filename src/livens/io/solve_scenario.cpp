@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// A scenario solved, estimated and judged, once for program and Python. The time that is told is that of the
+// solution alone; the estimate is timed apart.
 #include "livens/io/solve_scenario.h"
 
 #include <chrono>
@@ -33,6 +35,7 @@ Run judged_run(const Scenario& scenario, SolvedScenario&& solved, const std::fun
     run.meshes = scenario.meshes;
     run.title = scenario.title;
     run.resolved = scenario.resolved;
+    // Without output times the element ends are the samples, where a motion has its best states.
     run.output = scenario.output.empty() ? run.motion.mesh.ends : scenario.output;
     return run;
 }

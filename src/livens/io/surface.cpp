@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Surfaces of large meshes are thinned for pictures by clustering of vertices (Rossignac and Borrel, 1993):
+// points of one cell become their mean. How far points were moved is told, since a picture is no longer the
+// solid.
 #include "livens/io/surface.h"
 
 #include <algorithm>
@@ -62,6 +65,7 @@ public:
         thin.moved = surface.moved + moved;
         const std::vector<int> corner_of = surface.normals.empty() ? bare(thin) : facing(surface, thin);
         for (const auto& t : surface.triangles)
+            // A triangle whose corners fall into fewer than three cells has become a line or a point.
             if (has_area(t)) {
                 auto& triangle = thin.triangles.emplace_back();
                 for (std::size_t i = 0; i < 3; ++i) triangle[i] = corner_of[static_cast<std::size_t>(t[i])];
@@ -88,6 +92,7 @@ private:
         std::vector<int> corner_of;
         for (std::size_t k = 0; k < surface.points.size(); ++k) {
             auto key = static_cast<std::uint64_t>(cell_of_[k]);
+            // Edges stay sharp: corners of one cell that face different ways do not share a normal.
             for (int i = 0; i < 3; ++i) key = key << 2 | way(surface.normals[k][i]);
             corner_of.push_back(add(normals, index, key, surface.normals[k]));
             if (normals.size() > thin.points.size()) thin.points.push_back(at(cell_of_[k]));
@@ -131,6 +136,7 @@ Surface thinned(Surface surface, std::size_t most_triangles)
         const Clusters clusters(surface, n_cells);
         const double n = static_cast<double>(clusters.n_triangles(surface));
         if (n <= most) return clusters.made(surface);
+        // Triangles grow as the square of cells along a side; the bound of nine tenths makes the search end.
         n_cells = std::min(n_cells * 9 / 10, static_cast<int>(n_cells * std::sqrt(most / n)));
     }
     return Clusters(surface, coarsest).made(surface);

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Bodies as X = [phi d1 d2 d3] (P3), rigid, skew or without directors, and their orientations: theory.md,
+// "Bodies without rotation parameters". Directors are never normalised on the way; only where a body is made
+// are they put onto the nearest triad.
 #include "livens/multibody/body.h"
 
 #include <algorithm>
@@ -50,6 +53,8 @@ void check_directors(const Matrix3& directors, const std::string& path)
 {
     require_finite(directors, path, "directors");
     const double gap = skewness(directors);
+    // Inequality: max |d_a . d_b - delta_ab| <= 1e-10. What is within is rounding of the input, and is
+    // projected away.
     if (gap > 1e-10)
         throw InputError(
             {"directors-not-orthonormal", path, "directors must be perpendicular unit vectors",
@@ -85,6 +90,7 @@ Body skew_body(const std::string& name, const Matrix4& mass, const Placement& pl
     Placement straight = placement;
     straight.directors = project_directors(placement.directors);
     const Matrix3 U = transpose(straight.directors) * placement.directors;
+    // U is symmetric in exact numbers; its rounding must not make the mass matrix unsymmetric.
     const Matrix3 stretch = 0.5 * (U + transpose(U));
     Matrix4 A{};
     A(0, 0) = 1;
@@ -158,6 +164,8 @@ Vector4 quaternion_from_directors(const Matrix3& directors)
         q[j + 1] = R(i, j) + R(j, i);
         q[k + 1] = R(i, k) + R(k, i);
     }
+    // q and -q are one rotation; the one with w >= 0 is returned, so that equal triads have equal
+    // quaternions.
     const double scale = (q[0] < 0 ? -1 : 1) / norm(q);
     return scale * q;
 }

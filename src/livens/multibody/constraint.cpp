@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Values, gradients, Hessians and time derivatives of constraint rows as quadratic forms with drives and
+// functions of coordinates: theory.md, "Joints are quadratic forms", "Drives" and "Coordinates of joints".
+// What a joint means is nowhere asked.
 #include "livens/multibody/constraint.h"
 
 #include <algorithm>
@@ -20,6 +23,7 @@ FormGradient form_gradient(const QuadraticForm& f, int i, int j, const Configura
 {
     const Matrix34 X_j = X[j];
     FormGradient g{{}, X_j * f.c_jj + f.b_j};
+    // Terms of the world were folded into B_j and c when the row was made.
     if (i == world) return g;
     const Matrix34 X_i = X[i];
     g.j += X_i * f.c_ij;
@@ -138,6 +142,7 @@ void add_form_hessian(const QuadraticForm& f, int i, int j, double weight, int b
 {
     Matrix4 K{};
     if (body == i && other == i && i != world) K += f.c_ii;
+    // Gradients are X K as rows of columns, so the block of d/dX_j of the gradient by X_i is the transpose.
     if (body == i && other == j) K += transpose(f.c_ij);
     if (body == j && other == i) K += f.c_ij;
     if (body == j && other == j) K += f.c_jj;
@@ -180,6 +185,8 @@ double constraint_change(const ConstraintRow& row, Instant from, const Configura
     double change = change_of(row, row.body_i, row.body_j);
     for (const Drive& drive : row.drives) {
         const double before = drive.factor(from).value, after = drive.factor(to).value;
+        // The form moves with the factor as it is at the end; the factor changes with the form as it was at
+        // the start. Both are differences, so small elements lose no digits (theory.md, "Drives").
         change += after * change_of(drive.form, row.body_i, row.body_j) +
                   (after - before) * form_value(drive.form, row.body_i, row.body_j, X_from);
     }
@@ -205,6 +212,8 @@ double constraint_curvature(const ConstraintRow& row, Instant at, const Configur
     });
     for (const Drive& drive : row.drives) {
         const TimeValue f = drive.factor(at);
+        // d2(f Phi)/dt2 = f Phi'' + 2 f' Phi' + f'' Phi; the part G X'' is not in here, it is the unknown
+        // one.
         curvature += 2 * f.first * form_rate(drive.form, row.body_i, row.body_j, X, V) +
                      f.second * form_value(drive.form, row.body_i, row.body_j, X);
     }

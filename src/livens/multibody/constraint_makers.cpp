@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The makers of rows, see constraint.h.
+// Each is one line of algebra in the coordinates (1, theta) of points and (0, a) of directions: theory.md,
+// "Joints are quadratic forms". (P27) is a distance row, (P4) are the rigidity rows.
 #include <cmath>
 #include <utility>
 
@@ -37,6 +39,7 @@ ConstraintRow with_world_folded(ConstraintRow row)
     }
     if (row.body_i != world) return row;
     const Matrix34& X_world = world_configuration;
+    // The world's configuration is constant: products with it are linear, and its own terms are constants.
     row.b_j += X_world * row.c_ij;
     row.c += 0.5 * dot(X_world * row.c_ii, X_world) + dot(row.b_i, X_world);
     row.c_ii = {};
@@ -75,6 +78,7 @@ std::vector<ConstraintRow> coincidence_rows(int body_i, const Vector4& a, int bo
 ConstraintRow distance_row(int body_i, const Vector4& a, int body_j, const Vector4& b, double length)
 {
     ConstraintRow row = empty_row(body_i, body_j, length * length, "distance");
+    // Half of the squared distance is a form, and its gradient vanishes only where the points coincide.
     row.c_ii = outer(a, a);
     row.c_ij = -outer(a, b);
     row.c_jj = outer(b, b);
@@ -86,6 +90,7 @@ ConstraintRow plane_row(int body_i, const Vector4& n, const Vector4& a, int body
                         double distance, double scale)
 {
     ConstraintRow row = empty_row(body_i, body_j, scale, "plane");
+    // n . (x_j - x_i): the part of body i alone is quadratic, since n and the point turn with the same body.
     row.c_ii = -(outer(n, a) + outer(a, n));
     row.c_ij = outer(n, b);
     row.c = -distance;
@@ -133,6 +138,7 @@ std::vector<ConstraintRow> driven_point_rows(int body_i, const Vector4& a, int b
         row.label = labels[k];
         QuadraticForm one;
         one.c = -1;
+        // The form of the drive is the constant -1, by which the path is taken off.
         row.drives.push_back({path[static_cast<std::size_t>(k)], one});
         rows.push_back(std::move(row));
     }
@@ -144,6 +150,7 @@ ConstraintRow driven_distance_row(int body_i, const Vector4& a, int body_j, cons
 {
     ConstraintRow row = distance_row(body_i, a, body_j, b, typical);
     row.label = "driven distance";
+    // The constant length of the row is taken back: the drive has -l(t)^2 / 2 instead.
     row.c += 0.5 * typical * typical;
     QuadraticForm one;
     one.c = -0.5;
@@ -157,6 +164,7 @@ ConstraintRow driven_angle_row(int body_i, const Vector4& a, int body_j, const V
 {
     ConstraintRow row = inner_product_row(body_i, a, body_j, Vector4{}, 0, 1);
     row.label = "driven angle";
+    // a . (cos b2 - sin b1) = 0 has a slope of one at every angle, where a . b = cos has none at 0 and pi.
     row.drives.push_back({composed(angle, cosine), inner_product_row(body_i, a, body_j, b2, 0, 1)});
     row.drives.push_back({composed(angle, sine), inner_product_row(body_i, a, body_j, -b1, 0, 1)});
     return row;
@@ -167,6 +175,7 @@ ConstraintRow driven_angle_branch(int body_i, const Vector4& a, int body_j, cons
 {
     ConstraintRow row = inner_product_row(body_i, a, body_j, Vector4{}, 0, 1);
     row.label = "driven angle";
+    // a . (cos b1 + sin b2) is 1 on the branch that is meant, and -1 half a turn away.
     row.drives.push_back({composed(angle, cosine), inner_product_row(body_i, a, body_j, b1, 0, 1)});
     row.drives.push_back({composed(angle, sine), inner_product_row(body_i, a, body_j, b2, 0, 1)});
     return row;
@@ -183,6 +192,7 @@ std::vector<ConstraintRow> rigidity_rows(int body)
     std::vector<ConstraintRow> rows;
     for (const Pair& pair : pairs) {
         ConstraintRow row = empty_row(world, body, 1, pair.label);
+        // The form is 1/2 tr(X C X^T), so these entries give 1/2 d_a . d_b for both kinds of pairs.
         row.c_jj(pair.a, pair.b) += 0.5;
         row.c_jj(pair.b, pair.a) += 0.5;
         row.c = pair.a == pair.b ? -0.5 : 0.0;

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Angles, displacements and curves as coordinates of joints, and rows that are functions of them: screws,
+// gears, racks, slots. theory.md, "Coordinates of joints", has the derivatives and how turns are counted.
 #include "livens/multibody/joint_coordinates.h"
 
 #include <cmath>
@@ -72,6 +74,7 @@ double common_measure(const std::vector<Term>& terms)
         if (!term.is_angle) continue;
         double rest = std::abs(term.factor);
         largest = std::max(largest, rest);
+        // Remainders of Euclid's algorithm: what is left below rounding counts as zero.
         while (rest > rounding * largest)
             measure = std::exchange(rest, std::abs(std::remainder(measure, rest)));
     }
@@ -83,6 +86,7 @@ Value angle_at(double c, double s)
     const double square = c * c + s * s, quartic = square * square;
     Value angle;
     angle.value = arc_tangent(s, c);
+    // Of atan2(s, c) off the unit circle as well: between the nodes of an element s^2 + c^2 is not one.
     angle.gradient[0] = -s / square;
     angle.gradient[1] = c / square;
     angle.hessian[0][0] = 2 * c * s / quartic;
@@ -108,6 +112,8 @@ Value coupling_at(const std::vector<Term>& terms, double constant, double period
             for (std::size_t j = 0; j < 2; ++j) sum.hessian[k + i][k + j] += factor * angle.hessian[i][j];
         }
     }
+    // After a whole turn of every angle the bodies stand as before; all the multiples of this period are one
+    // position.
     if (period > 0) sum.value = std::remainder(sum.value, period);
     return sum;
 }
@@ -118,6 +124,8 @@ double coupling_change(const std::vector<Term>& terms, const Point& q, const Poi
     double sum = 0;
     for (const auto& [factor, k, is_angle] : terms) {
         const double c = q[k], s = is_angle ? q[k + 1] : 0, dc = step[k], ds = is_angle ? step[k + 1] : 0;
+        // The angle between two directions by their cross and inner product: no difference of two angles, so
+        // no cut and no cancellation.
         sum += factor * (is_angle ? arc_tangent(c * ds - s * dc, c * (c + dc) + s * (s + ds)) : dc);
     }
     return sum;
@@ -146,6 +154,8 @@ struct SampledCurve : Curve {
         for (int i = 0; i < 50; ++i) {
             const CurvePoint here = without_normals(s);
             const Vector3 r = x - here.x;
+            // Newton's iteration for r . gamma' = 0, steps bounded by four samples so that it stays on its
+            // branch.
             const double slope = dot(here.first, here.first) - dot(r, here.second);
             // beyond the centre of curvature the distance has no minimum: along the tangent then
             const double change = dot(r, here.first) / (slope > 0 ? slope : dot(here.first, here.first));
@@ -166,6 +176,8 @@ struct SampledCurve : Curve {
 private:
     void refuse_crossings() const
     {
+        // Neighbouring samples are near each other on every curve; only those further along may be a
+        // crossing.
         constexpr int apart = 8;
         for (int k = 0; k < n_samples; ++k)
             for (int l = k + apart; l < n_samples; ++l) {
@@ -270,6 +282,7 @@ ConstraintRow coupling_row(const std::vector<CoupledCoordinate>& coupled, double
                "a row couples at least one coordinate, and three angles or six displacements at most",
                std::to_string(forms.size()) + " forms", "1 to " + std::to_string(SmoothFunction::most), "",
                "");
+    // The period of the sum exists only for ratios of whole numbers: each angle is known up to whole turns.
     const double measure = common_measure(terms);
     if (has_angles && measure == 0)
         refuse(

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// What all loads share: their beginning, checks of input, breaks and power. A load is data and functions;
+// laws of single kinds stand in loads/. Its force is F of theory.md, "The law", per body 3 x 4.
 #include "livens/multibody/loads.h"
 
 #include <algorithm>
@@ -39,6 +41,8 @@ void check_not_negative(const Load& load, double value, const std::string& key)
 void set_load_value(Load& load, const TimeVector& value)
 {
     for (const TimeFunction& component : value) {
+        // One look at t = 0 refuses what never is a number; what becomes one later ends the motion by the
+        // load's name.
         const double sample = component(Instant{}).value;
         if (!std::isfinite(sample))
             throw InputError({"not-finite", "load[" + load.name + "].value",
@@ -97,6 +101,7 @@ double load_power(const Load& load, const LoadArguments& arguments)
 double power_without_potential(const Load& load, const LoadArguments& arguments)
 {
     if (load.power) return load.power(arguments);
+    // A load with a potential and without a power of its own does work that is counted as energy already.
     return load.potential ? 0 : load_power(load, arguments);
 }
 

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Mass matrices (P7) from mass, centre and inertia and back, what inertias may be, and closed forms of simple
+// solids: theory.md, "Bodies without rotation parameters".
 #include "livens/multibody/mass_properties.h"
 
 #include <algorithm>
@@ -47,6 +49,8 @@ Matrix4 scaled_both_ways(const Matrix4& m, const Vector4& s)
 void check_principal_moments(const Matrix3& inertia, const std::string& path)
 {
     const Vector3 j = symmetric_values(inertia);   // ascending
+    // Inequality: J1 + J2 >= J3 - 1e-12 of the largest moment. Flat bodies meet it with equality, so rounding
+    // has to pass.
     const double slack = relative_slack * std::max(std::abs(j[0]), std::abs(j[2]));
     const std::string moments = to_text(j);
     if (j[0] < -slack)
@@ -76,6 +80,7 @@ Matrix4 mass_matrix(const MassProperties& properties)
 {
     const Vector3& c = properties.center_of_mass;
     const Matrix3& J = properties.inertia;
+    // Euler's tensor of J about the centre, and Steiner's part for the reference point.
     const Matrix3 E = 0.5 * trace(J) * identity<3>() - J + properties.mass * outer(c, c);
     Matrix4 m{};
     m(0, 0) = properties.mass;
@@ -97,6 +102,7 @@ MassProperties mass_properties(const Matrix4& mass_matrix)
     }
     const Vector3& c = properties.center_of_mass;
     E -= properties.mass * outer(c, c);
+    // The inverse of E = tr(J)/2 1 - J, since tr(E) = tr(J)/2.
     properties.inertia = trace(E) * identity<3>() - E;
     return properties;
 }
@@ -126,6 +132,7 @@ Matrix4 inverse_mass(const Matrix4& mass_matrix, bool is_point)
         inverse(0, 0) = 1 / mass_matrix(0, 0);
         return inverse;
     }
+    // Scaled to ones on the diagonal, a body of a micrometre is inverted as exactly as one of a kilometre.
     const Vector4 s = unit_scaling(mass_matrix);
     const Matrix4 raw = scaled_both_ways(inverse_of_positive(scaled_both_ways(mass_matrix, s)), s);
     for (int i = 0; i < 4; ++i)
@@ -142,6 +149,7 @@ void check_mass_properties(const MassProperties& properties, const std::string& 
     if (!(properties.mass > 0))
         throw InputError({"mass-not-positive", path + ".mass", "the mass of a body must be positive",
                           to_text(properties.mass), "> 0", "", "a fixed body is the world"});
+    // Inequality: |J_ij - J_ji| <= 1e-12 of the largest entry.
     const double largest = std::ranges::max(J.a, {}, [](double entry) { return std::abs(entry); });
     for (int i = 0; i < 3; ++i)
         for (int j = 0; j < i; ++j)
@@ -215,6 +223,7 @@ MassProperties cone(double density, double radius, double height)
     require_size(radius, "cone", "the radius");
     require_size(height, "cone", "the height");
     const double mass = density * std::numbers::pi * radius * radius * height / 3;
+    // About the centre of mass, a quarter of the height above the base.
     const double across = mass * (3 * radius * radius / 20 + 3 * height * height / 80);
     return {mass, {}, diagonal(across, across, 3 * mass * radius * radius / 10)};
 }

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// A model: bodies, joints, loads and sensors, each checked as it is added, so that everything below may take
+// them for granted. Which bodies may be named, where rows of joints begin and which joints act at an instant
+// is known here.
 #include "livens/multibody/model.h"
 
 #include <algorithm>
@@ -207,6 +210,7 @@ Model::Model(const Vector3& gravity) : gravity_(gravity) { changed(); }
 
 void Model::changed()
 {
+    // One number for all models of the program: two models with one version are the same.
     static std::atomic<std::uint64_t> last{0};
     version_ = ++last;
     length_ = {};
@@ -244,6 +248,8 @@ int Model::add_joint(Joint joint)
     const int index = static_cast<int>(joints_.size());
     const bool has_events = std::isfinite(joint.from) || std::isfinite(joint.until);
     has_events_ = has_events_ || has_events;
+    // A joint that does not always act leaves its axes apart; then the angle is that of the turn between both
+    // triads.
     for (NamedCoordinate& one : joint.coordinates)
         if (has_events && !one.apart.forms.empty()) one.coordinate = one.apart;
     first_rows_.push_back(n_rows());

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// The model's length L, by which shifts are measured beside angles: spread of bodies and joints, radius of
+// gyration, or the distance of an attracting point. Tolerances of theory.md are stated in this length.
 #include <algorithm>
 #include <cmath>
 
@@ -26,6 +28,8 @@ double length_of(const Model& model)
         double square = 0;
         for (int i = 1; i < 4; ++i) {
             const double offset = body.mass(i, 0) / body.mass(0, 0);
+            // Second moment less the square of the offset: about the centre of mass, so the reference point
+            // has no say.
             square += body.mass(i, i) / body.mass(0, 0) - offset * offset;
         }
         radius = std::max(radius, std::sqrt(std::max(square, 0.0)));
@@ -60,6 +64,7 @@ double length_of(const Model& model)
 
 double Model::length() const
 {
+    // Threads may compute it twice; they get the same number, so no order between them is needed.
     double length = length_.value.load(std::memory_order_relaxed);
     if (length == 0) {
         length = length_of(*this);

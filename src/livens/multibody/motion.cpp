@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// A motion: fields X, P and multipliers over time elements, evaluable at any instant. Element ends have
+// velocities of their own, from the momentum, because the slope of the polynomial is of a lower order there
+// (theory.md, "The element", Order).
 #include "livens/multibody/motion.h"
 
 #include <algorithm>
@@ -124,6 +127,7 @@ State Motion::at(double t) const
         throw InputError({"time-outside", "", "the motion is not known at this instant", to_text(t),
                           to_text(start()) + " <= t <= " + to_text(end()), "", ""});
     const int element = mesh.element_at(t);
+    // Velocities at element ends are of order 2p; those of the polynomials on either side are of order p.
     if (t == mesh.ends[element]) return at_end(element);
     if (t == mesh.ends[element + 1]) return at_end(element + 1);
 
@@ -165,12 +169,15 @@ Reaction joint_reaction(const Model& model, int joint, std::span<const Matrix34>
     Matrix34 F{};
     for (int k = 0; k < static_cast<int>(j.rows.size()); ++k) {
         const double multiplier = multipliers[model.first_row(joint) + k];
+        // Multipliers enter the law as forces -G^T lambda; on the second body that is the joint's reaction.
         if (multiplier != 0) F -= multiplier * constraint_gradient(j.rows[k], X).of(j.second);
     }
     const Matrix34& X_second = X[j.second];
     Reaction reaction;
     reaction.force = F.column(0);
+    // Forces on directors do work under a turn like the moment sum d_i x F_i.
     for (int i = 1; i < 4; ++i) reaction.torque += cross(X_second.column(i), F.column(i));
+    // The moment of F about the reference point, moved to the joint point.
     const Vector3 arm = X_second * point(j.point_second) - X_second.column(0);
     reaction.torque -= cross(arm, reaction.force);
     return reaction;

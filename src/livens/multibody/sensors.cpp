@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Sensors: named numbers of a motion made of forms of X, of coordinates of joints, or of what loads report.
+// They are read when results are written and enter no equation (docs/scenario.md).
 #include "livens/multibody/sensors.h"
 
 #include <array>

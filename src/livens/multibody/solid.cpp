@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// From integrals over a shape to mass properties and back, with one density (P19): theory.md, "Bodies from
+// meshes".
 #include "livens/multibody/solid.h"
 
 #include "livens/solvers/spectral.h"
@@ -19,6 +21,7 @@ PrincipalAxes principal_axes(const Matrix3& inertia)
 {
     const PrincipalValues principal = symmetric_spectrum(inertia);
     PrincipalAxes found{principal.values, principal.vectors};
+    // Eigenvectors have no sign; axes of a body must be right-handed.
     if (determinant(found.axes) < 0) found.axes.set_column(2, -found.axes.column(2));
     return found;
 }

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Unwrapped angles of loads: whole turns, which X does not tell, are counted along the motion (theory.md,
+// "Coordinates of joints", Loads along coordinates). The count is right while no angle turns by half a turn
+// between two calls.
 #include "livens/multibody/turns.h"
 
 #include "livens/base/elementary.h"

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Matrices whose rows and unknowns stand at nodes of time, element by element: the shape of every tangent in
+// theory.md, "Windows". Neighbouring elements share a node, so their dense blocks overlap and add up; the
+// sparse matrix of the whole is made from them where a sparse solver asks.
 #include "livens/solvers/blocks.h"
 
 #include <algorithm>
@@ -29,6 +32,7 @@ void check_elements(const BlockStructure& structure)
             refuse(name + " spans nodes " + std::to_string(first) + " to " + std::to_string(last) + " of " +
                    std::to_string(structure.n_nodes()));
         if (e == 0) continue;
+        // Both ends must ascend: forward elimination relies on an order of elements that is an order of time.
         if (first <= elements[e - 1][0] || last <= elements[e - 1][1]) refuse(name + " is out of order");
         if (first > elements[e - 1][1]) refuse(name + " shares no node with the one before");
     }
@@ -49,6 +53,8 @@ void BlockStructure::check() const
     check_elements(*this);
     const int rows = std::accumulate(n_rows.begin(), n_rows.end(), 0);
     const int unknowns = std::accumulate(n_unknowns.begin(), n_unknowns.end(), 0);
+    // Which rows are active depends on the conditions at the ends of time; a mistake there shows up here
+    // first.
     if (rows != unknowns)
         refuse(std::to_string(rows) + " rows for " + std::to_string(unknowns) + " unknowns");
 }
@@ -67,6 +73,7 @@ void BlockMatrix::resize(const BlockStructure& structure)
     running_sums(structure.n_rows, first_row_);
     running_sums(structure.n_unknowns, first_unknown_);
     storage_.resize(elements_.size());
+    // assign() keeps the memory of an element whose size has not grown: marches refill one matrix for ever.
     for (int e = 0; e < n_elements(); ++e) storage(e).assign(entries(n_rows(e), n_columns(e)), 0.0);
 }
 
@@ -114,6 +121,8 @@ void for_each_entry(const BlockStructure& structure, const BlockMatrix& matrix, 
         const double* value = matrix.storage(e).data();
         for (int i = 0; i < matrix.n_rows(e); ++i)
             for (int j = 0; j < matrix.n_columns(e); ++j, ++value)
+                // Exact zeros are left out, which is what keeps blocks of bodies without a common joint or
+                // load apart.
                 if (*value != 0) visit(first_row[node] + i, first_unknown[node] + j, *value);
     }
 }
@@ -127,6 +136,8 @@ void add_up(SparseMatrix& A)
         const int end = A.column_starts[j + 1];
         column.clear();
         for (int k = begin; k < end; ++k) column.emplace_back(A.rows[k], A.values[k]);
+        // A stable order adds equal entries element after element, so that the sum does not depend on the
+        // sort.
         std::ranges::stable_sort(column, {}, &std::pair<int, double>::first);
         A.column_starts[j] = n;
         for (const auto& [row, value] : column) {

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Norms of matrices known by their products alone.
+// The 1-norm is estimated by block search over columns [Higham2000], the 2-norm by Golub and Kahan's
+// bidiagonalisation with bisection. Both need products alone, and so serve the inverse by solutions:
+// theory.md, "The whole matrix of lobatto".
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -87,6 +90,7 @@ public:
     explicit OneNormSearch(std::size_t size)
         : size_(size), X_(n_columns, Values(size, 1.0)), Y_(X_), S_(X_), tried_(size, 0)
     {
+        // The first column stays all ones, as in the published algorithm; the others get random signs.
         renew_parallel(X_, {}, random_);
         for (Values& x : X_)
             for (double& v : x) v /= static_cast<double>(size);
@@ -95,6 +99,8 @@ public:
     double run(const LinearMap& apply, const LinearMap& apply_transposed)
     {
         for (int iteration = 0; iteration < n_iterations; ++iteration) {
+            // The three ways to end are those of the paper: no longer column, no new signs, or the steepest
+            // unit vector is the one that gave the estimate. Every estimate is a lower bound of the norm.
             if (!improve(apply)) break;
             const Columns old_S = iteration == 0 ? Columns() : S_;
             take_signs(Y_, S_);
@@ -215,6 +221,8 @@ Values starting_vector(std::size_t size)
 /// > 0: its eigenvalues are +- the singular values of the bidiagonal matrix that holds the couplings in turn.
 bool all_below(double x, const Values& couplings)
 {
+    // Sylvester's law of inertia: all pivots of T - x are negative if and only if all eigenvalues lie below
+    // x.
     double pivot = -x;
     for (double c : couplings) {
         pivot = -x - (c / pivot) * c;
@@ -226,6 +234,8 @@ bool all_below(double x, const Values& couplings)
 /// Largest singular value, to rounding, by bisection from `low`, which is known not to exceed it.
 double largest_singular_value(const Values& couplings, double low)
 {
+    // Gershgorin's bound: the row sums of a matrix with zero diagonal. Widened by a few spacings for its own
+    // rounding.
     double high = couplings.front();
     for (std::size_t i = 1; i < couplings.size(); ++i) high = std::max(high, couplings[i - 1] + couplings[i]);
     high *= 1 + 4 * std::numeric_limits<double>::epsilon();
@@ -308,6 +318,8 @@ double two_norm(int n, const LinearMap& apply, const LinearMap& apply_transposed
         if (process.couplings().empty()) return 0;
         if (goes_on && step < check && step < most_steps) continue;
         const double last = value;
+        // The value never falls from step to step, so the last one is a lower bound to begin the bisection
+        // from.
         value = largest_singular_value(process.couplings(), last);
         if (!goes_on || 2 * (value - last) <= tolerance * value) break;
         check = check + (check + 3) / 4;

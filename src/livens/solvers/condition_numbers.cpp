@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Condition numbers of matrices by products and solutions.
+// kappa = |A| |A^-1| in the 1-norm and the 2-norm, of the matrix that was stated and not of the scaled one:
+// docs/paper.md, "Figure 3", compares both. Scales are undone around each product, so no second matrix is
+// formed.
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -21,6 +24,7 @@ double one_norm(const SparseMatrix& S, const Values& row_scale, const Values& co
 {
     double largest = 0;
     for (int j = 0; j < S.size; ++j) {
+        // Columns are at hand, so this norm is exact; only that of the inverse has to be estimated.
         double sum = 0;
         for (int k = S.column_starts[j]; k < S.column_starts[j + 1]; ++k)
             sum += std::abs(S.values[k] / row_scale[S.rows[k]]);
@@ -109,6 +113,7 @@ ConditionNumbers condition_numbers(const SparseMatrix& scaled, const SparseLU& l
     const auto S_transposed = [&](Input x, Output y) { scaled.multiply_transposed(x, y); };
     const auto solve = [&](Input x, Output y) { lu.solve(x, y); };
     const auto solve_transposed = [&](Input x, Output y) { lu.solve_transposed(x, y); };
+    // S = R A C was factorised: A = R^-1 S C^-1 and A^-1 = C S^-1 R, and the transposes in the other order.
     // R^-1 S C^-1 and C S^-1 R
     return condition_numbers(KnownMatrix{scaled.size, one_norm(scaled, R, C), map(divide_by, C, S, R),
                                          map(divide_by, R, S_transposed, C), map(multiply_by, R, solve, C),

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Dense LU, Householder QR and Cholesky factors of the sizes that one element has: dozens of rows, millions
+// of times. Written out for short rows, for which the blocking of a library does not pay; nothing is
+// allocated. OrthogonalBasis is [Y Z][R; 0] of theory.md, "Eliminating the joint multipliers".
 #include "livens/solvers/dense.h"
 
 #include <algorithm>
@@ -92,6 +95,7 @@ void DenseLU::eliminate_pair(int k)
 bool DenseLU::factorise()
 {
     int k = 0;
+    // Columns are eliminated in pairs: each row below is then read and written once for two pivots.
     for (; k + 1 < n_; k += 2) {
         if (n_ >= large) Patience::ask();
         if (!choose_pivot(k)) return false;
@@ -284,6 +288,8 @@ double OrthogonalBasis::factorise_pivoted(int k, std::span<int> order)
         smallest = std::min(smallest, std::abs(column(j)[j]));
         for (int c = j + 1; c < most_; ++c) {
             reflect_column(j, column(c));
+            // Norms are taken anew instead of reduced: a reduced norm has no digits left where a column
+            // depends on others.
             reflections_[c].norm = inner(column(c) + j + 1, column(c) + j + 1, n_ - j - 1);
         }
     }

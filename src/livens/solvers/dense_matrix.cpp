@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Dense matrices whose size is known when they are made, in plain arrays, column by column. Eigen computes
+// the products; it is seen in the sources of this room alone (docs/architecture.md, "The rooms").
 #include "livens/solvers/dense_matrix.h"
 
 #include <algorithm>
@@ -35,6 +37,7 @@ DenseMatrix::DenseMatrix(DenseView from)
 
 void DenseMatrix::append_column(std::span<const double> entries)
 {
+    // The first column says how long all are: matrices are often gathered column by column.
     if (cols == 0) rows = static_cast<int>(entries.size());
     assert(static_cast<int>(entries.size()) == rows);
     a.insert(a.end(), entries.begin(), entries.end());
@@ -65,6 +68,7 @@ DenseMatrix transpose(DenseView A)
 
 namespace {
 
+// (A + A^T)/2 or (A - A^T)/2; their sum is A.
 DenseMatrix half_with_transposed(DenseView A, double sign)
 {
     assert(A.rows == A.cols);
@@ -83,6 +87,7 @@ DenseMatrix product(DenseView A, DenseView B)
 {
     assert(A.cols == B.rows);
     DenseMatrix C(A.rows, B.cols);
+    // The result is a new matrix and aliases nothing, so that Eigen needs no temporary one.
     seen(C).noalias() = seen(A) * seen(B);
     return C;
 }
@@ -133,6 +138,7 @@ Matrix<6, 6> congruence(double factor, const Matrix<12, 6>& A, const Matrix<12, 
     return C;
 }
 
+// A^T K A: the form K in the coordinates that A maps from.
 Matrix<6, 6> congruence(const Matrix<6, 6>& A, const Matrix<6, 6>& K)
 {
     Matrix<6, 6> C;
@@ -161,6 +167,7 @@ double largest_size(std::span<const double> x)
 {
     double largest = 0;
     for (const double entry : x) {
+        // std::max drops a nan, and a caller would take the largest of the others for finite.
         if (std::isnan(entry)) return entry;
         largest = std::max(largest, std::abs(entry));
     }

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Factorisations of dense matrices on plain arrays: pivoted QR for rank (theory.md, "Rank is geometry"),
+// least squares, null spaces, Cholesky and LU. What is not finite comes out as nan instead of whatever a
+// pivot search would make of it.
 #include "livens/solvers/factors.h"
 
 #include <algorithm>
@@ -44,6 +47,7 @@ DenseMatrix all_nan(int rows, int cols)
 template <typename QR>
 DenseMatrix columns_of_Q(const QR& qr, Index first, Index n)
 {
+    // Only the columns that are asked for are formed: a null space of a long chain has few of many.
     MatrixXd Q = MatrixXd::Identity(qr.rows(), first + n).rightCols(n);
     if (Q.size() > 0) Q.applyOnTheLeft(qr.householderQ());   // Eigen would step into what has no memory
     return stored(Q);
@@ -68,6 +72,7 @@ int PivotedQR::n_pivots() const { return std::min(factors_->rows, factors_->cols
 double PivotedQR::pivot(int k) const
 {
     assert(k >= 0 && k < n_pivots());
+    // The pivots descend in size; callers compare them with what rounding could have made of zero.
     return factors_->qr ? std::abs(factors_->qr->matrixQR()(k, k)) : nan;
 }
 
@@ -82,6 +87,7 @@ DenseMatrix PivotedQR::basis(int first, int n) const
     assert(first >= 0 && n >= 0 && first + n <= factors_->rows);
     if (factors_->qr) return columns_of_Q(*factors_->qr, first, n);
     if (factors_->cols > 0) return all_nan(factors_->rows, n);
+    // A matrix without columns leaves everything free: Q is the identity.
     DenseMatrix of_nothing(factors_->rows, n);
     for (int k = 0; k < n; ++k) of_nothing(first + k, k) = 1;
     return of_nothing;
@@ -90,6 +96,7 @@ DenseMatrix PivotedQR::basis(int first, int n) const
 std::vector<double> PivotedQR::solve(std::span<const double> b) const
 {
     assert(static_cast<int>(b.size()) == factors_->rows);
+    // A matrix of zeros has rank 0, for which the solution of least size is zero; Eigen would divide 0 by 0.
     const bool is_zero = n_pivots() == 0 || pivot(0) == 0;
     if (is_zero || !factors_->qr || !livens::all_finite(b))
         return std::vector<double>(static_cast<std::size_t>(factors_->cols), is_zero ? 0 : nan);
@@ -140,6 +147,7 @@ DenseMatrix null_space(DenseView A, double threshold)
 {
     if (A.cols == 0 || !all_finite(A)) return {A.cols, 0};
     if (A.rows == 0) return stored(MatrixXd::Identity(A.cols, A.cols));
+    // Full pivoting tells rank where columns differ in size; the basis it gives is not orthonormal.
     Eigen::FullPivLU<MatrixXd> lu(seen(A));
     lu.setThreshold(threshold);
     if (lu.dimensionOfKernel() == 0) return {A.cols, 0};
@@ -151,6 +159,7 @@ DenseMatrix cholesky(DenseView A)
     assert(A.rows == A.cols);
     if (A.rows == 0) return {};
     if (!all_finite(A)) return all_nan(A.rows, A.cols);
+    // A matrix that is not positive definite comes out as nan, which callers find by one look at the result.
     const Eigen::LLT<MatrixXd> factor(seen(A));
     if (factor.info() != Eigen::Success) return all_nan(A.rows, A.cols);
     return stored(factor.matrixL());
@@ -192,6 +201,7 @@ LUSolution lu_solution(DenseView A, std::span<const double> b)
     if (A.rows == 0) return {};
     if (!all_finite(A) || !livens::all_finite(b)) return {std::vector<double>(b.size(), nan), nan, nan};
     const Eigen::PartialPivLU<MatrixXd> lu(seen(A));
+    // The quotient of the smallest and the largest pivot is a cheap, rough measure of singularity.
     const VectorXd pivots = lu.matrixLU().diagonal().cwiseAbs();
     return {values_of(lu.solve(VectorXd(seen(b)))), pivots.minCoeff(), pivots.maxCoeff()};
 }

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Systems that are known at one end: block triangular over elements.
+// Elimination goes with the flow of time: the rows of an element hold no unknowns of later ones (theory.md,
+// "Windows"), so each element needs one dense LU, and nothing fills in outside of its blocks. With the state
+// known at the end the same pieces are taken in the opposite order.
 #include <algorithm>
 #include <array>
 #include <cassert>
@@ -126,6 +129,8 @@ public:
         assert(is_regular_ && static_cast<int>(x.size()) == first_unknown_.back());
         for (int i = 0; i < n_pieces(); ++i) {
             const Piece& piece = in_order(i);
+            // What the piece before has solved moves to the right-hand side; then the rows that the next
+            // piece owns receive this one's unknowns. That is block forward substitution.
             piece.known.subtract_product(x.data() + piece.known_begin, x.data() + piece.begin);
             piece.lu.solve(x.data() + piece.begin);
             piece.passed.subtract_product(x.data() + piece.all_begin, x.data() + piece.passed_begin);
@@ -137,6 +142,8 @@ public:
         assert(is_regular_ && static_cast<int>(x.size()) == first_unknown_.back());
         for (int i = n_pieces() - 1; i >= 0; --i) {
             const Piece& piece = in_order(i);
+            // The transposed matrix is block upper triangular, so the same two products run backwards and
+            // exchange their parts.
             piece.passed.subtract_transposed_product(x.data() + piece.passed_begin,
                                                      x.data() + piece.all_begin);
             piece.lu.solve_transposed(x.data() + piece.begin);
@@ -174,6 +181,8 @@ private:
                 refuse("elements " + std::to_string(e - 1) + " and " + std::to_string(e) +
                        " share more than one node");
         if (structure.elements.empty()) return false;
+        // With the state known at the start the first node has no unknowns and the last one no rows;
+        // mirrored, vice versa.
         if (structure.n_unknowns.front() == 0 && structure.n_rows.back() == 0) return false;
         if (structure.n_rows.front() == 0 && structure.n_unknowns.back() == 0) return true;
         refuse("the first node has " + std::to_string(structure.n_unknowns.front()) + " unknowns and " +

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Newton's iteration with one rule of damping and one of stopping for all families: theory.md, "Newton's
+// iteration". Steps are judged by the natural level function [Deuflhard2011, section 3.3], the size of the
+// next increment with the same factors, which does not depend on how rows are scaled.
 #include "livens/solvers/newton.h"
 #include <algorithm>
 #include <cmath>
@@ -66,9 +69,12 @@ private:
         if (!problem_.factorise() || !solve(increment_, size_)) return fail(SolveStatus::singular);
         are_fresh_ = true;
         size_before_ = 0;
+        // Damping at most doubles from step to step, so that a difficult stretch is not left by a leap.
         double damping = std::min(1.0, 2 * damping_);
         for (;;) {
             look_ahead(damping);
+            // A damped step leaves a share of the increment undone by design; its size says nothing about
+            // convergence.
             const bool is_done = damping == 1 && (within_tolerance() || at_rounding());
             if (!is_done && !shrinks(next_size_, size_, damping)) {
                 if (!are_fresh_ || damping <= shortest_step) return go_back();
@@ -77,6 +83,8 @@ private:
             }
             accept(damping);
             if (is_done) return finish();
+            // Such a step makes no visible way: of a thousand lengths it goes one, and would go on so for all
+            // iterations.
             if (damping <= shortest_step && size_ > hopeless_size) return fail(SolveStatus::not_converged);
             if (report_.iterations >= options_.max_iterations) return stop_at_limit();
             if (!are_worth_another_step() || !advance()) return Verdict::new_factors;
@@ -104,6 +112,8 @@ private:
         if (rows_.foretell) {
             // rows that were zero can only have met their rounding
             const double rate = rows_before_ > 0 ? rows_.size / rows_before_ : (rows_.size > 0 ? 1 : 0);
+            // Where rows shrink as increments do, the solution with the same factors is spared ("Newton's
+            // iteration").
             next_size_ = size_ * rate;
             if (damping == 1 && (within_tolerance() || at_rounding())) return;
             if (shrinks(next_size_, size_, damping)) return;
@@ -122,11 +132,14 @@ private:
 
     bool within_tolerance() const
     {
+        // Inequality: next increment + correction <= tolerance * scale, and rows <= tolerance * terms where
+        // they are known.
         return left() <= tolerance_ && (!rows_.foretell || rows_.size <= options_.tolerance * rows_.terms);
     }
 
     bool at_rounding() const
     {
+        // An iteration that still contracts well is not at its rounding, however small its rows are.
         if (!std::isfinite(next_size_) || next_size_ <= 0.25 * size_) return false;
         if (rows_.size < 4 * rows_.rounding) return true;
         return are_fresh_ && size_ < rounding_begins && next_size_ > 0.5 * size_;
@@ -155,6 +168,8 @@ private:
             contraction = size_before_ > 0 ? size_ / size_before_ : 0.1 * contraction;
             if (size_ > far_step) return false;
         }
+        // With a constant contraction c the tolerance is met after log(tolerance / left) / log(c) more steps.
+        // The bound 0.9 keeps the denominator away from zero.
         const double steps_left = logarithm(tolerance_ / left()) / logarithm(std::min(contraction, 0.9));
         return !(contraction > slow_contraction || whole_steps_ + steps_left > most_whole_steps);
     }
@@ -176,6 +191,8 @@ private:
     Verdict finish()
     {
         report_.ended_by_rounding = !within_tolerance();
+        // The next increment is already there: taking it costs one residual, and squares what the tolerance
+        // leaves.
         if (!is_solved_ || !within_tolerance() || next_size_ == 0) return Verdict::converged;
         if (!problem_.move(next_, 1) || !problem_.residual())
             return return_to_kept() ? Verdict::converged : fail(SolveStatus::not_finite);

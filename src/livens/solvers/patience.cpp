@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Cancellation for loops that know nothing of who waits: a question to the caller, asked seldom enough to
+// cost nothing. It never changes a result; it only ends work, by the exception `Stopped`.
 #include "livens/solvers/patience.h"
 
 #include <chrono>
@@ -11,6 +13,7 @@ namespace {
 constexpr unsigned calls_between_looks = 16;
 constexpr double seconds_between_questions = 0.01;   // a question may wait for an interpreter's lock
 
+// One chain of questions for each thread: threads of an ensemble do not stop each other.
 thread_local Patience* current = nullptr;
 thread_local unsigned calls = 0;
 
@@ -50,6 +53,8 @@ void Patience::look()
     const double t = now();
     if (t - last_ < seconds_between_questions) return;
     last_ = t;
+    // Grace counts CPU time of this thread and not the clock: on a busy machine it may wait longer than it
+    // works.
     if (stopped_at_ < 0) {
         if (goes_on_()) return;
         stopped_at_ = cpu_time();

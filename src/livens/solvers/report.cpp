@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// How reports of parts add up to the report of a whole: counts are sums, extremes stay extremes, and status
+// and message are those of the part that came last, because a motion ends where its last part did.
 #include "livens/solvers/report.h"
 
 #include <algorithm>
@@ -55,6 +57,7 @@ SolveCounters& SolveCounters::operator+=(const SolveCounters& next)
 
 MeshChanges& MeshChanges::operator+=(const MeshChanges& next)
 {
+    // The first place stays: it is where a reader of the report begins to look.
     if (divided == 0) divided_at = next.divided_at;
     if (shifted == 0) shifted_at = next.shifted_at;
     if (!next.steep_load.empty()) steep_load = next.steep_load;
@@ -89,6 +92,7 @@ SolveReport& SolveReport::operator+=(SolveReport next)
     accuracy = next.accuracy;
     iterations.insert(iterations.end(), next.iterations.begin(), next.iterations.end());
     for (std::string& note : next.notes)
+        // Parts of one motion say the same thing again and again; the report says it once.
         if (std::ranges::find(notes, note) == notes.end()) notes.push_back(std::move(note));
     if (!next.estimate_failed.empty()) estimate_failed = std::move(next.estimate_failed);
     return *this;

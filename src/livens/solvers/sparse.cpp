@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Sparse matrices in compressed columns, and the sparse LU behind one face: what all backends promise is
+// checked and kept here, so that a library is asked for its factorisation alone (theory.md, "The elements of
+// the paper", Scaling).
 #include "livens/solvers/sparse.h"
 
 #include <algorithm>
@@ -38,6 +41,7 @@ bool all_finite(const std::vector<double>& values)
 
 bool overlap(std::span<const double> b, std::span<const double> x)
 {
+    // Pointers into different arrays have an order by std::less alone.
     const std::less<const double*> before;
     return before(b.data(), x.data() + x.size()) && before(x.data(), b.data() + b.size());
 }
@@ -117,6 +121,7 @@ bool SparseLU::factorise(const SparseMatrix& A)
     Implementation& lu = *implementation_;
     assert(lu.analysed && A.size == lu.size && A.n_entries() == lu.n_entries && well_formed(A));
     lu.factorised = false;   // stays so if memory runs out
+    // Fewer entries than rows leave a row empty. The backends see finite matrices alone.
     if (A.n_entries() < A.size || !all_finite(A.values)) return false;
     lu.factorised = A.size == 0 || lu.factorise(A);
     return lu.factorised;
@@ -152,6 +157,8 @@ void solve_refined(const SparseLU& lu, const SparseMatrix& A, std::span<const do
 {
     const std::vector<double> right_side(b.begin(), b.end());   // b and x may be the same
     std::vector<double> residual(right_side.size()), correction(right_side.size());
+    // Iterative refinement in working precision: it repairs what pivots of an almost singular block have
+    // cost.
     lu.solve(right_side, x);
     for (int step = 0; step < steps; ++step) {
         A.multiply(x, residual);

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Rows G that touch few columns each: the Cholesky factor of G G^T, and the projection onto the null space of
+// G. Serves rank and least reactions along long chains (theory.md, "Rank is geometry").
 #include "livens/solvers/sparse_rows.h"
 
 #include <algorithm>
@@ -45,6 +47,7 @@ SparseRows::SparseRows(int n_rows, int n_columns, std::span<const Entry> entries
                           order = matrices_->factor.permutationP() * Eigen::VectorXd(S.diagonal());
     double smallest = 1;
     for (Eigen::Index i = 0; i < pivots.size(); ++i) {
+        // A pivot of G G^T over the row's own square is the squared sine of the angle to the rows before it.
         const double ratio = pivots[i] / order[i];
         if (!(ratio >= smallest)) smallest = ratio > 0 ? ratio : 0;   // nan is no pivot
     }
@@ -57,6 +60,7 @@ std::vector<double> SparseRows::project(std::span<double> y, std::span<const dou
 {
     Eigen::Map<Eigen::VectorXd> to(y.data(), static_cast<Eigen::Index>(y.size()));
     const Eigen::Map<const Eigen::VectorXd> aim(wanted.data(), static_cast<Eigen::Index>(wanted.size()));
+    // Each pass leaves eps / pivot^2 of what it was to take off, so smaller pivots need more passes.
     const int n_passes = smallest_pivot_ > 1e-3 ? 2 : 4;
     Eigen::VectorXd sum = Eigen::VectorXd::Zero(aim.size());
     for (int pass = 0; pass < n_passes; ++pass) {

@@ -69,6 +69,7 @@ public:
     bool factorise(const SparseMatrix& A) override
     {
         numeric_.reset();
+        // The symbolic analysis already finds a structurally singular matrix.
         if (!symbolic_) return false;
         void* numeric = nullptr;
         const Index status = umfpack_dl_numeric(column_starts_.data(), rows_.data(), A.values.data(),

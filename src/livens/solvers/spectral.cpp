@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Eigenvalues and singular values on plain arrays: vibration modes and frequencies (theory.md, "Highest
+// frequencies" and "Small motions"), principal inertias, and the rotation next to a triad. Eigen's solvers
+// see finite numbers alone; all else comes out as nan, or as not found.
 #include "livens/solvers/spectral.h"
 
 #include <algorithm>
@@ -73,6 +76,7 @@ SymmetricSpectrum generalised(DenseView K, DenseView M, bool with_vectors)
     const auto L = seen(factor).triangularView<Eigen::Lower>();
     const auto U = seen(factor).adjoint().triangularView<Eigen::Upper>();
     MatrixXd C = seen(K).selfadjointView<Eigen::Lower>();
+    // The congruence keeps the matrix symmetric, so all values are real although M^-1 K is not symmetric.
     L.solveInPlace<Eigen::OnTheLeft>(C);
     U.solveInPlace<Eigen::OnTheRight>(C);
     const Symmetric solver(C, with_vectors ? Eigen::ComputeEigenvectors : Eigen::EigenvaluesOnly);
@@ -96,6 +100,7 @@ SymmetricSpectrum tridiagonal_spectrum(std::span<const double> diagonal, std::sp
     if (!all_finite(diagonal) || !all_finite(beside))
         return not_found(static_cast<int>(diagonal.size()), true);
     Symmetric solver;
+    // Of a tridiagonal matrix no reduction is needed.
     solver.computeFromTridiagonal(seen(diagonal), seen(beside));
     return result_of(solver, true);
 }
@@ -136,6 +141,7 @@ GeneralSpectrum general_spectrum(DenseView A)
     GeneralSpectrum spectrum{std::vector<std::complex<double>>(n, {nan, nan}), {}};
     spectrum.vectors.assign(n, spectrum.values);
     if (n == 0 || !all_finite(A.entries())) return spectrum;
+    // Damped motions have a general matrix: its values are complex, in conjugate pairs.
     const Eigen::EigenSolver<MatrixXd> solver(seen(A));
     if (solver.info() != Eigen::Success) return spectrum;
     std::copy_n(solver.eigenvalues().data(), n, spectrum.values.begin());
@@ -156,6 +162,7 @@ DenseMatrix null_directions(DenseView A, double level)
 {
     assert(A.rows == A.cols);
     if (A.rows == 0 || !all_finite(A.entries())) return {A.rows, 0};
+    // Singular values descend, so that the null directions are the last columns of V.
     const Eigen::JacobiSVD<MatrixXd> svd(seen(A), Eigen::ComputeFullV);
     return stored(svd.matrixV().rightCols((svd.singularValues().array() <= level).count()));
 }
@@ -165,6 +172,7 @@ Matrix3 orthogonal_factor(const Matrix3& A)
     Matrix3 Q = nan * identity<3>();
     if (!all_finite(A.a)) return Q;
     const Eigen::JacobiSVD<Eigen::Matrix3d> svd(Map3(A.data()), Eigen::ComputeFullU | Eigen::ComputeFullV);
+    // The polar factor R of A = R U: of all orthogonal matrices it is the nearest to A.
     Eigen::Map<Eigen::Matrix3d>(Q.data()) = svd.matrixU() * svd.matrixV().transpose();
     return Q;
 }

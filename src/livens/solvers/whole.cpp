@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // One sparse matrix of all blocks.
+// For conditions at both ends of time, where no end has all that is known, and for the elements of the paper:
+// theory.md, "Windows". Rows are exchanged freely, as the diagonal blocks alone may be singular.
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -36,6 +38,8 @@ public:
 
     Outcome factorise(BlockMatrix& matrix) override
     {
+        // Entries may be zero by symmetry at the first iterate and appear later. The pattern never shrinks,
+        // so it is analysed a few times at most.
         if (has_grown(matrix)) find_pattern();
         std::fill(matrix_.values.begin(), matrix_.values.end(), 0.0);
         for (int e = 0; e < matrix.n_elements(); ++e) {
@@ -98,6 +102,7 @@ private:
             const auto begin = matrix_.rows.begin() + matrix_.column_starts[column];
             const auto end = matrix_.rows.begin() + matrix_.column_starts[column + 1];
             const auto found = std::lower_bound(begin, end, row);
+            // The search is done once for a pattern; each factorisation then adds entries at known places.
             places_[static_cast<std::size_t>(e)][i] = static_cast<int>(found - matrix_.rows.begin());
         }
     }

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What solve() refuses before it solves anything, and what methods are called.
+// Conditions at the ends of time decide what methods can do (theory.md, "Windows"); each refusal names the
+// key of the scenario, the reason and a way out.
 #include <algorithm>
 #include <utility>
 
@@ -48,6 +50,7 @@ void refuse_free_bodies(const Model& model)
         for (const PairForm& q : model.row(r).coordinates) tie(q.body_i, q.body_j);
     }
     for (const Load& load : model.loads())
+        // A spring holds a body like a joint; a force without a potential may follow it anywhere.
         if (load.depends_on_X && load.potential) tie(load.bodies[0], load.bodies[1]);
     for (int b = 0; b < model.n_bodies(); ++b)
         if (!is_held[group[b]])
@@ -129,6 +132,7 @@ void check_conditions(const Model& model, const Conditions& given, const Method&
     is_at(given.end, given.at_end, "end");
     const int positions = (knows_positions(given.at_start) ? 1 : 0) + (knows_positions(given.at_end) ? 1 : 0);
     const int momenta = (knows_momenta(given.at_start) ? 1 : 0) + (knows_momenta(given.at_end) ? 1 : 0);
+    // Hamilton's law has two boundary terms: one half of the state at each end, or both at one.
     if (positions + momenta != 2)
         throw InputError({"boundary-conditions", "end.given",
                           "the conditions at the ends of time do not determine a motion", "",

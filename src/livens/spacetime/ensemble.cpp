@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Many motions at a time, each solved by one thread and told in their order. Threads share what is read
+// alone, so bits do not depend on their number (docs/architecture.md, "The rooms").
 #include "livens/spacetime/ensemble.h"
 
 #include <algorithm>
@@ -68,11 +70,14 @@ void run_in_order(int n, int n_threads, const std::function<void(int)>& work,
     if (threads.empty()) tasks.work_off(work);
     try {
         for (int i = 0; i < n; ++i) {
+            // Results are told in order even if later ones are ready: a stream that is written is then the
+            // same in every run.
             tasks.ended[i].wait(false);
             if (tasks.thrown[i]) std::rethrow_exception(tasks.thrown[i]);
             done(i);
         }
     } catch (...) {
+        // Nobody takes another task; those at work end by themselves before the threads are joined.
         tasks.next = n;
         throw;
     }

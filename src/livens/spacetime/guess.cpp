@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Motions that are about right, for Newton's iteration to begin with: steady flight, a march of small
+// elements, or one of these bent to meet the other end (theory.md, "Newton's iteration" and "The elements of
+// the paper").
 #include "livens/spacetime/guess.h"
 
 #include <algorithm>
@@ -99,6 +102,7 @@ MarchGuess guess_from_state(const Model& model, const State& state, std::span<co
     const State begin = is_forwards ? ends.start : ends.end;
     return {[march, begin](double t) {
                 if (march->n_elements() == 0) return guess_steady(begin)(t);
+                // Where the march broke off the motion goes on steadily; a guess must answer for all times.
                 if (t > march->end()) return guess_steady(march->at_end(march->n_elements()))(t);
                 if (t < march->start()) return guess_steady(march->at_end(0))(t);
                 return march->at(t);
@@ -149,6 +153,7 @@ Guess guess_from_ends(const Model& model, const Ends& ends, std::span<const doub
     if (!from_start) std::reverse(march.begin(), march.end());
     const auto motion_from = [&](const State& begin) { return guess_from_state(model, begin, march).motion; };
     if (knows_positions(at_far))
+        // Stated rates choose the way, for instance how many turns; without them the shortest way is taken.
         return is_moving(near) ? bent(motion_from(near), near.t, far) : guess_between(ends.start, ends.end);
     Guess motion = motion_from(near);
     if (is_moving(near)) return motion;

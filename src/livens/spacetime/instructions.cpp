@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Which set of vector instructions the kernels use: theory.md, "Without a tangent", Registers. It decides
+// last bits, so it is chosen once for the program, or named by LIVENS_SIMD.
 #include "livens/spacetime/instructions.h"
 
 #include <array>
@@ -41,6 +43,7 @@ std::optional<Instructions> instructions_named(std::string_view word)
 bool has([[maybe_unused]] Instructions set)
 {
 #ifdef LIVENS_X86_SETS
+    // AVX2 alone does not promise fused multiplication; the kernels use both.
     if (set == Instructions::avx2) return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
     if (set == Instructions::avx512) return __builtin_cpu_supports("avx512f") && has(Instructions::avx2);
 #endif

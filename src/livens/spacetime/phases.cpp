@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Motions over events: joints and drives that act for a part of the time divide it into phases, each with a
+// model of its own. theory.md, "Drives", Events, says what goes on and what must meet.
 #include "livens/spacetime/phases.h"
 
 #include <algorithm>
@@ -39,6 +41,7 @@ std::vector<double> phase_ends(const Model& model, const Time& time)
     for (const double t : events_inside(model, start, end)) {
         double at = t;
         if (const auto* mesh = std::get_if<TimeMesh>(&time))
+            // A mesh has merged near instants; the phase ends where the element does.
             at = *std::ranges::min_element(mesh->ends, {}, [t](double e) { return std::abs(e - t); });
         if (at > ends.back() && at < end) ends.push_back(at);
     }
@@ -67,6 +70,7 @@ void spread(std::vector<double>& values, const std::vector<int>& rows, int n_row
     std::vector<double> all(n_sets * static_cast<std::size_t>(n_rows), 0.0);
     for (std::size_t set = 0; set < n_sets; ++set)
         for (std::size_t k = 0; k < rows.size(); ++k)
+            // Rows that do not act have zero multipliers.
             all[set * static_cast<std::size_t>(n_rows) + static_cast<std::size_t>(rows[k])] =
                 values[set * rows.size() + k];
     values = std::move(all);
@@ -108,6 +112,7 @@ void join(Motion& whole, Motion&& next)
     append(whole.mesh.ends, next.mesh.ends, 1);
     append(whole.mesh.required, next.mesh.required, 0);
     append(whole.mesh.bends, next.mesh.bends, 0);
+    // The first node of the next phase is the last of this one, and is kept once.
     append(whole.X.values, next.X.values, static_cast<std::size_t>(whole.X.n_values));
     append(whole.multipliers.values, next.multipliers.values, 0);
     append(whole.velocities, next.velocities, bodies);
@@ -138,6 +143,7 @@ Miss miss_at_event(const Model& model, const Motion& motion, int end)
         model.joints(), [&](const Joint& joint) { return std::abs(joint.from - t) <= gap; });
     if (!begins) return miss;
     const State state = motion.at_end(end);
+    // Just behind the event: the joints that begin are there, those that end are not.
     const ActingModel acting = acting_at(model, t + 0.5 * nearest_ends * (motion.end() - motion.start()));
     const TriedStart tried = try_close_start(acting.model, state, StartPolicy::project);
     if (!tried.closed)   // no place near holds them
@@ -237,6 +243,8 @@ private:
         const std::string names = names_of(model_, t, &Joint::from, gap_);
         if (names.empty() || std::isinf(tolerance)) return true;
         const Miss miss = miss_at_event(model_, so_far, so_far.n_elements());
+        // Velocities that must meet are compared with the fastest rate of the motion, and with one over its
+        // duration at least.
         double fastest = 1 / (ends_.back() - ends_.front());
         for (const Matrix34& V : so_far.velocities)
             raise_to(fastest, std::max(norm(V.column(0)) / model_.length(), norm(directors(V))));
@@ -314,6 +322,7 @@ public:
         if (!whole.report.converged() || (!found.empty() && found.largest <= accuracy_))
             return AfterTry::accept;
         if (found.empty() || tries == most_tries) return AfterTry::give_up;
+        // errors of phases add up and grow by factors that nobody knows beforehand; the measured one tells
         share_ *= std::min(0.3, target * accuracy_ / found.largest);
         return AfterTry::again;
     }

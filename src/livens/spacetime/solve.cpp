@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// The entry: checks, consistent starts, the march or the search for elements, the estimate and the verdict,
+// in this order (docs/architecture.md, "The rooms"). What each of them does stands in a file of its own.
 #include "livens/spacetime/solve.h"
 
 #include <algorithm>
@@ -36,8 +38,10 @@ void lower_orders(const Model& model, Motion& motion)
         std::vector<double> X, V, jump(12 * state.X.size(), 0.0);
         for (const Matrix34& x : state.X) X.insert(X.end(), std::begin(x.a), std::end(x.a));
         for (const Matrix34& v : state.V) V.insert(V.end(), std::begin(v.a), std::end(v.a));
+        // Loads right of the instant less those left of it, in the same state: what differs is the jump.
         tables.add_loads({t, Side::right}, X.data(), V.data(), 1, jump.data(), state.angles);
         tables.add_loads({t, Side::left}, X.data(), V.data(), -1, jump.data(), state.angles);
+        // A force that jumps makes the velocity bend, order 1; one that only bends is seen one order later.
         const int order = std::ranges::any_of(jump, [](double f) { return f != 0; }) ? 1 : 2;
         for (int* stated : {&motion.order_at_ends, &motion.dense_order_X, &motion.dense_order_V})
             *stated = std::min(*stated, order);
@@ -58,6 +62,7 @@ Solution solve_phase(const Model& model, const Problem& problem, const Time& tim
         return none;
     }
     const auto* mesh = std::get_if<TimeMesh>(&time);
+    // Elements that are not stated are found for the accuracy: theory.md, "To an accuracy".
     if (mesh == nullptr)
         return solve_to_accuracy(model, problem, *tried.ends, std::get<Span>(time), method, options);
     return solve_mesh(model, problem, *mesh, *tried.ends, method, options);
@@ -97,6 +102,7 @@ Solution solve_unjudged(const Model& model, const Problem& stated, const Time& t
     std::function<bool()> goes_on;
     if (given.progress) {
         options.progress = [&](const Progress& progress) {
+            // Work without a progress of its own asks with the last one whether to go on.
             last = progress;
             return given.progress(progress);
         };
@@ -120,11 +126,14 @@ Solution solve_unjudged(const Model& model, const Problem& stated, const Time& t
 Solution solve(const Model& model, const Problem& stated, const Time& time, const Method& method,
                const SolveOptions& options)
 {
+    // A method that cannot take the conditions or the drives is refused before any work.
     check_method(model, stated, time, method, options);
     const Problem problem = with_prepared(stated);
     Solution solution = solve_unjudged(model, problem, time, method, options);
+    // A start that does not close is an error of the input; inside of searches it is a result among others.
     if (solution.cannot_begin) throw InputError(std::move(*solution.cannot_begin));
     if (!options.judge || solution.motion.mesh.ends.empty()) return solution;
+    // The estimate comes first: whether rounding spoils the accuracy, and what is suspect, follow from it.
     estimate(model, problem, method, options, solution);
     refuse_rounding(model, solution);
     std::function<bool()> goes_on;
@@ -163,6 +172,7 @@ ExactSample sample_exactly(const Model& model, const Motion& motion, const Metho
         StartPolicy::project;   // an end state holds its constraints to rounding; polish, never refuse
     Problem problem = with_prepared({{motion.at_end(element)}});
     problem.conditions.start.angles = LoadTurns(model, motion).at_end(element);   // files do not hold them
+    // One shortened element from the state before it: its end has the order 2p that the polynomial lacks.
     const TimeMesh one{{motion.mesh.ends[element], t}};
     quiet.judge = false;
     quiet.meeting = std::numeric_limits<double>::infinity();

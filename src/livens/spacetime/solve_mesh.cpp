@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Motions over a stated mesh: one driver of windows for all families of elements, or the steps of a classical
+// rule. Window, guesses and what is watched on the way are put together here (theory.md, "Windows").
 #include "livens/spacetime/solve_mesh.h"
 
 #include <algorithm>
@@ -73,6 +75,7 @@ public:
         if (mixed != nullptr && (attempt > 0 || mixed->first_guess == Mixed::FirstGuess::steady))
             return {attempt > 0 ? Guess{} : guess_steady(state), false};
         if (attempt > 2 || (mixed == nullptr && last - first == 1)) return {};
+        // Each attempt marches with elements a quarter as long as the one before.
         const std::vector<double> times = instants(mesh_, ends_, first, last, 1 << (2 * attempt));
         MarchGuess march = guess_from_state(model_, state, times, mixed ? mixed->witness().degree : 2);
         return {std::move(march.motion), march.is_closed};
@@ -113,6 +116,7 @@ WindowOptions window_options(const Model& model, const Ends& ends, const Method&
     } else {
         if (const auto* lobatto = std::get_if<Lobatto>(&method)) {
             w.length = lobatto->window;
+            // Stiff springs that turn make vibrations grow: theory.md, "Springs that turn".
             if (ends.has_state() && EnergyWatch::serves(model))
                 w.watch = [watch = EnergyWatch(model, lobatto->degree)](const Motion& so_far,
                                                                         double until) mutable {
@@ -182,6 +186,8 @@ void refuse_undetermined(Window& window, ConditionNumbersOfLast& last, SolveRepo
             "memory ended before it was found whether the conditions at the two ends determine the motion";
         return;
     }
+    // Inequality: condition number < 1e11, else the conditions do not determine the motion (theory.md,
+    // "Windows").
     const bool is_singular = !measured.notes.empty() || !(measured.condition_1 < undetermined);
     if (!is_singular) return;
     report.status = SolveStatus::singular;
@@ -198,6 +204,7 @@ Solution solve_by_windows(const Model& model, const Problem& problem, const Time
     TimeMesh mesh = given;
     const std::vector<double> breaks = model.load_breaks();
     mesh.required.insert(mesh.required.end(), breaks.begin(), breaks.end());
+    // Ends at jumps of loads stay where they are, whatever is divided or shifted.
     std::ranges::sort(mesh.required);
     const bool is_mixed = std::holds_alternative<Mixed>(method);
     const Tables tables(model, ends.independent, is_mixed, problem.prepared->pattern(model));

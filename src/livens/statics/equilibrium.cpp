@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// States of rest, by steps that go with the forces in every principal direction, within a trust radius and as
+// long as forces do at least 0.05 of the foretold work: theory.md, "Equilibrium".
 #include "livens/statics/equilibrium.h"
 
 #include <algorithm>

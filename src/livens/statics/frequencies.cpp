@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// How fast springs, dampers and constraint forces can be at a state: theory.md, "Highest frequencies". Up to
+// 60 freedoms by a basis of the free motions and a dense solver, above by Lanczos' iteration with the
+// projection along the joints.
 #include "livens/statics/frequencies.h"
 
 #include <algorithm>
@@ -29,6 +32,7 @@ public:
     Spectrum(const Tables& tables, InstantState& state, const TwistTerms& mass)
         : tables_(tables), state_(state)
     {
+        // Long chains have no basis: to make one would cost more than the whole iteration.
         if (state.by_joints) return;
         free_.emplace(tables, state);
         mass_ = on_free_motions(mass);
@@ -46,6 +50,8 @@ public:
             if (!(spectrum.values[i] > 0)) continue;
             Vibration one{std::sqrt(spectrum.values[i])};
             const Values y = product(free_->Z, spectrum.vectors.column(i));
+            // With y^T M y = 1 this is y^T C y, the rate at which dampers take this form (theory.md, "What
+            // radau takes").
             one.decay = dot(y, times(dampers, y));
             for (int b = 0; b < tables_.n_bodies(); ++b) {
                 const auto twist = part(y, b);
@@ -89,6 +95,8 @@ private:
     {
         const SymmetricSpectrum spectrum = generalised_spectrum(on_free_motions(terms), mass_);
         if (!spectrum.is_found) return {};
+        // Values descend. The largest one that is no rounding counts; a matrix of nothing but rounding has
+        // none.
         for (int i = free_->n - 1; i >= 0; --i) {
             const Pair found{spectrum.values[i], product(free_->Z, spectrum.vectors.column(i))};
             if (!(found.value > 0) || !is_rounding(found.value, found.y, terms)) return found;
@@ -115,6 +123,7 @@ private:
         const int most = std::min(most_vectors, tables_.freedoms());
         DenseMatrix V;
         Values alpha, beta, w(static_cast<std::size_t>(tables_.n_twists));
+        // A start of fixed random numbers is perpendicular to no eigenvector, and the same in every run.
         std::minstd_rand random(1);
         for (double& x : w) x = static_cast<double>(random()) / static_cast<double>(random.max()) - 0.5;
         project(w);
@@ -125,12 +134,16 @@ private:
             w = times(terms, V.column(k));
             project(w);
             alpha.push_back(dot(w, V.column(k)));
+            // Twice is enough for orthogonality to rounding; without it converged values would come again as
+            // copies.
             for (int pass = 0; pass < 2; ++pass) add_scaled(w, -1, product(V, transposed_product(V, w)));
             beta.push_back(norm(w));
             const bool is_last = k + 1 == most || !(beta[k] > 1e-13 * largest_size(alpha));
             if (!is_last && k % 10 != 9) continue;
             const SymmetricSpectrum small = tridiagonal_spectrum(alpha, std::span(beta).first(k));
             if (!small.is_found) return {};
+            // The residual norm of a Ritz pair is beta times the last entry of its vector in the tridiagonal
+            // problem.
             const double left = beta[k] * std::abs(small.vectors(k, k)), value = small.values[k];
             if (is_last || left <= tolerance * std::abs(value))
                 return {value, product(V, small.vectors.column(k))};
@@ -218,6 +231,8 @@ HighestFrequencies highest_frequencies(const Model& model, const State& state, S
         return Frequency{rate, mode.body,
                          mode.source < 0 ? "" : "load '" + model.loads()[mode.source].name + "'"};
     };
+    // Apart from each other: springs are integrated at load points, constraint forces at nodes, with
+    // different limits (theory.md, "Why two rules").
     const Mode spring = spectrum.highest(springs), damper = spectrum.highest(dampers),
                bearing = spectrum.highest(constraints);
     const Frequency of_constraints{

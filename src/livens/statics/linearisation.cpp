@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// The linear equations M q'' + C q' + K q = f about a rest, and state matrices with inputs and outputs by
+// name: theory.md, "Small motions". States that move or are not balanced are refused, as their K would depend
+// on coordinates.
 #include "livens/statics/linearisation.h"
 
 #include <algorithm>
@@ -69,6 +72,7 @@ bool is_symmetric(const DenseMatrix& A, double rounding)
 Linearisation linearise(const Model& the_model, const State& state, Side side)
 {
     refuse_motion(the_model, close_start(the_model, state, StartPolicy::project).start);
+    // Drives are held where they are at the instant: the equations of a rest have no time.
     const Model model = frozen(the_model, {state.t, side});
     State rest = state;
     for (Matrix34& V : rest.V) V = {};
@@ -92,8 +96,11 @@ Linearisation linearise(const Model& the_model, const State& state, Side side)
     linear.C = by_rows(C);
     linear.K = by_rows(K);
     linear.twists = by_rows(twists_of(at.tables, at.state, free));
+    // What counts as zero: entries of K are sums of terms that may cancel (theory.md, "Small motions").
     linear.rounding = rounding_of_terms * statics.largest_stiffness;
     linear.damping_rounding = rounding_of_terms * statics.largest_damping;
+    // Symmetric K and C, and no damper that feeds energy: then stability is a question of the signs of K
+    // alone.
     linear.is_conservative = is_symmetric(K, linear.rounding) && is_symmetric(C, linear.damping_rounding);
     if (linear.n > 0 && linear.is_conservative)
         linear.is_conservative = symmetric_values(symmetric_part(C))[0] >= -linear.damping_rounding;
@@ -178,6 +185,7 @@ std::complex<double> amplitude(const Linearisation& linear, const VibrationMode&
     for (std::size_t b = 0; b < mode.bodies.size(); ++b) {
         const auto &d = mode.bodies[b].displacement, &w = mode.bodies[b].rotation;
         const Matrix34& X = linear.state.X[b];
+        // Rates are linear in twists, so real and imaginary parts are taken one by one.
         re.push_back(
             rate(X, {d[0].real(), d[1].real(), d[2].real()}, {w[0].real(), w[1].real(), w[2].real()}));
         im.push_back(
@@ -195,12 +203,15 @@ StateMatrices state_matrices(const Model& model, const Linearisation& linear,
                       damping = cholesky_solution(L, square(linear.C));
     DenseMatrix A(2 * n, 2 * n), B(2 * n, m), C(p, 2 * n);
     for (int j = 0; j < n; ++j) {
+        // The state is (q, q'), with M q'' = f - K q - C q'.
         A(j, n + j) = 1;
         for (int i = 0; i < n; ++i) A(n + i, j) -= K(i, j), A(n + i, n + j) -= damping(i, j);
     }
     for (int j = 0; j < m; ++j) {
         const Port input = port(model, linear, inputs[j]);
         if (input.is_rate) refuse_port(inputs[j], "is a rate, and inputs are forces");
+        // A force u along a coordinate c q has the generalised force c^T u; divided by M it is an
+        // acceleration.
         const Values accelerations = cholesky_solution(L, input.row);   // virtual work u c dq
         std::ranges::copy(accelerations, B.column(j).subspan(n).begin());
     }

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Stiffness, damping and mass of small motions in scaled twists, source by source: theory.md, "Small motions"
+// and "Highest frequencies". Each term also has the sum of its absolute parts, by which rounding is told from
+// a value.
 #include "livens/statics/small_motions.h"
 
 #include <algorithm>
@@ -61,6 +64,7 @@ void SmallMotions::add_loads(TwistTerms& springs, TwistTerms& dampers) const
         for (std::size_t r = 0; r < 2; ++r)
             for (std::size_t s = 0; s < load.bodies.size(); ++s) {
                 const int i = load.bodies[r], j = load.bodies[s];
+                // The world does not move: its columns multiply zero.
                 if (i == world || j == world) continue;
                 springs.push_back(term(l, tangent.X[r][s], -1, i, j));
                 dampers.push_back(term(l, tangent.V[r][s], -1, i, j));
@@ -72,6 +76,8 @@ void SmallMotions::add_constraints(TwistTerms& terms) const
 {
     const int s = at_.side == Side::left ? 0 : 1;
     const std::vector<double>& lambda = state_.multipliers[s];
+    // r = F - G^T lambda - X'' m is what rigidity bears on each body; its geometric term belongs to the
+    // constraints.
     std::vector<double> r = forces_less_inertia(s);
     for (int c = 0; c < tables_.n_rows(); ++c) {
         if (lambda[c] == 0) continue;
@@ -91,6 +97,7 @@ void SmallMotions::add_constraints(TwistTerms& terms) const
     }
     for (int b = 0; b < tables_.n_bodies(); ++b) {
         if (tables_.bodies[b].dofs == 3) continue;
+        // The orientation's own second derivative: a turn moves the point where the directors' forces act.
         Matrix<6, 6> K{};   // symmetric where the moments balance
         twist::add_geometric(state_.X.data() + 12 * b, r.data() + 12 * b, K.data(), 6);
         K = transpose(K);   // written row by row
@@ -130,6 +137,8 @@ std::vector<double> SmallMotions::forces_less_inertia(int side) const
         double spin[6] = {}, centripetal[12];
         std::copy_n(state_.velocity.data() + body.first + 3, 3, spin + 3);
         twist::columns(V.data() + 12 * b, spin, centripetal);
+        // X'' = N alpha + [0, w x (w x d_a)]: the second part is there at any spin, whatever the
+        // acceleration.
         for (int i = 0; i < 12; ++i) A[12 * b + i] += centripetal[i];
     }
     tables_.times_mass(A.data(), -1.0, r.data());

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Forces, stiffness and damping at one configuration at rest, and the levels that tell what is nothing: the
+// residual of theory.md, "Equilibrium", and the largest terms of K of "Small motions".
 #include "livens/statics/statics.h"
 
 #include <algorithm>
@@ -28,6 +30,7 @@ double on_body(const Tables& tables, std::span<const double> y, int body)
 Statics::Statics(const Tables& tables, InstantState& state, Side side) : free(tables, state)
 {
     auto& acceleration = state.acceleration[side == Side::left ? 0 : 1];
+    // Static forces alone: no part of them is balanced by inertia.
     std::fill(acceleration.begin(), acceleration.end(), 0.0);
     const SmallMotions motions(tables, state, side);
     motions.add_loads(stiffness, damping);
@@ -50,6 +53,7 @@ void Statics::add_forces(const Tables& tables, const InstantState& state, Instan
     sizes_.resize(rows.size());
     std::vector<double> row(rows.size());
     for (std::size_t i = 0; i < rows.size(); ++i)
+        // Absolute parts, since weight and loads may cancel: their sum would then be a level of nothing.
         sizes_[i] = std::abs(of_weight[i]) + std::abs(rows[i] - of_weight[i]);
     for (int r = 0; r < tables.n_rows(); ++r) {
         if (lambda[r] == 0) continue;
@@ -65,6 +69,8 @@ void Statics::add_levels(const Tables& tables, const InstantState& state)
 {
     double on_bodies = 0;
     for (int b = 0; b < tables.n_bodies(); ++b) on_bodies = std::max(on_bodies, on_body(tables, sizes_, b));
+    // Forces that joints bear leave rounding in the free motions; the level never falls below a share of
+    // them.
     level = 1e-4 * on_bodies;
     DenseMatrix of_motions = free.Z;
     for (double& entry : of_motions.a) entry = std::abs(entry);

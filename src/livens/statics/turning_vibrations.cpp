@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// How fast the directions of stiff springs turn, by a difference over a small displacement: what theory.md,
+// "Springs that turn", compares with the length of elements. Of dense work, so of models up to 600 freedoms.
 #include "livens/statics/turning_vibrations.h"
 
 #include <algorithm>
@@ -156,6 +158,7 @@ std::vector<TurningVibration> turning_vibrations(const Model& model, const State
     if (springs.is_empty()) return {};
     const Values& squares = springs.squares();
     const int n_slow = n_below(squares, slowest * slowest), n = static_cast<int>(squares.size());
+    // Only the slow part of the velocity turns springs; the vibrations themselves stretch them to and fro.
     const Values V = springs.moved(springs.slow_part(springs.velocity(), n_slow));
     const auto [then, time] = moved(model, state, V);
     const PreparedState soon(model, then, Side::right, true);
@@ -164,6 +167,8 @@ std::vector<TurningVibration> turning_vibrations(const Model& model, const State
     std::vector<TurningVibration> found;
     for (int i = n_slow; i < n; ++i) {
         const Values q = later.form_of(springs.moved(springs.form(i)));
+        // Between forms of like stiffness a turn has no meaning; softer ones make up the direction across the
+        // spring.
         const Values left = later.slow_part(q, n_below(later.squares(), much_softer * squares[i]));
         Values stays = q;
         add_scaled(stays, -1, left);

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Roots and shapes of M q'' + C q' + K q = 0, and what they say of stability.
+// theory.md, "Small motions": symmetric and undamped systems by the symmetric problem, whose roots keep their
+// digits; others by the eigenvalues of the first-order matrix.
 #include <algorithm>
 #include <cmath>
 
@@ -40,6 +42,7 @@ Roots undamped_roots(const Linearisation& linear)
     Roots roots;
     for (int i = 0; i < linear.n; ++i) {
         const double k = spectrum.values[i];
+        // Below rounding a stiffness is zero, or its root would be a slow frequency that nobody has.
         const Complex s = std::abs(k) <= linear.rounding ? Complex{}
                           : k > 0                        ? Complex{0, std::sqrt(k)}
                                                          : Complex{std::sqrt(-k), 0};
@@ -66,6 +69,8 @@ Roots general_roots(const Linearisation& linear)
                  unit = largest > 0 ? largest : 1;
     DenseMatrix A(2 * n, 2 * n);   // on (unit q, q'), whose entries are of one size
     for (int j = 0; j < n; ++j) {
+        // Scaled by the fastest rate, positions and rates are of one size, so the general solver balances
+        // well.
         A(j, n + j) = unit;
         for (int i = 0; i < n; ++i) A(n + i, j) = -K(i, j) / unit, A(n + i, n + j) = -C(i, j);
     }
@@ -75,6 +80,8 @@ Roots general_roots(const Linearisation& linear)
     for (int k = 0; k < idle.cols; ++k) roots.push_back({{}, {idle.column(k).begin(), idle.column(k).end()}});
     for (int i = 0; i < 2 * n; ++i) {
         Complex s = spectrum.values[i];
+        // One root of each conjugate pair. Zeros were taken from K, as rounding parts a double zero into a
+        // pair.
         if (!(s.imag() >= 0 && std::norm(s) > linear.rounding)) continue;
         if (std::abs(s.real()) <= 1e-13 * unit) s.real(0);
         roots.push_back({s, {spectrum.vectors[i].begin(), spectrum.vectors[i].begin() + n}});
@@ -103,6 +110,7 @@ void normalise(Shape& twists, double length)
     std::size_t most = first;
     for (std::size_t i = first; i < first + 3; ++i)
         if (std::abs(twists[i]) > std::abs(twists[most]) * (1 + 1e-9)) most = i;
+    // Eigenvectors are known up to a complex factor; the largest component becomes real and positive.
     const Complex factor = std::conj(twists[most]) / (std::abs(twists[most]) * largest);
     for (Complex& entry : twists) entry *= factor;
 }

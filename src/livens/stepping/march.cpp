@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// The classical rules step by step: midpoint and implicit Euler, theory.md, "The witnesses". Written apart
+// from the elements on purpose, with Newton's plain iteration and a fresh tangent each time: a mistake of the
+// engine cannot be one of its witness.
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -30,6 +33,8 @@ public:
 
     bool solve(const System& system, std::vector<double>& solution)
     {
+        // Rows of forces and of constraints have different units; without scaling partial pivoting would
+        // compare them.
         std::vector<double> largest(size_, 0.0), rhs(size_);
         for (const SparseEntry& e : system.tangent)
             largest[e.row] = std::max(largest[e.row], std::abs(e.value));
@@ -54,6 +59,8 @@ private:
         DenseMatrix A(n, n);
         for (const SparseEntry& e : entries) A(e.row, e.column) += e.value;
         LUSolution solution = lu_solution(A, rhs);
+        // Inequality: smallest pivot > eps / 1000 of the largest. Below, the solution would be made of
+        // rounding.
         if (!(solution.smallest_pivot >
               std::numeric_limits<double>::epsilon() * 1e-3 * solution.largest_pivot))
             return {};
@@ -112,6 +119,7 @@ private:
         motion.n_rows = model_.n_rows();
         motion.mesh.ends = {mesh_.start()};
         motion.X.n_values = 12 * motion.n_bodies;
+        // Between the ends of steps the rules say nothing; the motion is told there by straight lines.
         motion.X.degree = 1;
         motion.multipliers.n_values = motion.n_rows;
         motion.multipliers.degree = 0;
@@ -169,6 +177,7 @@ private:
         std::vector<Matrix34> V;
         if (outcome.status == SolveStatus::converged) {
             next = equations_.next(now_, x);
+            // The momentum has a part along G^T that belongs to the constraint forces; velocities must not.
             if (!velocities(next, V)) outcome.status = SolveStatus::singular;
         }
         if (outcome.status != SolveStatus::converged) {

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Equations of one step in the displacement u = X_1 - X_0 and Lambda = a h^2 lambda: m u - h P_0 - a h^2 (F -
+// G^T lambda) = 0 and Phi(X_1) = 0, with a = 1/2 for the midpoint and 1 for the endpoint. theory.md, "The
+// witnesses", with P_1 eliminated.
 #include "livens/stepping/step_equations.h"
 
 #include <algorithm>
@@ -25,6 +28,7 @@ StepEquations::StepEquations(const Model& model, const ClosedStart& assembly, St
         first_.push_back(n_displacements_);
         n_displacements_ += n_numbers(b);
     }
+    // Dependent rows would make the tangent singular; they hold with the others.
     for (int r : assembly.independent) rows_.push_back({model.row(r), r});
     for (int b = 0; b < model.n_bodies(); ++b) {
         if (model.bodies()[b].is_point) continue;
@@ -79,6 +83,8 @@ void StepEquations::add_constraints(const std::vector<Matrix34>& X_a, const std:
         const int at = n_displacements_ + static_cast<int>(k), i = row.body_i, j = row.body_j;
         const double multiplier = unknowns[at];
         system.residual[at] = constraint_value(row, X_1);
+        // Forces act at X_a, constraints hold at X_1. At the midpoint G(X_a) u = Phi(X_1) - Phi(X_0) for
+        // quadratic rows, hence the rule keeps energy.
         const RowGradient all_a = constraint_gradient(row, X_a), all_1 = constraint_gradient(row, X_1);
         for (const int body : all_a.bodies) {
             const Matrix34 g_a = all_a.of(body), g_1 = all_1.of(body);
@@ -177,6 +183,8 @@ StepStart StepEquations::next(const StepStart& start, const std::vector<double>&
     for (int b = 0; b < model_.n_bodies(); ++b) {
         end.X[b] += u[b];
         const Matrix34 p_a = (1 / start.h) * (u[b] * model_.bodies()[b].mass);
+        // p_a is the mean momentum of the step; for the midpoint the end lies as far beyond it as the start
+        // before.
         end.P[b] = a_ == 1 ? p_a : start.P[b] + (1 / a_) * (p_a - start.P[b]);
     }
     return end;
@@ -187,6 +195,7 @@ double StepEquations::increment_size(const std::vector<double>& increment) const
     double size = 0;
     for (int b = 0; b < model_.n_bodies(); ++b)
         for (int c = 0; c < n_numbers(b); ++c) {
+            // Displacements by the model's length, directors by one: the measure of the tolerance.
             size = std::max(size, std::abs(increment[first_[b] + c]) / (c < 3 ? length_ : 1));
         }
     return size;

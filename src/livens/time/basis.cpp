@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Lagrange polynomials M_A and their derivatives by the barycentric formula [Berrut2004]: the functions of
+// one element, to which theory.md, "The element" refers as M_A and D_CA. Weights and differentiation matrix
+// are made once, in long double, since every row of an element is a sum of these numbers.
 #include "livens/time/basis.h"
 
 #include <algorithm>
@@ -67,6 +70,9 @@ LagrangeBasis::LagrangeBasis(std::vector<double> nodes) : nodes_(std::move(nodes
         long double sum = 0;   // of the entries as they are stored, so that the row adds up to zero
         for (std::size_t a = 0; a < n; ++a) {
             if (a == c) continue;
+            // D_CA = (w_A / w_C) / (s_C - s_A). The diagonal follows from the constant function, whose
+            // derivative is zero: a constant field then has no velocity to the last bit (theory.md,
+            // "Increments").
             double& entry = differentiation_[c * n + a];
             entry = static_cast<double>(w[a] / w[c] / (static_cast<long double>(nodes_[c]) - nodes_[a]));
             sum += entry;
@@ -79,6 +85,7 @@ void LagrangeBasis::values(double s, std::span<double> out) const
 {
     const std::size_t n = nodes_.size();
     assert(out.size() == n);
+    // The quotient below is 0/0 at a node, so a node is answered before it.
     const auto node = std::lower_bound(nodes_.begin(), nodes_.end(), s);
     if (node != nodes_.end() && *node == s) {
         std::fill(out.begin(), out.end(), 0.0);
@@ -106,6 +113,7 @@ void LagrangeBasis::derivatives(double s, std::span<double> out) const
     const std::size_t n = nodes_.size();
     assert(out.size() == n);
     std::fill(out.begin(), out.end(), 0.0);
+    // A degree of 32 has 33 nodes, and no element has more: the common case allocates nothing.
     constexpr std::size_t enough = 33;
     double on_stack[enough];
     std::vector<double> on_heap(n > enough ? n : 0);   // empty for every degree that livens uses
@@ -124,6 +132,8 @@ LagrangeBasis basis_on(Points points, int degree)
                           std::to_string(degree), "1 .. 32", "", ""});
     }
     if (points == Points::lobatto) return LagrangeBasis(gauss_lobatto(degree + 1).points);
+    // The Radau rule has no point at the start, but the polynomial of the element begins there (theory.md,
+    // "Radau points").
     std::vector<double> nodes = radau(degree).points;
     nodes.insert(nodes.begin(), 0.0);
     return LagrangeBasis(std::move(nodes));

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Expressions as lists of operations, evaluated with two derivatives along one direction at a time: forward
+// differentiation in Taylor form, exact up to rounding. Loads take slopes by symbols (theory.md, "Joints are
+// quadratic forms", Laws), drives two derivatives by time.
 #include "livens/time/expression.h"
 
 #include <algorithm>
@@ -36,6 +39,8 @@ TimeValue times(const TimeValue& a, const TimeValue& b)
 
 TimeValue inverse_of(const TimeValue& b)
 {
+    // Differentiation by the chain rule on 1/b; the value of a quotient itself is divided once, so that 6/3
+    // is 2.
     const double i = 1 / b.value;
     return chain(b, i, -i * i, 2 * i * i * i);
 }
@@ -47,6 +52,8 @@ TimeValue log_of(const TimeValue& a)
 
 TimeValue power_of(const TimeValue& a, const TimeValue& b)
 {
+    // A constant exponent must not pass through log(a), which has no value for negative a. x^2 is such a
+    // case.
     if (b.first == 0 && b.second == 0) {
         const double n = b.value;
         const auto term = [&](double factor, double exponent) {
@@ -60,6 +67,8 @@ TimeValue power_of(const TimeValue& a, const TimeValue& b)
 
 TimeValue arc_tangent_of(const TimeValue& y, const TimeValue& x)
 {
+    // The angle turns by (x dy - y dx) / r^2, whatever its branch; the second derivative differentiates this
+    // quotient.
     const double r2 = x.value * x.value + y.value * y.value;
     const double first = (x.value * y.first - y.value * x.first) / r2;
     const double r2_first = 2 * (x.value * x.first + y.value * y.first);
@@ -159,6 +168,7 @@ Expression::Expression(std::string_view text, std::vector<std::string> symbols)
         is_constant.push_back(!is_leaf &&
                               (step.operation == Operation::number ||
                                (is_constant[step.first] && (step.second < 0 || is_constant[step.second]))));
+        // A division by a constant zero is refused also where its numerator depends on time or a symbol.
         const bool is_by_zero = step.operation == Operation::divided && is_constant[step.second] &&
                                 values[step.second].value == 0;
         if (!is_by_zero && (!is_constant.back() || std::isfinite(values[i].value))) continue;
@@ -204,6 +214,7 @@ double Expression::operator()(double t, std::span<const double> symbols, std::sp
 {
     if (slopes.empty()) return evaluate(t, symbols, -1).back().value;
     for (std::size_t k = 0; k < slopes.size(); ++k)
+        // One pass for each symbol: expressions are short, and symbols few (`most_symbols`).
         slopes[k] = depends_on(k) ? evaluate(t, symbols, static_cast<int>(k)).back().first : 0;
     return evaluate(t, symbols, -1).back().value;
 }
@@ -217,6 +228,8 @@ std::string Expression::without_value(double t, std::span<const double> symbols)
 {
     const std::vector<TimeValue> values = evaluate(t, symbols, -1);
     for (std::size_t i = 0; i < steps_.size(); ++i) {
+        // Steps stand in the order of evaluation, so the first value that is no number is the cause of all
+        // later ones.
         if (std::isfinite(values[i].value)) continue;
         const Step& step = steps_[i];
         const TimeValue a =

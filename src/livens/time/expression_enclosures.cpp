@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Expressions over ranges: how steep they may be on a piece of a way.
+// Interval arithmetic [Moore1966] on the steps of an expression: value and slope together, for theory.md,
+// "Looks at laws". Ends are not rounded outwards: what is judged by them is far above a rounding error.
+// Enclosures may be too wide, never too narrow beyond that.
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -18,9 +21,11 @@ constexpr double pi = std::numbers::pi;
 /// cos of a range of angles.
 Enclosure cosine_of(const Enclosure& a)
 {
+    // The comparison also takes infinite and undefined ranges for a whole turn.
     if (!(a.high - a.low < 2 * pi)) return {-1, 1};
     const double first = sine_cosine(a.low).cosine, last = sine_cosine(a.high).cosine;
     Enclosure c{std::min(first, last), std::max(first, last)};
+    // A multiple of 2 pi inside the range is a top; an odd multiple of pi is a bottom.
     if (2 * pi * std::ceil(a.low / (2 * pi)) <= a.high) c.high = 1;
     if (2 * pi * std::ceil(a.low / (2 * pi) - 0.5) + pi <= a.high) c.low = -1;
     return c;
@@ -88,10 +93,12 @@ EnclosedValue arc_tangent_of(const EnclosedValue& y, const EnclosedValue& x)
 {
     const Enclosure r2 = square(x.value) + square(y.value);
     const Enclosure slope = (x.value * y.slope - y.value * x.slope) * inverse(r2);
+    // The origin, or the cut along the negative axis, may lie in the box: then any angle is possible.
     if (!(r2.low > 0) || (y.value.contains(0) && x.value.low < 0)) return {{-pi, pi}, slope};
     Enclosure angle{pi, -pi};
     for (const double v : {y.value.low, y.value.high})
         for (const double u : {x.value.low, x.value.high}) {
+            // Off the cut the angle is monotonic along every edge of the box, so its extremes are at corners.
             const double corner = arc_tangent(v, u);
             angle = hull(angle, {corner, corner});
         }
@@ -102,6 +109,7 @@ EnclosedValue absolute_of(const EnclosedValue& a)
 {
     if (a.value.low >= 0) return a;
     if (a.value.high <= 0) return {-a.value, -a.slope};
+    // Both signs are possible, and so are both slopes; the kink itself has no slope of its own.
     return {{0, a.value.size()}, hull(a.slope, -a.slope)};
 }
 
@@ -119,6 +127,7 @@ EnclosedValue negative(const EnclosedValue& a) { return {-a.value, -a.slope}; }
 EnclosedValue tangent_of(const EnclosedValue& a)
 {
     const Enclosure c = cosine_of(a.value), s = sine_of(a.value);
+    // The tangent has a pole in the range.
     if (c.contains(0)) return {Enclosure::all(), Enclosure::all()};
     const Enclosure f = rising(a.value, [](double x) {
         const SineCosine of = sine_cosine(x);
@@ -200,6 +209,8 @@ EnclosedValue Expression::over(const EnclosedValue& t, std::span<const EnclosedV
 
 bool Expression::is_affine() const
 {
+    // The kinds ascend, so that max() is the kind of a sum. What time alone decides may be multiplied as it
+    // likes; a symbol may be multiplied by numbers alone.
     enum class Kind { number, of_time, affine, other };
     std::vector<Kind> kinds;
     for (const Step& step : steps_) {

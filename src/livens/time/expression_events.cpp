@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Where expressions jump, bend, or come and go so fast that elements could step over it.
+// Jumps and bends of time alone become element ends; those that the motion decides become guards (theory.md,
+// "Laws that bend"). Pulses and calm stretches are fenced in, since an element that grew long in the calm
+// would step over what follows ("Looks at laws" bounds what is left).
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -61,6 +64,8 @@ bool happens(const Expression::Step& step, const std::vector<TimeValue>& values)
 /// Where a function changes its sign, to the last digit.
 double root(const std::function<double(double)>& f, double a, double b)
 {
+    // Bisection halves the bracket until no number lies between its ends. `b` is returned: the first number
+    // that is known to lie on the far side.
     const bool is_positive = f(a) > 0;
     for (int i = 0; i < 200; ++i) {
         const double middle = a + 0.5 * (b - a);
@@ -74,6 +79,8 @@ double root(const std::function<double(double)>& f, double a, double b)
 /// long element ends in its foot.
 void add_pulses(const std::vector<double>& looks, double from, double length, std::vector<double>& events)
 {
+    // A hundredth of the time: a pulse as short as that may fall between the load points of an ordinary
+    // element.
     constexpr int width = n_looks / 100;
     std::vector<double> sum{0};
     for (std::size_t i = 1; i < looks.size(); ++i) {
@@ -83,6 +90,8 @@ void add_pulses(const std::vector<double>& looks, double from, double length, st
     const auto at = [&](int i) { return from + length * i / n_looks; };
     for (int i = 0; i + width <= n_looks; i += width / 2) {
         const double inside = sum[static_cast<std::size_t>(i + width)] - sum[static_cast<std::size_t>(i)];
+        // A fifth of all change within a hundredth of the time is a pulse; an even oscillation has a
+        // hundredth of it.
         if (!(inside > 0.2 * sum.back())) continue;
         const auto first = looks.begin() + i, last = looks.begin() + i + width;
         const auto peak =
@@ -153,6 +162,7 @@ std::vector<bool> Expression::steps_with_symbols() const
 
 std::vector<double> Expression::events(double from, double until) const
 {
+    // Without t nothing happens at an instant of its own.
     if (std::ranges::none_of(steps_, [](const Step& step) { return step.operation == Operation::time; }))
         return {};
     const std::vector<bool> has_symbols = steps_with_symbols();
@@ -162,12 +172,14 @@ std::vector<double> Expression::events(double from, double until) const
     for (int i = 0; i <= n_looks; ++i) all.push_back(evaluate(from + length * i / n_looks, none, -1));
     std::vector<double> events;
     for (std::size_t k = 0; k < steps_.size(); ++k) {
+        // Operations without a switch, and divisions by a constant, have one number at both looks.
         if (has_symbols[k] || switching(steps_[k], all[0]) == switching(steps_[k], all[n_looks / 3]))
             continue;
         const auto f = [&](double t) { return switching(steps_[k], evaluate(t, none, -1)); };
         for (int i = 0; i < n_looks; ++i) {
             if ((switching(steps_[k], all[i]) > 0) == (switching(steps_[k], all[i + 1]) > 0)) continue;
             const double t = root(f, from + length * i / n_looks, from + length * (i + 1) / n_looks);
+            // atan2 is asked on both sides: x may change its sign at the same instant.
             const double before = std::nextafter(t, from);
             if (happens(steps_[k], evaluate(before, none, -1)) || happens(steps_[k], evaluate(t, none, -1)))
                 events.push_back(t);

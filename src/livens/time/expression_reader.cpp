@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Reads the text of an expression into steps by recursive descent; grammar and precedence stand in
+// expression.h. Length, depth and number of symbols are bounded, so that no text can exhaust stack or time,
+// and nothing is executed.
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -29,6 +32,7 @@ constexpr std::array functions{
     Function{"atan2", Operation::arc_tangent, 2}, Function{"min", Operation::least, 2},
     Function{"max", Operation::greatest, 2}};
 
+// Names that other programs have for the same: a refusal proposes the one that is known here.
 constexpr std::array<std::pair<std::string_view, std::string_view>, 6> other_names{
     {{"time", "t"}, {"T", "t"}, {"Pi", "pi"}, {"PI", "pi"}, {"ln", "log"}, {"arctan2", "atan2"}}};
 
@@ -66,6 +70,7 @@ private:
     [[noreturn]] void refuse_here(const std::string& expected) const
     {
         const std::string column = " at column " + std::to_string(at_ + 1);
+        // x**2 is what many languages write; the refusal says how a power is written here.
         const bool is_power = at_ > 0 && at_ < text_.size() && text_[at_] == '*' && text_[at_ - 1] == '*';
         refuse("expression-syntax", "an expression cannot be read",
                (at_ < text_.size() ? "'" + character() + "'" : "it ends") + column, expected,
@@ -147,6 +152,8 @@ private:
 
     int sign()
     {
+        // Every recursion passes here: parentheses by atom(), signs and exponents directly. One bound
+        // therefore holds for all.
         const Deeper deeper(*this);
         if (take('-')) {
             const int place = column(), value = sign();
@@ -155,6 +162,8 @@ private:
         if (take('+')) return sign();
         const int base = atom();
         if (!take('^')) return base;
+        // The exponent is read by sign(), not atom(): so powers bind from the right, and 2^-1 needs no
+        // parentheses.
         const int place = column(), exponent = sign();
         return add({Operation::power, base, exponent, place});
     }
@@ -177,6 +186,7 @@ private:
     {
         double value = 0;
         const char* const first = text_.data() + at_;
+        // from_chars does not look at the locale, where a decimal comma may be set.
         const auto [end, error] = std::from_chars(first, text_.data() + text_.size(), value);
         if (error != std::errc() || !std::isfinite(value)) refuse_here("a number");
         const int place = column() + 1;

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Gauss, Gauss-Lobatto and right Radau rules on [0, 1]: the load points and nodes of theory.md, "The element"
+// and "Radau points". Points are roots of combinations of Legendre polynomials, found by Newton's iteration;
+// weights are the closed forms in P_n at the roots.
 #include "livens/time/quadrature.h"
 
 #include <cmath>
@@ -19,6 +22,7 @@ constexpr int max_points = 64;
 constexpr int max_iterations = 20;   // 4 or 5 are needed; the cap ends a walk at rounding level
 
 struct LegendrePair {
+    // Both are kept, since P_n' and all weights are combinations of two neighbours.
     Real p;          // P_n(x)
     Real previous;   // P_{n-1}(x)
 };
@@ -40,6 +44,8 @@ Real newton(Real x, Step step)
 {
     for (int i = 0; i < max_iterations; ++i) {
         const Real dx = step(x);
+        // The step is taken before the test: convergence is quadratic, so the last one costs nothing and
+        // gains a digit.
         x -= dx;
         if (std::fabs(dx) <= 2 * std::numeric_limits<Real>::epsilon()) break;
     }
@@ -73,10 +79,14 @@ Quadrature gauss(int n_points)
 {
     const int n = n_points;
     Quadrature rule = empty_rule(n, 1);
+    // P_n' = n (P_{n-1} - x P_n) / (1 - x^2). The denominator is kept as a product, which loses no digits
+    // near the ends, where points crowd.
     const auto slope = [n](Real x, const LegendrePair& l) {
         return n * (l.previous - x * l.p) / ((1 - x) * (1 + x));
     };
     for (int i = 0; i < (n + 1) / 2; ++i) {
+        // Only half of the roots is sought; set_pair() mirrors them. The guess is the leading term of their
+        // asymptotic expansion, from which Newton's iteration converges quadratically.
         const bool middle = 2 * i + 1 == n;
         const Real guess = std::cos(std::numbers::pi_v<Real> * (i + 0.75L) / (n + 0.5L));
         const Real x = middle ? 0 : newton(guess, [&](Real y) {
@@ -94,6 +104,7 @@ Quadrature gauss_lobatto(int n_points)
     const int n = n_points - 1;   // inner points are the roots of P_n'
     Quadrature rule = empty_rule(n_points, 2);
     for (int i = 0; i < (n_points + 1) / 2; ++i) {
+        // The ends are points of the rule and stay at 1 to the bit; the middle one of an odd rule stays at 0.
         Real x = 1;
         if (2 * i == n) {
             x = 0;
@@ -116,6 +127,8 @@ Quadrature radau(int n_points)
         n_points;   // points are the roots of P_n - P_{n-1}, whose slope is n (P_n + P_{n-1}) / (1 + x)
     Quadrature rule = empty_rule(n, 1);
     for (int i = 0; i < n; ++i) {
+        // The roots are not symmetric, so each is sought for itself; the guesses are the points of the rule
+        // of Chebyshev, Gauss and Radau, which lie close to these.
         const Real guess = std::cos(2 * std::numbers::pi_v<Real> * (n - 1 - i) / (2 * n - 1));
         const Real x = i == n - 1 ? 1 : newton(guess, [n](Real y) {
             const LegendrePair l = legendre(n, y);

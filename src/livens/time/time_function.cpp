@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Functions of time with two derivatives (`TimeValue`): constants, tables, cubic splines and windows. Drives
+// need both derivatives (theory.md, "Drives"); the breaks are instants at which an element has to end, since
+// quadrature over a jump loses all order (theory.md, "Why two rules").
 #include "livens/time/time_function.h"
 
 #include <algorithm>
@@ -65,6 +68,8 @@ struct Table {
 /// The number of rows that lie before the instant: 0 before the table, all of them after it.
 std::size_t rows_before(const std::vector<double>& times, Instant at)
 {
+    // A row that stands twice is a jump: seen from the left its first value counts, from the right its
+    // second.
     const auto found = at.side == Side::left ? std::lower_bound(times.begin(), times.end(), at.t)
                                              : std::upper_bound(times.begin(), times.end(), at.t);
     return static_cast<std::size_t>(found - times.begin());
@@ -90,6 +95,8 @@ TimeValue evaluate_spline(const Table& table, Instant at)
     const double length = table.times[i] - table.times[i - 1], dt = at.t - table.times[i - 1];
     const double chord = (table.values[i] - table.values[i - 1]) / length;
     const double s0 = table.slopes[i - 1], s1 = table.slopes[i];
+    // Hermite's cubic on the piece, by Horner from its left row; slopes at the rows are those of the whole
+    // spline.
     const double c2 = (3 * chord - 2 * s0 - s1) / length;
     const double c3 = (s0 + s1 - 2 * chord) / (length * length);
     return {table.values[i - 1] + dt * (s0 + dt * (c2 + dt * c3)), s0 + dt * (2 * c2 + dt * 3 * c3),
@@ -160,7 +167,9 @@ TimeFunction::TimeFunction(std::function<TimeValue(Instant)> evaluate, std::vect
 
 TimeValue TimeFunction::operator()(Instant at) const
 {
+    // A constant keeps no function: weights and springs are asked at every load point.
     if (!evaluate_) return {constant_, 0, 0};
+    // Inside an element no side is meant; the value at an instant itself is that from the right.
     if (at.side == Side::middle) at.side = Side::right;
     return evaluate_(at);
 }
@@ -174,6 +183,7 @@ TimeFunction window(TimeFunction inner, double from, double until)
     std::vector<double> breaks;
     if (std::isfinite(from)) breaks.push_back(from);
     for (const double t : inner.breaks()) {
+        // Where the window is shut the inner function has no effect, and its breaks would only cost elements.
         if (t > from && t < until) breaks.push_back(t);
     }
     if (std::isfinite(until)) breaks.push_back(until);
@@ -198,6 +208,8 @@ TimeFunction spline_table(std::vector<double> times, std::vector<double> values)
 {
     check_table(times, values, 1);
     std::vector<double> slopes = spline_slopes(times, values);
+    // The spline has two continuous derivatives at its rows; only its ends bend, where it goes on as a
+    // constant.
     std::vector<double> breaks{times.front(), times.back()};
     const auto table =
         std::make_shared<const Table>(Table{std::move(times), std::move(values), std::move(slopes)});
@@ -206,6 +218,8 @@ TimeFunction spline_table(std::vector<double> times, std::vector<double> values)
 
 std::vector<double> knots_of_spline(std::vector<double> rows)
 {
+    // Not-a-knot: the third derivative does not jump at the second and the last but one row, so these are no
+    // knots.
     if (rows.size() < 4) return rows;
     rows.erase(rows.end() - 2);
     rows.erase(rows.begin() + 1);

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Laws of drives in closed form: ramp, harmonic, smooth step, polynomial, and what is made of other laws.
+// Each gives value, rate and second derivative, which the rows of drives and their accelerations take
+// (theory.md, "Drives").
 #include "livens/time/time_laws.h"
 
 #include <algorithm>
@@ -35,6 +38,7 @@ TimeFunction harmonic(double amplitude, double frequency, double phase)
 {
     require_finite({amplitude, frequency, phase});
     const double w = 2 * std::numbers::pi * frequency;
+    // The second derivative may overflow although amplitude and frequency are finite.
     require_finite({amplitude * w * w});   // its acceleration
     return {[=](Instant at) {
                 const auto [s, c] = sine_cosine(w * at.t + phase);
@@ -51,6 +55,8 @@ TimeFunction smooth_step(double from, double until, double rise)
         throw InputError({"law-order", "drive.step", "a step must end later than it begins", to_text(until),
                           "> " + to_text(from), "", ""});
     return {[=](Instant at) -> TimeValue {
+                // The quintic 10 u^3 - 15 u^4 + 6 u^5 has zero rate and second derivative at both ends: no
+                // force jumps there. Its third derivative does, hence the two breaks.
                 const double u = (at.t - from) / length;
                 if (u <= 0) return {};
                 if (u >= 1) return {rise, 0, 0};
@@ -67,6 +73,8 @@ TimeFunction polynomial(std::vector<double> coefficients)
     return {[c = std::move(coefficients)](Instant at) {
                 TimeValue p;
                 for (auto k = c.rbegin(); k != c.rend(); ++k)
+                    // Horner's scheme for the polynomial and its two derivatives at once; values of the step
+                    // before are used on the right.
                     p = {p.value * at.t + *k, p.first * at.t + p.value, p.second * at.t + 2 * p.first};
                 return p;
             },
@@ -112,6 +120,8 @@ TimeFunction combination(const std::vector<double>& factors, const std::vector<T
 
 TimeFunction straight_on(const TimeFunction& law, double first, double last)
 {
+    // Beyond the first and last instant the law goes on straight: value and rate are continuous, the second
+    // derivative is zero. A search beyond the ends of time then meets no jump.
     const TimeValue begin = law({first, Side::right}), end = law({last, Side::left});
     return {[=](Instant at) -> TimeValue {
                 if (at.t < first || (at.t == first && at.side == Side::left))

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// The division of time into elements. Output times, jumps and kinks of loads are element ends (theory.md,
+// "Why two rules"); between two such instants elements have one length. Refusals name the key of the
+// scenario.
 #include "livens/time/time_mesh.h"
 
 #include <algorithm>
@@ -52,6 +55,8 @@ std::vector<double> fixed_ends(double start, double end, std::span<const double>
         }
         if (t < start || t > end) continue;
         const auto after = fixed.lower_bound(t);   // exists, since t <= end
+        // Two instants that differ by rounding would leave an element of no length between them. The first
+        // one that was stated stays; start and end are there before all others.
         const bool close_after = *after - t < gap;
         const bool close_before = after != fixed.begin() && t - *std::prev(after) < gap;
         if (!close_after && !close_before) fixed.insert(after, t);
@@ -64,6 +69,7 @@ std::vector<double> fixed_ends(double start, double end, std::span<const double>
 int TimeMesh::element_at(double t) const
 {
     assert(n_elements() >= 1);
+    // An element end belongs to the element that begins there, except for the last.
     const auto after = std::upper_bound(ends.begin(), ends.end(), t);
     return std::clamp(static_cast<int>(after - ends.begin()) - 1, 0, n_elements() - 1);
 }
@@ -111,6 +117,8 @@ TimeMesh make_time_mesh(double start, double end, int n_elements, std::span<cons
         }
         mesh.ends.push_back(fixed[i]);
     }
+    // Far from t = 0 numbers are farther apart than an element may be long; a length of zero would divide by
+    // zero later.
     const auto stuck = std::adjacent_find(mesh.ends.begin(), mesh.ends.end(), std::greater_equal<>());
     if (stuck != mesh.ends.end()) {
         throw InputError(

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Spaces of functions of time over a block of elements: Lagrange, B-splines and NURBS, and the lower degree
+// of multipliers (Remark 3.1 of the paper). They are what (P17) and (P22) call temporal shape functions;
+// theory.md, "The elements of the paper" uses them as M_A and L_A.
 #include "livens/time/time_space.h"
 
 #include <algorithm>
@@ -161,6 +164,8 @@ void make_rational(const double* weights, std::span<double> values, std::span<do
     std::array<double, max_functions> slopes{};
     for (std::size_t a = 0; a < n; ++a) {
         for (std::size_t b = 0; b < a; ++b) {
+            // Antisymmetric in a and b: what one function gains the other loses, so slopes add up to zero to
+            // the bit.
             const double turn = derivatives[a] * values[b] - values[a] * derivatives[b];
             const double part = (weights[a] / W) * (weights[b] / W) * turn;
             slopes[a] += part;
@@ -182,6 +187,7 @@ TimeSpace TimeSpace::on_nodes(std::vector<double> ends, std::vector<double> node
     space.degree_ = static_cast<int>(nodes.size()) - 1;
     space.ends_ = std::move(ends);
     space.local_.emplace(std::move(nodes));
+    // Continuous functions share the node at an element end; those of lower multipliers share none.
     const int stride = space.degree_ + 1 - shared;
     space.first_.resize(index(space.n_elements()));
     for (int e = 0; e < space.n_elements(); ++e) space.first_[index(e)] = e * stride;
@@ -195,6 +201,7 @@ TimeSpace TimeSpace::on_knots(int degree, std::vector<double> knots)
     TimeSpace space;
     space.degree_ = degree;
     space.size_ = static_cast<int>(knots.size()) - degree - 1;
+    // Elements are the knot spans of positive length; a repeated knot only lowers smoothness.
     for (std::size_t i = index(degree); i < index(space.size_); ++i) {
         if (knots[i] == knots[i + 1]) continue;
         space.ends_.push_back(knots[i]);
@@ -231,8 +238,11 @@ TimeSpace TimeSpace::nurbs(int degree, std::vector<double> knots, std::vector<do
 TimeSpace TimeSpace::lower() const
 {
     assert(is_continuous());
+    // The derivative of a spline of degree p is a spline of degree p - 1 on the same knots, one fewer at each
+    // end.
     if (!local_) return on_knots(degree_ - 1, {knots_.begin() + 1, knots_.end() - 1});
     std::vector<double> nodes;
+    // Nodes inside the element: these functions may jump at element ends, and no node is needed there.
     for (int a = 0; a < degree_; ++a) nodes.push_back((a + 0.5) / degree_);
     return on_nodes(ends_, std::move(nodes), 0);
 }
@@ -286,6 +296,7 @@ void TimeSpace::evaluate_splines(int element, double s, std::span<double> values
             const double previous = values[r];
             values[r] = saved + previous * (after[r + 1] / support);
             saved = previous * (before[j - r] / support);
+            // N_A' of degree p takes the functions of degree p - 1, which are at hand in the last pass alone.
             if (j < p) continue;
             const double slope = degree_ * (previous / support);
             derivatives[r] = slope_before - slope;
@@ -352,6 +363,7 @@ TimeSpace::Place TimeSpace::place(double t) const
     assert(!std::isnan(t));
     const auto after = std::upper_bound(ends_.begin(), ends_.end(), t);
     const int element = std::clamp(static_cast<int>(after - ends_.begin()) - 1, 0, n_elements() - 1);
+    // Rounding of t may leave s a little outside of [0, 1], where splines of the element are not defined.
     return {element, std::clamp((t - ends_[index(element)]) / length(element), 0.0, 1.0)};
 }
 
@@ -359,6 +371,8 @@ std::vector<double> clamped_knots(int degree, std::span<const double> ends, std:
 {
     check_degree(degree);
     check_ends(ends);
+    // A mesh may have moved a kink by this much when it merged instants, so the kink is sought within the
+    // same distance.
     const double reach = nearest_ends * (ends.back() - ends.front());
     std::vector<int> times(ends.size(), 1);
     times.front() = times.back() = degree + 1;

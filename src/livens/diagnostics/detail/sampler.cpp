@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Fields of a motion at the same points of every element: the values of the basis are made once, and each
+// evaluation is a product with coefficients. Diagnostics integrate with the rules of the method (theory.md,
+// "What is diagnosed").
 #include "livens/diagnostics/detail/sampler.h"
 
 #include <algorithm>
@@ -62,6 +65,7 @@ FieldTable::FieldTable(const Field& field, std::span<const double> points) : fie
         basis.values(points[k], std::span<double>(values_).subspan(k * n, n));
         basis.derivatives(points[k], std::span<double>(derivatives_).subspan(k * n, n));
         const auto node = std::find(basis.nodes().begin(), basis.nodes().end(), points[k]);
+        // At a node the coefficient itself is the value, to the bit.
         nodes_.push_back(node == basis.nodes().end() ? -1 : static_cast<int>(node - basis.nodes().begin()));
     }
 }
@@ -119,6 +123,7 @@ ElementSampler::ElementSampler(const Motion& motion, std::vector<double> points)
 Instant ElementSampler::instant(int element, int k) const
 {
     const double s = points_[k];
+    // Seen from inside the element: a load that jumps at its end has not jumped yet.
     if (s == 0) return {motion_.mesh.ends[element], Side::right};
     if (s == 1) return {motion_.mesh.ends[element + 1], Side::left};
     return {motion_.mesh.ends[element] + s * motion_.mesh.length(element), Side::middle};

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// The twist Jacobian at one configuration as [Y Z][R; 0]: theory.md, "Eliminating the joint multipliers".
+// Rows are scaled to norm 1 first, so that pivots tell angles between rows and not their units.
 #include "livens/dynamics/rows/constraint_basis.h"
 
 #include <algorithm>
@@ -24,6 +26,7 @@ double ConstraintBasis::fill(const Tables& tables, int column, int row, Instant 
     tables.scaled_gradient(row, X, maps, g, out);
     double sum = 0;
     for (int i = 0; i < tables.n_twists; ++i) sum += out[i] * out[i];
+    // A row without a gradient stays zero: its pivot then says that rank is lost.
     const double scale = sum > 0 ? 1 / std::sqrt(sum) : 1.0;
     for (int i = 0; i < tables.n_twists; ++i) out[i] *= scale;
     return scale;
@@ -42,6 +45,7 @@ double ConstraintBasis::choose(const Tables& tables, Instant at, const double* X
     const int all = tables.n_rows();
     std::vector<int> order(static_cast<std::size_t>(all));
     for (int r = 0; r < all; ++r) row_scale[r] = fill(tables, r, r, at, X, maps);
+    // Column exchanges choose the rows that hold best here; their number is known from the start.
     smallest_pivot = q.factorise_pivoted(tables.rank, order);
     const std::vector<double> unsorted = gradients, scales = row_scale;
     for (int c = 0; c < tables.rank; ++c) {

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// A spanning forest of the joints: rows along it are judged joint by joint on six columns, whatever the
+// length of a chain. theory.md, "Rank is geometry", says why that suffices, and what is left to the other
+// judge.
 #include "livens/dynamics/rows/forest.h"
 
 #include <algorithm>
@@ -104,6 +107,7 @@ Forest spanning_forest(const std::vector<BodyRow>& rows, int n_bodies, double le
     std::vector<std::vector<const Edge*>> at(static_cast<std::size_t>(n_bodies + 1));
     Groups groups(n_bodies);
     for (const Edge& edge : edges) {
+        // A joint between bodies that hang together already closes a loop, and has no outer body of its own.
         if (groups.join(edge.ends[0], edge.ends[1])) {
             for (const int end : edge.ends) at[end + 1].push_back(&edge);
         } else {

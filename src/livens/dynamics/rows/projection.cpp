@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// The nearest positions and velocities that fulfil the joints, in the mass metric: theory.md, "Starting".
+// Gauss-Newton steps on the rotation group for positions, one least-squares step for velocities, both in
+// mass-orthonormal coordinates.
 #include "livens/dynamics/rows/projection.h"
 
 #include <algorithm>
@@ -27,6 +30,8 @@ struct Inertia {
         if (body.is_point) return;
         Cholesky cholesky;
         cholesky.resize(3);
+        // Only the coordinates feel the shift: it chooses among motions that the equations of rigid bodies do
+        // not tell apart.
         double shift = 1e-14 * std::abs(trace(known.inertia));
         for (bool definite = false; !definite; shift = shift > 0 ? 10 * shift : 1e-14 * known.mass) {
             for (int i = 0; i < 3; ++i)
@@ -84,6 +89,7 @@ public:
             if (square > 0) size_[k] = std::sqrt(square);
             for (std::size_t i = first; i < entries.size(); ++i) entries[i].value /= size_[k];
         }
+        // Elimination squares the rows, and with them ratios of masses; the orthogonal basis bears any ratio.
         if (masses_are_alike()) by_elimination_ = std::make_unique<SparseRows>(rank, n, entries);
         if (by_elimination_ && by_elimination_->smallest_pivot() > SparseRows::well_held) {
             std::iota(order_.begin(), order_.end(), 0);
@@ -165,8 +171,11 @@ public:
         Gap least = widest_gap(model_, X, rows_);
         int since_best = 0;
         for (int i = 0; i < 100 && since_best < 6 && (least.level > 1 || nearest); ++i) {
+            // With `nearest` each step also pulls back to the given place, so the limit is a foot of the
+            // perpendicular.
             const double step = iterate(X, nearest, threshold);
             if (!std::isfinite(step)) break;
+            // The pull leaves the rows open by its own convergence; the last steps close them without it.
             if (nearest && (step < 1e-9 || i >= 30)) nearest = false;
             const Gap now = widest_gap(model_, X, rows_);
             since_best = nearest || now.level < least.level ? 0 : since_best + 1;
@@ -198,6 +207,8 @@ private:
             finite = finite && std::isfinite(norm(twist.velocity) + norm(twist.spin));
         }
         if (!finite) return std::numeric_limits<double>::infinity();
+        // Beyond half a radian the linear foretelling of a turn is worth little, and may lead to another
+        // branch.
         const double fraction = angle > 0.5 ? 0.5 / angle : 1;
         for (std::size_t b = 0; b < X.size(); ++b) {
             const Vector3 w = fraction * twists[b].spin;

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Which rows are independent, and which spins have no inertia: theory.md, "Rank is geometry" and "Spins
+// without inertia". Masses do not enter the rank; every threshold is one of these two sections.
 #include "livens/dynamics/rows/rank.h"
 
 #include <algorithm>
@@ -35,6 +37,7 @@ void add_free_axes(int b, const Body& body, const Matrix34& X, std::vector<FreeA
 {
     const MassProperties known = mass_properties(body.mass);
     const PrincipalValues J = symmetric_spectrum(known.inertia);
+    // Inequality: J <= 16 eps tr E is no inertia, since J comes from E by subtraction.
     const double level = 16 * eps * (body.mass(1, 1) + body.mass(2, 2) + body.mass(3, 3));
     const double gyration = std::sqrt(std::max(J.values[2], 0.0) / known.mass);
     int n = 0;
@@ -51,6 +54,7 @@ double hold_of(const Wrench& w, const Matrix34& X, const FreeAxis& free)
     const double size = norm(w.moment) + (norm(w.at - free.center) + free.gyration) * force;
     const double digits = 8 * eps * (norm(X.column(0)) + norm(w.at) + norm(free.center)) * force;
     const double moment = dot(free.axis, moment_about(w, X, free.center));
+    // Three doubts: the threshold of rank, the direction of the axis, and the digits of far points.
     return std::abs(moment) > (1e-9 + free.doubt) * size + digits ? moment : 0;
 }
 
@@ -104,10 +108,12 @@ std::vector<Pole> poles_of(const Model& model, std::span<const Matrix34> X, cons
         const double force = norm(w.force);
         if (force == 0) return;
         const double arm = std::max(norm(w.at - pole.point), norm(w.moment) / force);
+        // Points of one body that are nearer to each other than their rounding are one point.
         if (arm > 1e-13 * pole.reach) pole.length = std::max(pole.length, arm);
         largest = std::max(largest, pole.length);
     });
     if (largest == 0) largest = model.length();
+    // sqrt(a A): rows of points want the body's own arm, rows of axes the largest one of all bodies.
     for (Pole& pole : poles) pole.length = std::sqrt((pole.length > 0 ? pole.length : largest) * largest);
     return poles;
 }
@@ -250,6 +256,8 @@ RowRank row_rank(const TwistRows& twists, int n_bodies, std::span<const int> row
 {
     RowRank rank;
     if (rows.empty()) return rank;
+    // The doubt of joint points far from their reference may exceed the threshold, but never calls clear rows
+    // parallel.
     threshold = std::max(threshold, std::min(twists.doubt, 1e-4));
     part(rows,
          judge(
@@ -290,6 +298,7 @@ Dependencies dependencies(const Model& model, std::span<const Matrix34> X, std::
     std::ranges::set_difference(all_rows(model), result.independent, std::back_inserter(result.dependent));
     auto held =
         std::make_unique<SparseRows>(n_independent, n_columns, entries_of(twists.rows, result.independent));
+    // The given rows may hold badly in this position, although others of the same rank hold well.
     if (!(held->smallest_pivot() > well_held)) {
         choose_again(twists, model.n_bodies(), result);
         held = std::make_unique<SparseRows>(n_independent, n_columns,

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Closing a start from elsewhere, where it does not close as it stands: theory.md, "Starting", "From
+// elsewhere". Driven angles lead by the angle itself instead of its sine, then up to twelve disturbed starts
+// follow, always the same ones.
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -80,6 +83,7 @@ private:
         return v;
     }
 
+    // The standard fixes the numbers of this generator; distributions differ from library to library.
     std::minstd_rand random_{1};
 };
 
@@ -168,10 +172,12 @@ Reach reach(const Model& model, std::span<const Matrix34> X)
     if (is_good(reached.closing)) return reached;
     Shaker shaken;
     for (const double size : disturbances) {
+        // A large model gets one try at least, but not minutes of them.
         if (reached.n_tries > 0 && reached.n_tries * model.n_bodies() > most_work) break;
         ++reached.n_tries;
         Closing found = close_rows(led, shaken(model, X, size), rows, false);
         if (!is_good(found)) continue;
+        // A disturbed start closes anywhere on its branch; the nearest place to the stated one is meant.
         reached.closing = nearest_from(led, std::move(found), X, rows);
         reached.how = "the joints did not close from the start as it is stated; from one that was disturbed "
                       "by up to " +
@@ -186,6 +192,8 @@ Complaint why_open(const Model& model, const Closing& open, std::span<const Matr
 {
     const std::string tried = "looked for from the start as it is stated and from " +
                               std::to_string(n_tries) + " that were disturbed";
+    // If the independent rows close without the others, the others contradict them: that is a better reason
+    // than a residual.
     const RowRank rank = row_rank(model, open.X, all_rows(model));
     const Closing rest = close_rows(model, open.X, rank.independent, false);
     if (rest.closed) {

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Values, rates and wrenches of all rows, each with the rounding of its own terms: what theory.md, "Rank is
+// geometry", calls a force and a moment at the joint point, and its doubt.
 #include "livens/dynamics/rows/rows.h"
 
 #include <algorithm>
@@ -50,11 +52,14 @@ Wrench wrench_of(int body, const Vector3& at, const Matrix34& X, const Matrix34&
     Wrench wrench{body, at, g.column(0), {}, 0};
     double level = 0;
     for (int i = 1; i < 4; ++i) {
+        // The gradient by the directors, less what the force at the joint point explains, is a pure moment.
         wrench.moment += cross(X.column(i), g.column(i) - at[i - 1] * g.column(0));
         level += norm(terms.column(i)) + std::abs(at[i - 1]) * norm(terms.column(0));
     }
+    // Inequality |m| <= 8 eps sum |terms|: far from the joint point the sum of large terms says nothing.
     if (norm(wrench.moment) <= 8 * spacing * level) wrench.moment = {};
     const double force = norm(wrench.force);
+    // The doubt is the relative rounding of the force, from the sum of the sizes of its terms.
     if (force > 0) wrench.doubt = 4 * spacing * norm(terms.column(0)) / force;
     return wrench;
 }
@@ -103,6 +108,7 @@ Gap widest_gap(const Model& model, std::span<const Matrix34> X, std::span<const 
         double terms = 0;
         for_each_positive_form(row, X,
                                [&](const ConstraintRow& form) { terms += constraint_value(form, positive); });
+        // A violation of one level is rounding of the row itself; no iteration could take it off.
         const double level = std::abs(phi[r]) / (4 * spacing * std::max(terms, row.scale));
         const double violation = std::abs(phi[r]) / row.scale;
         if (gap.row < 0 || violation > gap.violation) gap.row = r, gap.violation = violation;

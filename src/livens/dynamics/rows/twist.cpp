@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Rigid kinematics: turns by unit quaternions without cancellation, blocks N^T (c x 1) N of the tangent and
+// the geometric term. theory.md, "On the rotation group", "The tangent" and "Increments".
 #include "livens/dynamics/rows/twist.h"
 
 #include <algorithm>
@@ -46,6 +48,7 @@ void quaternion_of(const double* X, const double* dX, double* q)
     for (int a = 3; a < 12; a += 3)
         for (int j = 0; j < 3; ++j)
             for (int i = 0; i < 3; ++i) m[3 * j + i] += dX[a + i] * X[a + j];
+    // tr(R - 1) = -4 |v|^2, so s = sqrt(1 + tr / 4): formed from the increment, small turns keep all digits.
     q[0] = std::sqrt(std::max(0.0, 1 + 0.25 * (m[0] + m[4] + m[8])));
     const double scale = 0.25 / q[0];
     q[1] = scale * (m[5] - m[7]);
@@ -55,6 +58,7 @@ void quaternion_of(const double* X, const double* dX, double* q)
 
 Vector3 turn_between(const Matrix34& from, const Matrix34& to)
 {
+    // Products of directors are rotations up to rounding; the projection makes the quaternion a unit one.
     const Matrix3 R = directors(to) * transpose(directors(from));
     const Vector4 q = quaternion_from_directors(project_directors(R));
     const Vector3 v{q[1], q[2], q[3]};

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Consistent initial conditions: directors, positions, branches, rank, inertia and velocities of a start, in
+// this order, as each step takes the ones before for granted. theory.md, "Starting".
 #include "livens/dynamics/start/closing.h"
 
 #include <algorithm>
@@ -234,6 +236,8 @@ Fault settle_velocities(const Model& model, const Model& the_model, StartPolicy 
     RateGap fault = worst_rate(model, state, wrenches, centers, drives, speed);
     if (fault.relative <= 8 * epsilon) return {};
     if (fault.relative > start_tolerance) {
+        // Rates that are zero but for rounding were computed from something; they are held against what moves
+        // soon.
         const double least = speed_of_rounding(the_model, state, wrenches, centers);
         if (least > speed) fault = worst_rate(model, state, wrenches, centers, drives, least);
     }
@@ -303,6 +307,7 @@ TriedStart try_close_start(const Model& the_model, const State& start, StartPoli
     const std::vector<int> rows = all_rows(model);
     const RowWrenches wrenches = row_wrenches(model, closed.start.X);
     const RowRank rank = row_rank(twist_rows(model, closed.start.X, rows, wrenches), model.n_bodies(), rows);
+    // After rank: a spin without inertia is no fault where a joint holds it.
     fault = why_weightless(model, closed.start.X);
     if (fault) return {{}, std::move(*fault)};
     closed.independent = rank.independent;

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Which joints lock a mechanism where a march ends: the combination of independent rows that is nearest to
+// zero, compared with the start. theory.md, "Singular positions", has the bounds (a hundredth, a fiftieth).
 #include "livens/dynamics/start/locking.h"
 
 #include <algorithm>
@@ -50,6 +52,8 @@ Nearest nearest_to_nothing(const Model& model, const State& state, const std::ve
         nearest.factors[i] = 1 + 0.1 * static_cast<double>(i % 7);
     if (!lu.factorise()) return {};   // no numbers
     for (int k = 0; k < iterations; ++k) {
+        // Inverse iteration on J J^T: the smallest eigenvalue is the square of the smallest singular value of
+        // the rows.
         lu.solve(nearest.factors.data());
         double size = 0;
         for (const double x : nearest.factors) size += x * x;

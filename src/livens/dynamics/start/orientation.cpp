@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Whether the rows of a mechanism have turned over between two places, det G_a G_b^T < 0: theory.md,
+// "Singular positions", Branches. Of the determinant only the sign is wanted, so no product can overflow.
 #include "livens/dynamics/start/orientation.h"
 
 #include <algorithm>
@@ -56,6 +58,8 @@ void Orientation::place(const Tables& tables, const std::vector<int>& rows, Inst
         for (std::size_t s = first; s < sides_.size(); ++s)
             for (double& x : sides_[s].entries) x *= scale;
     }
+    // By body, so that only rows which share one are multiplied: the product stays as sparse as the
+    // mechanism.
     std::ranges::stable_sort(sides_, {}, &Side::body);
 }
 

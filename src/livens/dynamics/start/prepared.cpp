@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// What was found of a model once, its closed start and the pattern of its rows, for whoever solves it again
+// (docs/architecture.md, "The rooms"). The model's version tells whether it still is that model.
 #include "livens/dynamics/start/prepared.h"
 
 #include <cstring>
@@ -15,6 +17,7 @@ namespace {
 bool are_same(const State& a, const State& b)
 {
     const auto same = [](const auto& x, const auto& y) {
+        // Bytes and not values: a start that differs in the sign of a zero may end in other bits.
         return x.size() == y.size() && (x.empty() || std::memcmp(&x[0], &y[0], x.size() * sizeof(x[0])) == 0);
     };
     return same(std::span(&a.t, 1), std::span(&b.t, 1)) && same(a.X, b.X) && same(a.V, b.V) &&

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// What a projection of velocities has changed, in words of joints and bodies, the largest changes first.
+// Users state rates of coordinates, so these are told and not twists.
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -73,6 +75,7 @@ std::string rate_changes(const Model& model, std::span<const Matrix34> X, std::s
             {"angular velocity of '" + model.body_name(b) + "' " + told(from) + " -> " + told(to) + " rad/s",
              norm(to - from) * model.length()});
     }
+    // Turns count at the model's length, so that turns and slides are compared by speed.
     std::ranges::stable_sort(changes, std::greater(), &Change::speed);
     std::string text;
     for (std::size_t i = 0; i < std::min(most, changes.size()); ++i) {

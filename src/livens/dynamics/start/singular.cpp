@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Starts in singular positions: what redundant rows ask of motions in second order, mu . gamma(Z x) = 0, and
+// the branches that meet there. theory.md, "Singular positions", "A start in such a position".
 #include "livens/dynamics/start/singular.h"
 
 #include <algorithm>
@@ -173,6 +175,7 @@ bool asks_nothing(const Curvatures& curvatures, const ClosedStart& closed)
         for (const auto& [bend, size] : bends) {
             double sum = bend[redundant[k]];
             for (std::size_t i = 0; i < independent.size(); ++i) sum -= of_others[i] * bend[independent[i]];
+            // A tighter bound than the judge's below: in doubt the dense way decides.
             if (!(std::abs(sum) <= 1e-3 * nothing * size)) return false;
         }
     }
@@ -248,6 +251,8 @@ std::vector<DenseMatrix> forms_of(const SecondOrder& second, double& size, int& 
         for (int j = i; j < f; ++j, ++at) {
             const Values both = second.of(sum(Z.column(i), Z.column(j)), size);
             for (int k = 0; k < n; ++k)
+                // Polarisation: Q(x, y) = (Q(x + y) - Q(x) - Q(y)) / 2. `rest` is of drives, and was
+                // subtracted once too often.
                 packed(k, at) = 0.5 * (both[k] - squares[i][k] - squares[j][k] + rest[k]);
         }
     const Values in_rows = row_norms(packed);
@@ -296,6 +301,7 @@ Values root_near(const std::vector<DenseMatrix>& forms, Values x)
         }
         for (int i = 0; i < f; ++i) J(m, i) = x[i];
         const PivotedQR qr(J);
+        // Where the conditions are dependent two branches touch, and Newton's iteration has no meaning.
         if (qr.pivot(f - 1) < nothing) return {};
         const Values dx = qr.solve(r);
         x = normalised(sum(x, dx));
@@ -346,6 +352,7 @@ Mobility mobility(const Model& model, const ClosedStart& closed)
     for (int j = 0; j < Z.cols; ++j) {
         const Values ahead = second.of(sum(y, Z.column(j)), unused),
                      behind = second.of(sum(y, Z.column(j), -1), unused);
+        // Central differences of quadratic forms are exact: these are 2 Q_mu x along each free motion.
         for (int k = 0; k < J.rows; ++k) J(k, j) = 0.5 * (ahead[k] - behind[k]);
     }
     const int rank = norm(y) > 0 ? row_space(J, nothing * size * norm(y)).cols : 0;

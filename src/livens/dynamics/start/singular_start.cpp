@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// The refusal of a start in a singular position, in words: how many motions and conditions there are, and
+// where the branches lead (theory.md, "Singular positions", "A start in such a position").
 #include <algorithm>
 #include <cmath>
 #include <string>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Starts that are stated by coordinates of joints: drives lead the mechanism from where it stands to the
+// stated values in small steps, so that it stays on its branch. theory.md, "Starting", By coordinates.
 #include "livens/dynamics/start/start_coordinates.h"
 
 #include <algorithm>
@@ -24,6 +26,7 @@ namespace livens {
 namespace {
 
 constexpr double step = 0.1;   // of a coordinate, rad or lengths of the model
+// A thousand turns, which take some 63,000 steps.
 constexpr double farthest = 2000 * std::numbers::pi;
 constexpr int most_halvings = 12;
 constexpr double noticed = 1e-9;      // change of a stated velocity, of the largest
@@ -101,6 +104,7 @@ Model led_model(const Model& model, const std::vector<Led>& all, std::span<const
         const double rate = law == Law::hold ? 0 : law == Law::go ? led.to - led.from : led.rate;
         NamedCoordinate counted = named(model, led);
         counted.at_stated = led.from;
+        // A line break in front keeps the name apart from those of other joints.
         with.add_joint(driven_coordinate("\n" + name_of(model, led), model.joints()[led.joint], counted,
                                          ramp(led.from, rate, 0), Configurations(X)));
     }
@@ -129,6 +133,7 @@ public:
         std::vector<double> y(n_, 0.0);
         spread(row, y.data());
         basis_.apply_transposed(y.data());
+        // In the coordinates of Q the first entries are what joints hold; the rest is what they leave free.
         std::fill_n(y.begin(), rank_, 0.0);
         for (int pass = 0; pass < 2; ++pass)   // the second takes the rounding of the first
             for (const std::vector<double>& other : taken_) {
@@ -171,6 +176,7 @@ Chosen choose(const Model& model, const std::vector<Led>& all, std::span<const M
     Chosen chosen{row_rank(led, X, joints).independent, {}};
     FreeDirections free(led, X, chosen.rows);
     const TwistRows twists = twist_rows(led, X, coordinates);
+    // Stated coordinates first: the others only keep what is left.
     for (const bool wanted : {true, false})
         for (std::size_t i = 0; i < all.size(); ++i) {
             if (is_wanted(all[i]) != wanted) continue;
@@ -222,6 +228,8 @@ Way lead(const Model& led, const std::vector<Led>& all, const Model& model, cons
         for (const Led& one : all) {
             const JointCoordinate& q = named(model, one).coordinate;
             change.push_back(coordinate_change(q, way.X, closing.X));
+            // A closing that jumps to another branch moves some coordinate far: such a step is halved like an
+            // open one.
             is_near = is_near && std::abs(change.back()) < 5 * step * (q.is_angle() ? 1 : model.length());
         }
         if (closing.closed && is_near) {
@@ -313,6 +321,7 @@ MovedStart move_start(const Model& model, const std::vector<StartCoordinate>& wa
     Way way = lead(led, all, model, chosen.rows, closed.start.X);
     if (!way.is_whole && !chosen.kept.empty()) {   // what was to be kept may stand in the way
         std::vector<int> fewer = chosen.rows;
+        // Rows of kept coordinates stand last: without them the way is tried a second time.
         fewer.resize(fewer.size() - chosen.kept.size());
         const Way other = lead(led, all, model, fewer, closed.start.X);
         if (other.is_whole) moved.kept.clear();
@@ -328,6 +337,7 @@ MovedStart move_start(const Model& model, const std::vector<StartCoordinate>& wa
     for (std::size_t i = 0; i < all.size(); ++i) {
         Led& one = all[i];
         const NamedCoordinate& q = named(model, one);
+        // Rates that nobody wants are those of the stated velocities at the stated place.
         if (!one.has_rate) one.rate = coordinate_rate(q.coordinate, stated.X, V);
         one.from = one.to = one.has_value ? one.to : one.from + way.change[i];
     }

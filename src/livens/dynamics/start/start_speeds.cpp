@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// The speeds that rates of a start are compared with: stated ones, those of weight, loads and drives after a
+// short while, or rounding. theory.md, "Starting", states the inequality.
 #include <algorithm>
 #include <cmath>
 
@@ -19,6 +21,7 @@ double acceleration(const Body& body, const Matrix34& X, const Matrix34& F, doub
     if (body.is_point || !(trace(mass.inertia) > 0)) return most;
     Vector3 moment = cross(X.column(0) - X * point(mass.center_of_mass), force);
     for (int i = 1; i < 4; ++i) moment += cross(X.column(i), F.column(i));
+    // The trace is positive for a needle as well, whose moment about its axis is zero.
     return std::max(most, norm(moment) / trace(mass.inertia) * length);
 }
 
@@ -50,6 +53,7 @@ double acceleration_by_drives(const Model& model, const State& state, const RowW
             bend += std::abs(drive.factor({state.t}).second *
                              form_value(drive.form, row.body_i, row.body_j, state.X));
         const double by_speed = rate_bound(state, wrenches[r], centers, 1, model.length());
+        // A law that bends by this much asks for the acceleration that makes as much of the row.
         if (by_speed > 0 && std::isfinite(bend)) most = std::max(most, bend / by_speed);
     }
     return most;
@@ -82,6 +86,8 @@ double rate_bound(const State& state, std::span<const Wrench> row, std::span<con
     double bound = 0;
     for (const Wrench& w : row) {
         const Vector3 moment = moment_about(w, state.X[w.body], centers[w.body]);
+        // The most that dPhi/dt can be with this speed at the centre and as much by turning at the model's
+        // length.
         bound += norm(w.force) * speed + norm(moment) * speed / length;
     }
     return bound;
@@ -97,6 +103,7 @@ double speed_of_rounding(const Model& model, const State& state, const RowWrench
 {
     const double most = std::max(acceleration_by_loads(model, state),
                                  acceleration_by_drives(model, state, wrenches, centers));
+    // A thousandth of sqrt(a L), reached within 5e-7 lengths, or 1e-6 lengths a second.
     return std::max(slowest * std::sqrt(most * model.length()), per_second * model.length());
 }
 

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// A table of samples at the output times, one row each, as spreadsheets read it: docs/results.md. Units stand
+// in the header; what is no number is an empty cell.
 #include <limits>
 
 #include "livens/diagnostics/coordinates.h"
@@ -115,6 +117,7 @@ void write_csv(const std::filesystem::path& file, const Model& model, const Run&
         const std::vector<BodySample> bodies = sample_bodies(model, run.motion, t);
         for (std::size_t b = 0; b < bodies.size(); ++b) {
             const BodySample& s = bodies[b];
+            // Of q and -q the one that is nearer to the row before: columns have no jumps of sign.
             previous[b] = continued(previous[b], s.quaternion);
             add_cells(text, s.position);
             add_cells(text, previous[b]);
@@ -128,6 +131,7 @@ void write_csv(const std::filesystem::path& file, const Model& model, const Run&
         }
         if (has_reactions)
             for (const JointSample& joint : sample_joints(model, run.motion, t)) {
+                // Where a reaction jumps, what follows is told, and at the very end what was.
                 const Reaction& r = t == run.motion.end() ? joint.left : joint.right;
                 add_cells(text, joint.is_bounded ? r.force : no_number);
                 add_cells(text, joint.is_bounded ? r.torque : no_number);

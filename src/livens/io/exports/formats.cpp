@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// The table of formats: word, ending, what it is, how a file of ours begins, and its writer. One more format
+// is an entry here (docs/architecture.md, "The rooms").
 #include "livens/io/exports/formats.h"
 
 #include <algorithm>
@@ -16,6 +18,7 @@ bool begins_as_npz(std::string_view head)
 
 bool begins_as_gltf(std::string_view head)
 {
+    // A file is replaced without a question only where livens wrote it, which its first bytes tell.
     return head.starts_with("glTF") &&
            head.substr(0, 200).find(R"("generator": "livens )") != std::string_view::npos;
 }

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // glTF 2.0 in its binary form. [Khronos, glTF 2.0 Specification]
+// Bodies as nodes with cubic splines through positions and orientations, made of values and rates of the
+// motion, so that few output times give a smooth animation: docs/results.md.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -116,6 +118,8 @@ struct Tracks {
     {
         for (std::size_t b = 0; b < bodies.size(); ++b) {
             const BodySample& s = bodies[b];
+            // The format asks for the tangent before, the value and the tangent behind; here both tangents
+            // are the rate.
             for (const Vector3& v : {s.velocity, s.position, s.velocity})
                 for (const double x : v.a) positions[b].push_back(static_cast<float>(x));
             for (int i = 0; i < 3; ++i) {
@@ -149,6 +153,7 @@ Tracks tracks_of(const ExportInput& input)
     std::vector<Vector4> previous(run.body_names.size(), Vector4{1, 0, 0, 0});
     for (const double t : reached_times(run)) {
         const auto time = static_cast<float>(t - run.motion.start());
+        // Single precision may make two instants one, and the format wants them to ascend.
         if (!tracks.times.empty() && !(time > tracks.times.back())) continue;
         const std::vector<BodySample> bodies = sample_bodies(input.scenario.model, run.motion, t);
         for (std::size_t b = 0; b < bodies.size(); ++b)
@@ -197,6 +202,7 @@ private:
     /// The shortest turn that brings `up` to y, which is up in glTF.
     Vector4 turn_upright() const
     {
+        // The quaternion of the shortest turn from u to y is (1 + u . y, u x y) up to its length.
         const Vector4 q{1 + up_[1], -up_[2], 0, up_[0]};
         const double size = std::sqrt(dot(q, q));
         return size > 1e-6 ? (1 / size) * q : Vector4{0, 1, 0, 0};

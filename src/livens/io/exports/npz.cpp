@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // NumPy archives: a zip of arrays, stored. [NumPy, NEP 1; PKWARE, APPNOTE 6.3.9]
+// All variables of the result as arrays of one name each; units in an array beside them. Entries are stored
+// and without date, so the same run gives the same bytes: docs/results.md.
 #include <algorithm>
 #include <array>
 

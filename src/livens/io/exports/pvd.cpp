@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // ParaView collections: surfaces of the bodies, a file an instant, and a list of these. [VTK file formats]
+// Points are in world coordinates, so each instant is a whole picture; velocities of points are those of the
+// rigid body, v + w x arm (docs/results.md).
 #include <algorithm>
 #include <cmath>
 #include <span>
@@ -131,6 +133,7 @@ void write_pvd(const fs::path& file, const ExportInput& input)
     if (error) throw IoError("cannot write '" + folder.string() + "': " + error.message());
     const std::string names = names_of(run);
     const std::vector<double> times = reached_times(run);
+    // All names are looked at before the first file is written: a refusal leaves nothing behind.
     if (!input.force) check_pieces(file.parent_path(), name, times.size());
     std::string list = std::string(pvd_head) + "<Collection>\n";
     std::size_t n = 0;

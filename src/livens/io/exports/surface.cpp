@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Triangles of outlines: a profile turned about d3.
+// Bodies without a stated shape get a mark of a twentieth of the model's length. Normals are those of the
+// curved surface where neighbours are nearly parallel, else each face has its own.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -84,6 +86,7 @@ private:
         Vector3 n{normal[0] * faced.cosine, normal[0] * faced.sine, normal[1]}, q;
         for (int i = 0; i < 3; ++i) {
             q[i] = place_[i] + stretch[i] * p[i];
+            // Normals go with the inverse of the stretch, points with the stretch itself.
             n[i] /= stretch[i];
         }
         surface_.points.push_back(q);

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Series over time that the page cannot make of poses: energies, coordinates, reactions, loads, sensors.
+// Numbers are bounded, so instants become fewer as channels become more. The page interpolates them with the
+// degree of the elements (docs/program.md).
 #include <algorithm>
 #include <cmath>
 
@@ -35,6 +37,7 @@ struct Instants {
         const double wanted =
             std::clamp(most_numbers / static_cast<double>(n_channels), fewest_instants, most_instants);
         const double n = mesh.n_elements();
+        // Elements are taken together where even two instants each would be too many.
         const auto merged = static_cast<std::size_t>(std::max(1.0, std::ceil(2 * n / wanted)));
         for (std::size_t e = 0; e < mesh.ends.size(); e += merged) ends.push_back(mesh.ends[e]);
         if (ends.back() != mesh.ends.back()) ends.push_back(mesh.ends.back());
@@ -139,6 +142,8 @@ void write_curves(ReportData& data, const Scenario& scenario, const Run& run)
     std::vector<std::vector<double>> columns(curves.channels().size());
     for (std::size_t e = 0; e < instants.n_elements(); ++e)
         for (std::size_t a = 0; a < instants.nodes.size(); ++a) {
+            // An element end is told twice, from the left as the last node and from the right as the first:
+            // jumps stay jumps.
             const std::vector<double> values = curves.at(instants.at(e, a), a > 0 && instants.nodes[a] == 1);
             for (std::size_t c = 0; c < columns.size(); ++c) columns[c].push_back(values[c]);
         }

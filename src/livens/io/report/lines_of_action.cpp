@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Where forces act: a load states forces on X, not a point. F = f (1, theta)^T tells its point, if it is the
+// same at several instants; else a place is fitted by which the torques become least.
 #include "livens/io/report/lines_of_action.h"
 
 #include <algorithm>
@@ -30,6 +32,8 @@ std::optional<Vector3> point_of(const Matrix34& F, double length)
     const Vector3 f = F.column(0);
     Vector3 theta{};
     for (int i = 0; i < 3; ++i) {
+        // The least-squares multiple of f in each column; what is left must be nothing for F to be a force at
+        // a point.
         theta[i] = dot(f, F.column(i + 1)) / dot(f, f);
         const Vector3 rest = F.column(i + 1) - theta[i] * f;
         if (!(norm(rest) <= same * norm(f) * (length + std::abs(theta[i])))) return {};
@@ -92,6 +96,7 @@ Vector3 best_place(const Vector3& usual, const std::vector<LoadForces>& looks, c
     }
     if (!(scale > 0)) return usual;
     constexpr double weak = 1e-4;
+    // Torques say nothing along the force: the small term takes the place nearest to the usual one.
     const Vector3 shift = inverse(A + weak * scale * identity<3>()) * b;
     return std::isfinite(norm(shift)) ? usual + shift : usual;
 }

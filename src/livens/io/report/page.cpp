@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The page as it is shipped, with the data of runs put into it.
+// The page may run its own script alone, by a hash in its head; data are JSON and text, which no browser
+// executes (docs/program.md).
 #include <cstdint>
 #include <string_view>
 

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Numbers of a report, compressed into its page. Bytes of one place stand together (shuffling), since
+// neighbours of a series share their leading bytes and compress far better so.
 #include "livens/io/report/payload.h"
 
 #include <bit>

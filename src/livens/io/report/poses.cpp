@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Positions and orientations of all bodies as polynomials in time elements.
+// As quaternions where directors are orthonormal at all nodes, else X itself; in single precision or on fewer
+// elements where the page would grow too large. What that loses is measured and told.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -113,6 +115,7 @@ public:
         for (std::size_t b = 0; b < forms_.size(); ++b)
             for (std::vector<double>& numbers : numbers_through_time(b)) {
                 const auto [least, most] = std::ranges::minmax(numbers);
+                // Less their middle, numbers far from zero keep their digits in single precision.
                 const double middle = is_single && std::isfinite(least + most) ? 0.5 * (least + most) : 0;
                 middles.push_back(middle);
                 for (double& x : numbers)
@@ -123,6 +126,7 @@ public:
         payload.add("pose_middle", Precision::full, middles);
         payload.add("pose_weight", Precision::full, track_.X.denominators);
         payload.add("pose_end", Precision::full, track_.mesh.ends);
+        // The loss is measured on what is stored, read as the page reads it.
         measure(all, middles);
     }
 
@@ -157,6 +161,7 @@ private:
             const bool is_turned = forms_[body] == Form::quaternion;
             for (std::size_t i = 0; i < (is_turned ? 3 : all.size()); ++i) all[i].push_back(X[i]);
             if (!is_turned) continue;
+            // A polynomial goes through the quaternions of an element, so their signs must not jump.
             last = continued(last, quaternion_from_directors(directors(configuration(X))));
             for (int i = 0; i < 4; ++i) all[static_cast<std::size_t>(3 + i)].push_back(last[i]);
         }

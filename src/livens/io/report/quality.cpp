@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Series that tell how right a run is. Series that are longer than a screen keep the largest of neighbours.
+// Errors, growth, violations, balances, lengths and iterations over time, with the bounds of the verdict
+// (theory.md, "What is diagnosed"), so that the page draws where a bound is passed.
 #include <algorithm>
 #include <cmath>
 
@@ -38,6 +40,7 @@ public:
         std::vector<double> largest;
         for (std::size_t k = 0; k < n_; ++k) {
             if (k % group_ == 0) largest.push_back(values[k]);
+            // Written so that nan wins: a value that is no number must not hide behind its neighbours.
             if (!(values[k] <= largest.back())) largest.back() = values[k];
         }
         data_.payload.add(std::string("quality ") + name, Precision::single, largest);

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What is drawn: surfaces of bodies, joints with their axes, lines of action of loads.
+// Joints have no pictures of their own kind: an axis is read off their rows, each of which is a product of
+// two directions (theory.md, "Joints are quadratic forms").
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -59,6 +61,8 @@ public:
         std::vector<int> key;
         for (const auto* vectors : {&unit.points, &unit.normals})
             for (const Vector3& v : *vectors)
+                // Rounded, since equal shapes of different sizes differ by rounding after their stretch is
+                // taken off.
                 for (const double x : v.a) key.push_back(static_cast<int>(std::lround(1e5 * x)));
         for (const auto& corners : unit.triangles) key.insert(key.end(), corners.begin(), corners.end());
         const auto [place, is_new] = known_.try_emplace(std::move(key), static_cast<int>(known_.size()));
@@ -125,6 +129,7 @@ RowDirections directions_of(const ConstraintRow& row)
 {
     Matrix<3, 4> product{};   // rows: components of the first direction
     for (int i = 0; i < 3; ++i)
+        // The form of a row a . b is the outer product of both directions, here or folded into B_j.
         for (int j = 0; j < 4; ++j) product(i, j) = row.body_i == world ? row.b_j(i, j) : row.c_ij(i + 1, j);
     int largest = 0;
     for (int k = 1; k < 12; ++k)

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Files that are written whole or not at all: into a temporary beside the target, synced, then renamed over
+// it. A lock tells temporaries in use from those that a crash has left, which the next writer removes.
 #include "livens/io/results/atomic_file.h"
 
 #include <atomic>
@@ -47,6 +49,7 @@ ssize_t insistent(const Call& call)
 fs::path followed(fs::path file)
 {
     std::error_code error;
+    // The result goes where the link points, as any other program would write it.
     for (int links = 0; fs::is_symlink(fs::symlink_status(file, error)); ++links) {
         const fs::path target = fs::read_symlink(file, error);
         if (links == 40 || error) fail("cannot follow " + quoted(file), links == 40 ? ELOOP : error.value());

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Whether a run fits together: sizes, orders of ends, denominators, indices. Files may come from anywhere,
+// and everything behind takes these for granted without looking again.
 #include <cmath>
 
 #include "livens/io/results/layout.h"
@@ -35,6 +37,7 @@ void check_field(const Field& field, std::size_t n_values, std::size_t n_element
     require(field.n_values >= 0 && static_cast<std::size_t>(field.n_values) == n_values && n_values > 0,
             what);
     const std::size_t degree = static_cast<std::size_t>(field.degree);
+    // Neighbouring elements share a node where the field is continuous.
     const std::size_t n_coefficients = field.continuous ? n_elements * degree + 1 : n_elements * (degree + 1);
     require(field.values.size() % n_values == 0 && field.values.size() / n_values == n_coefficients, what);
     if (field.denominators.empty()) return;

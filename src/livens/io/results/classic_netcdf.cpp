@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The writer of the classic NetCDF format, and its checksum.
+// Header first with places for checksums, data one variable after the other, checksums last: a file can be
+// written without being held in memory (docs/results.md).
 #include <cassert>
 
 #include "livens/io/results.h"
@@ -108,6 +110,7 @@ std::size_t ClassicWriter::put_attributes(const std::vector<Attribute>& attribut
 void ClassicWriter::put_header()
 {
     const auto wide = [&](std::uint64_t n) { return n > largest_; };
+    // CDF-2 where sizes fit into 32 bits, since every reader knows it; CDF-5 only where it must be.
     is_wide_ = std::ranges::any_of(variables_, wide, &ClassicVariable::n_bytes) ||
                std::ranges::any_of(dimensions_, wide, &ClassicDimension::length);
     header_ = is_wide_ ? "CDF\5" : "CDF\2";
@@ -137,6 +140,7 @@ void ClassicWriter::put_header()
     }
     std::uint64_t begin = header_.size();
     for (std::size_t i = 0; i < variables_.size(); ++i) {
+        // The length of the header is known only now; offsets fill the places that were left for them.
         variables_[i].begin = begin;
         swap_numbers(&begin, 1, header_.data() + begins[i]);
         begin += variables_[i].n_bytes;
@@ -154,6 +158,7 @@ void ClassicWriter::begin(ByteSink sink)
 void ClassicWriter::write(int variable, std::string_view bytes)
 {
     Progress& progress = progress_[variable];
+    // The checksum takes words of eight bytes, so pieces may end elsewhere only at the very end.
     assert(progress.done % 8 == 0 && progress.done + bytes.size() <= variables_[variable].n_bytes);
     progress.checksum.add(bytes);
     sink_(variables_[variable].begin + progress.done, bytes);
@@ -180,6 +185,7 @@ void ClassicWriter::append(int variable, std::string_view bytes)
     assert(bytes.size() == variables_[variable].n_values);
     const std::size_t whole = bytes.size() & ~std::size_t{7};
     write(variable, bytes.substr(0, whole));
+    // Bytes that fill the variable up to four belong to it, and to its checksum.
     std::string rest(bytes.substr(whole));
     rest.resize(padded(rest.size()));
     if (!rest.empty()) write(variable, rest);
@@ -192,6 +198,7 @@ void ClassicWriter::finish()
         header_.replace(progress_[i].checksum_place, no_checksum.size(), progress_[i].checksum.text());
     }
     Checksum of_header;
+    // The header's own checksum covers those of the variables, so that none can be exchanged unseen.
     of_header.add(header_);
     header_.replace(checksum_place_, no_checksum.size(), of_header.text());
     sink_(0, header_);

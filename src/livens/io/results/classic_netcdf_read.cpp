@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The reader of the classic NetCDF format.
+// Nothing of a header is believed: counts are bounded by the file's size, offsets checked against overlap,
+// names against repetition, before any memory is taken (docs/results.md).
 #include <cassert>
 #include <limits>
 
@@ -41,6 +43,7 @@ public:
         if (at_ + padded(n) > largest_header) damaged("its header is larger than 17 MiB");
         const std::size_t end = static_cast<std::size_t>(at_ + padded(n)), have = text_.size();
         if (end > have) {
+            // Memory grows with what is read, not with what a count claims.
             text_.resize(std::min<std::uint64_t>(std::max(end, have + buffer_size), source_.size));
             source_.read(have, std::span(text_).subspan(have));
         }
@@ -57,6 +60,7 @@ public:
     std::uint64_t count()
     {
         const std::uint64_t n = integer(count_size_);
+        // Counts are signed in the format.
         if (n >> (8 * count_size_ - 1) != 0) damaged("a count in its header is negative");
         return n;
     }
@@ -142,6 +146,8 @@ ClassicReader::ClassicReader(ByteSource source, bool verify) : source_(std::move
     std::uint64_t left = source_.size - header_.size();   // where variables share bytes, reading has no end
     for (const ClassicVariable& v : variables_) {
         if (v.begin < header_.size()) damaged("variable '" + v.name + "' begins within the header");
+        // Variables that fit between header and end by the sum of their sizes bound the work of reading them
+        // all.
         if (v.n_bytes > left) damaged("its variables lie upon each other");
         left -= v.n_bytes;
     }
@@ -185,6 +191,7 @@ void ClassicReader::read_variable(Header& header)
             damaged("variable '" + v.name + "' has a dimension that does not exist");
         const std::uint64_t length = dimensions_[id].length;
         v.dimensions.push_back(dimensions_[id].name);
+        // The product of dimensions may overflow; it is divided instead.
         if (length != 0 && v.n_values > std::numeric_limits<std::uint64_t>::max() / 16 / length)
             damaged("variable '" + v.name + "' is larger than any file");
         v.n_values *= length;
@@ -204,6 +211,7 @@ void ClassicReader::read_variable(Header& header)
 void ClassicReader::verify_header() const
 {
     if (!verify_) return;
+    // Only runs of this format have one; the version was checked before, since other files have none.
     const AttributeValue* stored = attribute(checksum_name);
     const std::string* text = stored == nullptr ? nullptr : std::get_if<std::string>(stored);
     if (text == nullptr || text->size() != no_checksum.size())
@@ -212,6 +220,7 @@ void ClassicReader::verify_header() const
     const std::size_t name = without.find(checksum_name);
     const std::size_t place = name == std::string::npos ? name : without.find(*text, name);
     if (place == std::string::npos) damaged("the checksum of its header is misplaced");
+    // The checksum of the header was made with zeros in its own place.
     without.replace(place, no_checksum.size(), no_checksum);
     Checksum checksum;
     checksum.add(without);

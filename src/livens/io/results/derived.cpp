@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// What other programs want of a run and livens can make again: energies and balances, integrals, violations,
+// masses, samples. It is written piece by piece, never held as a whole (docs/results.md).
 #include <algorithm>
 #include <string>
 #include <variant>
@@ -69,6 +71,7 @@ void write_balance(RunWriter& archive, const Model& model, const Motion& motion,
                 std::visit([&](auto part) { file.append(variables[i], all_of(piece.*part)); },
                            balance_variables[i].part);
         };
+        // Short motions have kept their balances from the verdict; long ones make them a second time.
         if (known != nullptr) return append(*known);
         balance(model, motion, 1 << 12, append);
     });

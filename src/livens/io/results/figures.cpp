@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// The one table of single numbers of a run: files, JSON, reports and the page of results are made from it.
+// One more figure is a row here and one in docs/results.md.
 #include "livens/io/results/figures.h"
 
 #include <cmath>
@@ -144,6 +146,7 @@ bool is_whole(const Figure& figure)
 bool set_figure(Run& run, const Figure& figure, double value)
 {
     return with_number(run, figure, [value]<class Number>(Number& number) {
+        // Doubles hold whole numbers exactly up to 2^53; a file that says more is damaged.
         if constexpr (std::is_integral_v<Number>) {
             constexpr double limit = sizeof(Number) == sizeof(int) ? std::numeric_limits<int>::max() : 0x1p53;
             if (!(std::abs(value) <= limit) || value != std::floor(value)) return false;

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What stands where something is to be written.
+// Files are replaced silently only if their beginning shows that livens wrote them; what cannot be read
+// counts as somebody else's.
 #include <algorithm>
 #include <string>
 #include <system_error>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Reads a run by the same walk that writes it (layout.h): each variable must have the type and the shape that
+// livens writes. Figures of later minor formats may be missing in older files (docs/results.md).
 #include <limits>
 #include <optional>
 #include <set>
@@ -24,6 +26,7 @@ public:
     {
         for (const Figure& figure : run_figures()) {
             const std::optional<double> value = file_.number(figure.name);
+            // A figure that came with a later minor format keeps its default.
             if (!value && figure.since > file_.number("livens_format_minor").value_or(0)) continue;
             if (!value) refuse(std::string("attribute ") + figure.name + " is missing or no number");
             if (!set_figure(run, figure, *value))
@@ -60,6 +63,7 @@ public:
         const std::size_t width = file_.dimension(v->dimensions.back());
         for (std::size_t i = 0; i < bytes.size(); i += width) {
             const std::string_view row = std::string_view(bytes).substr(i, width);
+            // The zeros that fill a row up are no part of the name.
             values.emplace_back(row.substr(0, row.find_last_not_of('\0') + 1));
         }
     }
@@ -181,8 +185,10 @@ Run read_run_from(ByteSource source, bool verify)
     visit_run(archive, run);
     archive.verify_rest();
     check_options(run);
+    // These follow from others, and are not stored twice.
     run.estimate.n_bodies = run.motion.n_bodies;
     run.estimate.n_joints = run.estimate.reaction.empty() ? 0 : static_cast<int>(run.joint_names.size());
+    // Sizes of all parts must fit each other before anything indexes one by another.
     check_run(run);
     if (!run.estimate.empty()) run.estimate.find_largest(run.motion.mesh);
     return run;
@@ -200,6 +206,7 @@ RunHead read_run_head(const std::filesystem::path& path)
         check_version(file);
         RunHead head;
         RunReader archive(file);
+        // The head alone: what a file is can be told without reading the motion.
         visit_head(archive, head.run);
         check_options(head.run);
         head.start = file.number("start").value_or(0);

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Bodies, joints, sensors and estimated errors at the output times.
+// All of it follows from the motion in the same file (docs/results.md, Samples at the output times). It is
+// written for readers that want curves and do not interpolate polynomials themselves.
 #include <algorithm>
 #include <array>
 #include <limits>
@@ -127,6 +129,7 @@ public:
           is_to_accuracy_(run.report.accuracy > 0), of_joints_(model, run.motion),
           of_rigidity_(model, run.motion), sensors_(model, run.motion)
     {
+        // A motion that ended early has samples as far as it goes, and none beyond.
         const auto first = std::ranges::lower_bound(run.output, motion_.start());
         const auto last = std::ranges::upper_bound(run.output, motion_.end());
         times_ = {first, last};
@@ -135,6 +138,8 @@ public:
             "time", {"time"}, "s", "none", "output times that the motion has reached", {{"axis", "T"}}};
         archive.view(time, NumberType::real, times_);
         if (!run.growth.empty()) {
+            // Behind the horizon a sample is one of many motions (theory.md, The horizon), which plots should
+            // show.
             std::vector<bool> beyond;
             for (const double t : times_) beyond.push_back(run.verdict.is_beyond_horizon(t));
             const char* const meaning = "1: rounding at the start decides which of many motions is shown";
@@ -146,6 +151,8 @@ public:
             if (n > 0)
                 bodies_.push_back({archive.declare(info_of(v), NumberType::real, n * sizes[v.part.index()])});
         }
+        // A quaternion and its negative are one orientation; each takes the sign nearest to the sample before
+        // it.
         previous_.resize(model.bodies().size(), Vector4{1, 0, 0, 0});
         declare_rigidity(archive);
         declare_errors(archive);
@@ -174,6 +181,8 @@ public:
             add_errors(t);
             if (!coordinates_.empty()) add_coordinates(t);
             if (!readings_.empty()) append_all(readings_[0], sensors_.at(t));
+            // Samples of long motions of many bodies exceed the memory: they go to the file in pieces. The
+            // sum estimates the numbers of one instant, so that a piece has about `chunk` of them.
             held += 68 * model_.bodies().size() + 12 * model_.joints().size() + 6 * model_.sensors().size();
             if (held < chunk) continue;
             flush();
@@ -200,6 +209,7 @@ private:
     {
         std::vector<double> volumes;
         for (const Body& body : model_.bodies())
+            // Without a shape there is no volume and no mean stress: nan says that nothing is known.
             volumes.push_back(body.volume > 0 ? body.volume : std::numeric_limits<double>::quiet_NaN());
         if (volumes.empty()) return;
         const std::size_t n = times_.size() * volumes.size() * 6;
@@ -225,6 +235,7 @@ private:
     /// Output times are element ends; at another instant nothing is known of the polynomial's error.
     void add_errors(double t)
     {
+        // The estimate compares two solutions at element ends (theory.md, The estimated error).
         const int end = element_end_at(motion_.mesh, snap_to_element_end(motion_.mesh, t));
         for (std::size_t i = 0; i < errors_.size(); ++i) {
             const std::size_t n = errors_at_ends_[i]->size() / motion_.mesh.ends.size();

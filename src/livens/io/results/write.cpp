@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// A run as a NetCDF classic file (docs/results.md). Variables are declared first, since the header of such a
+// file holds all sizes and offsets; their numbers follow in the same order, some at a time, so that samples
+// need not be in memory as a whole.
 #include <algorithm>
 #include <cassert>
 #include <limits>
@@ -51,6 +54,8 @@ int RunWriter::declare(const VariableInfo& info, NumberType type, std::size_t n_
     }
     const std::string& front = info.dimensions.front();
     if (file_.dimension(front) == 0) file_.dimension(front, n_values / n_in_one);
+    // The first dimension has the length that the values give it; all others are known before. Variables that
+    // share a dimension must agree, else the file would be read wrongly.
     assert(n_values == file_.dimension(front) * n_in_one);
     ClassicVariable variable{info.name,
                              info.dimensions,
@@ -72,6 +77,7 @@ void RunWriter::figures(const Run& run)
     for (const Figure& figure : run_figures()) {
         const double value = figure_of(run, figure);
         if (is_whole(figure) && std::abs(value) <= std::numeric_limits<int>::max())
+            // Attributes of whole figures are integers where they fit: a reader shows 12, not 12.0.
             file_.attribute(figure.name, static_cast<int>(value));
         else
             file_.attribute(figure.name, value);
@@ -101,6 +107,7 @@ void RunWriter::names(const std::string& name, const char* meaning, const std::v
     std::size_t width = 1;
     for (const std::string& s : values) width = std::max(width, s.size());
     file_.dimension(text_dimension(name), width);
+    // NetCDF classic knows no strings: a list of names is a matrix of bytes of UTF-8.
     std::string rows(width * values.size(), '\0');
     for (std::size_t i = 0; i < values.size(); ++i) values[i].copy(rows.data() + i * width, width);
     const std::string& along = dimension.empty() ? name : dimension;
@@ -144,6 +151,7 @@ Run make_run(const Model& model, Solution solution, const Method& method)
     run.estimate = std::move(solution.estimate);
     run.growth = std::move(solution.growth);
     if (!run.growth.empty())
+        // Growth that was computed for a part of the time only is unknown for the other: nan, not zero.
         run.growth.resize(run.motion.mesh.ends.size(), std::numeric_limits<double>::quiet_NaN());
     run.version = version;
     return run;
@@ -167,6 +175,8 @@ void write_run_to(const ByteSink& sink, const Model& model, const Run& run, std:
 
 void write_run(const std::filesystem::path& file, const Model& model, const Run& run, bool spares_others)
 {
+    // The file appears under its name when it is complete; a crash leaves the old one (docs/program.md, What
+    // is replaced).
     AtomicFile out(file, spares_others ? begins_as_run : nullptr);
     write_run_to([&](std::uint64_t offset, std::string_view bytes) { out.write(offset, bytes); }, model, run);
     out.commit();

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// What the readers of tables share: the model as it grows, names, and places in the file for complaints. The
+// core complains with paths as `body[upper].mass`; here they become line and column, words of the file, and
+// help in its spelling.
 #include "livens/io/scenario/builder.h"
 
 #include <algorithm>
@@ -7,6 +10,7 @@ namespace livens {
 
 namespace {
 
+// Names become rows of characters in results, all as wide as the longest.
 constexpr std::size_t longest_name = 200;
 
 /// How files spell what the advice of a complaint speaks of.
@@ -75,6 +79,7 @@ Builder::Builder(const Section& top, const MeshSource& meshes, Findings& finding
 
 void Builder::remember(const std::string& path, const Section& section)
 {
+    // Complaints about a table as a whole point at its name, which says more than its header.
     places_[path] = section.has("name") ? section.place("name") : section.place();
     for (const Value& value : section.values()) {
         const std::string prefix = path.empty() ? "" : path + ".";
@@ -91,6 +96,7 @@ SourceLocation Builder::find_place(std::string path, const std::string& context)
     while (!path.empty()) {
         const auto found = places_.find(path);
         if (found != places_.end()) return found->second;
+        // A key that has its default stands nowhere in the file: the table in which it could stand is shown.
         const std::size_t dot = path.rfind('.');
         path.resize(dot == std::string::npos ? 0 : dot);
     }
@@ -101,6 +107,8 @@ SourceLocation Builder::find_place(std::string path, const std::string& context)
 InputError Builder::unknown_name(const std::string& kind, const std::string& name, const std::string& path,
                                  const std::vector<std::string_view>& known) const
 {
+    // A thing that was stated wrongly is not in the model, and has been told of. To say that it does not
+    // exist would be a second message about one mistake.
     const auto is_it = [&](const Section& one) {
         return (one.has("name") ? one.text("name") : default_name(one)) == name;
     };
@@ -132,6 +140,7 @@ std::string help_in_toml(const Complaint& complaint)
     for (const Spelling& s : spellings)
         if (s.code == complaint.code && complaint.help.find(s.concept_word) != std::string::npos)
             keys += (keys.empty() ? " (" : ", ") + std::string(s.toml);
+    // The core speaks of concepts; the keys that spell them are added unless it has named some.
     const bool has_keys = complaint.help.find(" = \"") != std::string::npos;
     return complaint.help + (keys.empty() || has_keys ? "" : keys + ")");
 }
@@ -170,6 +179,7 @@ bool Builder::find_pair(const Section& section, std::string_view self, BodyRefer
 void Builder::close_bodies()
 {
     const double length = model_.n_bodies() > 0 ? model_.length() : 0;
+    // A single point mass at rest has no length; slacks relative to the model then are in metres.
     length_ = length > 0 ? length : 1;
 }
 

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// From text to scenario (docs/scenario.md): bounds on the text, the parser of TOML, the tables by the schema,
+// then the model table by table. All findings of a stage are gathered; later stages that need what is wrong
+// are not tried, so that one mistake is told once.
 #include "livens/io/scenario.h"
 
 #include <cerrno>
@@ -50,6 +53,8 @@ void build(const Node& root, TreePart part, const MeshSource& meshes, Scenario& 
     if (!check_format(root, findings)) return;
     const Section top(root, root_table(), "the scenario", findings);
     if (!check_counts(top, findings)) return;
+    // The order is that of references: joints name bodies, the start moves them along joints, drives begin
+    // where the joints stand then, and loads read sensors, except for sensors that read loads.
     Builder builder(top, meshes, findings);
     read_bodies(builder);
     read_joints(builder);
@@ -68,6 +73,7 @@ void build(const Node& root, TreePart part, const MeshSource& meshes, Scenario& 
         check_method(builder.model(), {scenario.conditions}, scenario.time, scenario.method,
                      scenario.options);
     });
+    // The ends of time are closed once here, for the complaint; the solution takes them from there.
     scenario.prepared = std::make_shared<Prepared>();
     if (fits) check_ends(builder, scenario.conditions, scenario.options.initial, *scenario.prepared);
     scenario.model = std::move(builder.model());
@@ -103,6 +109,7 @@ bool read_text(const std::filesystem::path& file, std::string& text, Findings& f
     if (!std::filesystem::exists(status)) return findings.error({}, "io-not-found", "there is no such file");
     if (std::filesystem::is_directory(status))
         return findings.error({}, "io-directory", "this is a directory, not a file");
+    // The size is asked before anything is read, and counted again while reading, as the file may grow.
     const bool is_regular = std::filesystem::is_regular_file(status);
     const std::uintmax_t size = is_regular ? std::filesystem::file_size(file, error) : 0;
     if (!error && size > max_scenario_bytes)
@@ -132,6 +139,7 @@ void shield(Findings& findings, Work work)
     } catch (const std::bad_alloc&) {
         findings.error({}, "resource-limit", "there is not enough memory to read this scenario");
     } catch (const std::exception& e) {
+        // Whoever embeds the reader gets findings and no exception, even of a fault of the reader itself.
         findings.error({}, "internal", std::string("this should not happen: ") + e.what());
     }
 }

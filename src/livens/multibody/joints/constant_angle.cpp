@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// One row a . b = cos(angle): two axes keep their angle, and nothing else is held. Its gradient is the cross
+// product of the axes (theory.md, "Joints are quadratic forms").
 #include <cmath>
 #include <numbers>
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// A joint of constant velocity as one quadratic row: theory.md, "Joints are quadratic forms", Equal turns.
 #include "livens/multibody/joints/joint_frame.h"
 
 namespace livens {
@@ -19,6 +20,7 @@ Joint constant_velocity(const std::string& name, int first, int second, const Jo
     ConstraintRow row = inner_product_row(joint.first, direction(x1), joint.second, direction(y2), 0, 1);
     const ConstraintRow other =
         inner_product_row(joint.first, direction(y1), joint.second, direction(x2), 0, 1);
+    // The difference of two forms of the same pair is a form again, so the row stays quadratic.
     row.c_ij -= other.c_ij;
     row.b_j -= other.b_j;
     row.label = "turn";

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Joints between coordinates of other joints.
+// Gears, racks and pinions are rows of smooth functions of coordinates: theory.md, "Coordinates of joints".
+// Turns are counted in differences from node to node, so that a gear holds for any number of turns.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -39,6 +41,8 @@ Joint coupled(const std::string& name, const char* type, const Joint& first, con
     Joint joint;
     joint.name = name;
     joint.type = type;
+    // The coupling is between the bodies that move; where both joints move one body, between it and the first
+    // body of the first joint.
     const bool has_one_body = first.second == second.second;
     joint.first = has_one_body ? first.first : first.second;
     joint.point_first = has_one_body ? first.point_first : first.point_second;
@@ -50,6 +54,7 @@ Joint coupled(const std::string& name, const char* type, const Joint& first, con
                           "the joints '" + first.name + "' and '" + second.name + "' join the same bodies",
                           "", "", "", "a coupling needs two joints that move different bodies"});
     const std::vector<CoupledCoordinate> terms{{-factor, of_first}, {1, of_second}};
+    // The constant is what the coordinates are where the bodies stand: teeth mesh there by definition.
     const double now = constraint_value(coupling_row(terms, 0, scale, type), X);
     joint.rows.push_back(coupling_row(terms, now, scale, type));
     return joint;

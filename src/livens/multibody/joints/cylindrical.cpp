@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Four rows: two hold the direction of the axis, two the point on the line (theory.md, "Joints are quadratic
+// forms").
 #include "livens/multibody/joints/joint_frame.h"
 
 namespace livens {

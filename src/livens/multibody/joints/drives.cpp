@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Joints that follow functions of time: coordinates, distances, points and whole bodies. theory.md, "Drives",
+// has the rows, their derivatives and why the row of an angle is regular at every angle.
 #include "livens/multibody/joints/drives.h"
 
 #include <limits>
@@ -38,6 +40,8 @@ Joint driven_coordinate(const std::string& name, const Joint& joint, const Named
     row.body_j = forms[0].body_j;
     row.label = "driven " + coordinate.name;
     if (!coordinate.coordinate.is_angle()) {
+        // The law counts from the stated value of the coordinate; its form counts from where the bodies
+        // stand.
         const TimeFunction raw = shifted(law, value_of(forms[0], X) - coordinate.at_stated);
         static_cast<PairForm&>(row) = forms[0];
         QuadraticForm one;
@@ -66,6 +70,8 @@ Joint driven_coordinate(const std::string& name, const Joint& joint, const Named
     row.drives = {{{cosine, law.breaks()}, forms[1]}, {{negative, law.breaks()}, forms[0]}};
     branch.drives = {{{cosine, law.breaks()}, forms[0]}, {{sine, law.breaks()}, forms[1]}};
     driven.rows = {row};
+    // The row is zero half a turn on as well. The branch, cos of the difference, must be positive: it tells
+    // them apart.
     driven.branches = {branch};
     return driven;
 }
@@ -104,6 +110,7 @@ Joint driven_body(const std::string& name, int body, const Vector3& at,
 {
     Joint joint = driven_point(name, body, at, path, X, scale);
     const Joint held = weld(name, world, body, {joint.point_first, at}, world_configuration, X[body], scale);
+    // The first three rows of a weld hold its point, which the path holds already.
     joint.rows.insert(joint.rows.end(), held.rows.begin() + 3, held.rows.end());
     joint.branches = held.branches;
     return joint;

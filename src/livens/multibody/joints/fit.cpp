@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Joints that miss their bodies by a little, as after rounding in a file: the frame on the second body is
+// moved by the least shift and turn with which all rows are zero. Gauss-Newton steps with differences by the
+// six numbers.
 #include "livens/multibody/joints/fit.h"
 
 #include <algorithm>

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Frames of joints on both bodies and the rows that joints are made of: held points, axes, lines and planes
+// (theory.md, "Joints are quadratic forms"). Axes are unit vectors of the bodies, so rows have scale 1 or the
+// model's length.
 #include <algorithm>
 #include <utility>
 
@@ -52,6 +55,8 @@ Joint start_joint(const std::string& name, const char* type, int first, int seco
         std::swap(frame.point_first, frame.point_second);
         std::swap(frame.axis_first, frame.axis_second);
         std::swap(frame.across_first, frame.across_second);
+        // Exchanged bodies see angles and displacements with the other sign; reversed axes give back the
+        // stated one.
         frame.axis_first *= -1;
         frame.axis_second *= -1;
     }
@@ -71,6 +76,7 @@ void normalise_axes(const Joint& joint, JointFrame& frame)
     frame.axis_second = unit_axis(frame.axis_second, "joint[" + joint.name + "]");
     const bool is_given =
         dot(frame.across_first, frame.across_first) > 0 && dot(frame.across_second, frame.across_second) > 0;
+    // A stated direction is made perpendicular to the axis; without one any will do, the same each time.
     const auto across = [&](const Vector3& given, const Vector3& axis) {
         return is_given ? unit_axis(given - dot(given, axis) * axis, "joint[" + joint.name + "]")
                         : across_axis(axis).u;
@@ -90,6 +96,7 @@ void fix_across(JointFrame& frame, int first, int second, const Matrix34& X_firs
     const Matrix34 &X = first == world ? world_configuration : X_first,
                    &Y = second == world ? world_configuration : X_second;
     const Vector3 a = X * direction(axis_first), b = Y * direction(axis_second);
+    // The turn below divides by 1 + a . b, which vanishes where the axes are opposite.
     constexpr double opposite = 1e-6;
     if (1 + dot(a, b) < opposite)
         throw InputError({"joint-bend", path + ".axes",
@@ -106,6 +113,8 @@ void fix_across(JointFrame& frame, int first, int second, const Matrix34& X_firs
 AxisPair across_axis(const Vector3& axis)
 {
     int smallest = 0;
+    // The unit vector of the smallest component is the farthest from the axis, so no digits are lost in
+    // taking the axis off.
     for (int i = 1; i < 3; ++i)
         if (std::abs(axis[i]) < std::abs(axis[smallest])) smallest = i;
     Vector3 u{};
@@ -132,6 +141,7 @@ void hold_axis(Joint& joint, const JointFrame& frame)
 {
     joint.axis_first = frame.axis_first;
     joint.axis_second = frame.axis_second;
+    // Two inner products hold an axis; the third direction, along it, would add nothing but a dependent row.
     const AxisPair across = across_axis(frame.axis_first);
     hold_perpendicular(joint, across.u, frame.axis_second, "axis 1");
     hold_perpendicular(joint, across.v, frame.axis_second, "axis 2");
@@ -141,6 +151,7 @@ void hold_spin(Joint& joint, const JointFrame& frame)
 {
     const Vector3 v = cross(frame.axis_second, frame.across_second);
     hold_perpendicular(joint, frame.across_first, v, "turn");
+    // The row of the turn holds at half a turn as well: the branch has to be positive.
     joint.branches.push_back(inner_product_row(joint.first, direction(frame.across_first), joint.second,
                                                direction(frame.across_second), 0, 1));
     joint.branches.back().label = "turn";

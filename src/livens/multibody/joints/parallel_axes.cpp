@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Two rows: axes stay parallel, wherever the bodies are (theory.md, "Joints are quadratic forms").
 #include "livens/multibody/joints/joint_frame.h"
 
 namespace livens {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// One row a . b = 0: two axes stay perpendicular (theory.md, "Joints are quadratic forms").
 #include "livens/multibody/joints/joint_frame.h"
 
 namespace livens {

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Three rows: two hold the axis, one keeps the point in the plane across it (theory.md, "Joints are quadratic
+// forms").
 #include "livens/multibody/joints/joint_frame.h"
 
 namespace livens {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// One row: a point of one body stays in a plane of the other (theory.md, "Joints are quadratic forms").
 #include "livens/multibody/joints/joint_frame.h"
 
 namespace livens {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Five rows: no turn, and the point on a line (theory.md, "Joints are quadratic forms").
 #include "livens/multibody/joints/joint_frame.h"
 
 namespace livens {

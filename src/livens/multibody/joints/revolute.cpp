@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Five rows: three hold the point, two the axis (theory.md, "Joints are quadratic forms").
 #include "livens/multibody/joints/joint_frame.h"
 
 namespace livens {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// One distance row, 1/2 (|x_j - x_i|^2 - l^2) = 0 (P27): theory.md, "Joints are quadratic forms".
 #include "livens/base/error.h"
 #include "livens/multibody/joints/joint_frame.h"
 #include "livens/multibody/wording.h"

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// A cylindrical joint whose displacement follows its angle by the pitch: the fifth row is a coupling of both
+// coordinates (theory.md, "Coordinates of joints").
 #include <cmath>
 #include <numbers>
 #include <utility>

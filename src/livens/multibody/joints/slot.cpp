@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// A point on a curve of another body: two rows across the curve, its parameter eliminated inside of them
+// (theory.md, "Coordinates of joints", Curves).
 #include "livens/multibody/joints/joint_frame.h"
 
 namespace livens {

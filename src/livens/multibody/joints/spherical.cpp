@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Three rows hold a point, linear in X: theory.md, "Joints are quadratic forms".
 #include "livens/multibody/joints/joint_frame.h"
 
 namespace livens {

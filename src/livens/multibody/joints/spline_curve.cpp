@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Curves of slots through points: cubic splines by chord length with normals that do not turn about the
+// tangent [Bishop1975], which theory.md, "Coordinates of joints", Curves, takes for granted in its
+// derivatives.
 #include "livens/multibody/joints/spline_curve.h"
 
 #include <algorithm>
@@ -116,6 +119,8 @@ private:
         };
         double angle = 0;
         for (std::size_t i = 0; i < rule_.points.size(); ++i)
+            // The angle is an integral of a smooth function over an eighth of a piece, for which five Gauss
+            // points leave rounding.
             angle +=
                 (until - from) * rule_.weights[i] * across(from + rule_.points[i] * (until - from)).turning;
         const Across there = across(until);
@@ -149,6 +154,7 @@ private:
                 plane = normal;
             }
         }
+        // Any normal serves a straight line; the axis of space that is far from it loses no digits.
         if (widest < 1e-9) {   // a straight line
             const Vector3 x{1, 0, 0}, y{0, 1, 0};
             plane = cross(begin, std::abs(begin[0]) < 0.7 ? x : y);

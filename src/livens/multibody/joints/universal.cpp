@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Four rows: three hold the point, one keeps the two axes of the cross perpendicular (theory.md, "Joints are
+// quadratic forms").
 #include "livens/multibody/joints/joint_frame.h"
 
 namespace livens {

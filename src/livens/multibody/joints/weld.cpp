@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Six rows: no motion between two bodies. The three of the rotation also hold at half turns about the axes;
+// the branch, the trace of the turn, tells these apart (theory.md, "Joints are quadratic forms").
 #include "livens/multibody/body.h"
 #include "livens/multibody/joints/joint_frame.h"
 
@@ -34,6 +36,7 @@ Joint weld(const std::string& name, int first, int second, const JointFrame& fra
     Matrix3 b = project_directors(transpose(directors(X_b)) * directors(X_a));
     if (dot(f.across_first, f.across_first) > 0 && dot(f.across_second, f.across_second) > 0) {
         normalise_axes(joint, f);
+        // A stated frame holds instead of the present orientation, which may miss it by a little.
         b = triad(f.axis_second, f.across_second) * transpose(triad(f.axis_first, f.across_first));
     }
     static constexpr const char* labels[3] = {"axis 1", "axis 2", "axis 3"};

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// A stated force or torque along a coordinate of a joint, Q(t): the work Q dq gives F = Q dq/dX on each body
+// (theory.md, "Coordinates of joints", Loads along coordinates).
 #include "livens/multibody/loads/load_laws.h"
 #include "livens/multibody/loads/load_values.h"
 

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Attraction by a point to second order in the extent of the body, MacCullagh's formula: theory.md,
+// "Coordinates of joints", Attraction. Both terms of the potential are laws of three coordinates, with exact
+// second derivatives.
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -30,6 +33,7 @@ struct Value {
         const Vector3 dr = n * rn / r2 * y;   // of r^n
         energy += rn * a;
         slope += rn * da + a * dr;
+        // Product rule for a(y) r^n, with d2 r^n = n r^(n-2) (1 + (n - 2) y y^T / r^2).
         curvature += rn * dda + outer(da, dr) + outer(dr, da) +
                      a * (n * rn / r2) * (identity<3>() + (n - 2) / r2 * outer(y, y));
     }
@@ -119,6 +123,7 @@ Load attraction(const std::string& name, int body, const Body& properties, const
     for (const PairForm& row : coincidence_rows(world, there, body, centre, 1)) add(row);
     std::vector<Term> terms{
         {0, [mu = law.mu, m = mass.mass](const Vector3& y) { return of_the_centre(mu, m, y); }}};
+    // A point has no extent, and no axes in which J could be constant.
     if (law.has_gradient && !properties.is_point) {
         for (int k = 0; k < 3; ++k) {
             Vector3 unit{};

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// A force per unit mass: F = b w^T with the first column w of m (P20), theory.md, "Bodies from meshes", Loads
+// on surfaces.
 #include "livens/multibody/loads/load_values.h"
 #include "livens/multibody/loads/surface_loads.h"
 

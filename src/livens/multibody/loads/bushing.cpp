@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// A bushing: stiffness and damping of all six motions between two frames, for turns up to half a turn.
+// Potential and dissipation of displacements and rotation vector r give the factors of seven units along
+// these forms: theory.md, "Coordinates of joints", Bushing. Nothing is small in it; at half a turn r jumps,
+// and there it ends.
 #include <array>
 #include <cmath>
 
@@ -42,11 +46,13 @@ struct Psi {
 
 Psi psi(double sigma, double c)
 {
+    // 1 on the rotation group, but not between the nodes of an element.
     const double r2 = sigma + c * c;
     Psi p{};
     p.by_c = -1 / r2;
     p.by_sigma_c = 1 / (r2 * r2);
     p.by_c_c = 2 * c / (r2 * r2);
+    // Below a hundredth ten terms of the series leave 1e-20; above, the closed forms lose few digits.
     const double x = sigma / (c * c);
     if (c > 0 && x < 0.01) {   // the closed forms cancel: series of atan(sqrt(x)) / sqrt(x)
         double power = 1, sign = 1;
@@ -143,6 +149,7 @@ struct BushingLaw {
         for (int k = 0; k < 6; ++k) f[k] = force(m, k);
         for (std::size_t i = 0; i < n; ++i) {
             factors[i] = 0;
+            // Virtual work f . du = f . J dq: the factor of coordinate i is (J^T f)_i.
             for (std::size_t k = 0; k < 6; ++k) factors[i] += J(k, i).value * f[k];
         }
         if (slopes.empty()) return;
@@ -198,6 +205,7 @@ bool is_negative(Matrix<6, 6> A)
         const double slack = 1e-12 * std::abs(given(k, k));
         if (A(k, k) < -slack || !std::isfinite(A(k, k))) return true;
         for (int i = k + 1; i < 6; ++i) {
+            // Where a pivot is zero its row must be as well, or the form is negative somewhere.
             if (A(k, k) <= slack && std::abs(A(i, k)) > 1e-9 * std::sqrt(given(k, k) * given(i, i)))
                 return true;
             for (int j = k + 1; A(k, k) > slack && j < 6; ++j) A(i, j) -= A(i, k) * A(k, j) / A(k, k);
@@ -257,9 +265,11 @@ Load bushing(const std::string& name, int first, const BodyFrame& frame_first, i
         add(scaled(sum(product(m, l), -1, product(l, m)), 0.5, 0));
     }
     ConstraintRow trace = product(0, 0);
+    // c = (a1.b1 + a2.b2 + a3.b3 - 1) / 2, the cosine of the turn between both triads.
     static_cast<PairForm&>(trace) = sum(trace, 1, product(1, 1));
     add(scaled(sum(trace, 1, product(2, 2)), 0.5, -0.5));
     for (LawCoordinate& q : parts.coordinates) {
+        // The law takes the values of the forms, not their changes since the start.
         q.at_stated =
             form_value(q.coordinate.forms[0], q.coordinate.forms[0].body_i, q.coordinate.forms[0].body_j, X);
         parts.units.push_back(unit_along(name, q.coordinate, X));

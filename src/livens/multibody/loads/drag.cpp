@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Drag F = -(k1 + k2 |v|) v of a point against a medium: a law of three rates (theory.md, "Coordinates of
+// joints", Laws). With a quadratic part it bends where v is zero: that is its centre ("Laws that bend").
 #include <algorithm>
 #include <cmath>
 

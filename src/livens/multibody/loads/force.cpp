@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Forces with one vector all over: F = f w^T, w = (1, theta) for a point, the first column of m per unit
+// mass, int (1, theta) dA for a traction (P20). theory.md, "The law".
 #include "livens/multibody/loads/load_values.h"
 
 namespace livens {

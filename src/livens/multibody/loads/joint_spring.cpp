@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Spring, damper and preload along a coordinate of a joint: theory.md, "Coordinates of joints", Loads along
+// coordinates. Angles are unwrapped where the force depends on them.
 #include "livens/multibody/loads/load_coordinate.h"
 #include "livens/multibody/loads/load_values.h"
 
@@ -46,6 +48,7 @@ Load joint_spring(const std::string& name, const NamedCoordinate& coordinate, co
     load.depends_on_X = true;
     load.depends_on_V = spring.damping > 0;
     load.needs_directors = of.along.needs_directors();
+    // A damper alone does not read the angle, so it works in families that do not count turns.
     const bool counts_turns = is_angle && (of.is_elastic() || spring.preload != 0);
     of.along.place(load, counts_turns);
     if (counts_turns)

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// A coordinate q as a load sees it: value with its turns, rate, F_b = Q dq/dX_b and the tangents of both.
+// theory.md, "Coordinates of joints", Loads along coordinates, has the formulas.
 #include "livens/multibody/loads/load_coordinate.h"
 
 #include <algorithm>
@@ -36,6 +38,7 @@ std::vector<PairForm> from(const std::vector<PairForm>& forms, const Configurati
         sum.c = a / size * forms[0].c + b / size * other.c;
         return sum;
     };
+    // Turned so that the angle is zero where the bodies stand: the cut of atan2 then lies half a turn away.
     return {mixed(c, s), mixed(-s, c)};
 }
 
@@ -98,6 +101,7 @@ CoordinateState LoadCoordinate::look(const LoadArguments& arguments) const
     const RowGradient gradient = constraint_gradient(row_, X);
     CoordinateState seen{offset_ + constraint_value(row_, X), 0};
     if (angle_ >= 0 && !arguments.angles.empty()) {
+        // The family counts turns: of all values of the angle the one next to that of the last node is meant.
         seen.value = turned_to(seen.value, offset_ + arguments.angles[static_cast<std::size_t>(angle_)]);
     } else if (angle_ >= 0 && std::abs(seen.value - at_start_) > widest_angle) {
         seen.value = std::numeric_limits<double>::quiet_NaN();

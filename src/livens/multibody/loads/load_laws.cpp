@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Loads as units times factors, F = sum f_k(t, q, q') F_k: theory.md, "Coordinates of joints", Laws.
+// Expressions, drag, attraction and bushings state their law; forces, tangents, looks and guards are made
+// here, once for all.
 #include "livens/multibody/loads/load_laws.h"
 
 #include <algorithm>
@@ -41,6 +44,7 @@ struct Modulated {
         for (std::size_t k = 0; k < factors.size(); ++k) {
             LoadForces unit{};
             parts.units[k].forces(arguments, unit);
+            // Forces act on the first two bodies; further ones are only looked at by the law.
             for (std::size_t b = 0; b < 2; ++b) F[b] += factors[k] * unit[b];
         }
     }
@@ -82,6 +86,7 @@ struct Modulated {
             LoadForces unit{};
             parts.units[k].forces(arguments, unit);
             LoadTangent of_unit(n);
+            // The product rule: the factor times the unit's tangent, and the unit times the factor's slopes.
             if (parts.units[k].depends_on_X) parts.units[k].tangent(arguments, of_unit);
             for (std::size_t b = 0; b < 2; ++b)
                 for (std::size_t c = 0; c < n; ++c) {
@@ -112,6 +117,7 @@ Load modulated(const std::string& name, const std::string& type, const LoadParts
     };
     if (parts.units.empty() || !parts.law) refuse("a load needs units and a law");
     for (const Load& unit : parts.units)
+        // The tangent above takes units for functions of X alone: rates enter by the factors.
         if (unit.bodies != parts.units[0].bodies || unit.depends_on_V)
             refuse("units of a load act on the same bodies, whatever their velocity");
     const std::vector<int>& bodies = parts.units[0].bodies;
@@ -145,6 +151,7 @@ Load modulated(const std::string& name, const std::string& type, const LoadParts
     for (const LawReading& reading : parts.readings)
         load.readings.push_back({reading.name, reading.unit, energy(reading.value)});
     load.is_smooth = parts.is_smooth;
+    // Smooth laws need no looks between the load points (theory.md, "Looks at laws").
     if (!load.is_smooth) load.inside = all.inside();
     load.guards = parts.guards.guards;
     if (parts.guards.values)

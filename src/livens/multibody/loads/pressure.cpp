@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Pressure on a surface of a body, constant or linear in the place in the world, from integrals taken once:
+// theory.md, "Bodies from meshes", Loads on surfaces. The normals turn with the body, so the force depends on
+// X in two ways.
 #include "livens/multibody/loads/load_values.h"
 #include "livens/multibody/loads/surface_loads.h"
 
@@ -24,6 +27,7 @@ struct Pressure {
 
     Matrix34 integral(const LoadArguments& arguments) const
     {
+        // p + g . x with x = X (1, theta) is linear in theta: q = (p, 0) + X^T g.
         Vector4 q = transpose(arguments.X[0]) * load_value(gradient, arguments.at);
         q[0] += value(arguments.at).value;
         return livens::integral(surface, q);

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// A spring and damper between two points: F = f (1, theta)^T with the pull f along the line (theory.md, "The
+// law"). Where the ends meet, the direction of the pull turns round: that is the centre of theory.md, "Laws
+// that bend".
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -137,6 +140,7 @@ struct Spring {
         }
         least = std::sqrt(least), longest = std::sqrt(longest), change = std::sqrt(change);
         speed = std::sqrt(speed), speed_change = std::sqrt(speed_change);
+        // |du/ds| <= |r'| / |r|; where the ends may meet this is infinite, and the piece is halved.
         const double turn = change / least;
         double slope = law.stiffness;
         double tension = std::abs(law.preload) + law.damping * speed + law.stiffness * law.free_length;

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Laws of springs by elongation: force, stiffness and energy, which belong together to rounding, since the
+// drift of energy is judged by them (theory.md, "What is diagnosed").
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
@@ -28,6 +30,7 @@ std::vector<double> bends_of_lines(const std::vector<double>& x, const std::vect
     for (std::size_t i = 2; i < std::min(x.size(), y.size()); ++i) {
         const double before = (y[i - 1] - y[i - 2]) / (x[i - 1] - x[i - 2]),
                      after = (y[i] - y[i - 1]) / (x[i] - x[i - 1]);
+        // Rows on one straight line are no bend, and no element has to end there.
         if (std::abs(after - before) > 1e-12 * (std::abs(after) + std::abs(before)))
             bends.push_back(x[i - 1]);
     }
@@ -56,6 +59,7 @@ SpringLaw tabulated_spring(const std::vector<double>& elongations, const std::ve
                               "two forces at " + to_text(elongations[i]), "ascending elongations", "", ""});
     const TimeFunction inside = (is_spline ? spline_table : linear_table)(elongations, forces);
     const TimeFunction force = straight_on(inside, elongations.front(), elongations.back());
+    // Sums at the rows: an energy then takes one integral, and not one for each row.
     std::vector<double> energies{0};   // at the rows, from the first
     for (std::size_t i = 1; i < elongations.size(); ++i)
         energies.push_back(energies.back() + integral(force, elongations[i - 1], elongations[i]));
@@ -64,6 +68,7 @@ SpringLaw tabulated_spring(const std::vector<double>& elongations, const std::ve
         const std::size_t row = next == elongations.begin() ? 0 : next - elongations.begin() - 1;
         return energies[row] + integral(force, elongations[row], e);
     };
+    // Energy counts from elongation zero, wherever the table begins.
     const double at_rest = energy(0);
     return {[force, energy, at_rest](double e) {
                 const TimeValue f = force({e});

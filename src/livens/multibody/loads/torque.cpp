@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// A torque as F_a = 1/2 mu x d^a with contravariant directors (P21); theory.md, "The law", says why the
+// factor is right for skew directors too.
 #include "livens/multibody/loads/load_values.h"
 
 namespace livens {

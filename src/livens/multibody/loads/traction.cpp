@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Tractions over a surface, constant or linear in body coordinates (P20): F = [t T] int (1, theta)(1,
+// theta)^T dA, from integrals taken once. theory.md, "Bodies from meshes", Loads on surfaces.
 #include <cassert>
 
 #include "livens/multibody/loads/load_values.h"

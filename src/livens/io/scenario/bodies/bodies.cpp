@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // [[body]], its shape, and where bodies are at both ends of time.
+// A body is stated by mass, centre and inertia, by a shape, or by the paper's $M$, $S$, $E$ of (P7)
+// (theory.md, Bodies without rotation parameters). All become one 4 x 4 matrix and a first configuration.
 #include <algorithm>
 #include <cmath>
 
@@ -50,6 +52,7 @@ void check_moments(const Section& body)
     const Value* E = body.find("second_moment");
     if (E == nullptr || E->n_rows != 3) return;
     const Matrix3 m = body.columns("second_moment");
+    // The inequality is |E - E^T| <= 1e-12 |E|: one digit mistyped in one half fails it.
     if (norm(m - transpose(m)) > symmetry_slack * norm(m))
         body.error("second_moment", "inertia-not-symmetric",
                    "'second_moment' of " + body.label() + " must be symmetric");
@@ -61,6 +64,7 @@ void check_mass(const Section& body)
     if (has_moments(body)) return check_moments(body);
     if (body.has("shape")) {
         body.at_most_one({"density", "mass"}, "mass-conflict");
+        // Two statements of one quantity may contradict each other, and nothing says which is meant.
         body.refuse({"inertia"}, "mass-conflict", "it follows from the shape");
         const Section* shape = only_section(body, "shape");
         const DensityBy by = shape != nullptr ? density_by(*shape) : DensityBy::body;
@@ -96,6 +100,7 @@ bool check_quaternion(const Section& body)
     if (std::abs(size - 1) <= quaternion_slack) return true;
     std::string help;
     if (size > 0 && std::isfinite(size)) {
+        // The help is the quaternion divided by its norm, ready to be copied.
         for (const double x : q)
             help += (help.empty() ? "to keep its direction write [" : ", ") + to_text(x / size);
         help += "]";
@@ -157,6 +162,7 @@ std::vector<NamedSurface> surfaces_in_body(const Section& body, const Solid& sha
 {
     std::vector<NamedSurface> surfaces = shape.surfaces;
     if (!body.has("center_of_mass")) return surfaces;
+    // Surfaces are computed in the shape's own coordinates, and move with its centre.
     const Vector3 d = body.vector("center_of_mass") - shape.properties.center_of_mass;
     for (NamedSurface& s : surfaces) s.moments = moved(s.moments, identity<3>(), d);
     return surfaces;
@@ -179,6 +185,7 @@ void warn_of_rounded_directors(Builder& builder, const Section& body)
 {
     if (!has_moments(body) || !body.has("directors")) return;
     const double gap = skewness(body.columns("directors"));
+    // Below 1e-10 the gap is rounding, above 1e-3 the triad was meant skew.
     if (gap <= 1e-10 || gap > 1e-3) return;
     builder.findings().warning(
         body.place("directors"), "directors-nearly-orthonormal",
@@ -196,6 +203,8 @@ Body build_body(const Section& section, const std::string& name, const Solid& sh
                                      : rigid_body(name, read_mass(section, shape), placement);
     body.volume = shape.volume;
     if (section.has("director_rates")) {
+        // The model keeps the rates of the orthonormal triad, those of the directors times U^-1 (Skew
+        // directors).
         const Matrix3 rates = section.columns("director_rates") * inverse(body.stretch);
         for (int i = 0; i < 3; ++i) body.V.set_column(i + 1, rates.column(i));
     }
@@ -297,6 +306,7 @@ Placement read_placement(const Section& body, const Matrix3& stretch)
     placement.position = body.vector("position");
     placement.velocity = body.vector("velocity");
     placement.directors = read_orientation(body);
+    // Rotations turn the orthonormal triad; the skew directors are that triad times their stretch U.
     if (!body.has("directors")) placement.directors = placement.directors * stretch;
     placement.angular_velocity = body.has("angular_velocity_body")
                                      ? placement.directors * body.vector("angular_velocity_body")
@@ -307,6 +317,7 @@ Placement read_placement(const Section& body, const Matrix3& stretch)
 void read_bodies(Builder& builder)
 {
     std::unordered_set<std::string> taken;
+    // Moments of surfaces cost a quadrature, which no scenario pays whose loads do not name a surface.
     const bool with_surfaces = std::ranges::any_of(builder.top().sections("load"),
                                                    [](const Section& load) { return load.takes("surface"); });
     for (const Section& section : builder.top().sections("body")) {

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Densities that are expressions in the place (theory.md, Bodies from meshes, "density that is a field").
+// Solids evaluate them inside by quadrature; a closed surface has no inside, and the divergence theorem
+// serves linear densities alone, which are recognised here.
 #include "livens/io/scenario/bodies/density_fields.h"
 
 #include <algorithm>
@@ -41,6 +44,7 @@ LinearDensity linear(const Expression& density, const Mesh& mesh, double unit)
     std::array<double, 3> first{};
     const std::size_t n = mesh.points.size(), step = std::max<std::size_t>(1, n / 16);
     for (std::size_t k = 0; k + step < n + step; k += step) {
+        // Points between two of the mesh: at the vertices of a symmetric one slopes may agree by accident.
         const Vector3 p = unit * (0.7 * mesh.points[k] + 0.3 * mesh.points[n - 1 - k]);
         std::array<double, 3> slopes{};
         const std::array<double, 3> at{p[0], p[1], p[2]};
@@ -51,6 +55,8 @@ LinearDensity linear(const Expression& density, const Mesh& mesh, double unit)
             size = std::max(size, std::abs(first[i]));
             gap = std::max(gap, std::abs(slopes[i] - first[i]));
         }
+        // Slopes agree to 1e-12 of the largest at some sixteen places. Negated, so that nan is refused as
+        // well.
         if (!(gap <= 1e-12 * size)) refuse_field("is not linear");
         if (k > 0) continue;
         for (int i = 0; i < 3; ++i) found.gradient[i] = unit * slopes[i];

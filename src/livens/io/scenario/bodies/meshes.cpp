@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Meshes of a scenario, each reduced to what a run needs of it: moments, surfaces and a thinned picture
+// (theory.md, Bodies from meshes). The reduced form is kept in the run's file, so that a run can be read
+// again without its meshes. Paths never leave the scenario's folder (docs/program.md, Files of strangers).
 #include "livens/io/scenario/bodies/meshes.h"
 
 #include <algorithm>
@@ -66,6 +69,7 @@ public:
         if (!(read(m.volume) && std::isfinite(m.volume) && read(m.centroid) && read(diagonal) && read(off)))
             return false;
         for (int i = 0; i < 3; ++i) {
+            // Six numbers of a symmetric matrix: the diagonal, then (1,2), (2,3), (3,1).
             m.second(i, i) = diagonal[i];
             m.second(i, (i + 1) % 3) = m.second((i + 1) % 3, i) = off[i];
         }
@@ -161,6 +165,7 @@ bool read_line(std::string_view text, std::map<std::pair<std::string, bool>, Red
     if (word == "point") return line.read(picture.points.emplace_back());
     std::array<int, 3> t;
     if (word != "face" || !line.read(t[0]) || !line.read(t[1]) || !line.read(t[2])) return false;
+    // Indices of a stranger's file are checked before the picture is drawn with them.
     for (const int i : t)
         if (i < 0 || i >= static_cast<int>(picture.points.size())) return false;
     picture.triangles.push_back(t);
@@ -186,8 +191,10 @@ ReducedMesh reduced(const Mesh& mesh)
     }
     const std::vector<Moments> of = region_moments(mesh);
     for (std::size_t k = 0; k < of.size(); ++k)
+        // Regions without elements of volume, such as named surfaces, have no mass.
         if (of[k].volume > 0)
             r.regions.emplace_back(mesh.regions[k].names.empty() ? "" : mesh.regions[k].names.front(), of[k]);
+    // A picture needs the outside only, about the centroid, where bodies are drawn.
     r.picture = picture_of(boundary_of(mesh), r.whole.centroid);
     return r;
 }
@@ -209,6 +216,7 @@ ReducedMesh& MeshStore::entry(const std::string& path, bool is_turned)
 {
     const auto known = known_.find({path, is_turned});
     if (known != known_.end()) return known->second;
+    // What the run has kept wins over the file, which may have changed since.
     const auto kept = kept_.find({path, is_turned});
     ReducedMesh mesh = kept != kept_.end() ? kept->second : reduced(read(path, is_turned));
     return known_.emplace(Key{path, is_turned}, std::move(mesh)).first->second;
@@ -235,12 +243,14 @@ Mesh MeshStore::read(const std::string& path, bool is_turned)
     if (const std::string culprit = first_invisible(path); !culprit.empty())
         refuse("mesh-path", path, "must not contain " + culprit, "give the file a name without it");
     for (const fs::path& part : relative)
+        // Refused by its letters, before anything is asked of the file system.
         if (part == "..")
             refuse("mesh-path", path, "leaves the scenario's folder", "put the mesh beside the scenario");
     if (!source_.folder) refuse("mesh-file", path, "cannot be read: this scenario stands in no folder");
     std::error_code error;
     const fs::path folder =
         fs::weakly_canonical(source_.folder->empty() ? fs::path(".") : *source_.folder, error);
+    // Links are followed before the comparison; a link inside of the folder may point out of it.
     const fs::path file = error ? fs::path() : fs::weakly_canonical(folder / relative, error);
     if (error) refuse("mesh-file", path, "cannot be read: " + error.message());
     if (!is_inside(file, folder)) refuse("mesh-path", path, "leaves the scenario's folder by a link");

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// The primitive shapes: for each its keys, its mass properties in closed form, its outline for pictures and
+// its solid for quadrature (theory.md, Bodies from meshes). Outlines are profiles (radius, height) that turn
+// about d3, in a given number of sides.
 #include "livens/io/scenario/bodies/primitives.h"
 
 #include <algorithm>
@@ -18,6 +21,8 @@ std::vector<std::array<double, 2>> arc(double from, double to, double radius, do
     std::vector<std::array<double, 2>> points;
     for (int i = 0; i <= steps; ++i) {
         const auto [sine, cosine] = sine_cosine(from + (to - from) * i / steps);
+        // The cosine of a rounded pi/2 is 6e-17: at the pole the radius has to be zero for the profile to
+        // close.
         points.push_back({cosine > 1e-9 ? radius * cosine : 0, height + radius * sine});
     }
     return points;
@@ -28,6 +33,7 @@ Outline capsule_outline(double radius, double length)
     constexpr double pole = std::numbers::pi / 2;
     Outline outline{arc(-pole, 0, radius, -0.5 * length), 24, {1, 1, 1}};
     const auto upper = arc(0, pole, radius, 0.5 * length);
+    // Without a cylinder between them both halves share the equator, which stands once then.
     outline.profile.insert(outline.profile.end(), upper.begin() + (length > 0 ? 0 : 1), upper.end());
     return outline;
 }
@@ -40,6 +46,7 @@ Outline stretched(Outline outline, const Vector3& stretch)
 
 Outline box_outline(const Vector3& edges)
 {
+    // A profile of radius sqrt(1/2) on four sides is a square with edges of 1, which is stretched.
     const double r = std::numbers::sqrt2 / 2;
     return {{{0, -0.5}, {r, -0.5}, {r, 0.5}, {0, 0.5}}, 4, edges};
 }
@@ -54,6 +61,7 @@ Outline cylinder_outline(double radius, double length, double bore)
 {
     const double h = 0.5 * length;
     Outline outline{{{bore, -h}, {radius, -h}, {radius, h}, {bore, h}}, 24, {1, 1, 1}};
+    // A tube closes along its bore; a solid cylinder begins and ends on the axis.
     if (bore > 0) outline.profile.push_back({bore, -h});
     return outline;
 }

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Shapes of bodies: primitives, meshes and unions of them, reduced to moments and surfaces (theory.md, Bodies
+// from meshes). Unions are combined about the centroid of one part; a hole is a part of negative density.
 #include "livens/io/scenario/bodies/shapes.h"
 
 #include <algorithm>
@@ -63,6 +65,7 @@ const Key* kind_of(const Section& shape)
     };
     for (const Value& v : shape.values()) {
         if (!is_kind(v.key->name)) continue;
+        // Two shapes in one table contradict each other; a union says so by `parts`.
         if (first != nullptr) return shape.at_most_one({first->name, v.key->name}, "shape"), nullptr;
         first = v.key;
     }
@@ -163,6 +166,8 @@ Moments weighted(const Section& shape, const ReducedMesh& mesh, double unit)
                               "the density of '" + entries[i].key + "' cannot be \"" + value.texts[i] + "\"" +
                                   (density.error.empty() ? "" : ": " + density.error),
                               "", "> 0 kg/m^3", "", density.help});
+        // Names of regions are those of the file; both misspelt and forgotten ones are errors, since a region
+        // without a density would weigh nothing.
         bool is_found = false;
         for (std::size_t r = 0; r < mesh.regions.size(); ++r)
             if (mesh.regions[r].first == entries[i].key) densities[r] = density.value, is_found = true;
@@ -220,8 +225,11 @@ Solid read_union(const Section& shape, double density, MeshStore& meshes, bool w
         const Vector3 place = section.vector("position");
         const double factor = section.number("density");
         parts.push_back(moved(part.weighted, axes, place));
+        // A field is a density by itself; other parts have a factor to that of the body.
         densities.push_back(section.has("density_field") ? factor : density * factor);
         mass += densities.back() * parts.back().volume;
+        // The mass must exceed 1e-12 of the sum of absolute values: what is less is rounding of parts and
+        // holes.
         size += std::abs(densities.back()) * parts.back().volume;
         solid.volume += std::copysign(part.moments.volume, factor);
         solid.parts.push_back({name, densities.back() * parts.back().volume, parts.back().centroid});
@@ -236,6 +244,7 @@ Solid read_union(const Section& shape, double density, MeshStore& meshes, bool w
                           "parts with a negative density are holes in others", ""});
     const Moments whole = combined(parts, densities);
     solid.properties = livens::solid(1, whole);
+    // Pictures are drawn about the centre of mass, which is known after all parts.
     for (Outline& part : solid.outline.parts) part.place -= whole.centroid;
     return solid;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // [body.start], `coordinates` of [start], and `rate` of joints: the bodies are led there, with the joints
 // that they have where they are stated, before anything else refers to them.
+// The method is that of theory.md, Starting, "By coordinates".
 #include <algorithm>
 #include <cmath>
 
@@ -26,6 +27,7 @@ std::optional<double> read_number(const Section& section, const std::string& pat
 
 StartCoordinate read_coordinate(const Builder& builder, const Section& section, const std::string& path)
 {
+    // Joint and coordinate are kept as indices: the model is copied while bodies are led.
     const JointReference of = find_coordinate(builder, section, path);
     StartCoordinate wanted;
     wanted.path = path;
@@ -75,10 +77,12 @@ bool restate_bodies(Builder& builder, std::vector<StartCoordinate>& wanted)
         }
     if (builder.findings().n_errors() > before) return false;
     if (!is_other) return true;
+    // Joints keep their frames, which refer to the bodies as stated; the bodies move.
     builder.model() = restated(builder.model(), state, wanted);
     std::erase_if(wanted, [&](const StartCoordinate& one) {
         const Joint& joint = builder.model().joints()[static_cast<std::size_t>(one.joint)];
         const double now = joint.coordinates[static_cast<std::size_t>(one.coordinate)].at_stated;
+        // Where the joint stands there already, the value has told its turns, and nothing is left to lead to.
         return !one.rate && std::abs(*one.value - now) <= same_angle;
     });
     return true;

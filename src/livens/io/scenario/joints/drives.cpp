@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // [[drive]]: one table of kinds, and of laws over time.
+// A drive is a joint whose row follows a function of time (theory.md, Drives; docs/joints.md, Drives). Laws
+// need two continuous derivatives, since a jump of the velocity would take an infinite force.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -141,12 +143,14 @@ TimeFunction read_law(const Section& drive, std::size_t c, std::size_t n, double
     if (const Section* one = only_section(drive, "step")) {
         const TimeFunction step =
             smooth_step(one->number("from"), one->number("until"), component(*one, "rise", c));
+        // As a rate, a step changes the coordinate from where it stands; other laws say its value.
         return shifted(step, now - step({during.start}).value);
     }
     const bool is_table = drive.has("table");
     const Section* table = only_section(drive, "table");
     const std::vector<double>& all = (is_table ? table->find("values") : drive.find("polynomial"))->numbers;
     std::vector<double> own;
+    // Rows of a table hold x, y, z; the component is every n-th number.
     for (std::size_t i = c; i < all.size(); i += n) own.push_back(all[i]);
     if (!is_table) return polynomial(std::move(own));
     const std::vector<double>& times = table->find("times")->numbers;
@@ -166,6 +170,7 @@ void warn_of_turns(Builder& builder, const Section& drive, const std::string& na
 {
     if (!coordinate.coordinate.is_angle() || during.begins > during.start) return;
     const double begins = law({during.start, Side::right}).value, gap = begins - coordinate.at_stated;
+    // At exactly half a turn both ways are equally long, and rounding would decide.
     constexpr double half = std::numbers::pi * (1 - 1e-9);
     if (!(std::abs(gap) >= half)) return;
     const double turns = std::max(1.0, std::round(std::abs(gap) / (2 * std::numbers::pi)));
@@ -268,6 +273,7 @@ void read_times(const Builder& builder, const Section& section, Joint& joint)
                           "'" + joint.name + "' never acts",
                           to_text(is_over ? joint.until : joint.from) + " s",
                           to_text(start) + " s to " + to_text(end) + " s", "", "leave it out"});
+    // An interval that covers the motion is no event: without a phase of its own it costs nothing.
     if (joint.from <= start + gap) joint.from = -std::numeric_limits<double>::infinity();
     if (joint.until >= end - gap) joint.until = std::numeric_limits<double>::infinity();
 }

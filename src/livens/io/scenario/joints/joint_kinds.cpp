@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// The table of the kinds of joints: words, keys and makers. From it follow the reader, the page
+// docs/scenario.md and the JSON Schema, so none of them can lack a kind. Rows of each kind are in
+// docs/joints.md and theory.md, Joints are quadratic forms.
 #include "livens/io/scenario/joints/joint_kinds.h"
 
 #include <cmath>
@@ -66,6 +69,7 @@ Joint make_screw(const JointParts& p)
 }
 Joint make_constant_angle(const JointParts& p)
 {
+    // What is not stated is as the bodies stand, so that the joint is closed at the start.
     const double value = p.section.has("angle") ? p.section.number("angle") : p.angle();
     return constant_angle(p.name, p.first, p.second, p.frame, value, p.scale);
 }
@@ -80,6 +84,7 @@ Joint make_slot(const JointParts& p)
     const Section& curve = *only_section(p.section, "curve");
     std::vector<Vector3> places;
     for (int i = 0; i < curve.find("points")->n_rows; ++i)
+        // Points are stated along the directors, which may be skew; the model has the nearest triad.
         places.push_back(p.stretch_first * curve.row("points", i));
     return slot(p.name, p.first, p.second, spline_curve(places, curve.truth("closed")),
                 p.frame.point_second + p.stretch_second * p.section.vector("point"), p.X_first, p.X_second,

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // [[joint]]: where it sits, and what may be wrong with that.
+// Placed in the world (`at`), on the bodies (`points`) or by `frames`; see docs/joints.md.
 #include <cmath>
 
 #include "livens/base/text.h"

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Points on bodies that were meant as places in the world.
+// `points` are in coordinates of each body, which is easily overlooked. A warning needs both signs of the
+// mistake: the point lies outside of the shape, and read as a place in the world it lies inside.
 #include <algorithm>
 
 #include "livens/base/text.h"
@@ -18,6 +20,7 @@ double reach_of(const Outline& outline)
         for (int i = 0; i < 3; ++i) scaled[i] = outline.stretch[i] * p[i];
         reach = std::max(reach, norm(scaled));
     };
+    // The corner of the box about the circle bounds it for any stretch, which may differ along d1 and d2.
     for (const auto& [radius, height] : outline.profile) take({radius, radius, height});
     for (const Vector3& p : outline.points) take(p);
     for (const Outline& part : outline.parts) reach = std::max(reach, norm(part.place) + reach_of(part));
@@ -37,6 +40,7 @@ void warn_of_world_points(Builder& builder, const Section& section, const std::a
         const Matrix34& X = builder.start_configuration(body);
         const Matrix4& mass = builder.model().bodies()[body].mass;
         const Vector3 stated = section.row("points", i), p = builder.in_axes(body, stated),
+                      // The centre of mass from the mass matrix: its first row is (M, S), see (P7).
                       center = (1 / mass(0, 0)) * Vector3{mass(0, 1), mass(0, 2), mass(0, 3)},
                       as_place = transpose(directors(X)) * (p - X.column(0));
         const bool is_reference = stated == Vector3{};   // is meant

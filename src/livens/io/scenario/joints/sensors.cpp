@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // [[sensor]]: one table of kinds.
+// Sensors of points, joints and energies come before loads, whose expressions may read some of them; sensors
+// of loads come after.
 #include <algorithm>
 
 #include "livens/io/scenario/builder.h"
@@ -106,6 +108,7 @@ void read_sensor(Builder& builder, const Section& section, std::unordered_set<st
         claim_name(section, "sensor or joint", name, taken,
                    {"expressions refer to sensors as to joints", "give it another 'name'"});
     builder.remember(path, section);
+    // An unknown type has been told of, and its keys cannot be judged.
     if (section.kind() == any_kind) return;
     BodyReference first, second;
     if (section.takes("between")) {
@@ -140,6 +143,7 @@ Table sensor_table()
 void read_sensors(Builder& builder, bool of_loads)
 {
     std::unordered_set<std::string> taken;
+    // Expressions write `name.quantity` for joints and sensors alike, so the names are one set.
     for (const Joint& joint : builder.model().joints()) taken.insert(joint.name);
     for (const Sensor& sensor : builder.model().sensors()) taken.insert(sensor.name);
     for (const Section& section : builder.top().sections("sensor"))

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Expressions in scenarios: what their symbols stand for.
+// A symbol is a coordinate of a joint or a number of a sensor, both functions of the configuration, or the
+// rate of one (docs/joints.md, Expressions). What depends on accelerations or multipliers is refused: a load
+// that follows a load would be an algebraic loop.
 #include <algorithm>
 
 #include "livens/io/scenario/builder.h"
@@ -15,6 +18,7 @@ struct Reference {
 
 Reference split(const std::string& text)
 {
+    // The last point divides: names may have points, quantities have none.
     const std::size_t point = text.rfind('.');
     return point == std::string::npos ? Reference{text, ""}
                                       : Reference{text.substr(0, point), text.substr(point + 1)};
@@ -52,6 +56,7 @@ void add_input(const Builder& builder, Inputs& inputs, const std::string& symbol
         }
         inputs.symbols.push_back(symbol);
         inputs.reads.push_back({inputs.coordinates.size(), is_rate});
+        // An angle is counted from where the joint is stated, and only its value has turns to be counted.
         inputs.coordinates.push_back({coordinate->coordinate, coordinate->at_stated, !is_rate});
         return;
     }
@@ -131,6 +136,7 @@ std::vector<Expression> read_expressions(const Section& section, const Inputs& i
         }
     }
     for (std::size_t k = 0; k < inputs.symbols.size(); ++k)
+        // A symbol that no formula has is a misspelt one in most cases.
         if (std::ranges::none_of(all, [&](const Expression& one) { return one.depends_on(k); }))
             refuse_input("input-unused", path, inputs.symbols[k], "", "no expression has it", "leave it out");
     return all;
@@ -144,6 +150,7 @@ std::vector<double> breaks_of(const Builder& builder, const Section& section,
     const Section* time = only_section(builder.top(), "time");
     for (const Expression& one : expressions) {
         if (time == nullptr || !time->is_valid()) break;
+        // Bends that follow from time alone are known beforehand: elements end there.
         const std::vector<double> events = one.events(time->number("start"), time->number("end"));
         breaks.insert(breaks.end(), events.begin(), events.end());
     }
@@ -178,6 +185,8 @@ LoadLaw law_of(const std::vector<Expression>& expressions, const Inputs& inputs,
         for (std::size_t i = 0; i < expressions.size(); ++i) {
             factors[i] = expressions[i](beside_breaks(at.at, breaks), numbers, by);
             for (std::size_t k = 0; k < by.size(); ++k)
+                // The row of one factor holds slopes by all values, then by all rates. Two symbols may read
+                // one coordinate, so that slopes add up.
                 slopes[2 * m * i + (inputs.reads[k].is_rate ? m : 0) + inputs.reads[k].coordinate] += by[k];
         }
     };
@@ -191,6 +200,8 @@ LawSteepness steepness_of(const std::vector<Expression>& expressions, const Inpu
         for (const Inputs::Read& read : inputs.reads)
             symbols.push_back(numbers[read.coordinate + (read.is_rate ? inputs.coordinates.size() : 0)]);
         for (std::size_t k = 0; k < expressions.size(); ++k)
+            // Interval arithmetic encloses the slope over an element, for the looks at laws (theory.md, Looks
+            // at laws).
             bounds[k] = expressions[k].over(t, symbols).slope.size();
     };
 }

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // [[load]] type = "bushing".
+// A bushing has two frames; where both are left to one point of the world they coincide at the start, so that
+// its displacement u is zero there.
 #include "livens/io/scenario/builder.h"
 #include "livens/io/scenario/loads/load_makers.h"
 
@@ -13,6 +15,7 @@ Matrix<6, 6> read_matrix(const Section& load, std::string_view key)
     const Value* v = load.find(key);
     for (int i = 0; v != nullptr && i < 6; ++i)
         for (int j = 0; j < 6; ++j)
+            // Six numbers are a diagonal: most data sheets have no coupling.
             if (v->numbers.size() == 36)
                 matrix(i, j) = v->numbers[6 * i + j];
             else if (i == j)
@@ -28,6 +31,7 @@ BodyFrame read_bushing_frame(const LoadSources& p, std::size_t i)
     if (frames.size() == 2)
         return {p.builder.in_axes(body, frames[i].vector("point")), read_orientation(frames[i])};
     const Matrix34& X = p.builder.start_configuration(body);
+    // The frame has the axes of the world at the start, in coordinates of the body.
     return {transpose(directors(X)) * (p.section.vector("at") - X.column(0)), transpose(directors(X))};
 }
 

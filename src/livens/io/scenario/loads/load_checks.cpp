@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What the keys of a [[load]] have to be together.
+// The schema says what each key may be; rules that concern several keys are here. They are checked before
+// anything is made, so that messages speak of keys.
 #include <string>
 
 #include "livens/io/scenario/builder.h"
@@ -37,6 +39,7 @@ bool check_field(const Section& load)
 namespace {
 
 /// A force that does not look at the elongation: that of a damper, or a constant one.
+// A damper and a constant force have no length without force to be stated.
 bool is_without_spring(const Section& load)
 {
     const bool is_soft = !load.has("stiffness") || load.number("stiffness") == 0;
@@ -86,6 +89,7 @@ bool check_spring(const Section& load)
         return load.error(
             "", "spring-place", load.label() + " has neither 'between' nor 'joint'",
             {"", "give 'between', the two bodies it connects, or 'joint', the joint it acts on"});
+    // Both are evaluated, so that all findings of a spring come in one run.
     const bool is_placed = check_place(load), has_law = check_law(load);
     return is_placed && has_law;
 }

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// The table of the kinds of loads: words, keys, checks and makers, from which the reader, docs/scenario.md
+// and the JSON Schema follow. Units stand at the keys; what acts on a joint has two, one for angles and one
+// for displacements.
 #include "livens/io/scenario/loads/load_kinds.h"
 
 #include "livens/io/scenario/builder.h"

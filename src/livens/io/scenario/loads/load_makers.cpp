@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Loads of the library from the keys of a [[load]] (docs/joints.md, Along coordinates and Expressions). A
+// load by a formula is a sum of loads of one unit, times the formula: its tangent is that of the units and,
+// by the slopes of the formula, that of the coordinates it reads.
 #include "livens/io/scenario/loads/load_makers.h"
 
 #include <algorithm>
@@ -35,6 +38,7 @@ TimeFunction told(const LoadSources& p, const Expression& expression, TimeFuncti
 {
     const Section* time = only_section(p.builder.top(), "time");
     const double start = time == nullptr ? 0 : time->number("start");
+    // A formula that has no value at the start would fail in the first element, with less to be said.
     if (std::isfinite(value({start, Side::right}).value)) return value;
     throw InputError({"expression-value", p.path() + ".expression", "an expression has no value at the start",
                       expression.without_value(start, {}), "", "", "in '" + expression.text() + "'"});
@@ -79,6 +83,8 @@ bool ends_at_bends(const Builder& builder)
     const Section* const end = only_section(builder.top(), "end");
     const std::string family = method != nullptr ? method->text("family") : "lobatto";
     const bool is_nodal = family == "lobatto" || family == "radau" || family == "auto";
+    // Elements are cut at bends while a motion is followed forwards, one element after the other. What is
+    // solved together has its mesh before the bends are known.
     const bool is_march = end == nullptr || end->pick<Known>("given") == Known::nothing;
     return is_nodal && is_march && !(method != nullptr && method->has("window")) &&
            !(time != nullptr && time->text("breaks") == "ignore");
@@ -97,6 +103,7 @@ Load by_formula(const LoadSources& p, const std::string& type, const std::string
     const TimeFunction acts = while_it_acts(p.section, 1.0);
     parts.law = [law, acts](const LawArguments& at, std::span<double> factors, std::span<double> slopes) {
         law(at, factors, slopes);
+        // Outside of its interval the load is off, and its slopes have to vanish with it.
         if (acts(at.at).value == 1) return;
         std::ranges::fill(factors, 0.0);
         std::ranges::fill(slopes, 0.0);
@@ -131,6 +138,7 @@ Vector3 point_of(const LoadSources& p) { return p.builder.in_axes(p.first, p.sec
 TimeVector in_axes(const LoadSources& p, const TimeVector& value)
 {
     const Matrix3& U = p.builder.stretch(p.first);
+    // Values that follow the body are stated along its directors; U leads to the orthonormal triad.
     if (U == identity<3>() || p.section.pick<Frame>("frame") != Frame::body_fixed) return value;
     const auto along = [&](int i) {
         return combination({U(i, 0), U(i, 1), U(i, 2)}, {value[0], value[1], value[2]});
@@ -257,6 +265,7 @@ TimeVector gradient_of(const LoadSources& p, std::size_t row)
 {
     TimeVector gradient;
     for (int j = 0; j < 3; ++j) {
+        // A matrix of three rows, or for pressures one row.
         const double slope = p.section.find("gradient")->numbers[3 * row + j];
         gradient[j] = while_it_acts(p.section, slope);
     }

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // [[load]]: names, bodies, and what may be wrong with them.
+// Names are claimed in the first pass, loads are made in the second: a load is known by its name in
+// complaints, results and sensors.
 #include <cmath>
 
 #include "livens/io/scenario/builder.h"
@@ -17,6 +19,7 @@ bool check_interval(const Builder& builder, const Section& load, Findings& findi
                           "'until' of " + load.label() + " must be later than 'from'");
     const Section* time = only_section(builder.top(), "time");
     if (time == nullptr || !time->is_valid()) return true;
+    // Only a warning: the interval of a study may be shortened while its loads stay.
     if (acts.from >= time->number("end") || acts.until <= time->number("start"))
         findings.warning(load.place(load.has("from") ? "from" : "until"), "load-never-acts",
                          load.label() + " never acts: its time lies outside the motion's",
@@ -92,6 +95,7 @@ void check_start(Builder& builder)
     for (const Load& load : model.loads()) {
         const Instant at{time == nullptr ? 0 : time->number("start"), Side::right};
         LoadForces F{};
+        // The right side of the instant: a load that begins at the start acts from there on.
         load.forces(load_arguments(load, at, state.X, state.V), F);
         double sum = 0;
         for (const Matrix34& of_body : F)

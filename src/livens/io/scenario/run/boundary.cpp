@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // [start], [end] and [body.end]: what is known at the ends of time.
+// Hamilton's law of theory.md, The law, holds with positions or momenta stated once each, at either end.
+// Which ones are stated says `given`; the values stand at the bodies.
 #include "livens/base/text.h"
 #include "livens/dynamics/start/prepared.h"
 #include "livens/dynamics/start/singular.h"
@@ -58,6 +60,7 @@ InputError at_the_end(const Model& model, const InputError& error)
 Matrix3 straightened(const Matrix3& directors, const Matrix3& stretch, const std::string& name)
 {
     const Matrix3 triad = directors * inverse(stretch);
+    // Rigidity keeps lengths and angles of directors, so that an end with others could never be reached.
     if (skewness(triad) > 1e-10)
         throw InputError(
             {"directors-metric", "body[" + name + "].directors",
@@ -188,11 +191,14 @@ void check_ends(Builder& builder, const Conditions& boundary, StartPolicy policy
 {
     const auto close = [&](State state, Known given) {
         if (given == Known::nothing) return;
+        // Velocities that are not stated are guesses of Newton's iteration, which joints must not refuse.
         if (given == Known::positions)
             for (Matrix34& V : state.V) V = {};   // a guess, which need not fit
+        // Joints that have let go by then, or begin later, need not be closed at this end.
         const Model model =
             builder.model().has_events() ? acting_at(builder.model(), state.t).model : builder.model();
         const ClosedStart closed = prepared.close(model, state, policy);
+        // A state at a singular position is judged besides (theory.md, Singular positions).
         if (given == Known::state) refuse_singular_start(model, closed);
     };
     builder.guard("start", [&] { close(boundary.start, boundary.at_start); });

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // [method]: the family and its choices, and what they take of memory.
+// Memory is bounded before the solution begins, by formulas that were fitted to measured peaks: a computer
+// that swaps or kills the program tells nothing. The numbers are estimates, not inequalities.
 #include <algorithm>
 
 #include "livens/io/scenario/builder.h"
@@ -152,6 +154,7 @@ void check_mixed(const Section& section, const Mixed& mixed)
     if (mixed.start == Mixed::Start::strong || mixed.multipliers == Mixed::Multipliers::lower)
         section.refuse({"end_multiplier"}, "misplaced-key",
                        "no multiplier is left open with momentum = \"strong\" or multipliers = \"lower\"");
+    // The word of the basis is none: told already.
     if (section.has("basis") && section.find("basis") == nullptr) return;
     const mixed::Basis& basis = mixed::basis_of(mixed);
     if (!basis.has_knots)
@@ -206,6 +209,7 @@ double condition_bytes(const Model& model, const Method& method, double n_elemen
     const double bodies = model.n_bodies(), rows = model.n_rows();
     double twists = 0;
     for (const Body& body : model.bodies()) twists += body.is_point ? 3 : 6;
+    // The matrix is reduced to the free motions, f of them a node (theory.md, The whole matrix of lobatto).
     const double f = std::max(twists - rows, 1.0), p = degree_of(method);
     const bool is_free = model.joints().empty() && model.loads().empty();
     const double density = is_free ? 1 / (3 * bodies) : 1;   // of the blocks
@@ -231,6 +235,7 @@ double matrix_bytes(const Model& model, const Mixed& mixed, double n_elements)
 {
     double unknowns = model.n_rows();   // a node
     for (const Body& body : model.bodies()) unknowns += body.is_point ? 6 : 30;
+    // Bodies without joints do not fill each other's factors.
     const bool is_free = model.joints().empty();
     const double entries = is_free ? least_entries_per_unknown
                                    : std::max(least_entries_per_unknown, 60 + entries_per_unknown * unknowns);
@@ -354,6 +359,7 @@ MemoryNeed memory_needed(const Scenario& scenario)
         need.system = both_ends_bytes(model, *lobatto, n, is_estimated);
     else if (lobatto != nullptr && scenario.options.condition)
         need.system = std::max(need.system, condition_bytes(model, method, n));
+    // What estimates and checks keep of each element, and 8 MiB besides.
     need.checks = sizeof(double) * (estimates * n + 6 * n * degree_of(method)) + (8u << 20);
     return need;
 }

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// [time], [method], [start] and [end] as options of the solution, and the same as JSON with all defaults
+// filled in. That text goes into the run's file: a later version may have other defaults, and the run still
+// says how it was solved.
 #include "livens/io/json.h"
 #include "livens/io/scenario/builder.h"
 #include "livens/spacetime/mixed/bases.h"
@@ -119,6 +122,7 @@ std::string resolve(const Builder& builder, const Section& time, const Scenario&
 void leave_open(Method& method, bool has_family, bool has_degree)
 {
     auto* lobatto = std::get_if<Lobatto>(&method);
+    // Degree 0 leaves the degree to the accuracy (theory.md, To an accuracy).
     if (!has_family && lobatto != nullptr)
         method = Auto{has_degree ? lobatto->degree : 0};
     else if (lobatto != nullptr && !has_degree)
@@ -132,6 +136,7 @@ void remember_defaults(Builder& builder)
     const Section* time = only_section(builder.top(), "time");
     const Section* start = only_section(builder.top(), "start");
     const Section* end = only_section(builder.top(), "end");
+    // A complaint about a table that the file does not have points at the condition that asks for it.
     if (end != nullptr) {
         if (start == nullptr) builder.remember("start", end->place("given"));
         builder.remember("method", end->place("given"));
@@ -153,6 +158,7 @@ void read_run(Builder& builder, Scenario& scenario)
     scenario.method = read_method(method, builder.findings());
     const bool is_to_accuracy = time != nullptr && follows_accuracy(*time, scenario.method);
     const auto states = [&](const char* key) { return method != nullptr && method->has(key); };
+    // The family is read before, since its knots decide whether elements follow from an accuracy.
     if (is_to_accuracy) leave_open(scenario.method, states("family"), states("degree"));
     scenario.options.growth = states("growth") ? method->truth("growth") : is_to_accuracy;
     if (method != nullptr && method->has("tolerance"))

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // [time]: elements, given or to be found, and output times.
+// Output times and breaks of loads are element ends, where a motion has its highest order (theory.md, The
+// element). All instants are compared with the slack of `make_time_mesh`.
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -39,6 +41,7 @@ Decimal to_decimal(double x)
     }
     const std::from_chars_result r =
         std::from_chars(digits.data(), digits.data() + digits.size(), d.mantissa);
+    // Powers of ten are exact doubles up to 10^22, and mantissas that fit are whole numbers.
     d.is_exact = r.ec == std::errc() && std::abs(d.exponent) <= 22;
     return d;
 }
@@ -79,9 +82,11 @@ std::vector<double> output_by_interval(double start, double end, double step)
 {
     std::vector<double> times;
     const DecimalSteps instant(start, step);
+    // The quotient may be rounded below a whole number, and the last interval must not get lost.
     const long long n = static_cast<long long>(std::floor((end - start) / step * (1 + 1e-12)));
     for (long long k = 0; k <= n; ++k) {
         const double t = instant(k);
+        // The end itself is the last instant, to the bit; one just before it is dropped.
         if (t < end - resolution * (end - start)) times.push_back(t);
     }
     times.push_back(end);
@@ -171,6 +176,8 @@ bool make_even_mesh(Builder& builder, const Section& time, Scenario& scenario)
     const auto fits = [&](double n_elements) {
         return check_size(builder.model(), scenario.method, n_elements, time.place("elements"), findings);
     };
+    // The size is checked twice: with the elements stated, before any memory is taken, and with those that
+    // output times and breaks add.
     if (!fits(time.number("elements")) || !read_output(time, scenario.output, findings)) return false;
     std::vector<double> required;
     if (time.text("breaks") == "from_loads") required = builder.model().load_breaks();

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Pages on codes of findings, one for each, from docs/diagnostics.md, which is compiled into the library: the
+// program explains what the page says, word for word.
 #include <algorithm>
 
 #include "livens/io/diagnostic.h"
@@ -26,6 +28,7 @@ std::vector<Page> divided(std::string_view text)
     constexpr std::string_view opening = "\n## ";
     std::vector<Page> pages;
     for (std::size_t at = text.find(opening); at != std::string_view::npos;) {
+        // A page reaches from its heading of second level to the next; the heading is the code.
         text.remove_prefix(at + opening.size());
         at = text.find(opening);
         const std::string_view page = text.substr(0, at);

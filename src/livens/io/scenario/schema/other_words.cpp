@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Words of other programs for what is called differently here (docs/coming_from has whole pages on that). An
+// unknown word that is one of them gets the right one as help, which a distance of letters would not find.
 #include "livens/io/scenario/schema/other_words.h"
 
 #include <algorithm>
@@ -78,6 +80,7 @@ constexpr OtherKey other_keys[] = {
 std::string in_other_words(std::string_view word, const Words& choices)
 {
     for (const OtherWord& other : other_words)
+        // Only where the other word is a choice of this key: "fixed" means a weld among joints alone.
         if (other.word == word && index_of(choices, other.choice) >= 0)
             return "here it is \"" + std::string(other.choice) + "\"" + (other.with.empty() ? "" : " ") +
                    std::string(other.with);
@@ -99,6 +102,7 @@ std::string type_told_by_keys(const Node& node, const Table& table)
         const bool has_all = std::ranges::all_of(
             node.entries(), [&](const Entry& entry) { return find_key(keys, entry.key) != nullptr; });
         if (!has_all) continue;
+        // Two types fit: to name one of them would be a guess.
         if (only != nullptr) return {};
         only = &kind;
     }

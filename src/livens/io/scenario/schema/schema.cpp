@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// The schema of scenario files: one tree of tables and keys, from which follow the reader (section.cpp), the
+// page docs/scenario.md and the JSON Schema. Keys that are added here appear in all three.
 #include "livens/io/scenario/schema/schema.h"
 
 #include <algorithm>
@@ -100,6 +102,7 @@ std::vector<const Key*> Table::keys_of(int kind) const
     std::vector<const Key*> all;
     for (const Key& key : keys) all.push_back(&key);
     for (std::size_t i = 0; i < kinds.size(); ++i)
+        // Without a known kind the keys of all kinds count: none is called unknown because of a wrong type.
         if (kind == any_kind || kind == static_cast<int>(i))
             for (const Key& key : kinds[i].keys) all.push_back(&key);
     return all;
@@ -161,6 +164,7 @@ std::vector<double> fallback_numbers(const Key& key)
     while (p < end) {
         double x = 0;
         const std::from_chars_result r = std::from_chars(p, end, x);
+        // Defaults are texts for people, such as "[0, 0, 0]"; their numbers are what stands between brackets.
         if (r.ec == std::errc()) numbers.push_back(x);
         p = r.ec == std::errc() ? r.ptr : p + 1;
     }

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The schema for editors and for people.
+// Both come from the tables of schema.cpp. Kinds are `if`/`then` in JSON Schema, one for each, which forbid
+// the keys of the others: editors then complain where the reader would.
 #include <algorithm>
 
 #include "livens/io/json.h"
@@ -22,6 +24,7 @@ std::vector<Row> rows_of(const Table& table)
     for (const Key& key : table.keys) rows.push_back({&key, {}});
     for (const Kind& kind : table.kinds)
         for (const Key& key : kind.keys) {
+            // Keys that several kinds share are one row, which names them.
             const auto same = std::find_if(rows.begin(), rows.end(), [&](const Row& row) {
                 return row.key->name == key.name && row.key->doc == key.doc && row.key->unit == key.unit &&
                        row.key->type == key.type;

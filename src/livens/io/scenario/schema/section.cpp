@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// A table of a file, read by its schema: types, ranges, units, missing and unknown keys (docs/scenario.md).
 #include "livens/io/scenario/schema/section.h"
 
 #include <algorithm>

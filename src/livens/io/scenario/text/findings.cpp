@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Findings of one reading, bounded in number, and suggestions for misspelt words. The distance of words is
+// that of optimal string alignment: insertions, deletions, replacements and swaps of neighbours (Damerau,
+// 1964), by dynamic programming.
 #include "livens/io/scenario/text/findings.h"
 
 #include <algorithm>
@@ -16,6 +19,7 @@ constexpr std::size_t longest_word = 64;   // the distance costs the product of 
 int distance(std::string_view a, std::string_view b)
 {
     const std::size_t n = b.size() + 1;
+    // A swap looks two rows back; three rows are enough, so that long words need no matrix.
     std::vector<int> rows(3 * n);
     const auto at = [&](std::size_t i, std::size_t j) -> int& { return rows[(i % 3) * n + j]; };
     for (std::size_t i = 0; i <= a.size(); ++i) {
@@ -74,6 +78,7 @@ std::vector<Diagnostic> Findings::take(const std::string& file)
     };
     const auto by_severity = [](const Diagnostic& a, const Diagnostic& b) { return a.severity < b.severity; };
     std::stable_sort(found_.begin(), found_.end(), in_file);
+    // Errors stay before warnings where not all fit, but are shown in the order of the file.
     if (found_.size() > most_shown) {
         std::stable_sort(found_.begin(), found_.end(), by_severity);
         n_dropped_ += static_cast<int>(found_.size()) - most_shown;
@@ -90,6 +95,7 @@ std::string_view closest(std::string_view word, std::span<const std::string_view
 {
     if (word.empty() || word.size() > longest_word) return {};
     std::string_view best;
+    // A suggestion may differ by a third of the word: two letters at least, one in words below four.
     int least = std::max(word.size() < 4 ? 1 : 2, static_cast<int>(word.size()) / 3) + 1;
     for (const std::string_view candidate : candidates) {
         if (candidate.size() > longest_word) continue;

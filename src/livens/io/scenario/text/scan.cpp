@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// The first look at a text, before the parser: bytes that are none of UTF-8 text, the depth of nesting and
+// the number of values. The parser recurses and allocates by these, so a hostile file must be refused before
+// it (docs/program.md, Files of strangers).
 #include <algorithm>
 
 #include "livens/io/json.h"
@@ -44,6 +47,7 @@ private:
 bool scan_characters(std::string_view text, Findings& findings)
 {
     constexpr std::size_t head = 4096;
+    // Zeros in the first block are the mark of a binary file; one sentence says more than a byte's place.
     if (text.substr(0, head).find('\0') != std::string_view::npos)
         return findings.error({1, 1, 1}, "not-text", "this is a binary file, not a scenario",
                               {"", "scenarios are TOML"});
@@ -68,6 +72,7 @@ void skip_string(Cursor& c)
     c.skip(many_lines ? 3 : 1);
     while (!c.at_end()) {
         if (c.peek() == '\\' && quote == '"') {
+            // An escape is passed as a whole: its second character may be a quote or a backslash.
             c.skip(2);
         } else if (many_lines && c.starts_with(triple)) {
             c.skip(3);
@@ -124,10 +129,12 @@ bool scan_structure(std::string_view text, Findings& findings)
             continue;
         }
         if (byte == '#') {
+            // Brackets in comments and strings open nothing.
             while (!c.at_end() && c.peek() != '\n') c.next();
             continue;
         }
         depth.see(byte);
+        // Every value follows one of these characters, so their number bounds that of values from above.
         if (byte == '[' || byte == '{' || byte == ',' || byte == '=') ++values;
         if (depth.is_excessive())
             return findings.error(c.place(), "too-deep",

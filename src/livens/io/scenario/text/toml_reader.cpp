@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The only source that includes toml++: it compiles slowly, and its errors and positions are translated here.
+// Values become a small tree of the reader's own with line and column; entries are sorted by their places,
+// since toml++ orders them by name and findings follow the file.
 #include <algorithm>
 #include <cctype>
 #include <sstream>
@@ -212,9 +214,12 @@ std::size_t reach_of_parser(std::string_view text)
 /// The last character of the shortest text that the parser cannot explain, where the whole one is such.
 void report_character(std::string_view text, Findings& findings)
 {
+    // By bisection: all prefixes below the place parse or fail with an explanation, those beyond do not. The
+    // stream tells the place to a block, so that long texts are not parsed often.
     constexpr std::size_t block = 96;   // more than the parser reads at a time
     const std::size_t reach = reach_of_parser(text);
     std::size_t low = reach > block ? reach - block : 0, high = reach;
+    // Where the block is not about the place, the whole text is searched.
     if (is_beyond_parser(text.substr(0, low)) || !is_beyond_parser(text.substr(0, high))) {
         low = 0;
         high = text.size();

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Numbers with units, as in "5 mm" or "30 deg" (docs/scenario.md, Numbers and units). A unit is a quotient, a
+// power of ten and a dimension. The three stay apart until the number is known, so that "5 mm" is 5/1000,
+// rounded once.
 #include "livens/io/scenario/text/units.h"
 
 #include <array>
@@ -54,6 +57,7 @@ std::optional<Unit> find_symbol(std::string_view name)
 {
     for (const Symbol& s : symbols)
         if (s.name == name) return s.unit;
+    // Whole symbols are tried before prefixes: "m" alone is a metre, "min" a minute.
     for (const Prefix& p : prefixes) {
         if (name.substr(0, p.name.size()) != p.name) continue;
         for (const Symbol& s : symbols) {
@@ -87,6 +91,7 @@ public:
     {
         Unit unit;
         product(unit, 1);
+        // At most one slash: a/b/c and a/b c are read in two ways by people.
         if (reason_.empty() && take("/")) quotient(unit);
         skip_blanks();
         if (reason_.empty() && !rest_.empty())
@@ -168,6 +173,7 @@ private:
 
 double to_si(double number, const Unit& unit)
 {
+    // Dividing by 10^3 rounds once; multiplying with 1e-3, which is no double, rounds twice.
     const double ten = std::pow(10.0, std::abs(unit.power_of_ten));   // exact up to 10^22
     return unit.power_of_ten < 0 ? number * unit.numerator / (unit.denominator * ten)
                                  : number * unit.numerator * ten / unit.denominator;
@@ -184,6 +190,7 @@ Quantity parse_quantity(std::string_view text, std::string_view si_unit)
 {
     const std::string wanted(si_unit);
     std::string_view rest = text.substr(std::min(text.find_first_not_of(" \t"), text.size()));
+    // `from_chars` knows no plus sign, which people write; "+-5" stays an error.
     if (rest.size() > 1 && rest[0] == '+' && rest[1] != '-') rest.remove_prefix(1);
     double number = 0;
     const std::from_chars_result r = std::from_chars(rest.data(), rest.data() + rest.size(), number);
