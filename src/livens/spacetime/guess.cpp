@@ -85,7 +85,7 @@ MarchGuess guess_from_state(const Model& model, const State& state, std::span<co
     if (!tried.ends) return {guess_steady(state), times.front(), false};
     const Ends& ends = *tried.ends;
     const Tables tables(model, ends.independent);
-    LobattoWindow window(tables, mesh, ends, lobatto_rule(degree));
+    NodalWindow window(tables, mesh, ends, lobatto_rule(degree));
     SolveReport report;
     const WindowOptions options{
         .direction = is_forwards ? 1 : -1, .may_divide = true, .trust = {acceptable_velocity_jump, true}};

@@ -36,7 +36,7 @@ Series::Series(const Tables& tables, const ElementRule& rule) : tables_(tables)
 {
     if (rule.degree < 4) return;
     const ElementRule half = element_rule(rule.points, rule.degree / 2);
-    coarse_ = std::make_unique<LobattoSystem>(tables, half);
+    coarse_ = std::make_unique<NodalSystem>(tables, half);
     coarse_series_ = std::make_unique<Series>(tables, half);
     const LagrangeBasis basis(half.nodes);
     to_fine_.assign(static_cast<std::size_t>(rule.size() * basis.size()), 0.0);
@@ -93,20 +93,20 @@ void TwistSeries::at(double tau, double* __restrict twist) const
 }
 
 /// Nodes from the series of the twist at the start.
-void Series::predict(LobattoSystem& system, const InstantState& start) const
+void Series::predict(NodalSystem& system, const InstantState& start) const
 {
     const ElementRule& rule = system.rule();
     const double h = system.stretch().h(0);
     const TwistSeries series(tables_, start, h);
-    double* move = system.scratch().data();
+    std::vector<double> move(tables_.n_twists);
     for (int B = 1; B <= rule.degree; ++B) {
-        series.at(rule.nodes[B] * h, move);
-        system.nodes().place_from(B, 0, move);
+        series.at(rule.nodes[B] * h, move.data());
+        system.nodes().place_from(B, 0, move.data());
     }
 }
 
 /// Nodes interpolated from a solution of half the degree.
-bool Series::place_coarse(LobattoSystem& system, const InstantState& start)
+bool Series::place_coarse(NodalSystem& system, const InstantState& start)
 {
     Stretch stretch = system.stretch();
     stretch.degree = coarse_->rule().degree;
@@ -144,7 +144,7 @@ bool Series::place_coarse(LobattoSystem& system, const InstantState& start)
     return true;
 }
 
-void Series::place(LobattoSystem& system, const InstantState& start)
+void Series::place(NodalSystem& system, const InstantState& start)
 {
     predict(system, start);
     if (coarse_ && error(start, system.stretch().h(0)) > trusted_guess && !place_coarse(system, start))

@@ -24,14 +24,13 @@ constexpr double least_for_reactions = 1e-4;
 
 }   // namespace
 
-LobattoWindow::LobattoWindow(const Tables& tables, const TimeMesh& mesh, const Ends& ends,
-                             const ElementRule& rule)
+NodalWindow::NodalWindow(const Tables& tables, const TimeMesh& mesh, const Ends& ends,
+                         const ElementRule& rule)
     : Window(static_cast<ElementMonitor&>(*this)), tables_(tables), ends_(ends), system_(tables, rule),
       series_(tables, system_.rule()), kernel_(tables, system_.rule()),
       instant_(tables, kernel_.serves() && ends.has_state()), record_(tables, mesh, system_.rule()),
-      front_(tables), breaks_{tables.model->load_breaks(), Bends(tables, rule), {}, {}}, rank_{Branches(
-                                                                                             tables,
-                                                                                             system_.rule())}
+      front_(tables), breaks_{tables.model->load_breaks(), SwitchingPoints(tables, rule), {}, {}},
+      rank_{Branches(tables, system_.rule())}
 {
     if (!std::ranges::all_of(tables.model->loads(), &Load::is_smooth))
         breaks_.inside.emplace(tables, system_.rule());
@@ -44,19 +43,19 @@ LobattoWindow::LobattoWindow(const Tables& tables, const TimeMesh& mesh, const E
     work_.raw.assign(12 * tables.bodies.size(), 0.0);
 }
 
-bool LobattoWindow::is_jump(double t) const { return std::ranges::binary_search(breaks_.jumps, t); }
+bool NodalWindow::is_jump(double t) const { return std::ranges::binary_search(breaks_.jumps, t); }
 
 /// The mesh's number of the stretch's element end.
-int LobattoWindow::mesh_end(int end) const { return ends_.is_backwards() ? last_ - end : first_ + end; }
+int NodalWindow::mesh_end(int end) const { return ends_.is_backwards() ? last_ - end : first_ + end; }
 
-void LobattoWindow::restart()
+void NodalWindow::restart()
 {
     record_.begin_anew();
     if (ends_.start.t != front_.here().t) front_.here().forget_past();
     front_.is_ready = false;
 }
 
-bool LobattoWindow::open(int first, int last, SolveReport& report)
+bool NodalWindow::open(int first, int last, SolveReport& report)
 {
     first_ = first;
     last_ = last;
@@ -81,7 +80,7 @@ bool LobattoWindow::open(int first, int last, SolveReport& report)
 }
 
 /// Six numbers a body, about its reference point.
-void LobattoWindow::set_momenta(const State& given, std::vector<double>& momenta) const
+void NodalWindow::set_momenta(const State& given, std::vector<double>& momenta) const
 {
     std::vector<double>& P = momenta;
     for (int b = 0; b < tables_.n_bodies(); ++b) {
@@ -93,7 +92,7 @@ void LobattoWindow::set_momenta(const State& given, std::vector<double>& momenta
 }
 
 /// X, twists and the constraint basis of a state in which the mechanism is closed.
-bool LobattoWindow::set_state(InstantState& state, const State& given, SolveReport& report)
+bool NodalWindow::set_state(InstantState& state, const State& given, SolveReport& report)
 {
     state.t = given.t;
     if (state.X.empty()) state.resize(tables_);
@@ -114,7 +113,7 @@ bool LobattoWindow::set_state(InstantState& state, const State& given, SolveRepo
 }
 
 /// The state at the near end, as far as it is known.
-bool LobattoWindow::begin_front(SolveReport& report)
+bool NodalWindow::begin_front(SolveReport& report)
 {
     const State& given = ends_.is_backwards() ? ends_.end : ends_.start;
     if (!knows_positions(ends_.is_backwards() ? ends_.at_end : ends_.at_start)) return true;
@@ -126,14 +125,14 @@ bool LobattoWindow::begin_front(SolveReport& report)
     return true;
 }
 
-bool LobattoWindow::fail(SolveReport& report, const std::string& message) const
+bool NodalWindow::fail(SolveReport& report, const std::string& message) const
 {
     report.status = SolveStatus::singular;
     report.message = message;
     return false;
 }
 
-bool LobattoWindow::solve(const NewtonOptions& options, bool soon, NewtonReport& report)
+bool NodalWindow::solve(const NewtonOptions& options, bool soon, NewtonReport& report)
 {
     if (!kernel_.serves() || !stretch_.is_march() || stretch_.n_elements() > 1 ||
         !kernel_.solve(stretch_, front_.here(), options, soon, report))
@@ -143,26 +142,26 @@ bool LobattoWindow::solve(const NewtonOptions& options, bool soon, NewtonReport&
         system_.nodes().set_pivot(B, kernel_.pivot(B));
     }
     system_.nodes().place_solved(kernel_.increments(), kernel_.width());
-    system_.balances().count_turns(stretch_, system_.nodes());
+    system_.balances().loads().count_turns(stretch_, system_.nodes());
     return true;
 }
 
 /// Blocks Z_A^T J Z_B take some p^2 n f^2 operations, and the factor (p f)^3: of p n f f times what an
 /// element of p n f takes, measured on chains of 10 to 100 bodies.
-double LobattoWindow::tangent_cost() const
+double NodalWindow::tangent_cost() const
 {
     constexpr double measured = 1e-2;
     const bool is_known = kernel_.serves() && stretch_.is_march() && front_.here().by_joints;
     return is_known ? measured * stretch_.degree * std::pow(tables_.freedoms(), 2) : 0;
 }
 
-void LobattoWindow::begin_newton()
+void NodalWindow::begin_newton()
 {
     kernel_.forget();
     if (stretch_.X_first) instant_.add_basis(front_.here());
 }
 
-bool LobattoWindow::start_by_series()
+bool NodalWindow::start_by_series()
 {
     if (!stretch_.is_march() || stretch_.n_elements() > 1) return false;
     begin_newton();
@@ -170,7 +169,7 @@ bool LobattoWindow::start_by_series()
     return system_.settle();
 }
 
-bool LobattoWindow::start_from(const Guess& guess)
+bool NodalWindow::start_from(const Guess& guess)
 {
     if (!guess) return start_by_series();
     begin_newton();
@@ -192,7 +191,7 @@ bool LobattoWindow::start_from(const Guess& guess)
     return system_.settle();
 }
 
-State LobattoWindow::at(int element_end) const
+State NodalWindow::at(int element_end) const
 {
     State state;
     state.X.resize(tables_.bodies.size());
@@ -216,7 +215,7 @@ State LobattoWindow::at(int element_end) const
 }
 
 /// Both sides of an instant where loads jump, else one for both.
-void LobattoWindow::accelerate(InstantState& state)
+void NodalWindow::accelerate(InstantState& state)
 {
     instant_.accelerate(state, Side::right);
     if (is_jump(state.t)) {
@@ -229,7 +228,7 @@ void LobattoWindow::accelerate(InstantState& state)
 
 /// The state at the first node, where only the solution told it, and the multipliers that are left there when
 /// its momentum is tangent to the constraints.
-bool LobattoWindow::find_first_state(SolveReport& report)
+bool NodalWindow::find_first_state(SolveReport& report)
 {
     InstantState& here = front_.here();
     const double weight = stretch_.weight(system_.rule(), 0);
@@ -262,7 +261,7 @@ bool LobattoWindow::find_first_state(SolveReport& report)
     return true;
 }
 
-Closed LobattoWindow::close(const Trust& trust, SolveReport& report)
+Closed NodalWindow::close(const Trust& trust, SolveReport& report)
 {
     if (stretch_.is_march())
         std::copy_n(system_.balances().impulses(0), tables_.rank, work_.impulse.begin());
@@ -299,7 +298,7 @@ Closed LobattoWindow::close(const Trust& trust, SolveReport& report)
 }
 
 /// What a law did unseen counts as the velocity jump that goes with such an error.
-Unseen LobattoWindow::look_at_laws(int e, Closed& closed)
+Unseen NodalWindow::look_at_laws(int e, Closed& closed)
 {
     if (!breaks_.inside) return {};
     Unseen unseen =
@@ -312,7 +311,7 @@ Unseen LobattoWindow::look_at_laws(int e, Closed& closed)
 }
 
 /// The nodes and multipliers of a believed element into the motion, its end as the start of the next.
-void LobattoWindow::close_element(int e)
+void NodalWindow::close_element(int e)
 {
     const int p = system_.rule().degree, A = (e + 1) * p;
     const double weight = stretch_.h(e) * system_.rule().weights[p];
@@ -332,7 +331,7 @@ void LobattoWindow::close_element(int e)
         record_.forget_reactions(mesh_end(e + 1), instant_.weak_rows(front_.here()));
 }
 
-void LobattoWindow::record_element(int e)
+void NodalWindow::record_element(int e)
 {
     const ElementRule& rule = system_.rule();
     const int p = rule.degree;

@@ -7,7 +7,7 @@
 #include "livens/dynamics/instant/instant.h"
 #include "livens/spacetime/march/ends.h"
 #include "livens/spacetime/march/window.h"
-#include "livens/spacetime/nodal/bends.h"
+#include "livens/spacetime/nodal/switching_points.h"
 #include "livens/spacetime/nodal/branches.h"
 #include "livens/spacetime/nodal/inside.h"
 #include "livens/spacetime/nodal/kernel/march_kernel.h"
@@ -19,10 +19,10 @@ namespace livens {
 
 /// Windows from the end where the state is known, or one window of all elements; radau: single elements from
 /// the state at the start.
-class LobattoWindow final : public Window, private ElementMonitor {
+class NodalWindow final : public Window, private ElementMonitor {
 public:
     /// References must outlive the window.
-    LobattoWindow(const Tables& tables, const TimeMesh& mesh, const Ends& ends, const ElementRule& rule);
+    NodalWindow(const Tables& tables, const TimeMesh& mesh, const Ends& ends, const ElementRule& rule);
 
     /// Nobody asks what laws of loads do inside of elements.
     void ignore_laws() { breaks_.inside.reset(); }
@@ -71,7 +71,7 @@ private:
     /// Of loads.
     struct Breaks {
         std::vector<double> jumps;   // instants
-        Bends bends;
+        SwitchingPoints bends;
         std::optional<InsideLaws> inside{};   // where a law need not be smooth, and is not ignored
         std::vector<Unseen> unseen;
     };
@@ -110,7 +110,7 @@ private:
 
     const Tables& tables_;
     const Ends& ends_;
-    LobattoSystem system_;
+    NodalSystem system_;
     Series series_;
     MarchKernel kernel_;
     InstantSystem instant_;

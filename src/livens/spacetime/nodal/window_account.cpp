@@ -10,9 +10,10 @@
 
 namespace livens {
 
-WorstResidual LobattoWindow::worst() const
+WorstResidual NodalWindow::worst() const
 {
-    WorstResidual place{"", stretch_.times[0], system_.balances().bad_load(stretch_, system_.nodes())};
+    WorstResidual place{"", stretch_.times[0],
+                        system_.balances().loads().bad_load(stretch_, system_.nodes())};
     double worst = 0;
     int row = -1, body = -1;
     for (int A = 0; A < stretch_.n_nodes(); ++A) {
@@ -48,7 +49,7 @@ WorstResidual LobattoWindow::worst() const
 /// The velocity jump h |V - X_h'| at the end of an element (radau: at its start), as velocity_jump() of
 /// diagnostics has it; infinite where a body turns by more than 90 degrees from node to node:
 /// |R_B - R_A|^2 = 4 there.
-double LobattoWindow::velocity_jump(int e, bool refuse_turns) const
+double NodalWindow::velocity_jump(int e, bool refuse_turns) const
 {
     const ElementRule& rule = system_.rule();
     const bool at_start = rule.points == Points::radau;
@@ -90,7 +91,7 @@ double LobattoWindow::velocity_jump(int e, bool refuse_turns) const
 }
 
 /// Pivots at local nodes first..last of an element: the smallest of them by the largest of all its nodes.
-double LobattoWindow::rank_left(int e, int first, int last) const
+double NodalWindow::rank_left(int e, int first, int last) const
 {
     const int p = system_.rule().degree;
     double largest = 0, smallest = std::numeric_limits<double>::infinity();
@@ -102,7 +103,7 @@ double LobattoWindow::rank_left(int e, int first, int last) const
     return smallest / largest;
 }
 
-RankLoss LobattoWindow::rank_loss(int e) const
+RankLoss NodalWindow::rank_loss(int e) const
 {
     constexpr double least = 1e-2;   // docs/theory.md, "Singular positions"
     const int p = system_.rule().degree;
@@ -110,7 +111,7 @@ RankLoss LobattoWindow::rank_loss(int e) const
     return rank_left(e, 1, p - 1) < least ? RankLoss::inside : RankLoss::none;
 }
 
-void LobattoWindow::describe(SolveReport& report) const
+void NodalWindow::describe(SolveReport& report) const
 {
     report.unknowns = std::max(report.unknowns, static_cast<int>(system_.balances().reduced().size()));
     report.smallest_pivot = std::min(report.smallest_pivot, rank_.smallest_pivot);

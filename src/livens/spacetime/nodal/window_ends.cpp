@@ -31,11 +31,11 @@ void polish(double* X)
 ///
 /// with wrenches (f_A, tau_A) of loads and multipliers about the centres of mass (docs/theory.md, "The
 /// element"). The last row itself would carry the rounding of k_AB / h, and what Newton's iteration left.
-void LobattoWindow::sum_momentum(int e)
+void NodalWindow::sum_momentum(int e)
 {
     if (kernel_.is_solved()) return kernel_.momentum(stretch_, front_.here(), work_.momentum.data());
     const Nodes& nodes = system_.nodes();
-    const Rows& rows = system_.balances();
+    const NodalRows& rows = system_.balances();
     const int p = system_.rule().degree;
     const bool has_loads = !tables_.model->loads().empty();
     std::vector<double>&sum = work_.momentum, &wrench = work_.wrench;
@@ -47,7 +47,7 @@ void LobattoWindow::sum_momentum(int e)
         const int A = e * p + a;
         if (a == without && !has_loads) continue;
         if (has_loads)
-            std::copy_n(rows.forces(e, a), work_.raw.size(), work_.raw.begin());
+            std::copy_n(rows.loads().forces(e, a), work_.raw.size(), work_.raw.begin());
         else
             std::fill(work_.raw.begin(), work_.raw.end(), 0.0);
         if (a != without)
@@ -59,7 +59,7 @@ void LobattoWindow::sum_momentum(int e)
 
 /// The spin about the centres of mass at the end of an element of radau is that of the polynomial's own
 /// velocity, as its rows do not balance moments.
-void LobattoWindow::take_spin_of_polynomial(int e)
+void NodalWindow::take_spin_of_polynomial(int e)
 {
     const ElementRule& rule = system_.rule();
     const Nodes& nodes = system_.nodes();
@@ -75,7 +75,7 @@ void LobattoWindow::take_spin_of_polynomial(int e)
 }
 
 /// The end state of a solved element.
-bool LobattoWindow::end_element(int e, SolveReport& report)
+bool NodalWindow::end_element(int e, SolveReport& report)
 {
     const ElementRule& rule = system_.rule();
     const Nodes& nodes = system_.nodes();
@@ -105,7 +105,7 @@ bool LobattoWindow::end_element(int e, SolveReport& report)
 
 /// A row that was left out as redundant and does not hold; empty: they all do. They may be redundant no more,
 /// or others may have become so on the way: rows are chosen at element ends.
-std::string LobattoWindow::contradiction(const InstantState& state) const
+std::string NodalWindow::contradiction(const InstantState& state) const
 {
     if (tables_.rank == tables_.n_rows()) return {};
     for (int r = 0; r < tables_.n_rows(); ++r) {

@@ -14,7 +14,7 @@
 
 namespace livens {
 
-/// The equations of LobattoSystem for one element from a known state, by
+/// The equations of NodalSystem for one element from a known state, by
 ///
 ///     y_B <- P_B [ - h sum_A (K^-1)_BA P_A r_A ] - G_B^+ Phi_B,      P = 1 - G^T (G G^T)^-1 G
 ///
