@@ -42,7 +42,7 @@ TIES = [
     ("(up to $«10^{-13}»$ where a squared pivot", f"{KERNEL}/march_kernel.cpp", r"most_rounding = ([^;]+);"),
     ("is open or bent by more than $«10^{-10}»$ between the nodes in question, is refused, and so is one whose joints are open by more than $«10^{-9}»$",
      f"{NODAL}/branches.cpp", r"(?=.*?open_between = ([^;]+);).*?open_at_end = ([^,]+),"),
-    ("(where the polynomial was within $«10^{-6}»$, it is taken", f"{KERNEL}/march_guess.cpp", r"near_enough = ([^,]+),"),
+    ("(where the polynomial was within $«10^{-6}»$, it is taken", f"{KERNEL}/kernel_guess.cpp", r"near_enough = ([^,]+),"),
     ("A gap of $«10^{-10}»$ of the mechanism and less", f"{NODAL}/branches.cpp", r"open_between = ([^;]+);"),
     ("Mechanisms of more than «120» rows", f"{NODAL}/branches.cpp", r"few_rows = (\d+)"),
     ("of more than «300» they are not", f"{NODAL}/branches.cpp", r"most_rows = (\d+)"),

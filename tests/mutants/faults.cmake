@@ -122,7 +122,7 @@ livens_mutant(NAME loads_given_to_one_node
 # The instant of a node for what is taken at a Gauss point: right for constant loads only.
 livens_mutant(NAME loads_at_the_instants_of_nodes
               FILE spacetime/nodal/stretch.h
-              RECOMPILE spacetime/nodal/element_loads.cpp spacetime/nodal/kernel/march_kernel.cpp
+              RECOMPILE spacetime/nodal/element_loads.cpp spacetime/nodal/kernel/kernel_wrenches.cpp
               OLD [[rule.loads.points[c] * h(e), Side::middle}]]
               NEW [[rule.nodes[c] * h(e), Side::middle}]]
               TESTS_OF convergence
