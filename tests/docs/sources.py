@@ -30,7 +30,7 @@ TIES = [
     ("stay in use while they contract by «0.3»", "src/livens/solvers/newton.cpp", r"slow_contraction = ([^;]+);"),
     ("(smallest scaled pivot above «1e-6»)", f"{DYNAMICS}/instant/instant.cpp", r"smallest_pivot > std::max\(([\de-]+),"),
     ("when one that is left out is off by $«10^{-9}»$ of its scale", f"{DYNAMICS}/instant/instant.cpp", r"<= (\S+) \* tables_\.rows\[r\]\.row->scale"),
-    ("If one is off by $«10^{-8}»$ at the end", f"{NODAL}/window_ends.cpp", r"row\.scale < ([\de-]+)\)"),
+    ("If one is off by $«10^{-8}»$ at the end", f"{NODAL}/element_end.cpp", r"row\.scale < ([\de-]+)\)"),
     ("at most $«30»/n$ of it", f"{TIME}/march/pace.cpp", r"far_too_many = (\d+)"),
     ("of stated elements «500»", f"{TIME}/march/windows.cpp", r"too_costly = (\d+);"),
     ("(violation below «1e-9» of their scale)", f"{DYNAMICS}/instant/instant.cpp", r"<= (\S+) \* tables_\.rows\[r\]\.row->scale"),

@@ -179,7 +179,7 @@ livens_mutant(NAME turns_of_an_element
 
 # Nodes in positions where the joints lose rank are taken as they come.
 livens_mutant(NAME nodes_in_singular_positions
-              FILE spacetime/nodal/window_account.cpp
+              FILE spacetime/nodal/element_checks.cpp
               OLD [[constexpr double least = 1e-2;]]
               NEW [[constexpr double least = 0;]]
               TESTS_OF convergence
