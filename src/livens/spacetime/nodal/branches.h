@@ -8,7 +8,6 @@
 
 #include "livens/dynamics/start/orientation.h"
 #include "livens/spacetime/nodal/element_path.h"
-#include "livens/spacetime/nodal/mechanisms.h"
 
 namespace livens {
 
@@ -34,25 +33,27 @@ private:
         std::vector<double> X;
         Orientation of;
     };
-    struct Watched {
-        Mechanism all;
-        std::vector<int> rows;   // the independent ones
-        Known known[2];
+    /// Bodies that joints tie together into loops, or that drives move, and the rows that are theirs.
+    struct Mechanism {
+        std::vector<int> bodies, all_rows;
+        std::vector<int> rows{};   // the independent ones
+        Known known[2]{};
     };
 
+    void find_mechanisms();
     void take(const std::vector<int>& rows);
-    bool leaves(Watched& one);
-    bool may_cross(Watched& one);
+    bool leaves(Mechanism& one);
+    bool may_cross(Mechanism& one);
     /// At a node of the element. Not into the place of the one beside it.
-    Orientation& orientation(Watched& one, int node, const Orientation* beside);
-    bool is_turned_over(Watched& one, int from, int to);
-    bool is_open(const Watched& one, Instant at, const double* X, double most) const;
-    bool is_bent(const Watched& one) const;
-    bool is_open_between(const Watched& one, int from);
+    Orientation& orientation(Mechanism& one, int node, const Orientation* beside);
+    bool is_turned_over(Mechanism& one, int from, int to);
+    bool is_open(const Mechanism& one, Instant at, const double* X, double most) const;
+    bool is_bent(const Mechanism& one) const;
+    bool is_open_between(const Mechanism& one, int from);
 
     const Tables& tables_;
     const ElementRule& rule_;
-    std::vector<Watched> mechanisms_;
+    std::vector<Mechanism> mechanisms_;
     std::vector<int> rows_;             // all that were taken last
     std::optional<ElementPath> path_;   // where there are mechanisms
     const Nodes* nodes_ = nullptr;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "livens/diagnostics/estimate.h"
+#include "livens/spacetime/nodal/law_on_path.h"
 #include "livens/spacetime/nodal/missed_moments.h"
 
 namespace livens {

@@ -1,14 +1,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One law along the polynomials of an element: its factors at any share, and bounds of their slopes.
+// Laws of loads that need not be smooth inside of an element: their factors along its polynomials, and bounds
+// of the slopes of these.
 #pragma once
 
 #include <span>
 #include <vector>
 
 #include "livens/spacetime/nodal/element_path.h"
-#include "livens/spacetime/nodal/inspected_law.h"
 
 namespace livens {
+
+/// F = sum_k f_k(t, q) F_k with numbers q of the motion.
+struct InspectedLaw {
+    int load = 0;
+    std::vector<int> bodies;   ///< that it looks at or acts on
+    LawInside inside;
+    std::vector<double> mobility;   ///< of each unit F_k: what it accelerates, in lengths or rad
+};
+
+/// Of all loads that are not smooth.
+std::vector<InspectedLaw> laws_to_inspect(const Tables& tables);
 
 /// The numbers q(s) of a law are taken at p + 3 points, and are the polynomial through them.
 class LawOnPath {

@@ -10,6 +10,8 @@
 #include <cmath>
 #include <utility>
 
+#include "livens/spacetime/nodal/law_on_path.h"
+
 namespace livens {
 
 namespace {

@@ -4,9 +4,11 @@
 
 #include <vector>
 
-#include "livens/spacetime/nodal/law_on_path.h"
+#include "livens/spacetime/nodal/rule.h"
 
 namespace livens {
+
+class LawOnPath;
 
 /// Points of Gauss, and weights by which these, the middle one left out, and both ends tell whether their
 /// integral can be trusted: [end, points.., end].
