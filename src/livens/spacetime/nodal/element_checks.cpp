@@ -69,7 +69,7 @@ double ElementChecks::velocity_jump(const NodalSystem& system, int e, const Elem
     // |R_B - R_A|^2 = 4 where a body turns by 90 degrees
     if (refuse_turns && !(widest_turn <= 4)) return std::numeric_limits<double>::infinity();
     double largest = std::sqrt(of_centres) / tables_.length;
-    raise_to(largest, std::sqrt(0.5 * of_directors));
+    raise_to(largest, std::sqrt(0.5 * of_directors));   // |[w]_x|^2 = 2 |w|^2: radians
     return largest;
 }
 

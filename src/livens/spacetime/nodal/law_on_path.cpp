@@ -55,7 +55,7 @@ void weigh(const Tables& tables, InspectedLaw& law)
     for (const Matrix34& v : start.V) V.insert(V.end(), std::begin(v.a), std::end(v.a));
     tables.map_twists(X.data(), maps.data());
     const LoadArguments at = tables.arguments(law.load, {start.t}, X.data(), V.data(), {});
-    const Load& load = tables.model->loads()[static_cast<std::size_t>(law.load)];
+    const Load& load = tables.model->loads()[law.load];
     for (std::size_t k = 0; k < law.inside.n_factors; ++k) {
         LoadForces F{};
         law.inside.unit(at, k, F);

@@ -54,6 +54,7 @@ double steepness_doubt(LawOnPath& path, const Panel& panel, const std::vector<do
             widest = std::max(widest, step);
         }
         if (bounds[k] <= steeper * steepest) continue;
+        // triangles of that slope in all gaps: the sum of gap^2 / 4 is at most widest * width / 4
         const double hidden = 0.25 * bounds[k] * widest * width * path.law().mobility[k] * h * h;
         doubt = std::max(doubt, std::isnan(hidden) ? Enclosure::infinite : hidden);
     }
@@ -175,6 +176,7 @@ std::vector<double> MissedMoments::of(LawOnPath& path) const
         for (std::size_t k = 0; k < m; ++k) size[k] = std::max(size[k], std::abs(factors[k]));
     }
     for (std::size_t i = 0; i < moments.size(); ++i)
+        // differences of equal integrals: rounding
         if (std::abs(moments[i]) <= 1e-14 * size[i % m]) moments[i] = 0;
     return moments;
 }

@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// X of a node as a sum of two doubles, moved by x <- exp(twist) x with a compensated sum, and differences
+// X_B - X_0 of both parts (docs/theory.md, "Increments"). Constraints follow from the element's first node
+// on, where quadratic by the exact identity for changes; a violation is taken off by -D Y R^-T S^-1 Phi, node
+// by node ("Eliminating the joint multipliers").
 #include "livens/spacetime/nodal/nodes.h"
 
 #include <algorithm>
@@ -9,81 +13,6 @@
 #include "livens/solvers/patience.h"
 
 namespace livens {
-
-NodePositions::NodePositions(const Tables& tables, const ElementRule& rule)
-    : tables_(tables), rule_(rule), size_(12 * tables.bodies.size()), displacement_(size_, 0.0),
-      twist_(size_, 0.0)
-{}
-
-void NodePositions::open(const Stretch& stretch)
-{
-    const std::size_t n = stretch.n_nodes();
-    const bool is_alike = times_.size() == n;   // as all elements of a march are
-    current_ = kept_ = 0;
-    times_.resize(n);
-    for (int A = 0; A < stretch.n_nodes(); ++A) times_[A] = stretch.time(rule_, A);
-    if (is_alike) return;
-    for (Set& set : sets_) {
-        set.X.assign(n * size_, 0.0);
-        set.low.assign(n * size_, 0.0);
-    }
-    dX_.assign(stretch.n_elements() * rule_.size() * size_, 0.0);
-}
-
-void NodePositions::fix(int A, const std::vector<double>& X, const std::vector<double>& low)
-{
-    for (Set& set : sets_) {
-        std::copy_n(X.data(), size_, set.X.data() + place(A));
-        std::copy_n(low.data(), size_, set.low.data() + place(A));
-    }
-}
-
-void Nodes::open(const Stretch& stretch)
-{
-    NodePositions::open(stretch);
-    const std::size_t n = stretch.n_nodes();
-    pivots_.assign(n, 1.0);
-    first_rows_ = nullptr;
-    if (known_.size() == n) {
-        known_.front() = known_.back() = nullptr;
-        return;
-    }
-    maps_.assign(n * size_, 0.0);
-    scaled_.assign(n * tables_.rank, 0.0);
-    phi_.assign(n * tables_.rank, 0.0);
-    known_.assign(n, nullptr);
-    bases_.clear();
-    work_.assign(2 * size_, 0.0);   // numbers of a twist, a twist
-}
-
-void Nodes::fix(int A, const InstantState& state)
-{
-    NodePositions::fix(A, state.X, state.X_low);
-    std::copy_n(state.maps.data(), size_, maps_.data() + place(A));
-    known_[A] = &state.basis;
-    if (A == 0) first_rows_ = &state.rows;
-    pivots_[A] = state.smallest_pivot;
-    has_start_ = false;
-}
-
-/// Bases take room that grows with the square of the bodies: only here.
-void Nodes::begin_constraining()
-{
-    if (bases_.empty()) {
-        bases_.resize(known_.size());
-        for (ConstraintBasis& basis : bases_) basis.resize(tables_, false);
-    }
-    if (has_start_ || known_[0] == nullptr) return;
-    has_start_ = true;
-    pivots_[0] = known_[0]->smallest_pivot;
-    for (int c = 0; c < tables_.rank; ++c) phi_[c] = tables_.value((*first_rows_)[c], at(0), X(0));
-}
-
-void NodePositions::place_at(int A, const double* X)
-{
-    std::copy(X, X + size_, sets_[current_].X.data() + place(A));
-    std::fill_n(sets_[current_].low.data() + place(A), size_, 0.0);
-}
 
 namespace {
 
@@ -125,6 +54,40 @@ inline void subtract_two_sums(const double* __restrict x, const double* __restri
 }
 
 }   // namespace
+
+NodePositions::NodePositions(const Tables& tables, const ElementRule& rule)
+    : tables_(tables), rule_(rule), size_(12 * tables.bodies.size()), displacement_(size_, 0.0),
+      twist_(size_, 0.0)
+{}
+
+void NodePositions::open(const Stretch& stretch)
+{
+    const std::size_t n = stretch.n_nodes();
+    const bool is_alike = times_.size() == n;   // as all elements of a march are
+    current_ = kept_ = 0;
+    times_.resize(n);
+    for (int A = 0; A < stretch.n_nodes(); ++A) times_[A] = stretch.time(rule_, A);
+    if (is_alike) return;
+    for (Set& set : sets_) {
+        set.X.assign(n * size_, 0.0);
+        set.low.assign(n * size_, 0.0);
+    }
+    dX_.assign(stretch.n_elements() * rule_.size() * size_, 0.0);
+}
+
+void NodePositions::fix(int A, const std::vector<double>& X, const std::vector<double>& low)
+{
+    for (Set& set : sets_) {
+        std::copy_n(X.data(), size_, set.X.data() + place(A));
+        std::copy_n(low.data(), size_, set.low.data() + place(A));
+    }
+}
+
+void NodePositions::place_at(int A, const double* X)
+{
+    std::copy(X, X + size_, sets_[current_].X.data() + place(A));
+    std::fill_n(sets_[current_].low.data() + place(A), size_, 0.0);
+}
 
 void NodePositions::place_solved(const double* increments, int width)
 {
@@ -191,6 +154,60 @@ void NodePositions::take_differences(int e)
     for (int B = 1; B <= rule_.degree; ++B)
         subtract_two_sums(X(first + B), low(first + B), X(first), low(first),
                           dX_.data() + place(e * rule_.size() + B), size_);
+}
+
+double NodePositions::size_of(const double* twist) const
+{
+    double size = 0;
+    const auto look = [&size](double value) {
+        if (!(value <= size) && !std::isnan(size)) size = value;
+    };
+    for (const auto& body : tables_.bodies) {
+        for (int i = 0; i < 3; ++i) look(std::abs(twist[body.first + i]) / tables_.length);
+        for (int i = 3; i < body.dofs; ++i) look(std::abs(twist[body.first + i]));
+    }
+    return size;
+}
+
+void Nodes::open(const Stretch& stretch)
+{
+    NodePositions::open(stretch);
+    const std::size_t n = stretch.n_nodes();
+    pivots_.assign(n, 1.0);
+    first_rows_ = nullptr;
+    if (known_.size() == n) {
+        known_.front() = known_.back() = nullptr;
+        return;
+    }
+    maps_.assign(n * size_, 0.0);
+    scaled_.assign(n * tables_.rank, 0.0);
+    phi_.assign(n * tables_.rank, 0.0);
+    known_.assign(n, nullptr);
+    bases_.clear();
+    work_.assign(2 * size_, 0.0);   // numbers of a twist, a twist
+}
+
+void Nodes::fix(int A, const InstantState& state)
+{
+    NodePositions::fix(A, state.X, state.X_low);
+    std::copy_n(state.maps.data(), size_, maps_.data() + place(A));
+    known_[A] = &state.basis;
+    if (A == 0) first_rows_ = &state.rows;
+    pivots_[A] = state.smallest_pivot;
+    has_start_ = false;
+}
+
+/// Bases take room that grows with the square of the bodies: only here.
+void Nodes::begin_constraining()
+{
+    if (bases_.empty()) {
+        bases_.resize(known_.size());
+        for (ConstraintBasis& basis : bases_) basis.resize(tables_, false);
+    }
+    if (has_start_ || known_[0] == nullptr) return;
+    has_start_ = true;
+    pivots_[0] = known_[0]->smallest_pivot;
+    for (int c = 0; c < tables_.rank; ++c) phi_[c] = tables_.value((*first_rows_)[c], at(0), X(0));
 }
 
 bool Nodes::constrain(const Stretch& stretch, bool same_choices)
@@ -267,19 +284,6 @@ double Nodes::correct(const Stretch& stretch)
     if (correction > 0)
         for (int e = 0; e < stretch.n_elements(); ++e) take_differences(e);
     return correction;
-}
-
-double NodePositions::size_of(const double* twist) const
-{
-    double size = 0;
-    const auto look = [&size](double value) {
-        if (!(value <= size) && !std::isnan(size)) size = value;
-    };
-    for (const auto& body : tables_.bodies) {
-        for (int i = 0; i < 3; ++i) look(std::abs(twist[body.first + i]) / tables_.length);
-        for (int i = 3; i < body.dofs; ++i) look(std::abs(twist[body.first + i]));
-    }
-    return size;
 }
 
 }   // namespace livens

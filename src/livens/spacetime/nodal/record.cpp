@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// The motion of solved elements: nodes and one-sided multipliers, and at ends of elements velocity, momentum,
+// and accelerations and reactions on both sides of a jump (docs/theory.md, "Element ends"). X'' has the
+// centripetal part w x (w x d_a) beside that of the twist's derivative.
 #include "livens/spacetime/nodal/record.h"
 
 #include <algorithm>

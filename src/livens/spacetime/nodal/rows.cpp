@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// r_A = sum_e [ h^-1 sum_B k_AB (X_B - X_0) m + F_A ] - W_A G^T lambda_A against N_A, and the multipliers
+// from its part in the directions Y of the constraints: S lambda = R^-1 Y^T D^T q_A / W_A (docs/theory.md,
+// "The element", "Windows", "Radau points", "Eliminating the joint multipliers").
 #include "livens/spacetime/nodal/rows.h"
 
 #include <algorithm>

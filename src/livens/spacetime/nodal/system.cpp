@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Newton's iteration on a window: rows Z^T D^T N^T r_A of the active nodes, twists D Z eta of the unknown
+// ones, and after each move a pull back onto the constraints. Rows are compared with the rounding of the sums
+// over k_AB, which cancel (docs/theory.md, "Newton's iteration", "The whole matrix of lobatto").
 #include "livens/spacetime/nodal/system.h"
 
 #include <algorithm>
@@ -56,7 +59,7 @@ bool NodalSystem::settle()
         correction_ = 0;
         if (pending_) break;
         correction_ = nodes_.correct(stretch_);
-        if (correction_ < 1e-3) break;
+        if (correction_ < 1e-3) break;   // lengths and radians: bases turn by no more
     }
     return true;
 }

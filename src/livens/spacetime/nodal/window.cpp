@@ -204,6 +204,7 @@ bool NodalWindow::is_believed(int e, const Trust& trust, SolveReport& report, Cl
     closed.loss = trust.full_rank ? checks_.rank_loss(nodes, e) : RankLoss::none;
     closed.is_refused = closed.loss != RankLoss::none;
     if (closed.is_refused) return false;
+    // directors drift by rounding alone: now and then is enough to mend them
     if (!end_.reach(system_, kernel_, e, mesh_end(e) % 16 == 15))
         return fail(report,
                     "the free motions carry no inertia at t = " + to_text(stretch_.times[e + 1], 6) + " s");

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Of the last changes of what is proposed those factors that cancel the present proposal best, by the normal
+// equations of least squares, changes scaled to 1; what was taken with them is taken back by as much
+// (docs/theory.md, "Without a tangent", Many bodies).
 #include "livens/spacetime/nodal/kernel/acceleration.h"
 
 #include <algorithm>

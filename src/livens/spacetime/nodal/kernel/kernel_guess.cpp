@@ -42,6 +42,7 @@ void KernelGuess::place_series(const TwistSeries& series, double tau, const Inst
         if (body.dofs == 3) continue;
         const double angle = std::sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]);
         const SineCosine half = sine_cosine(0.5 * angle);
+        // sin(a / 2) / a, which is 1/2 to rounding for small angles
         const double factor = angle > 1e-8 ? half.sine / angle : 0.5;
         place[3 * stride] = half.cosine;
         for (int a = 0; a < 3; ++a)

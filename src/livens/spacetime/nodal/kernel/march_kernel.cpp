@@ -150,6 +150,7 @@ bool MarchKernel::iterate(const Stretch& stretch, const InstantState& start, con
     for (int steps = 0;; ++steps) {
         functions_->configure(pattern, from, nodes);
         const double still_fits = progress.is_done ? fits_at_end : fits_on_the_way;
+        // what an old factor leaves of a projection must not be what slows the steps
         if (steps == 0 || progress.n_slow > 0 || !(moved <= still_fits * pivot)) {
             functions_->factorise(pattern, nodes);
             pivot = *std::min_element(nodes.pivots, nodes.pivots + rule_.degree);
