@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The orientation of a mechanism's rows tells whether an element has passed a position in which they lose
-// rank: det G_a G_b^T < 0 between two of its nodes. Looks at the polynomial between these nodes then tell
-// whether it passed through, with joints closed and bodies rigid, or jumped (docs/theory.md, "Singular
-// positions", Branches).
+// An element has passed a position in which rows lose rank if det G_a G_b^T < 0 between two of its nodes.
+// Samples of the polynomial between these nodes then decide whether the mechanism passed through, with joints
+// closed and bodies rigid, or jumped to another branch (docs/theory.md, "Singular positions", Branches).
 #include "livens/spacetime/nodal/branches.h"
 
 #include <algorithm>
@@ -35,8 +34,8 @@ Branches::Branches(const Tables& tables, const ElementRule& rule) : tables_(tabl
     if (!mechanisms_.empty()) path_.emplace(tables, rule);
 }
 
-/// A tree has as many joints as bodies, one less where it floats: it has no position in which it locks. What
-/// has more joints is a mechanism of loops or drives.
+/// A tree has as many joints as bodies, one less if it floats, and cannot lock. Connected bodies with more
+/// joints form a mechanism of loops or drives.
 void Branches::find_mechanisms()
 {
     const int n = tables_.n_bodies();

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What tells of an element that it has not seen the motion, or has met a root of its equations that is none:
-// the velocity jump at its end, turns between nodes (docs/theory.md, "Spurious elements"), pivots of the
-// constraints and the branch of the motion ("Singular positions"), laws between load points ("Looks at
-// laws").
+// Criteria by which a solved element is refused: the velocity jump at its end and turns between nodes, which
+// detect spurious roots (docs/theory.md, "Spurious elements"), pivots of the constraints and the branch of
+// the motion ("Singular positions"), laws between load points ("Looks at laws").
 #include "livens/spacetime/nodal/element_checks.h"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whether a solved element is to be believed: what its equations do not say of it.
+// Criteria by which a solved element is accepted or refused.
 #pragma once
 
 #include <optional>
@@ -22,7 +22,7 @@ public:
     /// References must outlive it.
     ElementChecks(const Tables& tables, const ElementRule& rule);
 
-    /// Nobody asks what laws of loads do inside of elements.
+    /// Laws of loads are not inspected between load points.
     void ignore_laws() { inside_.reset(); }
     /// The velocity jump h |V - X_h'| at the end of an element (radau: at its start), as velocity_jump() of
     /// diagnostics has it; infinite where a body turns by more than 90 degrees from node to node, if that is
@@ -30,7 +30,7 @@ public:
     double velocity_jump(const NodalSystem& system, int e, const ElementEnd& end, bool refuse_turns) const;
     /// The element has left the branch of the motion.
     bool leaves(const NodalSystem& system, int e, const ElementEnd& end);
-    /// What a law did unseen counts as the velocity jump that goes with such an error.
+    /// The error of unseen laws is converted into an equivalent velocity jump.
     Unseen look_at_laws(const NodalSystem& system, int e, ElementEnd& end, Closed& closed);
     RankLoss rank_loss(const Nodes& nodes, int e) const;
     /// Reactions at the end of an element have digits left.

@@ -112,7 +112,8 @@ void ElementEnd::begin(const double* impulses) { std::copy_n(impulses, tables_.r
 ///     p = p_0 + sum_A f_A,      s = s_0 + sum_A tau_A
 ///
 /// with wrenches (f_A, tau_A) of loads and multipliers about the centres of mass (docs/theory.md, "The
-/// element"). The last row itself would carry the rounding of k_AB / h, and what Newton's iteration left.
+/// element"). The last row itself would carry the rounding of k_AB / h and the residual of Newton's
+/// iteration.
 void ElementEnd::sum_momentum(const NodalSystem& system, int e)
 {
     const Nodes& nodes = system.nodes();
@@ -204,11 +205,11 @@ const double* ElementEnd::multipliers(const NodalSystem& system, int e, int a)
 {
     const ElementRule& rule = system.rule();
     const int p = rule.degree;
-    if (a == node_without(rule))   // at the start of radau what the equations of motion ask for
+    if (a == node_without(rule))   // at the start of radau that of the acceleration there
         return (a == p ? end_lambda_ : here().multipliers[1]).data();
     const double* impulses = a == 0 ? impulse_.data() : system.balances().impulses(e * p + a);
     if (a == p)
-        lambda_ = end_lambda_;   // what the projection took counts with the node's own
+        lambda_ = end_lambda_;   // the part that the projection took, to which the node's own is added
     else if (tables_.rank < tables_.n_rows())
         std::ranges::fill(lambda_, 0.0);
     const double weight = system.stretch().h(e) * rule.weights[a];

@@ -12,7 +12,8 @@ namespace livens {
 class MarchKernel;
 class NodalSystem;
 
-/// What is passed on from element to element, and one-sided multipliers (docs/theory.md, "Element ends").
+/// The state that is passed on from element to element, and one-sided multipliers (docs/theory.md, "Element
+/// ends").
 class ElementEnd {
 public:
     /// `sparse`: see InstantSystem.
@@ -26,13 +27,13 @@ public:
     /// Loads jump at t.
     bool is_jump(double t) const;
 
-    /// X, twists and what constraints hold of a state in which the mechanism is closed. False: its mass
-    /// matrix is singular on the free motions.
+    /// Positions, twists and constraint basis of a given state in which the mechanism is closed. False: its
+    /// mass matrix is singular on the free motions.
     bool set(InstantState& state, const State& given);
     /// Both sides of an instant where loads jump, else one for both.
     void accelerate(InstantState& state);
-    /// here() <- the state at the first node, where only the solution told it. False: the free motions carry
-    /// no inertia.
+    /// here() <- the state at the first node, where it follows from the solution. False: the free motions
+    /// carry no inertia.
     bool find_first(NodalSystem& system);
     /// Impulses W lambda at the first node of a march, in its basis.
     void begin(const double* impulses);

@@ -27,9 +27,9 @@ public:
                      double* V) const;
     /// Follows the angles of loads through all nodes, as evaluate() does; see Turns.
     void count_turns(const Stretch& stretch, const NodePositions& nodes);
-    /// About what these are at load point c of element e: what they are at the node before.
+    /// Approximate angles at load point c of element e: those at the node before.
     std::span<const double> angles(int e, int c) const;
-    /// What is told of a load that is not finite, empty if all are.
+    /// A message about a load that is not finite; empty if all are.
     std::string bad_load(const Stretch& stretch, const NodePositions& nodes) const;
 
 private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Bodies along the polynomials of an element, for whoever looks between its nodes.
+// Bodies along the polynomials of an element, between its nodes.
 #pragma once
 
 #include <vector>
@@ -17,7 +17,7 @@ class ElementPath {
 public:
     ElementPath(const Tables& tables, const ElementRule& rule);
 
-    /// Along element e from now on. References must outlive what is asked.
+    /// Along element e from now on. References must outlive the calls of go().
     void begin(const Stretch& stretch, const NodePositions& nodes, int e);
     /// Goes to a share, with the bodies that are named; what others have there is of no use.
     void go(double share, const std::vector<int>& bodies);

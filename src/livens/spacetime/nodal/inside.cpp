@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The kick h alpha(D_n) that bodies got unseen, where alpha is the acceleration that the missed moments D_n
-// of all laws make with the joints as they are at the end of the element, and the error h^2 |alpha| / 2 that
-// goes with it (docs/theory.md, "Looks at laws").
+// The velocity change h alpha(D_n) that the quadrature missed, where alpha is the acceleration by the missed
+// moments D_n of all laws with the joints at the end of the element, and the error h^2 |alpha| / 2 that goes
+// with it (docs/theory.md, "Looks at laws").
 #include "livens/spacetime/nodal/inside.h"
 
 #include <algorithm>

@@ -14,8 +14,8 @@ class InstantSystem;
 struct InstantState;
 
 /// Compares, along the polynomials of a solved element, the impulse of every law that need not be smooth with
-/// what the element's quadrature took of it, and tells how bodies would have been kicked by the rest
-/// (docs/theory.md, "Looks at laws").
+/// what the element's quadrature took of it, and estimates the velocity change that the difference would have
+/// caused (docs/theory.md, "Looks at laws").
 class InsideLaws {
 public:
     /// References must outlive it.

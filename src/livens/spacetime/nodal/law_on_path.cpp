@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Laws as sums of factors f_k(t, q) times units F_k, and how far a factor of 1 moves what it acts on; along
-// an element q(s) of a law from its values at p + 3 Gauss-Lobatto points, its slope by their differentiation
-// matrix, and interval enclosures of both between two shares: a chord, widened by an eighth of the width
-// squared times the next derivative but one (docs/theory.md, "Looks at laws", Enclosures).
+// Laws as sums of factors f_k(t, q) times units F_k. Along an element q(s) is interpolated at p + 3
+// Gauss-Lobatto points, its slope follows by their differentiation matrix, and interval enclosures of both
+// between two shares are chords, widened by an eighth of the width squared times the second derivative
+// (docs/theory.md, "Looks at laws", Enclosures).
 #include "livens/spacetime/nodal/law_on_path.h"
 
 #include <algorithm>
@@ -46,7 +46,8 @@ LawInside whole(const Load& load)
     return law;
 }
 
-/// By the bodies alone, where they are at the start: what matters is decided with the joints, later.
+/// Mobilities by the bodies alone, at the start: an order of magnitude. Accepted kicks are computed with the
+/// joints.
 void weigh(const Tables& tables, InspectedLaw& law)
 {
     const State start = tables.model->start();
@@ -140,7 +141,7 @@ void LawOnPath::factors_at(double share, double* factors)
     law_->inside.factors({start_ + share * h_, Side::middle}, at_, {factors, law_->inside.n_factors});
 }
 
-/// Between the values at both ends, for which values_ are, and beyond by what it may bend.
+/// The hull of the values at both ends, for which values_ were made, widened by the curvature bounds.
 EnclosedValue LawOnPath::range(std::size_t number, double width) const
 {
     const std::size_t n = law_->inside.n_numbers, size = basis_.size();

@@ -15,7 +15,7 @@ struct InspectedLaw {
     int load = 0;
     std::vector<int> bodies;   ///< that it looks at or acts on
     LawInside inside;
-    std::vector<double> mobility;   ///< of each unit F_k: what it accelerates, in lengths or rad
+    std::vector<double> mobility;   ///< of each unit F_k: acceleration in lengths or rad
 };
 
 /// Of all loads that are not smooth.

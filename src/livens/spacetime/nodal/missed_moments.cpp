@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // D_kn = int_0^1 P_n f_k ds - sum_c w_c P_n(s_c) f_k(s_c) of a law along a solved element (docs/theory.md,
-// "Looks at laws"). The integral is divided until it can be believed: enclosed slopes bound what may be
-// hidden between two looks, and a second rule on the same points tells whether what was seen is integrated
-// well.
+// "Looks at laws"). The interval is divided until the integral is verified: enclosed slopes bound the
+// integral of a needle between two samples, and a second rule on the same samples bounds the quadrature
+// error.
 #include "livens/spacetime/nodal/missed_moments.h"
 
 #include <algorithm>
@@ -19,7 +19,7 @@ namespace {
 constexpr std::size_t n_moments = MissedMoments::n_moments;
 /// The whole way is integrated with as many points more than load points, its pieces with as many.
 constexpr int more_points = 4, points_of_piece = 8;
-/// A law that is steeper than this many times what is seen of it may hide something.
+/// A law with slopes above this many times the steepest chord between samples may hide a needle.
 constexpr double steeper = 4;
 /// Of lengths or rad that something hidden may shift an element's end by.
 constexpr double negligible = 1e-11;
@@ -33,11 +33,11 @@ std::array<double, n_moments> legendre(double s) { return {1, 2 * s - 1, 6 * s *
 /// A piece of the way, and integrals over it: of factor k with the polynomial n at [n * n_factors + k].
 struct Panel {
     double first = 0, last = 1;
-    double doubt = 0;   // of what may be hidden in it, lengths or rad
+    double doubt = 0;   // bound of the error that may be hidden in it, lengths or rad
     std::vector<double> moments;
 };
 
-/// What may be hidden between places where the law was seen: a needle as high as its steepest slope allows.
+/// The error by a needle between two samples, as high as the steepest slope allows.
 /// `seen`: shares and factors there, ascending.
 double steepness_doubt(LawOnPath& path, const Panel& panel, const std::vector<double>& seen)
 {
@@ -61,8 +61,8 @@ double steepness_doubt(LawOnPath& path, const Panel& panel, const std::vector<do
     return doubt > negligible ? doubt : 0;
 }
 
-/// What another rule, which knows the ends, makes of the same places differently: a law may be seen, and yet
-/// bend so much between them that their integral is not what it seems.
+/// The difference of a second rule, which uses the ends as well: a law may be sampled everywhere, and yet
+/// bend so much between samples that their integral is wrong.
 double quadrature_doubt(const LawOnPath& path, const CheckedRule& rule, const Panel& panel,
                         const std::vector<double>& seen)
 {

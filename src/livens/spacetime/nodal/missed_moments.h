@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the load points of an element miss of a law: integrals that can be trusted less the element's own.
+// The error of an element's quadrature of a law: verified integrals less the element's own.
 #pragma once
 
 #include <vector>
@@ -20,8 +20,8 @@ struct CheckedRule {
 };
 
 /// The moments D_kn = integral of P_n f_k over the element less their quadrature, with Legendre's polynomials
-/// P_0, P_1, P_2 (docs/theory.md, "Looks at laws"). The way is divided where a law may be steeper than what
-/// is seen of it, by bounds over ranges, so that what is narrow costs a number of looks that grows as the
+/// P_0, P_1, P_2 (docs/theory.md, "Looks at laws"). Intervals are divided where interval bounds allow steeper
+/// slopes than those between samples, so that a narrow pulse costs a number of samples that grows as the
 /// logarithm of its width.
 class MissedMoments {
 public:

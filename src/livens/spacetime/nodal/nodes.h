@@ -68,8 +68,8 @@ private:
     std::vector<double> displacement_, twist_;
 };
 
-/// What the constraints hold and leave free at these nodes: maps, bases and violations. Known states at the
-/// ends bring their own.
+/// The constraints at these nodes: maps, bases of constraint and free directions, violations. Known states at
+/// the ends bring their own.
 class Nodes : public NodePositions {
 public:
     using NodePositions::NodePositions;

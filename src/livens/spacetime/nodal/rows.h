@@ -18,7 +18,7 @@ struct EndMomentum {
     std::vector<double> scaled, about_reference;
     std::vector<double> columns;   ///< X' m, 12 numbers a body, for rows that share it (radau)
 
-    /// y, scaled rows of a node with these maps, += sign times what is about the reference points.
+    /// y, scaled rows of a node with these maps, += sign times the momentum about the reference points.
     void add_to(const Tables& tables, const double* maps, double sign, double* y) const;
 };
 
@@ -29,7 +29,7 @@ struct EndMomentum {
 /// over the elements e at A, with F_A of ElementLoads and the momenta at the first and the last node of the
 /// window (docs/theory.md, "The element"); with radau c_A P(0) at every node, and no other momentum ("Radau
 /// points"). Multipliers are eliminated node by node with an orthogonal basis of the constraint directions;
-/// what they leave are the reduced rows, which are solved.
+/// the rows in the free directions are the reduced rows, which are solved.
 class NodalRows {
 public:
     NodalRows(const Tables& tables, const ElementRule& rule);

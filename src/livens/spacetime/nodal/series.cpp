@@ -139,7 +139,7 @@ bool Series::place_coarse(NodalSystem& system, const InstantState& start)
         for (int b = 0; b < bodies; ++b) {
             double* z = turn.data() + 7 * b + 3;
             const double size = std::sqrt(z[0] * z[0] + z[1] * z[1] + z[2] * z[2] + z[3] * z[3]);
-            if (!(size > 0.1)) return false;   // turns too far apart: their mean says nothing
+            if (!(size > 0.1)) return false;   // turns too far apart to be averaged
             for (int i = 0; i < 4; ++i) z[i] /= size;
         }
         system.nodes().turn_from(A, 0, turn.data());

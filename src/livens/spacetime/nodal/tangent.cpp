@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // d(N_A^T r_A) / d(twist at B): mass and loads for every pair of nodes that share an element, at A = B also
-// the Hessians of constraints and what N_A itself does when bodies turn (docs/theory.md, "The tangent").
-// Blocks go to a sink, scaled by the maps D of their nodes.
+// the Hessians of constraints and the derivative of N_A itself (docs/theory.md, "The tangent"). Blocks go to
+// a sink, scaled by the maps D of their nodes.
 #include "livens/spacetime/nodal/tangent.h"
 
 #include <algorithm>

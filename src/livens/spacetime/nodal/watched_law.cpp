@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a law with pieces says along the polynomials of an element: the number of each guard, which changes
-// its piece where it passes one of its places, and the vector about whose zero a law turns round
-// (docs/theory.md, "Laws that bend").
+// A law with pieces along the polynomials of an element: the number of each guard, which changes its piece
+// where it passes one of its places, and the vector at whose zero the law is not smooth (docs/theory.md,
+// "Laws that bend").
 #include "livens/spacetime/nodal/watched_law.h"
 
 #include <algorithm>

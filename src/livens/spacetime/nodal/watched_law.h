@@ -8,7 +8,7 @@
 
 namespace livens {
 
-/// What decides about the piece, at a share of the element's length.
+/// The numbers that decide about the piece, at a share of the element's length.
 struct LawState {
     double share = 0;
     std::vector<double> numbers;   ///< of the guards
@@ -26,7 +26,7 @@ public:
     const std::vector<Guard>& guards() const { return guards_; }
     int load() const { return load_; }
 
-    /// What follows `from` along the path, where guards and angles are counted on.
+    /// The state that follows `from` along the path; guards and angles are continued from there.
     LawState at(ElementPath& path, double share, const LawState& from) const;
     /// Whether the force of a load is another behind two states next to each other; `end` is some way behind.
     bool jumps(ElementPath& path, const LawState& before, const LawState& after, const LawState& end) const;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A window of lobatto(p) or radau(p): which nodes are known at its ends, how its elements are begun, and what
-// becomes of them once they are solved: their ends, the checks that they have to pass, the motion
-// (docs/theory.md, "Windows", "Element ends").
+// A window of lobatto(p) or radau(p): its known states and nodes, initial guesses of its elements, and, once
+// these are solved, their end states, the checks that they have to pass, and the motion (docs/theory.md,
+// "Windows", "Element ends").
 #include "livens/spacetime/nodal/window.h"
 
 #include <algorithm>
@@ -196,7 +196,7 @@ void NodalWindow::record_end(int end)
     record_.end(mesh_end(end), end_.here(), end_.instant(), end_.is_jump(end_.here().t));
 }
 
-/// What its equations do not say of a solved element, whose end state is found on the way.
+/// Finds the end state of a solved element and applies the checks to it.
 bool NodalWindow::is_believed(int e, const Trust& trust, SolveReport& report, Closed& closed)
 {
     constexpr double infinite = std::numeric_limits<double>::infinity();

@@ -19,7 +19,7 @@ public:
     /// References must outlive the window.
     NodalWindow(const Tables& tables, const TimeMesh& mesh, const Ends& ends, const ElementRule& rule);
 
-    /// Nobody asks what laws of loads do inside of elements.
+    /// Laws of loads are not inspected between load points.
     void ignore_laws() { checks_.ignore_laws(); }
     /// A motion nearby, which has to outlive the window, as the guess where its elements are the same.
     void follow(const Motion& motion) { kernel_.follow(motion); }

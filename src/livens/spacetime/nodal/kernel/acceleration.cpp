@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Of the last changes of what is proposed those factors that cancel the present proposal best, by the normal
-// equations of least squares, changes scaled to 1; what was taken with them is taken back by as much
-// (docs/theory.md, "Without a tangent", Many bodies).
+// Anderson's acceleration: factors by which the last changes of proposals cancel the present proposal best,
+// from the normal equations of least squares with changes scaled to 1; the steps that led to these changes
+// are subtracted with the same factors (docs/theory.md, "Without a tangent", Many bodies).
 #include "livens/spacetime/nodal/kernel/acceleration.h"
 
 #include <algorithm>

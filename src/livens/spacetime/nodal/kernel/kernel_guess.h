@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the kernel of a march begins an element with.
+// Initial guesses of the march kernel for an element.
 #pragma once
 
 #include <vector>
@@ -31,11 +31,11 @@ public:
     /// Nothing is followed for some elements from this one on: the motion is too near for steps that shrink
     /// fast, or too far.
     void part();
-    /// What the element has come to, if a polynomial serves; `place` must stay as it is.
+    /// Learns from the solved element, if a polynomial serves; `place` must stay as it is.
     bool learns() const { return polynomial_.serves(); }
     void compare(const double* place);
     void remember(const double* place, const Stretch& stretch);
-    /// What was learnt tells nothing of the next element.
+    /// The next element does not continue the last one.
     void forget();
     void forget_polynomial() { polynomial_.forget(); }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // k_AB / h, - h K^-1, weights and values at load points as rows of lanes, one lane a node, with the last node
-// in lane 0 where nodes are unknown (docs/theory.md, "Without a tangent", All nodes at once). Whether turns
-// are solved for in still axes is decided by what gyroscopic terms there are (Still axes).
+// in lane 0 where nodes are unknown (docs/theory.md, "Without a tangent", All nodes at once). Turns are
+// solved for in still axes if there are gyroscopic terms ("Still axes").
 #include "livens/spacetime/nodal/kernel/kernel_rule.h"
 
 #include <algorithm>

@@ -31,7 +31,7 @@ constexpr double share_of_tolerance = 0.1;   // left after the last step, as far
 constexpr double farthest_parting = 1e-3;
 constexpr double widest_tolerance = 1e-4;   // beyond, two steps hardly tell how they shrink
 
-/// Null: there are none for these rows, inertias or points.
+/// Null: the kernel does not serve these rows, inertias or points.
 const lanes::Functions* functions_of(const Tables& tables, const ElementRule& rule)
 {
     const int n_lanes = rule.degree;
@@ -150,7 +150,7 @@ bool MarchKernel::iterate(const Stretch& stretch, const InstantState& start, con
     for (int steps = 0;; ++steps) {
         functions_->configure(pattern, from, nodes);
         const double still_fits = progress.is_done ? fits_at_end : fits_on_the_way;
-        // what an old factor leaves of a projection must not be what slows the steps
+        // steps must not be slowed by the error of projections with an old factor
         if (steps == 0 || progress.n_slow > 0 || !(moved <= still_fits * pivot)) {
             functions_->factorise(pattern, nodes);
             pivot = *std::min_element(nodes.pivots, nodes.pivots + rule_.degree);

@@ -79,7 +79,7 @@ private:
 
     const Tables& tables_;
     const ElementRule& rule_;
-    const lanes::Functions* functions_;   // null: there are none
+    const lanes::Functions* functions_;   // null: no lanes for this rule or model
     std::shared_ptr<const RowPattern> pattern_;
     std::vector<int> place_;   // of each row that was chosen among those of the pattern
     const JointFactor* start_ = nullptr;
