@@ -29,9 +29,23 @@ ElementChecks::ElementChecks(const Tables& tables, const ElementRule& rule)
     if (!std::ranges::all_of(tables.model->loads(), &Load::is_smooth)) inside_.emplace(tables, rule);
 }
 
+/// Less than 90 degrees, where |R_B - R_A|^2 = 4, from node to node.
+bool ElementChecks::has_small_turns(const Nodes& nodes, int e) const
+{
+    for (int b = 0; b < tables_.n_bodies(); ++b)
+        for (int B = 1; tables_.bodies[b].dofs == 6 && B <= degree_; ++B) {
+            const double *d = nodes.dX(e, B) + 12 * b, *before = nodes.dX(e, B - 1) + 12 * b;
+            double turn = 0;
+            for (int i = 3; i < 12; ++i) turn += (d[i] - before[i]) * (d[i] - before[i]);
+            if (!(turn <= 4)) return false;
+        }
+    return true;
+}
+
 double ElementChecks::velocity_jump(const NodalSystem& system, int e, const ElementEnd& end,
                                     bool refuse_turns) const
 {
+    if (refuse_turns && !has_small_turns(system.nodes(), e)) return std::numeric_limits<double>::infinity();
     const ElementRule& rule = system.rule();
     const bool at_start = rule.points == Points::radau;
     const double *D = rule.D.data() + (at_start ? 0 : rule.degree * rule.size()), h = system.stretch().h(e);
@@ -41,19 +55,15 @@ double ElementChecks::velocity_jump(const NodalSystem& system, int e, const Elem
         tables_.rates_of(end.here().X.data(), end.here().velocity.data(), first_V.data());
         V = first_V.data();
     }
-    double of_centres = 0, of_directors = 0, widest_turn = 0;   // squares
+    double of_centres = 0, of_directors = 0;   // squares
     for (int b = 0; b < tables_.n_bodies(); ++b) {
         const auto& body = tables_.bodies[b];
         const int n = body.dofs == 6 ? 12 : 3;
         double jump[12] = {};
         for (int i = 0; i < n; ++i) jump[i] = h * V[12 * b + i];
         for (int B = 1; B <= rule.degree; ++B) {
-            const double *d = system.nodes().dX(e, B) + 12 * b,
-                         *before = system.nodes().dX(e, B - 1) + 12 * b;
-            double turn = 0;
+            const double* d = system.nodes().dX(e, B) + 12 * b;
             for (int i = 0; i < n; ++i) jump[i] -= D[B] * d[i];
-            for (int i = 3; i < n; ++i) turn += (d[i] - before[i]) * (d[i] - before[i]);
-            raise_to(widest_turn, turn);
         }
         double of_centre = 0;
         for (int i = 0; i < 3; ++i) {
@@ -65,8 +75,6 @@ double ElementChecks::velocity_jump(const NodalSystem& system, int e, const Elem
         for (int a = 3; a < 12; a += 3)
             raise_to(of_directors, jump[a] * jump[a] + jump[a + 1] * jump[a + 1] + jump[a + 2] * jump[a + 2]);
     }
-    // |R_B - R_A|^2 = 4 where a body turns by 90 degrees
-    if (refuse_turns && !(widest_turn <= 4)) return std::numeric_limits<double>::infinity();
     double largest = std::sqrt(of_centres) / tables_.length;
     raise_to(largest, std::sqrt(0.5 * of_directors));   // |[w]_x|^2 = 2 |w|^2: radians
     return largest;

@@ -46,6 +46,7 @@ public:
     double smallest_pivot() const { return smallest_pivot_; }
 
 private:
+    bool has_small_turns(const Nodes& nodes, int e) const;
     double rank_left(const Nodes& nodes, int e, int first, int last) const;
 
     const Tables& tables_;

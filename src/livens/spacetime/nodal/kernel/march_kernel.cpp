@@ -86,6 +86,18 @@ struct Shrinking {
                   (left <= allowed && n_slow >= most_slow_steps);
         return is_done || (left < hopeless_step && n_slow < most_slow_combinations);
     }
+    NewtonReport report(const lanes::Sizes& sizes, const std::vector<double>& momenta) const
+    {
+        double terms = sizes.terms;
+        for (const double momentum : momenta) terms = std::max(terms, std::abs(momentum));
+        NewtonReport made;
+        made.iterations = n_steps;
+        made.last_increment = step;
+        made.contraction = contraction;
+        made.ended_by_rounding = is_rounded;
+        made.residual = terms > 0 ? sizes.rows / terms : sizes.rows;
+        return made;
+    }
 };
 
 }   // namespace
@@ -172,15 +184,8 @@ bool MarchKernel::iterate(const Stretch& stretch, const InstantState& start, con
         const double noise = std::clamp(rounding_by_pivot / pivot, least_rounding, most_rounding);
         if (!(is_accelerated ? progress.approach(left, sizes) : progress.take(sizes, noise))) return false;
     }
-    double terms = sizes.terms;
-    for (const double momentum : start.momentum) terms = std::max(terms, std::abs(momentum));
     has_near_factor_ = moved <= fits_for_next * pivot;
-    report = {};
-    report.iterations = progress.n_steps;
-    report.last_increment = progress.step;
-    report.contraction = progress.contraction;
-    report.ended_by_rounding = progress.is_rounded;
-    report.residual = terms > 0 ? sizes.rows / terms : sizes.rows;
+    report = progress.report(sizes, start.momentum);
     return std::min(pivot, from.pivots[0]) > least_pivot * least_pivot;   // false: also no number
 }
 
