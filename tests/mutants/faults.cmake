@@ -185,6 +185,14 @@ livens_mutant(NAME nodes_in_singular_positions
               TESTS_OF convergence
               MUST_FAIL SingularPositions.NoElementEndsThere SingularPositions.NoInnerNodeLiesThere)
 
+# Of a node that two elements share the whole impulse is given to the second.
+livens_mutant(NAME shared_impulse_given_twice
+              FILE spacetime/nodal/element_end.cpp
+              OLD [[weight * end_lambda_[system]]
+              NEW [[0 * weight * end_lambda_[system]]
+              TESTS_OF convergence
+              MUST_FAIL LobattoWindows.OfAnyLengthGiveTheMarch LobattoEnds.HaveOrder2P)
+
 # Reflections that lead with whichever entry comes next: directions across the plane mix with those in it.
 livens_mutant(NAME reflections_without_choice
               FILE solvers/dense.cpp
