@@ -88,7 +88,7 @@ livens_mutant(NAME missing_geometric_term_by_differences
 
 # Loads taken where the element starts, their moments where it has come to: a spring that turns what it holds.
 livens_mutant(NAME loads_at_the_start
-              FILE spacetime/nodal/rows.cpp
+              FILE spacetime/nodal/element_loads.cpp
               OLD [[tables_.add_loads(at, X_.data(), V_.data(),]]
               NEW [[tables_.add_loads(at, nodes.X(e * rule_.degree), V_.data(),]]
               TESTS_OF unit_spacetime
@@ -113,7 +113,7 @@ livens_mutant(NAME loads_at_lobatto_points
 
 # What a load does at a Gauss point given to one node, instead of shared out: impulses are right, moments not.
 livens_mutant(NAME loads_given_to_one_node
-              FILE spacetime/nodal/rows.cpp
+              FILE spacetime/nodal/element_loads.cpp
               OLD [[const double m = rule_.M[c * n_nodes + A];]]
               NEW [[const double m = A == c ? 1 : 0;]]
               TESTS_OF unit_spacetime
@@ -122,7 +122,7 @@ livens_mutant(NAME loads_given_to_one_node
 # The instant of a node for what is taken at a Gauss point: right for constant loads only.
 livens_mutant(NAME loads_at_the_instants_of_nodes
               FILE spacetime/nodal/stretch.h
-              RECOMPILE spacetime/nodal/rows.cpp spacetime/nodal/kernel/march_kernel.cpp
+              RECOMPILE spacetime/nodal/element_loads.cpp spacetime/nodal/kernel/kernel_wrenches.cpp
               OLD [[rule.loads.points[c] * h(e), Side::middle}]]
               NEW [[rule.nodes[c] * h(e), Side::middle}]]
               TESTS_OF convergence
@@ -179,11 +179,19 @@ livens_mutant(NAME turns_of_an_element
 
 # Nodes in positions where the joints lose rank are taken as they come.
 livens_mutant(NAME nodes_in_singular_positions
-              FILE spacetime/nodal/window_account.cpp
+              FILE spacetime/nodal/element_checks.cpp
               OLD [[constexpr double least = 1e-2;]]
               NEW [[constexpr double least = 0;]]
               TESTS_OF convergence
               MUST_FAIL SingularPositions.NoElementEndsThere SingularPositions.NoInnerNodeLiesThere)
+
+# Of a node that two elements share the whole impulse is given to the second.
+livens_mutant(NAME shared_impulse_given_twice
+              FILE spacetime/nodal/element_end.cpp
+              OLD [[weight * end_lambda_[system]]
+              NEW [[0 * weight * end_lambda_[system]]
+              TESTS_OF convergence
+              MUST_FAIL LobattoWindows.OfAnyLengthGiveTheMarch LobattoEnds.HaveOrder2P)
 
 # Reflections that lead with whichever entry comes next: directions across the plane mix with those in it.
 livens_mutant(NAME reflections_without_choice
@@ -818,7 +826,7 @@ livens_mutant(NAME directions_are_letters
 
 # Nothing is ever doubted: a needle between two looks is flown through.
 livens_mutant(NAME laws_undoubted
-              FILE spacetime/nodal/inside.cpp
+              FILE spacetime/nodal/missed_moments.cpp
               OLD [[    double doubt = 0;
     for (std::size_t k = 0; k < m; ++k) {
         double steepest = 0, widest = 0;]]
@@ -831,9 +839,9 @@ livens_mutant(NAME laws_undoubted
 
 # What is seen of a law is integrated well, whatever its shape between the places.
 livens_mutant(NAME integrals_unchecked
-              FILE spacetime/nodal/inside.cpp
-              OLD [[std::max(steepness_doubt(law, panel, seen), quadrature_doubt(law, rule, panel, seen))]]
-              NEW [[std::max(steepness_doubt(law, panel, seen), 0 * quadrature_doubt(law, rule, panel, seen))]]
+              FILE spacetime/nodal/missed_moments.cpp
+              OLD [[std::max(steepness_doubt(path, panel, seen), quadrature_doubt(path, rule, panel, seen))]]
+              NEW [[std::max(steepness_doubt(path, panel, seen), 0 * quadrature_doubt(path, rule, panel, seen))]]
               TESTS_OF unit_spacetime
               MUST_FAIL InsideLaws.WhatIsSeenIsIntegratedToo)
 
@@ -855,7 +863,7 @@ livens_mutant(NAME no_witness
 
 # Opaque forces are not looked at beside the ends of elements.
 livens_mutant(NAME ends_of_elements_unseen
-              FILE spacetime/nodal/inside.cpp
+              FILE spacetime/nodal/missed_moments.cpp
               OLD [[constexpr double beside_ends[] = {1e-4, 1e-2};]]
               NEW [[constexpr double beside_ends[] = {1e-15, 1e-14};]]
               TESTS_OF unit_spacetime

@@ -480,7 +480,7 @@ TEST(Laws, AnglesAreCountedWhileMarching)
     const Ends ends = close_ends(model, {conditions}, 0, 5, {});
     const Tables tables(model, ends.independent);
     TimeMesh mesh{{0}};
-    LobattoWindow window(tables, mesh, ends, element_rule(Points::lobatto, 4));
+    NodalWindow window(tables, mesh, ends, element_rule(Points::lobatto, 4));
     Pace pace(Points::lobatto, 4, 1e-6, 0.01, {0, 5});
     std::vector<std::pair<double, std::vector<double>>> seen;
     WindowOptions options;

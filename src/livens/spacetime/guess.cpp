@@ -88,7 +88,7 @@ MarchGuess guess_from_state(const Model& model, const State& state, std::span<co
     if (!tried.ends) return {guess_steady(state), times.front(), false};
     const Ends& ends = *tried.ends;
     const Tables tables(model, ends.independent);
-    LobattoWindow window(tables, mesh, ends, lobatto_rule(degree));
+    NodalWindow window(tables, mesh, ends, lobatto_rule(degree));
     SolveReport report;
     WindowOptions options;
     options.direction = is_forwards ? 1 : -1;

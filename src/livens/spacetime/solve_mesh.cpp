@@ -36,7 +36,7 @@ std::unique_ptr<Window> make_window(const Tables& tables, const TimeMesh& mesh, 
 {
     if (const auto* mixed = std::get_if<Mixed>(&method))
         return std::make_unique<MixedWindow>(tables, mesh, ends, *mixed);
-    auto window = std::make_unique<LobattoWindow>(tables, mesh, ends, rule_of(method));
+    auto window = std::make_unique<NodalWindow>(tables, mesh, ends, rule_of(method));
     if (near != nullptr) window->follow(*near);
     if (!look_at_laws) window->ignore_laws();
     return window;
@@ -231,7 +231,7 @@ Solution solve_by_windows(const Model& model, const Problem& problem, const Time
     if (options.condition && report.converged() && !is_whole)
         last.measure(report, [&](const auto& goes_on) {
             // the march's equations as one window of all elements, at the solution
-            LobattoWindow whole(tables, mesh, ends, rule_of(method));
+            NodalWindow whole(tables, mesh, ends, rule_of(method));
             const Motion& motion = solution.motion;
             if (whole.open(0, mesh.n_elements(), report) &&
                 whole.start_from([&](double t) { return motion.at(t); }) && whole.equations().residual())

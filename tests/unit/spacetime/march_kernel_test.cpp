@@ -64,7 +64,7 @@ double difference(const std::vector<double>& a, const std::vector<double>& b)
 double size_of(const std::vector<double>& a) { return difference(a, std::vector<double>(a.size(), 0.0)); }
 
 /// From the balance of all rows, as Newton's iteration left them.
-std::vector<double> end_momentum(const Tables& tables, const Stretch& stretch, LobattoSystem& system,
+std::vector<double> end_momentum(const Tables& tables, const Stretch& stretch, NodalSystem& system,
                                  const InstantState& start)
 {
     std::vector<double> p = start.p, wrench(p.size()), raw(12 * tables.bodies.size());
@@ -73,7 +73,7 @@ std::vector<double> end_momentum(const Tables& tables, const Stretch& stretch, L
     for (int A = 0; A <= stretch.degree; ++A) {
         std::fill(raw.begin(), raw.end(), 0.0);
         if (!tables.model->loads().empty())
-            std::copy_n(system.balances().forces(0, A), raw.size(), raw.begin());
+            std::copy_n(system.balances().loads().forces(0, A), raw.size(), raw.begin());
         if (A < stretch.degree)
             system.balances().subtract(system.nodes().basis(A), system.balances().impulses(A), raw.data());
         tables.twist_rows(system.nodes().X(A), system.nodes().maps(A), raw.data(), wrench.data());
@@ -83,7 +83,7 @@ std::vector<double> end_momentum(const Tables& tables, const Stretch& stretch, L
 }
 
 /// Twist rows of G^T impulses at node A, with the opposite sign.
-std::vector<double> taken_by(const Tables& tables, LobattoSystem& system, const double* impulses, int A)
+std::vector<double> taken_by(const Tables& tables, NodalSystem& system, const double* impulses, int A)
 {
     std::vector<double> raw(12 * tables.bodies.size(), 0.0),
         wrench(static_cast<std::size_t>(tables.n_twists));
@@ -120,7 +120,7 @@ Comparison compare(const Model& model, int degree, double h, double fault = 0)
     stretch.times = {start.t, start.t + h};
     stretch.degree = degree;
 
-    LobattoSystem system(tables, rule);
+    NodalSystem system(tables, rule);
     Series series(tables, rule);
     system.open(stretch, &start, nullptr);
     series.place(system, start);

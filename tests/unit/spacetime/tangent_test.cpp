@@ -154,7 +154,7 @@ public:
     Tables tables;
     ElementRule rule;
     Stretch stretch;
-    LobattoSystem system;
+    NodalSystem system;
     std::vector<std::vector<double>> maps, impulses;
 
 private:

@@ -184,7 +184,7 @@ private:
         Solution solution;
         SolveReport& report = solution.report;
         TimeMesh mesh{{span_.start}};
-        LobattoWindow window(tables_, mesh, ends_, rule_of(method_));
+        NodalWindow window(tables_, mesh, ends_, rule_of(method_));
         if (!options_.look_at_laws) window.ignore_laws();
         Second second(model_, problem_, method_, options_, *window.monitor().so_far());
         const ElementRule rule = rule_of(method_);

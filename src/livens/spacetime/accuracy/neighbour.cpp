@@ -36,7 +36,7 @@ State rigid(const Model& model, State state)
 struct Neighbour::March {
     Ends ends;
     Tables tables;
-    LobattoWindow window;
+    NodalWindow window;
 
     March(const Model& model, Prepared& prepared, const Method& method, const Ends& closed,
           const TimeMesh& mesh)

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// An element has passed a position in which rows lose rank if det G_a G_b^T < 0 between two of its nodes.
+// Samples of the polynomial between these nodes then decide whether the mechanism passed through, with joints
+// closed and bodies rigid, or jumped to another branch (docs/theory.md, "Singular positions", Branches).
 #include "livens/spacetime/nodal/branches.h"
 
 #include <algorithm>
@@ -28,44 +31,39 @@ int first_of(std::vector<int>& before, int body)
 Branches::Branches(const Tables& tables, const ElementRule& rule) : tables_(tables), rule_(rule)
 {
     find_mechanisms();
-    if (mechanisms_.empty()) return;
-    basis_ = basis_on(rule.points, rule.degree);
-    values_.assign(rule.nodes.size(), 0.0);
-    X_.assign(12 * tables.bodies.size(), 0.0);
+    if (!mechanisms_.empty()) path_.emplace(tables, rule);
 }
 
-/// A tree has as many joints as bodies, one less where it floats: it has no position in which it locks.
+/// A tree has as many joints as bodies, one less if it floats, and cannot lock. Connected bodies with more
+/// joints form a mechanism of loops or drives.
 void Branches::find_mechanisms()
 {
-    const Model& model = *tables_.model;
-    const auto n = tables_.bodies.size();
+    const int n = tables_.n_bodies();
     std::vector<int> before(n);
     std::iota(before.begin(), before.end(), 0);
-    for (int r = 0; r < tables_.n_rows(); ++r)
-        for (int side = 1; side < tables_.rows[r].n_sides; ++side)
-            before[first_of(before, tables_.rows[r].bodies[side])] =
-                first_of(before, tables_.rows[r].bodies[0]);
-    std::vector<int> n_bodies(n, 0), n_joints(n, 0), n_rows(n, 0), place(n, -1);
+    for (const auto& row : tables_.rows)
+        for (int side = 1; side < row.n_sides; ++side)
+            before[first_of(before, row.bodies[side])] = first_of(before, row.bodies[0]);
+    std::vector<int> n_bodies(n, 0), n_joints(n, 0), place(n, -1);
     std::vector<bool> is_tied(n, false);
-    for (std::size_t b = 0; b < n; ++b) ++n_bodies[first_of(before, static_cast<int>(b))];
+    for (int b = 0; b < n; ++b) ++n_bodies[first_of(before, b)];
     for (int r = 0; r < tables_.n_rows(); ++r) {
         const int first = first_of(before, tables_.rows[r].bodies[0]);
-        ++n_rows[first];
-        if (r == model.first_row(model.row_joint(r))) ++n_joints[first];
+        if (r == tables_.model->first_row(tables_.model->row_joint(r))) ++n_joints[first];
         if (tables_.rows[r].n_sides == 1) is_tied[first] = true;   // to the world
     }
-    for (std::size_t b = 0; b < n; ++b) {
-        const int first = first_of(before, static_cast<int>(b));
+    for (int b = 0; b < n; ++b) {
+        const int first = first_of(before, b);
         if (n_joints[first] < n_bodies[first] + (is_tied[first] ? 1 : 0)) continue;
         if (place[first] < 0) {
             place[first] = static_cast<int>(mechanisms_.size());
             mechanisms_.emplace_back();
         }
-        mechanisms_[place[first]].bodies.push_back(static_cast<int>(b));
+        mechanisms_[place[first]].bodies.push_back(b);
     }
-    mechanism_of_.assign(static_cast<std::size_t>(tables_.n_rows()), -1);
     for (int r = 0; r < tables_.n_rows(); ++r)
-        mechanism_of_[r] = place[first_of(before, tables_.rows[r].bodies[0])];
+        if (const int at = place[first_of(before, tables_.rows[r].bodies[0])]; at >= 0)
+            mechanisms_[at].all_rows.push_back(r);
 }
 
 void Branches::take(const std::vector<int>& rows)
@@ -75,14 +73,9 @@ void Branches::take(const std::vector<int>& rows)
     for (Mechanism& one : mechanisms_) {
         one.rows.clear();
         for (Known& known : one.known) known.t = std::numeric_limits<double>::quiet_NaN();
+        for (const int r : rows)
+            if (std::ranges::binary_search(one.all_rows, r)) one.rows.push_back(r);
     }
-    for (const int r : rows)
-        if (mechanism_of_[r] >= 0) mechanisms_[mechanism_of_[r]].rows.push_back(r);
-}
-
-const double* Branches::X(const Place& place, int node) const
-{
-    return place.nodes.X(place.element * rule_.degree + node);
 }
 
 bool Branches::is_open(const Mechanism& one, Instant at, const double* X, double most) const
@@ -97,7 +90,7 @@ bool Branches::is_bent(const Mechanism& one) const
 {
     for (const int b : one.bodies) {
         if (tables_.bodies[b].dofs == 3) continue;
-        const double* d = X_.data() + 12 * b + 3;
+        const double* d = path_->X() + 12 * b + 3;
         for (int i = 0; i < 3; ++i)
             for (int j = 0; j <= i; ++j) {
                 double product = i == j ? -1 : 0;
@@ -108,28 +101,20 @@ bool Branches::is_bent(const Mechanism& one) const
     return false;
 }
 
-bool Branches::is_open_between(const Mechanism& one, const Place& place, int from)
+bool Branches::is_open_between(const Mechanism& one, int from)
 {
     const double first = rule_.nodes[from], length = rule_.nodes[from + 1] - first;
     for (int i = 1; i < looks; ++i) {
-        const double share = first + length * i / looks;
-        basis_->values(share, values_);
-        for (const int b : one.bodies) {
-            double* at = X_.data() + 12 * b;
-            std::fill(at, at + 12, 0.0);
-            for (int a = 0; a <= rule_.degree; ++a)
-                for (int k = 0; k < 12; ++k) at[k] += values_[a] * X(place, a)[12 * b + k];
-        }
-        const double t = place.stretch.times[place.element] + share * place.stretch.h(place.element);
-        if (is_open(one, {t, Side::middle}, X_.data(), open_between) || is_bent(one)) return true;
+        path_->go(first + length * i / looks, one.bodies);
+        if (is_open(one, path_->at(), path_->X(), open_between) || is_bent(one)) return true;
     }
     return false;
 }
 
-Orientation& Branches::orientation(Mechanism& one, const Place& place, int node, const Orientation* beside)
+Orientation& Branches::orientation(Mechanism& one, int node, const Orientation* beside)
 {
-    const Instant when = place.nodes.at(place.element * rule_.degree + node);
-    const double* X_there = X(place, node);
+    const Instant when = nodes_->at(first_ + node);
+    const double* X_there = nodes_->X(first_ + node);
     const auto is_there = [&](const Known& known) {
         const double* kept = known.X.data();
         return known.t == when.t && std::ranges::all_of(one.bodies, [&](int b) {
@@ -147,33 +132,33 @@ Orientation& Branches::orientation(Mechanism& one, const Place& place, int node,
     return known.of;
 }
 
-bool Branches::is_turned_over(Mechanism& one, const Place& place, int from, int to)
+bool Branches::is_turned_over(Mechanism& one, int from, int to)
 {
-    const Orientation& before = orientation(one, place, from, nullptr);
-    return orientation(one, place, to, &before).is_turned_over(before);
+    const Orientation& before = orientation(one, from, nullptr);
+    return orientation(one, to, &before).is_turned_over(before);
 }
 
 /// Over the whole element; of many rows only where their smallest pivot says that it is worth a look.
-bool Branches::may_cross(Mechanism& one, const Place& place)
+bool Branches::may_cross(Mechanism& one)
 {
     const int p = rule_.degree;
-    if (static_cast<int>(one.rows.size()) <= few_rows) return is_turned_over(one, place, 0, p);
+    if (static_cast<int>(one.rows.size()) <= few_rows) return is_turned_over(one, 0, p);
     if (static_cast<int>(one.rows.size()) > most_rows) return false;
-    double smallest = place.nodes.pivot(place.element * p), largest = smallest;
+    double smallest = nodes_->pivot(first_), largest = smallest;
     for (int a = 1; a <= p; ++a) {
-        smallest = std::min(smallest, place.nodes.pivot(place.element * p + a));
-        largest = std::max(largest, place.nodes.pivot(place.element * p + a));
+        smallest = std::min(smallest, nodes_->pivot(first_ + a));
+        largest = std::max(largest, nodes_->pivot(first_ + a));
     }
     return smallest <= dip * largest;
 }
 
-bool Branches::leaves(Mechanism& one, const Place& place)
+bool Branches::leaves(Mechanism& one)
 {
-    if (is_open(one, place.nodes.at((place.element + 1) * rule_.degree), X(place, rule_.degree), open_at_end))
-        return true;
-    if (!may_cross(one, place)) return false;
+    const int end = first_ + rule_.degree;
+    if (is_open(one, nodes_->at(end), nodes_->X(end), open_at_end)) return true;
+    if (!may_cross(one)) return false;
     for (int a = 0; a < rule_.degree; ++a)
-        if (is_turned_over(one, place, a, a + 1) && is_open_between(one, place, a)) return true;
+        if (is_turned_over(one, a, a + 1) && is_open_between(one, a)) return true;
     return false;
 }
 
@@ -181,8 +166,10 @@ bool Branches::leaves(const Stretch& stretch, const Nodes& nodes, const std::vec
 {
     if (mechanisms_.empty()) return false;
     take(rows);
-    const Place place{stretch, nodes, e};
-    return std::ranges::any_of(mechanisms_, [&](Mechanism& one) { return leaves(one, place); });
+    path_->begin(stretch, nodes, e);
+    nodes_ = &nodes;
+    first_ = e * rule_.degree;
+    return std::ranges::any_of(mechanisms_, [this](Mechanism& one) { return leaves(one); });
 }
 
 }   // namespace livens

@@ -7,8 +7,7 @@
 #include <vector>
 
 #include "livens/dynamics/start/orientation.h"
-#include "livens/spacetime/nodal/stretch.h"
-#include "livens/time/basis.h"
+#include "livens/spacetime/nodal/element_path.h"
 
 namespace livens {
 
@@ -28,45 +27,37 @@ public:
     bool leaves(const Stretch& stretch, const Nodes& nodes, const std::vector<int>& rows, int e);
 
 private:
-    /// Of an element.
-    struct Place {
-        const Stretch& stretch;
-        const Nodes& nodes;
-        int element;
-    };
-
     /// The last two, since an element begins where one has ended or where it was tried before.
     struct Known {
         double t = std::numeric_limits<double>::quiet_NaN();
         std::vector<double> X;
         Orientation of;
     };
-    /// Bodies that joints tie together into loops, or that drives move, and those of the independent rows
-    /// that are theirs.
+    /// Bodies that joints tie together into loops, or that drives move, and the rows that are theirs.
     struct Mechanism {
-        std::vector<int> bodies, rows;
-        Known known[2];
+        std::vector<int> bodies, all_rows;
+        std::vector<int> rows{};   // the independent ones
+        Known known[2]{};
     };
 
     void find_mechanisms();
     void take(const std::vector<int>& rows);
-    bool leaves(Mechanism& one, const Place& place);
-    bool may_cross(Mechanism& one, const Place& place);
-    /// Not into the place of the one beside it.
-    Orientation& orientation(Mechanism& one, const Place& place, int node, const Orientation* beside);
-    bool is_turned_over(Mechanism& one, const Place& place, int from, int to);
+    bool leaves(Mechanism& one);
+    bool may_cross(Mechanism& one);
+    /// At a node of the element. Not into the place of the one beside it.
+    Orientation& orientation(Mechanism& one, int node, const Orientation* beside);
+    bool is_turned_over(Mechanism& one, int from, int to);
     bool is_open(const Mechanism& one, Instant at, const double* X, double most) const;
     bool is_bent(const Mechanism& one) const;
-    bool is_open_between(const Mechanism& one, const Place& place, int from);
-    const double* X(const Place& place, int node) const;
+    bool is_open_between(const Mechanism& one, int from);
 
     const Tables& tables_;
     const ElementRule& rule_;
     std::vector<Mechanism> mechanisms_;
-    std::vector<int> mechanism_of_;   // of each row of the model; -1: none that is looked at
-    std::vector<int> rows_;           // all that were taken last
-    std::optional<LagrangeBasis> basis_;
-    std::vector<double> X_, values_;
+    std::vector<int> rows_;             // all that were taken last
+    std::optional<ElementPath> path_;   // where there are mechanisms
+    const Nodes* nodes_ = nullptr;
+    int first_ = 0;   // node of the element
 };
 
 }   // namespace livens

@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Z_A^T D^T J_AB D Z_B: the tangent on what the constraints leave free, for a solver of blocks; of one
+// element of degree 1, whose tangent couples no bodies, body by body with a Schur complement of the
+// constraints (docs/theory.md, "Eliminating the joint multipliers", "Newton's iteration", "The whole matrix
+// of lobatto").
 #include "livens/spacetime/nodal/elimination.h"
 
 #include <algorithm>

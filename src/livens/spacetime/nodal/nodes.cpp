@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// X of a node as a sum of two doubles, moved by x <- exp(twist) x with a compensated sum, and differences
+// X_B - X_0 of both parts (docs/theory.md, "Increments"). Constraints follow from the element's first node
+// on, where quadratic by the exact identity for changes; a violation is taken off by -D Y R^-T S^-1 Phi, node
+// by node ("Eliminating the joint multipliers").
 #include "livens/spacetime/nodal/nodes.h"
 
 #include <algorithm>
@@ -9,74 +13,6 @@
 #include "livens/solvers/patience.h"
 
 namespace livens {
-
-Nodes::Nodes(const Tables& tables, const ElementRule& rule)
-    : tables_(tables), rule_(rule), size_(12 * tables.bodies.size())
-{
-    work_.assign(3 * size_, 0.0);   // a displacement, numbers of a twist, a twist
-}
-
-void Nodes::open(const Stretch& stretch)
-{
-    const auto n = static_cast<std::size_t>(stretch.n_nodes());
-    current_ = kept_ = 0;
-    pivots_.assign(n, 1.0);
-    times_.resize(n);
-    for (int A = 0; A < stretch.n_nodes(); ++A) times_[A] = stretch.time(rule_, A);
-    if (known_.bases.size() == n) {
-        known_.bases.front() = known_.bases.back() = nullptr;
-        known_.rows = nullptr;
-        return;
-    }
-    const auto rank = static_cast<std::size_t>(tables_.rank);
-    for (Set& set : sets_) {
-        set.X.assign(n * size_, 0.0);
-        set.low.assign(n * size_, 0.0);
-    }
-    dX_.assign(static_cast<std::size_t>(stretch.n_elements()) * static_cast<std::size_t>(rule_.degree + 1) *
-                   size_,
-               0.0);
-    maps_.assign(n * size_, 0.0);
-    phi_.scaled.assign(n * rank, 0.0);
-    phi_.values.assign(n * rank, 0.0);
-    known_.bases.assign(n, nullptr);
-    known_.rows = nullptr;
-    bases_.clear();
-}
-
-void Nodes::fix(int A, const InstantState& state)
-{
-    for (Set& set : sets_) {
-        std::copy(state.X.begin(), state.X.end(), set.X.begin() + static_cast<std::ptrdiff_t>(place(A)));
-        std::copy(state.X_low.begin(), state.X_low.end(),
-                  set.low.begin() + static_cast<std::ptrdiff_t>(place(A)));
-    }
-    std::copy(state.maps.begin(), state.maps.end(), maps_.begin() + static_cast<std::ptrdiff_t>(place(A)));
-    known_.bases[A] = &state.basis;
-    if (A == 0) known_.rows = &state.rows;
-    pivots_[A] = state.smallest_pivot;
-    phi_.has_start = false;
-}
-
-/// Bases take room that grows with the square of the bodies: only here.
-void Nodes::begin_constraining()
-{
-    if (bases_.empty()) {
-        bases_.resize(known_.bases.size());
-        for (ConstraintBasis& basis : bases_) basis.resize(tables_, false);
-    }
-    if (phi_.has_start || known_.bases[0] == nullptr) return;
-    phi_.has_start = true;
-    pivots_[0] = known_.bases[0]->smallest_pivot;
-    for (int c = 0; c < tables_.rank; ++c)
-        phi_.values[c] = tables_.value((*known_.rows)[static_cast<std::size_t>(c)], at(0), X(0));
-}
-
-void Nodes::place_at(int A, const double* X)
-{
-    std::copy(X, X + size_, sets_[current_].X.begin() + static_cast<std::ptrdiff_t>(place(A)));
-    std::fill_n(sets_[current_].low.begin() + static_cast<std::ptrdiff_t>(place(A)), size_, 0.0);
-}
 
 namespace {
 
@@ -119,7 +55,41 @@ inline void subtract_two_sums(const double* __restrict x, const double* __restri
 
 }   // namespace
 
-void Nodes::place_solved(const double* increments, int width)
+NodePositions::NodePositions(const Tables& tables, const ElementRule& rule)
+    : tables_(tables), rule_(rule), size_(12 * tables.bodies.size()), displacement_(size_, 0.0),
+      twist_(size_, 0.0)
+{}
+
+void NodePositions::open(const Stretch& stretch)
+{
+    const std::size_t n = stretch.n_nodes();
+    const bool is_alike = times_.size() == n;   // as all elements of a march are
+    current_ = kept_ = 0;
+    times_.resize(n);
+    for (int A = 0; A < stretch.n_nodes(); ++A) times_[A] = stretch.time(rule_, A);
+    if (is_alike) return;
+    for (Set& set : sets_) {
+        set.X.assign(n * size_, 0.0);
+        set.low.assign(n * size_, 0.0);
+    }
+    dX_.assign(stretch.n_elements() * rule_.size() * size_, 0.0);
+}
+
+void NodePositions::fix(int A, const std::vector<double>& X, const std::vector<double>& low)
+{
+    for (Set& set : sets_) {
+        std::copy_n(X.data(), size_, set.X.data() + place(A));
+        std::copy_n(low.data(), size_, set.low.data() + place(A));
+    }
+}
+
+void NodePositions::place_at(int A, const double* X)
+{
+    std::copy(X, X + size_, sets_[current_].X.data() + place(A));
+    std::fill_n(sets_[current_].low.data() + place(A), size_, 0.0);
+}
+
+void NodePositions::place_solved(const double* increments, int width)
 {
     const int p = rule_.degree;
     Set& set = sets_[kept_];
@@ -138,52 +108,106 @@ void Nodes::place_solved(const double* increments, int width)
     }
 }
 
-/// Node A of `to` <- node A_from of `from`, both parts, + what is in work_.
-void Nodes::add(const Set& from, int A_from, Set& to, int A)
+/// Node A of `to` <- node A_from of `from`, both parts, + the displacement at hand.
+void NodePositions::add(const Set& from, int A_from, Set& to, int A)
 {
-    add_two_sums(from.X.data() + place(A_from), from.low.data() + place(A_from), work_.data(),
+    add_two_sums(from.X.data() + place(A_from), from.low.data() + place(A_from), displacement_.data(),
                  to.X.data() + place(A), to.low.data() + place(A), size_);
 }
 
-void Nodes::displace(const Set& from, int A_from, const double* twist, Set& to, int A)
+void NodePositions::displace(const Set& from, int A_from, const double* twist, Set& to, int A)
 {
     const double* X = from.X.data() + place(A_from);
     for (int b = 0; b < tables_.n_bodies(); ++b) {
         const auto& body = tables_.bodies[b];
         if (body.dofs == 6)
-            twist::displacement(twist + body.first, X + 12 * b, work_.data() + 12 * b);
+            twist::displacement(twist + body.first, X + 12 * b, displacement_.data() + 12 * b);
         else
-            std::copy_n(twist + body.first, 3, work_.data() + 12 * b);   // the rest stays zero
+            std::copy_n(twist + body.first, 3, displacement_.data() + 12 * b);   // the rest stays zero
     }
     add(from, A_from, to, A);
 }
 
-void Nodes::place_from(int A, int from, const double* twist)
+void NodePositions::place_from(int A, int from, const double* twist)
 {
     displace(sets_[current_], from, twist, sets_[current_], A);
 }
 
-void Nodes::turn_from(int A, int from, const double* turns)
+void NodePositions::turn_from(int A, int from, const double* turns)
 {
     for (int b = 0; b < tables_.n_bodies(); ++b)
-        twist::displacement(turns + 7 * b, turns + 7 * b + 3, X(from) + 12 * b, work_.data() + 12 * b);
+        twist::displacement(turns + 7 * b, turns + 7 * b + 3, X(from) + 12 * b,
+                            displacement_.data() + 12 * b);
     add(sets_[current_], from, sets_[current_], A);
 }
 
-void Nodes::move(int A, const double* twist, double factor)
+void NodePositions::move(int A, const double* twist, double factor)
 {
     if (factor == 1) return displace(sets_[kept_], A, twist, sets_[1 - kept_], A);
-    double* scaled = work_.data() + size_;
-    for (int i = 0; i < tables_.n_twists; ++i) scaled[i] = factor * twist[i];
-    displace(sets_[kept_], A, scaled, sets_[1 - kept_], A);
+    for (int i = 0; i < tables_.n_twists; ++i) twist_[i] = factor * twist[i];
+    displace(sets_[kept_], A, twist_.data(), sets_[1 - kept_], A);
 }
 
-void Nodes::measure_element(int e)
+void NodePositions::take_differences(int e)
 {
     const int first = e * rule_.degree;
     for (int B = 1; B <= rule_.degree; ++B)
         subtract_two_sums(X(first + B), low(first + B), X(first), low(first),
-                          dX_.data() + place(e * (rule_.degree + 1) + B), size_);
+                          dX_.data() + place(e * rule_.size() + B), size_);
+}
+
+double NodePositions::size_of(const double* twist) const
+{
+    double size = 0;
+    const auto look = [&size](double value) {
+        if (!(value <= size) && !std::isnan(size)) size = value;
+    };
+    for (const auto& body : tables_.bodies) {
+        for (int i = 0; i < 3; ++i) look(std::abs(twist[body.first + i]) / tables_.length);
+        for (int i = 3; i < body.dofs; ++i) look(std::abs(twist[body.first + i]));
+    }
+    return size;
+}
+
+void Nodes::open(const Stretch& stretch)
+{
+    NodePositions::open(stretch);
+    const std::size_t n = stretch.n_nodes();
+    pivots_.assign(n, 1.0);
+    first_rows_ = nullptr;
+    if (known_.size() == n) {
+        known_.front() = known_.back() = nullptr;
+        return;
+    }
+    maps_.assign(n * size_, 0.0);
+    scaled_.assign(n * tables_.rank, 0.0);
+    phi_.assign(n * tables_.rank, 0.0);
+    known_.assign(n, nullptr);
+    bases_.clear();
+    work_.assign(2 * size_, 0.0);   // numbers of a twist, a twist
+}
+
+void Nodes::fix(int A, const InstantState& state)
+{
+    NodePositions::fix(A, state.X, state.X_low);
+    std::copy_n(state.maps.data(), size_, maps_.data() + place(A));
+    known_[A] = &state.basis;
+    if (A == 0) first_rows_ = &state.rows;
+    pivots_[A] = state.smallest_pivot;
+    has_start_ = false;
+}
+
+/// Bases take room that grows with the square of the bodies: only here.
+void Nodes::begin_constraining()
+{
+    if (bases_.empty()) {
+        bases_.resize(known_.size());
+        for (ConstraintBasis& basis : bases_) basis.resize(tables_, false);
+    }
+    if (has_start_ || known_[0] == nullptr) return;
+    has_start_ = true;
+    pivots_[0] = known_[0]->smallest_pivot;
+    for (int c = 0; c < tables_.rank; ++c) phi_[c] = tables_.value((*first_rows_)[c], at(0), X(0));
 }
 
 bool Nodes::constrain(const Stretch& stretch, bool same_choices)
@@ -193,25 +217,25 @@ bool Nodes::constrain(const Stretch& stretch, bool same_choices)
     double sum = 0;
     for (int e = 0; e < stretch.n_elements(); ++e) {
         Patience::ask();
-        measure_element(e);
+        take_differences(e);
         for (int B = e == 0 ? 0 : 1; B <= rule_.degree; ++B)
             if (stretch.is_unknown(e * rule_.degree + B)) constrain_node(e, B, same_choices, sum);
     }
     return std::isfinite(sum);
 }
 
-bool Nodes::constrain_node(int e, int B, bool same_choices, double& sum)
+void Nodes::constrain_node(int e, int B, bool same_choices, double& sum)
 {
     constexpr double rounding = 1e-16;   // of Phi at the start itself: nothing to correct
     constexpr double close = 1e-4;       // relative, for one linear step onto the constraints
     const int start = e * rule_.degree, A = start + B, k = tables_.rank;
     const ConstraintBasis& first = basis(start);
-    const double *reference = phi_.values.data() + static_cast<std::size_t>(start * k), *step = dX(e, B);
+    const double *reference = phi_.data() + start * k, *step = dX(e, B);
     ConstraintBasis& own = bases_[A];
     tables_.map_twists(X(A), maps_.data() + place(A));
     pivots_[A] = own.build(tables_, at(A), X(A), maps(A), rows(), same_choices);
     for (int c = 0; c < k; ++c) {
-        const auto& table = tables_.rows[static_cast<std::size_t>(own.rows[c])];
+        const auto& table = tables_.rows[own.rows[c]];
         // from the element's first node, which keeps the digits of a small increment
         double phi = B == 0               ? tables_.value(own.rows[c], at(A), X(A), own.gradient(c))
                      : table.is_quadratic ? reference[c] + tables_.change(own.rows[c], first.gradient(c),
@@ -219,32 +243,30 @@ bool Nodes::constrain_node(int e, int B, bool same_choices, double& sum)
                                           : followed(e, B, c);
         if (std::abs(phi) < rounding * table.row->scale) phi = 0;
         if (!(std::abs(phi) <= close * table.row->scale)) near_ = false;
-        const auto at = static_cast<std::size_t>(A * k + c);
-        phi_.values[at] = phi;
-        phi_.scaled[at] = phi * own.row_scale[c];
+        phi_[A * k + c] = phi;
+        scaled_[A * k + c] = phi * own.row_scale[c];
         sum += std::abs(phi);
     }
-    return near_;
 }
 
 /// Phi from that of the node before, so that angles are followed through several turns.
 double Nodes::followed(int e, int B, int c)
 {
     const int A = e * rule_.degree + B;
-    const ConstraintRow& row = *tables_.rows[static_cast<std::size_t>(bases_[A].rows[c])].row;
+    const ConstraintRow& row = *tables_.rows[bases_[A].rows[c]].row;
     const double* step = dX(e, B);
-    double* difference = work_.data() + size_;
+    double* difference = work_.data();
     for (std::size_t i = 0; i < size_; ++i) difference[i] = B > 1 ? step[i] - dX(e, B - 1)[i] : step[i];
-    return phi_.values[static_cast<std::size_t>((A - 1) * tables_.rank + c)] +
-           constraint_change(row, at(A - 1), Configurations(X(A - 1)), at(A), Configurations(X(A)),
-                             Configurations(difference));
+    return phi_[(A - 1) * tables_.rank + c] + constraint_change(row, at(A - 1), Configurations(X(A - 1)),
+                                                                at(A), Configurations(X(A)),
+                                                                Configurations(difference));
 }
 
 double Nodes::correct(const Stretch& stretch)
 {
     const int k = tables_.rank, n = tables_.n_twists;
     double correction = 0;
-    double *y = work_.data() + size_, *twist = y + size_;
+    double *y = work_.data(), *twist = y + size_;
     for (int A = 0; A < stretch.n_nodes(); ++A) {
         if (!stretch.is_unknown(A)) continue;
         Patience::ask();
@@ -257,24 +279,11 @@ double Nodes::correct(const Stretch& stretch)
         q.apply(y);
         tables_.to_twist(maps(A), y, twist);
         correction = std::max(correction, size_of(twist));
-        displace(sets_[current_], A, twist, sets_[current_], A);
+        place_from(A, A, twist);
     }
     if (correction > 0)
-        for (int e = 0; e < stretch.n_elements(); ++e) measure_element(e);
+        for (int e = 0; e < stretch.n_elements(); ++e) take_differences(e);
     return correction;
-}
-
-double Nodes::size_of(const double* twist) const
-{
-    double size = 0;
-    const auto look = [&size](double value) {
-        if (!(value <= size) && !std::isnan(size)) size = value;
-    };
-    for (const auto& body : tables_.bodies) {
-        for (int i = 0; i < 3; ++i) look(std::abs(twist[body.first + i]) / tables_.length);
-        for (int i = 3; i < body.dofs; ++i) look(std::abs(twist[body.first + i]));
-    }
-    return size;
 }
 
 }   // namespace livens

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// The motion of solved elements: nodes and one-sided multipliers, and at ends of elements velocity, momentum,
+// and accelerations and reactions on both sides of a jump (docs/theory.md, "Element ends"). X'' has the
+// centripetal part w x (w x d_a) beside that of the twist's derivative.
 #include "livens/spacetime/nodal/record.h"
 
 #include <algorithm>
@@ -21,24 +24,24 @@ Record::Record(const Tables& tables, const TimeMesh& mesh, const ElementRule& ru
     m.dense_order_V = degree_;
     m.constraints_hold = "element nodes";
     if (rule.points == Points::lobatto) m.gauss_points = degree_;
-    for_sizes(mesh.n_elements(), [](auto& values, std::size_t size) { values.reserve(size); });
+    for_arrays([e = static_cast<std::size_t>(mesh.n_elements())](
+                   auto& values, std::size_t n, std::size_t more) { values.reserve(e * n + more); });
     work_.assign(12 * static_cast<std::size_t>(m.n_bodies), 0.0);
 }
 
-/// Every array with its size up to an element end.
+/// Every array of the motion, with how many numbers (or columns) an element has in it, and an end more.
 template <class Action>
-void Record::for_sizes(int place, Action&& action)
+void Record::for_arrays(Action&& action)
 {
     Motion& m = motion_;
-    const auto n = static_cast<std::size_t>(place), p = static_cast<std::size_t>(degree_);
-    const auto bodies = static_cast<std::size_t>(m.n_bodies), rows = static_cast<std::size_t>(m.n_rows);
-    action(m.X.values, (n * p + 1) * 12 * bodies);
-    action(m.multipliers.values, n * (p + 1) * rows);
-    action(m.velocities, (n + 1) * bodies);
-    action(m.momenta, (n + 1) * bodies);
-    action(m.accelerations, 2 * (n + 1) * bodies);
-    action(m.end_multipliers, 2 * (n + 1) * rows);
-    action(m.load_angles, (n + 1) * tables_.turns.size());
+    const std::size_t p = degree_, bodies = m.n_bodies, rows = m.n_rows, angles = tables_.turns.size();
+    action(m.X.values, p * 12 * bodies, 12 * bodies);
+    action(m.multipliers.values, (p + 1) * rows, 0);
+    action(m.velocities, bodies, bodies);
+    action(m.momenta, bodies, bodies);
+    action(m.accelerations, 2 * bodies, 2 * bodies);
+    action(m.end_multipliers, 2 * rows, 2 * rows);
+    action(m.load_angles, angles, angles);
 }
 
 namespace {
@@ -78,26 +81,17 @@ void put(std::vector<Matrix34>& values, int place, std::size_t bodies, const dou
 void Record::divided(int element)
 {
     if (last_ <= element) return;   // in a march forwards nothing is behind it
-    Motion& m = motion_;
-    const auto e = static_cast<std::size_t>(element), p = static_cast<std::size_t>(degree_);
-    const auto bodies = static_cast<std::size_t>(m.n_bodies), rows = static_cast<std::size_t>(m.n_rows);
-    const auto insert = [](auto& values, std::size_t at, std::size_t count) {
+    for_arrays([e = static_cast<std::size_t>(element)](auto& values, std::size_t n, std::size_t more) {
+        const std::size_t at = e * n + more;
         values.resize(std::max(values.size(), at));   // against time some are empty up to here
-        values.insert(values.begin() + static_cast<std::ptrdiff_t>(at), count, {});
-    };
-    insert(m.X.values, (e * p + 1) * 12 * bodies, p * 12 * bodies);
-    insert(m.multipliers.values, e * (p + 1) * rows, (p + 1) * rows);
-    insert(m.velocities, (e + 1) * bodies, bodies);
-    insert(m.momenta, (e + 1) * bodies, bodies);
-    insert(m.accelerations, 2 * (e + 1) * bodies, 2 * bodies);
-    insert(m.end_multipliers, 2 * (e + 1) * rows, 2 * rows);
-    insert(m.load_angles, (e + 1) * tables_.turns.size(), tables_.turns.size());
+        values.insert(values.begin() + static_cast<std::ptrdiff_t>(at), n, {});
+    });
     ++first_, ++last_;
 }
 
 void Record::begin_anew()
 {
-    for_sizes(0, [](auto& values, std::size_t) { values.clear(); });
+    for_arrays([](auto& values, std::size_t, std::size_t) { values.clear(); });
     first_ = std::numeric_limits<int>::max();
     last_ = -1;
 }
@@ -145,20 +139,13 @@ void Record::forget_reactions(int place, std::span<const int> rows)
                 std::numeric_limits<double>::quiet_NaN();
 }
 
-/// Keeps entries first..last - 1 of `stride` values each.
-template <class T>
-void Record::cut(std::vector<T>& values, std::size_t first, std::size_t last, std::size_t stride) const
-{
-    values.resize(last * stride);
-    values.erase(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(first * stride));
-}
-
 const Motion& Record::so_far()
 {
     motion_.mesh.ends.assign(mesh_.ends.begin(), mesh_.ends.begin() + last_ + 1);
     motion_.mesh.bends = mesh_.bends;
     // sizes tell how many there are
-    for_sizes(std::max(last_, 0), [](auto& values, std::size_t size) { values.resize(size); });
+    for_arrays([e = static_cast<std::size_t>(std::max(last_, 0))](
+                   auto& values, std::size_t n, std::size_t more) { values.resize(e * n + more); });
     return motion_;
 }
 
@@ -167,7 +154,7 @@ void Record::only(const State& start)
 {
     constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
     Motion& m = motion_;
-    for_sizes(0, [](auto& values, std::size_t size) { values.assign(size, {}); });
+    for_arrays([](auto& values, std::size_t, std::size_t more) { values.assign(more, {}); });
     first_ = last_ = 0;
     std::copy_n(start.X.front().a, m.X.n_values, m.X.values.begin());
     m.velocities = start.V;
@@ -179,19 +166,12 @@ void Record::only(const State& start)
 Motion Record::take(const State& start)
 {
     if (last_ < first_) only(start);
-    Motion& m = motion_;
-    const auto first = static_cast<std::size_t>(first_), last = static_cast<std::size_t>(last_);
-    const auto p = static_cast<std::size_t>(degree_), bodies = static_cast<std::size_t>(m.n_bodies);
-    const auto rows = static_cast<std::size_t>(m.n_rows);
-    m.mesh.ends.assign(mesh_.ends.begin() + first_, mesh_.ends.begin() + last_ + 1);
-    m.mesh.bends = mesh_.bends;
-    cut(m.X.values, first * p, last * p + 1, 12 * bodies);
-    cut(m.multipliers.values, first * (p + 1), last * (p + 1), rows);
-    cut(m.velocities, first, last + 1, bodies);
-    cut(m.momenta, first, last + 1, bodies);
-    cut(m.accelerations, first, last + 1, 2 * bodies);
-    cut(m.end_multipliers, first, last + 1, 2 * rows);
-    cut(m.load_angles, first, last + 1, tables_.turns.size());
+    motion_.mesh.ends.assign(mesh_.ends.begin() + first_, mesh_.ends.begin() + last_ + 1);
+    motion_.mesh.bends = mesh_.bends;
+    for_arrays([this](auto& values, std::size_t n, std::size_t more) {
+        values.resize(last_ * n + more);
+        values.erase(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(first_ * n));
+    });
     return std::move(motion_);
 }
 

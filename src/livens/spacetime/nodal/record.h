@@ -41,10 +41,8 @@ public:
 
 private:
     template <class Action>
-    void for_sizes(int place, Action&& action);
+    void for_arrays(Action&& action);
     void only(const State& start);
-    template <class T>
-    void cut(std::vector<T>& values, std::size_t first, std::size_t last, std::size_t stride) const;
 
     const Tables& tables_;
     const TimeMesh& mesh_;

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// k_AB = sum_C w_C D_CA D_CB of lobatto(p), k_AB = - w_A sum_C>0 D_AC D_CB and c_A = - w_A D_A0 of radau(p),
+// and the Lagrange polynomials at the load points (docs/theory.md, "The element", "Radau points"). Sums that
+// are zero or one are made exact for the rounded numbers, too.
 #include "livens/spacetime/nodal/rule.h"
 
 #include <cmath>
@@ -146,9 +149,9 @@ std::vector<double> inverse_of_k(const ElementRule& rule)
     using Wide = long double;
     const int p = rule.degree;
     std::vector<Wide> a(static_cast<std::size_t>(2 * p * p), 0);   // [K 1] by rows
-    const auto at = [&](int i, int j) -> Wide& { return a[static_cast<std::size_t>(2 * p * i + j)]; };
+    const auto at = [&](int i, int j) -> Wide& { return a[2 * p * i + j]; };
     for (int A = 0; A < p; ++A) {
-        for (int B = 0; B < p; ++B) at(A, B) = rule.k[static_cast<std::size_t>(A * rule.size() + B + 1)];
+        for (int B = 0; B < p; ++B) at(A, B) = rule.k[A * rule.size() + B + 1];
         at(A, p + A) = 1;
     }
     for (int i = 0; i < p; ++i) {
@@ -165,8 +168,7 @@ std::vector<double> inverse_of_k(const ElementRule& rule)
     }
     std::vector<double> inverse(static_cast<std::size_t>(p * p));
     for (int i = 0; i < p; ++i)
-        for (int j = 0; j < p; ++j)
-            inverse[static_cast<std::size_t>(p * i + j)] = static_cast<double>(at(i, p + j));
+        for (int j = 0; j < p; ++j) inverse[p * i + j] = static_cast<double>(at(i, p + j));
     return inverse;
 }
 

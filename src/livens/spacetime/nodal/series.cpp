@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// The guess for one element: the Taylor series of the twist from velocity, acceleration and the cubic through
+// the ends of the element before, and where its last term is not small, the element with half the degree,
+// which costs an eighth (docs/theory.md, "Newton's iteration").
 #include "livens/spacetime/nodal/series.h"
 
 #include <algorithm>
@@ -36,7 +39,7 @@ Series::Series(const Tables& tables, const ElementRule& rule) : tables_(tables)
 {
     if (rule.degree < 4) return;
     const ElementRule half = element_rule(rule.points, rule.degree / 2);
-    coarse_ = std::make_unique<LobattoSystem>(tables, half);
+    coarse_ = std::make_unique<NodalSystem>(tables, half);
     coarse_series_ = std::make_unique<Series>(tables, half);
     const LagrangeBasis basis(half.nodes);
     to_fine_.assign(static_cast<std::size_t>(rule.size() * basis.size()), 0.0);
@@ -93,20 +96,20 @@ void TwistSeries::at(double tau, double* __restrict twist) const
 }
 
 /// Nodes from the series of the twist at the start.
-void Series::predict(LobattoSystem& system, const InstantState& start) const
+void Series::predict(NodalSystem& system, const InstantState& start) const
 {
     const ElementRule& rule = system.rule();
     const double h = system.stretch().h(0);
     const TwistSeries series(tables_, start, h);
-    double* move = system.scratch().data();
+    std::vector<double> move(tables_.n_twists);
     for (int B = 1; B <= rule.degree; ++B) {
-        series.at(rule.nodes[B] * h, move);
-        system.nodes().place_from(B, 0, move);
+        series.at(rule.nodes[B] * h, move.data());
+        system.nodes().place_from(B, 0, move.data());
     }
 }
 
 /// Nodes interpolated from a solution of half the degree.
-bool Series::place_coarse(LobattoSystem& system, const InstantState& start)
+bool Series::place_coarse(NodalSystem& system, const InstantState& start)
 {
     Stretch stretch = system.stretch();
     stretch.degree = coarse_->rule().degree;
@@ -136,7 +139,7 @@ bool Series::place_coarse(LobattoSystem& system, const InstantState& start)
         for (int b = 0; b < bodies; ++b) {
             double* z = turn.data() + 7 * b + 3;
             const double size = std::sqrt(z[0] * z[0] + z[1] * z[1] + z[2] * z[2] + z[3] * z[3]);
-            if (!(size > 0.1)) return false;
+            if (!(size > 0.1)) return false;   // turns too far apart to be averaged
             for (int i = 0; i < 4; ++i) z[i] /= size;
         }
         system.nodes().turn_from(A, 0, turn.data());
@@ -144,7 +147,7 @@ bool Series::place_coarse(LobattoSystem& system, const InstantState& start)
     return true;
 }
 
-void Series::place(LobattoSystem& system, const InstantState& start)
+void Series::place(NodalSystem& system, const InstantState& start)
 {
     predict(system, start);
     if (coarse_ && error(start, system.stretch().h(0)) > trusted_guess && !place_coarse(system, start))

@@ -11,7 +11,7 @@
 
 namespace livens {
 
-class LobattoSystem;
+class NodalSystem;
 struct InstantState;
 
 /// Twists from the start by their Taylor series. Where that bends by more than about a radian within h, or by
@@ -37,7 +37,7 @@ public:
     ~Series();
 
     /// Places all nodes of the open system.
-    void place(LobattoSystem& system, const InstantState& start);
+    void place(NodalSystem& system, const InstantState& start);
     /// Tangents that were factorised for guesses so far.
     long factorisations() const
     {
@@ -47,12 +47,12 @@ public:
     long long evaluations() const;
 
 private:
-    void predict(LobattoSystem& system, const InstantState& start) const;
+    void predict(NodalSystem& system, const InstantState& start) const;
     double error(const InstantState& start, double h) const;
-    bool place_coarse(LobattoSystem& system, const InstantState& start);
+    bool place_coarse(NodalSystem& system, const InstantState& start);
 
     const Tables& tables_;
-    std::unique_ptr<LobattoSystem> coarse_;   // half the degree
+    std::unique_ptr<NodalSystem> coarse_;   // half the degree
     std::unique_ptr<Series> coarse_series_;
     std::vector<double> to_fine_;   // values of its basis at the nodes here, node after node
     Newton newton_;

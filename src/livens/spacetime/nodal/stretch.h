@@ -25,7 +25,7 @@ namespace livens {
 /// | P at both                    | 0..n      | 0..n                 | 0..n        |
 /// | X and P at the first, radau  | 1..n      | 1..n                 | 1..n        |
 struct Stretch {
-    std::vector<double> times;   ///< element ends
+    std::vector<double> times;    ///< element ends
     std::vector<double> angles;   ///< of loads at the first node, or about there; see Turns
     int degree = 1;
     Points points = Points::lobatto;   ///< radau: one element, whose state is known at the first node
@@ -33,7 +33,7 @@ struct Stretch {
 
     int n_elements() const { return static_cast<int>(times.size()) - 1; }
     int n_nodes() const { return n_elements() * degree + 1; }
-    double h(int e) const { return times[static_cast<std::size_t>(e) + 1] - times[e]; }
+    double h(int e) const { return times[e + 1] - times[e]; }
     bool is_unknown(int A) const { return !(A == 0 && X_first) && !(A == n_nodes() - 1 && X_last); }
     bool is_active(int A) const
     {
@@ -48,15 +48,12 @@ struct Stretch {
     double time(const ElementRule& rule, int A) const
     {
         const int e = first_element(A), a = A - e * degree;
-        return a == 0 ? times[static_cast<std::size_t>(e)]
-               : a == degree
-                   ? times[static_cast<std::size_t>(e) + 1]
-                   : times[static_cast<std::size_t>(e)] + rule.nodes[static_cast<std::size_t>(a)] * h(e);
+        return a == 0 ? times[e] : a == degree ? times[e + 1] : times[e] + rule.nodes[a] * h(e);
     }
     /// The instant of load point c of element e, seen from inside the element.
     Instant load_point(const ElementRule& rule, int e, int c) const
     {
-        if (rule.loads.points[c] == 1) return {times[static_cast<std::size_t>(e) + 1], Side::left};
+        if (rule.loads.points[c] == 1) return {times[e + 1], Side::left};
         return {times[e] + rule.loads.points[c] * h(e), Side::middle};
     }
     /// Quadrature weight of node A: the sum of h w over its elements.

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Newton's iteration on a window: rows Z^T D^T N^T r_A of the active nodes, twists D Z eta of the unknown
+// ones, and after each move a pull back onto the constraints. Rows are compared with the rounding of the sums
+// over k_AB, which cancel (docs/theory.md, "Newton's iteration", "The whole matrix of lobatto").
 #include "livens/spacetime/nodal/system.h"
 
 #include <algorithm>
@@ -10,17 +13,14 @@
 
 namespace livens {
 
-LobattoSystem::~LobattoSystem() = default;
+NodalSystem::~NodalSystem() = default;
 
-LobattoSystem::LobattoSystem(const Tables& tables, const ElementRule& rule)
-    : tables_(tables), rule_(rule), nodes_(tables, rule_), rows_(tables, rule_), tangent_(tables, rule_)
-{
-    for (double k : rule.k) largest_k_ = std::max(largest_k_, std::abs(k));
-    range_.assign(static_cast<std::size_t>(tables.rank), 0.0);
-    work_.assign(static_cast<std::size_t>(tables.n_twists), 0.0);
-}
+NodalSystem::NodalSystem(const Tables& tables, const ElementRule& rule)
+    : tables_(tables), rule_(rule), nodes_(tables, rule_), rows_(tables, rule_), tangent_(tables, rule_),
+      range_(tables.rank)
+{}
 
-void LobattoSystem::open(const Stretch& stretch, const InstantState* first, const InstantState* last)
+void NodalSystem::open(const Stretch& stretch, const InstantState* first, const InstantState* last)
 {
     const bool is_alike = stretch.n_nodes() == stretch_.n_nodes() && stretch.X_first == stretch_.X_first &&
                           stretch.P_first == stretch_.P_first && stretch.X_last == stretch_.X_last &&
@@ -34,17 +34,22 @@ void LobattoSystem::open(const Stretch& stretch, const InstantState* first, cons
     if (!is_alike) elimination_.reset();
 }
 
-void LobattoSystem::choose_elimination()
+void NodalSystem::choose_elimination()
 {
     if (rule_.degree == 1 && rule_.points == Points::lobatto && stretch_.n_elements() == 1 &&
         stretch_.is_march() && tables_.loads_with_tangent.empty())
         elimination_ = body_elimination(tables_);
     else
-        elimination_ = null_space_elimination(
-            tables_, stretch_, stretch_.is_march() ? forward_solver() : whole_solver(SparseBackend::eigen));
+        elimination_ = on_null_spaces();
 }
 
-bool LobattoSystem::settle()
+std::unique_ptr<Elimination> NodalSystem::on_null_spaces() const
+{
+    return null_space_elimination(
+        tables_, stretch_, stretch_.is_march() ? forward_solver() : whole_solver(SparseBackend::eigen));
+}
+
+bool NodalSystem::settle()
 {
     if (elimination_ == nullptr) choose_elimination();
     in_use_ = pending_ = false;
@@ -54,18 +59,18 @@ bool LobattoSystem::settle()
         correction_ = 0;
         if (pending_) break;
         correction_ = nodes_.correct(stretch_);
-        if (correction_ < 1e-3) break;
+        if (correction_ < 1e-3) break;   // lengths and radians: bases turn by no more
     }
     return true;
 }
 
-int LobattoSystem::n_unknowns() const
+int NodalSystem::n_unknowns() const
 {
     const int n_known = (stretch_.X_first ? 1 : 0) + (stretch_.X_last ? 1 : 0);
     return (stretch_.n_nodes() - n_known) * tables_.n_twists;
 }
 
-bool LobattoSystem::factorise()
+bool NodalSystem::factorise()
 {
     in_use_ = true;
     elimination_->begin(stretch_, nodes_);
@@ -73,7 +78,7 @@ bool LobattoSystem::factorise()
     return elimination_->factorise();
 }
 
-void LobattoSystem::solve(std::span<double> dx)
+void NodalSystem::solve(std::span<double> dx)
 {
     if (pending_) {   // one node: its violations go into the linear system with the rows
         for (int c = 0; c < tables_.rank; ++c) range_[c] = -nodes_.violations(1)[c];
@@ -88,7 +93,7 @@ void LobattoSystem::solve(std::span<double> dx)
     }
 }
 
-bool LobattoSystem::move(std::span<const double> dx, double damping)
+bool NodalSystem::move(std::span<const double> dx, double damping)
 {
     nodes_.begin_move();
     const double* twist = dx.data();
@@ -105,9 +110,9 @@ bool LobattoSystem::move(std::span<const double> dx, double damping)
 }
 
 /// Motion and impulse inside the elements.
-void LobattoSystem::measure()
+void NodalSystem::measure()
 {
-    largest_.motion = largest_.impulse = 0;
+    motion_ = impulse_ = 0;
     for (int e = 0; e < stretch_.n_elements(); ++e) {
         const double inverse = 1 / std::abs(stretch_.h(e));
         for (int B = 1; B <= rule_.degree; ++B) {
@@ -117,16 +122,16 @@ void LobattoSystem::measure()
                 double u = 0, turn = 0;
                 for (int i = 0; i < 3; ++i) u = std::max(u, std::abs(d[i]));
                 for (int i = 3; i < 12; ++i) turn = std::max(turn, std::abs(d[i]));
-                largest_.motion = std::max(largest_.motion, std::max(u / tables_.length, turn));
-                largest_.impulse = std::max(
-                    largest_.impulse,
+                motion_ = std::max(motion_, std::max(u / tables_.length, turn));
+                impulse_ = std::max(
+                    impulse_,
                     ((u + body.reach * turn) / body.inverse_root_mass + body.root_inertia * turn) * inverse);
             }
         }
     }
 }
 
-double LobattoSystem::size_of(std::span<const double> dx) const
+double NodalSystem::size_of(std::span<const double> dx) const
 {
     double size = 0;
     for (std::size_t i = 0; i < dx.size(); i += static_cast<std::size_t>(tables_.n_twists)) {
@@ -137,17 +142,19 @@ double LobattoSystem::size_of(std::span<const double> dx) const
 }
 
 /// A body may fly many lengths while its turns need their digits all the same.
-double LobattoSystem::scale() const { return std::clamp(largest_.motion, 1e-6, 1.0); }
+double NodalSystem::scale() const { return std::clamp(motion_, 1e-6, 1.0); }
 
 /// The sums over k_AB cancel: their rounding is that of their largest term.
-NewtonProblem::Rows LobattoSystem::rows() const
+NewtonProblem::Rows NodalSystem::rows() const
 {
-    return {rows_.size(), std::max(largest_.impulse, rows_.terms()),
-            1e-16 * (largest_k_ * largest_.impulse + rows_.terms() + tangent_.load_rounding()),
+    double largest_k = 0;
+    for (const double k : rule_.k) largest_k = std::max(largest_k, std::abs(k));
+    return {rows_.size(), std::max(impulse_, rows_.terms()),
+            1e-16 * (largest_k * impulse_ + rows_.terms() + tangent_.load_rounding()),
             stretch_.n_elements() == 1, correction_};
 }
 
-void LobattoSystem::measure_condition(SolveReport& report, const std::function<bool()>& goes_on)
+void NodalSystem::measure_condition(SolveReport& report, const std::function<bool()>& goes_on)
 {
     const double f = tables_.freedoms(), p = stretch_.degree;
     if (f == 0) return;   // nothing moves: there is no matrix
@@ -156,8 +163,7 @@ void LobattoSystem::measure_condition(SolveReport& report, const std::function<b
         return;
     }
     elimination_.reset();
-    const std::unique_ptr<Elimination> elimination = null_space_elimination(
-        tables_, stretch_, stretch_.is_march() ? forward_solver() : whole_solver(SparseBackend::eigen));
+    const std::unique_ptr<Elimination> elimination = on_null_spaces();
     elimination->begin(stretch_, nodes_);
     form_tangent(*elimination);
     elimination->measure_condition(report, goes_on);

@@ -16,10 +16,10 @@ class Elimination;
 
 /// Rows and constraints of a stretch of elements, whose unknowns are the twists of its unknown nodes, one
 /// node after the other. Multipliers are eliminated; every move ends with a pull back onto the constraints.
-class LobattoSystem final : public NewtonProblem {
+class NodalSystem final : public NewtonProblem {
 public:
-    LobattoSystem(const Tables& tables, const ElementRule& rule);
-    ~LobattoSystem() override;
+    NodalSystem(const Tables& tables, const ElementRule& rule);
+    ~NodalSystem() override;
 
     /// Makes a stretch current, with the states known at its ends (null: X is unknown there). To be followed
     /// by places for all unknown nodes, and settle().
@@ -31,12 +31,10 @@ public:
     const Stretch& stretch() const { return stretch_; }
     Nodes& nodes() { return nodes_; }
     const Nodes& nodes() const { return nodes_; }
-    livens::Rows& balances() { return rows_; }
-    const livens::Rows& balances() const { return rows_; }
+    NodalRows& balances() { return rows_; }
+    const NodalRows& balances() const { return rows_; }
     /// Null before settle().
     const Elimination* elimination() const { return elimination_.get(); }
-    /// Room for a twist of all bodies.
-    std::vector<double>& scratch() { return work_; }
     /// Forms the tangent at the current point into another sink, for tests.
     void form_tangent(TangentSink& sink) { tangent_.form(stretch_, nodes_, rows_, sink); }
     /// The bases fit the nodes to rounding: nothing was pulled since they were made.
@@ -61,28 +59,24 @@ public:
     void measure_condition(SolveReport& report, const std::function<bool()>& goes_on) override;
 
 private:
-    struct Largest {
-        double motion = 0;    // inside an element, in lengths and radians
-        double impulse = 0;   // mass times motion over h, in scaled rows
-    };
-
     void choose_elimination();
+    std::unique_ptr<Elimination> on_null_spaces() const;
     void measure();
 
     const Tables& tables_;
     ElementRule rule_;
     Stretch stretch_;
     Nodes nodes_;
-    livens::Rows rows_;
+    NodalRows rows_;
     Tangent tangent_;
     std::unique_ptr<Elimination> elimination_;
-    double largest_k_ = 0;
     bool in_use_ = false;     // a tangent is: null spaces vary smoothly
     bool pending_ = false;    // violations are left to the next linear step
     double correction_ = 0;   // largest pull of the last move
-    Largest largest_;
+    double motion_ = 0;       // largest inside an element, in lengths and radians
+    double impulse_ = 0;      // likewise: mass times motion over h, in scaled rows
     long long evaluations_ = 0;
-    std::vector<double> work_, range_;
+    std::vector<double> range_;   // violations that are left, in the basis
 };
 
 }   // namespace livens

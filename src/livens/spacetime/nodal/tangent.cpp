@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// d(N_A^T r_A) / d(twist at B): mass and loads for every pair of nodes that share an element, at A = B also
+// the Hessians of constraints and the derivative of N_A itself (docs/theory.md, "The tangent"). Blocks go to
+// a sink, scaled by the maps D of their nodes.
 #include "livens/spacetime/nodal/tangent.h"
 
 #include <algorithm>
@@ -78,7 +81,7 @@ Tangent::Tangent(const Tables& tables, const ElementRule& rule) : tables_(tables
     for (auto* v : {&total_, &X_, &V_}) v->assign(size, 0.0);
 }
 
-void Tangent::form(const Stretch& stretch, const Nodes& nodes, const Rows& rows, TangentSink& sink)
+void Tangent::form(const Stretch& stretch, const Nodes& nodes, const NodalRows& rows, TangentSink& sink)
 {
     double H[9] = {};
     load_rounding_ = 0;
@@ -106,7 +109,7 @@ void Tangent::form(const Stretch& stretch, const Nodes& nodes, const Rows& rows,
 }
 
 /// What stands at (A, A) besides mass and loads: rows that turn with the bodies, Hessians of constraints.
-void Tangent::add_node_terms(const Nodes& nodes, const Rows& rows, int A, TangentSink& sink)
+void Tangent::add_node_terms(const Nodes& nodes, const NodalRows& rows, int A, TangentSink& sink)
 {
     std::copy_n(rows.raw(A), total_.size(), total_.data());
     rows.subtract(nodes.basis(A), rows.impulses(A), total_.data());
@@ -123,7 +126,7 @@ void Tangent::add_node_terms(const Nodes& nodes, const Rows& rows, int A, Tangen
 }
 
 /// - W_A sum lambda K: of bodies with themselves into blocks_, the others to the sink.
-void Tangent::add_constraints(const Nodes& nodes, const Rows& rows, int A, TangentSink& sink)
+void Tangent::add_constraints(const Nodes& nodes, const NodalRows& rows, int A, TangentSink& sink)
 {
     double cross[36], scaled[36];
     const ConstraintBasis& basis = nodes.basis(A);
@@ -172,17 +175,18 @@ double Tangent::rounding_of(const Load& load, const LoadArguments& at, const Loa
 }
 
 /// dF/dX and dF/dX' of all loads at the load points of an element.
-void Tangent::evaluate_loads(const Stretch& stretch, const Nodes& nodes, const Rows& rows, int e)
+void Tangent::evaluate_loads(const Stretch& stretch, const Nodes& nodes, const NodalRows& rows, int e)
 {
     const std::size_t n = tables_.loads_with_tangent.size();
     load_tangents_.resize(n * rule_.loads.points.size());
     for (int c = 0; c < rule_.degree; ++c) {
-        rows.interpolate(stretch, nodes, e, c, X_.data(), V_.data());
+        rows.loads().interpolate(stretch, nodes, e, c, X_.data(), V_.data());
+        const std::span<const double> angles = rows.loads().angles(e, c);
         for (std::size_t l = 0; l < n; ++l) {
             const Load& load = tables_.model->loads()[tables_.loads_with_tangent[l]];
             const Instant at = stretch.load_point(rule_, e, c);
             const LoadArguments arguments =
-                tables_.arguments(tables_.loads_with_tangent[l], at, X_.data(), V_.data(), rows.angles(e, c));
+                tables_.arguments(tables_.loads_with_tangent[l], at, X_.data(), V_.data(), angles);
             LoadTangent& tangent = load_tangents_[c * n + l];
             tangent = LoadTangent(load.bodies.size());
             load.tangent(arguments, tangent);

@@ -10,7 +10,7 @@
 namespace livens {
 
 class Nodes;
-class Rows;
+class NodalRows;
 
 /// Takes a tangent pair by pair of nodes A, B that share element e: open(), then mass() and block() in any
 /// number, then close(). Where two elements share both nodes their blocks add up.
@@ -20,7 +20,7 @@ public:
     virtual void open(int e, int A, int B) = 0;
     /// factor [1 0 ; 0 H] for a body with itself, H 3 x 3 column by column.
     virtual void mass(int body, double factor, const double* H) = 0;
-    /// Rows of body i by twists of body j: 6 x 6 row by row.
+    /// NodalRows of body i by twists of body j: 6 x 6 row by row.
     virtual void block(int body_i, int body_j, const double* values) = 0;
     virtual void close() = 0;
 };
@@ -31,17 +31,17 @@ class Tangent {
 public:
     Tangent(const Tables& tables, const ElementRule& rule);
 
-    void form(const Stretch& stretch, const Nodes& nodes, const Rows& rows, TangentSink& sink);
+    void form(const Stretch& stretch, const Nodes& nodes, const NodalRows& rows, TangentSink& sink);
 
     /// Size of what loads make of X and X' in scaled rows, of the last form(): times eps it is what rounding
     /// of X does to the rows, also where large terms of a load have cancelled (a stiff spring at rest).
     double load_rounding() const { return load_rounding_; }
 
 private:
-    void evaluate_loads(const Stretch& stretch, const Nodes& nodes, const Rows& rows, int e);
+    void evaluate_loads(const Stretch& stretch, const Nodes& nodes, const NodalRows& rows, int e);
     double rounding_of(const Load& load, const LoadArguments& at, const LoadTangent& tangent) const;
-    void add_node_terms(const Nodes& nodes, const Rows& rows, int A, TangentSink& sink);
-    void add_constraints(const Nodes& nodes, const Rows& rows, int A, TangentSink& sink);
+    void add_node_terms(const Nodes& nodes, const NodalRows& rows, int A, TangentSink& sink);
+    void add_constraints(const Nodes& nodes, const NodalRows& rows, int A, TangentSink& sink);
     void add_loads(const Stretch& stretch, const Nodes& nodes, int e, int a, int b, TangentSink& sink);
 
     const Tables& tables_;

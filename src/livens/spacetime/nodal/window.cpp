@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// A window of lobatto(p) or radau(p): its known states and nodes, initial guesses of its elements, and, once
+// these are solved, their end states, the checks that they have to pass, and the motion (docs/theory.md,
+// "Windows", "Element ends").
 #include "livens/spacetime/nodal/window.h"
 
 #include <algorithm>
@@ -7,56 +10,34 @@
 #include <utility>
 
 #include "livens/base/text.h"
-#include "livens/diagnostics/largest.h"
 #include "livens/dynamics/rows/twist.h"
 #include "livens/multibody/body.h"
 #include "livens/solvers/patience.h"
-#include "livens/spacetime/march/pace.h"
 #include "livens/spacetime/nodal/elimination.h"
 
 namespace livens {
 
-namespace {
-
-/// Of the largest pivot in an element: below, reactions at its end have no digit left (docs/theory.md,
-/// "Singular positions").
-constexpr double least_for_reactions = 1e-4;
-
-}   // namespace
-
-LobattoWindow::LobattoWindow(const Tables& tables, const TimeMesh& mesh, const Ends& ends,
-                             const ElementRule& rule)
+NodalWindow::NodalWindow(const Tables& tables, const TimeMesh& mesh, const Ends& ends,
+                         const ElementRule& rule)
     : Window(static_cast<ElementMonitor&>(*this)), tables_(tables), ends_(ends), system_(tables, rule),
       series_(tables, system_.rule()), kernel_(tables, system_.rule()),
-      instant_(tables, kernel_.serves() && ends.has_state()), record_(tables, mesh, system_.rule()),
-      front_(tables), breaks_{tables.model->load_breaks(), Bends(tables, rule), {}, {}}, rank_{Branches(
-                                                                                             tables,
-                                                                                             system_.rule())}
+      end_(tables, kernel_.serves() && ends.has_state()), checks_(tables, system_.rule()),
+      record_(tables, mesh, system_.rule())
 {
-    if (!std::ranges::all_of(tables.model->loads(), &Load::is_smooth))
-        breaks_.inside.emplace(tables, system_.rule());
     record_.note_redundant(ends.redundant);
-    work_.lambda.assign(tables.rows.size(), 0.0);
-    work_.end_lambda = work_.lambda;
-    work_.impulse.assign(static_cast<std::size_t>(tables.rank), 0.0);
-    work_.momentum.assign(static_cast<std::size_t>(tables.n_twists), 0.0);
-    work_.wrench = work_.momentum;
-    work_.raw.assign(12 * tables.bodies.size(), 0.0);
 }
-
-bool LobattoWindow::is_jump(double t) const { return std::ranges::binary_search(breaks_.jumps, t); }
 
 /// The mesh's number of the stretch's element end.
-int LobattoWindow::mesh_end(int end) const { return ends_.is_backwards() ? last_ - end : first_ + end; }
+int NodalWindow::mesh_end(int end) const { return ends_.is_backwards() ? last_ - end : first_ + end; }
 
-void LobattoWindow::restart()
+void NodalWindow::restart()
 {
     record_.begin_anew();
-    if (ends_.start.t != front_.here().t) front_.here().forget_past();
-    front_.is_ready = false;
+    if (ends_.start.t != end_.here().t) end_.here().forget_past();
+    is_ready_ = false;
 }
 
-bool LobattoWindow::open(int first, int last, SolveReport& report)
+bool NodalWindow::open(int first, int last, SolveReport& report)
 {
     first_ = first;
     last_ = last;
@@ -70,10 +51,10 @@ bool LobattoWindow::open(int first, int last, SolveReport& report)
         stretch_.X_last = knows_positions(ends_.at_end);
         stretch_.P_last = knows_momenta(ends_.at_end);
     }
-    if (!front_.is_ready && !begin_front(report)) return false;
+    if (!is_ready_ && !begin_front(report)) return false;
     if (stretch_.X_last && !set_state(far_, ends_.end, report)) return false;
-    stretch_.angles = stretch_.X_first ? front_.here().angles : tables_.turns.begin();
-    system_.open(stretch_, stretch_.X_first ? &front_.here() : nullptr, stretch_.X_last ? &far_ : nullptr);
+    stretch_.angles = stretch_.X_first ? end_.here().angles : tables_.turns.begin();
+    system_.open(stretch_, stretch_.X_first ? &end_.here() : nullptr, stretch_.X_last ? &far_ : nullptr);
     if (!stretch_.X_first && stretch_.P_first)
         set_momenta(ends_.start, system_.balances().end_momentum(false).about_reference);
     if (stretch_.P_last) set_momenta(ends_.end, system_.balances().end_momentum(true).about_reference);
@@ -81,7 +62,7 @@ bool LobattoWindow::open(int first, int last, SolveReport& report)
 }
 
 /// Six numbers a body, about its reference point.
-void LobattoWindow::set_momenta(const State& given, std::vector<double>& momenta) const
+void NodalWindow::set_momenta(const State& given, std::vector<double>& momenta) const
 {
     std::vector<double>& P = momenta;
     for (int b = 0; b < tables_.n_bodies(); ++b) {
@@ -92,85 +73,71 @@ void LobattoWindow::set_momenta(const State& given, std::vector<double>& momenta
     }
 }
 
-/// X, twists and the constraint basis of a state in which the mechanism is closed.
-bool LobattoWindow::set_state(InstantState& state, const State& given, SolveReport& report)
+bool NodalWindow::set_state(InstantState& state, const State& given, SolveReport& report)
 {
-    state.t = given.t;
-    if (state.X.empty()) state.resize(tables_);
-    for (int b = 0; b < tables_.n_bodies(); ++b) {
-        std::copy_n(given.X[b].a, 12, state.X.begin() + 12 * b);
-        const auto& body = tables_.bodies[b];
-        const Vector3 v = given.V[b].column(0);
-        const Vector3 w = body.dofs == 6 ? angular_velocity(given.X[b], given.V[b]) : Vector3{};
-        for (int i = 0; i < body.dofs; ++i) state.velocity[body.first + i] = i < 3 ? v[i] : w[i - 3];
-    }
-    state.angles = tables_.turns.begin(given);
-    tables_.turns.follow(Configurations(state.X.data()), state.angles);
-    if (!instant_.prepare(state, tables_.independent))
-        return fail(report,
-                    "the mass matrix on the free motions is singular at t = " + to_text(state.t, 6) + " s");
-    instant_.from_velocity(state);
-    return true;
+    return end_.set(state, given) ||
+           fail(report,
+                "the mass matrix on the free motions is singular at t = " + to_text(given.t, 6) + " s");
 }
 
 /// The state at the near end, as far as it is known.
-bool LobattoWindow::begin_front(SolveReport& report)
+bool NodalWindow::begin_front(SolveReport& report)
 {
     const State& given = ends_.is_backwards() ? ends_.end : ends_.start;
     if (!knows_positions(ends_.is_backwards() ? ends_.at_end : ends_.at_start)) return true;
-    if (!set_state(front_.here(), given, report)) return false;
+    if (!set_state(end_.here(), given, report)) return false;
     if (!ends_.has_state()) return true;
-    front_.is_ready = true;
-    accelerate(front_.here());
-    record_.end(mesh_end(0), front_.here(), instant_, is_jump(given.t));
+    is_ready_ = true;
+    end_.accelerate(end_.here());
+    record_end(0);
     return true;
 }
 
-bool LobattoWindow::fail(SolveReport& report, const std::string& message) const
+bool NodalWindow::fail(SolveReport& report, const std::string& message) const
 {
     report.status = SolveStatus::singular;
     report.message = message;
     return false;
 }
 
-bool LobattoWindow::solve(const NewtonOptions& options, bool soon, NewtonReport& report)
+bool NodalWindow::solve(const NewtonOptions& options, bool soon, NewtonReport& report)
 {
     if (!kernel_.serves() || !stretch_.is_march() || stretch_.n_elements() > 1 ||
-        !kernel_.solve(stretch_, front_.here(), options, soon, report))
+        !kernel_.solve(stretch_, end_.here(), options, soon, report))
         return false;
     for (int B = 0; B <= stretch_.degree; ++B) {
         if (B < stretch_.degree) kernel_.impulses(B, system_.balances().own_impulses(B));
         system_.nodes().set_pivot(B, kernel_.pivot(B));
     }
     system_.nodes().place_solved(kernel_.increments(), kernel_.width());
-    system_.balances().count_turns(stretch_, system_.nodes());
+    system_.balances().loads().count_turns(stretch_, system_.nodes());
     return true;
 }
 
 /// Blocks Z_A^T J Z_B take some p^2 n f^2 operations, and the factor (p f)^3: of p n f f times what an
 /// element of p n f takes, measured on chains of 10 to 100 bodies.
-double LobattoWindow::tangent_cost() const
+double NodalWindow::tangent_cost() const
 {
     constexpr double measured = 1e-2;
-    const bool is_known = kernel_.serves() && stretch_.is_march() && front_.here().by_joints;
+    const bool is_known = kernel_.serves() && stretch_.is_march() && end_.here().by_joints;
     return is_known ? measured * stretch_.degree * std::pow(tables_.freedoms(), 2) : 0;
 }
 
-void LobattoWindow::begin_newton()
+void NodalWindow::begin_newton()
 {
     kernel_.forget();
-    if (stretch_.X_first) instant_.add_basis(front_.here());
+    if (stretch_.X_first) end_.instant().add_basis(end_.here());
 }
 
-bool LobattoWindow::start_by_series()
+bool NodalWindow::start_by_series()
 {
     if (!stretch_.is_march() || stretch_.n_elements() > 1) return false;
     begin_newton();
-    series_.place(system_, front_.here());
+    series_.place(system_, end_.here());
     return system_.settle();
 }
 
-bool LobattoWindow::start_from(const Guess& guess)
+bool NodalWindow::start_from(const Guess& guess)
 {
     if (!guess) return start_by_series();
     begin_newton();
@@ -192,17 +159,17 @@ bool LobattoWindow::start_from(const Guess& guess)
     return system_.settle();
 }
 
-State LobattoWindow::at(int element_end) const
+State NodalWindow::at(int element_end) const
 {
     State state;
     state.X.resize(tables_.bodies.size());
     const int end = ends_.is_backwards() ? last_ - element_end : element_end - first_;
-    if (end > 0 || !front_.is_ready) {
+    if (end > 0 || !is_ready_) {
         const double* X = system_.nodes().X(end * stretch_.degree);
         for (std::size_t b = 0; b < state.X.size(); ++b) std::copy_n(X + 12 * b, 12, state.X[b].a);
         return state;
     }
-    const InstantState& here = front_.here();
+    const InstantState& here = end_.here();
     std::vector<double> V(here.X.size());
     tables_.rates_of(here.X.data(), here.velocity.data(), V.data());
     state.t = here.t;
@@ -215,153 +182,123 @@ State LobattoWindow::at(int element_end) const
     return state;
 }
 
-/// Both sides of an instant where loads jump, else one for both.
-void LobattoWindow::accelerate(InstantState& state)
+bool NodalWindow::find_first(SolveReport& report)
 {
-    instant_.accelerate(state, Side::right);
-    if (is_jump(state.t)) {
-        instant_.accelerate(state, Side::left);
-    } else {
-        state.acceleration[0] = state.acceleration[1];
-        state.multipliers[0] = state.multipliers[1];
-    }
-}
-
-/// The state at the first node, where only the solution told it, and the multipliers that are left there when
-/// its momentum is tangent to the constraints.
-bool LobattoWindow::find_first_state(SolveReport& report)
-{
-    InstantState& here = front_.here();
-    const double weight = stretch_.weight(system_.rule(), 0);
-    here.t = stretch_.times[0];
-    if (!stretch_.X_first) {
-        here.angles = tables_.turns.begin();
-        tables_.turns.follow(Configurations(system_.nodes().X(0)), here.angles);
-        std::copy_n(system_.nodes().X(0), here.X.size(), here.X.begin());
-        std::copy_n(system_.nodes().low(0), here.X.size(), here.X_low.begin());
-        if (!instant_.prepare(here, tables_.independent))
-            return fail(report, "the free motions carry no inertia at t = " + to_text(here.t, 6) + " s");
-    }
-    std::vector<double>& p = work_.momentum;
-    if (stretch_.P_first) {
-        p = system_.balances().end_momentum(false).about_reference;
-        for (int b = 0; b < tables_.n_bodies(); ++b)
-            if (tables_.bodies[b].dofs == 6)
-                Tables::to_centre(here.maps.data() + 12 * b, p.data() + tables_.bodies[b].first);
-    } else {
-        system_.balances().twist_row(stretch_, system_.nodes(), 0, p.data());
-        for (double& value : p) value = -value;
-    }
-    instant_.from_momentum(here, p.data(), weight, work_.lambda.data());
-    for (int c = 0; c < tables_.rank; ++c) {
-        const double taken = weight * work_.lambda[here.rows[c]];
-        work_.impulse[c] = (stretch_.P_first ? system_.balances().impulses(0)[c] : 0.0) - taken;
-    }
-    accelerate(here);
-    record_.end(mesh_end(0), here, instant_, is_jump(here.t));
+    if (!end_.find_first(system_))
+        return fail(report,
+                    "the free motions carry no inertia at t = " + to_text(stretch_.times[0], 6) + " s");
+    record_end(0);
     return true;
 }
 
-Closed LobattoWindow::close(const Trust& trust, SolveReport& report)
+void NodalWindow::record_end(int end)
+{
+    record_.end(mesh_end(end), end_.here(), end_.instant(), end_.is_jump(end_.here().t));
+}
+
+/// Finds the end state of a solved element and applies the checks to it.
+bool NodalWindow::is_believed(int e, const Trust& trust, SolveReport& report, Closed& closed)
+{
+    constexpr double infinite = std::numeric_limits<double>::infinity();
+    const Nodes& nodes = system_.nodes();
+    closed.loss = trust.full_rank ? checks_.rank_loss(nodes, e) : RankLoss::none;
+    closed.is_refused = closed.loss != RankLoss::none;
+    if (closed.is_refused) return false;
+    // directors drift by rounding alone: now and then is enough to mend them
+    if (!end_.reach(system_, kernel_, e, mesh_end(e) % 16 == 15))
+        return fail(report,
+                    "the free motions carry no inertia at t = " + to_text(stretch_.times[e + 1], 6) + " s");
+    closed.contradiction = end_.contradiction();
+    if (!closed.contradiction.empty()) {
+        closed.velocity_jump = infinite;
+        closed.is_refused = stretch_.is_march() || fail(report, closed.contradiction);
+        return false;
+    }
+    const bool is_watched = trust.turns || !std::isinf(trust.velocity_jump);
+    if (is_watched) closed.velocity_jump = checks_.velocity_jump(system_, e, end_, trust.turns);
+    // an element near one of a motion that was watched is on its branch
+    if (is_watched && !kernel_.has_followed() && checks_.leaves(system_, e, end_))
+        closed.velocity_jump = infinite;
+    Unseen unseen = checks_.look_at_laws(system_, e, end_, closed);
+    closed.is_refused = !(closed.velocity_jump <= trust.velocity_jump);
+    if (!closed.is_refused) checks_.take(nodes, e, std::move(unseen));
+    return !closed.is_refused;
+}
+
+Closed NodalWindow::close(const Trust& trust, SolveReport& report)
 {
     if (stretch_.is_march())
-        std::copy_n(system_.balances().impulses(0), tables_.rank, work_.impulse.begin());
-    else if (!find_first_state(report))
+        end_.begin(system_.balances().impulses(0));
+    else if (!find_first(report))
         return {};
-    const bool is_watched = trust.turns || !std::isinf(trust.velocity_jump);
     Closed closed;
     for (int e = 0; e < stretch_.n_elements(); ++e) {
-        closed.loss = trust.full_rank ? rank_loss(e) : RankLoss::none;
-        closed.is_refused = closed.loss != RankLoss::none;
-        if (closed.is_refused) return closed;
-        if (!end_element(e, report)) return closed;
-        closed.contradiction = contradiction(front_.next());
-        if (!closed.contradiction.empty()) {
-            closed.velocity_jump = std::numeric_limits<double>::infinity();
-            closed.is_refused = stretch_.is_march() || fail(report, closed.contradiction);
-            return closed;
-        }
-        if (is_watched) closed.velocity_jump = velocity_jump(e, trust.turns);
-        if (is_watched && !kernel_.has_followed() &&
-            rank_.branches.leaves(stretch_, system_.nodes(), front_.here().rows, e))
-            closed.velocity_jump = std::numeric_limits<double>::infinity();
-        Unseen unseen = look_at_laws(e, closed);
-        closed.is_refused = !(closed.velocity_jump <= trust.velocity_jump);
-        if (closed.is_refused) return closed;
-        if (unseen.load >= 0) breaks_.unseen.push_back(std::move(unseen));
+        if (!is_believed(e, trust, report, closed)) return closed;
         close_element(e);
         ++closed.n_elements;
-        for (int A = e * system_.rule().degree; A <= (e + 1) * system_.rule().degree; ++A)
-            rank_.smallest_pivot = std::min(rank_.smallest_pivot, system_.nodes().pivot(A));
     }
-    front_.is_ready = true;
+    is_ready_ = true;
     return closed;
 }
 
-/// What a law did unseen counts as the velocity jump that goes with such an error.
-Unseen LobattoWindow::look_at_laws(int e, Closed& closed)
-{
-    if (!breaks_.inside) return {};
-    Unseen unseen =
-        breaks_.inside->look(stretch_, system_.nodes(), e, front_.here().angles, instant_, front_.next());
-    if (!(unseen.error > 0)) return unseen;
-    const double jump = velocity_jump_of(stretch_.points, stretch_.degree, unseen.error);
-    if (raise_to(closed.velocity_jump, jump))
-        closed.load = tables_.model->loads()[static_cast<std::size_t>(unseen.load)].name;
-    return unseen;
-}
-
 /// The nodes and multipliers of a believed element into the motion, its end as the start of the next.
-void LobattoWindow::close_element(int e)
+void NodalWindow::close_element(int e)
 {
-    const int p = system_.rule().degree, A = (e + 1) * p;
-    const double weight = stretch_.h(e) * system_.rule().weights[p];
-    InstantState &here = front_.here(), &next = front_.next();
-    record_element(e);
-    if (e + 1 < stretch_.n_elements())   // the shared node's other side
-        for (int c = 0; c < tables_.rank; ++c)
-            work_.impulse[c] =
-                system_.balances().impulses(A)[c] - weight * work_.end_lambda[system_.nodes().rows()[c]];
-    if (is_jump(next.t))
-        next.forget_past();
-    else
-        next.look_back(here, stretch_.h(e) > 0);
-    front_.now = 1 - front_.now;
-    record_.end(mesh_end(e + 1), front_.here(), instant_, is_jump(next.t));
-    if (rank_left(e, p, p) < least_for_reactions)
-        record_.forget_reactions(mesh_end(e + 1), instant_.weak_rows(front_.here()));
+    const int p = stretch_.degree, element = std::min(mesh_end(e), mesh_end(e + 1));
+    for (int a = 0; a <= p; ++a) {
+        const int place = ends_.is_backwards() ? p - a : a;
+        if (a > 0 && a < p) record_.node(element, place, system_.nodes().X(e * p + a));
+        record_.multipliers(element, place, end_.multipliers(system_, e, a));
+    }
+    end_.pass_on(system_, e);
+    record_end(e + 1);
+    if (!checks_.has_reactions(system_.nodes(), e))
+        record_.forget_reactions(mesh_end(e + 1), end_.instant().weak_rows(end_.here()));
 }
 
-void LobattoWindow::record_element(int e)
+WorstResidual NodalWindow::worst() const
 {
-    const ElementRule& rule = system_.rule();
-    const int p = rule.degree;
-    const bool back = ends_.is_backwards();
-    const int element = std::min(mesh_end(e), mesh_end(e + 1));
-    const int without = is_radau() ? 0 : p;   // as above
-    for (int a = 0; a <= p; ++a) {
-        const int A = e * p + a, place = back ? p - a : a;
-        if (a > 0 && a < p) record_.node(element, place, system_.nodes().X(A));
-        if (a == without) {   // at the start of radau what the equations of motion ask for
-            record_.multipliers(element, place,
-                                (a == p ? work_.end_lambda : front_.here().multipliers[1]).data());
-            continue;
+    WorstResidual place{"", stretch_.times[0],
+                        system_.balances().loads().bad_load(stretch_, system_.nodes())};
+    double worst = 0;
+    int row = -1, body = -1;
+    for (int A = 0; A < stretch_.n_nodes(); ++A) {
+        if (!stretch_.is_unknown(A)) continue;
+        for (int c = 0; c < tables_.rank; ++c) {
+            const double v = std::abs(system_.nodes().violations(A)[c]);
+            if (v <= worst) continue;   // nan is worst of all
+            worst = v;
+            row = system_.nodes().rows()[c];
+            place.t = stretch_.times[stretch_.first_element(A)];
         }
-        const double* impulses = a == 0 ? work_.impulse.data() : system_.balances().impulses(A);
-        const std::vector<int>& rows = system_.nodes().rows();
-        if (a == p)
-            work_.lambda = work_.end_lambda;
-        else if (tables_.rank < tables_.n_rows())
-            std::fill(work_.lambda.begin(), work_.lambda.end(), 0.0);
-        const double weight = stretch_.h(e) * rule.weights[a];
-        const int* row = rows.data();
-        double* lambda = work_.lambda.data();
-        for (int c = 0, n = tables_.rank; c < n; ++c) {
-            const double own = impulses[c] / weight;
-            lambda[row[c]] = a == p ? lambda[row[c]] + own : own;
-        }
-        record_.multipliers(element, place, work_.lambda.data());
     }
+    worst = 0;
+    std::vector<double> q(static_cast<std::size_t>(tables_.n_twists)), wrench(12 * tables_.bodies.size());
+    for (int A = 0; A < stretch_.n_nodes(); ++A) {
+        if (!stretch_.is_active(A)) continue;
+        const Nodes& nodes = system_.nodes();
+        std::copy_n(system_.balances().raw(A), wrench.size(), wrench.begin());
+        tables_.twist_rows(nodes.X(A), nodes.maps(A), wrench.data(), q.data());
+        for (int b = 0; b < tables_.n_bodies(); ++b)
+            for (int i = 0; i < tables_.bodies[b].dofs; ++i) {
+                const double v = std::abs(q[tables_.bodies[b].first + i]);
+                if (v <= worst) continue;
+                worst = v;
+                body = b;
+            }
+    }
+    if (row >= 0) place.name = tables_.model->row_name(row);
+    if (body >= 0) place.name += (row >= 0 ? ", body '" : "body '") + tables_.model->body_name(body) + "'";
+    return place;
+}
+
+void NodalWindow::describe(SolveReport& report) const
+{
+    report.unknowns = std::max(report.unknowns, static_cast<int>(system_.balances().reduced().size()));
+    report.smallest_pivot = std::min(report.smallest_pivot, checks_.smallest_pivot());
+    report.guess_factorisations = series_.factorisations();
+    report.evaluations = system_.evaluations() + series_.evaluations() + kernel_.evaluations();
+    if (system_.elimination() != nullptr) system_.elimination()->describe(report);
 }
 
 }   // namespace livens

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Anderson's acceleration: factors by which the last changes of proposals cancel the present proposal best,
+// from the normal equations of least squares with changes scaled to 1; the steps that led to these changes
+// are subtracted with the same factors (docs/theory.md, "Without a tangent", Many bodies).
 #include "livens/spacetime/nodal/kernel/acceleration.h"
 
 #include <algorithm>

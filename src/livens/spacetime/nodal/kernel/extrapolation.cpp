@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// The polynomial of the element before at shares 1 + s_A h / h_before: weights of its nodes in lanes, made
+// anew where the ratio of lengths changes; the kernel turns the quaternions back by its end (docs/theory.md,
+// "Without a tangent", Guesses).
 #include "livens/spacetime/nodal/kernel/extrapolation.h"
 
 #include <algorithm>

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Places of nodes as another motion on the same elements has them: shifts of centres of mass and quaternions
+// R_0^T R from the start of the element on, interpolated where its degree is another (docs/theory.md, "The
+// estimated error": the second solution follows the first).
 #include "livens/spacetime/nodal/kernel/following.h"
 
 #include <algorithm>

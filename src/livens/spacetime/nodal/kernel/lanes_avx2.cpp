@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The march kernel on registers of 4 doubles; compiled for AVX2 alone, see CMakeLists.txt.
+// The march kernel on registers of 4 doubles; compiled for AVX2 alone, see CMakeLists.txt (docs/theory.md,
+// "Without a tangent", Registers).
 #ifdef LIVENS_X86_SETS
 #define LIVENS_REGISTER 4
 #include "livens/spacetime/nodal/kernel/lane_kernel.h"

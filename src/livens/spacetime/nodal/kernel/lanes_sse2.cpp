@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The march kernel on registers of two doubles, which every processor has, and on one alone.
+// The march kernel on registers of two doubles, which every processor has, and on one alone (docs/theory.md,
+// "Without a tangent", Registers).
 #define LIVENS_REGISTER 2
 #define LIVENS_UNROLLED 0   // processors without more are old: not worth the code
 #include "livens/spacetime/nodal/kernel/lane_kernel.h"

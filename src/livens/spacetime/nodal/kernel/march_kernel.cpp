@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// The rows P_A r_A = 0 and the constraints Phi_B = 0 of one element of lobatto(p) by steps with the inverse
+// of the free motion's constant tangent h^-1 K, projected node by node; when steps have shrunk enough, and
+// when the element is left to Newton's iteration (docs/theory.md, "Without a tangent").
 #include "livens/spacetime/nodal/kernel/march_kernel.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "livens/base/elementary.h"
 #include "livens/dynamics/instant/instant.h"
-#include "livens/dynamics/rows/twist.h"
 #include "livens/spacetime/instructions.h"
-#include "livens/spacetime/nodal/system.h"
 
 namespace livens {
 
 namespace {
 
 constexpr double slow_contraction = 0.3;
-constexpr int most_slow_steps = 2, most_steps = 14, few_steps = 3;
+constexpr int most_slow_steps = 2, most_steps = 14;
 constexpr int most_combinations = 150, most_slow_combinations = 20;
 constexpr double hopeless_step = 10;      // lengths or radians
 constexpr double smallest_step = 1e-18;   // likewise: nothing moves
@@ -29,23 +29,13 @@ constexpr double share_of_tolerance = 0.1;   // left after the last step, as far
 // Lengths or radians from a motion nearby, beyond which it is not followed: it may have met a root that is
 // none.
 constexpr double farthest_parting = 1e-3;
-constexpr int elements_alone = 16;          // behind one that was not found so
 constexpr double widest_tolerance = 1e-4;   // beyond, two steps hardly tell how they shrink
 
-/// Whether some body's axis of turning turns itself. Where none does, as in a plane, nothing is gyroscopic.
-bool turns_in_space(const Tables& tables, const InstantState& start, double h)
+/// Null: the kernel does not serve these rows, inertias or points.
+const lanes::Functions* functions_of(const Tables& tables, const ElementRule& rule)
 {
-    const std::vector<double>& accelerations = start.acceleration[h > 0 ? 1 : 0];
-    return std::ranges::any_of(tables.bodies, [&](const Tables::BodyTable& body) {
-        const double *w = start.velocity.data() + body.first + 3, *a = accelerations.data() + body.first + 3;
-        if (body.dofs == 3) return false;
-        const Vector3 turn{w[0], w[1], w[2]}, change{a[0], a[1], a[2]}, across = cross(turn, change);
-        return dot(across, across) > 1e-16 * dot(turn, turn) * dot(change, change);
-    });
-}
-
-const lanes::Functions* functions_for(int n_lanes)
-{
+    const int n_lanes = rule.degree;
+    if (rule.points != Points::lobatto || !JointFactor::serves(tables)) return nullptr;
     if (n_lanes == 1) return lanes::sse2(1);   // there is nothing beside it
     switch (instructions()) {
     case Instructions::avx512:
@@ -96,63 +86,26 @@ struct Shrinking {
                   (left <= allowed && n_slow >= most_slow_steps);
         return is_done || (left < hopeless_step && n_slow < most_slow_combinations);
     }
+    NewtonReport report(const lanes::Sizes& sizes, const std::vector<double>& momenta) const
+    {
+        double terms = sizes.terms;
+        for (const double momentum : momenta) terms = std::max(terms, std::abs(momentum));
+        NewtonReport made;
+        made.iterations = n_steps;
+        made.last_increment = step;
+        made.contraction = contraction;
+        made.ended_by_rounding = is_rounded;
+        made.residual = terms > 0 ? sizes.rows / terms : sizes.rows;
+        return made;
+    }
 };
 
 }   // namespace
 
-MarchKernel::MarchKernel(const Tables& tables, const ElementRule& rule) : tables_(tables), rule_(rule)
-{
-    if (rule.points != Points::lobatto || !JointFactor::serves(tables)) return;
-    functions_ = functions_for(rule.degree);
-    if (!serves()) return;
-    make_rule();
-    work_.twist.assign(static_cast<std::size_t>(tables.n_twists), 0.0);
-    for (auto* v : {&work_.X, &work_.V, &work_.raw}) v->assign(12 * tables.bodies.size(), 0.0);
-    work_.wrenches.assign(12 * tables.bodies.size(), 0.0);
-    guess_.polynomial = Extrapolation(rule, *functions_);
-    for (Guess::End* end : {&guess_.by_series, &guess_.by_polynomial})
-        end->place.assign(7 * tables.bodies.size(), 0.0);
-}
-
-/// Lanes of the tables of lanes::Rule for an element of length 1, and room for another length.
-void MarchKernel::make_rule()
-{
-    const int p = rule_.degree, W = functions_->width, n = rule_.size(), block = W * W;
-    scaled_.numbers.assign(static_cast<std::size_t>(8 * block + 2 * W), 0.0);
-    double *k = scaled_.numbers.data(), *inverse = k + block, *M = inverse + block, *dM = M + block,
-           *M_rows = dM + block, *scaled_k = M_rows + block, *scaled_inverse = scaled_k + block,
-           *scaled_dM = scaled_inverse + block, *weights = scaled_dM + block;
-    const std::vector<double> K = inverse_of_k(rule_);
-    for (int l = 0; l < p; ++l) {
-        for (int A = 0; A < p; ++A) {
-            k[l * W + A] = rule_.k[static_cast<std::size_t>(A * n + node_of(l))];
-            inverse[A * W + l] = -K[static_cast<std::size_t>((node_of(l) - 1) * p + A)];
-            M[l * W + A] = rule_.M[static_cast<std::size_t>(A * n + node_of(l))];   // here A is a load point
-            dM[l * W + A] = rule_.dM[static_cast<std::size_t>(A * n + node_of(l))];
-            M_rows[A * W + l] = rule_.M[static_cast<std::size_t>(A * n + l)];
-        }
-    }
-    scaled_.tables = {scaled_k, scaled_inverse, weights, M, scaled_dM, M_rows, nullptr, tables_.length};
-}
-
-void MarchKernel::scale_rule(const Stretch& stretch, const InstantState& start)
-{
-    scaled_.tables.momentum = start.momentum.data();
-    const int few = scaled_.tables.in_still_axes ? few_steps - 1 : few_steps;   // which they made so few
-    scaled_.tables.in_still_axes = last_steps_ > few && turns_in_space(tables_, start, stretch.h(0));
-    if (stretch.h(0) == scaled_.h) return;
-    scaled_.h = stretch.h(0);
-    const int W = functions_->width, block = W * W;
-    const double h = scaled_.h, *k = scaled_.numbers.data();
-    double *scaled = scaled_.numbers.data() + 5 * block, *weights = scaled + 3 * block;
-    const auto scale = [block](const double* __restrict of, double* __restrict to, auto&& by) {
-        for (int i = 0; i < block; ++i) to[i] = by(of[i]);
-    };
-    scale(k, scaled, [h](double x) { return x / h; });
-    scale(k + block, scaled + block, [h](double x) { return x * h; });
-    scale(k + 3 * block, scaled + 2 * block, [h](double x) { return x / h; });
-    for (int A = 0; A < rule_.degree; ++A) weights[A] = scaled_.h * rule_.weights[A];
-}
+MarchKernel::MarchKernel(const Tables& tables, const ElementRule& rule)
+    : tables_(tables), rule_(rule), functions_(functions_of(tables, rule)),
+      lane_rule_(tables, rule, functions_), wrenches_(tables, rule), guess_(tables, rule, functions_)
+{}
 
 void MarchKernel::use(const InstantState& start)
 {
@@ -160,7 +113,7 @@ void MarchKernel::use(const InstantState& start)
     if (pattern_ == start_->pattern()) return;
     pattern_ = start_->pattern();
     nodes_.resize(*pattern_, functions_->width);
-    guess_.polynomial.forget();
+    guess_.forget_polynomial();
     const std::vector<int>&chosen = pattern_->chosen(), &order = pattern_->rows();
     std::vector<int> places(static_cast<std::size_t>(tables_.n_rows()));
     for (std::size_t i = 0; i < order.size(); ++i) places[order[i]] = static_cast<int>(i);
@@ -168,44 +121,11 @@ void MarchKernel::use(const InstantState& start)
     for (const int row : chosen) place_.push_back(places[row]);
 }
 
-/// Loads at their points, and the sum of their wrenches about the centres of mass.
 void MarchKernel::evaluate_loads(const Stretch& stretch)
 {
     if (tables_.model->loads().empty()) return;
-    const int W = functions_->width;
-    const lanes::Pattern& pattern = pattern_->view();
-    functions_->interpolate(pattern, start_->values(), nodes_.values(), scaled_.tables);
-    std::fill(work_.wrenches.begin(), work_.wrenches.end(), 0.0);
-    for (int c = 0; c < rule_.degree; ++c) {
-        for (int b = 0; b < tables_.n_bodies(); ++b) {
-            if (!pattern.bodies[b].loaded) continue;
-            const double* center = tables_.bodies[b].center;
-            double *X = work_.X.data() + 12 * b, *V = work_.V.data() + 12 * b;
-            for (int i = 0; i < 12; ++i) {
-                X[i] = nodes_.values().load_X[(12 * b + i) * W + c];
-                V[i] = nodes_.values().load_V[(12 * b + i) * W + c];
-            }
-            for (int i = 0; tables_.bodies[b].offset && i < 3; ++i)
-                for (int a = 0; a < 3; ++a) {
-                    X[i] -= center[a] * X[3 + 3 * a + i];
-                    V[i] -= center[a] * V[3 + 3 * a + i];
-                }
-        }
-        if (c == 0) work_.angles = stretch.angles;
-        tables_.turns.follow(Configurations(work_.X.data()), work_.angles);
-        std::fill(work_.raw.begin(), work_.raw.end(), 0.0);
-        tables_.add_loads(stretch.load_point(rule_, 0, c), work_.X.data(), work_.V.data(),
-                          stretch.h(0) * rule_.loads.weights[c], work_.raw.data(), work_.angles);
-        for (int b = 0; b < tables_.n_bodies(); ++b) {
-            if (!pattern.bodies[b].loaded) continue;
-            double *F = work_.raw.data() + 12 * b, wrench[6];
-            for (int a = 0; a < 3; ++a)
-                for (int i = 0; i < 3; ++i) F[3 + 3 * a + i] -= tables_.bodies[b].center[a] * F[i];
-            for (int i = 0; i < 12; ++i) nodes_.values().loads[(12 * b + i) * W + c] = F[i];
-            twist::rows(work_.X.data() + 12 * b, F, wrench);
-            for (int i = 0; i < tables_.bodies[b].dofs; ++i) work_.wrenches[6 * b + i] += wrench[i];
-        }
-    }
+    functions_->interpolate(pattern_->view(), start_->values(), nodes_.values(), lane_rule_.in_lanes());
+    wrenches_.evaluate_loads(stretch, pattern_->view(), nodes_.values(), functions_->width);
 }
 
 /// In lengths and radians.
@@ -224,15 +144,14 @@ double MarchKernel::size_of_proposal() const
             }
         }
     }
-    return std::max(far / scaled_.tables.length, wide);
+    return std::max(far / tables_.length, wide);
 }
 
 bool MarchKernel::iterate(const Stretch& stretch, const InstantState& start, const NewtonOptions& options,
-                          bool is_accelerated, bool may_follow, NewtonReport& report)
+                          bool is_accelerated, NewtonReport& report)
 {
-    const bool follows = may_follow && follow(stretch);
-    if (!follows) guess(stretch, start);
-    guess_.was_followed = follows;
+    guess_.place(stretch, start, nodes_.values().place);
+    const bool follows = guess_.was_followed();
     const lanes::Pattern& pattern = pattern_->view();
     const lanes::Values &nodes = nodes_.values(), &from = start_->values();
     const int most = is_accelerated ? most_combinations : std::min(most_steps, options.max_iterations);
@@ -243,36 +162,30 @@ bool MarchKernel::iterate(const Stretch& stretch, const InstantState& start, con
     for (int steps = 0;; ++steps) {
         functions_->configure(pattern, from, nodes);
         const double still_fits = progress.is_done ? fits_at_end : fits_on_the_way;
+        // steps must not be slowed by the error of projections with an old factor
         if (steps == 0 || progress.n_slow > 0 || !(moved <= still_fits * pivot)) {
             functions_->factorise(pattern, nodes);
             pivot = *std::min_element(nodes.pivots, nodes.pivots + rule_.degree);
             moved = 0;
         }
         evaluate_loads(stretch);
-        functions_->balance(pattern, from, nodes, scaled_.tables, steps == 0, sizes);
+        functions_->balance(pattern, from, nodes, lane_rule_.in_lanes(), steps == 0, sizes);
         evaluations_ += rule_.size();
         if (!std::isfinite(sizes.finite)) return false;
         if (progress.is_done) break;
         if (steps == most) return false;
-        functions_->propose(pattern, nodes, scaled_.tables);
+        functions_->propose(pattern, nodes, lane_rule_.in_lanes());
         const double left = is_accelerated ? size_of_proposal() : 0;
         if (is_accelerated) acceleration_.apply(nodes.step);
-        functions_->move(pattern, nodes, scaled_.tables, sizes);
+        functions_->move(pattern, nodes, lane_rule_.in_lanes(), sizes);
         if (follows && steps == 0 && !(sizes.step <= farthest_parting)) return false;
         if (!std::isfinite(sizes.finite)) return false;
         moved += sizes.step;
         const double noise = std::clamp(rounding_by_pivot / pivot, least_rounding, most_rounding);
         if (!(is_accelerated ? progress.approach(left, sizes) : progress.take(sizes, noise))) return false;
     }
-    double terms = sizes.terms;
-    for (const double momentum : start.momentum) terms = std::max(terms, std::abs(momentum));
     has_near_factor_ = moved <= fits_for_next * pivot;
-    report = {};
-    report.iterations = progress.n_steps;
-    report.last_increment = progress.step;
-    report.contraction = progress.contraction;
-    report.ended_by_rounding = progress.is_rounded;
-    report.residual = terms > 0 ? sizes.rows / terms : sizes.rows;
+    report = progress.report(sizes, start.momentum);
     return std::min(pivot, from.pivots[0]) > least_pivot * least_pivot;   // false: also no number
 }
 
@@ -282,23 +195,22 @@ bool MarchKernel::solve(const Stretch& stretch, const InstantState& start, const
     is_solved_ = false;
     if (!start.by_joints) return false;
     use(start);
-    scale_rule(stretch, start);
+    lane_rule_.use(stretch, start, last_steps_);
     const bool is_large = !soon && tables_.n_twists >= many_twists && options.max_iterations >= most_steps;
     const auto iterates = [&] {
-        if (guess_.n_alone > 0) --guess_.n_alone;
-        if (iterate(stretch, start, options, false, guess_.n_alone == 0, report)) return true;
-        if (!guess_.was_followed) return false;
-        guess_.n_alone = elements_alone;   // too near for steps that shrink fast, or too far
-        return iterate(stretch, start, options, false, false, report);
+        guess_.begin();
+        if (iterate(stretch, start, options, false, report)) return true;
+        if (!guess_.was_followed()) return false;
+        guess_.part();
+        return iterate(stretch, start, options, false, report);
     };
     if (!(is_large && last_steps_ > most_steps)) is_solved_ = iterates();
-    if (is_large && !is_solved_) is_solved_ = iterate(stretch, start, options, true, false, report);
+    if (is_large && !is_solved_) is_solved_ = iterate(stretch, start, options, true, report);
     last_steps_ = is_solved_ ? report.iterations : most_steps;
-    if (is_solved_ && guess_.polynomial.serves()) {
-        compare_guesses();
+    if (is_solved_ && guess_.learns()) {
+        guess_.compare(nodes_.values().place);
         nodes_.swap_places();
-        guess_.polynomial.remember(nodes_.values().last_place, tables_.n_bodies(), stretch.times.front(),
-                                   stretch.times.back());
+        guess_.remember(nodes_.values().last_place, stretch);
     }
     return is_solved_;
 }
@@ -316,16 +228,8 @@ double MarchKernel::pivot(int A) const
 
 void MarchKernel::momentum(const Stretch& stretch, const InstantState& start, double* p)
 {
-    double* taken = work_.wrenches.data() + 6 * tables_.n_bodies();
-    functions_->sum_impulses(pattern_->view(), start_->values(), nodes_.values(), taken);
-    for (int b = 0; b < tables_.n_bodies(); ++b) {
-        const Tables::BodyTable& body = tables_.bodies[b];
-        for (int i = 0; i < body.dofs; ++i) {
-            const double weight = i < 3 ? stretch.h(0) * body.weight[i] : 0;   // no moment about the centre
-            p[body.first + i] =
-                start.p[body.first + i] + weight + work_.wrenches[6 * b + i] + taken[6 * b + i];
-        }
-    }
+    functions_->sum_impulses(pattern_->view(), start_->values(), nodes_.values(), wrenches_.taken());
+    wrenches_.momentum(stretch, start, p);
 }
 
 }   // namespace livens

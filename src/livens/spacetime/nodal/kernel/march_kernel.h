@@ -7,14 +7,13 @@
 #include "livens/dynamics/lanes/joint_factor.h"
 #include "livens/solvers/newton.h"
 #include "livens/spacetime/nodal/kernel/acceleration.h"
-#include "livens/spacetime/nodal/kernel/extrapolation.h"
-#include "livens/spacetime/nodal/kernel/following.h"
-#include "livens/spacetime/nodal/kernel/kernel_functions.h"
-#include "livens/spacetime/nodal/series.h"
+#include "livens/spacetime/nodal/kernel/kernel_guess.h"
+#include "livens/spacetime/nodal/kernel/kernel_rule.h"
+#include "livens/spacetime/nodal/kernel/kernel_wrenches.h"
 
 namespace livens {
 
-/// The equations of LobattoSystem for one element from a known state, by
+/// The equations of NodalSystem for one element from a known state, by
 ///
 ///     y_B <- P_B [ - h sum_A (K^-1)_BA P_A r_A ] - G_B^+ Phi_B,      P = 1 - G^T (G G^T)^-1 G
 ///
@@ -31,8 +30,7 @@ public:
     /// large mechanisms, whose iteration it was not seen to shorten.
     void follow(const Motion& motion)
     {
-        if (serves() && tables_.n_twists < many_twists)
-            guess_.following = Following(motion, tables_, rule_, *functions_);
+        if (serves() && tables_.n_twists < many_twists) guess_.follow(motion);
     }
     /// The element of `stretch` from `start`. False: not converged within 14 steps, steps that do not shrink
     /// to 0.3 twice, a number that is not finite, or a pivot that is nearly zero. Steps of many bodies, of
@@ -42,11 +40,11 @@ public:
     /// The last solve() was successful, and nothing else was tried since.
     bool is_solved() const { return is_solved_; }
     /// And it was found near the element of the motion that is followed, on whose branch it is.
-    bool has_followed() const { return is_solved_ && guess_.was_followed; }
+    bool has_followed() const { return is_solved_ && guess_.was_followed(); }
     void forget()
     {
-        is_solved_ = guess_.is_polynomial = false;
-        guess_.polynomial.forget();
+        is_solved_ = false;
+        guess_.forget();
     }
     /// Evaluations of the equations at a node so far.
     long long evaluations() const { return evaluations_; }
@@ -72,56 +70,23 @@ public:
 private:
     static constexpr int many_twists = 100;
 
-    struct ScaledRule {   // tables for an element of length 1, then for the one at hand, of length h
-        AlignedDoubles numbers;
-        lanes::Rule tables{};
-        double h = 0;
-    };
-    struct Work {
-        std::vector<double> twist, X, V, raw;
-        std::vector<double> angles;     // of loads, see Turns
-        std::vector<double> wrenches;   // six numbers a body: of loads, then of multipliers
-    };
-
-    struct Guess {
-        struct End {
-            std::vector<double> place;   // 7 numbers a body
-            bool is_known = false;
-        } by_series, by_polynomial;
-        Extrapolation polynomial;
-        Following following;
-        bool was_followed = false;
-        int n_alone = 0;              // elements for which nothing is followed
-        bool is_polynomial = false;   // as that was nearer to the end of the last element
-    };
-
     void use(const InstantState& start);
-    void make_rule();
-    void scale_rule(const Stretch& stretch, const InstantState& start);
-    void guess(const Stretch& stretch, const InstantState& start);
-    bool follow(const Stretch& stretch);
-    void keep_end(Guess::End& end) const;
-    double moved_from(const Guess::End& end) const;
-    void place_series(const TwistSeries& series, double tau, const InstantState& start, int stride,
-                      double* place);
-    void compare_guesses();
     void evaluate_loads(const Stretch& stretch);
     bool iterate(const Stretch& stretch, const InstantState& start, const NewtonOptions& options,
-                 bool is_accelerated, bool may_follow, NewtonReport& report);
+                 bool is_accelerated, NewtonReport& report);
     double size_of_proposal() const;
     int lane_of(int B) const { return B == rule_.degree ? 0 : B; }
-    int node_of(int lane) const { return lane == 0 ? rule_.degree : lane; }
 
     const Tables& tables_;
     const ElementRule& rule_;
-    const lanes::Functions* functions_ = nullptr;
+    const lanes::Functions* functions_;   // null: no lanes for this rule or model
     std::shared_ptr<const RowPattern> pattern_;
     std::vector<int> place_;   // of each row that was chosen among those of the pattern
     const JointFactor* start_ = nullptr;
     LaneStore nodes_;
-    ScaledRule scaled_;
-    Work work_;
-    Guess guess_;
+    KernelRule lane_rule_;
+    KernelWrenches wrenches_;
+    KernelGuess guess_;
     Acceleration acceleration_;
     int last_steps_ = 0;   // for the last element
     long long evaluations_ = 0;

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Some bodies along the polynomials of an element, for whoever looks between its nodes.
+// Bodies along the polynomials of an element, between its nodes.
 #pragma once
 
-#include <optional>
 #include <vector>
 
 #include "livens/dynamics/rows/tables.h"
@@ -11,22 +10,28 @@
 
 namespace livens {
 
-class Nodes;
+class NodePositions;
 
 /// X and V = X' of bodies along an element of a window, at any share of its length.
-class Way {
+class ElementPath {
 public:
-    /// References must outlive it.
-    Way(const Tables& tables, const ElementRule& rule);
+    ElementPath(const Tables& tables, const ElementRule& rule);
 
+    /// Along element e from now on. References must outlive the calls of go().
+    void begin(const Stretch& stretch, const NodePositions& nodes, int e);
     /// Goes to a share, with the bodies that are named; what others have there is of no use.
-    void go(const Stretch& stretch, const Nodes& nodes, int e, double share, const std::vector<int>& bodies);
+    void go(double share, const std::vector<int>& bodies);
     Instant at() const { return at_; }
     const double* X() const { return X_.data(); }
     const double* V() const { return V_.data(); }
+    double start() const { return stretch_->times[element_]; }
+    double h() const { return stretch_->h(element_); }
 
 private:
     LagrangeBasis basis_;
+    const Stretch* stretch_ = nullptr;
+    const NodePositions* nodes_ = nullptr;
+    int element_ = 0;
     Instant at_;
     std::vector<double> X_, V_, values_, slopes_;
 };

@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The state at the end of a solved element: its momentum from the balance of all rows, of which the joints
+// take h w_p G^T lambda, the velocity that is left, and acceleration and reactions from the equations of
+// motion there (docs/theory.md, "Element ends"; of radau: "Radau points"; shared nodes: "Windows").
+#include "livens/spacetime/nodal/element_end.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "livens/base/text.h"
+#include "livens/multibody/body.h"
+#include "livens/spacetime/nodal/kernel/march_kernel.h"
+#include "livens/spacetime/nodal/system.h"
+
+namespace livens {
+
+namespace {
+
+/// Re-orthonormalises directors that have drifted beyond rounding: one Newton step of the polar factor.
+void orthonormalise(double* X)
+{
+    Matrix3 d{};
+    std::copy_n(X + 3, 9, d.a);
+    const Matrix3 error = transpose(d) * d - identity<3>();
+    if (norm(error) < 2e-15) return;
+    d -= 0.5 * d * error;
+    std::copy_n(d.a, 9, X + 3);
+}
+
+/// The node of an element that has no multiplier of its own.
+int node_without(const ElementRule& rule) { return rule.points == Points::radau ? 0 : rule.degree; }
+
+}   // namespace
+
+ElementEnd::ElementEnd(const Tables& tables, bool sparse)
+    : tables_(tables), instant_(tables, sparse), jumps_(tables.model->load_breaks()),
+      lambda_(tables.rows.size()), end_lambda_(lambda_), impulse_(tables.rank), momentum_(tables.n_twists),
+      wrench_(momentum_), raw_(12 * tables.bodies.size())
+{
+    for (InstantState& state : states_) state.resize(tables);
+}
+
+bool ElementEnd::is_jump(double t) const { return std::ranges::binary_search(jumps_, t); }
+
+bool ElementEnd::set(InstantState& state, const State& given)
+{
+    state.t = given.t;
+    if (state.X.empty()) state.resize(tables_);
+    for (int b = 0; b < tables_.n_bodies(); ++b) {
+        std::copy_n(given.X[b].a, 12, state.X.begin() + 12 * b);
+        const auto& body = tables_.bodies[b];
+        const Vector3 v = given.V[b].column(0);
+        const Vector3 w = body.dofs == 6 ? angular_velocity(given.X[b], given.V[b]) : Vector3{};
+        for (int i = 0; i < body.dofs; ++i) state.velocity[body.first + i] = i < 3 ? v[i] : w[i - 3];
+    }
+    state.angles = tables_.turns.begin(given);
+    tables_.turns.follow(Configurations(state.X.data()), state.angles);
+    if (!instant_.prepare(state, tables_.independent)) return false;
+    instant_.from_velocity(state);
+    return true;
+}
+
+void ElementEnd::accelerate(InstantState& state)
+{
+    instant_.accelerate(state, Side::right);
+    if (is_jump(state.t)) {
+        instant_.accelerate(state, Side::left);
+    } else {
+        state.acceleration[0] = state.acceleration[1];
+        state.multipliers[0] = state.multipliers[1];
+    }
+}
+
+/// With the multipliers that are left there when its momentum is tangent to the constraints.
+bool ElementEnd::find_first(NodalSystem& system)
+{
+    const Stretch& stretch = system.stretch();
+    InstantState& here = states_[now_];
+    const double weight = stretch.weight(system.rule(), 0);
+    here.t = stretch.times[0];
+    if (!stretch.X_first) {
+        here.angles = tables_.turns.begin();
+        tables_.turns.follow(Configurations(system.nodes().X(0)), here.angles);
+        std::copy_n(system.nodes().X(0), here.X.size(), here.X.begin());
+        std::copy_n(system.nodes().low(0), here.X.size(), here.X_low.begin());
+        if (!instant_.prepare(here, tables_.independent)) return false;
+    }
+    std::vector<double>& p = momentum_;
+    if (stretch.P_first) {
+        p = system.balances().end_momentum(false).about_reference;
+        for (int b = 0; b < tables_.n_bodies(); ++b)
+            if (tables_.bodies[b].dofs == 6)
+                Tables::to_centre(here.maps.data() + 12 * b, p.data() + tables_.bodies[b].first);
+    } else {
+        system.balances().twist_row(stretch, system.nodes(), 0, p.data());
+        for (double& value : p) value = -value;
+    }
+    instant_.from_momentum(here, p.data(), weight, lambda_.data());
+    for (int c = 0; c < tables_.rank; ++c) {
+        const double taken = weight * lambda_[here.rows[c]];
+        impulse_[c] = (stretch.P_first ? system.balances().impulses(0)[c] : 0.0) - taken;
+    }
+    accelerate(here);
+    return true;
+}
+
+void ElementEnd::begin(const double* impulses) { std::copy_n(impulses, tables_.rank, impulse_.data()); }
+
+/// The momentum at the end of an element from the balance of all its rows, which with lobatto is its last row
+/// once the others are solved:
+///
+///     p = p_0 + sum_A f_A,      s = s_0 + sum_A tau_A
+///
+/// with wrenches (f_A, tau_A) of loads and multipliers about the centres of mass (docs/theory.md, "The
+/// element"). The last row itself would carry the rounding of k_AB / h and the residual of Newton's
+/// iteration.
+void ElementEnd::sum_momentum(const NodalSystem& system, int e)
+{
+    const Nodes& nodes = system.nodes();
+    const NodalRows& rows = system.balances();
+    const int p = system.rule().degree, without = node_without(system.rule());
+    const double h = system.stretch().h(e);
+    const bool has_loads = !tables_.model->loads().empty();
+    std::vector<double>& sum = momentum_;
+    sum = here().p;
+    for (const auto& body : tables_.bodies)   // the weight has no moment about the centre
+        for (int i = 0; i < 3; ++i) sum[body.first + i] += h * body.weight[i];
+    for (int a = 0; a <= p; ++a) {
+        const int A = e * p + a;
+        if (a == without && !has_loads) continue;
+        if (has_loads)
+            std::copy_n(rows.loads().forces(e, a), raw_.size(), raw_.begin());
+        else
+            std::ranges::fill(raw_, 0.0);
+        if (a != without)
+            rows.subtract(nodes.basis(A), a == 0 ? impulse_.data() : rows.impulses(A), raw_.data());
+        tables_.twist_rows(nodes.X(A), nodes.maps(A), raw_.data(), wrench_.data());
+        for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += wrench_[i];
+    }
+}
+
+/// The spin about the centres of mass at the end of an element of radau is that of the polynomial's own
+/// velocity, as its rows do not balance moments.
+void ElementEnd::take_spin_of_polynomial(const NodalSystem& system, int e)
+{
+    const ElementRule& rule = system.rule();
+    const Nodes& nodes = system.nodes();
+    const int p = rule.degree, A = (e + 1) * p;
+    std::vector<double> V(raw_.size(), 0.0);
+    for (int B = 1; B <= p; ++B)
+        for (std::size_t i = 0; i < V.size(); ++i)
+            V[i] += rule.D[p * rule.size() + B] / system.stretch().h(e) * nodes.dX(e, B)[i];
+    tables_.times_mass(V.data(), 1.0, raw_.data());
+    tables_.twist_rows(nodes.X(A), nodes.maps(A), raw_.data(), wrench_.data());
+    for (const auto& body : tables_.bodies)
+        for (int i = 3; i < body.dofs; ++i) momentum_[body.first + i] = wrench_[body.first + i];
+}
+
+bool ElementEnd::reach(NodalSystem& system, MarchKernel& kernel, int e, bool polish)
+{
+    const ElementRule& rule = system.rule();
+    const Stretch& stretch = system.stretch();
+    const Nodes& nodes = system.nodes();
+    const int p = rule.degree, A = (e + 1) * p;
+    const bool is_last = e + 1 == stretch.n_elements(), is_radau = rule.points == Points::radau;
+    InstantState &here = states_[now_], &next = states_[1 - now_];
+    next.t = stretch.times[e + 1];
+    if (kernel.is_solved())
+        kernel.momentum(stretch, here, momentum_.data());
+    else
+        sum_momentum(system, e);
+    if (is_radau) take_spin_of_polynomial(system, e);
+    next.angles = here.angles;
+    for (int a = 1; a <= p; ++a) tables_.turns.follow(Configurations(nodes.X(e * p + a)), next.angles);
+    std::copy_n(nodes.X(A), next.X.size(), next.X.begin());
+    std::copy_n(nodes.low(A), next.X.size(), next.X_low.begin());
+    if (!kernel.is_solved()) std::copy_n(nodes.maps(A), next.X.size(), next.maps.begin());
+    for (int b = 0; polish && b < tables_.n_bodies(); ++b)
+        if (tables_.bodies[b].dofs == 6) orthonormalise(next.X.data() + 12 * b);
+    // the node's own basis, where nothing asks for it any more
+    const bool is_free = is_last && !is_radau && stretch.is_unknown(A) && !kernel.is_solved();
+    ConstraintBasis* known = is_free && system.bases_fit() ? &system.nodes().own_basis(A) : nullptr;
+    if (!instant_.prepare(next, here.rows, known, kernel.factor_at_end())) return false;
+    const double weight = stretch.h(e) * rule.weights[p];
+    instant_.from_momentum(next, momentum_.data(), weight, end_lambda_.data());
+    accelerate(next);
+    return true;
+}
+
+std::string ElementEnd::contradiction() const
+{
+    const InstantState& state = states_[1 - now_];
+    if (tables_.rank == tables_.n_rows()) return {};
+    for (int r = 0; r < tables_.n_rows(); ++r) {
+        const ConstraintRow& row = *tables_.rows[r].row;
+        if (std::abs(tables_.value(r, {state.t}, state.X.data())) / row.scale < 1e-8) continue;
+        return tables_.model->row_name(r) +
+               ": was redundant at the start and contradicts the other joints by t = " + to_text(state.t, 6) +
+               " s";
+    }
+    return {};
+}
+
+const double* ElementEnd::multipliers(const NodalSystem& system, int e, int a)
+{
+    const ElementRule& rule = system.rule();
+    const int p = rule.degree;
+    if (a == node_without(rule))   // at the start of radau that of the acceleration there
+        return (a == p ? end_lambda_ : here().multipliers[1]).data();
+    const double* impulses = a == 0 ? impulse_.data() : system.balances().impulses(e * p + a);
+    if (a == p)
+        lambda_ = end_lambda_;   // the part that the projection took, to which the node's own is added
+    else if (tables_.rank < tables_.n_rows())
+        std::ranges::fill(lambda_, 0.0);
+    const double weight = system.stretch().h(e) * rule.weights[a];
+    const int* row = system.nodes().rows().data();
+    for (int c = 0, n = tables_.rank; c < n; ++c) {
+        const double own = impulses[c] / weight;
+        lambda_[row[c]] = a == p ? lambda_[row[c]] + own : own;
+    }
+    return lambda_.data();
+}
+
+void ElementEnd::pass_on(const NodalSystem& system, int e)
+{
+    const Stretch& stretch = system.stretch();
+    const int p = stretch.degree;
+    const double weight = stretch.h(e) * system.rule().weights[p];
+    if (e + 1 < stretch.n_elements())   // the shared node's other side
+        for (int c = 0; c < tables_.rank; ++c)
+            impulse_[c] =
+                system.balances().impulses((e + 1) * p)[c] - weight * end_lambda_[system.nodes().rows()[c]];
+    if (is_jump(next().t))
+        next().forget_past();
+    else
+        next().look_back(here(), stretch.h(e) > 0);
+    now_ = 1 - now_;
+}
+
+}   // namespace livens

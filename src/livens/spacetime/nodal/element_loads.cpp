@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// F_A of the elements of a window: loads at the p points of the element's second rule, Gauss points or the
+// nodes of radau, shared out to the nodes by the values of their polynomials there, so that impulses and
+// moments are those of the load itself (docs/theory.md, "The element", "Why two rules", "Radau points").
+#include "livens/spacetime/nodal/element_loads.h"
+
+#include <algorithm>
+
+#include "livens/spacetime/nodal/nodes.h"
+
+namespace livens {
+
+ElementLoads::ElementLoads(const Tables& tables, const ElementRule& rule)
+    : tables_(tables), rule_(rule), X_(12 * tables.bodies.size()), V_(X_), at_point_(X_)
+{}
+
+void ElementLoads::interpolate(const Stretch& stretch, const NodePositions& nodes, int e, int c, double* X,
+                               double* V) const
+{
+    const int n_nodes = rule_.size();
+    const double inverse = 1 / stretch.h(e);
+    std::copy_n(nodes.X(e * rule_.degree), X_.size(), X);
+    std::fill_n(V, V_.size(), 0.0);
+    for (int B = 1; B < n_nodes; ++B) {
+        accumulate(X, rule_.M[c * n_nodes + B], nodes.dX(e, B), X_.size());
+        accumulate(V, rule_.dM[c * n_nodes + B] * inverse, nodes.dX(e, B), V_.size());
+    }
+}
+
+void ElementLoads::count_turns(const Stretch& stretch, const NodePositions& nodes)
+{
+    angles_.clear();
+    if (tables_.turns.empty()) return;
+    std::vector<double> now = stretch.angles;
+    for (int A = 0; A < stretch.n_nodes(); ++A) {
+        tables_.turns.follow(Configurations(nodes.X(A)), now);
+        angles_.insert(angles_.end(), now.begin(), now.end());
+    }
+}
+
+std::span<const double> ElementLoads::angles(int e, int c) const
+{
+    if (angles_.empty()) return {};
+    int node = 0;
+    while (node < rule_.degree && rule_.nodes[node + 1] <= rule_.loads.points[c]) ++node;
+    const std::size_t n = tables_.turns.size();
+    return std::span(angles_).subspan((e * rule_.degree + node) * n, n);
+}
+
+void ElementLoads::add_element(const Stretch& stretch, const NodePositions& nodes, int e)
+{
+    const int n_nodes = rule_.size();
+    const std::size_t n = X_.size();
+    double* first = forces_.data() + e * n_nodes * n;
+    std::fill_n(first, n_nodes * n, 0.0);
+    for (int c = 0; c < rule_.degree; ++c) {
+        interpolate(stretch, nodes, e, c, X_.data(), V_.data());
+        std::ranges::fill(at_point_, 0.0);
+        const Instant at = stretch.load_point(rule_, e, c);
+        tables_.add_loads(at, X_.data(), V_.data(), stretch.h(e) * rule_.loads.weights[c], at_point_.data(),
+                          angles(e, c));
+        for (int A = 0; A < n_nodes; ++A) {
+            const double m = rule_.M[c * n_nodes + A];
+            accumulate(first + A * n, m, at_point_.data(), n);
+        }
+    }
+}
+
+void ElementLoads::evaluate(const Stretch& stretch, const NodePositions& nodes)
+{
+    count_turns(stretch, nodes);
+    if (tables_.model->loads().empty()) return;
+    forces_.resize(stretch.n_elements() * rule_.size() * X_.size());
+    for (int e = 0; e < stretch.n_elements(); ++e) add_element(stretch, nodes, e);
+}
+
+std::string ElementLoads::bad_load(const Stretch& stretch, const NodePositions& nodes) const
+{
+    std::vector<double> X(X_.size()), V(X_.size());
+    for (int e = 0; e < stretch.n_elements(); ++e)
+        for (int c = 0; c < rule_.degree; ++c) {
+            interpolate(stretch, nodes, e, c, X.data(), V.data());
+            const Instant at = stretch.load_point(rule_, e, c);
+            const int load = tables_.bad_load(at, X.data(), V.data(), angles(e, c));
+            if (load >= 0) return not_finite(tables_.model->loads()[load]);
+        }
+    return "";
+}
+
+}   // namespace livens

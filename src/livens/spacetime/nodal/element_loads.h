@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Loads on the elements of a window: their quadrature on X and X' of the elements' own polynomials.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "livens/dynamics/rows/tables.h"
+#include "livens/spacetime/nodal/stretch.h"
+
+namespace livens {
+
+class NodePositions;
+
+/// F_A = h sum_c w_c M_A(s_c) F(X(s_c), X'(s_c)) of the nodes A of every element (docs/theory.md, "The
+/// element").
+class ElementLoads {
+public:
+    ElementLoads(const Tables& tables, const ElementRule& rule);
+
+    void evaluate(const Stretch& stretch, const NodePositions& nodes);
+    /// F_A of element e, local node A, without weight; 12 numbers a body. Only where there are loads.
+    const double* forces(int e, int A) const { return forces_.data() + (e * rule_.size() + A) * X_.size(); }
+    /// X and X' at load point c.
+    void interpolate(const Stretch& stretch, const NodePositions& nodes, int e, int c, double* X,
+                     double* V) const;
+    /// Follows the angles of loads through all nodes, as evaluate() does; see Turns.
+    void count_turns(const Stretch& stretch, const NodePositions& nodes);
+    /// Approximate angles at load point c of element e: those at the node before.
+    std::span<const double> angles(int e, int c) const;
+    /// A message about a load that is not finite; empty if all are.
+    std::string bad_load(const Stretch& stretch, const NodePositions& nodes) const;
+
+private:
+    void add_element(const Stretch& stretch, const NodePositions& nodes, int e);
+
+    const Tables& tables_;
+    const ElementRule& rule_;
+    std::vector<double> forces_;   // F_A, element after element
+    std::vector<double> angles_;   // node after node
+    std::vector<double> X_, V_, at_point_;
+};
+
+/// sum += factor * x, 12 numbers a body, for arrays that do not overlap.
+inline void accumulate(double* __restrict sum, double factor, const double* __restrict x, std::size_t n)
+{
+    for (std::size_t b = 0; b < n; b += 12)
+        for (std::size_t i = b; i < b + 12; ++i) sum[i] += factor * x[i];
+}
+
+}   // namespace livens

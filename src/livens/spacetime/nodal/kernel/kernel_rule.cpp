@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// k_AB / h, - h K^-1, weights and values at load points as rows of lanes, one lane a node, with the last node
+// in lane 0 where nodes are unknown (docs/theory.md, "Without a tangent", All nodes at once). Turns are
+// solved for in still axes if there are gyroscopic terms ("Still axes").
+#include "livens/spacetime/nodal/kernel/kernel_rule.h"
+
+#include <algorithm>
+
+#include "livens/dynamics/instant/instant.h"
+
+namespace livens {
+
+namespace {
+
+constexpr int few_steps = 3;
+
+/// Whether some body's axis of turning turns itself. Where none does, as in a plane, nothing is gyroscopic.
+bool turns_in_space(const Tables& tables, const InstantState& start, double h)
+{
+    const std::vector<double>& accelerations = start.acceleration[h > 0 ? 1 : 0];
+    return std::ranges::any_of(tables.bodies, [&](const Tables::BodyTable& body) {
+        const double *w = start.velocity.data() + body.first + 3, *a = accelerations.data() + body.first + 3;
+        if (body.dofs == 3) return false;
+        const Vector3 turn{w[0], w[1], w[2]}, change{a[0], a[1], a[2]}, across = cross(turn, change);
+        return dot(across, across) > 1e-16 * dot(turn, turn) * dot(change, change);
+    });
+}
+
+}   // namespace
+
+KernelRule::KernelRule(const Tables& tables, const ElementRule& rule, const lanes::Functions* functions)
+    : tables_(tables), rule_(rule), width_(functions != nullptr ? functions->width : 0)
+{
+    if (functions == nullptr) return;
+    const int p = rule.degree, W = width_, n = rule.size(), block = W * W;
+    numbers_.assign(8 * block + 2 * W, 0.0);
+    double *k = numbers_.data(), *inverse = k + block, *M = inverse + block, *dM = M + block,
+           *M_rows = dM + block, *scaled_k = M_rows + block, *scaled_inverse = scaled_k + block,
+           *scaled_dM = scaled_inverse + block, *weights = scaled_dM + block;
+    const std::vector<double> K = inverse_of_k(rule);
+    const auto node_of = [p](int lane) { return lane == 0 ? p : lane; };
+    for (int l = 0; l < p; ++l) {
+        for (int A = 0; A < p; ++A) {
+            k[l * W + A] = rule.k[A * n + node_of(l)];
+            inverse[A * W + l] = -K[static_cast<std::size_t>((node_of(l) - 1) * p + A)];
+            M[l * W + A] = rule.M[A * n + node_of(l)];   // here A is a load point
+            dM[l * W + A] = rule.dM[A * n + node_of(l)];
+            M_rows[A * W + l] = rule.M[A * n + l];
+        }
+    }
+    lanes_ = {scaled_k, scaled_inverse, weights, M, scaled_dM, M_rows, nullptr, tables.length};
+}
+
+void KernelRule::scale(double h)
+{
+    h_ = h;
+    const int W = width_, block = W * W;
+    const double* k = numbers_.data();
+    double *scaled = numbers_.data() + 5 * block, *weights = scaled + 3 * block;
+    const auto fill = [block](const double* __restrict of, double* __restrict to, auto&& by) {
+        for (int i = 0; i < block; ++i) to[i] = by(of[i]);
+    };
+    fill(k, scaled, [h](double x) { return x / h; });
+    fill(k + block, scaled + block, [h](double x) { return x * h; });
+    fill(k + 3 * block, scaled + 2 * block, [h](double x) { return x / h; });
+    for (int A = 0; A < rule_.degree; ++A) weights[A] = h * rule_.weights[A];
+}
+
+void KernelRule::use(const Stretch& stretch, const InstantState& start, int last_steps)
+{
+    lanes_.momentum = start.momentum.data();
+    const int few = lanes_.in_still_axes ? few_steps - 1 : few_steps;   // which they made so few
+    lanes_.in_still_axes = last_steps > few && turns_in_space(tables_, start, stretch.h(0));
+    if (stretch.h(0) != h_) scale(stretch.h(0));
+}
+
+}   // namespace livens

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The error of an element's quadrature of a law: verified integrals less the element's own.
+#pragma once
+
+#include <vector>
+
+#include "livens/spacetime/nodal/rule.h"
+
+namespace livens {
+
+class LawOnPath;
+
+/// Points of Gauss, and weights by which these, the middle one left out, and both ends tell whether their
+/// integral can be trusted: [end, points.., end].
+struct CheckedRule {
+    Quadrature gauss;
+    std::vector<double> check;
+
+    explicit CheckedRule(int n_points);
+};
+
+/// The moments D_kn = integral of P_n f_k over the element less their quadrature, with Legendre's polynomials
+/// P_0, P_1, P_2 (docs/theory.md, "Looks at laws"). Intervals are divided where interval bounds allow steeper
+/// slopes than those between samples, so that a narrow pulse costs a number of samples that grows as the
+/// logarithm of its width.
+class MissedMoments {
+public:
+    static constexpr std::size_t n_moments = 3;
+
+    explicit MissedMoments(const ElementRule& rule);
+
+    /// Of factor k with the polynomial n at [n * n_factors + k].
+    std::vector<double> of(LawOnPath& path) const;
+
+private:
+    const ElementRule& rule_;
+    CheckedRule fine_, some_, few_;   // of the whole way, of its pieces, and of those beside its ends
+};
+
+}   // namespace livens

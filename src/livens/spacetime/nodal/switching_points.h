@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Where on the way of an element a law of a load or row goes on to another of its smooth pieces.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "livens/spacetime/nodal/watched_law.h"
+
+namespace livens {
+
+/// Looks along the polynomials of an element that was solved as if no law bent there: what comes before the
+/// first bend is about right, so that an element that ends there is smooth (docs/theory.md, "Laws that
+/// bend").
+class SwitchingPoints {
+public:
+    /// References must outlive it.
+    SwitchingPoints(const Tables& tables, const ElementRule& rule);
+
+    /// No law of the model has pieces.
+    bool empty() const { return laws_.empty(); }
+    /// The first share of the only element's length, up to `until` (beyond 1: as it goes on), from which on
+    /// laws are on other pieces than just behind its start; infinite: none.
+    double first(const Stretch& stretch, const NodePositions& nodes, double until);
+    /// The load whose force jumped there, when a bend was found last; empty: none was, or none jumps.
+    std::string jumping_load() const { return jumping_ < 0 ? "" : tables_.model->loads()[jumping_].name; }
+
+private:
+    const Tables& tables_;
+    std::vector<WatchedLaw> laws_;
+    ElementPath path_;
+    std::vector<double> shares_;   // of looks
+    int jumping_ = -1;
+};
+
+}   // namespace livens

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A law with pieces along the polynomials of an element: the number of each guard, which changes its piece
+// where it passes one of its places, and the vector at whose zero the law is not smooth (docs/theory.md,
+// "Laws that bend").
+#include "livens/spacetime/nodal/watched_law.h"
+
+#include <algorithm>
+
+namespace livens {
+
+WatchedLaw::WatchedLaw(const Tables& tables, int load, int row) : tables_(tables), load_(load), row_(row)
+{
+    if (load >= 0) {
+        const Load& of = tables.model->loads()[load];
+        guards_ = of.guards;
+        has_centre_ = of.bends_at_centre;
+        bodies_ = of.bodies;
+        std::erase(bodies_, world);
+    } else if (const ConstraintRow& of = tables.model->row(row); of.guard) {
+        guards_ = {of.guard->guard};
+        const RowBodies bodies = row_bodies(of);
+        bodies_.assign(bodies.begin(), bodies.end());
+    }
+}
+
+LawState WatchedLaw::at(ElementPath& path, double share, const LawState& from) const
+{
+    path.go(share, bodies_);
+    LawState state{share, std::vector<double>(guards_.size()), {}, from.angles};
+    if (load_ >= 0) {
+        const Load& load = tables_.model->loads()[load_];
+        if (!load.angles.empty()) tables_.turns.follow_of(load_, Configurations(path.X()), state.angles);
+        const LoadArguments arguments = tables_.arguments(load_, path.at(), path.X(), path.V(), state.angles);
+        if (load.guarded) load.guarded(arguments, state.numbers);
+        if (has_centre_) state.centre = load.centre(arguments);
+    } else {
+        const ConstraintRow& row = tables_.model->row(row_);
+        state.numbers[0] = row.guard->value(function_point(row, Configurations(path.X())));
+    }
+    // an angle goes on through half a turn instead of coming back from the other side
+    for (std::size_t k = 0; k < from.numbers.size(); ++k)
+        state.numbers[k] = guards_[k].following(state.numbers[k], from.numbers[k]);
+    return state;
+}
+
+LoadForces WatchedLaw::forces(ElementPath& path, const LawState& at) const
+{
+    path.go(at.share, bodies_);
+    LoadForces F{};
+    tables_.model->loads()[load_].forces(tables_.arguments(load_, path.at(), path.X(), path.V(), at.angles),
+                                         F);
+    return F;
+}
+
+bool WatchedLaw::jumps(ElementPath& path, const LawState& before, const LawState& after,
+                       const LawState& end) const
+{
+    constexpr double jump = 1e-6;   // of the force where the look ends: at a bend it may be none
+    if (load_ < 0) return false;
+    const LoadForces a = forces(path, before), b = forces(path, after), c = forces(path, end);
+    for (std::size_t side = 0; side < 2; ++side)
+        if (norm(b[side] - a[side]) > jump * std::max({norm(a[side]), norm(b[side]), norm(c[side])}))
+            return true;
+    return false;
+}
+
+}   // namespace livens

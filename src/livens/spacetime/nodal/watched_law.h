@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The law of a load or of a row along an element: which of its smooth pieces it is on.
+#pragma once
+
+#include <vector>
+
+#include "livens/spacetime/nodal/element_path.h"
+
+namespace livens {
+
+/// The numbers that decide about the piece, at a share of the element's length.
+struct LawState {
+    double share = 0;
+    std::vector<double> numbers;   ///< of the guards
+    Vector3 centre{};
+    std::vector<double> angles;   ///< see Turns
+};
+
+class WatchedLaw {
+public:
+    /// Of a load, or (load < 0) of a row. References must outlive it.
+    WatchedLaw(const Tables& tables, int load, int row);
+
+    bool has_pieces() const { return !guards_.empty() || has_centre_; }
+    bool has_centre() const { return has_centre_; }
+    const std::vector<Guard>& guards() const { return guards_; }
+    int load() const { return load_; }
+
+    /// The state that follows `from` along the path; guards and angles are continued from there.
+    LawState at(ElementPath& path, double share, const LawState& from) const;
+    /// Whether the force of a load is another behind two states next to each other; `end` is some way behind.
+    bool jumps(ElementPath& path, const LawState& before, const LawState& after, const LawState& end) const;
+
+private:
+    LoadForces forces(ElementPath& path, const LawState& at) const;
+
+    const Tables& tables_;
+    int load_, row_;
+    std::vector<int> bodies_;
+    std::vector<Guard> guards_;
+    bool has_centre_ = false;
+};
+
+}   // namespace livens
