@@ -113,7 +113,7 @@ Motion MotionOfBlocks::take(bool torn, const State& start)
     motion.order_at_ends = order_of(method_, blocks_.size());
     motion.dense_order_X = std::min(motion.order_at_ends, p + 1);
     motion.dense_order_V = std::min(motion.order_at_ends, p);
-    motion.constraints_hold = "weakly";
+    motion.constraints_hold = ConstraintsHold::weakly;
     motion.gauss_points = gauss_points_;
     if (blocks_.empty()) {
         motion.mesh.ends = {start.t};
