@@ -272,8 +272,8 @@ livens_mutant(NAME stiffness_made_symmetric
 # Multipliers without their geometric stiffness: Newton would still converge, slowly.
 livens_mutant(NAME mixed_without_geometric_stiffness
               FILE spacetime/mixed/tangent.cpp
-              OLD [[sink(row + entry.coordinate_i, X + entry.coordinate_j, K[entry.row] * entry.value);]]
-              NEW [[sink(row + entry.coordinate_i, X + entry.coordinate_j, 0 * K[entry.row]);]]
+              OLD [[entries_.add(row + entry.coordinate_i, X + entry.coordinate_j, K[entry.row] * entry.value);]]
+              NEW [[entries_.add(row + entry.coordinate_i, X + entry.coordinate_j, 0 * K[entry.row]);]]
               TESTS_OF unit_spacetime
               MUST_FAIL AllPairings/MixedEquations.HaveTheMatrixOfTheirResidual/NaturalEqualX0P0
                         AllPairings/MixedEquations.HaveTheMatrixOfTheirResidual/StrongLowerXTPT)
@@ -289,7 +289,7 @@ livens_mutant(NAME mixed_wrong_boundary_term
 
 # The end multiplier tied with a wrong sign: every degree falls back.
 livens_mutant(NAME mixed_wrong_tie
-              FILE spacetime/mixed/equations.cpp
+              FILE spacetime/mixed/fields.cpp
               OLD [[tie.terms.emplace_back(first + a, -derivative[a] / derivative[frozen - first]);]]
               NEW [[tie.terms.emplace_back(first + a, derivative[a] / derivative[frozen - first]);]]
               TESTS_OF convergence

@@ -6,9 +6,13 @@
 #include <memory>
 
 #include "livens/multibody/motion.h"
-#include "livens/spacetime/mixed/equations.h"
+#include "livens/spacetime/method.h"
 
 namespace livens::mixed {
+
+struct Coordinates;
+class Equations;
+struct Fields;
 
 /// Collects blocks, in any order, and makes a motion of those that stand side by side.
 ///
