@@ -278,6 +278,14 @@ livens_mutant(NAME mixed_without_geometric_stiffness
               MUST_FAIL AllPairings/MixedEquations.HaveTheMatrixOfTheirResidual/NaturalEqualX0P0
                         AllPairings/MixedEquations.HaveTheMatrixOfTheirResidual/StrongLowerXTPT)
 
+# A load that shows a new entry of its tangent is not noticed: the matrix keeps a pattern without it.
+livens_mutant(NAME mixed_pattern_never_grows
+              FILE spacetime/mixed/element_sums.cpp
+              OLD [[block.seen.set(static_cast<std::size_t>(i));]]
+              NEW [[static_cast<void>(block.seen);]]
+              TESTS_OF unit_spacetime
+              MUST_FAIL MixedEquationsPattern.GrowsWhenALoadBeginsToAct)
+
 # Half of the momentum at an end: Hamilton's law of varying action with a wrong boundary term.
 livens_mutant(NAME mixed_wrong_boundary_term
               FILE spacetime/mixed/equations.cpp

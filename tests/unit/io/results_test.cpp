@@ -152,9 +152,13 @@ TEST_F(Results, KeepWhereConstraintsHoldAndRefuseOtherWords)
 {
     const Model model = sample_model();
     RunFile run = sample_run(model);
-    for (const auto where : {ConstraintsHold::unknown, ConstraintsHold::at_nodes,
-                             ConstraintsHold::at_element_ends, ConstraintsHold::weakly}) {
+    for (const auto& [where, word] : {std::pair{ConstraintsHold::unknown, ""},
+                                      {ConstraintsHold::at_nodes, "element nodes"},
+                                      {ConstraintsHold::at_element_ends, "element ends"},
+                                      {ConstraintsHold::weakly, "weakly"}}) {
         run.motion.constraints_hold = where;
+        const Image file(image_of(model, run));
+        EXPECT_EQ(std::get<std::string>(*file.reader().attribute("constraints_hold_at")), word);
         EXPECT_EQ(read_run_from(source_of(image_of(model, run))).motion.constraints_hold, where);
     }
     std::string image = image_of(model, run);

@@ -146,7 +146,7 @@ std::vector<double> Coordinates::multipliers(const State& state) const
     forces(state.t, X.data(), V.data(), none.data(), F.data());
     gather(F.data(), x.data());
     for (int k = 0; k < n_rows(); ++k) x[size + k] = -tables.curvature(rows[k], {}, X.data(), V.data());
-    for (auto& column : columns) std::sort(column.begin(), column.end());   // bodies came before joints
+    for (auto& column : columns) std::sort(column.begin(), column.end());   // joints name bodies in any order
     const SparseMatrix A = sparse_from_columns(columns);
     SparseLU lu(SparseBackend::eigen);
     lu.analyse(A);

@@ -19,10 +19,8 @@ std::string Equations::residual(const Fields& fields, std::vector<double>& r)
     const BlockFunctions& functions = space_.functions;
     const Coordinates& m = space_.coordinates;
     const Numbering& numbering = space_.numbering;
-    const std::size_t n = static_cast<std::size_t>(m.size);
     std::string bad;
-    const std::vector<Load>& loads = m.tables.model->loads();
-    dP_.assign(n * functions.space().size(), 0.0);
+    dP_.assign(static_cast<std::size_t>(m.size) * functions.space().size(), 0.0);
     dX_.assign(dP_.size(), 0.0);
     dlambda_.assign(static_cast<std::size_t>(m.n_rows()) * functions.multipliers().size(), 0.0);
     F_.resize(m.n_X());
@@ -31,11 +29,11 @@ std::string Equations::residual(const Fields& fields, std::vector<double>& r)
             sample_.take(space_, fields, e, g);
             const double t = functions.time(e, g);
             m.forces(t, sample_.X.data(), sample_.V.data(), sample_.lambda.data(), F_.data());
-            double sum = 0;
+            double sum = 0;   // is finite where all are
             for (const double f : F_) sum += std::abs(f);
             if (!std::isfinite(sum)) {
                 const int load = m.tables.bad_load({t, Side::middle}, sample_.X.data(), sample_.V.data());
-                if (load >= 0) bad = not_finite(loads[load]);
+                if (load >= 0) bad = not_finite(m.tables.model->loads()[load]);
             }
             add_point(e, g);
         }

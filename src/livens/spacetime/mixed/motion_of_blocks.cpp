@@ -57,13 +57,6 @@ MotionOfBlocks::MotionOfBlocks(const Coordinates& coordinates, const TimeMesh& m
     : coordinates_(coordinates), mesh_(mesh), method_(method)
 {}
 
-std::vector<double> MotionOfBlocks::to_columns(const double* coordinates) const
-{
-    std::vector<double> columns(static_cast<std::size_t>(coordinates_.n_X()));
-    coordinates_.spread(coordinates, columns.data());
-    return columns;
-}
-
 void MotionOfBlocks::add(int first, const Equations& equations, const Fields& fields)
 {
     Block& block = blocks_[first];
@@ -74,12 +67,16 @@ void MotionOfBlocks::add(int first, const Equations& equations, const Fields& fi
     block.P_start = equations.end_momentum(fields, false);
     block.P_end = equations.end_momentum(fields, true);
     std::vector<double> numbers(coordinates_.root_masses.size()), lambda(coordinates_.rows.size());
+    const auto append_columns = [&](std::vector<double>& to) {
+        to.resize(to.size() + coordinates_.n_X());
+        coordinates_.spread(numbers.data(), to.data() + to.size() - coordinates_.n_X());
+    };
     for (int e = 0; e < block.n_elements; ++e) {
         for (const double s : nodes_of(space.degree())) {
             fields_of.evaluate_X(fields, e, s, numbers.data());
-            append(block.X, to_columns(numbers.data()));
+            append_columns(block.X);
             fields_of.evaluate_P(fields, e, s, numbers.data());
-            append(block.P, to_columns(numbers.data()));
+            append_columns(block.P);
             if (space.is_rational()) block.denominators.push_back(space.denominator(e, s));
         }
         for (const double s : nodes_of(fields_of.functions.multipliers().degree())) {

@@ -38,7 +38,6 @@ private:
     };
     void append_block(const Block& block, bool is_first, Motion& motion) const;
     void append_end(const double* X, const std::vector<Matrix34>& P, bool of_block, Motion& motion) const;
-    std::vector<double> to_columns(const double* coordinates) const;
 
     const Coordinates& coordinates_;
     const TimeMesh& mesh_;
