@@ -4,6 +4,7 @@
 // (docs/theory.md, "The elements of the paper": The multiplier at an end, Loads that jump).
 #include "livens/spacetime/mixed/fields.h"
 
+#include <algorithm>
 #include <array>
 #include <utility>
 

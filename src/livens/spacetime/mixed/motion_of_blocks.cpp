@@ -81,24 +81,30 @@ void MotionOfBlocks::add(int first, const Equations& equations, const Fields& fi
         }
         for (const double s : nodes_of(fields_of.functions.multipliers().degree())) {
             fields_of.evaluate_multipliers(fields, e, s, lambda.data());
-            std::vector<double> joints(coordinates_.tables.model->n_rows(), 0.0);
-            std::vector<double> rigidity(6 * coordinates_.first.size(), 0.0);
-            int of_rigidity = 0, body = -1;
-            for (int k = 0; k < coordinates_.n_rows(); ++k) {
-                const int row = coordinates_.rows[k];
-                if (row < coordinates_.tables.n_rows()) {
-                    joints[row] = lambda[k];
-                    continue;
-                }
-                const int of_body = coordinates_.tables.rows[row].bodies[0];
-                of_rigidity = of_body == body ? of_rigidity + 1 : 0;
-                body = of_body;
-                rigidity[6 * body + of_rigidity] = lambda[k];
-            }
-            append(block.multipliers, joints);
-            append(block.rigidity, rigidity);
+            append_multipliers(lambda, block);
         }
     }
+}
+
+/// Those of redundant rows, and of the rigidity of point masses, are zero.
+void MotionOfBlocks::append_multipliers(const std::vector<double>& lambda, Block& block) const
+{
+    std::vector<double> joints(coordinates_.tables.model->n_rows(), 0.0);
+    std::vector<double> rigidity(6 * coordinates_.first.size(), 0.0);
+    int of_rigidity = 0, body = -1;
+    for (int k = 0; k < coordinates_.n_rows(); ++k) {
+        const int row = coordinates_.rows[k];
+        if (row < coordinates_.tables.n_rows()) {
+            joints[row] = lambda[k];
+            continue;
+        }
+        const int of_body = coordinates_.tables.rows[row].bodies[0];
+        of_rigidity = of_body == body ? of_rigidity + 1 : 0;
+        body = of_body;
+        rigidity[6 * body + of_rigidity] = lambda[k];
+    }
+    append(block.multipliers, joints);
+    append(block.rigidity, rigidity);
 }
 
 Motion MotionOfBlocks::take(bool torn, const State& start)

@@ -36,6 +36,7 @@ private:
         std::vector<Matrix34> P_start, P_end;
         int n_elements = 0;
     };
+    void append_multipliers(const std::vector<double>& lambda, Block& block) const;
     void append_block(const Block& block, bool is_first, Motion& motion) const;
     void append_end(const double* X, const std::vector<Matrix34>& P, bool of_block, Motion& motion) const;
 
