@@ -106,7 +106,7 @@ std::string springs_of(const Model& model, const State& start)
             lines.push_back(plain(joint.name) + ": " +
                             line({joint.first, joint.second}, {joint.point_first, joint.point_second}));
     for (const Load& load : model.loads()) {
-        if (load.type == "attraction") continue;   // between places that are told already
+        if (load.sets_length_scale) continue;   // between places that are told already
         const std::string force = force_of(load, start);
         if (load.points.size() == 2)
             lines.push_back(plain(load.name) + ": " + line(load.bodies, load.points) +

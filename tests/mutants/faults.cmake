@@ -280,11 +280,19 @@ livens_mutant(NAME stiffness_made_symmetric
 # Multipliers without their geometric stiffness: Newton would still converge, slowly.
 livens_mutant(NAME mixed_without_geometric_stiffness
               FILE spacetime/mixed/tangent.cpp
-              OLD [[sink(row + entry.coordinate_i, X + entry.coordinate_j, K[entry.row] * entry.value);]]
-              NEW [[sink(row + entry.coordinate_i, X + entry.coordinate_j, 0 * K[entry.row]);]]
+              OLD [[entries_.add(row + entry.coordinate_i, X + entry.coordinate_j, K[entry.row] * entry.value);]]
+              NEW [[entries_.add(row + entry.coordinate_i, X + entry.coordinate_j, 0 * K[entry.row]);]]
               TESTS_OF unit_spacetime
               MUST_FAIL AllPairings/MixedEquations.HaveTheMatrixOfTheirResidual/NaturalEqualX0P0
                         AllPairings/MixedEquations.HaveTheMatrixOfTheirResidual/StrongLowerXTPT)
+
+# A load that shows a new entry of its tangent is not noticed: the matrix keeps a pattern without it.
+livens_mutant(NAME mixed_pattern_never_grows
+              FILE spacetime/mixed/element_sums.cpp
+              OLD [[block.seen.set(static_cast<std::size_t>(i));]]
+              NEW [[static_cast<void>(block.seen);]]
+              TESTS_OF unit_spacetime
+              MUST_FAIL MixedEquationsPattern.GrowsWhenALoadBeginsToAct)
 
 # Half of the momentum at an end: Hamilton's law of varying action with a wrong boundary term.
 livens_mutant(NAME mixed_wrong_boundary_term
@@ -297,7 +305,7 @@ livens_mutant(NAME mixed_wrong_boundary_term
 
 # The end multiplier tied with a wrong sign: every degree falls back.
 livens_mutant(NAME mixed_wrong_tie
-              FILE spacetime/mixed/equations.cpp
+              FILE spacetime/mixed/fields.cpp
               OLD [[tie.terms.emplace_back(first + a, -derivative[a] / derivative[frozen - first]);]]
               NEW [[tie.terms.emplace_back(first + a, derivative[a] / derivative[frozen - first]);]]
               TESTS_OF convergence

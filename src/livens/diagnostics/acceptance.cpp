@@ -128,7 +128,7 @@ void measure(Verdict& v, const Model& model, const Motion& motion, bool holds_we
     v.zigzag_positions = z.positions;
     v.zigzag_momenta = z.momenta;
     v.zigzag_time = z.worst_time;
-    if (motion.constraints_hold != "element nodes") return;
+    if (motion.constraints_hold != ConstraintsHold::at_nodes) return;
     const VelocityJump jump = velocity_jump(model, motion);
     v.velocity_jump = jump.largest;
     v.velocity_jump_time = jump.time;
@@ -185,7 +185,7 @@ Verdict judge(const Model& model, const Motion& motion, const SolveReport& repor
 {
     Verdict v;
     if (motion.n_elements() == 0) return v;   // nothing was solved, so there is nothing to judge
-    const bool holds_weakly = motion.constraints_hold == "weakly";
+    const bool holds_weakly = motion.constraints_hold == ConstraintsHold::weakly;
     measure(v, model, motion, holds_weakly);
     if (report.smallest_pivot < doubtful_pivot)
         v.remarks.push_back("the constraints came close to losing rank (smallest pivot " +
@@ -210,11 +210,11 @@ Verdict judge(const Model& model, const Motion& motion, const SolveReport& repor
     // A motion that was broken off has its reason already; its figures are told all the same.
     if (!report.converged()) return v;
     Reasons reasons(v.reasons);
-    const bool counts_turns = motion.constraints_hold == "element nodes";
+    const bool counts_turns = motion.constraints_hold == ConstraintsHold::at_nodes;
     const LostTurn turned = counts_turns ? LostTurn{} : find_lost_turn(model, motion);
     if (turned.load >= 0) reasons.turn(model.loads()[turned.load], turned.t);
     if (!estimate.empty()) reasons.error(estimate, model, std::max(acceptable_error, report.accuracy));
-    if (report.accuracy == 0 && motion.constraints_hold == "element nodes")
+    if (report.accuracy == 0 && counts_turns)
         reasons.unsure(estimate.largest, v.velocity_jump, motion.damps() ? 0 : v.energy_drift);
     if (!report.estimate_failed.empty())
         v.reasons.push_back("nothing tells the error, since " + report.estimate_failed);

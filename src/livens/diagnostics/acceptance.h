@@ -27,31 +27,46 @@ struct Growing {
 /// "body 'b' turning about (0.1, 0.98, 0.1)"
 std::string in_words(const Growing& part, const Model& model);
 
-/// What was measured of a motion, and what speaks against it. Figures are nan where there is no motion, and
-/// in a verdict that nobody asked for.
-struct Verdict {
-    static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+/// What nobody measured.
+inline constexpr double not_measured = std::numeric_limits<double>::quiet_NaN();
 
-    double max_constraint_violation = unknown;   ///< at nodes, each row by its scale; rigidity included
-    double max_velocity_violation = unknown;     ///< |dPhi/dt| / scale at element ends, 1/s
-    double max_weak_violation = unknown;         ///< where constraints hold weakly: largest mean, else 0
-    double energy_drift = unknown;               ///< relative, see Balance
-    double linear_momentum_drift = unknown;
-    double angular_momentum_drift = unknown;
-    double zigzag_positions = unknown;   ///< 0 smooth to 1 pure zig-zag, see Zigzag
-    double zigzag_momenta = unknown;
-    double zigzag_time = unknown;            ///< of the worst of both, s
-    double velocity_jump = 0;                ///< see VelocityJump; 0 where constraints do not hold at nodes
-    double velocity_jump_time = unknown;     ///< s
-    double estimated_error = unknown;        ///< largest of ErrorEstimate, if there is one
-    double estimated_digits = unknown;       ///< its negative decadic logarithm, 0 to 16
-    double estimated_error_time = unknown;   ///< where it is largest, s
-    double good_digits = unknown;            ///< see ErrorEstimate::good()
-    double good_until = unknown;             ///< likewise, s
-    double growth = unknown;    ///< largest of a perturbation of the start, where it was measured
-    double horizon = unknown;   ///< s, where 1e-13 has grown to 1e-2; unknown also if that is after the end
+/// How far constraints and balances are off, which hold in every true motion.
+struct InvariantFigures {
+    double max_constraint_violation = not_measured;   ///< at nodes, each row by its scale; rigidity included
+    double max_velocity_violation = not_measured;     ///< |dPhi/dt| / scale at element ends, 1/s
+    double max_weak_violation = not_measured;         ///< where constraints hold weakly: largest mean, else 0
+    double energy_drift = not_measured;               ///< relative, see Balance
+    double linear_momentum_drift = not_measured;
+    double angular_momentum_drift = not_measured;
+};
+
+/// Whether elements are short enough to see the motion.
+struct ResolutionFigures {
+    double zigzag_positions = not_measured;   ///< 0 smooth to 1 pure zig-zag, see Zigzag
+    double zigzag_momenta = not_measured;
+    double zigzag_time = not_measured;   ///< of the worst of both, s
+    double velocity_jump = 0;            ///< see VelocityJump; 0 where constraints do not hold at nodes
+    double velocity_jump_time = not_measured;   ///< s
+};
+
+/// How far the motion may be from the true one.
+struct ErrorFigures {
+    double estimated_error = not_measured;        ///< largest of ErrorEstimate, if there is one
+    double estimated_digits = not_measured;       ///< its negative decadic logarithm, 0 to 16
+    double estimated_error_time = not_measured;   ///< where it is largest, s
+    double good_digits = not_measured;            ///< see ErrorEstimate::good()
+    double good_until = not_measured;             ///< likewise, s
+    double growth = not_measured;   ///< largest of a perturbation of the start, where it was measured
+    double horizon = not_measured;   ///< s, where 1e-13 has grown to 1e-2, if that is before the end
     /// Rounding at the start decides by then which of many motions is shown.
     bool is_beyond_horizon(double t) const { return t > horizon; }
+};
+
+/// What was measured of a motion, and what speaks against it. Figures are nan where there is no motion, and
+/// in a verdict that nobody asked for.
+struct Verdict : InvariantFigures, ResolutionFigures, ErrorFigures {
+    static constexpr double unknown = not_measured;
+
     std::vector<std::string> reasons;   ///< why the motion is suspect, a line each; empty: it is not
     std::vector<std::string> remarks;   ///< what is worth a look and refuses nothing
     BalanceFigures balance;

@@ -73,7 +73,7 @@ Quadrature load_rule(const Motion& motion)
 /// Where joints are taken: where the method holds them, at its nodes or at the points of its loads.
 Quadrature joint_rule(const Motion& motion)
 {
-    if (motion.constraints_hold == "element nodes") return nodal_rule(motion.X);
+    if (motion.constraints_hold == ConstraintsHold::at_nodes) return nodal_rule(motion.X);
     return load_rule(motion);
 }
 

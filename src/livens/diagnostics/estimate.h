@@ -34,10 +34,22 @@ struct Unseen {
     std::vector<double> shift{}, turn{};
 };
 
+/// The largest error, and who has it.
+struct LargestError {
+    double largest = std::numeric_limits<double>::quiet_NaN();   ///< of all positions and orientations
+    double time = 0;                                             ///< of that, s
+    int body = -1;                                               ///< likewise
+    /// Of `largest`, what the laws of loads did unseen inside of elements; and the load that did most of it,
+    /// and where.
+    double unseen = 0;
+    int unseen_load = -1;
+    double unseen_time = 0;
+};
+
 /// Estimated errors at the element ends of a motion; empty where there is none.
 ///
 /// They are global: what was lost in one element is carried on, and grows, as in the motion itself.
-struct ErrorEstimate {
+struct ErrorEstimate : LargestError {
     int n_bodies = 0;
     int n_joints = 0;
     // Entry end * n_bodies + body.
@@ -49,14 +61,6 @@ struct ErrorEstimate {
     std::vector<double> reaction;
     double length = std::numeric_limits<double>::quiet_NaN();             ///< of the model, m
     double largest_reaction = std::numeric_limits<double>::quiet_NaN();   ///< of all joints and ends, N
-    double largest = std::numeric_limits<double>::quiet_NaN();   ///< of all positions and orientations
-    double time = 0;                                             ///< of that, s
-    int body = -1;                                               ///< likewise
-    /// Of `largest`, what the laws of loads did unseen inside of elements; and the load that did most of it,
-    /// and where.
-    double unseen = 0;
-    int unseen_load = -1;
-    double unseen_time = 0;
 
     bool empty() const { return position.empty(); }
     /// The largest of all bodies' positions and orientations at an element end.

@@ -95,25 +95,9 @@ struct LawInside {
     bool only_at_centre = false;
 };
 
-/// A load is data and functions; a new one is a new maker.
-struct Load {
-    std::string name;
-    std::string type;
-    /// Two that it acts on, the second the world for a load on one body; then those that it only looks at.
-    std::vector<int> bodies{world, world};
-    bool depends_on_X = false;   ///< dF/dX may differ from zero
-    bool depends_on_V = false;   ///< dF/dV may differ from zero
-    std::array<bool, 2>
-        needs_directors{};        ///< F is not zero outside the first column: refused on a point mass
+/// Where the force of a load is not smooth, and what is to be looked at inside of elements.
+struct LoadSmoothness {
     std::vector<double> breaks;   ///< instants where F jumps or bends; they become element ends
-    std::string domain;           ///< where F is a number, for the message if it is not; empty: everywhere
-    /// Angles that F counts with their turns, zero where the bodies are stated; see LoadArguments::angles.
-    std::vector<JointCoordinate> angles{};
-
-    /// F; required. Forces arrive as zero.
-    std::function<void(const LoadArguments&, LoadForces&)> forces;
-    /// dF/dX and dF/dV; required if one of the flags is set. The tangent arrives as zero.
-    std::function<void(const LoadArguments&, LoadTangent&)> tangent;
     /// What decides on which of its smooth pieces F is, a number for each guard; none: it has but one, breaks
     /// apart.
     std::vector<Guard> guards{};
@@ -125,10 +109,36 @@ struct Load {
     /// A vector at whose zero F is not smooth: the velocity of what drags, the line of a spring.
     std::function<Vector3(const LoadArguments&)> centre{};
     bool bends_at_centre = false;   ///< F is not smooth along ways that lead straight through it either
+};
+
+/// What a load does to the energy of a mechanism.
+struct LoadEnergy {
     /// Potential energy in J of the conservative part; empty if the load has none.
     std::function<double(const LoadArguments&)> potential;
     /// Power in W of the part without potential. If empty: tr(F^T V) for a load without potential, else 0.
     std::function<double(const LoadArguments&)> power;
+};
+
+/// A load is data and functions; a new one is a new maker.
+struct Load : LoadSmoothness, LoadEnergy {
+    std::string name;
+    std::string type;
+    /// Two that it acts on, the second the world for a load on one body; then those that it only looks at.
+    std::vector<int> bodies{world, world};
+    bool depends_on_X = false;   ///< dF/dX may differ from zero
+    bool depends_on_V = false;   ///< dF/dV may differ from zero
+    std::array<bool, 2>
+        needs_directors{};   ///< F is not zero outside the first column: refused on a point mass
+    /// What it pulls towards tells the length of a model that has no other: the radius of an orbit.
+    bool sets_length_scale = false;
+    std::string domain;   ///< where F is a number, for the message if it is not; empty: everywhere
+    /// Angles that F counts with their turns, zero where the bodies are stated; see LoadArguments::angles.
+    std::vector<JointCoordinate> angles{};
+
+    /// F; required. Forces arrive as zero.
+    std::function<void(const LoadArguments&, LoadForces&)> forces;
+    /// dF/dX and dF/dV; required if one of the flags is set. The tangent arrives as zero.
+    std::function<void(const LoadArguments&, LoadTangent&)> tangent;
     /// For sensors and people.
     std::vector<LoadReading> readings;
     /// For people: where it acts on its two bodies, in their coordinates; empty: not along a line.

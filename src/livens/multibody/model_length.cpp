@@ -49,7 +49,7 @@ double length_of(const Model& model)
     }
     if (length > 0) return std::max(length, radius);
     for (const Load& load : model.loads()) {   // what attracts tells an orbit, but not a mechanism in one
-        if (load.type != "attraction") continue;
+        if (!load.sets_length_scale) continue;
         const auto place = [&](std::size_t i) {
             const int body = load.bodies[i];
             return body == world ? load.points[i] : bodies[body].X * point(load.points[i]);

@@ -104,6 +104,12 @@ void Field::make_rational(int element, std::span<double> M, std::span<double> de
         derivatives[a] = (W[a] * derivatives[a] - rate * M[a]) / sum;
 }
 
+const char* to_string(ConstraintsHold where)
+{
+    constexpr const char* words[] = {"", "element nodes", "element ends", "weakly"};
+    return words[static_cast<int>(where)];
+}
+
 std::size_t Motion::n_bytes() const
 {
     std::size_t numbers = mesh.ends.capacity() + end_multipliers.capacity() + load_angles.capacity();

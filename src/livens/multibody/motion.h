@@ -3,7 +3,6 @@
 #pragma once
 
 #include <span>
-#include <string>
 #include <vector>
 
 #include "livens/base/linear.h"
@@ -44,12 +43,37 @@ struct Field {
     void make_rational(int element, std::span<double> M, std::span<double> derivatives) const;
 };
 
+/// Where a method holds constraints to rounding; weakly: as integrals over elements.
+enum class ConstraintsHold { unknown, at_nodes, at_element_ends, weakly };
+/// "", "element nodes", "element ends", "weakly"
+const char* to_string(ConstraintsHold where);
+
+/// At element ends, entry (end * n_bodies + body), or (2 * end + side) with side 0 = left, 1 = right.
+struct EndValues {
+    std::vector<Matrix34> momenta;         ///< tangent momentum P = X' m
+    std::vector<Matrix34> velocities;      ///< X' = [v, w x d_i], from the momentum
+    std::vector<Matrix34> accelerations;   ///< X'', entry ((2 * end + side) * n_bodies + body); may be empty
+    std::vector<double> load_angles;       ///< rows of Turns; empty: nobody counted
+    std::vector<double> end_multipliers;   ///< acceleration level, (2 * end + side) * n_rows + row; or empty
+};
+
+/// The method that made a motion, and what may be believed of it.
+struct Discretisation {
+    int order_at_ends = 0;   ///< of X and momenta at element ends; 0: none is known
+    int dense_order_X = 0;   ///< of X between nodes
+    int dense_order_V = 0;   ///< of its derivative between nodes
+    ConstraintsHold constraints_hold = ConstraintsHold::unknown;
+    int gauss_points = 0;          ///< of the method's quadrature in an element; 0: its own nodes
+    std::vector<int> block_ends;   ///< element ends where a block of elements solved together begins or ends,
+                                   ///< ascending; empty: every element is a block
+};
+
 /// The whole motion of a model.
 ///
 /// Bodies are stacked in the order of the model, 12 numbers each (columns of X); joint multipliers in the
-/// order of its rows. At element ends `momenta`, `accelerations` and `multipliers` below win over the
-/// polynomials: they are of the full order of the method.
-struct Motion {
+/// order of its rows. At element ends EndValues win over the polynomials: they are of the full order of the
+/// method.
+struct Motion : EndValues, Discretisation {
     int n_bodies = 0;
     int n_rows = 0;
     TimeMesh mesh;
@@ -59,24 +83,7 @@ struct Motion {
     Field multipliers;   ///< of joint rows at the local nodes, one-sided at element ends; dropped rows are 0
     Field rigidity;   ///< multipliers of rigidity_rows(), six a body (0 for points), where bodies are rigid
                       ///< only by them; empty: see rigidity_multipliers()
-
-    // At element ends, entry (end * n_bodies + body), or (2 * end + side) with side 0 = left, 1 = right.
-    std::vector<Matrix34> momenta;         ///< tangent momentum P = X' m
-    std::vector<Matrix34> velocities;      ///< X' = [v, w x d_i], from the momentum
-    std::vector<Matrix34> accelerations;   ///< X'', entry ((2 * end + side) * n_bodies + body); may be empty
-    std::vector<double> load_angles;       ///< rows of Turns; empty: nobody counted
-    std::vector<double> end_multipliers;   ///< acceleration level, (2 * end + side) * n_rows + row; or empty
-
-    // What may be believed.
-    int order_at_ends = 0;             ///< of X and momenta at element ends; 0: none is known
-    int dense_order_X = 0;             ///< of X between nodes
-    int dense_order_V = 0;             ///< of its derivative between nodes
-    std::string constraints_hold;      ///< "element nodes", "element ends", "weakly" (as integrals)
-    std::vector<int> redundant_rows;   ///< their multipliers are not unique
-
-    int gauss_points = 0;          ///< of the method's quadrature in an element; 0: its own nodes
-    std::vector<int> block_ends;   ///< element ends where a block of elements solved together begins or ends,
-                                   ///< ascending; empty: every element is a block
+    std::vector<int> redundant_rows;   ///< of joints: their multipliers are not unique
 
     int n_elements() const { return mesh.n_elements(); }
     double start() const { return mesh.start(); }

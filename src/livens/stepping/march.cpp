@@ -128,7 +128,7 @@ private:
         motion.dense_order_X = motion.order_at_ends;
         motion.dense_order_V = 1;
         motion.gauss_points = rule == SteppingRule::midpoint ? 1 : 0;
-        motion.constraints_hold = "element ends";
+        motion.constraints_hold = ConstraintsHold::at_element_ends;
         motion.redundant_rows = assembly.redundant;
         for (const std::string& note : assembly.notes) result_.report.notes.push_back(note);
         append_end(assembly.start.V);

@@ -148,13 +148,31 @@ TEST_F(Results, EveryFigureComesBackAndStandsInJson)
     }
 }
 
+TEST_F(Results, KeepWhereConstraintsHoldAndRefuseOtherWords)
+{
+    const Model model = sample_model();
+    RunFile run = sample_run(model);
+    for (const auto& [where, word] : {std::pair{ConstraintsHold::unknown, ""},
+                                      {ConstraintsHold::at_nodes, "element nodes"},
+                                      {ConstraintsHold::at_element_ends, "element ends"},
+                                      {ConstraintsHold::weakly, "weakly"}}) {
+        run.motion.constraints_hold = where;
+        const Image file(image_of(model, run));
+        EXPECT_EQ(std::get<std::string>(*file.reader().attribute("constraints_hold_at")), word);
+        EXPECT_EQ(read_run_from(source_of(image_of(model, run))).motion.constraints_hold, where);
+    }
+    std::string image = image_of(model, run);
+    image.replace(image.find("weakly"), 6, "warmly");
+    EXPECT_THROW(read_run_from(source_of(image), false), IoError);
+}
+
 /// As many members as the table of figures and the walk of layout.h know: who adds one adds it there.
 TEST_F(Results, EveryMemberOfARunIsInTheFile)
 {
     [[maybe_unused]] const auto& [r1, r2, r3, r4, r5, r6, r7, r8, r9, r10, r11, r12, r13, r14, r15, r16, r17,
                                   r18] = RunFile{};
-    [[maybe_unused]] const auto& [m1, m2, m3, m4, m5, m6, m7, m8, m9, m10, m11, m12, m13, m14, m15, m16, m17,
-                                  m18, m19] = Motion{};
+    [[maybe_unused]] const auto& [e1, e2, e3, e4, e5] = EndValues{};
+    [[maybe_unused]] const auto& [d1, d2, d3, d4, d5, d6] = Discretisation{};
     [[maybe_unused]] const auto& [f1, f2, f3, f4, f5, f6] = Field{};
     int report = 0, verdict = 0, balance = 0;
     for (const Figure& figure : run_figures()) {
@@ -163,6 +181,8 @@ TEST_F(Results, EveryMemberOfARunIsInTheFile)
         balance += std::holds_alternative<double BalanceFigures::*>(figure.member);
     }
     const std::size_t lists = 2 * sizeof(std::vector<int>);
+    EXPECT_EQ(sizeof(Motion), sizeof(EndValues) + sizeof(Discretisation) + sizeof(TimeMesh) +
+                                  4 * sizeof(Field) + lists / 2 + 2 * sizeof(int));
     // Seven values are there for the relative drifts alone, which are figures of the verdict.
     EXPECT_EQ(sizeof(BalanceFigures), static_cast<std::size_t>(balance + 7) * 8);
     EXPECT_EQ(sizeof(Balance), 12 * sizeof(std::vector<int>) + sizeof(BalanceFigures));

@@ -181,7 +181,7 @@ inline void fill_motion(Motion& m, const Model& model, int n_elements)
     m.order_at_ends = 4;
     m.dense_order_X = 3;
     m.dense_order_V = 2;
-    m.constraints_hold = "element nodes";
+    m.constraints_hold = ConstraintsHold::at_nodes;
     m.rigidity = {12, 1, false, {}, {}};
     for (int i = 0; i < 24 * n_elements; ++i) m.rigidity.values.push_back(0.5 * i);
     m.gauss_points = 3;

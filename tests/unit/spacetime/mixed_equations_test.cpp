@@ -10,7 +10,7 @@
 
 #include "livens/base/error.h"
 #include "livens/dynamics/start/closing.h"
-#include "livens/spacetime/mixed/equations.h"
+#include "livens/spacetime/mixed/tangent.h"
 #include "unit/spacetime/mechanisms.h"
 
 namespace livens {
@@ -62,10 +62,7 @@ struct Block {
     Block(const Model& model, const Case& c, const TimeSpace& space, std::vector<int> tears = {})
         : tables(model, close_start(model, model.start(), StartPolicy::check).independent, true),
           coordinates(tables),
-          equations(setup(model, c, space, tears),
-                    Numbering(c.given, c.start, c.multipliers, space.size(), coordinates.size,
-                              coordinates.n_rows(), firsts(space, tears))),
-          fields(equations.zero_fields())
+          equations(equations_of(model, c, space, tears)), tangent(equations), fields(unknown().zero())
     {
         fields.X0 = coordinates.gather(model.start().X);
         std::mt19937_64 engine(7);
@@ -75,8 +72,10 @@ struct Block {
         stir(fields.x, 0.1);
         stir(fields.P, 1);
         stir(fields.lambda, 5);
-        equations.tie(fields);
+        unknown().tie(fields);
     }
+
+    const mixed::FieldSpace& unknown() const { return equations.space(); }
 
     static std::vector<int> firsts(const TimeSpace& space, const std::vector<int>& elements)
     {
@@ -85,7 +84,7 @@ struct Block {
         return functions;
     }
 
-    Equations::Setup setup(const Model& model, const Case& c, const TimeSpace& space,
+    Equations equations_of(const Model& model, const Case& c, const TimeSpace& space,
                            const std::vector<int>& tears) const
     {
         mixed::EndMomentum known{std::vector<Matrix34>(model.bodies().size(), Matrix34{}), {}}, turning;
@@ -93,20 +92,19 @@ struct Block {
             const Matrix34 V = body.is_point ? Matrix34{1, 2, 3} : rate(body.X, {1, 2, 3}, {0.5, -1, 2});
             turning.turning.emplace_back(body, body.X, V);
         }
-        return {&coordinates,
-                space,
-                c.multipliers == Mixed::Multipliers::equal ? space : space.lower(),
-                4,
-                c.start,
-                Mixed::EndMultiplier::smooth,
+        const Numbering numbering(c.given, c.start, c.multipliers, space.size(), coordinates.size,
+                                  coordinates.n_rows(), firsts(space, tears));
+        const TimeSpace multipliers = c.multipliers == Mixed::Multipliers::equal ? space : space.lower();
+        const mixed::BlockFunctions functions(space, multipliers, 4, tears);
+        return {{coordinates, functions, numbering, c.start, Mixed::EndMultiplier::smooth},
                 c.given.X_at_start ? known : turning,
-                c.given.X_at_end ? known : turning,
-                tears};
+                c.given.X_at_end ? known : turning};
     }
 
     Tables tables;
     mixed::Coordinates coordinates;
     Equations equations;
+    mixed::Tangent tangent;
     Fields fields;
 };
 
@@ -121,16 +119,16 @@ double largest(const std::vector<double>& values)
 double tangent_error(Block& block, SparseMatrix& J, unsigned seed)
 {
     std::mt19937_64 engine(seed);
-    const std::size_t n = static_cast<std::size_t>(block.equations.size());
+    const std::size_t n = static_cast<std::size_t>(block.unknown().size());
     std::vector<double> direction(n), product(n), ahead, behind;
     for (double& v : direction) v = 2 * (static_cast<double>(engine() >> 11) * 0x1p-53) - 1;
-    block.equations.tangent(block.fields, J);
+    block.tangent.evaluate(block.fields, J);
     J.multiply(direction, product);
     constexpr double eps = 1e-5;
     Fields moved = block.fields;
-    block.equations.add(moved, direction, eps);
+    block.unknown().add(moved, direction, eps);
     block.equations.residual(moved, ahead);
-    block.equations.add(moved, direction, -2 * eps);
+    block.unknown().add(moved, direction, -2 * eps);
     block.equations.residual(moved, behind);
     const double scale = largest(product);
     for (std::size_t i = 0; i < n; ++i) product[i] -= (ahead[i] - behind[i]) / (2 * eps);
@@ -157,14 +155,14 @@ TEST_P(TornMultipliers, HaveTheTangentOfTheirEquations)
                                    TimeSpace::nurbs(2, {0, 0, 0, 0.2, 0.2, 0.5, 0.5, 0.6, 0.6, 0.6},
                                                     {1, 1.3, 0.8, 1.1, 0.9, 1, 1.2})}) {
         Block whole(model, GetParam(), space), block(model, GetParam(), space, {1, 2});
-        EXPECT_EQ(block.equations.size(), whole.equations.size());
+        EXPECT_EQ(block.unknown().size(), whole.unknown().size());
         EXPECT_EQ(block.fields.lambda.size() - whole.fields.lambda.size(), 2u * block.coordinates.n_rows());
         SparseMatrix J;
         for (unsigned seed = 1; seed <= 3; ++seed) EXPECT_LT(tangent_error(block, J, seed), 1e-8);
         // left and right of a tear they differ, and nowhere else
         std::vector<double> left(static_cast<std::size_t>(block.coordinates.n_rows())), right(left);
-        block.equations.evaluate_multipliers(block.fields, 0, 1, left.data());
-        block.equations.evaluate_multipliers(block.fields, 1, 0, right.data());
+        block.unknown().evaluate_multipliers(block.fields, 0, 1, left.data());
+        block.unknown().evaluate_multipliers(block.fields, 1, 0, right.data());
         EXPECT_GT(std::abs(left[0] - right[0]), 1e-3);
     }
 }
@@ -175,11 +173,11 @@ TEST_P(MixedEquations, AreAsManyAsTheirUnknowns)
     Block block(model, GetParam(), TimeSpace::lagrange({0, 0.1, 0.2, 0.3}, 3));
     std::vector<double> r;
     block.equations.residual(block.fields, r);
-    EXPECT_EQ(static_cast<int>(r.size()), block.equations.size());
+    EXPECT_EQ(static_cast<int>(r.size()), block.unknown().size());
     SparseMatrix J;
-    EXPECT_TRUE(block.equations.tangent(block.fields, J));
-    EXPECT_FALSE(block.equations.tangent(block.fields, J)) << "the pattern is kept";
-    ASSERT_EQ(J.size, block.equations.size());
+    EXPECT_TRUE(block.tangent.evaluate(block.fields, J));
+    EXPECT_FALSE(block.tangent.evaluate(block.fields, J)) << "the pattern is kept";
+    ASSERT_EQ(J.size, block.unknown().size());
     // Every row and every column has entries: none is missing by construction.
     std::vector<int> in_row(static_cast<std::size_t>(J.size), 0);
     for (int c = 0; c < J.size; ++c) {
@@ -218,10 +216,10 @@ TEST(MixedEquationsPattern, GrowsWhenALoadBeginsToAct)
     Block block(model, c, TimeSpace::lagrange({0, 0.1, 0.2}, 1));
     std::fill(block.fields.x.begin(), block.fields.x.end(), 0.0);
     SparseMatrix J;
-    block.equations.tangent(block.fields, J);
+    block.tangent.evaluate(block.fields, J);
     const int before = J.n_entries();
     block.fields.x[12 + 4] = 0.3;
-    EXPECT_TRUE(block.equations.tangent(block.fields, J)) << "a new pattern";
+    EXPECT_TRUE(block.tangent.evaluate(block.fields, J)) << "a new pattern";
     EXPECT_GT(J.n_entries(), before);
     EXPECT_LT(tangent_error(block, J, 1), 1e-8);
 }

@@ -183,7 +183,7 @@ TEST(Stepping, ConstraintsHoldAtElementEndsAndNotBetween)
         EXPECT_LT(at_ends, 1e-12);
         EXPECT_GT(between, 1e-5);
         EXPECT_LT(result.report.residual_norm, 1e-12);
-        EXPECT_EQ(result.motion.constraints_hold, "element ends");
+        EXPECT_EQ(result.motion.constraints_hold, ConstraintsHold::at_element_ends);
     }
 }
 

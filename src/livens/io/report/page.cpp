@@ -82,7 +82,7 @@ void write_head(JsonWriter& json, const ReportInput& input)
     json.member("converged", run.report.reached_end());
     write_strings(json, "notes", run.notes);
     json.member("method", run.method).member("version", run.version);
-    json.member("constraints_hold_at", run.motion.constraints_hold);
+    json.member("constraints_hold_at", to_string(run.motion.constraints_hold));
     json.member("scenario", run.scenario_text);
     json.key("options").raw(run.resolved.starts_with('{') ? run.resolved : "null");
     json.key("figures").begin_object();

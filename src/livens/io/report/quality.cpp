@@ -119,7 +119,7 @@ std::vector<double> iterations_at_ends(const Run& run)
 /// What acceptance.h says of them; a bound is for the figure of its name.
 void write_bounds(JsonWriter& json, const Run& run)
 {
-    const bool is_weak = run.motion.constraints_hold == "weakly";
+    const bool is_weak = run.motion.constraints_hold == ConstraintsHold::weakly;
     json.key("bounds").begin_object();
     json.member("estimated_error", run.report.accuracy > 0 ? run.report.accuracy : acceptable_error);
     json.member("max_constraint_violation", is_weak ? acceptable_nodal_violation : acceptable_violation);

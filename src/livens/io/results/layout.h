@@ -52,10 +52,10 @@ void write_run_to(const ByteSink& sink, const Model& model, const Run& run,
                   std::uint64_t largest_in_cdf2 = ClassicWriter::largest_in_cdf2);
 Run read_run_from(ByteSource source, bool verify = true);
 
-/// An archive has: figures(run), status(status), word(name, short text), text(name, meaning, long text),
-/// names(name, meaning, strings), flags(info, bools), list(info, vector) and field(info, Field). It either
-/// reads what it is given (the parts are const then) or fills it in. The first dimension of a list has as
-/// many entries as the list.
+/// An archive has: figures(run), choice(name, enum, its last), word(name, short text), text(name, meaning,
+/// long text), names(name, meaning, strings), flags(info, bools), list(info, vector) and field(info, Field).
+/// It either reads what it is given (the parts are const then) or fills it in. The first dimension of a list
+/// has as many entries as the list.
 ///
 /// What `livens info` shows: small, whatever the run.
 template <class Archive, class AnyRun>
@@ -65,8 +65,8 @@ void visit_head(Archive& archive, AnyRun& run)
     archive.word("livens_version", run.version);
     archive.word("method", run.method);
     archive.word("message", run.report.message);
-    archive.word("constraints_hold_at", run.motion.constraints_hold);
-    archive.status(run.report.status);
+    archive.choice("constraints_hold_at", run.motion.constraints_hold, ConstraintsHold::weakly);
+    archive.choice("status", run.report.status, SolveStatus::suspect);
     archive.figures(run);
     archive.names("body", "names of the bodies", run.body_names);
     archive.names("joint", "names of the joints", run.joint_names);

@@ -33,15 +33,17 @@ public:
                 refuse(std::string("attribute ") + figure.name + " is out of range");
         }
     }
-    void status(SolveStatus& status)
+    /// One of the words that to_string() has for 0 to `last`.
+    template <class Choice>
+    void choice(const std::string& name, Choice& value, Choice last)
     {
         std::string text;
-        word("status", text);
-        for (int i = 0; i <= static_cast<int>(SolveStatus::suspect); ++i) {
-            status = static_cast<SolveStatus>(i);
-            if (text == to_string(status)) return;
+        word(name, text);
+        for (int i = 0; i <= static_cast<int>(last); ++i) {
+            value = static_cast<Choice>(i);
+            if (text == to_string(value)) return;
         }
-        refuse("attribute status is no status of a run");
+        refuse("attribute " + name + " has no known value");
     }
     void word(const std::string& name, std::string& value)
     {

@@ -84,8 +84,6 @@ void RunWriter::figures(const Run& run)
     }
 }
 
-void RunWriter::status(SolveStatus status) { file_.attribute("status", std::string(to_string(status))); }
-
 void RunWriter::bytes(const VariableInfo& info, NumberType type, std::string values)
 {
     const int variable = declare(info, type, values.size());

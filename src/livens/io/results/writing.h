@@ -26,7 +26,11 @@ public:
     void write(const ByteSink& sink);
 
     void figures(const Run& run);
-    void status(SolveStatus status);
+    template <class Choice>
+    void choice(const std::string& name, Choice value, Choice)
+    {
+        file_.attribute(name, std::string(to_string(value)));
+    }
     void word(const std::string& name, const std::string& value) { file_.attribute(name, value); }
     void text(const std::string& name, const char* meaning, const std::string& value);
     /// A name for each place along a dimension, by default one of that name.

@@ -142,6 +142,7 @@ Load attraction(const std::string& name, int body, const Body& properties, const
     };
     parts.domain = "it has no size at the attracting point";
     Load load = modulated(name, "attraction", parts, X);
+    load.sets_length_scale = true;
     load.readings = forces_of(load);
     load.points = {law.point, mass.center_of_mass};
     if (load.bodies[0] != world) std::swap(load.points[0], load.points[1]);

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// The functions M_A of time that X and P are made of (P17): Lagrange polynomials on equidistant nodes,
+// B-splines and NURBS (docs/theory.md, "The elements of the paper"). One more basis is one more entry.
 #include "livens/spacetime/mixed/bases.h"
 
 namespace livens::mixed {

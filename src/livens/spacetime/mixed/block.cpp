@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Newton's iteration on the whole matrix of (P23): what it asks of a block, each in scaled rows and unknowns
+// but given back unscaled (docs/theory.md, "The elements of the paper": Scaling, Newton's iteration).
 #include "livens/spacetime/mixed/block.h"
 
 #include <algorithm>
@@ -7,9 +9,10 @@
 
 namespace livens::mixed {
 
-Block::Block(Equations equations, SparseBackend backend) : equations_(std::move(equations)), lu_(backend)
+Block::Block(Equations equations, SparseBackend backend)
+    : equations_(std::move(equations)), tangent_(equations_), scaling_(equations_.space()), lu_(backend)
 {
-    fields_[0] = fields_[1] = equations_.zero_fields();
+    fields_[0] = fields_[1] = equations_.space().zero();
 }
 
 bool Block::residual()
@@ -21,10 +24,11 @@ bool Block::residual()
 
 bool Block::factorise()
 {
-    const bool is_new = equations_.tangent(fields(), scaled_);
+    const bool is_new = tangent_.evaluate(fields(), scaled_);
+    const std::span<const double> of_rows = scaling_.rows(), of_columns = scaling_.columns();
     for (int c = 0; c < scaled_.size; ++c)
         for (int k = scaled_.column_starts[c]; k < scaled_.column_starts[c + 1]; ++k)
-            scaled_.values[k] *= row_scale_[scaled_.rows[k]] * column_scale_[c];
+            scaled_.values[k] *= of_rows[scaled_.rows[k]] * of_columns[c];
     if (is_new) lu_.analyse(scaled_);
     return lu_.factorise(scaled_);
 }
@@ -33,16 +37,16 @@ void Block::solve(std::span<double> dx)
 {
     work_.resize(residual_.size());
     increment_.resize(residual_.size());
-    for (std::size_t i = 0; i < residual_.size(); ++i) work_[i] = -residual_[i] * row_scale_[i];
+    for (std::size_t i = 0; i < residual_.size(); ++i) work_[i] = -residual_[i] * scaling_.rows()[i];
     solve_refined(lu_, scaled_, work_, increment_);
-    for (std::size_t i = 0; i < increment_.size(); ++i) dx[i] = increment_[i] * column_scale_[i];
+    for (std::size_t i = 0; i < increment_.size(); ++i) dx[i] = increment_[i] * scaling_.columns()[i];
 }
 
 bool Block::move(std::span<const double> dx, double damping)
 {
     current_ = 1 - kept_;
     fields_[current_] = fields_[kept_];
-    equations_.add(fields_[current_], dx, damping);
+    equations_.space().add(fields_[current_], dx, damping);
     return true;
 }
 
@@ -50,31 +54,16 @@ NewtonProblem::Rows Block::rows() const
 {
     Rows rows;
     rows.size = worst().value;
-    rows.terms = std::max(reference(), 1e-300);
+    rows.terms = std::max(scaling_.largest(fields()), 1e-300);
     return rows;
-}
-
-/// Largest scaled momentum or multiplier.
-double Block::reference() const
-{
-    const Numbering& n = equations_.numbering();
-    const Coordinates& c = *equations_.setup().coordinates;
-    double result = 0;
-    for (int A = 0; A < n.n_functions(); ++A)
-        for (int i = 0; i < c.size; ++i)
-            result = std::max(result, std::abs(fields().P[A * c.size + i]) / c.root_masses[i]);
-    for (int A = 0; A < n.n_multiplier_functions(); ++A)
-        for (int k = 0; n.lambda(A) >= 0 && k < c.n_rows(); ++k)
-            result = std::max(result,
-                              std::abs(fields().lambda[A * c.n_rows() + k]) / column_scale_[n.lambda(A) + k]);
-    return result;
 }
 
 void Block::measure_condition(SolveReport& report, const std::function<bool()>& goes_on)
 {
     begin();
     if (!factorise()) return;
-    const ConditionNumbers condition = condition_numbers(scaled_, lu_, row_scale_, column_scale_, goes_on);
+    const ConditionNumbers condition =
+        condition_numbers(scaled_, lu_, scaling_.rows(), scaling_.columns(), goes_on);
     report.condition_1 = condition.one;
     report.condition_2 = condition.two;
     report.scaled_condition = condition_numbers(scaled_, lu_, {}, {}, goes_on).one;

@@ -6,7 +6,8 @@
 #include <vector>
 
 #include "livens/solvers/newton.h"
-#include "livens/spacetime/mixed/equations.h"
+#include "livens/spacetime/mixed/scaling.h"
+#include "livens/spacetime/mixed/tangent.h"
 
 namespace livens::mixed {
 
@@ -15,37 +16,38 @@ namespace livens::mixed {
 class Block final : public NewtonProblem {
 public:
     Block(Equations equations, SparseBackend backend);
+    Block(const Block&) = delete;   // its parts know each other
+    Block& operator=(const Block&) = delete;
 
     const Equations& equations() const { return equations_; }
     /// The current point; to be set before an iteration begins.
     Fields& fields() { return fields_[current_]; }
     const Fields& fields() const { return fields_[current_]; }
     /// Scales of rows and columns at the fields as they are; once, before an iteration begins.
-    void begin() { equations_.scales(fields(), row_scale_, column_scale_); }
+    void begin() { scaling_.set(fields()); }
     const std::string& bad_load() const { return bad_load_; }
-    Worst worst() const { return equations_.worst(residual_, row_scale_); }
+    Worst worst() const { return scaling_.worst(residual_); }
     long long factor_entries() const { return lu_.factor_entries(); }
     /// Of the matrix as published, and of the scaled one that is factorised, at the current point.
     void measure_condition(SolveReport& report, const std::function<bool()>& goes_on) override;
 
-    int n_unknowns() const override { return equations_.size(); }
+    int n_unknowns() const override { return equations_.space().size(); }
     bool residual() override;
     bool factorise() override;
     void solve(std::span<double> dx) override;
     bool move(std::span<const double> dx, double damping) override;
     void keep() override { kept_ = current_; }
-    double size_of(std::span<const double> dx) const override { return equations_.size_of(dx); }
+    double size_of(std::span<const double> dx) const override { return scaling_.size_of(dx); }
     Rows rows() const override;
 
 private:
-    double reference() const;
-
     Equations equations_;
+    Tangent tangent_;
+    Scaling scaling_;
     SparseLU lu_;
     Fields fields_[2];
     int current_ = 0, kept_ = 0;
     SparseMatrix scaled_;
-    std::vector<double> row_scale_, column_scale_;
     std::vector<double> residual_, work_, increment_;
     std::string bad_load_;   ///< of the last residual
 };

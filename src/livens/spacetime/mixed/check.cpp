@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which methods, meshes and conditions make solvable systems.
+// Which methods, meshes and conditions make solvable systems. What is refused would leave the matrix of (P23)
+// without full rank, or momenta that no multiplier takes up (docs/theory.md, "The elements of the paper":
+// What is refused).
 #include <cmath>
 
 #include "livens/base/error.h"

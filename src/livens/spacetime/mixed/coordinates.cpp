@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// X of a body as twelve free numbers, or three of a point mass, with the rows of joints (P27) and of rigidity
+// (P4) (docs/theory.md, "The elements of the paper", "Joints are quadratic forms"). Rows are quadratic, so
+// that Hessians are constant; which entries of them and of gradients can differ from zero is found once.
 #include "livens/spacetime/mixed/coordinates.h"
 
 #include <algorithm>
@@ -91,6 +94,17 @@ std::vector<Matrix34> Coordinates::bodies(const double* coordinates) const
     return X;
 }
 
+void Coordinates::gradients(const double* X, std::vector<double>& values) const
+{
+    values.resize(gradient_entries.size());
+    double g[Tables::gradient_size];
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        const GradientEntry& entry = gradient_entries[i];
+        if (i == 0 || gradient_entries[i - 1].row != entry.row) tables.gradient(rows[entry.row], {}, X, g);
+        values[i] = g[12 * entry.side + entry.component];
+    }
+}
+
 void Coordinates::forces(double t, const double* X, const double* V, const double* lambda, double* F) const
 {
     std::fill_n(F, n_X(), 0.0);
@@ -121,20 +135,18 @@ std::vector<double> Coordinates::multipliers(const State& state) const
                 columns[first[b] + c].emplace_back(first[b] + i,
                                                    tables.model->bodies()[b].mass(i / 3, c / 3));
     }
-    double g[Tables::gradient_size];
-    for (std::size_t i = 0; i < gradient_entries.size(); ++i) {
+    std::vector<double> values;
+    gradients(X.data(), values);
+    for (std::size_t i = 0; i < values.size(); ++i) {
         const GradientEntry& entry = gradient_entries[i];
-        if (i == 0 || gradient_entries[i - 1].row != entry.row)
-            tables.gradient(rows[entry.row], {}, X.data(), g);
-        const double value = g[12 * entry.side + entry.component];
-        columns[entry.coordinate].emplace_back(size + entry.row, value);
-        columns[size + entry.row].emplace_back(entry.coordinate, value);
+        columns[entry.coordinate].emplace_back(size + entry.row, values[i]);
+        columns[size + entry.row].emplace_back(entry.coordinate, values[i]);
     }
     const std::vector<double> none(static_cast<std::size_t>(n_rows()), 0.0);
     forces(state.t, X.data(), V.data(), none.data(), F.data());
     gather(F.data(), x.data());
     for (int k = 0; k < n_rows(); ++k) x[size + k] = -tables.curvature(rows[k], {}, X.data(), V.data());
-    for (auto& column : columns) std::sort(column.begin(), column.end());
+    for (auto& column : columns) std::sort(column.begin(), column.end());   // joints name bodies in any order
     const SparseMatrix A = sparse_from_columns(columns);
     SparseLU lu(SparseBackend::eigen);
     lu.analyse(A);

@@ -56,6 +56,8 @@ struct Coordinates {
     std::vector<double> gather(std::span<const Matrix34> X) const;
     std::vector<Matrix34> bodies(const double* coordinates) const;
 
+    /// The numbers of gradient_entries at X.
+    void gradients(const double* X, std::vector<double>& values) const;
     /// F <- forces of loads and gravity less the reactions sum lambda G.
     void forces(double t, const double* X, const double* V, const double* lambda, double* F) const;
     /// Multipliers of the acceleration-level equation X'' m + G^T lambda = F, G X'' = -tr(X' K X'^T), at a

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// The boundary term of (P10) at an end whose directors are unknown: P = [v, w x d_a] m of a rigid motion with
+// given p and L, and its derivative by X (docs/theory.md, "The elements of the paper": Natural and strong).
 #include "livens/spacetime/mixed/end_momentum.h"
 
 #include <algorithm>

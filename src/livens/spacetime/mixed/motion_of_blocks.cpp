@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// The motion of solved blocks of (P23). Fields are kept by values at Gauss-Lobatto points of each element,
+// which make the same polynomials again, of NURBS with their denominators; orders are stated as they were
+// measured (docs/theory.md, "The elements of the paper": Orders).
 #include "livens/spacetime/mixed/motion_of_blocks.h"
 
 #include <algorithm>
@@ -6,6 +9,7 @@
 
 #include "livens/dynamics/rows/projection.h"
 #include "livens/spacetime/mixed/bases.h"
+#include "livens/spacetime/mixed/equations.h"
 #include "livens/time/quadrature.h"
 
 namespace livens::mixed {
@@ -16,6 +20,12 @@ namespace {
 std::vector<double> nodes_of(int degree)
 {
     return degree == 0 ? std::vector<double>{0.5} : gauss_lobatto(degree + 1).points;
+}
+
+template <class T>
+void append(std::vector<T>& to, const std::vector<T>& from)
+{
+    to.insert(to.end(), from.begin(), from.end());
 }
 
 /// Order of X and momenta at the ends of one block, as measured (docs/theory.md, "The elements of the
@@ -47,56 +57,54 @@ MotionOfBlocks::MotionOfBlocks(const Coordinates& coordinates, const TimeMesh& m
     : coordinates_(coordinates), mesh_(mesh), method_(method)
 {}
 
-std::vector<double> MotionOfBlocks::to_columns(const double* coordinates) const
-{
-    std::vector<double> columns(12 * static_cast<std::size_t>(coordinates_.n_bodies()), 0.0);
-    for (int b = 0; b < coordinates_.n_bodies(); ++b)
-        std::copy_n(coordinates + coordinates_.first[b], coordinates_.n_numbers(b), columns.begin() + 12 * b);
-    return columns;
-}
-
 void MotionOfBlocks::add(int first, const Equations& equations, const Fields& fields)
 {
     Block& block = blocks_[first];
-    const TimeSpace& space = equations.setup().space;
+    const FieldSpace& fields_of = equations.space();
+    const TimeSpace& space = fields_of.functions.space();
     block.n_elements = space.n_elements();
-    gauss_points_ = equations.setup().gauss_points;
+    gauss_points_ = fields_of.functions.n_gauss();
     block.P_start = equations.end_momentum(fields, false);
     block.P_end = equations.end_momentum(fields, true);
-    std::vector<double> numbers(static_cast<std::size_t>(coordinates_.size));
-    std::vector<double> lambda(static_cast<std::size_t>(coordinates_.n_rows()));
-    const auto append = [](std::vector<double>& to, const std::vector<double>& from) {
-        to.insert(to.end(), from.begin(), from.end());
+    std::vector<double> numbers(coordinates_.root_masses.size()), lambda(coordinates_.rows.size());
+    const auto append_columns = [&](std::vector<double>& to) {
+        to.resize(to.size() + coordinates_.n_X());
+        coordinates_.spread(numbers.data(), to.data() + to.size() - coordinates_.n_X());
     };
     for (int e = 0; e < block.n_elements; ++e) {
         for (const double s : nodes_of(space.degree())) {
-            equations.evaluate_X(fields, e, s, numbers.data());
-            append(block.X, to_columns(numbers.data()));
-            equations.evaluate_P(fields, e, s, numbers.data());
-            append(block.P, to_columns(numbers.data()));
+            fields_of.evaluate_X(fields, e, s, numbers.data());
+            append_columns(block.X);
+            fields_of.evaluate_P(fields, e, s, numbers.data());
+            append_columns(block.P);
             if (space.is_rational()) block.denominators.push_back(space.denominator(e, s));
         }
-        for (const double s : nodes_of(equations.setup().multipliers.degree())) {
-            equations.evaluate_multipliers(fields, e, s, lambda.data());
-            std::vector<double> joints(static_cast<std::size_t>(coordinates_.tables.model->n_rows()), 0.0);
-            std::vector<double> rigidity(6 * static_cast<std::size_t>(coordinates_.tables.model->n_bodies()),
-                                         0.0);
-            int of_rigidity = 0, body = -1;
-            for (int k = 0; k < coordinates_.n_rows(); ++k) {
-                const int row = coordinates_.rows[k];
-                if (row < coordinates_.tables.n_rows()) {
-                    joints[row] = lambda[k];
-                    continue;
-                }
-                const int of_body = coordinates_.tables.rows[row].bodies[0];
-                of_rigidity = of_body == body ? of_rigidity + 1 : 0;
-                body = of_body;
-                rigidity[6 * static_cast<std::size_t>(body) + of_rigidity] = lambda[k];
-            }
-            append(block.multipliers, joints);
-            append(block.rigidity, rigidity);
+        for (const double s : nodes_of(fields_of.functions.multipliers().degree())) {
+            fields_of.evaluate_multipliers(fields, e, s, lambda.data());
+            append_multipliers(lambda, block);
         }
     }
+}
+
+/// Those of redundant rows, and of the rigidity of point masses, are zero.
+void MotionOfBlocks::append_multipliers(const std::vector<double>& lambda, Block& block) const
+{
+    std::vector<double> joints(coordinates_.tables.model->n_rows(), 0.0);
+    std::vector<double> rigidity(6 * coordinates_.first.size(), 0.0);
+    int of_rigidity = 0, body = -1;
+    for (int k = 0; k < coordinates_.n_rows(); ++k) {
+        const int row = coordinates_.rows[k];
+        if (row < coordinates_.tables.n_rows()) {
+            joints[row] = lambda[k];
+            continue;
+        }
+        const int of_body = coordinates_.tables.rows[row].bodies[0];
+        of_rigidity = of_body == body ? of_rigidity + 1 : 0;
+        body = of_body;
+        rigidity[6 * body + of_rigidity] = lambda[k];
+    }
+    append(block.multipliers, joints);
+    append(block.rigidity, rigidity);
 }
 
 Motion MotionOfBlocks::take(bool torn, const State& start)
@@ -113,7 +121,7 @@ Motion MotionOfBlocks::take(bool torn, const State& start)
     motion.order_at_ends = order_of(method_, blocks_.size());
     motion.dense_order_X = std::min(motion.order_at_ends, p + 1);
     motion.dense_order_V = std::min(motion.order_at_ends, p);
-    motion.constraints_hold = "weakly";
+    motion.constraints_hold = ConstraintsHold::weakly;
     motion.gauss_points = gauss_points_;
     if (blocks_.empty()) {
         motion.mesh.ends = {start.t};
@@ -140,9 +148,6 @@ Motion MotionOfBlocks::take(bool torn, const State& start)
 /// The block's nodes, and its element ends but the first, which replaces that of the block before.
 void MotionOfBlocks::append_block(const Block& block, bool is_first, Motion& motion) const
 {
-    const auto append = [](const std::vector<double>& from, std::vector<double>& to) {
-        to.insert(to.end(), from.begin(), from.end());
-    };
     const std::size_t n = static_cast<std::size_t>(motion.X.n_values), n_local = method_.degree + 1;
     for (int e = 0; e < block.n_elements; ++e)
         for (std::size_t a = motion.X.continuous && !(is_first && e == 0) ? 1 : 0; a < n_local; ++a) {
@@ -151,13 +156,13 @@ void MotionOfBlocks::append_block(const Block& block, bool is_first, Motion& mot
             motion.X.values.insert(motion.X.values.end(), from, from + static_cast<std::ptrdiff_t>(n));
             if (!block.denominators.empty()) motion.X.denominators.push_back(block.denominators[node]);
         }
-    append(block.P, motion.P.values);
-    append(block.denominators, motion.P.denominators);
-    append(block.multipliers, motion.multipliers.values);
-    append(block.rigidity, motion.rigidity.values);
+    append(motion.P.values, block.P);
+    append(motion.P.denominators, block.denominators);
+    append(motion.multipliers.values, block.multipliers);
+    append(motion.rigidity.values, block.rigidity);
     if (method_.multipliers == Mixed::Multipliers::equal) {
-        if (motion.n_rows > 0) append(block.denominators, motion.multipliers.denominators);
-        append(block.denominators, motion.rigidity.denominators);
+        if (motion.n_rows > 0) append(motion.multipliers.denominators, block.denominators);
+        append(motion.rigidity.denominators, block.denominators);
     }
     const std::size_t bodies = static_cast<std::size_t>(motion.n_bodies);
     if (!is_first) {
@@ -182,11 +187,9 @@ void MotionOfBlocks::append_end(const double* X, const std::vector<Matrix34>& P,
         std::copy_n(X + 12 * b, 12, places[b].a);
         V[b] = P[b] * coordinates_.inverse_masses[b];
     }
-    if (of_block) {
-        V = nearest_rates(*coordinates_.tables.model, places, V, coordinates_.tables.independent);
-    }
-    motion.momenta.insert(motion.momenta.end(), P.begin(), P.end());
-    motion.velocities.insert(motion.velocities.end(), V.begin(), V.end());
+    if (of_block) V = nearest_rates(*coordinates_.tables.model, places, V, coordinates_.tables.independent);
+    append(motion.momenta, P);
+    append(motion.velocities, V);
 }
 
 }   // namespace livens::mixed

@@ -6,9 +6,13 @@
 #include <memory>
 
 #include "livens/multibody/motion.h"
-#include "livens/spacetime/mixed/equations.h"
+#include "livens/spacetime/method.h"
 
 namespace livens::mixed {
+
+struct Coordinates;
+class Equations;
+struct Fields;
 
 /// Collects blocks, in any order, and makes a motion of those that stand side by side.
 ///
@@ -32,9 +36,9 @@ private:
         std::vector<Matrix34> P_start, P_end;
         int n_elements = 0;
     };
+    void append_multipliers(const std::vector<double>& lambda, Block& block) const;
     void append_block(const Block& block, bool is_first, Motion& motion) const;
     void append_end(const double* X, const std::vector<Matrix34>& P, bool of_block, Motion& motion) const;
-    std::vector<double> to_columns(const double* coordinates) const;
 
     const Coordinates& coordinates_;
     const TimeMesh& mesh_;

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Which coefficients of (P23) are unknown and which rows are solved for them, by what is given at both ends
+// (docs/theory.md, "The elements of the paper": the table in Natural and strong). Numbers go up with time,
+// function after function, so that what couples stands together in the matrix.
 #include "livens/spacetime/mixed/numbering.h"
 
 #include <algorithm>

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Blocks of (P23) one after the other: a guess becomes coefficients, what is known at the ends is put in, and
+// the momentum that the law gives at the far end is handed on (docs/theory.md, "The elements of the paper":
+// Natural and strong, Loads that jump).
 #include "livens/spacetime/mixed/window.h"
 
 #include <algorithm>
@@ -8,6 +11,7 @@
 #include "livens/base/error.h"
 #include "livens/base/text.h"
 #include "livens/spacetime/mixed/bases.h"
+#include "livens/spacetime/mixed/block.h"
 
 namespace livens {
 
@@ -84,6 +88,10 @@ MixedWindow::MixedWindow(const Tables& tables, const TimeMesh& mesh, const Ends&
     }
 }
 
+MixedWindow::~MixedWindow() = default;
+
+NewtonProblem& MixedWindow::equations() { return *block_; }
+
 /// P where X is known, else the momenta of the state, which turn with the bodies.
 EndMomentum MixedWindow::momentum_of(bool X_known, const End& end) const
 {
@@ -108,12 +116,12 @@ bool MixedWindow::open(int first, int last, SolveReport&)
     const Numbering numbering(given_, method_.start, method_.multipliers, functions.size(), coordinates_.size,
                               coordinates_.n_rows(), torn);
     const int gauss_points = method_.gauss_points > 0 ? method_.gauss_points : exact_points(method_);
-    block_.emplace(
-        Equations({&coordinates_, functions, is_equal ? functions : functions.lower(), gauss_points,
-                   method_.start, method_.end_multiplier, momentum_of(given_.X_at_start, start_),
-                   momentum_of(given_.X_at_end, end_), tears},
-                  numbering),
-        method_.linear_solver);
+    FieldSpace space(coordinates_, {functions, is_equal ? functions : functions.lower(), gauss_points, tears},
+                     numbering, method_.start, method_.end_multiplier);
+    block_ =
+        std::make_unique<mixed::Block>(Equations(std::move(space), momentum_of(given_.X_at_start, start_),
+                                                 momentum_of(given_.X_at_end, end_)),
+                                       method_.linear_solver);
     return true;
 }
 
@@ -129,9 +137,9 @@ bool MixedWindow::start_from(const Guess& guess)
 /// X0, X and P by interpolation, multipliers by the acceleration-level equation at their functions' instants.
 void MixedWindow::take_guess(const Guess& guess)
 {
-    const Equations& equations = block_->equations();
+    const BlockFunctions& functions = block_->equations().space().functions;
     Fields& fields = block_->fields();
-    const TimeSpace &space = equations.setup().space, &multipliers = equations.setup().multipliers;
+    const TimeSpace& space = functions.space();
     const int n = coordinates_.size, n_rows = coordinates_.n_rows();
     const bool is_equal = method_.multipliers == Mixed::Multipliers::equal;
     const std::vector<double> points = space.interpolation_points();
@@ -157,12 +165,12 @@ void MixedWindow::take_guess(const Guess& guess)
             std::copy_n(whole.begin() + static_cast<std::ptrdiff_t>(space.first(e)) * n_rows,
                         (space.degree() + 1) * n_rows,
                         fields.lambda.begin() +
-                            static_cast<std::ptrdiff_t>(equations.first_multiplier(e)) * n_rows);
+                            static_cast<std::ptrdiff_t>(functions.first_multiplier(e)) * n_rows);
         return;
     }
-    for (int A = 0; A < multipliers.size(); ++A) {
-        State state = guess(equations.centre(A));
-        state.t = equations.centre(A);
+    for (int A = 0; A < functions.multipliers().size(); ++A) {
+        State state = guess(functions.centre(A));
+        state.t = functions.centre(A);
         put_multipliers(A, state);
     }
 }
@@ -177,7 +185,7 @@ void MixedWindow::put_multipliers(int A, const State& state)
 /// Known coefficients of the fields, which the guess left as they came.
 void MixedWindow::fix_known()
 {
-    const Numbering& n = block_->equations().numbering();
+    const Numbering& n = block_->equations().space().numbering;
     Fields& fields = block_->fields();
     const int last = n.n_functions() - 1, size = coordinates_.size;
     if (given_.X_at_start) fields.X0 = coordinates_.gather(start_.state.X);   // x_0 is zero then
@@ -192,7 +200,7 @@ void MixedWindow::fix_known()
         const std::vector<double> p = coordinates_.gather(end.P);
         std::copy(p.begin(), p.end(), fields.P.begin() + static_cast<std::ptrdiff_t>(A) * size);
     }
-    block_->equations().tie(fields);
+    block_->equations().space().tie(fields);
 }
 
 Closed MixedWindow::close(const Trust&, SolveReport& report)
@@ -210,7 +218,7 @@ bool MixedWindow::hand_on(SolveReport& report)
     const bool backwards = ends_.is_backwards();
     End& end = backwards ? end_ : start_;
     end.state.t = mesh_.ends[backwards ? first_ : last_];
-    end.state.X = block_->equations().end_position(block_->fields(), !backwards);
+    end.state.X = block_->equations().space().end_position(block_->fields(), !backwards);
     end.P = block_->equations().end_momentum(block_->fields(), !backwards);
     for (std::size_t b = 0; b < end.P.size(); ++b) end.state.V[b] = end.P[b] * coordinates_.inverse_masses[b];
     if (method_.interfaces == Mixed::Interfaces::carry) return true;
@@ -233,7 +241,7 @@ State MixedWindow::at(int element_end) const
         return ends_.is_backwards() ? end_.state : start_.state;
     const int e = element_end - first_;
     std::vector<double> x(static_cast<std::size_t>(coordinates_.size));
-    block_->equations().evaluate_X(block_->fields(), e == 0 ? 0 : e - 1, e == 0 ? 0 : 1, x.data());
+    block_->equations().space().evaluate_X(block_->fields(), e == 0 ? 0 : e - 1, e == 0 ? 0 : 1, x.data());
     State state;
     state.X = coordinates_.bodies(x.data());
     return state;

@@ -2,14 +2,21 @@
 // The elements of the paper as a family: blocks of elements, what they hand on, and their motion.
 #pragma once
 
-#include <optional>
+#include <memory>
 
 #include "livens/spacetime/march/ends.h"
 #include "livens/spacetime/march/window.h"
-#include "livens/spacetime/mixed/block.h"
+#include "livens/spacetime/mixed/coordinates.h"
+#include "livens/spacetime/mixed/end_momentum.h"
 #include "livens/spacetime/mixed/motion_of_blocks.h"
+#include "livens/spacetime/mixed/numbering.h"
+#include "livens/time/time_space.h"
 
 namespace livens {
+
+namespace mixed {
+class Block;
+}   // namespace mixed
 
 /// Throws InputError for a method that makes no solvable system on this mesh: degree, gauss_points, block,
 /// knots, weights, pairings (`mixed-pairing`), conditions at the ends.
@@ -25,9 +32,10 @@ class MixedWindow final : public Window {
 public:
     /// References must outlive the window; `tables` are with rigidity.
     MixedWindow(const Tables& tables, const TimeMesh& mesh, const Ends& ends, const Mixed& method);
+    ~MixedWindow() override;
 
     bool open(int first, int last, SolveReport& report) override;
-    NewtonProblem& equations() override { return *block_; }
+    NewtonProblem& equations() override;
     bool start_from(const Guess& guess) override;
     State at(int element_end) const override;
     Closed close(const Trust& trust, SolveReport& report) override;
@@ -55,7 +63,7 @@ private:
     mixed::Given given_;
     End start_, end_;
     int first_ = 0, last_ = 0;
-    std::optional<mixed::Block> block_;
+    std::unique_ptr<mixed::Block> block_;
     mixed::MotionOfBlocks motion_;
 };
 

@@ -22,7 +22,7 @@ Record::Record(const Tables& tables, const TimeMesh& mesh, const ElementRule& ru
     m.order_at_ends = rule.points == Points::lobatto ? 2 * degree_ : 2 * degree_ - 1;
     m.dense_order_X = degree_ + 1;
     m.dense_order_V = degree_;
-    m.constraints_hold = "element nodes";
+    m.constraints_hold = ConstraintsHold::at_nodes;
     if (rule.points == Points::lobatto) m.gauss_points = degree_;
     for_arrays([e = static_cast<std::size_t>(mesh.n_elements())](
                    auto& values, std::size_t n, std::size_t more) { values.reserve(e * n + more); });

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the matrix of a block is made of: integrals over one element for every pair of its functions.
+#pragma once
+
+#include <bitset>
+#include <vector>
+
+#include "livens/spacetime/mixed/fields.h"
+
+namespace livens::mixed {
+
+/// Integrals of the loads' tangents, 12 x 12 for each pair of bodies of a load.
+///
+/// Which of these entries are ever other than zero no load tells beforehand: they are remembered as they
+/// come.
+class LoadSums {
+public:
+    struct Block {
+        int load, by, of;   ///< derivative of the force on body `by` by X of body `of` (0 or 1 of the load)
+        std::bitset<144> entries, seen;
+    };
+    explicit LoadSums(const FieldSpace& space);
+
+    void clear();
+    /// What a Gauss point adds.
+    void add(const FieldSample& sample, int e, int g);
+    /// Whether entries have come that were not there when this was asked last.
+    bool has_grown();
+    const std::vector<Block>& blocks() const { return blocks_; }
+    const double* of(std::size_t pair, std::size_t block) const
+    {
+        return sums_.data() + (pair * blocks_.size() + block) * 144;
+    }
+
+private:
+    const FieldSpace& space_;
+    std::vector<Block> blocks_;
+    std::vector<double> sums_;
+};
+
+/// All integrals of one element, by pair of local functions.
+struct ElementSums {
+    explicit ElementSums(const FieldSpace& space);
+
+    const FieldSpace& space;
+    std::vector<double> MM, MD;   ///< M_a M_b, M_a M_b'
+    std::vector<double> G;        ///< M_a L_b times the gradient's entries
+    std::vector<double> K;        ///< M_a M_b lambda, rows
+    LoadSums loads;
+    FieldSample sample;
+    std::vector<double> gradients;   ///< at a Gauss point
+
+    std::size_t pair(int a, int b) const
+    {
+        return static_cast<std::size_t>(a) * space.functions.n_local() + b;
+    }
+    void integrate(const Fields& fields, int e);
+
+private:
+    void clear();
+    void add_point(int e, int g);
+};
+
+}   // namespace livens::mixed
