@@ -2,7 +2,7 @@
 // [[sensor]]: one table of kinds.
 #include <algorithm>
 
-#include "livens/io/scenario/builder.h"
+#include "livens/io/scenario/joints/joints.h"
 
 namespace livens {
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // [[load]] type = "bushing".
-#include "livens/io/scenario/builder.h"
+#include "livens/io/scenario/bodies/bodies.h"
+#include "livens/io/scenario/joints/joints.h"
 #include "livens/io/scenario/loads/load_makers.h"
 
 namespace livens {

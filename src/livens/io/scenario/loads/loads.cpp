@@ -2,7 +2,7 @@
 // [[load]]: names, bodies, and what may be wrong with them.
 #include <cmath>
 
-#include "livens/io/scenario/builder.h"
+#include "livens/io/scenario/joints/joints.h"
 #include "livens/io/scenario/loads/load_kinds.h"
 
 namespace livens {

@@ -2,7 +2,8 @@
 // Expressions in scenarios: what their symbols stand for.
 #include <algorithm>
 
-#include "livens/io/scenario/builder.h"
+#include "livens/io/scenario/joints/expressions.h"
+#include "livens/io/scenario/joints/joints.h"
 
 namespace livens {
 
