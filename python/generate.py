@@ -180,8 +180,7 @@ class Writer:
         if kind == "body":
             front.append("shape: Shape | Mapping[str, Any] | None = None")
         elif pair is not None:
-            needed = next(key for key in keys if key["name"] == pair)["required"] and False
-            front += [f"first: End{'' if needed else ' | None = None'}", f"second: End{'' if needed else ' | None = None'}"]
+            front += ["first: End | None = None", "second: End | None = None"]   # the schema says what is missing
         elif one is not None:
             front.append(f"{one['name']}: {REFERENCES[one['name']]}")
         in_front = {"name", "shape" if kind == "body" else "", one["name"] if one is not None and pair is None else ""}

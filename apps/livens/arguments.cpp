@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "arguments.h"
 
+#include <functional>
+#include <memory>
+
 #include <CLI/CLI.hpp>
 
 #include "exit_code.h"
+#include "failure.h"
 #include "livens/io/exports.h"
 
 namespace livens::program {
@@ -49,71 +53,95 @@ void add_common(CLI::App& command, Arguments& a)
                "how errors are laid out on standard error");
 }
 
-CLI::App& add_command(CLI::App& app, Arguments& a, const std::string& name, const std::string& description)
+/// `run` is called once all is parsed, if this is the command that was typed.
+CLI::App& add_command(CLI::App& app, Arguments& a, const std::string& name, const std::string& description,
+                      const std::function<int(const Common&)>& run)
 {
     CLI::App* command = app.add_subcommand(name, description);
+    command->callback([&a, run] { a.run = run; });
     add_colour(*command, a);
     return *command;
 }
 
+/// The arguments of a command: options are bound to their members, and its `run` keeps them.
+template <class Given>
+std::shared_ptr<Given> arguments_of()
+{
+    return std::make_shared<Given>();
+}
+
 void add_scenario_commands(CLI::App& app, Arguments& a)
 {
-    CLI::App& init = add_command(app, a, "init", "Write a small scenario to begin with");
-    add_file(init, "NAME", a.name, "of the scenario; default: pendulum")->type_name("NAME");
+    const auto name = arguments_of<std::string>(), file = arguments_of<std::string>();
+    CLI::App& init = add_command(app, a, "init", "Write a small scenario to begin with",
+                                 [name](const Common& common) { return init_command(*name, common); });
+    add_file(init, "NAME", *name, "of the scenario; default: pendulum")->type_name("NAME");
     add_common(init, a);
-    CLI::App& check = add_command(app, a, "check", "Check a scenario without solving it");
-    check.add_option("FILE", a.scenario, "scenario (TOML)")->required()->type_name("FILE.toml");
+    CLI::App& check = add_command(app, a, "check", "Check a scenario without solving it",
+                                  [file](const Common& common) { return check_command(*file, common); });
+    check.add_option("FILE", *file, "scenario (TOML)")->required()->type_name("FILE.toml");
     add_common(check, a);
-    CLI::App& solve = add_command(app, a, "solve", "Solve scenarios and write their motions");
-    solve.add_option("FILE", a.solve.scenarios, "scenario (TOML), or several")
+}
+
+void add_solve_command(CLI::App& app, Arguments& a)
+{
+    const auto given = arguments_of<SolveArguments>();
+    CLI::App& solve = add_command(app, a, "solve", "Solve scenarios and write their motions",
+                                  [given](const Common& common) { return solve_command(*given, common); });
+    solve.add_option("FILE", given->scenarios, "scenario (TOML), or several")
         ->required()
         ->type_name("FILE.toml");
-    add_file(solve, "-o,--output", a.solve.output,
+    add_file(solve, "-o,--output", given->output,
              "result file, or a folder for several; default: the scenario's stem with .nc, here")
         ->type_name("RUN.nc");
-    add_file(solve, "--csv", a.solve.csv, "write the samples as CSV too")->type_name("FILE.csv");
-    add_force(solve, a.solve.force);
+    add_file(solve, "--csv", given->csv, "write the samples as CSV too")->type_name("FILE.csv");
+    add_force(solve, given->force);
     solve
-        .add_option("-j,--jobs", a.solve.jobs,
-                    "scenarios that are solved at a time; default: one a processor")
+        .add_option("-j,--jobs", given->jobs, "scenarios that are solved at a time; default: one a processor")
         ->check(CLI::Range(1, 1024))
         ->type_name("N");
-    add_choice(solve, "--simd", a.solve.simd, {"sse2", "avx2", "avx512"},
+    add_choice(solve, "--simd", given->simd, {"sse2", "avx2", "avx512"},
                "instructions to solve with; default: avx2 where the processor has it");
     add_common(solve, a);
 }
 
 void add_mass_command(CLI::App& app, Arguments& a)
 {
+    const auto given = arguments_of<MassArguments>();
     CLI::App& mass =
-        add_command(app, a, "mass", "Mass, centre and inertia of a mesh, or of a scenario's bodies");
-    mass.add_option("FILE", a.mass.file, "mesh (STL, OBJ, PLY, MSH) or scenario (TOML)")
+        add_command(app, a, "mass", "Mass, centre and inertia of a mesh, or of a scenario's bodies",
+                    [given](const Common& common) { return mass_command(*given, common); });
+    mass.add_option("FILE", given->file, "mesh (STL, OBJ, PLY, MSH) or scenario (TOML)")
         ->required()
         ->type_name("FILE");
-    mass.add_option("--unit", a.mass.unit, "of the mesh's numbers; default: m")->type_name("UNIT");
-    mass.add_option("--density", a.mass.density, "of the mesh, kg/m^3; default: 1")->type_name("D");
-    mass.add_flag("--turn", a.mass.turn, "turn faces of the mesh that look inwards");
+    mass.add_option("--unit", given->unit, "of the mesh's numbers; default: m")->type_name("UNIT");
+    mass.add_option("--density", given->density, "of the mesh, kg/m^3; default: 1")->type_name("D");
+    mass.add_flag("--turn", given->turn, "turn faces of the mesh that look inwards");
     add_common(mass, a);
 }
 
 void add_rest_commands(CLI::App& app, Arguments& a)
 {
+    const auto file = arguments_of<std::string>();
     CLI::App& equilibrium =
-        add_command(app, a, "equilibrium", "Find where a mechanism rests, and say whether it is stable");
-    equilibrium.add_option("FILE", a.scenario, "scenario (TOML)")->required()->type_name("FILE.toml");
+        add_command(app, a, "equilibrium", "Find where a mechanism rests, and say whether it is stable",
+                    [file](const Common& common) { return equilibrium_command(*file, common); });
+    equilibrium.add_option("FILE", *file, "scenario (TOML)")->required()->type_name("FILE.toml");
     add_common(equilibrium, a);
+    const auto given = arguments_of<ModesArguments>();
     CLI::App& modes =
-        add_command(app, a, "modes", "Frequencies, damping and shapes of small motions about a rest");
-    modes.add_option("FILE", a.modes.scenario, "scenario (TOML)")->required()->type_name("FILE.toml");
-    add_choice(modes, "--at", a.modes.at, {"equilibrium", "start"},
+        add_command(app, a, "modes", "Frequencies, damping and shapes of small motions about a rest",
+                    [given](const Common& common) { return modes_command(*given, common); });
+    modes.add_option("FILE", given->scenario, "scenario (TOML)")->required()->type_name("FILE.toml");
+    add_choice(modes, "--at", given->at, {"equilibrium", "start"},
                "where; default: the equilibrium that the start leads to");
     modes
-        .add_option("--input", a.modes.inputs,
+        .add_option("--input", given->inputs,
                     "of the state matrices: a force on JOINT.angle, JOINT.displacement or BODY.x")
         ->allow_extra_args(false)
         ->type_name("NAME");
     modes
-        .add_option("--output", a.modes.outputs,
+        .add_option("--output", given->outputs,
                     "of the state matrices: likewise, as a position; with _rate its rate")
         ->allow_extra_args(false)
         ->type_name("NAME");
@@ -122,78 +150,106 @@ void add_rest_commands(CLI::App& app, Arguments& a)
 
 void add_run_commands(CLI::App& app, Arguments& a)
 {
-    CLI::App& info = add_command(app, a, "info", "Say what a result file holds");
-    info.add_option("RUN", a.run, "result file")->required()->type_name("RUN.nc");
+    const auto run = arguments_of<std::string>();
+    CLI::App& info = add_command(app, a, "info", "Say what a result file holds",
+                                 [run](const Common& common) { return info_command(*run, common); });
+    info.add_option("RUN", *run, "result file")->required()->type_name("RUN.nc");
     add_common(info, a);
-    CLI::App& sample =
-        add_command(app, a, "sample", "A body, a joint or a sensor of a run at given instants");
-    sample.add_option("RUN", a.sample.run, "result file")->required()->type_name("RUN.nc");
-    auto* body = sample.add_option("--body", a.sample.body, "pose, velocity and momentum of this body")
+    const auto given = arguments_of<SampleArguments>();
+    CLI::App& sample = add_command(app, a, "sample", "A body, a joint or a sensor of a run at given instants",
+                                   [given](const Common& common) { return sample_command(*given, common); });
+    sample.add_option("RUN", given->run, "result file")->required()->type_name("RUN.nc");
+    auto* body = sample.add_option("--body", given->body, "pose, velocity and momentum of this body")
                      ->type_name("BODY");
-    auto* joint = sample.add_option("--joint", a.sample.joint, "reactions of this joint")->type_name("JOINT");
+    auto* joint = sample.add_option("--joint", given->joint, "reactions of this joint")->type_name("JOINT");
     joint->excludes(body);
-    sample.add_option("--sensor", a.sample.sensor, "what this sensor reads")
+    sample.add_option("--sensor", given->sensor, "what this sensor reads")
         ->type_name("SENSOR")
         ->excludes(body)
         ->excludes(joint);
-    sample.add_option("--at", a.sample.at, "instant in seconds; may be repeated")->required()->type_name("T");
-    sample.add_flag("--exact", a.sample.exact,
+    sample.add_option("--at", given->at, "instant in seconds; may be repeated")->required()->type_name("T");
+    sample.add_flag("--exact", given->exact,
                     "between element ends solve a shortened element: full order anywhere");
-    sample.add_flag("--csv", a.sample.csv, "print CSV");
+    sample.add_flag("--csv", given->csv, "print CSV");
     add_common(sample, a);
-    CLI::App& exports =
-        add_command(app, a, "export", "Write a run for other programs, in one format or more");
-    exports.add_option("RUN", a.exports.run, "result file")->required()->type_name("RUN.nc");
-    a.exports.files.resize(export_formats().size());
+}
+
+void add_export_commands(CLI::App& app, Arguments& a)
+{
+    const auto given = arguments_of<ExportArguments>();
+    CLI::App& exports = add_command(
+        app, a, "export", "Write a run for other programs, in one format or more",
+        [given](const Common& common) { return with_runs([&] { return export_command(*given, common); }); });
+    exports.add_option("RUN", given->run, "result file")->required()->type_name("RUN.nc");
+    given->files.resize(export_formats().size());
     for (std::size_t i = 0; const ExportFormat& format : export_formats())
-        add_file(exports, std::string("--") + format.word, a.exports.files[i++], format.what)
+        add_file(exports, std::string("--") + format.word, given->files[i++], format.what)
             ->type_name(std::string("FILE") + format.extension);
-    add_force(exports, a.exports.force);
+    add_force(exports, given->force);
     add_common(exports, a);
-    CLI::App& diff = add_command(app, a, "diff", "Compare two runs at their common output times");
-    diff.add_option("A", a.diff.first, "result file")->required()->type_name("RUN.nc");
-    diff.add_option("B", a.diff.second, "result file")->required()->type_name("RUN.nc");
-    diff.add_option("--rtol", a.diff.rtol, "tolerance relative to the largest value; default 1e-6")
+    const auto both = arguments_of<DiffArguments>();
+    CLI::App& diff = add_command(
+        app, a, "diff", "Compare two runs at their common output times",
+        [both](const Common& common) { return with_runs([&] { return diff_command(*both, common); }); });
+    diff.add_option("A", both->first, "result file")->required()->type_name("RUN.nc");
+    diff.add_option("B", both->second, "result file")->required()->type_name("RUN.nc");
+    diff.add_option("--rtol", both->rtol, "tolerance relative to the largest value; default 1e-6")
         ->type_name("R");
-    diff.add_option("--atol", a.diff.atol, "and in m, rad, m/s, rad/s; default 1e-9")->type_name("A");
+    diff.add_option("--atol", both->atol, "and in m, rad, m/s, rad/s; default 1e-9")->type_name("A");
     add_common(diff, a);
 }
 
 void add_report_commands(CLI::App& app, Arguments& a)
 {
-    CLI::App& report = add_command(app, a, "report", "Write a page for browsers: picture, plots, quality");
-    CLI::App& view = add_command(app, a, "view", "Show that page in the browser, served from here alone");
+    const auto given = arguments_of<ReportArguments>();
+    CLI::App& report = add_command(
+        app, a, "report", "Write a page for browsers: picture, plots, quality",
+        [given](const Common& common) { return with_runs([&] { return report_command(*given, common); }); });
+    CLI::App& view = add_command(
+        app, a, "view", "Show that page in the browser, served from here alone",
+        [given](const Common& common) { return with_runs([&] { return view_command(*given, common); }); });
     for (CLI::App* command : {&report, &view}) {
-        command->add_option("RUN", a.report.run, "result file")->required()->type_name("RUN.nc");
-        command->add_option("OTHER", a.report.other, "result file to compare it with")->type_name("RUN.nc");
+        command->add_option("RUN", given->run, "result file")->required()->type_name("RUN.nc");
+        command->add_option("OTHER", given->other, "result file to compare it with")->type_name("RUN.nc");
         add_common(*command, a);
     }
-    add_file(report, "-o,--output", a.report.output, "page; default: the run's stem with .html, here")
+    add_file(report, "-o,--output", given->output, "page; default: the run's stem with .html, here")
         ->type_name("FILE.html");
-    add_force(report, a.report.force);
-    view.add_option("--port", a.report.port, "on 127.0.0.1; default: any that is free")
+    add_force(report, given->force);
+    view.add_option("--port", given->port, "on 127.0.0.1; default: any that is free")
         ->check(CLI::Range(1, 65535))
         ->type_name("N");
-    view.add_flag("--address", a.report.address_only, "print the address and open no browser");
+    view.add_flag("--address", given->address_only, "print the address and open no browser");
 }
+
+struct SchemaArguments {
+    bool json = false, markdown = false;
+};
 
 void add_other_commands(CLI::App& app, Arguments& a)
 {
-    CLI::App& schema = add_command(app, a, "schema", "Print the schema of scenarios");
-    auto* as_json = schema.add_flag("--json", a.schema_json, "as JSON Schema, for editors");
-    schema.add_flag("--md", a.schema_markdown, "as a reference page (default)")->excludes(as_json);
+    const auto form = arguments_of<SchemaArguments>();
+    CLI::App& schema = add_command(app, a, "schema", "Print the schema of scenarios",
+                                   [form](const Common&) { return schema_command(!form->json); });
+    auto* as_json = schema.add_flag("--json", form->json, "as JSON Schema, for editors");
+    schema.add_flag("--md", form->markdown, "as a reference page (default)")->excludes(as_json);
+    const auto code = arguments_of<std::string>();
     CLI::App& explain =
-        add_command(app, a, "explain", "Explain a diagnostic code by examples; without one, list them");
-    explain.add_option("CODE", a.code, "as printed in brackets, like unknown-key")->type_name("CODE");
+        add_command(app, a, "explain", "Explain a diagnostic code by examples; without one, list them",
+                    [code](const Common&) { return explain_command(*code); });
+    explain.add_option("CODE", *code, "as printed in brackets, like unknown-key")->type_name("CODE");
+    const auto given = arguments_of<CompletionArguments>();
     CLI::App& completion =
-        add_command(app, a, "completion", "Print a script that completes commands in a shell");
+        add_command(app, a, "completion", "Print a script that completes commands in a shell",
+                    [given, &app](const Common&) { return completion_command(*given, command_table(app)); });
     const std::vector<std::string> shells{"bash", "zsh", "fish"};
-    add_choice(completion, "SHELL", a.completion.shell, shells, "to be read by this shell");
-    completion.add_option("--bodies", a.completion.bodies)->group("");   // for the scripts
-    completion.add_option("--joints", a.completion.joints)->group("");
-    completion.add_option("--sensors", a.completion.sensors)->group("");
-    add_command(app, a, "man", "Print the manual page, for man -l or groff");
-    CLI::App& about = add_command(app, a, "version", "Print the version");
+    add_choice(completion, "SHELL", given->shell, shells, "to be read by this shell");
+    completion.add_option("--bodies", given->bodies)->group("");   // for the scripts
+    completion.add_option("--joints", given->joints)->group("");
+    completion.add_option("--sensors", given->sensors)->group("");
+    add_command(app, a, "man", "Print the manual page, for man -l or groff",
+                [&app](const Common&) { return man_command(command_table(app)); });
+    CLI::App& about = add_command(app, a, "version", "Print the version", version_command);
     about.add_flag("--json", a.common.json, "as one JSON object");
 }
 
@@ -231,9 +287,11 @@ void declare(CLI::App& app, Arguments& arguments)
     app.add_flag("--version", arguments.is_version, "print the version");
     add_colour(app, arguments);
     add_scenario_commands(app, arguments);
+    add_solve_command(app, arguments);
     add_mass_command(app, arguments);
     add_rest_commands(app, arguments);
     add_run_commands(app, arguments);
+    add_export_commands(app, arguments);
     add_report_commands(app, arguments);
     add_other_commands(app, arguments);
     app.footer(footer());

@@ -3,6 +3,7 @@
 // man page.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,27 +17,16 @@ class ParseError;
 
 namespace livens::program {
 
+/// What stands beside the arguments of a command itself, and the command.
 struct Arguments {
     Common common;
     std::string layout = "human";   ///< of diagnostics
     std::string colour = "auto";
-    SolveArguments solve;
-    std::string scenario;
-    ModesArguments modes;
-    MassArguments mass;
-    std::string run;
-    SampleArguments sample;
-    ExportArguments exports;
-    ReportArguments report;
-    DiffArguments diff;
-    std::string name;   ///< of a new scenario
-    bool schema_json = false;
-    bool schema_markdown = false;
-    std::string code;
-    CompletionArguments completion;
     bool is_version = false;
+    std::function<int(const Common&)> run;   ///< the command that was typed; empty: none
 };
 
+/// Adds all commands, each with its arguments and what runs it.
 void declare(CLI::App& app, Arguments& arguments);
 
 /// One argument or option. `value` is a word for what it takes, and what completion goes by: "FILE.toml" and

@@ -39,27 +39,11 @@ void apply_layout(Arguments& a)
                                      : Colour::automatic);
 }
 
-int run(const CLI::App& app, const Arguments& a)
+int run(const Arguments& a)
 {
     const Common& common = a.common;
     set_verbosity(common.quiet ? Verbosity::quiet : common.verbose ? Verbosity::verbose : Verbosity::normal);
-    if (app.got_subcommand("solve")) return solve_command(a.solve, common);
-    if (app.got_subcommand("check")) return check_command(a.scenario, common);
-    if (app.got_subcommand("mass")) return mass_command(a.mass, common);
-    if (app.got_subcommand("equilibrium")) return equilibrium_command(a.scenario, common);
-    if (app.got_subcommand("modes")) return modes_command(a.modes, common);
-    if (app.got_subcommand("info")) return info_command(a.run, common);
-    if (app.got_subcommand("sample")) return sample_command(a.sample, common);
-    if (app.got_subcommand("export")) return with_runs([&] { return export_command(a.exports, common); });
-    if (app.got_subcommand("report")) return with_runs([&] { return report_command(a.report, common); });
-    if (app.got_subcommand("view")) return with_runs([&] { return view_command(a.report, common); });
-    if (app.got_subcommand("diff")) return with_runs([&] { return diff_command(a.diff, common); });
-    if (app.got_subcommand("init")) return init_command(a.name, common);
-    if (app.got_subcommand("schema")) return schema_command(!a.schema_json);
-    if (app.got_subcommand("explain")) return explain_command(a.code);
-    if (app.got_subcommand("completion")) return completion_command(a.completion, command_table(app));
-    if (app.got_subcommand("man")) return man_command(command_table(app));
-    return version_command(common);
+    return a.run ? a.run(common) : version_command(common);
 }
 
 /// Without parsing, which may have stopped early or not have begun.
@@ -98,7 +82,7 @@ int parsed_main(int n, char** arguments)
     return guarded(a.common, [&]() -> int {
         if (app.get_subcommands().empty() && !a.is_version)
             throw failure(exit_usage, "a command is missing; 'livens --help' lists them");
-        return run(app, a);
+        return run(a);
     });
 }
 

@@ -548,7 +548,7 @@ livens_mutant(NAME report_free_directors
 
 # The attracting point, which is the world's, sent through the axes of a skew body.
 livens_mutant(NAME attraction_in_the_body
-              FILE io/scenario/loads/load_makers.cpp
+              FILE io/scenario/loads/load_kinds.cpp
               OLD [[{p.section.vector("point"), p.section.number("mu")]]
               NEW [[{point_of(p), p.section.number("mu")]]
               TESTS_OF livens
@@ -794,7 +794,7 @@ livens_mutant(NAME ranks_believed
 
 # What both ends take of memory, without their condition number.
 livens_mutant(NAME both_ends_unstated
-              FILE io/scenario/run/method.cpp
+              FILE io/scenario/run/memory.cpp
               OLD [[(40 + 18 * p) * f * f + 550 * f + 1000)]]
               NEW [[0 * f)]]
               TESTS_OF livens

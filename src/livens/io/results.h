@@ -21,7 +21,7 @@ struct Solution;
 class JsonWriter;
 
 inline constexpr int format_major = 2;   ///< an unknown one is refused
-inline constexpr int format_minor = 4;   ///< additions only
+extern const int format_minor;           ///< additions only; grows with the newest figure
 
 /// A run as it stands in the file: everything but the model, which is made again from the scenario text.
 struct Run {

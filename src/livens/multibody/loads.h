@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "livens/base/linear.h"
@@ -146,6 +147,8 @@ struct Load : LoadSmoothness, LoadEnergy {
 };
 
 enum class Frame { inertial, body_fixed };
+/// In scenarios, in this order.
+constexpr std::array<std::string_view, 2> words_of(Frame) { return {"world", "body"}; }
 
 /// Three functions of time, the components of a load.
 using TimeVector = std::array<TimeFunction, 3>;

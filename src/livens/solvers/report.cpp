@@ -29,58 +29,6 @@ const char* to_string(SolveStatus status)
     return "unknown";
 }
 
-namespace {
-
-template <class T>
-void keep_most(T& most, T next)
-{
-    most = std::max(most, next);
-}
-
-}   // namespace
-
-SolveCounters& SolveCounters::operator+=(const SolveCounters& next)
-{
-    n_elements += next.n_elements;
-    newton_iterations += next.newton_iterations;
-    factorisations += next.factorisations;
-    guess_factorisations += next.guess_factorisations;
-    rescued += next.rescued;
-    refused += next.refused;
-    evaluations += next.evaluations;
-    evaluations_in_all += next.evaluations_in_all;
-    keep_most(unknowns, next.unknowns);
-    keep_most(most_iterations, next.most_iterations);
-    keep_most(tries, next.tries);
-    return *this;
-}
-
-MeshChanges& MeshChanges::operator+=(const MeshChanges& next)
-{
-    // The first place stays: it is where a reader of the report begins to look.
-    if (divided == 0) divided_at = next.divided_at;
-    if (shifted == 0) shifted_at = next.shifted_at;
-    if (!next.steep_load.empty()) steep_load = next.steep_load;
-    divided += next.divided;
-    shifted += next.shifted;
-    return *this;
-}
-
-Conditioning& Conditioning::operator+=(const Conditioning& next)
-{
-    keep_most(residual_norm, next.residual_norm);
-    smallest_pivot = std::min(smallest_pivot, next.smallest_pivot);
-    keep_most(condition_1, next.condition_1);
-    keep_most(condition_2, next.condition_2);
-    keep_most(scaled_condition, next.scaled_condition);
-    keep_most(factor_entries, next.factor_entries);
-    if (next.guess_distance >= guess_distance) {
-        guess_distance = next.guess_distance;
-        guess_distance_time = next.guess_distance_time;
-    }
-    return *this;
-}
-
 SolveReport& SolveReport::operator+=(SolveReport next)
 {
     static_cast<SolveCounters&>(*this) += next;

@@ -2,6 +2,7 @@
 // How a solution went: returned, never thrown.
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <string>
 #include <vector>
@@ -34,7 +35,21 @@ struct SolveCounters {
     long long evaluations = 0;       ///< of the equations at a node of an element, in the motion
     long long evaluations_in_all = 0;   ///< of all tries and their second solutions
 
-    SolveCounters& operator+=(const SolveCounters& next);
+    SolveCounters& operator+=(const SolveCounters& next)
+    {
+        n_elements += next.n_elements;
+        newton_iterations += next.newton_iterations;
+        factorisations += next.factorisations;
+        guess_factorisations += next.guess_factorisations;
+        rescued += next.rescued;
+        refused += next.refused;
+        evaluations += next.evaluations;
+        evaluations_in_all += next.evaluations_in_all;
+        unknowns = std::max(unknowns, next.unknowns);
+        most_iterations = std::max(most_iterations, next.most_iterations);
+        tries = std::max(tries, next.tries);
+        return *this;
+    }
 };
 
 /// How the mesh became another than the one that was given.
@@ -45,7 +60,15 @@ struct MeshChanges {
     double shifted_at = 0;    ///< where the first of them was to be, s
     std::string steep_load;   ///< whose law most elements were refused or divided for; empty: none
 
-    MeshChanges& operator+=(const MeshChanges& next);
+    MeshChanges& operator+=(const MeshChanges& next)
+    {
+        if (divided == 0) divided_at = next.divided_at;
+        if (shifted == 0) shifted_at = next.shifted_at;
+        if (!next.steep_load.empty()) steep_load = next.steep_load;
+        divided += next.divided;
+        shifted += next.shifted;
+        return *this;
+    }
 };
 
 /// How well the equations were solved, and could be: the worst of all windows.
@@ -60,7 +83,20 @@ struct Conditioning {
                                       ///< points by the model's length, of directors; 0: not guessed so
     double guess_distance_time = 0;   ///< when it first exceeds 0.05, else when it is largest, s
 
-    Conditioning& operator+=(const Conditioning& next);
+    Conditioning& operator+=(const Conditioning& next)
+    {
+        residual_norm = std::max(residual_norm, next.residual_norm);
+        smallest_pivot = std::min(smallest_pivot, next.smallest_pivot);
+        condition_1 = std::max(condition_1, next.condition_1);
+        condition_2 = std::max(condition_2, next.condition_2);
+        scaled_condition = std::max(scaled_condition, next.scaled_condition);
+        factor_entries = std::max(factor_entries, next.factor_entries);
+        if (next.guess_distance >= guess_distance) {
+            guess_distance = next.guess_distance;
+            guess_distance_time = next.guess_distance_time;
+        }
+        return *this;
+    }
 };
 
 struct SolveReport : SolveCounters, MeshChanges, Conditioning {

@@ -2,10 +2,12 @@
 // Sparse direct solution: LU with row exchanges, behind one interface for several libraries.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -31,6 +33,9 @@ enum class SparseBackend {
     eigen,    ///< Eigen's SparseLU in the natural order: columns are eliminated as they come
     umfpack   ///< UMFPACK in METIS' order, the paper's choice; optional, see LIVENS_UMFPACK
 };
+
+/// In scenarios, in this order.
+constexpr std::array<std::string_view, 2> words_of(SparseBackend) { return {"eigen", "umfpack"}; }
 
 /// Whether this build has the backend.
 bool has_backend(SparseBackend backend);

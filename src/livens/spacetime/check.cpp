@@ -160,8 +160,7 @@ std::string name_of(const Method& method)
     if (std::holds_alternative<Endpoint>(method)) return "endpoint";
     const Mixed& mixed = std::get<Mixed>(method);
     return "mixed(" + std::string(mixed::basis_of(mixed).word) + ", " + std::to_string(mixed.degree) + ", " +
-           (mixed.start == Mixed::Start::natural ? "natural" : "strong") + ", " +
-           (mixed.multipliers == Mixed::Multipliers::equal ? "equal" : "lower") + ")";
+           std::string(word_of(mixed.start)) + ", " + std::string(word_of(mixed.multipliers)) + ")";
 }
 
 void check_method(const Model& model, const Problem& problem, const Time& time, const Method& method,

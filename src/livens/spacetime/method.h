@@ -2,7 +2,10 @@
 // The methods and their options.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -76,6 +79,20 @@ struct Mixed {
     /// guess, too.
     Lobatto witness() const { return {degree + 2}; }
 };
+
+// The words of choices in scenarios, results and names of methods, in the order of the enumerators.
+constexpr std::array<std::string_view, 2> words_of(Mixed::Start) { return {"natural", "strong"}; }
+constexpr std::array<std::string_view, 2> words_of(Mixed::Multipliers) { return {"equal", "lower"}; }
+constexpr std::array<std::string_view, 2> words_of(Mixed::EndMultiplier) { return {"smooth", "zero"}; }
+constexpr std::array<std::string_view, 2> words_of(Mixed::Interfaces) { return {"carry", "project"}; }
+constexpr std::array<std::string_view, 2> words_of(Mixed::FirstGuess) { return {"march", "steady"}; }
+
+/// That of a choice whose words stand beside it like these.
+template <class Choice>
+constexpr std::string_view word_of(Choice choice)
+{
+    return words_of(choice)[static_cast<std::size_t>(choice)];
+}
 
 /// Energy-momentum midpoint rule of order 2, a step an element: it shares nothing with spacetime elements.
 struct Midpoint {

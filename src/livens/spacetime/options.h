@@ -2,6 +2,9 @@
 // How a motion is solved, beside its method: tolerances, and what is asked for beside the motion.
 #pragma once
 
+#include <array>
+#include <string_view>
+
 #include "livens/dynamics/start/closing.h"
 #include "livens/solvers/report.h"
 #include "livens/spacetime/method.h"
@@ -54,5 +57,11 @@ struct SolveOptions {
     /// Whether a neighbouring motion tells how perturbations grow, after the estimate (state at the start).
     bool growth = false;
 };
+
+/// In scenarios, in this order.
+constexpr std::array<std::string_view, 3> words_of(SolveOptions::Estimate)
+{
+    return {"second", "local", "none"};
+}
 
 }   // namespace livens

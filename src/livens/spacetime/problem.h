@@ -2,8 +2,10 @@
 // What is asked: conditions at the ends of time.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <memory>
+#include <string_view>
 
 #include "livens/multibody/model.h"
 #include "livens/multibody/motion.h"
@@ -20,6 +22,12 @@ enum class Known {
                ///< world axes: those of the X and V that are stated
     state      ///< X and momenta
 };
+
+/// In scenarios, in this order.
+constexpr std::array<std::string_view, 4> words_of(Known)
+{
+    return {"nothing", "positions", "momenta", "state"};
+}
 
 inline bool knows_positions(Known known) { return known == Known::positions || known == Known::state; }
 inline bool knows_momenta(Known known) { return known == Known::momenta || known == Known::state; }

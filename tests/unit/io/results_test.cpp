@@ -166,6 +166,21 @@ TEST_F(Results, KeepWhereConstraintsHoldAndRefuseOtherWords)
     EXPECT_THROW(read_run_from(source_of(image), false), IoError);
 }
 
+struct Anything {
+    template <class T>
+    operator T() const;
+};
+
+/// How many members an aggregate has.
+template <class T, class... Given>
+constexpr std::size_t n_members()
+{
+    if constexpr (requires { T{Given{}..., Anything{}}; })
+        return n_members<T, Given..., Anything>();
+    else
+        return sizeof...(Given);
+}
+
 /// As many members as the table of figures and the walk of layout.h know: who adds one adds it there.
 TEST_F(Results, EveryMemberOfARunIsInTheFile)
 {
@@ -189,7 +204,10 @@ TEST_F(Results, EveryMemberOfARunIsInTheFile)
     const std::size_t series = sizeof(std::shared_ptr<const Balance>);   // in the file as what it is of
     EXPECT_EQ(sizeof(Verdict), lists + series + static_cast<std::size_t>(verdict) * 8 +
                                    sizeof(BalanceFigures) + sizeof(ViolationReport));
-    EXPECT_EQ(report, 23);   // and status, message, iterations, notes, why a second solution failed
+    // Not where ends were moved, nor a steep law; of the report itself when it failed, and the accuracy. Its
+    // status, message, iterations, notes and why a second solution failed are no figures.
+    EXPECT_EQ(static_cast<std::size_t>(report), n_members<SolveCounters>() + n_members<MeshChanges>() - 3 +
+                                                    n_members<Conditioning>() + 2);
 }
 
 TEST_F(Results, NurbsWithoutJointsAreWritten)

@@ -279,14 +279,15 @@ TEST(Scenario, OutputTimesAreElementEndsToTheBit)
 
 TEST(Scenario, ResolvedStatesAllOptions)
 {
-    EXPECT_EQ(good(valid_scenario).resolved,
-              R"({"format": 1, "title": "", "gravity": [0, 0, -9.81], )"
-              R"("time": {"start": 0, "end": 1, "elements": 10, )"
-              R"("output": "element ends", "breaks": "from_loads"}, )"
-              R"("method": {"family": "lobatto", "degree": 4, "window": 1, )"
-              R"("tolerance": 1e-14, "max_iterations": 30, "estimate": "second", )"
-              R"("growth": false, "looks": true, "condition": false}, )"
-              R"("start": {"given": "state", "initial": "check"}, "end": {"given": "nothing"}})");
+    const std::string resolved = good(valid_scenario).resolved;
+    EXPECT_TRUE(resolved.starts_with(R"({"format": 1, "title": "", "gravity": [0, 0, -9.81], )"
+                                     R"("time": {"start": 0, "end": 1, "elements": 10, )"
+                                     R"("output": "element ends", "breaks": "from_loads"}, )"
+                                     R"("method": {"family": "lobatto", "degree": 4, "window": 1, )"
+                                     R"("tolerance": 1e-14, "max_iterations": 30, )"))
+        << resolved;   // and other options: see Schema.ResolvedStatesEveryKeyOfTheMethod
+    EXPECT_TRUE(resolved.ends_with(
+        R"(}, "start": {"given": "state", "initial": "check"}, "end": {"given": "nothing"}})"));
     const Scenario midpoint = good(replaced(valid_scenario, "degree = 4", "family = \"midpoint\""));
     EXPECT_TRUE(std::holds_alternative<Midpoint>(midpoint.method));
     EXPECT_NE(midpoint.resolved.find(R"({"family": "midpoint", "tolerance")"), std::string::npos);

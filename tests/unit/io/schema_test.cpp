@@ -343,26 +343,59 @@ TEST(Schema, UnitsOfTheSchemaAreUnits)
     }
 }
 
-/// Section::pick() takes the place of a word among the choices for the enumerator; here the first and last.
+/// Section::pick() takes the place of a word among the choices for the enumerator.
 TEST(Schema, WordsOfChoicesStandInTheOrderOfTheEnumerators)
 {
-    const auto expect_choices = [](const Table& table, std::string_view name, const Words& words, auto last) {
-        const Key* key = find_key(table.keys_of(any_kind), name);
+    const auto expect_word = [](const char* table, std::string_view name, std::string_view word,
+                                auto choice) {
+        const Key* key = find_key(table_of(table, "").keys_of(any_kind), name);
         ASSERT_NE(key, nullptr) << name;
-        EXPECT_EQ(key->choices, words) << name;
-        EXPECT_EQ(static_cast<std::size_t>(last) + 1, words.size()) << name;
+        ASSERT_LT(static_cast<std::size_t>(choice), key->choices.size()) << name;
+        EXPECT_EQ(key->choices[static_cast<std::size_t>(choice)], word) << name;
     };
+    using Estimate = SolveOptions::Estimate;
+    expect_word("[method]", "basis", "lagrange", Mixed::Basis::lagrange);
+    expect_word("[method]", "basis", "nurbs", Mixed::Basis::nurbs);
+    expect_word("[method]", "momentum", "strong", Mixed::Start::strong);
+    expect_word("[method]", "multipliers", "lower", Mixed::Multipliers::lower);
+    expect_word("[method]", "end_multiplier", "zero", Mixed::EndMultiplier::zero);
+    expect_word("[method]", "interfaces", "project", Mixed::Interfaces::project);
+    expect_word("[method]", "first_guess", "steady", Mixed::FirstGuess::steady);
+    expect_word("[method]", "linear_solver", "umfpack", SparseBackend::umfpack);
+    expect_word("[method]", "estimate", "local", Estimate::local);
+    expect_word("[method]", "estimate", "none", Estimate::none);
+    expect_word("[[load]]", "frame", "body", Frame::body_fixed);
+    expect_word("[start]", "initial", "project", StartPolicy::project);
+    expect_word("[start]", "given", "positions", Known::positions);
+    expect_word("[start]", "given", "state", Known::state);
+}
+
+/// What a result tells of its method: every key of it, and what the file says for each word of a choice.
+TEST(Schema, ResolvedStatesEveryKeyOfTheMethod)
+{
     const Table& method = table_of("[method]", "");
-    expect_choices(method, "basis", {"lagrange", "bspline", "nurbs"}, Mixed::Basis::nurbs);
-    expect_choices(method, "momentum", {"natural", "strong"}, Mixed::Start::strong);
-    expect_choices(method, "multipliers", {"equal", "lower"}, Mixed::Multipliers::lower);
-    expect_choices(method, "end_multiplier", {"smooth", "zero"}, Mixed::EndMultiplier::zero);
-    expect_choices(method, "interfaces", {"carry", "project"}, Mixed::Interfaces::project);
-    expect_choices(method, "first_guess", {"march", "steady"}, Mixed::FirstGuess::steady);
-    expect_choices(method, "linear_solver", {"eigen", "umfpack"}, SparseBackend::umfpack);
-    expect_choices(table_of("[[load]]", ""), "frame", {"world", "body"}, Frame::body_fixed);
-    expect_choices(table_of("[start]", ""), "given", {"nothing", "positions", "momenta", "state"},
-                   Known::state);
+    for (std::size_t kind = 0; kind < method.kinds.size(); ++kind) {
+        const std::string family(method.kinds[kind].word);
+        if (family == "auto") continue;   // with an accuracy only
+        const auto resolved = [&](const std::string& line) {
+            const ScenarioResult result = read(test::replaced(
+                test::valid_scenario, "degree = 4", "family = \"" + family + "\"\n" + line));
+            EXPECT_TRUE(result.scenario.has_value()) << shown(result);
+            return result.scenario ? result.scenario->resolved : "";
+        };
+        for (const Key* key : method.keys_of(static_cast<int>(kind))) {
+            if (key->name == "knots" || key->name == "weights") continue;   // where there are some
+            EXPECT_NE(resolved("").find("\"" + std::string(key->name) + "\": "), std::string::npos)
+                << family << " " << key->name;
+            if (!(key->type == types::choice) || key->name == "family" || key->name == "basis") continue;
+            for (const std::string_view word : key->choices) {
+                if (word == "umfpack" || (word == "local" && !family.starts_with("l"))) continue;
+                const std::string told = std::string(key->name) + "\": \"" + std::string(word) + "\"";
+                const std::string line = std::string(key->name) + " = \"" + std::string(word) + "\"";
+                EXPECT_NE(resolved(line).find(told), std::string::npos) << family << " " << line;
+            }
+        }
+    }
 }
 
 TEST(Schema, DefaultsAreThoseOfTheLibrary)

@@ -2,8 +2,10 @@
 // Closing the mechanism: independent rows, and a start that fulfils them.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "livens/base/error.h"
@@ -15,6 +17,9 @@ enum class StartPolicy {
     check,    ///< an inconsistent start is an InputError that names the row
     project   ///< positions and velocities are moved to the nearest consistent ones in the mass metric
 };
+
+/// In scenarios, in this order.
+constexpr std::array<std::string_view, 2> words_of(StartPolicy) { return {"check", "project"}; }
 
 struct ClosedStart {
     State start;                           ///< consistent; directors orthonormal, V = [v, w x d_i]

@@ -104,6 +104,13 @@ constexpr Figure figures[] = {
      &Motion::gauss_points},
 };
 
+/// What is no figure came with 4.
+constexpr int newest = [] {
+    int minor = 4;
+    for (const Figure& figure : figures) minor = figure.since > minor ? figure.since : minor;
+    return minor;
+}();
+
 /// The part of a run that has such members.
 template <class Owner, class AnyRun>
 auto& part(AnyRun& run)
@@ -129,6 +136,8 @@ auto with_number(AnyRun& run, const Figure& figure, Work work)
 }
 
 }   // namespace
+
+const int format_minor = newest;
 
 std::span<const Figure> run_figures() { return figures; }
 

@@ -20,7 +20,9 @@ struct Figure {
     const char* meaning;
     FigureMember member;
     bool zero_is_none = false;   ///< null in JSON then
-    int since = 0;               ///< minor version of the format; files of older ones lack it
+    /// Minor version of the format; files of older ones lack it. Of a new one: one more than `livens version
+    /// --json` of the last release says.
+    int since = 0;
 };
 
 std::span<const Figure> run_figures();

@@ -9,7 +9,10 @@
 #include <new>
 
 #include "livens/dynamics/start/prepared.h"
-#include "livens/io/scenario/builder.h"
+#include "livens/io/scenario/bodies/bodies.h"
+#include "livens/io/scenario/joints/joints.h"
+#include "livens/io/scenario/loads/load_kinds.h"
+#include "livens/io/scenario/run/run.h"
 #include "livens/io/scenario/text/tree.h"
 #include "livens/spacetime/solve.h"
 

@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "livens/base/text.h"
+#include "livens/io/scenario/bodies/bodies.h"
 #include "livens/io/scenario/bodies/shapes.h"
-#include "livens/io/scenario/builder.h"
 
 namespace livens {
 

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "livens/base/text.h"
+#include "livens/io/scenario/bodies/bodies.h"
 #include "livens/io/scenario/bodies/density_fields.h"
 #include "livens/io/scenario/bodies/primitives.h"
 #include "livens/io/scenario/builder.h"

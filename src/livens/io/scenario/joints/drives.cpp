@@ -9,7 +9,8 @@
 #include <numbers>
 
 #include "livens/base/text.h"
-#include "livens/io/scenario/builder.h"
+#include "livens/io/scenario/joints/expressions.h"
+#include "livens/io/scenario/joints/joints.h"
 #include "livens/multibody/joints/drives.h"
 #include "livens/time/time_laws.h"
 

@@ -6,7 +6,8 @@
 
 #include <cmath>
 
-#include "livens/io/scenario/builder.h"
+#include "livens/io/scenario/bodies/bodies.h"
+#include "livens/io/scenario/joints/joints.h"
 #include "livens/multibody/joints/spline_curve.h"
 
 namespace livens {

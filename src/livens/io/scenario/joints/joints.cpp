@@ -4,7 +4,8 @@
 #include <cmath>
 
 #include "livens/base/text.h"
-#include "livens/io/scenario/builder.h"
+#include "livens/io/scenario/bodies/bodies.h"
+#include "livens/io/scenario/joints/joints.h"
 #include "livens/io/scenario/joints/joint_kinds.h"
 #include "livens/multibody/joints/fit.h"
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "livens/base/text.h"
-#include "livens/io/scenario/builder.h"
+#include "livens/io/scenario/joints/joints.h"
 
 namespace livens {
 

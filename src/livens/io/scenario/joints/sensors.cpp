@@ -4,7 +4,7 @@
 // of loads come after.
 #include <algorithm>
 
-#include "livens/io/scenario/builder.h"
+#include "livens/io/scenario/joints/joints.h"
 
 namespace livens {
 

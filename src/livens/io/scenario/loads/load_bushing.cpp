@@ -2,7 +2,8 @@
 // [[load]] type = "bushing".
 // A bushing has two frames; where both are left to one point of the world they coincide at the start, so that
 // its displacement u is zero there.
-#include "livens/io/scenario/builder.h"
+#include "livens/io/scenario/bodies/bodies.h"
+#include "livens/io/scenario/joints/joints.h"
 #include "livens/io/scenario/loads/load_makers.h"
 
 namespace livens {

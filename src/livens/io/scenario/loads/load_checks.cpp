@@ -94,11 +94,4 @@ bool check_spring(const Section& load)
     return is_placed && has_law;
 }
 
-bool check_drag(const Section& load)
-{
-    return load.has("linear") || load.has("quadratic") ||
-           load.error("", "load-value", load.label() + " has neither 'linear' nor 'quadratic'",
-                      {"", "give at least one of them"});
-}
-
 }   // namespace livens

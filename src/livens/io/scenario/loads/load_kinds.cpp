@@ -4,7 +4,8 @@
 // for displacements.
 #include "livens/io/scenario/loads/load_kinds.h"
 
-#include "livens/io/scenario/builder.h"
+#include "livens/io/scenario/joints/expressions.h"
+#include "livens/io/scenario/joints/joints.h"
 #include "livens/io/scenario/loads/load_makers.h"
 
 namespace livens {
@@ -52,8 +53,8 @@ std::vector<Key> keys_on_body(const std::string& what, std::string_view unit, co
                              formulas_for_value),
                          table},
         expression_keys(true),
-        std::vector<Key>{choice("frame", {"world", "body"},
-                                "Axes of the values: fixed in the world, or turning with the body.")},
+        std::vector<Key>{
+            choice<Frame>("frame", "Axes of the values: fixed in the world, or turning with the body.")},
         interval_keys());
 }
 
@@ -164,6 +165,27 @@ std::vector<Key> keys_of_bushing()
             "angular velocity for small turns and for turns about one axis, not for large ones about "
             "several."},
         Key{"preload", types::list, "Three forces in N, three torques in N m, against u wherever it is."}};
+}
+
+bool check_drag(const Section& load)
+{
+    return load.has("linear") || load.has("quadratic") ||
+           load.error("", "load-value", load.label() + " has neither 'linear' nor 'quadratic'",
+                      {"", "give at least one of them"});
+}
+
+Load make_drag(const LoadSources& p)
+{
+    const Section& s = p.section;
+    return drag(p.name, p.first, point_of(p), {s.number("linear"), s.number("quadratic"), s.vector("medium")},
+                places(p.builder));
+}
+
+Load make_attraction(const LoadSources& p)
+{
+    return attraction(p.name, p.first, p.builder.model().bodies()[p.first],
+                      {p.section.vector("point"), p.section.number("mu"), p.section.truth("gradient")},
+                      places(p.builder));
 }
 
 }   // namespace

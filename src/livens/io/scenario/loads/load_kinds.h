@@ -38,4 +38,7 @@ struct LoadKind : Kind {
 
 const std::vector<LoadKind>& load_kinds();
 
+/// Reports all it finds.
+void read_loads(Builder& builder);
+
 }   // namespace livens

@@ -9,7 +9,8 @@
 #include <utility>
 
 #include "livens/base/text.h"
-#include "livens/io/scenario/builder.h"
+#include "livens/io/scenario/joints/expressions.h"
+#include "livens/io/scenario/joints/joints.h"
 #include "livens/multibody/loads/surface_loads.h"
 #include "livens/time/time_laws.h"
 
@@ -65,13 +66,6 @@ std::vector<TimeFunction> read_values(const LoadSources& p, std::size_t n)
         values.push_back(while_it_acts(p.section, std::move(value)));
     }
     return values;
-}
-
-std::vector<Matrix34> places(const Builder& builder)
-{
-    std::vector<Matrix34> X;
-    for (const Body& body : builder.model().bodies()) X.push_back(body.X);
-    return X;
 }
 
 /// Whether elements end where laws bend: not those of other families, nor of those that are solved together
@@ -131,8 +125,6 @@ Load by_formula(const LoadSources& p, const std::string& type, const std::string
                  "take the family lobatto, or a smooth law such as tanh"});
     return modulated(p.name, type, parts, places(p.builder));
 }
-
-Vector3 point_of(const LoadSources& p) { return p.builder.in_axes(p.first, p.section.vector("point")); }
 
 /// Of components along the directors those along the body's axes.
 TimeVector in_axes(const LoadSources& p, const TimeVector& value)
@@ -215,6 +207,15 @@ SpringLaw read_law(const LoadSources& p)
 }
 
 }   // namespace
+
+Vector3 point_of(const LoadSources& p) { return p.builder.in_axes(p.first, p.section.vector("point")); }
+
+std::vector<Matrix34> places(const Builder& builder)
+{
+    std::vector<Matrix34> X;
+    for (const Body& body : builder.model().bodies()) X.push_back(body.X);
+    return X;
+}
 
 Interval read_interval(const Section& load)
 {
@@ -325,20 +326,6 @@ Load make_spring(const LoadSources& p)
                            s.number("preload"), read_law(p)};
     return spring_damper(p.name, p.first, p.builder.in_axes(p.first, s.row("points", 0)), p.second,
                          p.builder.in_axes(p.second, s.row("points", 1)), law);
-}
-
-Load make_drag(const LoadSources& p)
-{
-    const Section& s = p.section;
-    return drag(p.name, p.first, point_of(p), {s.number("linear"), s.number("quadratic"), s.vector("medium")},
-                places(p.builder));
-}
-
-Load make_attraction(const LoadSources& p)
-{
-    return attraction(p.name, p.first, p.builder.model().bodies()[p.first],
-                      {p.section.vector("point"), p.section.number("mu"), p.section.truth("gradient")},
-                      places(p.builder));
 }
 
 }   // namespace livens

@@ -4,7 +4,7 @@
 // complaints, results and sensors.
 #include <cmath>
 
-#include "livens/io/scenario/builder.h"
+#include "livens/io/scenario/joints/joints.h"
 #include "livens/io/scenario/loads/load_kinds.h"
 
 namespace livens {

@@ -5,7 +5,9 @@
 #include "livens/base/text.h"
 #include "livens/dynamics/start/prepared.h"
 #include "livens/dynamics/start/singular.h"
-#include "livens/io/scenario/builder.h"
+#include "livens/io/scenario/bodies/bodies.h"
+#include "livens/io/scenario/joints/joints.h"
+#include "livens/io/scenario/run/run.h"
 
 namespace livens {
 
@@ -13,7 +15,9 @@ namespace {
 
 Key given(std::string_view otherwise, const std::string& doc)
 {
-    return {"given", types::choice, doc, "", otherwise, false, {"nothing", "positions", "momenta", "state"}};
+    Key key = choice<Known>("given", doc);
+    key.fallback = otherwise;
+    return key;
 }
 
 bool check_pose_of(const Section& pose, bool is_point)
@@ -123,9 +127,10 @@ Table start_table()
         "joints placed by `at` refer to them.",
         {given("state", "state: positions and velocities; positions or momenta: those alone, the others are "
                         "first guesses; nothing: all are."),
-         choice("initial", {"check", "project"},
-                "check: refuse it, naming the joint; project: move positions and velocities to the nearest "
-                "that fit, in the metric of the masses."),
+         choice<StartPolicy>(
+             "initial",
+             "check: refuse it, naming the joint; project: move positions and velocities to the nearest "
+             "that fit, in the metric of the masses."),
          choice(
              "joints", {"fixed", "fit"},
              "fixed: as stated; fit: points and axes on the second body of a joint are moved by the least "

@@ -8,7 +8,7 @@
 #include <cstdlib>
 
 #include "livens/base/text.h"
-#include "livens/io/scenario/builder.h"
+#include "livens/io/scenario/run/run.h"
 
 namespace livens {
 

@@ -128,6 +128,14 @@ struct Table {
 /// One of some words, by default the first.
 Key choice(std::string_view name, Words words, const std::string& doc);
 
+/// Of an enum with words beside it, see word_of(), for Section::pick().
+template <class Enum>
+Key choice(std::string_view name, const std::string& doc)
+{
+    constexpr auto words = words_of(Enum{});
+    return choice(name, Words(words.begin(), words.end()), doc);
+}
+
 inline constexpr int max_elements = 10'000'000;
 inline constexpr int max_bodies = 10000;
 

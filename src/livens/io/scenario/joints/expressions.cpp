@@ -5,7 +5,8 @@
 // that follows a load would be an algebraic loop.
 #include <algorithm>
 
-#include "livens/io/scenario/builder.h"
+#include "livens/io/scenario/joints/expressions.h"
+#include "livens/io/scenario/joints/joints.h"
 
 namespace livens {
 

@@ -6,7 +6,9 @@
 #include <cmath>
 
 #include "livens/dynamics/start/start_coordinates.h"
-#include "livens/io/scenario/builder.h"
+#include "livens/io/scenario/bodies/bodies.h"
+#include "livens/io/scenario/joints/joints.h"
+#include "livens/io/scenario/run/run.h"
 
 namespace livens {
 

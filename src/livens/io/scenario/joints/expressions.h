@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Formulas of loads and drives, and what they read of the motion.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "livens/io/scenario/builder.h"
+#include "livens/multibody/loads/load_laws.h"
+#include "livens/time/expression.h"
+
+namespace livens {
+
+/// `expression` for one number, or for three, and `inputs`.
+std::vector<Key> expression_keys(bool is_vector);
+/// What expressions of a section read: of symbol k the number reads[k].
+struct Inputs {
+    struct Read {
+        std::size_t coordinate;
+        bool is_rate;
+    };
+    std::vector<std::string> symbols;
+    std::vector<LawCoordinate> coordinates;
+    std::vector<Read> reads;
+};
+/// Throw InputError at path.inputs, path.expression.
+Inputs read_inputs(const Builder& builder, const Section& section, const std::string& path);
+std::vector<Expression> read_expressions(const Section& section, const Inputs& inputs,
+                                         const std::string& path);
+/// `breaks`, and the events of the expressions, ascending; a warning where symbols decide about kinks.
+std::vector<double> breaks_of(const Builder& builder, const Section& section,
+                              const std::vector<Expression>& expressions);
+/// One factor for each expression.
+LoadLaw law_of(const std::vector<Expression>& expressions, const Inputs& inputs,
+               const std::vector<double>& breaks);
+/// How steep they may be.
+LawSteepness steepness_of(const std::vector<Expression>& expressions, const Inputs& inputs);
+/// What decides on which smooth pieces they are; empty: they have but one.
+LawGuards guards_of(const std::vector<Expression>& expressions, const Inputs& inputs);
+
+}   // namespace livens

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// [[joint]], [[drive]], [[sensor]], and what refers to joints, their frames and coordinates.
+#pragma once
+
+#include <array>
+#include <string>
+
+#include "livens/io/scenario/builder.h"
+
+namespace livens {
+
+/// `from` and `until` of a joint or drive, as far as they are inside the time.
+void read_times(const Builder& builder, const Section& section, Joint& joint);
+
+/// `coordinate`: which of a joint's, for drives and loads.
+Key coordinate_key();
+/// What `joint` and `coordinate` of a section refer to; valid until a joint is added.
+struct JointReference {
+    const Joint* joint;
+    const NamedCoordinate* coordinate;
+};
+/// Throws InputError (`joint-unknown`, `joint-coordinate`) at path.joint.
+JointReference find_coordinate(const Builder& builder, const Section& section, const std::string& path);
+
+/// `frames`: one for each of two bodies.
+Key frames_key(const std::string& heading, const std::string& doc);
+bool check_frames(const Section& section);
+
+/// Where `points` of a joint or load lie outside of a body's shape, and as places in the world would not.
+void warn_of_world_points(Builder& builder, const Section& section, const std::array<int, 2>& bodies);
+
+// Each reports all it finds.
+void read_joints(Builder& builder);
+void read_drives(Builder& builder);   ///< after the joints
+/// Those of loads follow the loads, whose expressions may read the others.
+void read_sensors(Builder& builder, bool of_loads);
+
+}   // namespace livens

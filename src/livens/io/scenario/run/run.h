@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// [time], [method], [start], [end]: everything of the scenario but the model.
+#pragma once
+
+#include <string>
+
+#include "livens/io/scenario/builder.h"
+
+namespace livens {
+
+class JsonWriter;
+
+/// X and V of a body at the "start" or "end" of time; at the start what is left out is as in `state`.
+void read_pose_of(Builder& builder, const std::string& name, const Section& pose, const std::string& when,
+                  State& state);
+
+/// Leads the bodies to what [start] and joints say of coordinates: after the joints, before all others.
+void move_bodies(Builder& builder);
+/// What is given at both ends, and the state at the end. The state at the start is the model's.
+void read_boundary(Builder& builder, Conditions& boundary);
+/// Closes the mechanism where something is given, as solve() will.
+void check_ends(Builder& builder, const Conditions& boundary, StartPolicy policy, Prepared& prepared);
+Method read_method(const Section* section, Findings& findings);
+void write_method(JsonWriter& json, const Method& method);
+/// The keys of [method] that are options, as far as the file has them.
+void read_options(const Section& section, SolveOptions& options);
+void write_options(JsonWriter& json, const SolveOptions& options);
+/// Time, method, conditions: everything of the scenario but the model.
+void read_run(Builder& builder, Scenario& scenario);
+
+/// Elements and output times. False after an error.
+bool read_time(Builder& builder, const Section& time, const Section* method, Scenario& scenario);
+/// Whether elements are to be found: an accuracy is stated, or no elements are.
+bool follows_accuracy(const Section& time, const Method& method);
+
+/// Knots make the mesh.
+bool has_knots(const Method& method);
+
+/// What motion and equations will take at least; a scenario of a few lines must not fill the memory of a
+/// machine. The motion has at most 8 GiB, the factors of one block's matrix (mixed) too: 150 entries of
+/// 16 bytes for each of 30 unknowns a rigid body and node (6 a point mass, 1 a row). That leaves 100,000
+/// linear elements of a single body. False after an error at `place`.
+bool check_size(const Model& model, const Method& method, double n_elements, const SourceLocation& place,
+                Findings& findings);
+
+}   // namespace livens
