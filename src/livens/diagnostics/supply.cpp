@@ -141,9 +141,9 @@ Supply JointSupply::at(int element, int k)
     const Instant at = points_.instant(element, k);
     for (int r = 0; r < tables_.n_rows(); ++r) {
         if (lambda_[r] == 0) continue;
-        const Tables::RowTable& table = tables_.rows[r];
-        double g[Tables::gradient_size];
-        tables_.gradient(r, at, X_.data()->data(), g);
+        const RowTable& table = tables_.rows[r];
+        double g[RowTables::gradient_size];
+        tables_.rows.gradient(r, at, X_.data()->data(), g);
         for (int side = 0; side < table.n_sides; ++side) {
             Matrix34 force{};
             for (const int column : table.columns[side])

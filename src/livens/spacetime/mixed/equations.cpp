@@ -163,7 +163,7 @@ std::string Equations::residual(const Fields& fields, std::vector<double>& r)
             for (const double f : sample_.F) sum += std::abs(f);
             if (!std::isfinite(sum)) {
                 const int load =
-                    m.tables.bad_load({time(e, g), Side::middle}, sample_.X.data(), sample_.V.data());
+                    m.tables.loads.bad({time(e, g), Side::middle}, sample_.X.data(), sample_.V.data());
                 if (load >= 0) bad = not_finite(loads[load]);
             }
             add_rows(e, g);
@@ -205,7 +205,7 @@ void Equations::add_rows(int e, int g)
         }
     }
     for (int k = 0; k < m.n_rows(); ++k) {
-        const double phi = w * m.tables.value(m.rows[k], {}, sample_.X.data());
+        const double phi = w * m.tables.rows.value(m.rows[k], {}, sample_.X.data());
         for (int a = 0; a < n_local_multipliers(); ++a) {
             const int A = setup_.multipliers.first(e) + a;
             raw_.dlambda[static_cast<std::size_t>(A) * m.n_rows() + k] += L(e, g)[a] * phi;

@@ -14,11 +14,11 @@ void Equations::scales(const Fields& fields, std::vector<double>& of_rows,
     std::vector<double> X(static_cast<std::size_t>(m.n_X()));
     m.spread(fields.X0.data(), X.data());
     std::vector<double> factors(static_cast<std::size_t>(m.n_rows()), 0.0);   // becomes 1 / |G_k m^(-1/2)|
-    double gradient[Tables::gradient_size];
+    double gradient[RowTables::gradient_size];
     for (std::size_t i = 0; i < m.gradient_entries.size(); ++i) {
         const GradientEntry& entry = m.gradient_entries[i];
         if (i == 0 || m.gradient_entries[i - 1].row != entry.row)
-            m.tables.gradient(m.rows[entry.row], {}, X.data(), gradient);
+            m.tables.rows.gradient(m.rows[entry.row], {}, X.data(), gradient);
         const double g = gradient[12 * entry.side + entry.component] / m.root_masses[entry.coordinate];
         factors[entry.row] += g * g;
     }

@@ -95,11 +95,11 @@ void Equations::sum_element(const Fields& fields, int e)
     for (int g = 0; g < n_gauss(); ++g) {
         sample(fields, e, g);
         const double w = weight(e, g);
-        double gradient[Tables::gradient_size];
+        double gradient[RowTables::gradient_size];
         for (std::size_t i = 0; i < gradients_.size(); ++i) {
             const GradientEntry& entry = m.gradient_entries[i];
             if (i == 0 || m.gradient_entries[i - 1].row != entry.row)
-                m.tables.gradient(m.rows[entry.row], {}, sample_.X.data(), gradient);
+                m.tables.rows.gradient(m.rows[entry.row], {}, sample_.X.data(), gradient);
             gradients_[i] = gradient[12 * entry.side + entry.component];
         }
         for (int a = 0; a < n_local(); ++a) {
@@ -133,8 +133,8 @@ void Equations::sum_loads(int e, int g)
         const Load& load = m.tables.model->loads()[block.load];
         if (block.load != of_load) {
             tangent = LoadTangent(load.bodies.size());
-            load.tangent(m.tables.arguments(block.load, {time(e, g), Side::middle}, sample_.X.data(),
-                                            sample_.V.data()),
+            load.tangent(m.tables.loads.arguments(block.load, {time(e, g), Side::middle}, sample_.X.data(),
+                                                  sample_.V.data()),
                          tangent);
             of_load = block.load;
         }

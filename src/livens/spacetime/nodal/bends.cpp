@@ -60,9 +60,10 @@ Bends::Look Bends::look(const Watch& watch, double share, const Look& from)
     Look look{share, std::vector<double>(watch.guards.size()), {}, from.angles};
     if (watch.load >= 0) {
         const Load& load = tables_.model->loads()[static_cast<std::size_t>(watch.load)];
-        if (!load.angles.empty()) tables_.turns.follow_of(watch.load, Configurations(way_.X()), look.angles);
+        if (!load.angles.empty())
+            tables_.loads.turns.follow_of(watch.load, Configurations(way_.X()), look.angles);
         const LoadArguments arguments =
-            tables_.arguments(watch.load, way_.at(), way_.X(), way_.V(), look.angles);
+            tables_.loads.arguments(watch.load, way_.at(), way_.X(), way_.V(), look.angles);
         if (load.guarded) load.guarded(arguments, look.numbers);
         if (watch.has_centre) look.centre = load.centre(arguments);
     } else {
@@ -79,7 +80,7 @@ LoadForces Bends::forces(const Watch& watch, const Look& at)
     way_.go(*stretch_, *nodes_, 0, at.share, watch.bodies);
     LoadForces F{};
     tables_.model->loads()[static_cast<std::size_t>(watch.load)].forces(
-        tables_.arguments(watch.load, way_.at(), way_.X(), way_.V(), at.angles), F);
+        tables_.loads.arguments(watch.load, way_.at(), way_.X(), way_.V(), at.angles), F);
     return F;
 }
 

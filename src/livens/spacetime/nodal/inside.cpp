@@ -102,8 +102,8 @@ void InsideLaws::weigh(Law& law) const
     std::vector<double> X, V, maps(12 * tables_.bodies.size()), q(static_cast<std::size_t>(tables_.n_twists));
     for (const Matrix34& x : start.X) X.insert(X.end(), std::begin(x.a), std::end(x.a));
     for (const Matrix34& v : start.V) V.insert(V.end(), std::begin(v.a), std::end(v.a));
-    tables_.map_twists(X.data(), maps.data());
-    const LoadArguments at = tables_.arguments(law.load, {start.t}, X.data(), V.data(), {});
+    tables_.bodies.map_twists(X.data(), maps.data());
+    const LoadArguments at = tables_.loads.arguments(law.load, {start.t}, X.data(), V.data(), {});
     const Load& load = tables_.model->loads()[static_cast<std::size_t>(law.load)];
     for (std::size_t k = 0; k < law.inside.n_factors; ++k) {
         LoadForces F{};
@@ -112,9 +112,9 @@ void InsideLaws::weigh(Law& law) const
         for (std::size_t b = 0; b < 2; ++b)
             if (load.bodies[b] != world)
                 std::copy_n(F[b].a, 12, raw.begin() + static_cast<std::ptrdiff_t>(12 * load.bodies[b]));
-        tables_.twist_rows(X.data(), maps.data(), raw.data(), q.data());
-        tables_.to_scaled_rows(maps.data(), q.data(), q.data());
-        tables_.to_twist(maps.data(), q.data(), q.data());
+        tables_.bodies.twist_rows(X.data(), maps.data(), raw.data(), q.data());
+        tables_.bodies.to_scaled_rows(maps.data(), q.data(), q.data());
+        tables_.bodies.to_twist(maps.data(), q.data(), q.data());
         double mobility = 0;
         for (std::size_t i = 0; i < q.size(); ++i)
             mobility += std::abs(q[i]);   // m/s^2 and rad/s^2: lengths are of the order of the model's
@@ -132,7 +132,7 @@ bool InsideLaws::is_calm(const Law& law, const Stretch& stretch, const Nodes& no
     Vector3 before{};
     for (int i = 0; i < 3; ++i) {
         way_.go(stretch, nodes, e, 0.5 * i, law.bodies);
-        const Vector3 c = load.centre(tables_.arguments(law.load, way_.at(), way_.X(), way_.V()));
+        const Vector3 c = load.centre(tables_.loads.arguments(law.load, way_.at(), way_.X(), way_.V()));
         least = i == 0 ? norm(c) : std::min(least, norm(c));
         if (i > 0) change = std::max(change, norm(c - before));
         before = c;
@@ -152,8 +152,8 @@ void InsideLaws::follow(const Law& law, const Stretch& stretch, const Nodes& nod
     std::vector<double> turned = angles;
     for (std::size_t A = 0; A < size; ++A) {
         way_.go(stretch, nodes, e, basis_.nodes()[A], law.bodies);
-        tables_.turns.follow_of(law.load, Configurations(way_.X()), turned);
-        law.inside.numbers(tables_.arguments(law.load, way_.at(), way_.X(), way_.V(), turned),
+        tables_.loads.turns.follow_of(law.load, Configurations(way_.X()), turned);
+        law.inside.numbers(tables_.loads.arguments(law.load, way_.at(), way_.X(), way_.V(), turned),
                            std::span(numbers_).subspan(n * A, n));
     }
     if (!law.inside.steepest) return;
@@ -354,8 +354,8 @@ Unseen InsideLaws::look(const Stretch& stretch, const Nodes& nodes, int e, const
             own = std::max(own, std::abs(moments[i]) * law.mobility[i % m] * h_ * h_);
         if (own <= rounding) continue;
         if (raise_to(largest, own)) found.load = law.load;
-        tables_.rates_of(end.X.data(), end.velocity.data(), V.data());
-        const LoadArguments at = tables_.arguments(law.load, {end.t}, end.X.data(), V.data(), end.angles);
+        tables_.bodies.rates_of(end.X.data(), end.velocity.data(), V.data());
+        const auto at = tables_.loads.arguments(law.load, {end.t}, end.X.data(), V.data(), end.angles);
         const Load& load = tables_.model->loads()[static_cast<std::size_t>(law.load)];
         for (std::size_t k = 0; k < m; ++k) {
             LoadForces F{};
@@ -377,7 +377,7 @@ Unseen InsideLaws::look(const Stretch& stretch, const Nodes& nodes, int e, const
     std::vector<double> twist(end.velocity.size());
     for (std::size_t q = 0; q < n_moments; ++q) {
         instant.respond(end, raw[q].data(), twist.data());
-        tables_.rates_of(end.X.data(), twist.data(), V.data());
+        tables_.bodies.rates_of(end.X.data(), twist.data(), V.data());
         for (int b = 0; b < tables_.n_bodies(); ++b) {
             const auto& body = tables_.bodies[static_cast<std::size_t>(b)];
             const double* dX = V.data() + 12 * b;

@@ -52,9 +52,9 @@ void Nodes::fix(int A, const InstantState& state)
                   set.low.begin() + static_cast<std::ptrdiff_t>(place(A)));
     }
     std::copy(state.maps.begin(), state.maps.end(), maps_.begin() + static_cast<std::ptrdiff_t>(place(A)));
-    known_.bases[A] = &state.basis;
-    if (A == 0) known_.rows = &state.rows;
-    pivots_[A] = state.smallest_pivot;
+    known_.bases[A] = &state.held.basis;
+    if (A == 0) known_.rows = &state.held.rows;
+    pivots_[A] = state.held.smallest_pivot;
     phi_.has_start = false;
 }
 
@@ -69,7 +69,7 @@ void Nodes::begin_constraining()
     phi_.has_start = true;
     pivots_[0] = known_.bases[0]->smallest_pivot;
     for (int c = 0; c < tables_.rank; ++c)
-        phi_.values[c] = tables_.value((*known_.rows)[static_cast<std::size_t>(c)], at(0), X(0));
+        phi_.values[c] = tables_.rows.value((*known_.rows)[static_cast<std::size_t>(c)], at(0), X(0));
 }
 
 void Nodes::place_at(int A, const double* X)
@@ -208,14 +208,14 @@ bool Nodes::constrain_node(int e, int B, bool same_choices, double& sum)
     const ConstraintBasis& first = basis(start);
     const double *reference = phi_.values.data() + static_cast<std::size_t>(start * k), *step = dX(e, B);
     ConstraintBasis& own = bases_[A];
-    tables_.map_twists(X(A), maps_.data() + place(A));
+    tables_.bodies.map_twists(X(A), maps_.data() + place(A));
     pivots_[A] = own.build(tables_, at(A), X(A), maps(A), rows(), same_choices);
     for (int c = 0; c < k; ++c) {
         const auto& table = tables_.rows[static_cast<std::size_t>(own.rows[c])];
         // from the element's first node, which keeps the digits of a small increment
-        double phi = B == 0               ? tables_.value(own.rows[c], at(A), X(A), own.gradient(c))
-                     : table.is_quadratic ? reference[c] + tables_.change(own.rows[c], first.gradient(c),
-                                                                          own.gradient(c), step)
+        double phi = B == 0               ? tables_.rows.value(own.rows[c], at(A), X(A), own.gradient(c))
+                     : table.is_quadratic ? reference[c] + tables_.rows.change(own.rows[c], first.gradient(c),
+                                                                               own.gradient(c), step)
                                           : followed(e, B, c);
         if (std::abs(phi) < rounding * table.row->scale) phi = 0;
         if (!(std::abs(phi) <= close * table.row->scale)) near_ = false;
@@ -255,7 +255,7 @@ double Nodes::correct(const Stretch& stretch)
         const OrthogonalBasis& q = bases_[A].q;
         q.solve_R_transposed(y);
         q.apply(y);
-        tables_.to_twist(maps(A), y, twist);
+        tables_.bodies.to_twist(maps(A), y, twist);
         correction = std::max(correction, size_of(twist));
         displace(sets_[current_], A, twist, sets_[current_], A);
     }

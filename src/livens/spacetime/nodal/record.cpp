@@ -38,7 +38,7 @@ void Record::for_sizes(int place, Action&& action)
     action(m.momenta, (n + 1) * bodies);
     action(m.accelerations, 2 * (n + 1) * bodies);
     action(m.end_multipliers, 2 * (n + 1) * rows);
-    action(m.load_angles, (n + 1) * tables_.turns.size());
+    action(m.load_angles, (n + 1) * tables_.loads.turns.size());
 }
 
 namespace {
@@ -91,7 +91,7 @@ void Record::divided(int element)
     insert(m.momenta, (e + 1) * bodies, bodies);
     insert(m.accelerations, 2 * (e + 1) * bodies, 2 * bodies);
     insert(m.end_multipliers, 2 * (e + 1) * rows, 2 * rows);
-    insert(m.load_angles, (e + 1) * tables_.turns.size(), tables_.turns.size());
+    insert(m.load_angles, (e + 1) * tables_.loads.turns.size(), tables_.loads.turns.size());
     ++first_, ++last_;
 }
 
@@ -122,13 +122,13 @@ void Record::end(int place, const InstantState& state, const InstantSystem& syst
     node(std::min(place, mesh_.n_elements() - 1), place < mesh_.n_elements() ? 0 : degree_, state.X.data());
     put(m.load_angles, place, state.angles.size(), state.angles.data());
     const double *V = system.rates(), *turn = system.centripetal();
-    tables_.times_mass(V, 1.0, work_.data());
+    tables_.bodies.times_mass(V, 1.0, work_.data());
     put(m.velocities, place, bodies, V);
     put(m.momenta, place, bodies, work_.data());
     for (int side = 0; side < 2; ++side) {
         if (side == 0 || two_sided) {
             // X'' = [a, alpha x d + w x (w x d)]
-            tables_.rates_of(state.X.data(), state.acceleration[side].data(), work_.data());
+            tables_.bodies.rates_of(state.X.data(), state.acceleration[side].data(), work_.data());
             double* __restrict A = work_.data();
             for (std::size_t i = 0; i < work_.size(); ++i) A[i] += turn[i];
         }
@@ -171,7 +171,7 @@ void Record::only(const State& start)
     first_ = last_ = 0;
     std::copy_n(start.X.front().a, m.X.n_values, m.X.values.begin());
     m.velocities = start.V;
-    tables_.times_mass(start.V.front().a, 1.0, work_.data());
+    tables_.bodies.times_mass(start.V.front().a, 1.0, work_.data());
     std::copy_n(work_.data(), work_.size(), m.momenta.front().a);
     std::ranges::fill(m.end_multipliers, unknown);
 }
@@ -191,7 +191,7 @@ Motion Record::take(const State& start)
     cut(m.momenta, first, last + 1, bodies);
     cut(m.accelerations, first, last + 1, 2 * bodies);
     cut(m.end_multipliers, first, last + 1, 2 * rows);
-    cut(m.load_angles, first, last + 1, tables_.turns.size());
+    cut(m.load_angles, first, last + 1, tables_.loads.turns.size());
     return std::move(motion_);
 }
 

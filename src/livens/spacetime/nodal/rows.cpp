@@ -52,8 +52,8 @@ void Rows::start_with(const InstantState& first)
     start_terms_ = largest;
     if (rule_.points == Points::lobatto) return;
     momenta_[0].columns.resize(size_of_X_);
-    tables_.rates_of(first.X.data(), first.velocity.data(), V_.data());
-    tables_.times_mass(V_.data(), 1.0, momenta_[0].columns.data());
+    tables_.bodies.rates_of(first.X.data(), first.velocity.data(), V_.data());
+    tables_.bodies.times_mass(V_.data(), 1.0, momenta_[0].columns.data());
 }
 
 void Rows::interpolate(const Stretch& stretch, const Nodes& nodes, int e, int c, double* X, double* V) const
@@ -71,10 +71,10 @@ void Rows::interpolate(const Stretch& stretch, const Nodes& nodes, int e, int c,
 void Rows::count_turns(const Stretch& stretch, const Nodes& nodes)
 {
     of_loads_.angles.clear();
-    if (tables_.turns.empty()) return;
+    if (tables_.loads.turns.empty()) return;
     std::vector<double> now = stretch.angles;
     for (int A = 0; A < stretch.n_nodes(); ++A) {
-        tables_.turns.follow(Configurations(nodes.X(A)), now);
+        tables_.loads.turns.follow(Configurations(nodes.X(A)), now);
         of_loads_.angles.insert(of_loads_.angles.end(), now.begin(), now.end());
     }
 }
@@ -84,7 +84,7 @@ std::span<const double> Rows::angles(int e, int c) const
     if (of_loads_.angles.empty()) return {};
     int node = 0;
     while (node < rule_.degree && rule_.nodes[node + 1] <= rule_.loads.points[c]) ++node;
-    const std::size_t n = tables_.turns.size();
+    const std::size_t n = tables_.loads.turns.size();
     return std::span(of_loads_.angles).subspan(static_cast<std::size_t>(e * rule_.degree + node) * n, n);
 }
 
@@ -99,7 +99,7 @@ void Rows::add_loads(const Stretch& stretch, const Nodes& nodes, int e)
         interpolate(stretch, nodes, e, static_cast<int>(c), X_.data(), V_.data());
         std::fill(work_.begin(), work_.end(), 0.0);
         const Instant at = stretch.load_point(rule_, e, static_cast<int>(c));
-        tables_.add_loads(at, X_.data(), V_.data(), h * rule_.loads.weights[c], work_.data(),
+        tables_.loads.add(at, X_.data(), V_.data(), h * rule_.loads.weights[c], work_.data(),
                           angles(e, static_cast<int>(c)));
         for (int A = 0; A < n_nodes; ++A) {
             const double m = rule_.M[c * n_nodes + A];
@@ -124,9 +124,9 @@ void Rows::add_element(const Stretch& stretch, const Nodes& nodes, int e, int A,
     }
     const bool is_first = e == 0 || A > 0;
     double* sum = is_first ? raw : X_.data();
-    tables_.times_mass(y, factor, sum);
+    tables_.bodies.times_mass(y, factor, sum);
     if (!is_first) accumulate(raw, 1, sum, size_of_X_);
-    tables_.add_weight(stretch.h(e) * rule_.weights[A], raw);
+    tables_.bodies.add_weight(stretch.h(e) * rule_.weights[A], raw);
     if (!tables_.model->loads().empty()) accumulate(raw, 1, forces(e, A), size_of_X_);
 }
 
@@ -136,7 +136,7 @@ void Rows::twist_row(const Stretch& stretch, const Nodes& nodes, int A, double* 
     for (int e = stretch.first_element(A); e <= stretch.last_element(A); ++e)
         add_element(stretch, nodes, e, A - e * rule_.degree, raw);
     if (stretch.points == Points::radau) accumulate(raw, rule_.c[A], momenta_[0].columns.data(), size_of_X_);
-    tables_.twist_rows(nodes.X(A), nodes.maps(A), raw, out);
+    tables_.bodies.twist_rows(nodes.X(A), nodes.maps(A), raw, out);
 }
 
 /// y += the momentum at the start or - that at the end, where it is known.
@@ -152,9 +152,9 @@ void Rows::add_end_momentum(const Stretch& stretch, const Nodes& nodes, int A, d
     std::vector<double> about_centre = given.about_reference, scaled(about_centre.size());
     for (int b = 0; b < tables_.n_bodies(); ++b) {
         const auto& body = tables_.bodies[b];
-        if (body.dofs == 6) Tables::to_centre(nodes.maps(A) + 12 * b, about_centre.data() + body.first);
+        if (body.dofs == 6) BodyTables::to_centre(nodes.maps(A) + 12 * b, about_centre.data() + body.first);
     }
-    tables_.to_scaled_rows(nodes.maps(A), about_centre.data(), scaled.data());
+    tables_.bodies.to_scaled_rows(nodes.maps(A), about_centre.data(), scaled.data());
     for (std::size_t i = 0; i < scaled.size(); ++i) y[i] += is_last ? -scaled[i] : scaled[i];
 }
 
@@ -164,7 +164,7 @@ bool Rows::eliminate(const Stretch& stretch, const Nodes& nodes, int A, double* 
     const ConstraintBasis& basis = nodes.basis(A);
     const int k = tables_.rank, f = tables_.freedoms(), n = tables_.n_twists;
     double* y = work_.data();
-    tables_.to_scaled_rows(nodes.maps(A), q_.data(), y);
+    tables_.bodies.to_scaled_rows(nodes.maps(A), q_.data(), y);
     if (A == 0 || (stretch.P_last && A == stretch.n_nodes() - 1)) add_end_momentum(stretch, nodes, A, y);
     double terms = terms_, size = size_, sum = 0;
     for (int i = 0; i < n; ++i) terms = std::max(terms, std::abs(y[i]));
@@ -222,7 +222,7 @@ std::string Rows::bad_load(const Stretch& stretch, const Nodes& nodes) const
         for (std::size_t c = 0; c < rule_.loads.points.size(); ++c) {
             interpolate(stretch, nodes, e, static_cast<int>(c), X.data(), V.data());
             const Instant at = stretch.load_point(rule_, e, static_cast<int>(c));
-            const int load = tables_.bad_load(at, X.data(), V.data(), angles(e, static_cast<int>(c)));
+            const int load = tables_.loads.bad(at, X.data(), V.data(), angles(e, static_cast<int>(c)));
             if (load >= 0) return not_finite(tables_.model->loads()[load]);
         }
     return "";

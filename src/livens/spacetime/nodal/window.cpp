@@ -72,7 +72,7 @@ bool LobattoWindow::open(int first, int last, SolveReport& report)
     }
     if (!front_.is_ready && !begin_front(report)) return false;
     if (stretch_.X_last && !set_state(far_, ends_.end, report)) return false;
-    stretch_.angles = stretch_.X_first ? front_.here().angles : tables_.turns.begin();
+    stretch_.angles = stretch_.X_first ? front_.here().angles : tables_.loads.turns.begin();
     system_.open(stretch_, stretch_.X_first ? &front_.here() : nullptr, stretch_.X_last ? &far_ : nullptr);
     if (!stretch_.X_first && stretch_.P_first)
         set_momenta(ends_.start, system_.balances().end_momentum(false).about_reference);
@@ -104,8 +104,8 @@ bool LobattoWindow::set_state(InstantState& state, const State& given, SolveRepo
         const Vector3 w = body.dofs == 6 ? angular_velocity(given.X[b], given.V[b]) : Vector3{};
         for (int i = 0; i < body.dofs; ++i) state.velocity[body.first + i] = i < 3 ? v[i] : w[i - 3];
     }
-    state.angles = tables_.turns.begin(given);
-    tables_.turns.follow(Configurations(state.X.data()), state.angles);
+    state.angles = tables_.loads.turns.begin(given);
+    tables_.loads.turns.follow(Configurations(state.X.data()), state.angles);
     if (!instant_.prepare(state, tables_.independent))
         return fail(report,
                     "the mass matrix on the free motions is singular at t = " + to_text(state.t, 6) + " s");
@@ -152,7 +152,7 @@ bool LobattoWindow::solve(const NewtonOptions& options, bool soon, NewtonReport&
 double LobattoWindow::tangent_cost() const
 {
     constexpr double measured = 1e-2;
-    const bool is_known = kernel_.serves() && stretch_.is_march() && front_.here().by_joints;
+    const bool is_known = kernel_.serves() && stretch_.is_march() && front_.here().held.by_joints;
     return is_known ? measured * stretch_.degree * std::pow(tables_.freedoms(), 2) : 0;
 }
 
@@ -204,7 +204,7 @@ State LobattoWindow::at(int element_end) const
     }
     const InstantState& here = front_.here();
     std::vector<double> V(here.X.size());
-    tables_.rates_of(here.X.data(), here.velocity.data(), V.data());
+    tables_.bodies.rates_of(here.X.data(), here.velocity.data(), V.data());
     state.t = here.t;
     state.angles = here.angles;
     state.V.resize(tables_.bodies.size());
@@ -235,8 +235,8 @@ bool LobattoWindow::find_first_state(SolveReport& report)
     const double weight = stretch_.weight(system_.rule(), 0);
     here.t = stretch_.times[0];
     if (!stretch_.X_first) {
-        here.angles = tables_.turns.begin();
-        tables_.turns.follow(Configurations(system_.nodes().X(0)), here.angles);
+        here.angles = tables_.loads.turns.begin();
+        tables_.loads.turns.follow(Configurations(system_.nodes().X(0)), here.angles);
         std::copy_n(system_.nodes().X(0), here.X.size(), here.X.begin());
         std::copy_n(system_.nodes().low(0), here.X.size(), here.X_low.begin());
         if (!instant_.prepare(here, tables_.independent))
@@ -247,14 +247,14 @@ bool LobattoWindow::find_first_state(SolveReport& report)
         p = system_.balances().end_momentum(false).about_reference;
         for (int b = 0; b < tables_.n_bodies(); ++b)
             if (tables_.bodies[b].dofs == 6)
-                Tables::to_centre(here.maps.data() + 12 * b, p.data() + tables_.bodies[b].first);
+                BodyTables::to_centre(here.maps.data() + 12 * b, p.data() + tables_.bodies[b].first);
     } else {
         system_.balances().twist_row(stretch_, system_.nodes(), 0, p.data());
         for (double& value : p) value = -value;
     }
     instant_.from_momentum(here, p.data(), weight, work_.lambda.data());
     for (int c = 0; c < tables_.rank; ++c) {
-        const double taken = weight * work_.lambda[here.rows[c]];
+        const double taken = weight * work_.lambda[here.held.rows[c]];
         work_.impulse[c] = (stretch_.P_first ? system_.balances().impulses(0)[c] : 0.0) - taken;
     }
     accelerate(here);
@@ -283,7 +283,7 @@ Closed LobattoWindow::close(const Trust& trust, SolveReport& report)
         }
         if (is_watched) closed.velocity_jump = velocity_jump(e, trust.turns);
         if (is_watched && !kernel_.has_followed() &&
-            rank_.branches.leaves(stretch_, system_.nodes(), front_.here().rows, e))
+            rank_.branches.leaves(stretch_, system_.nodes(), front_.here().held.rows, e))
             closed.velocity_jump = std::numeric_limits<double>::infinity();
         Unseen unseen = look_at_laws(e, closed);
         closed.is_refused = !(closed.velocity_jump <= trust.velocity_jump);

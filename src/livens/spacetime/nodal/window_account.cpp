@@ -31,7 +31,7 @@ WorstResidual LobattoWindow::worst() const
         if (!stretch_.is_active(A)) continue;
         const Nodes& nodes = system_.nodes();
         std::copy_n(system_.balances().raw(A), wrench.size(), wrench.begin());
-        tables_.twist_rows(nodes.X(A), nodes.maps(A), wrench.data(), q.data());
+        tables_.bodies.twist_rows(nodes.X(A), nodes.maps(A), wrench.data(), q.data());
         for (int b = 0; b < tables_.n_bodies(); ++b)
             for (int i = 0; i < tables_.bodies[b].dofs; ++i) {
                 const double v = std::abs(q[tables_.bodies[b].first + i]);
@@ -56,7 +56,7 @@ double LobattoWindow::velocity_jump(int e, bool refuse_turns) const
     const double* V = instant_.rates();   // at the end
     std::vector<double> first_V(at_start ? 12 * tables_.bodies.size() : 0);
     if (at_start) {
-        tables_.rates_of(front_.here().X.data(), front_.here().velocity.data(), first_V.data());
+        tables_.bodies.rates_of(front_.here().X.data(), front_.here().velocity.data(), first_V.data());
         V = first_V.data();
     }
     double of_centres = 0, of_directors = 0, widest_turn = 0;   // squares

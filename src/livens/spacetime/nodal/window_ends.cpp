@@ -52,7 +52,7 @@ void LobattoWindow::sum_momentum(int e)
             std::fill(work_.raw.begin(), work_.raw.end(), 0.0);
         if (a != without)
             rows.subtract(nodes.basis(A), a == 0 ? work_.impulse.data() : rows.impulses(A), work_.raw.data());
-        tables_.twist_rows(nodes.X(A), nodes.maps(A), work_.raw.data(), wrench.data());
+        tables_.bodies.twist_rows(nodes.X(A), nodes.maps(A), work_.raw.data(), wrench.data());
         for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += wrench[i];
     }
 }
@@ -68,8 +68,8 @@ void LobattoWindow::take_spin_of_polynomial(int e)
     for (int B = 1; B <= p; ++B)
         for (std::size_t i = 0; i < V.size(); ++i)
             V[i] += rule.D[p * rule.size() + B] / stretch_.h(e) * nodes.dX(e, B)[i];
-    tables_.times_mass(V.data(), 1.0, work_.raw.data());
-    tables_.twist_rows(nodes.X(A), nodes.maps(A), work_.raw.data(), work_.wrench.data());
+    tables_.bodies.times_mass(V.data(), 1.0, work_.raw.data());
+    tables_.bodies.twist_rows(nodes.X(A), nodes.maps(A), work_.raw.data(), work_.wrench.data());
     for (const auto& body : tables_.bodies)
         for (int i = 3; i < body.dofs; ++i) work_.momentum[body.first + i] = work_.wrench[body.first + i];
 }
@@ -86,7 +86,7 @@ bool LobattoWindow::end_element(int e, SolveReport& report)
     sum_momentum(e);
     if (is_radau()) take_spin_of_polynomial(e);
     next.angles = here.angles;
-    for (int a = 1; a <= p; ++a) tables_.turns.follow(Configurations(nodes.X(e * p + a)), next.angles);
+    for (int a = 1; a <= p; ++a) tables_.loads.turns.follow(Configurations(nodes.X(e * p + a)), next.angles);
     std::copy_n(nodes.X(A), next.X.size(), next.X.begin());
     std::copy_n(nodes.low(A), next.X.size(), next.X_low.begin());
     if (!kernel_.is_solved()) std::copy_n(nodes.maps(A), next.X.size(), next.maps.begin());
@@ -95,7 +95,7 @@ bool LobattoWindow::end_element(int e, SolveReport& report)
     // the node's own basis, where nothing asks for it any more
     const bool is_free = is_last && !is_radau() && stretch_.is_unknown(A) && !kernel_.is_solved();
     ConstraintBasis* known = is_free && system_.bases_fit() ? &system_.nodes().own_basis(A) : nullptr;
-    if (!instant_.prepare(next, here.rows, known, kernel_.factor_at_end()))
+    if (!instant_.prepare(next, here.held.rows, known, kernel_.factor_at_end()))
         return fail(report, "the free motions carry no inertia at t = " + to_text(next.t, 6) + " s");
     const double weight = stretch_.h(e) * rule.weights[p];
     instant_.from_momentum(next, work_.momentum.data(), weight, work_.end_lambda.data());
@@ -110,7 +110,7 @@ std::string LobattoWindow::contradiction(const InstantState& state) const
     if (tables_.rank == tables_.n_rows()) return {};
     for (int r = 0; r < tables_.n_rows(); ++r) {
         const ConstraintRow& row = *tables_.rows[r].row;
-        if (std::abs(tables_.value(r, {state.t}, state.X.data())) / row.scale < 1e-8) continue;
+        if (std::abs(tables_.rows.value(r, {state.t}, state.X.data())) / row.scale < 1e-8) continue;
         return tables_.model->row_name(r) +
                ": was redundant at the start and contradicts the other joints by t = " + to_text(state.t, 6) +
                " s";

@@ -36,7 +36,7 @@ constexpr double widest_tolerance = 1e-4;   // beyond, two steps hardly tell how
 bool turns_in_space(const Tables& tables, const InstantState& start, double h)
 {
     const std::vector<double>& accelerations = start.acceleration[h > 0 ? 1 : 0];
-    return std::ranges::any_of(tables.bodies, [&](const Tables::BodyTable& body) {
+    return std::ranges::any_of(tables.bodies, [&](const BodyTable& body) {
         const double *w = start.velocity.data() + body.first + 3, *a = accelerations.data() + body.first + 3;
         if (body.dofs == 3) return false;
         const Vector3 turn{w[0], w[1], w[2]}, change{a[0], a[1], a[2]}, across = cross(turn, change);
@@ -156,7 +156,7 @@ void MarchKernel::scale_rule(const Stretch& stretch, const InstantState& start)
 
 void MarchKernel::use(const InstantState& start)
 {
-    start_ = &start.joints;
+    start_ = &start.held.joints;
     if (pattern_ == start_->pattern()) return;
     pattern_ = start_->pattern();
     nodes_.resize(*pattern_, functions_->width);
@@ -192,9 +192,9 @@ void MarchKernel::evaluate_loads(const Stretch& stretch)
                 }
         }
         if (c == 0) work_.angles = stretch.angles;
-        tables_.turns.follow(Configurations(work_.X.data()), work_.angles);
+        tables_.loads.turns.follow(Configurations(work_.X.data()), work_.angles);
         std::fill(work_.raw.begin(), work_.raw.end(), 0.0);
-        tables_.add_loads(stretch.load_point(rule_, 0, c), work_.X.data(), work_.V.data(),
+        tables_.loads.add(stretch.load_point(rule_, 0, c), work_.X.data(), work_.V.data(),
                           stretch.h(0) * rule_.loads.weights[c], work_.raw.data(), work_.angles);
         for (int b = 0; b < tables_.n_bodies(); ++b) {
             if (!pattern.bodies[b].loaded) continue;
@@ -280,7 +280,7 @@ bool MarchKernel::solve(const Stretch& stretch, const InstantState& start, const
                         bool soon, NewtonReport& report)
 {
     is_solved_ = false;
-    if (!start.by_joints) return false;
+    if (!start.held.by_joints) return false;
     use(start);
     scale_rule(stretch, start);
     const bool is_large = !soon && tables_.n_twists >= many_twists && options.max_iterations >= most_steps;
@@ -319,7 +319,7 @@ void MarchKernel::momentum(const Stretch& stretch, const InstantState& start, do
     double* taken = work_.wrenches.data() + 6 * tables_.n_bodies();
     functions_->sum_impulses(pattern_->view(), start_->values(), nodes_.values(), taken);
     for (int b = 0; b < tables_.n_bodies(); ++b) {
-        const Tables::BodyTable& body = tables_.bodies[b];
+        const BodyTable& body = tables_.bodies[b];
         for (int i = 0; i < body.dofs; ++i) {
             const double weight = i < 3 ? stretch.h(0) * body.weight[i] : 0;   // no moment about the centre
             p[body.first + i] =
