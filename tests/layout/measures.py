@@ -89,25 +89,9 @@ def functions(root):
 
 
 def members(root):
-    """(members with those of nested classes, class), the most first."""
-    listing = check_floors.tags(sources(root), ["--kinds-C++=m", "--fields=+nZs", "--fields-C++=+{properties}",
-                                                "--_xformat=%{scope}\t%{C++.properties}\t%n\t%N\t%F"])
-    if listing is None:
-        return None
-    count = collections.Counter()
-    kinds = check_floors.tags(sources(root), ["--kinds-C++=cs", "--fields=+sZ", "--_xformat=%{scope}\t%n\t%N\t%F"])
-    classes = {"::".join(filter(None, (scope, name))) for scope, _, name, _ in kinds}
-    for scope, properties, *_ in listing:
-        if "static" in properties.split(","):
-            continue
-        scope = re.sub(r"(::__anon\w+)+$", "", scope)
-        count[scope] += 1
-        outer = scope
-        while "::" in outer:
-            outer = outer.rpartition("::")[0]
-            if outer in classes:
-                count[outer] += 1
-    return sorted(((n, name) for name, n in count.items()), reverse=True)
+    """(members with those of inner classes, class), the most first."""
+    found = check_floors.members_of_classes(root)
+    return None if found is None else sorted(((len(places), name) for name, places in found.items()), reverse=True)
 
 
 def comment_share(paths):

@@ -46,8 +46,8 @@ livens_mutant(NAME curvature_mixed_term
 # Drives forgotten in the velocity at element ends: all order is gone.
 livens_mutant(NAME velocity_without_drives
               FILE dynamics/instant/instant.cpp
-              OLD [[-tables_.rate(basis.rows[c], {state.t}, state.X.data())]]
-              NEW [[-0 * tables_.rate(basis.rows[c], {state.t}, state.X.data())]]
+              OLD [[-tables_.rows.rate(basis.rows[c], {state.t}, state.X.data())]]
+              NEW [[-0 * tables_.rows.rate(basis.rows[c], {state.t}, state.X.data())]]
               TESTS_OF convergence
               MUST_FAIL Drives.APendulumOnADrivenPivotHasOrder2p
                         Drives.ARodOfDrivenLengthHasOrder2p)
@@ -65,7 +65,7 @@ livens_mutant(NAME one_weight
 # One wrong sign in d_i x r_i.
 livens_mutant(NAME sign_of_a_moment
               FILE dynamics/rows/twist.h
-              RECOMPILE dynamics/rows/tables_in_twists.cpp spacetime/nodal/tangent.cpp
+              RECOMPILE dynamics/rows/body_tables.cpp spacetime/nodal/tangent.cpp
               OLD [[m[1] += X[a + 2] * r[a] - X[a] * r[a + 2];]]
               NEW [[m[1] += X[a + 2] * r[a] + X[a] * r[a + 2];]]
               TESTS_OF convergence
@@ -89,8 +89,8 @@ livens_mutant(NAME missing_geometric_term_by_differences
 # Loads taken where the element starts, their moments where it has come to: a spring that turns what it holds.
 livens_mutant(NAME loads_at_the_start
               FILE spacetime/nodal/element_loads.cpp
-              OLD [[tables_.add_loads(at, X_.data(), V_.data(),]]
-              NEW [[tables_.add_loads(at, nodes.X(e * rule_.degree), V_.data(),]]
+              OLD [[tables_.loads.add(at, X_.data(), V_.data(),]]
+              NEW [[tables_.loads.add(at, nodes.X(e * rule_.degree), V_.data(),]]
               TESTS_OF unit_spacetime
               MUST_FAIL MarchKernel.AgreesWithNewtonOnRandomMechanisms)
 livens_mutant(NAME loads_at_the_start_in_lanes
@@ -131,7 +131,7 @@ livens_mutant(NAME loads_at_the_instants_of_nodes
 
 # Phi from the gradient at the node alone, not from the mean of both ends: right for linear rows only.
 livens_mutant(NAME constraint_without_mean_gradient
-              FILE dynamics/rows/tables.cpp
+              FILE dynamics/rows/row_tables.cpp
               OLD [[sum += (g_from[12 * side + a + i] + g_to[12 * side + a + i]) * d[a + i];]]
               NEW [[sum += 2 * g_to[12 * side + a + i] * d[a + i];]]
               TESTS_OF unit_spacetime
@@ -146,7 +146,7 @@ livens_mutant(NAME violations_not_projected_in_lanes
 
 # Turns in axes that run ahead of the body instead of behind: the motion is right, by more steps.
 livens_mutant(NAME axes_that_run_ahead
-              FILE dynamics/lanes/row_pattern.cpp
+              FILE dynamics/lanes/row_sums.cpp
               OLD [[= -determinant(spin) *]]
               NEW [[= determinant(spin) *]]
               TESTS_OF unit_spacetime

@@ -193,12 +193,12 @@ TEST(CoupledJoints, TablesOfThreeBodiesAgreeWithDifferences)
         const auto at = [&](double s) {
             Bodies moved = X;
             for (std::size_t b = 0; b < X.size(); ++b) moved[b] += s * V[b];
-            return tables.value(0, {}, moved[0].data());
+            return tables.rows.value(0, {}, moved[0].data());
         };
         constexpr double h = 0.005;
         const auto odd = [&](int k) { return std::remainder(at(k * h) - at(-k * h), 2 * pi); };
-        double g[Tables::gradient_size], rate = 0, curvature = 0;
-        tables.gradient(0, {}, X[0].data(), g);
+        double g[RowTables::gradient_size], rate = 0, curvature = 0;
+        tables.rows.gradient(0, {}, X[0].data(), g);
         for (int side = 0; side < 3; ++side)
             for (const int a : tables.rows[0].columns[side])
                 for (int i = a; i < a + 3; ++i)
@@ -210,7 +210,7 @@ TEST(CoupledJoints, TablesOfThreeBodiesAgreeWithDifferences)
                 for (int r = 0; r < 12; ++r)
                     for (int c = 0; c < 12; ++c) curvature += V[i].a[r] * H(r, c) * V[j].a[c];
             }
-        EXPECT_NEAR(curvature, tables.curvature(0, {}, X[0].data(), V[0].data()), 1e-11);
+        EXPECT_NEAR(curvature, tables.rows.curvature(0, {}, X[0].data(), V[0].data()), 1e-11);
     }
 }
 

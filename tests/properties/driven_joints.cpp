@@ -132,11 +132,11 @@ void expect_tables_agree(const Tables& tables, int r, const std::vector<Matrix34
     const ConstraintRow& row = tables.model->row(r);
     const double *x = X[0].data(), *v = V[0].data();
     const Instant at = kit_instant, before{0.1};
-    EXPECT_NEAR(tables.value(r, at, x), constraint_value(row, at, X), 1e-13);
-    EXPECT_NEAR(tables.rate(r, at, x), constraint_rate(row, at, X), 1e-13);
-    EXPECT_NEAR(tables.curvature(r, at, x, v), constraint_curvature(row, at, X, V), 1e-12);
-    double g[Tables::gradient_size] = {};
-    tables.gradient(r, at, x, g);
+    EXPECT_NEAR(tables.rows.value(r, at, x), constraint_value(row, at, X), 1e-13);
+    EXPECT_NEAR(tables.rows.rate(r, at, x), constraint_rate(row, at, X), 1e-13);
+    EXPECT_NEAR(tables.rows.curvature(r, at, x, v), constraint_curvature(row, at, X, V), 1e-12);
+    double g[RowTables::gradient_size] = {};
+    tables.rows.gradient(r, at, x, g);
     std::vector<Matrix34> earlier = X;
     for (std::size_t b = 0; b < X.size(); ++b) earlier[b] -= V[b];
     EXPECT_NEAR(constraint_change(row, before, earlier, at, X, V),

@@ -3,16 +3,11 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
-#include <optional>
 
-#include "livens/diagnostics/coordinates.h"
-#include "livens/diagnostics/detail/sampler.h"
+#include "livens/diagnostics/detail/supply.h"
 #include "livens/diagnostics/diagnostics.h"
 #include "livens/diagnostics/largest.h"
-#include "livens/dynamics/rows/rows.h"
-#include "livens/dynamics/rows/tables.h"
 #include "livens/solvers/patience.h"
-#include "livens/time/quadrature.h"
 
 namespace livens {
 namespace {
@@ -20,197 +15,38 @@ namespace {
 /// Of the references: sums of few terms are off by a few units in the last place.
 constexpr double rounding = 16 * std::numeric_limits<double>::epsilon();
 
-/// What flows into a mechanism: rates at an instant, or their integrals.
-struct Supply {
-    double work = 0;   // of loads without potential, and of drives
-    Vector3 linear{};
-    Vector3 angular{};         // about the world's origin
-    double gross = 0;          // sum of |F|, what rounding in `linear` is relative to
-    double gross_moment = 0;   // sum of |F| (|x| + length), likewise in `angular` and in energies
-
-    void add_force(const Matrix34& X, const Matrix34& F, double length)
-    {
-        linear += F.column(0);
-        for (int c = 0; c < 4; ++c)   // most forces have one column or two
-            if (const Vector3 f = F.column(c); f != Vector3{}) angular += cross(X.column(c), f);
-        add_size(X, F, length);
-    }
-
-    void add_size(const Matrix34& X, const Matrix34& F, double length)
-    {
-        gross += norm(F.column(0));
-        gross_moment += norm(F.column(0)) * length;
-        for (int c = 0; c < 4; ++c)
-            if (const double size = norm(F.column(c)); size != 0) gross_moment += norm(X.column(c)) * size;
-    }
-
-    void add(double weight, const Supply& other)
-    {
-        work += weight * other.work;
-        linear += weight * other.linear;
-        angular += weight * other.angular;
-        gross += weight * other.gross;
-        gross_moment += weight * other.gross_moment;
-    }
-};
-
-Quadrature nodal_rule(const Field& field)
-{
-    return field.points == Points::lobatto ? gauss_lobatto(field.degree + 1) : radau(field.degree);
-}
-
-/// Where loads are taken, as by the method: at its Gauss points, where alone its momentum balances are exact.
-/// Without such points one multiplier an element marks a stepping rule with one stage: endpoint (order 1)
-/// takes forces at the end of the step, midpoint, in old files, in its middle.
-Quadrature load_rule(const Motion& motion)
-{
-    if (motion.gauss_points > 0) return gauss(motion.gauss_points);
-    const bool one_stage = motion.X.degree == 1 && motion.multipliers.degree == 0;
-    if (!one_stage) return nodal_rule(motion.X);
-    return {{motion.order_at_ends == 1 ? 1.0 : 0.5}, {1.0}};
-}
-
-/// Where joints are taken: where the method holds them, at its nodes or at the points of its loads.
-Quadrature joint_rule(const Motion& motion)
-{
-    if (motion.constraints_hold == ConstraintsHold::at_nodes) return nodal_rule(motion.X);
-    return load_rule(motion);
-}
-
+/// What loads and joints supply, integrated.
 class SupplyIntegral {
 public:
     SupplyIntegral(const Model& model, const Motion& motion)
-        : SupplyIntegral(model, motion, load_rule(motion), joint_rule(motion))
+        : motion_(motion), loads_(model, motion), joints_(model, motion)
     {}
 
-    /// Integral over one element.
     Supply over(int element)
     {
         Supply sum;
         const double h = motion_.mesh.length(element);
-        for (int k = 0; k < loads_.size(); ++k) {
-            Supply now;
-            loads_.positions(element, k, X_);
-            loads_.velocities(element, k, V_);
-            for (std::size_t b = 0; b < X_.size(); ++b) now.add_force(X_[b], weights_of_bodies_[b], length_);
-            raise_to(largest_kinetic_, kinetic_energy(model_, X_, V_));
-            if (k == 0) angles_ = turns_.at_end(element);
-            turns_.turns().follow(X_, angles_);
-            add_loads(loads_.instant(element, k), now);
-            sum.add(h * load_weights_[k], now);
-            raise_to(largest_gross_moment_, now.gross_moment);
-        }
-        for (int k = 0; multipliers_ && k < joints_.size(); ++k) {
-            Supply now;
-            joints_.positions(element, k, X_);
-            add_joints(element, k, now);
-            sum.add(h * joint_weights_[k], now);
-            raise_to(largest_gross_moment_, now.gross_moment);
-        }
-        sum.add(h, stiffness(element, h));
+        const auto integrate = [&](auto& supply) {
+            for (int k = 0; k < supply.n_points(); ++k) {
+                const Supply now = supply.at(element, k);
+                sum.add(h * supply.weight_of(k), now);
+                raise_to(largest_gross_moment_, now.gross_moment);
+            }
+        };
+        integrate(loads_);
+        integrate(joints_);
+        sum.add(h, loads_.stiffness(element, h));
         return sum;
     }
-    const LoadTurns& turns() const { return turns_; }
+    const LoadSupply& loads() const { return loads_; }
     /// Of all instants so far.
     double largest_gross_moment() const { return largest_gross_moment_; }
-    double largest_kinetic() const { return largest_kinetic_; }
 
 private:
-    SupplyIntegral(const Model& model, const Motion& motion, Quadrature loads, Quadrature joints)
-        : model_(model), tables_(model, all_rows(model)), load_weights_(loads.weights),
-          joint_weights_(joints.weights), loads_(motion, loads.points), joints_(motion, joints.points),
-          motion_(motion), turns_(model, motion), length_(model.length()),
-          X_(static_cast<std::size_t>(motion.n_bodies)), V_(X_.size())
-    {
-        if (!motion.multipliers.empty()) {
-            multipliers_.emplace(motion.multipliers, joints_.points());
-            lambda_.resize(static_cast<std::size_t>(motion.n_rows));
-        }
-        for (const Body& body : model.bodies()) weights_of_bodies_.push_back(weight(body, model.gravity()));
-    }
-
-    /// What loads make of positions off by their size, and of velocities off by that in h: as rounding is
-    /// relative to the size, stiff loads amplify it. At one point of the element.
-    Supply stiffness(int element, double h)
-    {
-        Supply all;
-        loads_.positions(element, 0, X_);
-        loads_.velocities(element, 0, V_);
-        angles_ = turns_.at_end(element);
-        for (int l = 0; l < static_cast<int>(model_.loads().size()); ++l) {
-            const Load& load = model_.loads()[l];
-            if (!load.depends_on_X && !load.depends_on_V) continue;
-            const LoadArguments arguments = arguments_of(l, loads_.instant(element, 0));
-            LoadTangent tangent(load.bodies.size());
-            load.tangent(arguments, tangent);
-            for (int b = 0; b < 2; ++b) {
-                Matrix34 dF{};
-                for (std::size_t c = 0; c < load.bodies.size(); ++c)
-                    for (int j = 0; j < 12; ++j) {
-                        const double size = norm(arguments.X[c].column(j / 3)) + (j < 3 ? length_ : 0);
-                        for (int i = 0; i < 12; ++i)
-                            dF.a[i] += size * (std::abs(tangent.X[b][c](i, j)) +
-                                               std::abs(tangent.V[b][c](i, j)) / h);
-                    }
-                if (load.bodies[b] != world) all.add_size(arguments.X[b], dF, length_);
-            }
-        }
-        return all;
-    }
-
-    LoadArguments arguments_of(int load, Instant at) const
-    {
-        return load_arguments(model_.loads()[load], at, X_, V_, turns_.turns().of(load, angles_));
-    }
-
-    void add_loads(Instant at, Supply& now) const
-    {
-        for (int l = 0; l < static_cast<int>(model_.loads().size()); ++l) {
-            const Load& load = model_.loads()[l];
-            const LoadArguments arguments = arguments_of(l, at);
-            LoadForces F{};
-            load.forces(arguments, F);
-            for (int b = 0; b < 2; ++b) {
-                if (load.bodies[b] != world) now.add_force(arguments.X[b], F[b], length_);
-            }
-            now.work += power_without_potential(load, arguments);
-        }
-    }
-
-    /// -G^T lambda on all bodies: between two bodies it adds up to nothing, so what stays is the world's. Its
-    /// power is that of drives, -lambda G X' = lambda dPhi/dt at fixed X.
-    void add_joints(int element, int k, Supply& now)
-    {
-        multipliers_->values(element, k, lambda_);
-        const Instant at = joints_.instant(element, k);
-        for (int r = 0; r < model_.n_rows(); ++r) {
-            if (lambda_[r] == 0) continue;
-            const Tables::RowTable& table = tables_.rows[r];
-            double g[Tables::gradient_size];
-            tables_.gradient(r, at, X_.data()->data(), g);
-            for (int side = 0; side < table.n_sides; ++side) {
-                Matrix34 force{};
-                for (const int column : table.columns[side])
-                    for (int i = column; i < column + 3; ++i) force.a[i] = -lambda_[r] * g[12 * side + i];
-                now.add_force(X_[table.bodies[side]], force, length_);
-            }
-            if (!table.is_quadratic) now.work += lambda_[r] * constraint_rate(*table.row, at, X_);
-        }
-    }
-
-    const Model& model_;
-    const Tables tables_;
-    std::vector<double> load_weights_, joint_weights_;
-    ElementSampler loads_, joints_;
     const Motion& motion_;
-    const LoadTurns turns_;
-    std::vector<double> angles_;   // of loads, where X_ is
-    double length_;
-    double largest_gross_moment_ = 0, largest_kinetic_ = 0;
-    std::optional<FieldTable> multipliers_;   // a field of its own degree, at the joints' points
-    std::vector<Matrix34> X_, V_;
-    std::vector<double> lambda_;
-    std::vector<Matrix34> weights_of_bodies_;
+    LoadSupply loads_;
+    JointSupply joints_;
+    double largest_gross_moment_ = 0;
 };
 
 double moment_of_momentum(std::span<const Matrix34> X, std::span<const Matrix34> P)
@@ -255,7 +91,7 @@ public:
     {
         BalanceFigures figures = figures_;
         figures.reference_energy += supply_.largest_gross_moment();
-        raise_to(figures.largest_kinetic, supply_.largest_kinetic());   // where all ends are at rest
+        raise_to(figures.largest_kinetic, supply_.loads().largest_kinetic());   // where all ends are at rest
         figures.reference_impulse = total_.gross;
         figures.reference_moment = total_.gross_moment;
         return figures;
@@ -281,7 +117,7 @@ private:
         positions_at_end(motion_, end_, X_);
         const Instant at{motion_.mesh.ends[end_], end_ == motion_.n_elements() ? Side::left : Side::right};
         const double kinetic = kinetic_energy(model_, X_, V),
-                     potential = potential_energy(model_, at, X_, V, supply_.turns().at_end(end_));
+                     potential = potential_energy(model_, at, X_, V, supply_.loads().turns().at_end(end_));
         piece.t.push_back(at.t);
         piece.kinetic.push_back(kinetic);
         piece.potential.push_back(potential);

@@ -164,7 +164,7 @@ SideOfRigidity rigidity_on(const Model& model, const State& state, Side side)
         A[b] = acceleration(X[b], twist, rates);
         V[b] = rate(X[b], {rates[0], rates[1], rates[2]}, {rates[3], rates[4], rates[5]});
     }
-    const UniqueReactions least = least_at(model, {state.t, side}, X, at.multipliers[s], at.rows);
+    const UniqueReactions least = least_at(model, {state.t, side}, X, at.multipliers[s], at.held.rows);
     return rigidity_of(model, {{state.t, side}, X, V, A, at.angles}, least.multipliers,
                        least.joint_is_unique);
 }

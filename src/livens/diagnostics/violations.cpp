@@ -24,7 +24,7 @@ namespace {
 /// Phi / scale.
 double joint_violation(const Tables& tables, int row, double t, std::span<const Matrix34> X)
 {
-    return tables.value(row, {t}, X.data()->data()) / tables.rows[row].row->scale;
+    return tables.rows.value(row, {t}, X.data()->data()) / tables.rows[row].row->scale;
 }
 
 /// The six 1/2 (d_a . d_b - delta_ab) of a body (P4).
@@ -55,9 +55,9 @@ double rigidity_violation(const Model& model, std::span<const Matrix34> X)
 double velocity_violation(const Tables& tables, int row, double t, std::span<const Matrix34> X,
                           std::span<const Matrix34> V)
 {
-    const Tables::RowTable& table = tables.rows[row];
-    double g[Tables::gradient_size];
-    tables.gradient(row, {t}, X.data()->data(), g);
+    const RowTable& table = tables.rows[row];
+    double g[RowTables::gradient_size];
+    tables.rows.gradient(row, {t}, X.data()->data(), g);
     double rate = table.is_quadratic ? 0 : constraint_rate(*table.row, {t}, X);
     for (int side = 0; side < table.n_sides; ++side)
         for (const int column : table.columns[side])

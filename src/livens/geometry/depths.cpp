@@ -16,8 +16,6 @@ namespace {
 constexpr double unclear = 1e-12;            // of what is subtracted
 constexpr std::int64_t looks_of_view = 30;   // what the solid angle of a face costs
 constexpr std::int64_t looks_at_least = 30'000'000, looks_a_triangle = 1000;   // more take seconds
-constexpr int most_cells = 1024;                                                // along a side
-constexpr std::size_t entries_a_triangle = 8;
 
 /// Of the triangle 0, a, b seen along the first axis, doubled. 0 where it is not clear.
 double area(const Vector3& a, const Vector3& b)
@@ -31,14 +29,13 @@ double area(const Vector3& a, const Vector3& b)
 
 Depths::Depths(const Facets& facets, const Triangles& triangles, const Pieces& pieces)
     : facets_(facets), triangles_(triangles), pieces_(pieces), around_(pieces.n), wounds_(pieces.n),
-      most_looks_(looks_at_least + looks_a_triangle * static_cast<std::int64_t>(triangles.corners.size() / 3))
+      grid_(facets.mesh->points, triangles)
 {
     for (std::int32_t face = 0; face < facets.n_faces(); ++face) {
         Around& around = around_[pieces.of(face)];
         around.faces.push_back(face);
         for (std::int32_t h = facets.begin(face); h < facets.begin(face + 1); ++h) around.widen(facets.at(h));
     }
-    make_grid();
 }
 
 void Depths::Around::widen(const Vector3& p)
@@ -56,63 +53,10 @@ bool Depths::Around::holds(const Vector3& p) const
     return true;
 }
 
-int Depths::Grid::cell(int side, double x) const
+bool Depths::is_beyond() const
 {
-    return std::clamp(static_cast<int>(n * std::clamp((x - low[side]) * scale[side], 0.0, 1.0)), 0, n - 1);
-}
-
-/// As fine as leaves each triangle in a few cells.
-void Depths::make_grid()
-{
-    const std::vector<Vector3>& points = facets_.mesh->points;
-    const std::size_t n = triangles_.corners.size() / 3;
-    double high[2]{};
-    for (int side = 0; side < 2; ++side) {
-        grid_.low[side] = HUGE_VAL;
-        high[side] = -HUGE_VAL;
-        for (const std::int32_t c : triangles_.corners) {
-            grid_.low[side] = std::min(grid_.low[side], points[c][side + 1]);
-            high[side] = std::max(high[side], points[c][side + 1]);
-        }
-        const double size = high[side] - grid_.low[side];
-        grid_.scale[side] = size > 0 && std::isfinite(1 / size) ? 1 / size : 0;
-    }
-    const auto for_cells = [&](std::size_t t, const auto& work) {
-        int first[2], last[2];
-        for (int side = 0; side < 2; ++side) {
-            const auto x = [&](int i) { return points[triangles_.corners[3 * t + i]][side + 1]; };
-            first[side] = grid_.cell(side, std::min({x(0), x(1), x(2)}));
-            last[side] = grid_.cell(side, std::max({x(0), x(1), x(2)}));
-        }
-        work(first, last);
-    };
-    std::size_t n_entries = 0;
-    grid_.n = std::clamp(static_cast<int>(std::sqrt(static_cast<double>(n))), 1, most_cells);
-    for (;; grid_.n /= 2) {
-        n_entries = 0;
-        for (std::size_t t = 0; t < n; ++t)
-            for_cells(t, [&](const int* first, const int* last) {
-                n_entries += static_cast<std::size_t>(last[0] - first[0] + 1) *
-                             static_cast<std::size_t>(last[1] - first[1] + 1);
-            });
-        // Long needles lie in many cells; a coarser grid bounds memory at the price of more looks.
-        if (grid_.n == 1 || n_entries <= entries_a_triangle * n) break;
-    }
-    std::vector<std::int32_t>& begins = grid_.begins;
-    begins.assign(static_cast<std::size_t>(grid_.n) * static_cast<std::size_t>(grid_.n) + 1, 0);
-    grid_.triangles.resize(n_entries);
-    const auto for_places = [&](std::size_t t, const auto& work) {
-        for_cells(t, [&](const int* first, const int* last) {
-            for (int i = first[0]; i <= last[0]; ++i)
-                for (int j = first[1]; j <= last[1]; ++j) work(begins[i * grid_.n + j + 1]);
-        });
-    };
-    for (std::size_t t = 0; t < n; ++t) for_places(t, [](std::int32_t& count) { ++count; });
-    // Each cell's end becomes its begin, and grows to its end again.
-    std::int32_t sum = 0;
-    for (std::size_t c = 1; c < begins.size(); ++c) sum += std::exchange(begins[c], sum);
-    for (std::size_t t = 0; t < n; ++t)
-        for_places(t, [&](std::int32_t& at) { grid_.triangles[at++] = static_cast<std::int32_t>(t); });
+    const auto n_triangles = static_cast<std::int64_t>(triangles_.corners.size() / 3);
+    return n_looks_ > looks_at_least + looks_a_triangle * n_triangles;
 }
 
 void Depths::cross(const Vector3& point, std::size_t triangle, Wound& wound) const
@@ -157,12 +101,10 @@ double Depths::seen(const Vector3& point, std::int32_t piece)
 int Depths::of(const Vector3& point, std::int32_t own, bool as_if_outwards)
 {
     if (is_beyond()) return 0;
-    const int cell = grid_.cell(0, point[1]) * grid_.n + grid_.cell(1, point[2]);
-    const std::int32_t begin = grid_.begins[cell], end = grid_.begins[cell + 1];
-    n_looks_ += end - begin;
+    const std::span<const std::int32_t> triangles = grid_.over(point);
+    n_looks_ += std::ssize(triangles);
     met_.clear();
-    for (std::int32_t k = begin; k < end; ++k) {
-        const auto triangle = static_cast<std::size_t>(grid_.triangles[k]);
+    for (const std::int32_t triangle : triangles) {
         const std::int32_t piece = pieces_.of(triangles_.face(triangle));
         if (piece == own) continue;
         Wound& wound = wounds_[piece];

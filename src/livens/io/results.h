@@ -23,17 +23,21 @@ class JsonWriter;
 inline constexpr int format_major = 2;   ///< an unknown one is refused
 extern const int format_minor;           ///< additions only; grows with the newest figure
 
-/// A run as it stands in the file: everything but the model, which is made again from the scenario text.
-struct Run {
-    std::string scenario_text;
-    std::string meshes;   ///< Scenario::meshes
-    std::string title;
-    std::string resolved;   ///< options after defaults, JSON
+/// What the parts of a model are called, and what a reader needs of them beside their motion.
+struct PartNames {
     std::vector<std::string> body_names;
     std::vector<bool> body_is_point;
     std::vector<Vector3> centers_of_mass;   ///< body coordinates
     std::vector<std::string> joint_names;
     std::vector<std::string> row_labels;   ///< "elbow: x"
+};
+
+/// A run as it stands in the file: everything but the model, which is made again from the scenario text.
+struct Run : PartNames {
+    std::string scenario_text;
+    std::string meshes;   ///< Scenario::meshes
+    std::string title;
+    std::string resolved;                  ///< options after defaults, JSON
     std::vector<double> output;            ///< output times
     std::string method;                    ///< name_of() the method
     Motion motion;

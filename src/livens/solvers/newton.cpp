@@ -23,11 +23,15 @@ constexpr double far_step = 0.1;   // where rows were made that far apart they f
 constexpr int most_whole_steps = 9;
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
-using Values = std::vector<double>;
+/// What is to be added, and how much that is.
+struct Increment {
+    std::vector<double>& values;
+    double size = 0;
+};
 
 class Iteration {
 public:
-    Iteration(NewtonProblem& problem, const NewtonOptions& options, Values& increment, Values& next)
+    Iteration(NewtonProblem& problem, const NewtonOptions& options, Increment increment, Increment next)
         : problem_(problem), options_(options), increment_(increment), next_(next)
     {}
 
@@ -66,7 +70,7 @@ private:
         if (options_.goes_on && !options_.goes_on(report_.iterations)) return fail(SolveStatus::cancelled);
         ++report_.factorisations;
         rows_before_ = problem_.rows().size;
-        if (!problem_.factorise() || !solve(increment_, size_)) return fail(SolveStatus::singular);
+        if (!problem_.factorise() || !solve(increment_)) return fail(SolveStatus::singular);
         are_fresh_ = true;
         size_before_ = 0;
         // Damping at most doubles from step to step, so that a difficult stretch is not left by a leap.
@@ -76,7 +80,7 @@ private:
             // A damped step leaves a share of the increment undone by design; its size says nothing about
             // convergence.
             const bool is_done = damping == 1 && (within_tolerance() || at_rounding());
-            if (!is_done && !shrinks(next_size_, size_, damping)) {
+            if (!is_done && !shrinks(next_.size, increment_.size, damping)) {
                 if (!are_fresh_ || damping <= shortest_step) return go_back();
                 damping /= 2;
                 continue;
@@ -85,27 +89,28 @@ private:
             if (is_done) return finish();
             // Such a step makes no visible way: of a thousand lengths it goes one, and would go on so for all
             // iterations.
-            if (damping <= shortest_step && size_ > hopeless_size) return fail(SolveStatus::not_converged);
+            if (damping <= shortest_step && increment_.size > hopeless_size)
+                return fail(SolveStatus::not_converged);
             if (report_.iterations >= options_.max_iterations) return stop_at_limit();
             if (!are_worth_another_step() || !advance()) return Verdict::new_factors;
         }
     }
 
     /// False if the increment is not finite.
-    bool solve(Values& increment, double& size)
+    bool solve(Increment& increment)
     {
-        problem_.solve(increment);
-        size = problem_.size_of(increment);
-        return std::isfinite(size);
+        problem_.solve(increment.values);
+        increment.size = problem_.size_of(increment.values);
+        return std::isfinite(increment.size);
     }
 
     /// Takes the step for a trial, and finds the size of the next increment with the same factors; infinite
     /// where there is none. It is solved for only where the rows do not foretell enough.
     void look_ahead(double damping)
     {
-        next_size_ = infinite;
+        next_.size = infinite;
         is_solved_ = false;
-        are_finite_ = problem_.move(increment_, damping) && problem_.residual();
+        are_finite_ = problem_.move(increment_.values, damping) && problem_.residual();
         if (!are_finite_) return;
         rows_ = problem_.rows();
         tolerance_ = options_.tolerance * problem_.scale();
@@ -114,12 +119,12 @@ private:
             const double rate = rows_before_ > 0 ? rows_.size / rows_before_ : (rows_.size > 0 ? 1 : 0);
             // Where rows shrink as increments do, the solution with the same factors is spared ("Newton's
             // iteration").
-            next_size_ = size_ * rate;
+            next_.size = increment_.size * rate;
             if (damping == 1 && (within_tolerance() || at_rounding())) return;
-            if (shrinks(next_size_, size_, damping)) return;
+            if (shrinks(next_.size, increment_.size, damping)) return;
         }
         is_solved_ = true;
-        if (!solve(next_, next_size_)) next_size_ = infinite;
+        if (!solve(next_)) next_.size = infinite;
     }
 
     static bool shrinks(double next, double size, double damping)
@@ -128,7 +133,7 @@ private:
     }
 
     /// All that is left to do, as far as it is known.
-    double left() const { return next_size_ + rows_.correction; }
+    double left() const { return next_.size + rows_.correction; }
 
     bool within_tolerance() const
     {
@@ -140,9 +145,9 @@ private:
     bool at_rounding() const
     {
         // An iteration that still contracts well is not at its rounding, however small its rows are.
-        if (!std::isfinite(next_size_) || next_size_ <= 0.25 * size_) return false;
+        if (!std::isfinite(next_.size) || next_.size <= 0.25 * increment_.size) return false;
         if (rows_.size < 4 * rows_.rounding) return true;
-        return are_fresh_ && size_ < rounding_begins && next_size_ > 0.5 * size_;
+        return are_fresh_ && increment_.size < rounding_begins && next_.size > 0.5 * increment_.size;
     }
 
     void accept(double damping)
@@ -152,8 +157,8 @@ private:
         rows_before_ = rows_.size;
         ++report_.iterations;
         whole_steps_ = damping == 1 ? whole_steps_ + 1 : 0;
-        report_.last_increment = damping * size_;
-        report_.contraction = size_ > 0 ? next_size_ / size_ : 0;
+        report_.last_increment = damping * increment_.size;
+        report_.contraction = increment_.size > 0 ? next_.size / increment_.size : 0;
         report_.smallest_damping = std::min(report_.smallest_damping, damping);
     }
 
@@ -165,8 +170,8 @@ private:
         if (!is_solved_) {
             // Increments themselves tell, if there are two. With one there is only what the rows left of a
             // step much longer than those to come: a tenth of it is taken.
-            contraction = size_before_ > 0 ? size_ / size_before_ : 0.1 * contraction;
-            if (size_ > far_step) return false;
+            contraction = size_before_ > 0 ? increment_.size / size_before_ : 0.1 * contraction;
+            if (increment_.size > far_step) return false;
         }
         // With a constant contraction c the tolerance is met after log(tolerance / left) / log(c) more steps.
         // The bound 0.9 keeps the denominator away from zero.
@@ -178,13 +183,13 @@ private:
     bool advance()
     {
         are_fresh_ = false;
-        size_before_ = size_;
+        size_before_ = increment_.size;
         if (is_solved_) {
-            increment_.swap(next_);
-            size_ = next_size_;
+            increment_.values.swap(next_.values);
+            increment_.size = next_.size;
             return true;
         }
-        return solve(increment_, size_) && shrinks(size_, size_before_, 1);
+        return solve(increment_) && shrinks(increment_.size, size_before_, 1);
     }
 
     /// After the last step was accepted. What was solved for besides is small enough to be safe.
@@ -193,11 +198,11 @@ private:
         report_.ended_by_rounding = !within_tolerance();
         // The next increment is already there: taking it costs one residual, and squares what the tolerance
         // leaves.
-        if (!is_solved_ || !within_tolerance() || next_size_ == 0) return Verdict::converged;
-        if (!problem_.move(next_, 1) || !problem_.residual())
+        if (!is_solved_ || !within_tolerance() || next_.size == 0) return Verdict::converged;
+        if (!problem_.move(next_.values, 1) || !problem_.residual())
             return return_to_kept() ? Verdict::converged : fail(SolveStatus::not_finite);
         problem_.keep();
-        report_.last_increment = next_size_;
+        report_.last_increment = next_.size;
         return Verdict::converged;
     }
 
@@ -212,7 +217,7 @@ private:
 
     bool return_to_kept()
     {
-        are_finite_ = problem_.move(increment_, 0) && problem_.residual();
+        are_finite_ = problem_.move(increment_.values, 0) && problem_.residual();
         return are_finite_;
     }
 
@@ -230,14 +235,11 @@ private:
 
     NewtonProblem& problem_;
     const NewtonOptions& options_;
-    Values& increment_;
-    Values& next_;
+    Increment increment_, next_;   // the next one may be foretold alone, without values
     NewtonReport report_;
 
     NewtonProblem::Rows rows_;   // at the last trial
-    double size_ = 0;            // of the increment
-    double size_before_ = 0;     // of the one before, with the same factors; 0: none
-    double next_size_ = 0;       // of the next one
+    double size_before_ = 0;     // of the increment before, with the same factors; 0: none
     double rows_before_ = 0;     // size of the rows at the kept point
     double damping_ = 1;         // of the last accepted step
     double tolerance_ = 0;       // options' times scale, at the last trial
@@ -254,7 +256,7 @@ NewtonReport Newton::run(NewtonProblem& problem, const NewtonOptions& options)
     const auto n = static_cast<std::size_t>(problem.n_unknowns());
     increment_.resize(n);
     next_.resize(n);
-    return Iteration(problem, options, increment_, next_).run();
+    return Iteration(problem, options, {increment_}, {next_}).run();
 }
 
 }   // namespace livens

@@ -39,8 +39,8 @@ void lower_orders(const Model& model, Motion& motion)
         for (const Matrix34& x : state.X) X.insert(X.end(), std::begin(x.a), std::end(x.a));
         for (const Matrix34& v : state.V) V.insert(V.end(), std::begin(v.a), std::end(v.a));
         // Loads right of the instant less those left of it, in the same state: what differs is the jump.
-        tables.add_loads({t, Side::right}, X.data(), V.data(), 1, jump.data(), state.angles);
-        tables.add_loads({t, Side::left}, X.data(), V.data(), -1, jump.data(), state.angles);
+        tables.loads.add({t, Side::right}, X.data(), V.data(), 1, jump.data(), state.angles);
+        tables.loads.add({t, Side::left}, X.data(), V.data(), -1, jump.data(), state.angles);
         // A force that jumps makes the velocity bend, order 1; one that only bends is seen one order later.
         const int order = std::ranges::any_of(jump, [](double f) { return f != 0; }) ? 1 : 2;
         for (int* stated : {&motion.order_at_ends, &motion.dense_order_X, &motion.dense_order_V})

@@ -52,7 +52,7 @@ public:
           t_(closed.start.t)
     {
         state_.resize(tables_);
-        state_.angles = tables_.turns.begin(closed.start);
+        state_.angles = tables_.loads.turns.begin(closed.start);
         const std::vector<Matrix34> stated = model.start().X;
         for (const Joint& joint : model.joints())
             for (const NamedCoordinate& q : joint.coordinates) {
@@ -70,7 +70,7 @@ public:
         state_.t = t_;
         std::copy_n(point.X.data()->data(), state_.X.size(), state_.X.begin());
         std::fill(state_.velocity.begin(), state_.velocity.end(), 0.0);
-        tables_.turns.follow(point.X, state_.angles);
+        tables_.loads.turns.follow(point.X, state_.angles);
         follow_joints(point.X);
         if (!instant_.prepare(state_, tables_.independent)) return false;
         instant_.accelerate(state_, Side::right);
@@ -114,7 +114,7 @@ public:
     {
         const Values y = product(point.directions, step);
         Values xi(static_cast<std::size_t>(tables_.n_twists));
-        tables_.to_twist(point.maps.data(), y.data(), xi.data());
+        tables_.bodies.to_twist(point.maps.data(), y.data(), xi.data());
         return largest_displacement(tables_, xi.data());
     }
 
@@ -123,7 +123,7 @@ public:
     {
         const Values y = product(from.directions, step);
         Values xi(static_cast<std::size_t>(tables_.n_twists));
-        tables_.to_twist(from.maps.data(), y.data(), xi.data());
+        tables_.bodies.to_twist(from.maps.data(), y.data(), xi.data());
         X = from.X;
         for (int b = 0; b < tables_.n_bodies(); ++b) {
             const double* v = xi.data() + tables_.bodies[b].first;
@@ -165,7 +165,7 @@ public:
     int bad_load(const std::vector<Matrix34>& X) const
     {
         const std::vector<double> V(12 * X.size(), 0.0);
-        return tables_.bad_load({t_, Side::right}, X.data()->data(), V.data(), state_.angles);
+        return tables_.loads.bad({t_, Side::right}, X.data()->data(), V.data(), state_.angles);
     }
 
 private:

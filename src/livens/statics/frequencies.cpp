@@ -33,7 +33,7 @@ public:
         : tables_(tables), state_(state)
     {
         // Long chains have no basis: to make one would cost more than the whole iteration.
-        if (state.by_joints) return;
+        if (state.held.by_joints) return;
         free_.emplace(tables, state);
         mass_ = on_free_motions(mass);
     }
@@ -72,7 +72,7 @@ public:
     {
         Mode mode;
         if (terms.empty() || tables_.freedoms() == 0) return mode;
-        const auto [value, y] = state_.by_joints ? by_lanczos(terms) : by_basis(terms);
+        const auto [value, y] = state_.held.by_joints ? by_lanczos(terms) : by_basis(terms);
         if (!(value > 0) || is_rounding(value, y, terms)) return mode;
         mode.value = value;
         double most = 0;
@@ -152,8 +152,8 @@ private:
 
     void project(Values& y) const
     {
-        Values mu(state_.rows.size());
-        state_.joints.project(y.data(), nullptr, mu.data());
+        Values mu(state_.held.rows.size());
+        state_.held.joints.project(y.data(), nullptr, mu.data());
     }
 
     /// The symmetric part of K y.

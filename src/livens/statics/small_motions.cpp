@@ -39,7 +39,7 @@ SmallMotions::SmallMotions(const Tables& tables, const InstantState& state, Side
         std::fill(y.begin(), y.end(), 0.0);
         for (const auto& body : tables.bodies)
             if (k < body.dofs) y[body.first + k] = 1;
-        tables.to_twist(state.maps.data(), y.data(), xi.data());
+        tables.bodies.to_twist(state.maps.data(), y.data(), xi.data());
         columns_.resize(tables.bodies.size(), BodyColumns{});
         maps_.resize(tables.bodies.size(), Matrix<6, 6>{});
         for (int b = 0; b < tables.n_bodies(); ++b) {
@@ -56,11 +56,11 @@ SmallMotions::SmallMotions(const Tables& tables, const InstantState& state, Side
 void SmallMotions::add_loads(TwistTerms& springs, TwistTerms& dampers) const
 {
     std::vector<double> V(state_.X.size());
-    tables_.rates_of(state_.X.data(), state_.velocity.data(), V.data());
-    for (const int l : tables_.loads_with_tangent) {
+    tables_.bodies.rates_of(state_.X.data(), state_.velocity.data(), V.data());
+    for (const int l : tables_.loads.with_tangent) {
         const Load& load = tables_.model->loads()[l];
         LoadTangent tangent(load.bodies.size());
-        load.tangent(tables_.arguments(l, at_, state_.X.data(), V.data(), state_.angles), tangent);
+        load.tangent(tables_.loads.arguments(l, at_, state_.X.data(), V.data(), state_.angles), tangent);
         for (std::size_t r = 0; r < 2; ++r)
             for (std::size_t s = 0; s < load.bodies.size(); ++s) {
                 const int i = load.bodies[r], j = load.bodies[s];
@@ -81,9 +81,9 @@ void SmallMotions::add_constraints(TwistTerms& terms) const
     std::vector<double> r = forces_less_inertia(s);
     for (int c = 0; c < tables_.n_rows(); ++c) {
         if (lambda[c] == 0) continue;
-        const Tables::RowTable& row = tables_.rows[c];
-        double gradient[Tables::gradient_size] = {};
-        tables_.gradient(c, at_, state_.X.data(), gradient);
+        const RowTable& row = tables_.rows[c];
+        double gradient[RowTables::gradient_size] = {};
+        tables_.rows.gradient(c, at_, state_.X.data(), gradient);
         for (int k = 0; k < row.n_sides; ++k) {
             const int i = row.bodies[k];
             for (const int a : row.columns[k])
@@ -111,7 +111,7 @@ void SmallMotions::add_mass(TwistTerms& terms) const
         Matrix<6, 6> M = identity<6>();
         if (tables_.bodies[b].dofs == 6) {
             Matrix3 inertia;
-            tables_.spin_mass(b, state_.X.data(), state_.X.data(), inertia.data());
+            tables_.bodies.spin_mass(b, state_.X.data(), state_.X.data(), inertia.data());
             for (int i = 0; i < 3; ++i)
                 for (int j = 0; j < 3; ++j) M(3 + i, 3 + j) = inertia(i, j);
         }
@@ -129,8 +129,8 @@ TwistTerm SmallMotions::term(int source, const Matrix<12, 12>& K, double factor,
 std::vector<double> SmallMotions::forces_less_inertia(int side) const
 {
     std::vector<double> V(state_.X.size()), A(V.size()), r(V.size());
-    tables_.rates_of(state_.X.data(), state_.velocity.data(), V.data());
-    tables_.rates_of(state_.X.data(), state_.acceleration[side].data(), A.data());
+    tables_.bodies.rates_of(state_.X.data(), state_.velocity.data(), V.data());
+    tables_.bodies.rates_of(state_.X.data(), state_.acceleration[side].data(), A.data());
     for (int b = 0; b < tables_.n_bodies(); ++b) {
         const auto& body = tables_.bodies[b];
         if (body.dofs == 3) continue;
@@ -141,9 +141,9 @@ std::vector<double> SmallMotions::forces_less_inertia(int side) const
         // acceleration.
         for (int i = 0; i < 12; ++i) A[12 * b + i] += centripetal[i];
     }
-    tables_.times_mass(A.data(), -1.0, r.data());
-    tables_.add_weight(1.0, r.data());
-    tables_.add_loads(at_, state_.X.data(), V.data(), 1.0, r.data(), state_.angles);
+    tables_.bodies.times_mass(A.data(), -1.0, r.data());
+    tables_.bodies.add_weight(1.0, r.data());
+    tables_.loads.add(at_, state_.X.data(), V.data(), 1.0, r.data(), state_.angles);
     return r;
 }
 
@@ -152,7 +152,7 @@ FreeMotions::FreeMotions(const Tables& tables, const InstantState& state)
 {
     if (n == 0) return;
     DenseMatrix by_rows(n, n_twists);
-    state.basis.q.null_space(by_rows.a.data());
+    state.held.basis.q.null_space(by_rows.a.data());
     Z = transpose(by_rows);
 }
 
@@ -188,7 +188,7 @@ std::vector<double> FreeMotions::sizes(const Tables& tables, const TwistTerms& t
 std::vector<double> FreeMotions::twists(const Tables& tables, const InstantState& state, int k) const
 {
     std::vector<double> xi(static_cast<std::size_t>(n_twists));
-    tables.to_twist(state.maps.data(), Z.column(k).data(), xi.data());
+    tables.bodies.to_twist(state.maps.data(), Z.column(k).data(), xi.data());
     return xi;
 }
 
@@ -216,8 +216,8 @@ PreparedState::PreparedState(const Model& model, const ClosedStart& closed, Side
         const Vector3 w = body.dofs == 6 ? angular_velocity(X, V) : Vector3{};
         for (int i = 0; i < body.dofs; ++i) state.velocity[body.first + i] = i < 3 ? V(i, 0) : w[i - 3];
     }
-    state.angles = tables.turns.begin(closed.start);
-    tables.turns.follow(closed.start.X, state.angles);
+    state.angles = tables.loads.turns.begin(closed.start);
+    tables.loads.turns.follow(closed.start.X, state.angles);
     is_fit = instant.prepare(state, tables.independent);
     if (is_fit) instant.accelerate(state, side);
 }

@@ -15,8 +15,8 @@ std::vector<double> scaled_rows(const Tables& tables, const InstantState& state,
                                 const std::vector<double>& raw)
 {
     std::vector<double> q(static_cast<std::size_t>(tables.n_twists)), y(q.size());
-    tables.twist_rows(state.X.data(), state.maps.data(), raw.data(), q.data());
-    tables.to_scaled_rows(state.maps.data(), q.data(), y.data());
+    tables.bodies.twist_rows(state.X.data(), state.maps.data(), raw.data(), q.data());
+    tables.bodies.to_scaled_rows(state.maps.data(), q.data(), y.data());
     return y;
 }
 
@@ -45,9 +45,9 @@ void Statics::add_forces(const Tables& tables, const InstantState& state, Instan
     const std::vector<double>& lambda = state.multipliers[at.side == Side::left ? 0 : 1];
     const std::vector<double> V(state.X.size(), 0.0);
     given.assign(V.size(), 0.0);
-    tables.add_weight(1.0, given.data());
+    tables.bodies.add_weight(1.0, given.data());
     const std::vector<double> of_weight = scaled_rows(tables, state, given);
-    tables.add_loads(at, X, V.data(), 1.0, given.data(), state.angles);
+    tables.loads.add(at, X, V.data(), 1.0, given.data(), state.angles);
 
     rows = scaled_rows(tables, state, given);
     sizes_.resize(rows.size());
@@ -57,8 +57,8 @@ void Statics::add_forces(const Tables& tables, const InstantState& state, Instan
         sizes_[i] = std::abs(of_weight[i]) + std::abs(rows[i] - of_weight[i]);
     for (int r = 0; r < tables.n_rows(); ++r) {
         if (lambda[r] == 0) continue;
-        double g[Tables::gradient_size];
-        tables.gradient(r, at, X, g);
+        double g[RowTables::gradient_size];
+        tables.rows.gradient(r, at, X, g);
         tables.scaled_gradient(r, X, state.maps.data(), g, row.data());
         add_scaled(rows, -lambda[r], row);
         for (std::size_t i = 0; i < row.size(); ++i) sizes_[i] += std::abs(lambda[r]) * std::abs(row[i]);

@@ -54,7 +54,7 @@ public:
     Values velocity() const
     {
         Values V(state_.X.size());
-        tables_.rates_of(state_.X.data(), state_.velocity.data(), V.data());
+        tables_.bodies.rates_of(state_.X.data(), state_.velocity.data(), V.data());
         return form_of(V);
     }
 
@@ -74,7 +74,7 @@ public:
     Values form_of(const Values& dX) const
     {
         Values y, mdX(dX.size());
-        tables_.times_mass(dX.data(), 1.0, mdX.data());
+        tables_.bodies.times_mass(dX.data(), 1.0, mdX.data());
         for (int b = 0; b < tables_.n_bodies(); ++b) {
             const Values of_body = transposed_product(columns(b), std::span(mdX).subspan(12 * b, 12));
             y.insert(y.end(), of_body.begin(), of_body.end());   // bodies follow each other

@@ -137,14 +137,14 @@ struct Scene {
     Numbers rates() const
     {
         Numbers V(state.X.size());
-        tables.rates_of(state.X.data(), state.velocity.data(), V.data());
+        tables.bodies.rates_of(state.X.data(), state.velocity.data(), V.data());
         return V;
     }
     /// X'' of the twist acceleration.
     Numbers second_rates(int side) const
     {
         Numbers A(state.X.size()), turning(A.size(), 0.0);
-        tables.rates_of(state.X.data(), state.acceleration[side].data(), A.data());
+        tables.bodies.rates_of(state.X.data(), state.acceleration[side].data(), A.data());
         for (int b = 0; b < model.n_bodies(); ++b) {
             if (model.bodies()[b].is_point) continue;
             const double* w = &state.velocity[tables.bodies[b].first + 3];
@@ -170,7 +170,7 @@ struct Scene {
             const Numbers g = gradient_of(model.row(r), now, state.X);
             for (std::size_t i = 0; i < g.size(); ++i) sum[i] += all[r] * g[i];
         }
-        tables.twist_rows(state.X.data(), state.maps.data(), sum.data(), q.data());
+        tables.bodies.twist_rows(state.X.data(), state.maps.data(), sum.data(), q.data());
         return q;
     }
 
@@ -230,8 +230,8 @@ TEST(Instant, VelocityTakesWhatTheRowsAllowOfAMomentum)
         }
         // what is left of the momentum is that of the velocity, and the rows took the rest
         Numbers P(V.size()), of_velocity(p.size()), rest = p, wrong = p;
-        s.tables.times_mass(V.data(), 1.0, P.data());
-        s.tables.twist_rows(s.state.X.data(), s.state.maps.data(), P.data(), of_velocity.data());
+        s.tables.bodies.times_mass(V.data(), 1.0, P.data());
+        s.tables.bodies.twist_rows(s.state.X.data(), s.state.maps.data(), P.data(), of_velocity.data());
         EXPECT_LT(furthest(s.state.p, of_velocity), 1e-11);
         const Numbers push = s.pushes(s.lambda);
         for (std::size_t i = 0; i < p.size(); ++i) {
@@ -304,7 +304,7 @@ TEST(Instant, ASingularMassThatJointsHoldIsSolvedToo)
     frame.axis_first = frame.axis_second = {0, 1, 0};
     model.add_joint(revolute("hinge", world, needle, frame));
     Scene s(model);
-    EXPECT_FALSE(s.tables.regular);
+    EXPECT_FALSE(s.tables.bodies.are_regular());
     ASSERT_TRUE(s.is_prepared);
     s.move();
     s.system.accelerate(s.state, Side::right);
@@ -334,7 +334,7 @@ TEST(Instant, AMotionWithoutInertiaIsReported)
     state.resize(definite);
     state.X = flat(solid.start().X);
     EXPECT_TRUE(regular.prepare(state, {})) << "negative control";
-    EXPECT_EQ(state.smallest_pivot, 1);
+    EXPECT_EQ(state.held.smallest_pivot, 1);
 }
 
 TEST(Instant, RedundantRowsHaveNoMultiplierAndPushAlikeWhateverIsChosen)
@@ -358,8 +358,8 @@ TEST(Instant, RedundantRowsHaveNoMultiplierAndPushAlikeWhateverIsChosen)
         std::vector<int> unfit = second.tables.independent;
         unfit.front() = unfit.back();
         ASSERT_TRUE(second.system.prepare(second.state, unfit));
-        EXPECT_TRUE(second.state.rows_chosen);
-        EXPECT_FALSE(first.state.rows_chosen);
+        EXPECT_TRUE(second.state.held.are_new);
+        EXPECT_FALSE(first.state.held.are_new);
         second.move();
         second.system.accelerate(second.state, Side::right);
         EXPECT_LT(furthest(second.state.acceleration[1], first.state.acceleration[1]), 1e-9);
@@ -405,7 +405,7 @@ double pivot_of_rods(double angle)
     state.resize(tables);
     state.X = flat(model.start().X);
     EXPECT_TRUE(system.prepare(state, {0, 1}));
-    return state.smallest_pivot;
+    return state.held.smallest_pivot;
 }
 
 TEST(Instant, ThePivotIsTheSineBetweenTwoRows)
@@ -418,7 +418,7 @@ TEST(Instant, ThePivotIsTheSineBetweenTwoRows)
 TEST(Instant, ABasisAtHandServesAsWellAsItsOwn)
 {
     Scene s(workshop(5)), other(workshop(5));
-    ConstraintBasis known = s.state.basis;
+    ConstraintBasis known = s.state.held.basis;
     ASSERT_TRUE(other.system.prepare(other.state, other.tables.independent, &known));
     s.move();
     other.move();

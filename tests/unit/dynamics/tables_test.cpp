@@ -30,7 +30,7 @@ struct Bench {
         : random(seed + 50), model(driven_workshop(seed)), tables(model, every_row(model), true),
           x(random_places(model, random, rigid)), maps(x.size(), 0.0)
     {
-        tables.map_twists(x.data(), maps.data());
+        tables.bodies.map_twists(x.data(), maps.data());
     }
 
     Numbers any(std::size_t n)
@@ -51,14 +51,14 @@ struct Bench {
     Numbers rates(const Numbers& y) const
     {
         Numbers xi(y.size()), dX(x.size());
-        tables.to_twist(maps.data(), y.data(), xi.data());
-        tables.rates_of(x.data(), xi.data(), dX.data());
+        tables.bodies.to_twist(maps.data(), y.data(), xi.data());
+        tables.bodies.rates_of(x.data(), xi.data(), dX.data());
         return dX;
     }
     Numbers momenta(const Numbers& dX) const
     {
         Numbers P(x.size());
-        tables.times_mass(dX.data(), 1.0, P.data());
+        tables.bodies.times_mass(dX.data(), 1.0, P.data());
         return P;
     }
 
@@ -76,10 +76,10 @@ TEST(Tables, ValuesAreThoseOfTheRows)
         const Bench bench(seed);
         for (int r = 0; r < n_rows(bench); ++r) {
             const double phi = phi_of(*bench.tables.rows[r].row, now, bench.x);
-            EXPECT_NEAR(bench.tables.value(r, now, bench.x.data()), phi, 2e-13) << r;
+            EXPECT_NEAR(bench.tables.rows.value(r, now, bench.x.data()), phi, 2e-13) << r;
             Numbers g = untouched();
-            bench.tables.gradient(r, now, bench.x.data(), g.data());
-            EXPECT_NEAR(bench.tables.value(r, now, bench.x.data(), g.data()), phi, 2e-13) << r;
+            bench.tables.rows.gradient(r, now, bench.x.data(), g.data());
+            EXPECT_NEAR(bench.tables.rows.value(r, now, bench.x.data(), g.data()), phi, 2e-13) << r;
         }
     }
 }
@@ -109,7 +109,7 @@ TEST(Tables, HessiansAreDifferencesOfGradients)
         Bench bench(seed);
         const Numbers step = bench.any(bench.x.size());
         for (int r = 0; r < n_rows(bench); ++r) {
-            const Tables::RowTable& row = bench.tables.rows[r];
+            const RowTable& row = bench.tables.rows[r];
             for (int moving = 0; moving < row.n_sides; ++moving) {
                 Numbers there = bench.x;
                 for (int i = 0; i < 12; ++i) {
@@ -139,8 +139,8 @@ TEST(Tables, RatesAreDerivativesInTime)
         const double* X = bench.x.data();
         int driven = 0;
         for (int r = 0; r < n_rows(bench); ++r) {
-            const auto standing = [&](double s) { return bench.tables.value(r, {now.t + s}, X); };
-            const double rate = bench.tables.rate(r, now, X);
+            const auto standing = [&](double s) { return bench.tables.rows.value(r, {now.t + s}, X); };
+            const double rate = bench.tables.rows.rate(r, now, X);
             EXPECT_NEAR(rate, derivative(standing, 1), 1e-8);
             const Instant later{1.9};
             const Numbers none(bench.x.size(), 0.0);
@@ -165,9 +165,9 @@ TEST(Tables, CurvatureIsTheSecondDerivativeOnAStraightLine)
         std::vector<int> coupled;
         for (int r = 0; r < n_rows(bench); ++r) {
             const double wanted = curvature_of(*bench.tables.rows[r].row, now, bench.x, v);
-            EXPECT_NEAR(bench.tables.curvature(r, now, bench.x.data(), v.data()), wanted, 1e-6) << r;
+            EXPECT_NEAR(bench.tables.rows.curvature(r, now, bench.x.data(), v.data()), wanted, 1e-6) << r;
             // negative control: the angle's drive turns with the bodies, which adds 2 f' <gradient, V>
-            const double standing = bench.tables.curvature(r, now, bench.x.data(), rest.data());
+            const double standing = bench.tables.rows.curvature(r, now, bench.x.data(), rest.data());
             const double moving = curvature_of(frozen(*bench.tables.rows[r].row, now), now, bench.x, v);
             if (std::abs(standing + moving - wanted) > 1e-3) coupled.push_back(r);
         }
@@ -179,7 +179,7 @@ TEST(Tables, RowsOfTheWorldHaveOneSide)
 {
     const Bench bench(3);
     int held = 0;
-    for (const Tables::RowTable& row : bench.tables.rows) {
+    for (const RowTable& row : bench.tables.rows) {
         EXPECT_EQ(row.n_sides, row.row->body_i == world ? 1 : 2);
         EXPECT_EQ(row.bodies[row.n_sides - 1], row.row->body_j);
         held += row.row->body_i == world;
@@ -196,7 +196,8 @@ TEST(Tables, RigidityFollowsTheJointsWhereItIsAskedFor)
     const Bench bench(4, true);
     const int n = bench.model.n_rows();
     EXPECT_EQ(n_rows(bench), n + 6 * 5) << "a point has none";
-    for (int r = n; r < n_rows(bench); ++r) EXPECT_NEAR(bench.tables.value(r, now, bench.x.data()), 0, 1e-15);
+    for (int r = n; r < n_rows(bench); ++r)
+        EXPECT_NEAR(bench.tables.rows.value(r, now, bench.x.data()), 0, 1e-15);
     const Tables without(bench.model, every_row(bench.model));
     EXPECT_EQ(static_cast<int>(without.rows.size()), n);
     EXPECT_EQ(without.freedoms(), without.n_twists - n);
@@ -207,7 +208,7 @@ TEST(Tables, ScaledTwistsMeasureKineticEnergy)
 {
     for (unsigned seed = 1; seed <= 10; ++seed) {
         Bench bench(seed, true);
-        ASSERT_TRUE(bench.tables.regular);
+        ASSERT_TRUE(bench.tables.bodies.are_regular());
         const Numbers y = bench.any_twist(), dX = bench.rates(y);
         double energy = 0;
         for (int b = 0; b < bench.model.n_bodies(); ++b) {
@@ -218,8 +219,8 @@ TEST(Tables, ScaledTwistsMeasureKineticEnergy)
         // negative control: twists of reference points that are meant of centres
         Numbers maps = bench.maps, xi(y.size()), wrong(dX.size());
         for (int b = 0; b < bench.model.n_bodies(); ++b) std::fill_n(maps.begin() + 12 * b + 9, 3, 0.0);
-        bench.tables.to_twist(maps.data(), y.data(), xi.data());
-        bench.tables.rates_of(bench.x.data(), xi.data(), wrong.data());
+        bench.tables.bodies.to_twist(maps.data(), y.data(), xi.data());
+        bench.tables.bodies.rates_of(bench.x.data(), xi.data(), wrong.data());
         EXPECT_GT(std::abs(0.5 * inner(wrong, bench.momenta(wrong)) - energy), 1e-3 * energy);
     }
 }
@@ -231,7 +232,7 @@ TEST(Tables, ScaledGradientsTakeScaledTwists)
         const Numbers y = bench.any_twist(), dX = bench.rates(y);
         for (int r = 0; r < bench.model.n_rows(); ++r) {
             Numbers g = untouched(), row(y.size());
-            bench.tables.gradient(r, now, bench.x.data(), g.data());
+            bench.tables.rows.gradient(r, now, bench.x.data(), g.data());
             bench.tables.scaled_gradient(r, bench.x.data(), bench.maps.data(), g.data(), row.data());
             const double wanted = inner(gradient_of(*bench.tables.rows[r].row, now, bench.x), dX);
             EXPECT_NEAR(inner(row, y), wanted, 1e-12 * (1 + std::sqrt(inner(row, row)))) << r;
@@ -244,7 +245,7 @@ TEST(Tables, WrenchesAreForcesAndMomentsAboutTheCentre)
     Bench bench(2, true);
     for (int r = 0; r < bench.model.n_rows(); ++r) {
         Numbers g = untouched();
-        bench.tables.gradient(r, now, bench.x.data(), g.data());
+        bench.tables.rows.gradient(r, now, bench.x.data(), g.data());
         const Numbers full = table_gradient(bench.tables, r, now, bench.x);
         for (int side = 0; side < bench.tables.rows[r].n_sides; ++side) {
             const int body = bench.tables.rows[r].bodies[side];
@@ -270,8 +271,8 @@ TEST(Tables, ScaledRowsAreTheTransposeOfScaledTwists)
         Bench bench(seed, true);
         const Numbers y = bench.any_twist(), dX = bench.rates(y), raw = bench.any_rates();
         Numbers q(y.size()), rows(y.size());
-        bench.tables.twist_rows(bench.x.data(), bench.maps.data(), raw.data(), q.data());
-        bench.tables.to_scaled_rows(bench.maps.data(), q.data(), rows.data());
+        bench.tables.bodies.twist_rows(bench.x.data(), bench.maps.data(), raw.data(), q.data());
+        bench.tables.bodies.to_scaled_rows(bench.maps.data(), q.data(), rows.data());
         EXPECT_NEAR(inner(rows, y), inner(raw, dX), 1e-12);
     }
 }
@@ -285,8 +286,8 @@ std::vector<double> spin_mass_by_columns(const Bench& from, const Bench& to, int
         Numbers y(static_cast<std::size_t>(tables.n_twists), 0.0), q(y.size()), rows(y.size());
         y[tables.bodies[body].first + 3 + j] = 1;
         const Numbers P = to.momenta(to.rates(y));
-        tables.twist_rows(from.x.data(), from.maps.data(), P.data(), q.data());
-        tables.to_scaled_rows(from.maps.data(), q.data(), rows.data());
+        tables.bodies.twist_rows(from.x.data(), from.maps.data(), P.data(), q.data());
+        tables.bodies.to_scaled_rows(from.maps.data(), q.data(), rows.data());
         for (int i = 0; i < 3; ++i) block.push_back(rows[tables.bodies[body].first + 3 + i]);
     }
     return block;
@@ -297,16 +298,16 @@ TEST(Tables, SpinMassIsTheMassBetweenTwoConfigurations)
     for (unsigned seed = 1; seed <= 5; ++seed) {
         Bench A(seed, true), B(seed, true);
         B.x = random_places(B.model, B.random, true);
-        B.tables.map_twists(B.x.data(), B.maps.data());
+        B.tables.bodies.map_twists(B.x.data(), B.maps.data());
         for (int b = 0; b < A.model.n_bodies(); ++b) {
             if (A.model.bodies()[b].is_point) continue;
             Numbers H(9), exchanged(9), same(9);
-            A.tables.spin_mass(b, A.x.data(), B.x.data(), H.data());
+            A.tables.bodies.spin_mass(b, A.x.data(), B.x.data(), H.data());
             EXPECT_LT(furthest(H, spin_mass_by_columns(A, B, b)), 1e-13);
-            A.tables.spin_mass(b, A.x.data(), A.x.data(), same.data());
+            A.tables.bodies.spin_mass(b, A.x.data(), A.x.data(), same.data());
             EXPECT_LT(furthest(same, {1, 0, 0, 0, 1, 0, 0, 0, 1}), 1e-13);
             // negative control: from the second to the first it is the transpose
-            A.tables.spin_mass(b, B.x.data(), A.x.data(), exchanged.data());
+            A.tables.bodies.spin_mass(b, B.x.data(), A.x.data(), exchanged.data());
             EXPECT_GT(furthest(H, exchanged), 1e-3);
         }
     }
@@ -317,7 +318,7 @@ TEST(Tables, MassesAreThoseOfTheBodies)
     Bench bench(6);
     const Numbers Y = bench.any_rates();
     Numbers out(Y.size(), 7.0);
-    bench.tables.times_mass(Y.data(), -1.5, out.data());
+    bench.tables.bodies.times_mass(Y.data(), -1.5, out.data());
     for (int b = 0; b < bench.model.n_bodies(); ++b) {
         const Matrix4& m = bench.model.bodies()[b].mass;
         EXPECT_LT(norm(body_of(out, b) - -1.5 * (body_of(Y, b) * m)), 1e-12 * norm(m));
@@ -329,7 +330,7 @@ TEST(Tables, WeightPullsAtTheCentresOfMass)
     Bench bench(7, true);
     const Numbers dX = bench.rates(bench.any_twist());
     Numbers raw(dX.size(), 0.0);
-    bench.tables.add_weight(2.0, raw.data());
+    bench.tables.bodies.add_weight(2.0, raw.data());
     double power = 0;
     for (int b = 0; b < bench.model.n_bodies(); ++b) {
         const MassProperties p = mass_properties(bench.model.bodies()[b].mass);
@@ -344,7 +345,7 @@ TEST(Tables, LoadsAreThoseOfTheModel)
     Bench bench(8);
     const Numbers V = bench.any_rates();
     Numbers sum(V.size(), 0.0), wanted(V.size(), 0.0);
-    bench.tables.add_loads(now, bench.x.data(), V.data(), -3.0, sum.data());
+    bench.tables.loads.add(now, bench.x.data(), V.data(), -3.0, sum.data());
     for (int l = 0; l < static_cast<int>(bench.model.loads().size()); ++l) {
         const Load& load = bench.model.loads()[l];
         LoadArguments asked;
@@ -355,7 +356,7 @@ TEST(Tables, LoadsAreThoseOfTheModel)
             asked.X[side] = body_of(bench.x, load.bodies[side]);
             asked.V[side] = body_of(V, load.bodies[side]);
         }
-        const LoadArguments given = bench.tables.arguments(l, now, bench.x.data(), V.data());
+        const LoadArguments given = bench.tables.loads.arguments(l, now, bench.x.data(), V.data());
         for (int side = 0; side < 2; ++side) {
             EXPECT_EQ(given.X[side], asked.X[side]);
             EXPECT_EQ(given.V[side], asked.V[side]);
@@ -367,7 +368,7 @@ TEST(Tables, LoadsAreThoseOfTheModel)
     }
     EXPECT_LT(furthest(sum, wanted), 1e-12);
     EXPECT_GT(inner(sum, sum), 1) << "negative control: there are loads";
-    EXPECT_EQ(bench.tables.loads_with_tangent, (std::vector<int>{0, 1, 2}));
+    EXPECT_EQ(bench.tables.loads.with_tangent, (std::vector<int>{0, 1, 2}));
 }
 
 TEST(Tables, TheFirstLoadThatIsNotFiniteIsNamed)
@@ -382,8 +383,8 @@ TEST(Tables, TheFirstLoadThatIsNotFiniteIsNamed)
         const int index = with.add_load(bad);
         with.add_load(point_force("good", 3, {}, {1, 0, 0}, Frame::inertial));
         const Tables tables(with, {});
-        EXPECT_EQ(tables.bad_load({2.0}, x.data(), V.data()), index);
-        EXPECT_EQ(tables.bad_load({0.5}, x.data(), V.data()), -1);
+        EXPECT_EQ(tables.loads.bad({2.0}, x.data(), V.data()), index);
+        EXPECT_EQ(tables.loads.bad({0.5}, x.data(), V.data()), -1);
     }
 }
 
@@ -392,14 +393,14 @@ TEST(Tables, BodiesWithoutInertiaKeepTheirMassAndLoseTheMetric)
     Model model;
     model.add_body(rigid_body("needle", {2, {0.3, 0, 0}, {0, 0, 0, 0, 0.5, 0, 0, 0, 0.5}}));
     const Tables tables(model, {});
-    EXPECT_FALSE(tables.regular);
+    EXPECT_FALSE(tables.bodies.are_regular());
     Random random(2);
     const Numbers x = flat({random.rigid()});
     Numbers maps(12, 0.0), y{0, 0, 0, 1, 0, 0}, xi(6), dX(12), P(12);
-    tables.map_twists(x.data(), maps.data());
-    tables.to_twist(maps.data(), y.data(), xi.data());
-    tables.rates_of(x.data(), xi.data(), dX.data());
-    tables.times_mass(dX.data(), 1.0, P.data());
+    tables.bodies.map_twists(x.data(), maps.data());
+    tables.bodies.to_twist(maps.data(), y.data(), xi.data());
+    tables.bodies.rates_of(x.data(), xi.data(), dX.data());
+    tables.bodies.times_mass(dX.data(), 1.0, P.data());
     EXPECT_TRUE(std::isfinite(inner(dX, dX)));
     EXPECT_NEAR(inner(dX, P), 0, 1e-13) << "the spin about its axis carries no energy";
     EXPECT_GT(inner(dX, dX), 1e-3);

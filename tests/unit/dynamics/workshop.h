@@ -172,8 +172,8 @@ inline Numbers untouched() { return Numbers(numbers_a_row, std::numeric_limits<d
 inline Numbers table_gradient(const Tables& tables, int r, Instant at, const Numbers& x)
 {
     Numbers g = untouched(), full(x.size(), 0.0);
-    tables.gradient(r, at, x.data(), g.data());
-    const Tables::RowTable& row = tables.rows[r];
+    tables.rows.gradient(r, at, x.data(), g.data());
+    const RowTable& row = tables.rows[r];
     for (int side = 0; side < row.n_sides; ++side)
         for (const int a : row.columns[side])
             for (int i = a; i < a + 3; ++i) full[12 * row.bodies[side] + i] += g[12 * side + i];

@@ -30,7 +30,7 @@ InstantState instant_state(const Tables& tables, const State& start)
     state.t = start.t;
     for (int b = 0; b < tables.n_bodies(); ++b) {
         std::copy_n(start.X[b].a, 12, state.X.begin() + 12 * b);
-        const Tables::BodyTable& body = tables.bodies[b];
+        const BodyTable& body = tables.bodies[b];
         const Vector3 v = start.V[b].column(0);
         const Vector3 w = body.dofs == 6 ? angular_velocity(start.X[b], start.V[b]) : Vector3{};
         for (int i = 0; i < body.dofs; ++i) state.velocity[body.first + i] = i < 3 ? v[i] : w[i - 3];
@@ -76,7 +76,7 @@ std::vector<double> end_momentum(const Tables& tables, const Stretch& stretch, N
             std::copy_n(system.balances().loads().forces(0, A), raw.size(), raw.begin());
         if (A < stretch.degree)
             system.balances().subtract(system.nodes().basis(A), system.balances().impulses(A), raw.data());
-        tables.twist_rows(system.nodes().X(A), system.nodes().maps(A), raw.data(), wrench.data());
+        tables.bodies.twist_rows(system.nodes().X(A), system.nodes().maps(A), raw.data(), wrench.data());
         for (std::size_t i = 0; i < p.size(); ++i) p[i] += wrench[i];
     }
     return p;
@@ -88,7 +88,7 @@ std::vector<double> taken_by(const Tables& tables, NodalSystem& system, const do
     std::vector<double> raw(12 * tables.bodies.size(), 0.0),
         wrench(static_cast<std::size_t>(tables.n_twists));
     system.balances().subtract(system.nodes().basis(A), impulses, raw.data());
-    tables.twist_rows(system.nodes().X(A), system.nodes().maps(A), raw.data(), wrench.data());
+    tables.bodies.twist_rows(system.nodes().X(A), system.nodes().maps(A), raw.data(), wrench.data());
     return wrench;
 }
 
@@ -328,8 +328,8 @@ TEST(JointFactor, AgreesWithOrthogonalBases)
         for (std::size_t i = 0; i < state.velocity.size(); ++i)
             state.velocity[i] = std::sin(1.0 + static_cast<double>(i));
         ASSERT_TRUE(instant.prepare(state, tables.independent));
-        EXPECT_EQ(state.by_joints, sparse);
-        EXPECT_EQ(state.has_basis, !sparse);
+        EXPECT_EQ(state.held.by_joints, sparse);
+        EXPECT_EQ(state.held.has_basis, !sparse);
         instant.from_velocity(state);
         const std::vector<double> p = state.p;
         lambda[sparse ? 1 : 0].resize(tables.rows.size());

@@ -127,7 +127,7 @@ public:
     {
         std::vector<double> y(static_cast<std::size_t>(tables.n_twists)), xi(y), zero(y);
         y[j] = size;
-        tables.to_twist(maps[B].data(), y.data(), xi.data());
+        tables.bodies.to_twist(maps[B].data(), y.data(), xi.data());
         system.nodes().begin_move();
         for (int A = 0; A < stretch.n_nodes(); ++A)
             if (stretch.is_unknown(A)) system.nodes().move(A, A == B ? xi.data() : zero.data(), 1);
@@ -140,8 +140,8 @@ public:
             std::vector<double> raw(system.balances().raw(A), system.balances().raw(A) + maps[A].size());
             system.balances().subtract(nodes.basis(A), impulses[A].data(), raw.data());
             std::vector<double> q(y.size()), scaled(y.size());
-            tables.twist_rows(nodes.X(A), maps[A].data(), raw.data(), q.data());
-            tables.to_scaled_rows(maps[A].data(), q.data(), scaled.data());
+            tables.bodies.twist_rows(nodes.X(A), maps[A].data(), raw.data(), q.data());
+            tables.bodies.to_scaled_rows(maps[A].data(), q.data(), scaled.data());
             result.insert(result.end(), scaled.begin(), scaled.end());
         }
         return result;

@@ -36,8 +36,8 @@ void InstantState::resize(const Tables& tables)
     }
     jerk.assign(n, 0.0);
     snap.assign(n, 0.0);
-    rows = tables.independent;
-    has_basis = false;
+    held.rows = tables.independent;
+    held.has_basis = false;
 }
 
 void InstantState::look_back(const InstantState& earlier, bool forwards)
@@ -66,7 +66,7 @@ void InstantState::forget_past()
 InstantSystem::InstantSystem(const Tables& tables, bool sparse) : tables_(tables), is_sparse_(sparse)
 {
     const auto n = static_cast<std::size_t>(tables.n_twists);
-    if (!tables.regular) {
+    if (!tables.bodies.are_regular()) {
         reduced_.resize(tables.freedoms());
         z_.assign(n * static_cast<std::size_t>(tables.freedoms()), 0.0);
     }
@@ -78,27 +78,27 @@ InstantSystem::InstantSystem(const Tables& tables, bool sparse) : tables_(tables
 bool InstantSystem::prepare(InstantState& state, const std::vector<int>& rows, ConstraintBasis* known,
                             const NearFactor& near)
 {
-    state.rows_chosen = state.has_basis = false;
+    state.held.are_new = state.held.has_basis = false;
     if (known != nullptr && tables_.rank == tables_.n_rows()) {
-        give_room(state.basis);
-        std::swap(state.basis, *known);
-        state.has_basis = true;
+        give_room(state.held.basis);
+        std::swap(state.held.basis, *known);
+        state.held.has_basis = true;
         if (!is_sparse_) {
-            state.rows = rows;
-            return tables_.regular || prepare_singular(state);
+            state.held.rows = rows;
+            return tables_.bodies.are_regular() || prepare_singular(state);
         }
     } else {
-        tables_.map_twists(state.X.data(), state.maps.data());
+        tables_.bodies.map_twists(state.X.data(), state.maps.data());
     }
     hold(state, rows, near);
     if (tables_.rank < tables_.n_rows() && !rows_are_fit(state)) {
-        give_room(state.basis);
-        state.basis.choose(tables_, {state.t}, state.X.data(), state.maps.data());
-        hold(state, std::vector<int>(state.basis.rows));
-        state.rows_chosen = true;
-        pivot_at_choice_ = state.smallest_pivot;
+        give_room(state.held.basis);
+        state.held.basis.choose(tables_, {state.t}, state.X.data(), state.maps.data());
+        hold(state, std::vector<int>(state.held.basis.rows));
+        state.held.are_new = true;
+        pivot_at_choice_ = state.held.smallest_pivot;
     }
-    return tables_.regular || prepare_singular(state);
+    return tables_.bodies.are_regular() || prepare_singular(state);
 }
 
 /// A basis takes room that grows with the square of the bodies: where it is needed.
@@ -110,59 +110,60 @@ void InstantSystem::give_room(ConstraintBasis& basis) const
 /// What these rows hold.
 void InstantSystem::hold(InstantState& state, const std::vector<int>& rows, const NearFactor& near)
 {
-    state.rows = rows;
+    state.held.rows = rows;
     if (is_sparse_) {
         if (pattern_ == nullptr || pattern_->chosen() != rows) pattern_ = pattern_of(tables_, rows);
-        state.joints.use(pattern_);
-        state.smallest_pivot = state.joints.prepare(tables_, state.X.data(), near);
-        state.by_joints = state.smallest_pivot > JointFactor::well_held;
-        if (state.by_joints) return;
+        state.held.joints.use(pattern_);
+        state.held.smallest_pivot = state.held.joints.prepare(tables_, state.X.data(), near);
+        state.held.by_joints = state.held.smallest_pivot > JointFactor::well_held;
+        if (state.held.by_joints) return;
     }
-    state.has_basis = false;
+    state.held.has_basis = false;
     add_basis(state);
-    state.smallest_pivot = state.basis.smallest_pivot;
+    state.held.smallest_pivot = state.held.basis.smallest_pivot;
 }
 
 void InstantSystem::add_basis(InstantState& state) const
 {
-    if (state.has_basis) return;
-    give_room(state.basis);
-    state.basis.build(tables_, {state.t}, state.X.data(), state.maps.data(), state.rows, false);
-    state.has_basis = true;
+    if (state.held.has_basis) return;
+    give_room(state.held.basis);
+    state.held.basis.build(tables_, {state.t}, state.X.data(), state.maps.data(), state.held.rows, false);
+    state.held.has_basis = true;
 }
 
 bool InstantSystem::rows_are_fit(const InstantState& state)
 {
-    pivot_at_choice_ = pivot_at_choice_ > 0 ? pivot_at_choice_ : state.smallest_pivot;
+    pivot_at_choice_ = pivot_at_choice_ > 0 ? pivot_at_choice_ : state.held.smallest_pivot;
     // where the mechanism turns, rows that were independent grow alike: others hold better long before
-    if (!(state.smallest_pivot > std::max(1e-6, 0.1 * pivot_at_choice_))) return false;
-    for (int r = 0; r < tables_.n_rows(); ++r)
-        if (!(std::abs(tables_.value(r, {state.t}, state.X.data())) <= 1e-9 * tables_.rows[r].row->scale))
-            return false;
+    if (!(state.held.smallest_pivot > std::max(1e-6, 0.1 * pivot_at_choice_))) return false;
+    for (int r = 0; r < tables_.n_rows(); ++r) {
+        const double phi = tables_.rows.value(r, {state.t}, state.X.data());
+        if (!(std::abs(phi) <= 1e-9 * tables_.rows[r].row->scale)) return false;
+    }
     return true;
 }
 
 /// out <- D^T Mr D y: y itself where every inertia is definite.
 void InstantSystem::apply_mass(const InstantState& state, const double* y, double* out)
 {
-    if (tables_.regular) {
+    if (tables_.bodies.are_regular()) {
         std::copy(y, y + tables_.n_twists, out);
         return;
     }
     std::vector<double> xi(static_cast<std::size_t>(tables_.n_twists)), rows(xi.size());
     std::vector<double> dX(state.X.size()), P(state.X.size());
-    tables_.to_twist(state.maps.data(), y, xi.data());
-    tables_.rates_of(state.X.data(), xi.data(), dX.data());
-    tables_.times_mass(dX.data(), 1.0, P.data());
-    tables_.twist_rows(state.X.data(), state.maps.data(), P.data(), rows.data());
-    tables_.to_scaled_rows(state.maps.data(), rows.data(), out);
+    tables_.bodies.to_twist(state.maps.data(), y, xi.data());
+    tables_.bodies.rates_of(state.X.data(), xi.data(), dX.data());
+    tables_.bodies.times_mass(dX.data(), 1.0, P.data());
+    tables_.bodies.twist_rows(state.X.data(), state.maps.data(), P.data(), rows.data());
+    tables_.bodies.to_scaled_rows(state.maps.data(), rows.data(), out);
 }
 
 /// The mass on the null space where it is not the identity.
 bool InstantSystem::prepare_singular(const InstantState& state)
 {
     const int f = tables_.freedoms(), n = tables_.n_twists;
-    state.basis.q.null_space(z_.data());
+    state.held.basis.q.null_space(z_.data());
     std::vector<double> column(static_cast<std::size_t>(n)), image(column.size());
     for (int j = 0; j < f; ++j) {
         for (int i = 0; i < n; ++i)
@@ -182,12 +183,12 @@ bool InstantSystem::prepare_singular(const InstantState& state)
 void InstantSystem::scatter(const InstantState& state, double* y, double weight, double* lambda) const
 {
     std::fill(lambda, lambda + tables_.n_rows(), 0.0);
-    if (state.by_joints) {
-        const std::vector<int>& rows = state.joints.pattern()->rows();
+    if (state.held.by_joints) {
+        const std::vector<int>& rows = state.held.joints.pattern()->rows();
         for (int c = 0; c < tables_.rank; ++c) lambda[rows[c]] = y[c] / weight;
         return;
     }
-    const ConstraintBasis& basis = state.basis;
+    const ConstraintBasis& basis = state.held.basis;
     basis.q.solve_R(y);
     for (int c = 0; c < tables_.rank; ++c) lambda[basis.rows[c]] = y[c] * basis.row_scale[c] / weight;
 }
@@ -196,9 +197,9 @@ void InstantSystem::scatter(const InstantState& state, double* y, double weight,
 /// On return y is the solution and the first `rank` forces are R S^-1 lambda.
 void InstantSystem::solve(const InstantState& state, double* forces, double* y)
 {
-    const OrthogonalBasis& q = state.basis.q;
+    const OrthogonalBasis& q = state.held.basis.q;
     const int k = tables_.rank, n = tables_.n_twists;
-    if (tables_.regular) {
+    if (tables_.bodies.are_regular()) {
         q.apply_transposed(forces);
         for (int c = 0; c < k; ++c) forces[c] -= y[c];
         std::copy(forces + k, forces + n, y + k);
@@ -227,26 +228,26 @@ void InstantSystem::from_momentum(InstantState& state, const double* p, double w
 {
     double* y = a_.data();
     double* rest = b_.data();
-    if (state.by_joints) {
-        tables_.to_scaled_rows(state.maps.data(), p, y);
-        state.joints.project(y, nullptr, rest);
+    if (state.held.by_joints) {
+        tables_.bodies.to_scaled_rows(state.maps.data(), p, y);
+        state.held.joints.project(y, nullptr, rest);
         std::copy(p, p + tables_.n_twists, state.p.begin());
-        state.joints.add_wrenches(rest, -1, state.p.data());
+        state.held.joints.add_wrenches(rest, -1, state.p.data());
         scatter(state, rest, weight, lambda);
-        tables_.to_twist(state.maps.data(), y, state.velocity.data());
+        tables_.bodies.to_twist(state.maps.data(), y, state.velocity.data());
         std::copy(y, y + tables_.n_twists, state.momentum.begin());
         return;
     }
-    tables_.to_scaled_rows(state.maps.data(), p, rest);
+    tables_.bodies.to_scaled_rows(state.maps.data(), p, rest);
     follow_drives(state, y);
     solve(state, rest, y);
     scatter(state, rest, weight, lambda);
-    tables_.to_twist(state.maps.data(), y, state.velocity.data());
+    tables_.bodies.to_twist(state.maps.data(), y, state.velocity.data());
     // what the multipliers take off is taken off p itself: without joints p stays as it is, to the bit
     std::copy(p, p + tables_.n_twists, state.p.begin());
     for (int c = 0; c < tables_.rank; ++c) {
-        const int r = state.basis.rows[c];
-        tables_.add_wrenches(r, state.X.data(), state.maps.data(), state.basis.gradient(c),
+        const int r = state.held.basis.rows[c];
+        tables_.add_wrenches(r, state.X.data(), state.maps.data(), state.held.basis.gradient(c),
                              -weight * lambda[r], state.p.data());
     }
     apply_mass(state, y, state.momentum.data());
@@ -254,31 +255,31 @@ void InstantSystem::from_momentum(InstantState& state, const double* p, double w
 
 void InstantSystem::from_velocity(InstantState& state)
 {
-    tables_.rates_of(state.X.data(), state.velocity.data(), V_.data());
-    tables_.times_mass(V_.data(), 1.0, raw_.data());
-    tables_.twist_rows(state.X.data(), state.maps.data(), raw_.data(), state.p.data());
-    tables_.to_scaled_rows(state.maps.data(), state.p.data(), state.momentum.data());
+    tables_.bodies.rates_of(state.X.data(), state.velocity.data(), V_.data());
+    tables_.bodies.times_mass(V_.data(), 1.0, raw_.data());
+    tables_.bodies.twist_rows(state.X.data(), state.maps.data(), raw_.data(), state.p.data());
+    tables_.bodies.to_scaled_rows(state.maps.data(), state.p.data(), state.momentum.data());
 }
 
 /// First places of Q^T y for a velocity with dPhi/dt = 0.
 void InstantSystem::follow_drives(const InstantState& state, double* y) const
 {
-    const ConstraintBasis& basis = state.basis;
+    const ConstraintBasis& basis = state.held.basis;
     std::fill(y, y + tables_.rank, 0.0);
     if (!tables_.model->has_drives()) return;
     for (int c = 0; c < tables_.rank; ++c)
-        y[c] = -tables_.rate(basis.rows[c], {state.t}, state.X.data()) * basis.row_scale[c];
+        y[c] = -tables_.rows.rate(basis.rows[c], {state.t}, state.X.data()) * basis.row_scale[c];
     basis.q.solve_R_transposed(y);
 }
 
 /// First places of Q^T y for an acceleration with d2 Phi/dt2 = 0, from the velocities in V_ and centripetal_.
 void InstantSystem::particular(const InstantState& state, Side from, double* y) const
 {
-    const ConstraintBasis& basis = state.basis;
+    const ConstraintBasis& basis = state.held.basis;
     for (int c = 0; c < tables_.rank; ++c) {
         const auto& table = tables_.rows[basis.rows[c]];
         const double* g = basis.gradient(c);
-        double gamma = tables_.curvature(basis.rows[c], {state.t, from}, state.X.data(), V_.data());
+        double gamma = tables_.rows.curvature(basis.rows[c], {state.t, from}, state.X.data(), V_.data());
         for (int side = 0; side < table.n_sides; ++side) {
             const double* a = centripetal_.data() + 12 * table.bodies[side];
             for (const int column : table.columns[side])
@@ -293,35 +294,35 @@ std::vector<int> InstantSystem::weak_rows(InstantState& state) const
 {
     add_basis(state);
     std::vector<double> y(static_cast<std::size_t>(tables_.n_twists), 1.0);
-    state.basis.q.solve_R(y.data());
+    state.held.basis.q.solve_R(y.data());
     double largest = 0;
     for (int c = 0; c < tables_.rank; ++c) largest = std::max(largest, std::abs(y[c]));
     std::vector<int> rows;
     for (int c = 0; c < tables_.rank; ++c)
-        if (std::abs(y[c]) > 1e-3 * largest) rows.push_back(state.basis.rows[c]);
+        if (std::abs(y[c]) > 1e-3 * largest) rows.push_back(state.held.basis.rows[c]);
     return rows;
 }
 
 void InstantSystem::respond(InstantState& state, const double* raw, double* acceleration)
 {
     double *y = a_.data(), *forces = b_.data();
-    tables_.twist_rows(state.X.data(), state.maps.data(), raw, y);
-    tables_.to_scaled_rows(state.maps.data(), y, forces);
-    if (state.by_joints) {
+    tables_.bodies.twist_rows(state.X.data(), state.maps.data(), raw, y);
+    tables_.bodies.to_scaled_rows(state.maps.data(), y, forces);
+    if (state.held.by_joints) {
         std::swap(y, forces);
         std::ranges::fill(curvatures_, 0.0);
-        state.joints.project(y, curvatures_.data(), forces);
+        state.held.joints.project(y, curvatures_.data(), forces);
     } else {
         std::fill(y, y + tables_.rank, 0.0);
         solve(state, forces, y);
     }
-    tables_.to_twist(state.maps.data(), y, acceleration);
+    tables_.bodies.to_twist(state.maps.data(), y, acceleration);
 }
 
 void InstantSystem::accelerate(InstantState& state, Side side)
 {
     const double* X = state.X.data();
-    tables_.rates_of(X, state.velocity.data(), V_.data());
+    tables_.bodies.rates_of(X, state.velocity.data(), V_.data());
     // X'' without twist acceleration: [0, w x (w x d_a)]
     for (int b = 0; b < tables_.n_bodies(); ++b) {
         const auto& body = tables_.bodies[b];
@@ -330,25 +331,25 @@ void InstantSystem::accelerate(InstantState& state, Side side)
         std::copy_n(state.velocity.data() + body.first + 3, 3, spin + 3);
         twist::columns(V_.data() + 12 * b, spin, centripetal_.data() + 12 * b);
     }
-    tables_.times_mass(centripetal_.data(), -1.0, raw_.data());
-    tables_.add_weight(1.0, raw_.data());
-    tables_.add_loads({state.t, side}, X, V_.data(), 1.0, raw_.data(), state.angles);
+    tables_.bodies.times_mass(centripetal_.data(), -1.0, raw_.data());
+    tables_.bodies.add_weight(1.0, raw_.data());
+    tables_.loads.add({state.t, side}, X, V_.data(), 1.0, raw_.data(), state.angles);
     double* y = a_.data();
     double* forces = b_.data();
-    tables_.twist_rows(X, state.maps.data(), raw_.data(), y);
-    tables_.to_scaled_rows(state.maps.data(), y, forces);
+    tables_.bodies.twist_rows(X, state.maps.data(), raw_.data(), y);
+    tables_.bodies.to_scaled_rows(state.maps.data(), y, forces);
     const int s = side == Side::right ? 1 : 0;
-    if (state.by_joints) {
+    if (state.held.by_joints) {
         std::swap(y, forces);
-        state.joints.curvatures(tables_, V_.data(), centripetal_.data(), curvatures_.data());
+        state.held.joints.curvatures(tables_, V_.data(), centripetal_.data(), curvatures_.data());
         for (double& value : curvatures_) value = -value;
-        state.joints.project(y, curvatures_.data(), forces);
+        state.held.joints.project(y, curvatures_.data(), forces);
     } else {
         particular(state, side, y);
         solve(state, forces, y);
     }
     scatter(state, forces, 1.0, state.multipliers[s].data());
-    tables_.to_twist(state.maps.data(), y, state.acceleration[s].data());
+    tables_.bodies.to_twist(state.maps.data(), y, state.acceleration[s].data());
 }
 
 }   // namespace livens

@@ -10,6 +10,17 @@
 
 namespace livens {
 
+/// What constraints hold at an instant: independent rows, and what solves for them.
+struct HeldRows {
+    std::vector<int> rows;    ///< chosen here, they serve the next element
+    bool are_new = false;     ///< others than before, see InstantSystem::prepare()
+    JointFactor joints;       ///< of these rows, where the system is sparse
+    bool by_joints = false;   ///< by elimination along the joints
+    ConstraintBasis basis;    ///< of these rows, if has_basis
+    bool has_basis = false;
+    double smallest_pivot = 1;
+};
+
 /// Everything the next element, and the motion, need of one instant.
 struct InstantState {
     double t = 0;
@@ -25,13 +36,7 @@ struct InstantState {
     std::vector<double> jerk,
         snap;   ///< second and third derivative of the twist, extrapolated; zero without past
     bool has_past = false;
-    std::vector<int> rows;   ///< independent ones, chosen here, which serve the next element
-    JointFactor joints;      ///< of these rows, where the system is sparse
-    ConstraintBasis basis;   ///< likewise, if has_basis
-    bool has_basis = false;
-    bool by_joints = false;   ///< what the joints hold is solved by elimination along them
-    double smallest_pivot = 1;
-    bool rows_chosen = false;   ///< others than before, see InstantSystem::prepare()
+    HeldRows held;
 
     void resize(const Tables& tables);
     /// jerk and snap of the cubic through velocity and acceleration here and at an earlier end; for guesses.
@@ -50,7 +55,7 @@ public:
     /// Prepares maps and what constraints hold at state.t and state.X, with the given independent rows as
     /// long as they are fit: the others hold to 1e-9 of their scale, and the smallest scaled pivot is above
     /// 1e-6 and a tenth of what it was when they were chosen; else rows are chosen again among all
-    /// (`rows_chosen`). False if a free motion carries no inertia.
+    /// (HeldRows::are_new). False if a free motion carries no inertia.
     /// `known` is exchanged with the state's basis where it serves: built for this X with all rows of the
     /// model, as are then state.maps.
     bool prepare(InstantState& state, const std::vector<int>& rows, ConstraintBasis* known = nullptr,

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "livens/dynamics/lanes/lane_rows.h"
+#include "livens/dynamics/rows/tables.h"
 
 namespace livens {
 
@@ -59,13 +60,13 @@ void LaneStore::resize(const RowPattern& pattern, int width)
         for (int l = 0; l < width; ++l)   // no turn
             v.place[(7 * b + 3) * width + l] = v.last_place[(7 * b + 3) * width + l] = 1;
     for (int e = 0; e < p.n_entries; ++e)   // those without terms stay
-        for (int l = 0; l < width; ++l) v.gradients[e * width + l] = p.entries.constants[e];
+        for (int l = 0; l < width; ++l) v.gradients[e * width + l] = p.gradients.entries.constants[e];
 }
 
 bool JointFactor::serves(const Tables& tables)
 {
-    return tables.regular && std::all_of(tables.rows.begin(), tables.rows.end(),
-                                         [](const auto& row) { return row.is_quadratic; });
+    return tables.bodies.are_regular() && std::all_of(tables.rows.begin(), tables.rows.end(),
+                                                      [](const auto& row) { return row.is_quadratic; });
 }
 
 void JointFactor::use(std::shared_ptr<const RowPattern> pattern)

@@ -21,15 +21,16 @@ LIVENS_INLINE void factorise_block(const Pattern& p, const Values& v, int rows, 
     double *const factor = v.factor + l, *diagonal = at<W>(factor, block.diagonal);
     Some s[m];
     each<m>([&](auto j) LIVENS_LAMBDA {
-        s[j.value] = all<Some::width>(p.constants[block.entry + (first + j.value) * rows + r]);
+        s[j.value] = all<Some::width>(p.factor.constants[block.entry + (first + j.value) * rows + r]);
     });
-    for (const Pair *g = p.pairs + block.pairs, *end = p.pairs + (&block)[1].pairs; g != end; ++g) {
+    for (const Pair *g = p.factor.pairs + block.pairs, *end = p.factor.pairs + (&block)[1].pairs; g != end;
+         ++g) {
         const Some a = get<Some, W>(gradients, g->a + r);
         const double* b = at<W>(gradients, g->b + first);
         each<m>([&](auto j) LIVENS_LAMBDA { s[j.value] += a * get<Some, W>(b, j.value); });
     }
-    const Product* end = p.block_products + (&block)[1].products;
-    for (const Product* f = p.block_products + block.products; f != end; ++f) {
+    const Product* end = p.factor.products + (&block)[1].products;
+    for (const Product* f = p.factor.products + block.products; f != end; ++f) {
         const double *a = at<W>(factor, f->a + r), *b = at<W>(factor, f->b + first);
         count_to<m>(f->n, [&](int k) LIVENS_LAMBDA {
             const Some of_row = load<Some::width>(a + k * rows * W);
@@ -69,15 +70,16 @@ LIVENS_INLINE void factorise_row(const Pattern& p, const Values& v, const Group&
     double* const diagonal = at<W>(v.factor, group.diagonal) + l;
     Some s[m];
     each<m>([&](auto c) LIVENS_LAMBDA {
-        s[c.value] = all<Some::width>(p.constants[group.diagonal + triangle(r, first + c.value)]);
+        s[c.value] = all<Some::width>(p.factor.constants[group.diagonal + triangle(r, first + c.value)]);
     });
-    for (const Column* g = p.columns + group.columns; g != p.columns + (&group)[1].columns; ++g) {
+    for (const Column* g = p.gradients.columns + group.columns;
+         g != p.gradients.columns + (&group)[1].columns; ++g) {
         const double* column = at<W>(v.gradients, g->entry) + l;
         const Some a = get<Some, W>(column, r);
         each<m>([&](auto c) LIVENS_LAMBDA { s[c.value] += a * get<Some, W>(column, first + c.value); });
     }
     const Some own = s[m - 1];
-    for (const Block* b = p.blocks + group.blocks; b != p.blocks + (&group)[1].blocks; ++b) {
+    for (const Block* b = p.factor.blocks + group.blocks; b != p.factor.blocks + (&group)[1].blocks; ++b) {
         const double* column = at<W>(v.factor, b->entry) + l;
         count_to<m>(b->n, [&](int k) LIVENS_LAMBDA {
             const Some a = get<Some, W>(column, k * group.n + r);
@@ -113,7 +115,7 @@ void factorise(const Pattern& p, const Values& v)
 {
     store(v.pivots, all<W>(1));
     for (const Group* group = p.groups; group != p.groups + p.n_groups; ++group) {
-        for (const Block* b = p.blocks + group->blocks; b != p.blocks + group[1].blocks; ++b)
+        for (const Block* b = p.factor.blocks + group->blocks; b != p.factor.blocks + group[1].blocks; ++b)
             for_parts<W>(b->n, [&](auto m, int first) LIVENS_LAMBDA {
                 for (int l = 0; l < W; l += lanes_at_once<W, m.value>())
                     for (int r = 0; r < group->n; ++r)

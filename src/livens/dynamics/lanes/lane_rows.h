@@ -27,12 +27,14 @@ template <int W>
 void form_gradients(const Pattern& p, const Values& v)
 {
     for (int e = 0; e < p.n_entries; ++e) {
-        const int first = p.entries.begin[e], last = p.entries.begin[e + 1];
+        const int first = p.gradients.entries.begin[e], last = p.gradients.entries.begin[e + 1];
         if (first == last) continue;
-        Lanes<W> g = p.entries.terms[first].factor * load<W>(v.numbers + p.entries.terms[first].number * W);
+        Lanes<W> g = p.gradients.entries.terms[first].factor *
+                     load<W>(v.numbers + p.gradients.entries.terms[first].number * W);
         for (int t = first + 1; t < last; ++t)
-            g += p.entries.terms[t].factor * load<W>(v.numbers + p.entries.terms[t].number * W);
-        if (p.entries.constants[e] != 0) g = p.entries.constants[e] + g;
+            g += p.gradients.entries.terms[t].factor *
+                 load<W>(v.numbers + p.gradients.entries.terms[t].number * W);
+        if (p.gradients.entries.constants[e] != 0) g = p.gradients.entries.constants[e] + g;
         store(v.gradients + e * W, g);
     }
 }
@@ -59,7 +61,7 @@ LIVENS_INLINE void solve_down(const Pattern& p, const Part& part, const At<W, ro
     };
     Some s[m];
     each<m>([&](auto r) LIVENS_LAMBDA { s[r.value] = get<Some, W>(x, group.first + first + r.value); });
-    for (const Block* b = p.blocks + group.blocks; b != p.blocks + (&group)[1].blocks; ++b)
+    for (const Block* b = p.factor.blocks + group.blocks; b != p.factor.blocks + (&group)[1].blocks; ++b)
         count_to<m>(b->n, [&](int j) LIVENS_LAMBDA {
             const Some y = get<Some, W>(x, b->first + j);
             each<m>([&](auto r) LIVENS_LAMBDA {
@@ -96,7 +98,7 @@ LIVENS_INLINE void solve_up(const Pattern& p, const Part& part, const At<W, rows
             put<W>(x, group.first + k, get<Some, W>(x, group.first + k) - entry(first + r, k) * s[r]);
         put<W>(x, group.first + first + r, s[r]);
     });
-    for (const Block* b = p.blocks + group.blocks; b != p.blocks + (&group)[1].blocks; ++b)
+    for (const Block* b = p.factor.blocks + group.blocks; b != p.factor.blocks + (&group)[1].blocks; ++b)
         count_to<m>(b->n, [&](int j) LIVENS_LAMBDA {
             Some y = get<Some, W>(x, b->first + j);
             each<m>([&](auto r) LIVENS_LAMBDA {
@@ -126,15 +128,17 @@ void multiply(const Pattern& p, const At<W, rows>& G, const double* y, const dou
         using Some = Batch<W, m.value>;
         const Group& group = part.group;
         const int first = group.first + part.first;
-        const std::int32_t* begin = p.unit_begin + first;
+        const std::int32_t* begin = p.gradients.unit_begin + first;
         const At<W, rows> of = from_lane(G, l);
         Some s[m.value];
         each<m.value>([&](auto r) LIVENS_LAMBDA {
             s[r.value] = rates != nullptr ? get<Some, W>(rates + l, first + r.value) : all<Some::width>(0);
-            for (const Unit* u = p.units + begin[r.value]; u != p.units + begin[r.value + 1]; ++u)
+            for (const Unit* u = p.gradients.units + begin[r.value];
+                 u != p.gradients.units + begin[r.value + 1]; ++u)
                 s[r.value] += u->value * get<Some, W>(y + l, u->twist);
         });
-        for (const Column* g = p.columns + group.columns; g != p.columns + (&group)[1].columns; ++g) {
+        for (const Column* g = p.gradients.columns + group.columns;
+             g != p.gradients.columns + (&group)[1].columns; ++g) {
             const Some by = get<Some, W>(y + l, g->twist);
             each<m.value>([&](auto r) LIVENS_LAMBDA {
                 s[r.value] += get < Some, rows && is_start.value > (of, g->entry + part.first + r.value) * by;
@@ -152,15 +156,17 @@ void take_off(const Pattern& p, const At<W, rows>& G, const double* x, double* y
         using Some = Batch<W, m.value>;
         const Group& group = part.group;
         const int first = group.first + part.first;
-        const std::int32_t* begin = p.unit_begin + first;
+        const std::int32_t* begin = p.gradients.unit_begin + first;
         const At<W, rows> of = from_lane(G, l);
         Some s[m.value];
         each<m.value>([&](auto r) LIVENS_LAMBDA {
             s[r.value] = get<Some, W>(x + l, first + r.value);
-            for (const Unit* u = p.units + begin[r.value]; u != p.units + begin[r.value + 1]; ++u)
+            for (const Unit* u = p.gradients.units + begin[r.value];
+                 u != p.gradients.units + begin[r.value + 1]; ++u)
                 put<W>(y + l, u->twist, get<Some, W>(y + l, u->twist) - u->value * s[r.value]);
         });
-        for (const Column* g = p.columns + group.columns; g != p.columns + (&group)[1].columns; ++g) {
+        for (const Column* g = p.gradients.columns + group.columns;
+             g != p.gradients.columns + (&group)[1].columns; ++g) {
             Some left = get<Some, W>(y + l, g->twist);
             each<m.value>([&](auto r) LIVENS_LAMBDA {
                 left -= get < Some,

@@ -71,6 +71,21 @@ struct Group {
     std::int32_t diagonal;          ///< lower triangle row by row; the inverse pivots end its rows
 };
 
+/// Gradients: entries that never change row by row, others by columns.
+struct GradientPattern {
+    const std::int32_t* unit_begin;   ///< of each row
+    const Unit* units;
+    const Column* columns;
+    Sums entries;   ///< without terms: constant
+};
+/// The factor of G G^T.
+struct FactorPattern {
+    const Block* blocks;
+    const Pair* pairs;
+    const Product* products;
+    const double* constants;   ///< of each entry: products of units
+};
+
 /// What is known before the numbers: the mechanism and which rows it has, in the order of their elimination.
 /// Of groups and blocks there is one more, behind the last.
 struct Pattern {
@@ -78,14 +93,8 @@ struct Pattern {
     const Body* bodies;
     const Columns* products;
     const Group* groups;
-    const std::int32_t* unit_begin;   ///< of each row
-    const Unit* units;
-    const Column* columns;
-    const Block* blocks;
-    const Pair* pairs;
-    const Product* block_products;
-    const double* constants;   ///< of each entry of the factor: products of units
-    Sums entries;              ///< of the gradients; without terms: constant
+    GradientPattern gradients;
+    FactorPattern factor;
     Sums violations;
 };
 

@@ -14,15 +14,15 @@ void ConstraintBasis::resize(const Tables& tables, bool all_rows)
     q.resize(tables.n_twists, most);
     rows.assign(static_cast<std::size_t>(tables.rank), 0);
     row_scale.assign(static_cast<std::size_t>(most), 1.0);
-    gradients.assign(static_cast<std::size_t>(Tables::gradient_size * most), 0.0);
+    gradients.assign(static_cast<std::size_t>(RowTables::gradient_size * most), 0.0);
 }
 
 double ConstraintBasis::fill(const Tables& tables, int column, int row, Instant at, const double* X,
                              const double* maps)
 {
-    double* g = gradients.data() + Tables::gradient_size * column;
+    double* g = gradients.data() + RowTables::gradient_size * column;
     double* out = q.column(column);
-    tables.gradient(row, at, X, g);
+    tables.rows.gradient(row, at, X, g);
     tables.scaled_gradient(row, X, maps, g, out);
     double sum = 0;
     for (int i = 0; i < tables.n_twists; ++i) sum += out[i] * out[i];
@@ -51,8 +51,8 @@ double ConstraintBasis::choose(const Tables& tables, Instant at, const double* X
     for (int c = 0; c < tables.rank; ++c) {
         rows[c] = order[c];
         row_scale[c] = scales[order[c]];
-        std::copy_n(unsorted.begin() + Tables::gradient_size * order[c], Tables::gradient_size,
-                    gradients.begin() + Tables::gradient_size * c);
+        std::copy_n(unsorted.begin() + RowTables::gradient_size * order[c], RowTables::gradient_size,
+                    gradients.begin() + RowTables::gradient_size * c);
     }
     return smallest_pivot;
 }

@@ -44,9 +44,9 @@ void Orientation::place(const Tables& tables, const std::vector<int>& rows, Inst
 {
     n_rows_ = static_cast<int>(rows.size());
     sides_.clear();
-    gradient_.resize(Tables::gradient_size);
+    gradient_.resize(RowTables::gradient_size);
     for (int i = 0; i < n_rows_; ++i) {
-        tables.gradient(rows[i], at, X, gradient_.data());
+        tables.rows.gradient(rows[i], at, X, gradient_.data());
         const std::size_t first = sides_.size();
         double square = 0;
         for (int side = 0; side < tables.rows[rows[i]].n_sides; ++side) {

@@ -31,13 +31,13 @@ public:
         : tables_(model, closed.independent), at_{closed.start.t}, maps_(12 * closed.start.X.size())
     {
         for (const Matrix34& X : closed.start.X) X_.insert(X_.end(), std::begin(X.a), std::end(X.a));
-        tables_.map_twists(X_.data(), maps_.data());
+        tables_.bodies.map_twists(X_.data(), maps_.data());
         const int n = tables_.n_rows();
-        gradients_.assign(static_cast<std::size_t>(Tables::gradient_size * n), 0.0);
+        gradients_.assign(static_cast<std::size_t>(RowTables::gradient_size * n), 0.0);
         scale_.resize(static_cast<std::size_t>(n));
         Values row(static_cast<std::size_t>(tables_.n_twists));
         for (int r = 0; r < n; ++r) {
-            tables_.gradient(r, at_, X_.data(), gradient(r));
+            tables_.rows.gradient(r, at_, X_.data(), gradient(r));
             tables_.scaled_gradient(r, X_.data(), maps_.data(), gradient(r), row.data());
             scale_[r] = norm(row);
             for (int i = 0; i < tables_.n_twists; ++i)
@@ -54,7 +54,7 @@ public:
     {
         const Values V = rates(y);
         Values centripetal(V.size(), 0.0), xi(y.size());
-        tables_.to_twist(maps_.data(), y.data(), xi.data());
+        tables_.bodies.to_twist(maps_.data(), y.data(), xi.data());
         for (int b = 0; b < tables_.n_bodies(); ++b) {
             const auto& body = tables_.bodies[b];
             if (body.dofs == 3) continue;
@@ -64,7 +64,7 @@ public:
         Values bend(scale_.size());
         for (int r = 0; r < tables_.n_rows(); ++r) {
             const auto& table = tables_.rows[r];
-            double gamma = tables_.curvature(r, at_, X_.data(), V.data());
+            double gamma = tables_.rows.curvature(r, at_, X_.data(), V.data());
             for (int side = 0; side < table.n_sides; ++side)
                 for (const int column : table.columns[side])
                     for (int i = 0; i < 3; ++i)
@@ -89,8 +89,8 @@ public:
     Values rates(std::span<const double> y) const
     {
         Values xi(y.size()), V(X_.size());
-        tables_.to_twist(maps_.data(), y.data(), xi.data());
-        tables_.rates_of(X_.data(), xi.data(), V.data());
+        tables_.bodies.to_twist(maps_.data(), y.data(), xi.data());
+        tables_.bodies.rates_of(X_.data(), xi.data(), V.data());
         return V;
     }
 
@@ -101,7 +101,7 @@ public:
         for (int j = 0; j < D.cols; ++j) {
             Values unit(static_cast<std::size_t>(D.cols), 0.0);
             unit[j] = 1;
-            tables_.to_twist(maps_.data(), unit.data(), D.column(j).data());
+            tables_.bodies.to_twist(maps_.data(), unit.data(), D.column(j).data());
         }
         Values xi(static_cast<std::size_t>(tables_.n_twists), 0.0);
         for (int b = 0; b < tables_.n_bodies(); ++b) {
@@ -114,8 +114,8 @@ public:
     }
 
 private:
-    double* gradient(int r) { return gradients_.data() + Tables::gradient_size * r; }
-    const double* gradient(int r) const { return gradients_.data() + Tables::gradient_size * r; }
+    double* gradient(int r) { return gradients_.data() + RowTables::gradient_size * r; }
+    const double* gradient(int r) const { return gradients_.data() + RowTables::gradient_size * r; }
 
     Tables tables_;
     Instant at_;

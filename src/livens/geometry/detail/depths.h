@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "livens/geometry/detail/facets.h"
+#include "livens/geometry/detail/triangle_grid.h"
 
 namespace livens {
 
@@ -22,7 +23,7 @@ public:
     /// `as_if_outwards`, as the others. What was asked for before is_beyond() is of no use.
     int of(const Vector3& point, std::int32_t own, bool as_if_outwards);
     /// Whether pieces lie about each other so often that it would take too long to count.
-    bool is_beyond() const { return n_looks_ > most_looks_; }
+    bool is_beyond() const;
 
 private:
     struct Wound {
@@ -38,7 +39,6 @@ private:
         bool holds(const Vector3& p) const;
     };
 
-    void make_grid();
     void cross(const Vector3& point, std::size_t triangle, Wound& wound) const;
     double seen(const Vector3& point, std::int32_t piece);
 
@@ -48,16 +48,8 @@ private:
     std::vector<Around> around_;      ///< of each piece
     std::vector<Wound> wounds_;       ///< of each piece
     std::vector<std::int32_t> met_;   ///< pieces, at the current point
-
-    /// Cells of the plane across, and what lies over them.
-    struct Grid {
-        int n = 1;   ///< cells along each side
-        double low[2]{}, scale[2]{};
-        std::vector<std::int32_t> begins, triangles;
-
-        int cell(int side, double x) const;
-    } grid_;
-    std::int64_t n_looks_ = 0, most_looks_;
+    TriangleGrid grid_;
+    std::int64_t n_looks_ = 0;
 };
 
 /// The solid angle of a face seen from a point over 4 pi, positive from inside [van Oosterom and Strackee

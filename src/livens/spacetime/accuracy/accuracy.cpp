@@ -100,6 +100,12 @@ struct Tries {
     }
 };
 
+/// Of a degree that is not stated.
+struct DegreeSearch {
+    bool is_free = false;   // it has not been lowered yet
+    int highest = 0;        // that is tried
+};
+
 class ToAccuracy final : public RepeatedMarch {
 public:
     ToAccuracy(const Model& model, const Problem& problem, const Ends& ends, const Span& span,
@@ -107,16 +113,16 @@ public:
         : model_(model), problem_(problem), span_(span),
           options_(with_tolerance_for(span.accuracy, 1, options)), doubt_(doubt), ends_(ends),
           tables_(model, ends_.independent, false, problem.prepared->pattern(model)),
-          stops_(stops_of(model, span)), method_(method), is_free_(degree_of(method) == 0),
+          stops_(stops_of(model, span)), method_(method), search_{degree_of(method) == 0},
           tolerance_(first_share * span.accuracy),
           length_(std::min(0.01 * (span.end - span.start), time_of_motion(model, ends_.start)))
     {
         const bool is_high = span.accuracy < high_accuracy;
-        if (is_free_ && std::holds_alternative<Radau>(method_))
+        if (search_.is_free && std::holds_alternative<Radau>(method_))
             degree_of(method_) = is_high ? high_radau : preferred_radau;
-        else if (is_free_)
+        else if (search_.is_free)
             degree_of(method_) = is_high ? high_degree : preferred_degree;
-        if (is_free_) highest_degree_ = degree_of(method_);
+        if (search_.is_free) search_.highest = degree_of(method_);
     }
 
     Solution solve() override
@@ -130,7 +136,7 @@ public:
         SolveReport& report = solution.report;
         if (last_.fits_badly) {
             degree_of(method_) = fitting_degree(*last_.pace);
-            is_free_ = false;
+            search_.is_free = false;
             return AfterTry::uncounted;
         }
         report.tries = tries;
@@ -170,12 +176,12 @@ private:
         const double share = over > 0 ? power(target / over, 1 + 0.5 / degree_of(method_)) : blind_share;
         tolerance_ *= std::min(0.3, share);
         if (!so_far_.helps && is_noisy()) {
-            highest_degree_ = degree_of(method_) = quiet_degree;
+            search_.highest = degree_of(method_) = quiet_degree;
             tolerance_ *= power(0.5, 2 * quiet_degree + 1);
         }
         if (!is_good) tolerance_ = std::max(finest, tolerance_);   // good once more has to be on another mesh
         // a degree that was too high for the stops may not be too high for shorter elements
-        if (!is_free_ && highest_degree_ > 0) degree_of(method_) = fitting_degree(*last_.pace);
+        if (!search_.is_free && search_.highest > 0) degree_of(method_) = fitting_degree(*last_.pace);
         length_ = std::min(length_, last_.pace->mean_length(degree_of(method_), tolerance_));
     }
 
@@ -201,7 +207,7 @@ private:
         w.ends_at_bends = options_.end_at_bends && model_.has_pieces();
         w.goes_on = [&] {
             const int n = mesh.n_elements();
-            if (is_free_ && n == looked_at) {
+            if (search_.is_free && n == looked_at) {
                 one.fits_badly = fitting_degree(pace) < degree_of(method_);
                 if (one.fits_badly) return false;
             }
@@ -275,7 +281,7 @@ private:
     /// Another degree may have less rounding.
     bool is_noisy() const
     {
-        return is_fine() && is_free_ && highest_degree_ != quiet_degree &&
+        return is_fine() && search_.is_free && search_.highest != quiet_degree &&
                std::holds_alternative<Lobatto>(method_);
     }
     /// Solutions that differ by rounding alone come near each other by chance, and of many tries one would be
@@ -285,7 +291,7 @@ private:
     /// The highest whose elements are not much longer than the time between stops, by what was learnt.
     int fitting_degree(const Pace& pace) const
     {
-        int degree = highest_degree_;
+        int degree = search_.highest;
         if (!pace.tells_length() && !model_.load_breaks().empty()) return degree;   // calm before what comes
         while (degree > lowest_degree && pace.mean_length(degree, tolerance_) > fit * pace.mean_stop())
             --degree;
@@ -334,8 +340,7 @@ private:
     Tables tables_;
     std::vector<double> stops_;
     Method method_;
-    bool is_free_;             // the degree, which has not been lowered yet
-    int highest_degree_ = 0;   // that is tried where it is not stated
+    DegreeSearch search_;
     double tolerance_, length_;
     MeasuredGrowth grown_;
     Tries so_far_;

@@ -42,7 +42,7 @@ Coordinates::Coordinates(const Tables& the_tables) : tables(the_tables), rows(th
     }
     for (int r = tables.n_rows(); r < static_cast<int>(tables.rows.size()); ++r) rows.push_back(r);
     for (int k = 0; k < n_rows(); ++k) {
-        const Tables::RowTable& row = tables.rows[rows[k]];
+        const RowTable& row = tables.rows[rows[k]];
         for (int side = 0; side < row.n_sides; ++side)
             for (const int column : row.columns[side])
                 for (int c = column; c < column + 3; ++c) {
@@ -97,10 +97,11 @@ std::vector<Matrix34> Coordinates::bodies(const double* coordinates) const
 void Coordinates::gradients(const double* X, std::vector<double>& values) const
 {
     values.resize(gradient_entries.size());
-    double g[Tables::gradient_size];
+    double g[RowTables::gradient_size];
     for (std::size_t i = 0; i < values.size(); ++i) {
         const GradientEntry& entry = gradient_entries[i];
-        if (i == 0 || gradient_entries[i - 1].row != entry.row) tables.gradient(rows[entry.row], {}, X, g);
+        if (i == 0 || gradient_entries[i - 1].row != entry.row)
+            tables.rows.gradient(rows[entry.row], {}, X, g);
         values[i] = g[12 * entry.side + entry.component];
     }
 }
@@ -108,13 +109,13 @@ void Coordinates::gradients(const double* X, std::vector<double>& values) const
 void Coordinates::forces(double t, const double* X, const double* V, const double* lambda, double* F) const
 {
     std::fill_n(F, n_X(), 0.0);
-    tables.add_weight(1.0, F);
-    tables.add_loads({t, Side::middle}, X, V, 1.0, F);
-    double g[Tables::gradient_size];
+    tables.bodies.add_weight(1.0, F);
+    tables.loads.add({t, Side::middle}, X, V, 1.0, F);
+    double g[RowTables::gradient_size];
     for (int k = 0; k < n_rows(); ++k) {
         if (lambda[k] == 0) continue;
-        const Tables::RowTable& row = tables.rows[rows[k]];
-        tables.gradient(rows[k], {}, X, g);
+        const RowTable& row = tables.rows[rows[k]];
+        tables.rows.gradient(rows[k], {}, X, g);
         for (int side = 0; side < row.n_sides; ++side)
             for (const int column : row.columns[side])
                 for (int c = column; c < column + 3; ++c)
@@ -145,7 +146,7 @@ std::vector<double> Coordinates::multipliers(const State& state) const
     const std::vector<double> none(static_cast<std::size_t>(n_rows()), 0.0);
     forces(state.t, X.data(), V.data(), none.data(), F.data());
     gather(F.data(), x.data());
-    for (int k = 0; k < n_rows(); ++k) x[size + k] = -tables.curvature(rows[k], {}, X.data(), V.data());
+    for (int k = 0; k < n_rows(); ++k) x[size + k] = -tables.rows.curvature(rows[k], {}, X.data(), V.data());
     for (auto& column : columns) std::sort(column.begin(), column.end());   // joints name bodies in any order
     const SparseMatrix A = sparse_from_columns(columns);
     SparseLU lu(SparseBackend::eigen);

@@ -36,8 +36,8 @@ void LoadSums::add(const FieldSample& sample, int e, int g)
         const Load& load = tables.model->loads()[block.load];
         if (block.load != of_load) {
             tangent = LoadTangent(load.bodies.size());
-            load.tangent(tables.arguments(block.load, {functions.time(e, g), Side::middle}, sample.X.data(),
-                                          sample.V.data()),
+            load.tangent(tables.loads.arguments(block.load, {functions.time(e, g), Side::middle},
+                                                sample.X.data(), sample.V.data()),
                          tangent);
             of_load = block.load;
         }

@@ -32,7 +32,7 @@ std::string Equations::residual(const Fields& fields, std::vector<double>& r)
             double sum = 0;   // is finite where all are
             for (const double f : F_) sum += std::abs(f);
             if (!std::isfinite(sum)) {
-                const int load = m.tables.bad_load({t, Side::middle}, sample_.X.data(), sample_.V.data());
+                const int load = m.tables.loads.bad({t, Side::middle}, sample_.X.data(), sample_.V.data());
                 if (load >= 0) bad = not_finite(m.tables.model->loads()[load]);
             }
             add_point(e, g);
@@ -75,7 +75,7 @@ void Equations::add_point(int e, int g)
         }
     }
     for (int k = 0; k < m.n_rows(); ++k) {
-        const double phi = w * m.tables.value(m.rows[k], {}, sample_.X.data());
+        const double phi = w * m.tables.rows.value(m.rows[k], {}, sample_.X.data());
         for (int a = 0; a < functions.n_local_multipliers(); ++a) {
             const int A = functions.multipliers().first(e) + a;
             dlambda_[static_cast<std::size_t>(A) * m.n_rows() + k] += L[a] * phi;

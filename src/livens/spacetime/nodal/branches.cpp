@@ -81,7 +81,7 @@ void Branches::take(const std::vector<int>& rows)
 bool Branches::is_open(const Mechanism& one, Instant at, const double* X, double most) const
 {
     return std::ranges::any_of(one.rows, [&](int r) {
-        return !(std::abs(tables_.value(r, at, X)) <= most * tables_.rows[r].row->scale);
+        return !(std::abs(tables_.rows.value(r, at, X)) <= most * tables_.rows[r].row->scale);
     });
 }
 

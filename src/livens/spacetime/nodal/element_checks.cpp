@@ -52,7 +52,7 @@ double ElementChecks::velocity_jump(const NodalSystem& system, int e, const Elem
     const double* V = end.instant().rates();
     std::vector<double> first_V(at_start ? 12 * tables_.bodies.size() : 0);
     if (at_start) {
-        tables_.rates_of(end.here().X.data(), end.here().velocity.data(), first_V.data());
+        tables_.bodies.rates_of(end.here().X.data(), end.here().velocity.data(), first_V.data());
         V = first_V.data();
     }
     double of_centres = 0, of_directors = 0;   // squares
@@ -82,7 +82,7 @@ double ElementChecks::velocity_jump(const NodalSystem& system, int e, const Elem
 
 bool ElementChecks::leaves(const NodalSystem& system, int e, const ElementEnd& end)
 {
-    return branches_.leaves(system.stretch(), system.nodes(), end.here().rows, e);
+    return branches_.leaves(system.stretch(), system.nodes(), end.here().held.rows, e);
 }
 
 Unseen ElementChecks::look_at_laws(const NodalSystem& system, int e, ElementEnd& end, Closed& closed)

@@ -53,8 +53,8 @@ bool ElementEnd::set(InstantState& state, const State& given)
         const Vector3 w = body.dofs == 6 ? angular_velocity(given.X[b], given.V[b]) : Vector3{};
         for (int i = 0; i < body.dofs; ++i) state.velocity[body.first + i] = i < 3 ? v[i] : w[i - 3];
     }
-    state.angles = tables_.turns.begin(given);
-    tables_.turns.follow(Configurations(state.X.data()), state.angles);
+    state.angles = tables_.loads.turns.begin(given);
+    tables_.loads.turns.follow(Configurations(state.X.data()), state.angles);
     if (!instant_.prepare(state, tables_.independent)) return false;
     instant_.from_velocity(state);
     return true;
@@ -79,8 +79,8 @@ bool ElementEnd::find_first(NodalSystem& system)
     const double weight = stretch.weight(system.rule(), 0);
     here.t = stretch.times[0];
     if (!stretch.X_first) {
-        here.angles = tables_.turns.begin();
-        tables_.turns.follow(Configurations(system.nodes().X(0)), here.angles);
+        here.angles = tables_.loads.turns.begin();
+        tables_.loads.turns.follow(Configurations(system.nodes().X(0)), here.angles);
         std::copy_n(system.nodes().X(0), here.X.size(), here.X.begin());
         std::copy_n(system.nodes().low(0), here.X.size(), here.X_low.begin());
         if (!instant_.prepare(here, tables_.independent)) return false;
@@ -90,14 +90,14 @@ bool ElementEnd::find_first(NodalSystem& system)
         p = system.balances().end_momentum(false).about_reference;
         for (int b = 0; b < tables_.n_bodies(); ++b)
             if (tables_.bodies[b].dofs == 6)
-                Tables::to_centre(here.maps.data() + 12 * b, p.data() + tables_.bodies[b].first);
+                BodyTables::to_centre(here.maps.data() + 12 * b, p.data() + tables_.bodies[b].first);
     } else {
         system.balances().twist_row(stretch, system.nodes(), 0, p.data());
         for (double& value : p) value = -value;
     }
     instant_.from_momentum(here, p.data(), weight, lambda_.data());
     for (int c = 0; c < tables_.rank; ++c) {
-        const double taken = weight * lambda_[here.rows[c]];
+        const double taken = weight * lambda_[here.held.rows[c]];
         impulse_[c] = (stretch.P_first ? system.balances().impulses(0)[c] : 0.0) - taken;
     }
     accelerate(here);
@@ -134,7 +134,7 @@ void ElementEnd::sum_momentum(const NodalSystem& system, int e)
             std::ranges::fill(raw_, 0.0);
         if (a != without)
             rows.subtract(nodes.basis(A), a == 0 ? impulse_.data() : rows.impulses(A), raw_.data());
-        tables_.twist_rows(nodes.X(A), nodes.maps(A), raw_.data(), wrench_.data());
+        tables_.bodies.twist_rows(nodes.X(A), nodes.maps(A), raw_.data(), wrench_.data());
         for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += wrench_[i];
     }
 }
@@ -150,8 +150,8 @@ void ElementEnd::take_spin_of_polynomial(const NodalSystem& system, int e)
     for (int B = 1; B <= p; ++B)
         for (std::size_t i = 0; i < V.size(); ++i)
             V[i] += rule.D[p * rule.size() + B] / system.stretch().h(e) * nodes.dX(e, B)[i];
-    tables_.times_mass(V.data(), 1.0, raw_.data());
-    tables_.twist_rows(nodes.X(A), nodes.maps(A), raw_.data(), wrench_.data());
+    tables_.bodies.times_mass(V.data(), 1.0, raw_.data());
+    tables_.bodies.twist_rows(nodes.X(A), nodes.maps(A), raw_.data(), wrench_.data());
     for (const auto& body : tables_.bodies)
         for (int i = 3; i < body.dofs; ++i) momentum_[body.first + i] = wrench_[body.first + i];
 }
@@ -171,7 +171,7 @@ bool ElementEnd::reach(NodalSystem& system, MarchKernel& kernel, int e, bool pol
         sum_momentum(system, e);
     if (is_radau) take_spin_of_polynomial(system, e);
     next.angles = here.angles;
-    for (int a = 1; a <= p; ++a) tables_.turns.follow(Configurations(nodes.X(e * p + a)), next.angles);
+    for (int a = 1; a <= p; ++a) tables_.loads.turns.follow(Configurations(nodes.X(e * p + a)), next.angles);
     std::copy_n(nodes.X(A), next.X.size(), next.X.begin());
     std::copy_n(nodes.low(A), next.X.size(), next.X_low.begin());
     if (!kernel.is_solved()) std::copy_n(nodes.maps(A), next.X.size(), next.maps.begin());
@@ -180,7 +180,7 @@ bool ElementEnd::reach(NodalSystem& system, MarchKernel& kernel, int e, bool pol
     // the node's own basis, where nothing asks for it any more
     const bool is_free = is_last && !is_radau && stretch.is_unknown(A) && !kernel.is_solved();
     ConstraintBasis* known = is_free && system.bases_fit() ? &system.nodes().own_basis(A) : nullptr;
-    if (!instant_.prepare(next, here.rows, known, kernel.factor_at_end())) return false;
+    if (!instant_.prepare(next, here.held.rows, known, kernel.factor_at_end())) return false;
     const double weight = stretch.h(e) * rule.weights[p];
     instant_.from_momentum(next, momentum_.data(), weight, end_lambda_.data());
     accelerate(next);
@@ -193,7 +193,7 @@ std::string ElementEnd::contradiction() const
     if (tables_.rank == tables_.n_rows()) return {};
     for (int r = 0; r < tables_.n_rows(); ++r) {
         const ConstraintRow& row = *tables_.rows[r].row;
-        if (std::abs(tables_.value(r, {state.t}, state.X.data())) / row.scale < 1e-8) continue;
+        if (std::abs(tables_.rows.value(r, {state.t}, state.X.data())) / row.scale < 1e-8) continue;
         return tables_.model->row_name(r) +
                ": was redundant at the start and contradicts the other joints by t = " + to_text(state.t, 6) +
                " s";

@@ -30,10 +30,10 @@ void ElementLoads::interpolate(const Stretch& stretch, const NodePositions& node
 void ElementLoads::count_turns(const Stretch& stretch, const NodePositions& nodes)
 {
     angles_.clear();
-    if (tables_.turns.empty()) return;
+    if (tables_.loads.turns.empty()) return;
     std::vector<double> now = stretch.angles;
     for (int A = 0; A < stretch.n_nodes(); ++A) {
-        tables_.turns.follow(Configurations(nodes.X(A)), now);
+        tables_.loads.turns.follow(Configurations(nodes.X(A)), now);
         angles_.insert(angles_.end(), now.begin(), now.end());
     }
 }
@@ -43,7 +43,7 @@ std::span<const double> ElementLoads::angles(int e, int c) const
     if (angles_.empty()) return {};
     int node = 0;
     while (node < rule_.degree && rule_.nodes[node + 1] <= rule_.loads.points[c]) ++node;
-    const std::size_t n = tables_.turns.size();
+    const std::size_t n = tables_.loads.turns.size();
     return std::span(angles_).subspan((e * rule_.degree + node) * n, n);
 }
 
@@ -57,7 +57,7 @@ void ElementLoads::add_element(const Stretch& stretch, const NodePositions& node
         interpolate(stretch, nodes, e, c, X_.data(), V_.data());
         std::ranges::fill(at_point_, 0.0);
         const Instant at = stretch.load_point(rule_, e, c);
-        tables_.add_loads(at, X_.data(), V_.data(), stretch.h(e) * rule_.loads.weights[c], at_point_.data(),
+        tables_.loads.add(at, X_.data(), V_.data(), stretch.h(e) * rule_.loads.weights[c], at_point_.data(),
                           angles(e, c));
         for (int A = 0; A < n_nodes; ++A) {
             const double m = rule_.M[c * n_nodes + A];
@@ -81,7 +81,7 @@ std::string ElementLoads::bad_load(const Stretch& stretch, const NodePositions& 
         for (int c = 0; c < rule_.degree; ++c) {
             interpolate(stretch, nodes, e, c, X.data(), V.data());
             const Instant at = stretch.load_point(rule_, e, c);
-            const int load = tables_.bad_load(at, X.data(), V.data(), angles(e, c));
+            const int load = tables_.loads.bad(at, X.data(), V.data(), angles(e, c));
             if (load >= 0) return not_finite(tables_.model->loads()[load]);
         }
     return "";

@@ -35,7 +35,7 @@ bool InsideLaws::is_calm(const InspectedLaw& law)
     Vector3 before{};
     for (int i = 0; i < 3; ++i) {
         path_.go(0.5 * i, law.bodies);
-        const Vector3 c = load.centre(tables_.arguments(law.load, path_.at(), path_.X(), path_.V()));
+        const Vector3 c = load.centre(tables_.loads.arguments(law.load, path_.at(), path_.X(), path_.V()));
         least = i == 0 ? norm(c) : std::min(least, norm(c));
         if (i > 0) change = std::max(change, norm(c - before));
         before = c;
@@ -48,8 +48,8 @@ void InsideLaws::add_forces(const InspectedLaw& law, const std::vector<double>& 
                             const InstantState& end)
 {
     const Load& load = tables_.model->loads()[law.load];
-    tables_.rates_of(end.X.data(), end.velocity.data(), V_.data());
-    const LoadArguments at = tables_.arguments(law.load, {end.t}, end.X.data(), V_.data(), end.angles);
+    tables_.bodies.rates_of(end.X.data(), end.velocity.data(), V_.data());
+    const LoadArguments at = tables_.loads.arguments(law.load, {end.t}, end.X.data(), V_.data(), end.angles);
     for (std::size_t k = 0; k < law.inside.n_factors; ++k) {
         LoadForces F{};
         law.inside.unit(at, k, F);
@@ -63,7 +63,7 @@ void InsideLaws::add_forces(const InspectedLaw& law, const std::vector<double>& 
 /// The largest shifts and turns of bodies, with those of one more acceleration.
 void InsideLaws::kick(const double* twist, const InstantState& end, Unseen& found)
 {
-    tables_.rates_of(end.X.data(), twist, V_.data());
+    tables_.bodies.rates_of(end.X.data(), twist, V_.data());
     for (int b = 0; b < tables_.n_bodies(); ++b) {
         const auto& body = tables_.bodies[b];
         const double* dX = V_.data() + 12 * b;

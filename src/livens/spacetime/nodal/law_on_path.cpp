@@ -54,8 +54,8 @@ void weigh(const Tables& tables, InspectedLaw& law)
     std::vector<double> X, V, maps(12 * tables.bodies.size()), q(static_cast<std::size_t>(tables.n_twists));
     for (const Matrix34& x : start.X) X.insert(X.end(), std::begin(x.a), std::end(x.a));
     for (const Matrix34& v : start.V) V.insert(V.end(), std::begin(v.a), std::end(v.a));
-    tables.map_twists(X.data(), maps.data());
-    const LoadArguments at = tables.arguments(law.load, {start.t}, X.data(), V.data(), {});
+    tables.bodies.map_twists(X.data(), maps.data());
+    const LoadArguments at = tables.loads.arguments(law.load, {start.t}, X.data(), V.data(), {});
     const Load& load = tables.model->loads()[law.load];
     for (std::size_t k = 0; k < law.inside.n_factors; ++k) {
         LoadForces F{};
@@ -64,9 +64,9 @@ void weigh(const Tables& tables, InspectedLaw& law)
         for (std::size_t b = 0; b < 2; ++b)
             if (load.bodies[b] != world)
                 std::copy_n(F[b].a, 12, raw.begin() + static_cast<std::ptrdiff_t>(12 * load.bodies[b]));
-        tables.twist_rows(X.data(), maps.data(), raw.data(), q.data());
-        tables.to_scaled_rows(maps.data(), q.data(), q.data());
-        tables.to_twist(maps.data(), q.data(), q.data());
+        tables.bodies.twist_rows(X.data(), maps.data(), raw.data(), q.data());
+        tables.bodies.to_scaled_rows(maps.data(), q.data(), q.data());
+        tables.bodies.to_twist(maps.data(), q.data(), q.data());
         double mobility = 0;
         for (std::size_t i = 0; i < q.size(); ++i)
             mobility += std::abs(q[i]);   // m/s^2 and rad/s^2: lengths are of the order of the model's
@@ -106,8 +106,8 @@ void LawOnPath::follow(const InspectedLaw& law, ElementPath& path, const std::ve
     std::vector<double> turned = angles;
     for (std::size_t A = 0; A < size; ++A) {
         path.go(basis_.nodes()[A], law.bodies);
-        tables_.turns.follow_of(law.load, Configurations(path.X()), turned);
-        law.inside.numbers(tables_.arguments(law.load, path.at(), path.X(), path.V(), turned),
+        tables_.loads.turns.follow_of(law.load, Configurations(path.X()), turned);
+        law.inside.numbers(tables_.loads.arguments(law.load, path.at(), path.X(), path.V(), turned),
                            std::span(numbers_).subspan(n * A, n));
     }
     if (!law.inside.steepest) return;

@@ -191,9 +191,9 @@ void Nodes::fix(int A, const InstantState& state)
 {
     NodePositions::fix(A, state.X, state.X_low);
     std::copy_n(state.maps.data(), size_, maps_.data() + place(A));
-    known_[A] = &state.basis;
-    if (A == 0) first_rows_ = &state.rows;
-    pivots_[A] = state.smallest_pivot;
+    known_[A] = &state.held.basis;
+    if (A == 0) first_rows_ = &state.held.rows;
+    pivots_[A] = state.held.smallest_pivot;
     has_start_ = false;
 }
 
@@ -207,7 +207,7 @@ void Nodes::begin_constraining()
     if (has_start_ || known_[0] == nullptr) return;
     has_start_ = true;
     pivots_[0] = known_[0]->smallest_pivot;
-    for (int c = 0; c < tables_.rank; ++c) phi_[c] = tables_.value((*first_rows_)[c], at(0), X(0));
+    for (int c = 0; c < tables_.rank; ++c) phi_[c] = tables_.rows.value((*first_rows_)[c], at(0), X(0));
 }
 
 bool Nodes::constrain(const Stretch& stretch, bool same_choices)
@@ -232,13 +232,13 @@ void Nodes::constrain_node(int e, int B, bool same_choices, double& sum)
     const ConstraintBasis& first = basis(start);
     const double *reference = phi_.data() + start * k, *step = dX(e, B);
     ConstraintBasis& own = bases_[A];
-    tables_.map_twists(X(A), maps_.data() + place(A));
+    tables_.bodies.map_twists(X(A), maps_.data() + place(A));
     pivots_[A] = own.build(tables_, at(A), X(A), maps(A), rows(), same_choices);
     for (int c = 0; c < k; ++c) {
         const auto& table = tables_.rows[own.rows[c]];
         // from the element's first node, which keeps the digits of a small increment
-        double phi = B == 0               ? tables_.value(own.rows[c], at(A), X(A), own.gradient(c))
-                     : table.is_quadratic ? reference[c] + tables_.change(own.rows[c], first.gradient(c),
+        double phi = B == 0               ? tables_.rows.value(own.rows[c], at(A), X(A), own.gradient(c))
+                     : table.is_quadratic ? reference[c] + tables_.rows.change(own.rows[c], first.gradient(c),
                                                                           own.gradient(c), step)
                                           : followed(e, B, c);
         if (std::abs(phi) < rounding * table.row->scale) phi = 0;
@@ -277,7 +277,7 @@ double Nodes::correct(const Stretch& stretch)
         const OrthogonalBasis& q = bases_[A].q;
         q.solve_R_transposed(y);
         q.apply(y);
-        tables_.to_twist(maps(A), y, twist);
+        tables_.bodies.to_twist(maps(A), y, twist);
         correction = std::max(correction, size_of(twist));
         place_from(A, A, twist);
     }

@@ -34,7 +34,7 @@ template <class Action>
 void Record::for_arrays(Action&& action)
 {
     Motion& m = motion_;
-    const std::size_t p = degree_, bodies = m.n_bodies, rows = m.n_rows, angles = tables_.turns.size();
+    const std::size_t p = degree_, bodies = m.n_bodies, rows = m.n_rows, angles = tables_.loads.turns.size();
     action(m.X.values, p * 12 * bodies, 12 * bodies);
     action(m.multipliers.values, (p + 1) * rows, 0);
     action(m.velocities, bodies, bodies);
@@ -116,13 +116,13 @@ void Record::end(int place, const InstantState& state, const InstantSystem& syst
     node(std::min(place, mesh_.n_elements() - 1), place < mesh_.n_elements() ? 0 : degree_, state.X.data());
     put(m.load_angles, place, state.angles.size(), state.angles.data());
     const double *V = system.rates(), *turn = system.centripetal();
-    tables_.times_mass(V, 1.0, work_.data());
+    tables_.bodies.times_mass(V, 1.0, work_.data());
     put(m.velocities, place, bodies, V);
     put(m.momenta, place, bodies, work_.data());
     for (int side = 0; side < 2; ++side) {
         if (side == 0 || two_sided) {
             // X'' = [a, alpha x d + w x (w x d)]
-            tables_.rates_of(state.X.data(), state.acceleration[side].data(), work_.data());
+            tables_.bodies.rates_of(state.X.data(), state.acceleration[side].data(), work_.data());
             double* __restrict A = work_.data();
             for (std::size_t i = 0; i < work_.size(); ++i) A[i] += turn[i];
         }
@@ -158,7 +158,7 @@ void Record::only(const State& start)
     first_ = last_ = 0;
     std::copy_n(start.X.front().a, m.X.n_values, m.X.values.begin());
     m.velocities = start.V;
-    tables_.times_mass(start.V.front().a, 1.0, work_.data());
+    tables_.bodies.times_mass(start.V.front().a, 1.0, work_.data());
     std::copy_n(work_.data(), work_.size(), m.momenta.front().a);
     std::ranges::fill(m.end_multipliers, unknown);
 }

@@ -37,8 +37,8 @@ void NodalRows::start_with(const InstantState& first)
     start_terms_ = largest;
     if (rule_.points == Points::lobatto) return;
     momenta_[0].columns.resize(work_.size());
-    tables_.rates_of(first.X.data(), first.velocity.data(), work_.data());
-    tables_.times_mass(work_.data(), 1.0, momenta_[0].columns.data());
+    tables_.bodies.rates_of(first.X.data(), first.velocity.data(), work_.data());
+    tables_.bodies.times_mass(work_.data(), 1.0, momenta_[0].columns.data());
 }
 
 /// raw += h^-1 sum_B k_AB (X_B - X_0) m + F_A of element e at its local node A; the first element at a node
@@ -57,9 +57,9 @@ void NodalRows::add_element(const Stretch& stretch, const Nodes& nodes, int e, i
     }
     const bool is_first = e == 0 || A > 0;
     double* sum = is_first ? raw : second_.data();
-    tables_.times_mass(y, factor, sum);
+    tables_.bodies.times_mass(y, factor, sum);
     if (!is_first) accumulate(raw, 1, sum, work_.size());
-    tables_.add_weight(stretch.h(e) * rule_.weights[A], raw);
+    tables_.bodies.add_weight(stretch.h(e) * rule_.weights[A], raw);
     if (!tables_.model->loads().empty()) accumulate(raw, 1, loads_.forces(e, A), work_.size());
 }
 
@@ -70,7 +70,7 @@ void NodalRows::twist_row(const Stretch& stretch, const Nodes& nodes, int A, dou
         add_element(stretch, nodes, e, A - e * rule_.degree, raw);
     if (stretch.points == Points::radau)
         accumulate(raw, rule_.c[A], momenta_[0].columns.data(), work_.size());
-    tables_.twist_rows(nodes.X(A), nodes.maps(A), raw, out);
+    tables_.bodies.twist_rows(nodes.X(A), nodes.maps(A), raw, out);
 }
 
 void EndMomentum::add_to(const Tables& tables, const double* maps, double sign, double* y) const
@@ -78,8 +78,8 @@ void EndMomentum::add_to(const Tables& tables, const double* maps, double sign, 
     std::vector<double> about_centre = about_reference, rows(about_centre.size());
     for (int b = 0; b < tables.n_bodies(); ++b)
         if (tables.bodies[b].dofs == 6)
-            Tables::to_centre(maps + 12 * b, about_centre.data() + tables.bodies[b].first);
-    tables.to_scaled_rows(maps, about_centre.data(), rows.data());
+            BodyTables::to_centre(maps + 12 * b, about_centre.data() + tables.bodies[b].first);
+    tables.bodies.to_scaled_rows(maps, about_centre.data(), rows.data());
     for (std::size_t i = 0; i < rows.size(); ++i) y[i] += sign * rows[i];
 }
 
@@ -89,7 +89,7 @@ bool NodalRows::eliminate(const Stretch& stretch, const Nodes& nodes, int A, dou
     const ConstraintBasis& basis = nodes.basis(A);
     const int k = tables_.rank, f = tables_.freedoms(), n = tables_.n_twists;
     double* y = work_.data();
-    tables_.to_scaled_rows(nodes.maps(A), q_.data(), y);
+    tables_.bodies.to_scaled_rows(nodes.maps(A), q_.data(), y);
     const EndMomentum& given = momenta_[A == 0 ? 0 : 1];
     const bool has_momentum = A == 0 || (stretch.P_last && A == stretch.n_nodes() - 1);
     if (has_momentum && stretch.is_unknown(A))

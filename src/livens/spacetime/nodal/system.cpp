@@ -37,7 +37,7 @@ void NodalSystem::open(const Stretch& stretch, const InstantState* first, const 
 void NodalSystem::choose_elimination()
 {
     if (rule_.degree == 1 && rule_.points == Points::lobatto && stretch_.n_elements() == 1 &&
-        stretch_.is_march() && tables_.loads_with_tangent.empty())
+        stretch_.is_march() && tables_.loads.with_tangent.empty())
         elimination_ = body_elimination(tables_);
     else
         elimination_ = on_null_spaces();
@@ -88,7 +88,7 @@ void NodalSystem::solve(std::span<double> dx)
     double* twist = dx.data();
     for (int A = 0; A < stretch_.n_nodes(); ++A) {
         if (!stretch_.is_unknown(A)) continue;
-        tables_.to_twist(nodes_.maps(A), twist, twist);
+        tables_.bodies.to_twist(nodes_.maps(A), twist, twist);
         twist += tables_.n_twists;
     }
 }

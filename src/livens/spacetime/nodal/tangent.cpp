@@ -17,7 +17,7 @@ namespace livens {
 namespace {
 
 /// The map D of one body, column by column, 6 x 6.
-void fill_map(const Tables::BodyTable& body, const double* maps, double* D)
+void fill_map(const BodyTable& body, const double* maps, double* D)
 {
     std::fill(D, D + 36, 0.0);
     for (int c = 0; c < 3; ++c) D[7 * c] = body.inverse_root_mass;
@@ -87,7 +87,7 @@ void Tangent::form(const Stretch& stretch, const Nodes& nodes, const NodalRows& 
     load_rounding_ = 0;
     for (int e = 0; e < stretch.n_elements(); ++e) {
         Patience::ask();
-        if (!tables_.loads_with_tangent.empty()) evaluate_loads(stretch, nodes, rows, e);
+        if (!tables_.loads.with_tangent.empty()) evaluate_loads(stretch, nodes, rows, e);
         for (int a = 0; a < rule_.size(); ++a) {
             const int A = e * rule_.degree + a;
             if (!stretch.is_active(A)) continue;
@@ -97,11 +97,12 @@ void Tangent::form(const Stretch& stretch, const Nodes& nodes, const NodalRows& 
                 sink.open(e, A, B);
                 const double factor = rule_.k[a * rule_.size() + b] / stretch.h(e);
                 for (int body = 0; body < tables_.n_bodies(); ++body) {
-                    if (tables_.bodies[body].dofs == 6) tables_.spin_mass(body, nodes.X(A), nodes.X(B), H);
+                    if (tables_.bodies[body].dofs == 6)
+                        tables_.bodies.spin_mass(body, nodes.X(A), nodes.X(B), H);
                     sink.mass(body, factor, H);
                 }
                 if (A == B && (a > 0 || e == 0)) add_node_terms(nodes, rows, A, sink);
-                if (!tables_.loads_with_tangent.empty()) add_loads(stretch, nodes, e, a, b, sink);
+                if (!tables_.loads.with_tangent.empty()) add_loads(stretch, nodes, e, a, b, sink);
                 sink.close();
             }
         }
@@ -177,16 +178,16 @@ double Tangent::rounding_of(const Load& load, const LoadArguments& at, const Loa
 /// dF/dX and dF/dX' of all loads at the load points of an element.
 void Tangent::evaluate_loads(const Stretch& stretch, const Nodes& nodes, const NodalRows& rows, int e)
 {
-    const std::size_t n = tables_.loads_with_tangent.size();
+    const std::size_t n = tables_.loads.with_tangent.size();
     load_tangents_.resize(n * rule_.loads.points.size());
     for (int c = 0; c < rule_.degree; ++c) {
         rows.loads().interpolate(stretch, nodes, e, c, X_.data(), V_.data());
         const std::span<const double> angles = rows.loads().angles(e, c);
         for (std::size_t l = 0; l < n; ++l) {
-            const Load& load = tables_.model->loads()[tables_.loads_with_tangent[l]];
+            const Load& load = tables_.model->loads()[tables_.loads.with_tangent[l]];
             const Instant at = stretch.load_point(rule_, e, c);
             const LoadArguments arguments =
-                tables_.arguments(tables_.loads_with_tangent[l], at, X_.data(), V_.data(), angles);
+                tables_.loads.arguments(tables_.loads.with_tangent[l], at, X_.data(), V_.data(), angles);
             LoadTangent& tangent = load_tangents_[c * n + l];
             tangent = LoadTangent(load.bodies.size());
             load.tangent(arguments, tangent);
@@ -199,11 +200,11 @@ void Tangent::evaluate_loads(const Stretch& stretch, const Nodes& nodes, const N
 /// sum_c h w_c M_A(s_c) N_A^T [ M_B(s_c) dF/dX + h^-1 M_B'(s_c) dF/dX' ] N_B.
 void Tangent::add_loads(const Stretch& stretch, const Nodes& nodes, int e, int a, int b, TangentSink& sink)
 {
-    const std::size_t n = tables_.loads_with_tangent.size();
+    const std::size_t n = tables_.loads.with_tangent.size();
     const int A = e * rule_.degree + a, B = e * rule_.degree + b, size = rule_.size();
     double block[36], scaled[36];
     for (std::size_t l = 0; l < n; ++l) {
-        const Load& load = tables_.model->loads()[tables_.loads_with_tangent[l]];
+        const Load& load = tables_.model->loads()[tables_.loads.with_tangent[l]];
         for (std::size_t r = 0; r < 2; ++r) {
             for (std::size_t s = 0; s < load.bodies.size(); ++s) {
                 const int i = load.bodies[r], j = load.bodies[s];

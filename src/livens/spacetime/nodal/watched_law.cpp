@@ -29,8 +29,10 @@ LawState WatchedLaw::at(ElementPath& path, double share, const LawState& from) c
     LawState state{share, std::vector<double>(guards_.size()), {}, from.angles};
     if (load_ >= 0) {
         const Load& load = tables_.model->loads()[load_];
-        if (!load.angles.empty()) tables_.turns.follow_of(load_, Configurations(path.X()), state.angles);
-        const LoadArguments arguments = tables_.arguments(load_, path.at(), path.X(), path.V(), state.angles);
+        if (!load.angles.empty())
+            tables_.loads.turns.follow_of(load_, Configurations(path.X()), state.angles);
+        const LoadArguments arguments =
+            tables_.loads.arguments(load_, path.at(), path.X(), path.V(), state.angles);
         if (load.guarded) load.guarded(arguments, state.numbers);
         if (has_centre_) state.centre = load.centre(arguments);
     } else {
@@ -47,8 +49,8 @@ LoadForces WatchedLaw::forces(ElementPath& path, const LawState& at) const
 {
     path.go(at.share, bodies_);
     LoadForces F{};
-    tables_.model->loads()[load_].forces(tables_.arguments(load_, path.at(), path.X(), path.V(), at.angles),
-                                         F);
+    tables_.model->loads()[load_].forces(
+        tables_.loads.arguments(load_, path.at(), path.X(), path.V(), at.angles), F);
     return F;
 }
 

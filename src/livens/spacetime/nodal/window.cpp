@@ -53,7 +53,7 @@ bool NodalWindow::open(int first, int last, SolveReport& report)
     }
     if (!is_ready_ && !begin_front(report)) return false;
     if (stretch_.X_last && !set_state(far_, ends_.end, report)) return false;
-    stretch_.angles = stretch_.X_first ? end_.here().angles : tables_.turns.begin();
+    stretch_.angles = stretch_.X_first ? end_.here().angles : tables_.loads.turns.begin();
     system_.open(stretch_, stretch_.X_first ? &end_.here() : nullptr, stretch_.X_last ? &far_ : nullptr);
     if (!stretch_.X_first && stretch_.P_first)
         set_momenta(ends_.start, system_.balances().end_momentum(false).about_reference);
@@ -119,7 +119,7 @@ bool NodalWindow::solve(const NewtonOptions& options, bool soon, NewtonReport& r
 double NodalWindow::tangent_cost() const
 {
     constexpr double measured = 1e-2;
-    const bool is_known = kernel_.serves() && stretch_.is_march() && end_.here().by_joints;
+    const bool is_known = kernel_.serves() && stretch_.is_march() && end_.here().held.by_joints;
     return is_known ? measured * stretch_.degree * std::pow(tables_.freedoms(), 2) : 0;
 }
 
@@ -171,7 +171,7 @@ State NodalWindow::at(int element_end) const
     }
     const InstantState& here = end_.here();
     std::vector<double> V(here.X.size());
-    tables_.rates_of(here.X.data(), here.velocity.data(), V.data());
+    tables_.bodies.rates_of(here.X.data(), here.velocity.data(), V.data());
     state.t = here.t;
     state.angles = here.angles;
     state.V.resize(tables_.bodies.size());
@@ -278,7 +278,7 @@ WorstResidual NodalWindow::worst() const
         if (!stretch_.is_active(A)) continue;
         const Nodes& nodes = system_.nodes();
         std::copy_n(system_.balances().raw(A), wrench.size(), wrench.begin());
-        tables_.twist_rows(nodes.X(A), nodes.maps(A), wrench.data(), q.data());
+        tables_.bodies.twist_rows(nodes.X(A), nodes.maps(A), wrench.data(), q.data());
         for (int b = 0; b < tables_.n_bodies(); ++b)
             for (int i = 0; i < tables_.bodies[b].dofs; ++i) {
                 const double v = std::abs(q[tables_.bodies[b].first + i]);

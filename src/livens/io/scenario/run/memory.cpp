@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a run takes of memory. It is bounded before the solution begins, by formulas that were fitted to measured
-// peaks: a computer that swaps or kills the program tells nothing. The numbers are estimates, not inequalities.
+// What a run takes of memory. It is bounded before the solution begins, by formulas that were fitted to
+// measured peaks: a computer that swaps or kills the program tells nothing. The numbers are estimates, not
+// inequalities.
 #include <algorithm>
 
 #include "livens/io/scenario/run/run.h"

@@ -82,7 +82,7 @@ void Following::weigh()
 void Following::follow_body(int body, int element, bool is_backwards, int last_lane, double* places)
 {
     const int W = functions_->width;
-    const Tables::BodyTable& of = tables_->bodies[body];
+    const BodyTable& of = tables_->bodies[body];
     const int stride = (is_backwards ? -1 : 1) * motion_->X.n_values;
     const double* X0 = motion_->X.coefficient(element, is_backwards ? degree_ : 0).data() +
                        static_cast<std::ptrdiff_t>(12 * body);

@@ -35,7 +35,7 @@ void KernelGuess::place_series(const TwistSeries& series, double tau, const Inst
 {
     series.at(tau, twist_.data());
     for (int b = 0; b < tables_.n_bodies(); ++b, place += 7 * stride) {
-        const Tables::BodyTable& body = tables_.bodies[b];
+        const BodyTable& body = tables_.bodies[b];
         const double *t = twist_.data() + body.first, *w = t + 3, *d = start.X.data() + 12 * b + 3;
         double dX[12];
         for (int i = 0; i < 3; ++i) place[i * stride] = t[i];

@@ -18,7 +18,7 @@ constexpr int few_steps = 3;
 bool turns_in_space(const Tables& tables, const InstantState& start, double h)
 {
     const std::vector<double>& accelerations = start.acceleration[h > 0 ? 1 : 0];
-    return std::ranges::any_of(tables.bodies, [&](const Tables::BodyTable& body) {
+    return std::ranges::any_of(tables.bodies, [&](const BodyTable& body) {
         const double *w = start.velocity.data() + body.first + 3, *a = accelerations.data() + body.first + 3;
         if (body.dofs == 3) return false;
         const Vector3 turn{w[0], w[1], w[2]}, change{a[0], a[1], a[2]}, across = cross(turn, change);

@@ -36,9 +36,9 @@ void KernelWrenches::evaluate_loads(const Stretch& stretch, const lanes::Pattern
                 }
         }
         if (c == 0) angles_ = stretch.angles;
-        tables_.turns.follow(Configurations(X_.data()), angles_);
+        tables_.loads.turns.follow(Configurations(X_.data()), angles_);
         std::ranges::fill(raw_, 0.0);
-        tables_.add_loads(stretch.load_point(rule_, 0, c), X_.data(), V_.data(),
+        tables_.loads.add(stretch.load_point(rule_, 0, c), X_.data(), V_.data(),
                           stretch.h(0) * rule_.loads.weights[c], raw_.data(), angles_);
         for (int b = 0; b < tables_.n_bodies(); ++b) {
             if (!pattern.bodies[b].loaded) continue;
@@ -55,7 +55,7 @@ void KernelWrenches::evaluate_loads(const Stretch& stretch, const lanes::Pattern
 void KernelWrenches::momentum(const Stretch& stretch, const InstantState& start, double* p) const
 {
     for (int b = 0; b < tables_.n_bodies(); ++b) {
-        const Tables::BodyTable& body = tables_.bodies[b];
+        const BodyTable& body = tables_.bodies[b];
         for (int i = 0; i < body.dofs; ++i) {
             const double weight = i < 3 ? stretch.h(0) * body.weight[i] : 0;   // no moment about the centre
             p[body.first + i] = start.p[body.first + i] + weight + of_loads_[6 * b + i] + taken_[6 * b + i];

@@ -109,7 +109,7 @@ MarchKernel::MarchKernel(const Tables& tables, const ElementRule& rule)
 
 void MarchKernel::use(const InstantState& start)
 {
-    start_ = &start.joints;
+    start_ = &start.held.joints;
     if (pattern_ == start_->pattern()) return;
     pattern_ = start_->pattern();
     nodes_.resize(*pattern_, functions_->width);
@@ -193,7 +193,7 @@ bool MarchKernel::solve(const Stretch& stretch, const InstantState& start, const
                         bool soon, NewtonReport& report)
 {
     is_solved_ = false;
-    if (!start.by_joints) return false;
+    if (!start.held.by_joints) return false;
     use(start);
     lane_rule_.use(stretch, start, last_steps_);
     const bool is_large = !soon && tables_.n_twists >= many_twists && options.max_iterations >= most_steps;
