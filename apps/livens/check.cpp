@@ -7,7 +7,7 @@
 #include "commands.h"
 #include "console.h"
 #include "failure.h"
-#include "livens/dynamics/start/closing.h"
+#include "livens/dynamics/start/consistent_start.h"
 #include "livens/dynamics/start/start_coordinates.h"
 #include "livens/io/known_state.h"
 #include "memory.h"
@@ -16,7 +16,7 @@ namespace livens::program {
 
 namespace {
 
-std::string json_of(const Scenario& scenario, const Model& model, const ClosedStart& assembly,
+std::string json_of(const Scenario& scenario, const Model& model, const ConsistentStart& assembly,
                     const std::vector<Diagnostic>& warnings)
 {
     JsonWriter json(2);
@@ -62,7 +62,7 @@ std::string division_of(const Scenario& scenario)
 constexpr int most_bodies_told = 300;   // beyond, finding what is independent takes seconds
 
 /// Which coordinates tell the configuration, for people who want to state or drive some.
-std::string coordinates_of(const Model& model, const ClosedStart& assembly)
+std::string coordinates_of(const Model& model, const ConsistentStart& assembly)
 {
     if (assembly.degrees_of_freedom == 0 || model.n_bodies() > most_bodies_told) return {};
     const IndependentCoordinates found = independent_coordinates(model, assembly.start);
@@ -129,7 +129,7 @@ int check_command(const std::string& file, const Common& common)
     const Scenario scenario = load_scenario(file, common, &warnings);
     const KnownState known = known_state(scenario);   // rank and redundant rows, for people
     const Model model = as_it_starts(scenario).model;
-    const ClosedStart assembly = close_start(model, known.state, known.initial);
+    const ConsistentStart assembly = consistent_start(model, known.state, known.initial);
     check_memory({&scenario});
     if (common.json) {
         print(json_of(scenario, model, assembly, warnings));

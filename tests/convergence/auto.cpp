@@ -33,7 +33,8 @@ Model slug()
     return model;
 }
 
-Solution to_accuracy(const Model& model, double end, double accuracy, const Method& method = Auto{})
+Solution to_accuracy(const Model& model, double end, double accuracy,
+                     const Method& method = AutomaticFamily{})
 {
     return solve(model, {model.start()}, Span{0, end, accuracy}, method);
 }
@@ -42,7 +43,7 @@ bool is_radau(const Solution& s) { return std::holds_alternative<Radau>(s.method
 
 double gap(const State& a, const State& b) { return norm(a.X[0].column(0) - b.X[0].column(0)); }
 
-TEST(Auto, StopsAMassByAStrongDamperWithoutBeingTold)
+TEST(AutomaticFamily, StopsAMassByAStrongDamperWithoutBeingTold)
 {
     const Solution s = to_accuracy(slug(), 1, 1e-6);
     ASSERT_TRUE(s.report.converged()) << s.report.message;
@@ -61,7 +62,7 @@ TEST(Auto, StopsAMassByAStrongDamperWithoutBeingTold)
     EXPECT_GT(std::abs(rings.motion.at(1).V[0](0, 0)), 1e-9);
 }
 
-TEST(Auto, TakesRadauForDecaysAndLobattoForVibrationsThatMatter)
+TEST(AutomaticFamily, TakesRadauForDecaysAndLobattoForVibrationsThatMatter)
 {
     for (const auto& [k, zeta, wants_radau] : {std::tuple{1e4, 0.0, false},
                                                {1e6, 0.0, false},
@@ -91,7 +92,7 @@ constexpr Elastic elastic_pendulums[] = {
     {1e8, 0, 0.0146691472886, -0.9998925110457},  {1e8, 1, 0.0146691474782, -0.9998925243659},
     {1e8, 20, 0.0146691478607, -0.9998925243236}};
 
-TEST(Auto, FollowsElasticPendulumsOrRefusesThemByName)
+TEST(AutomaticFamily, FollowsElasticPendulumsOrRefusesThemByName)
 {
     int n_right = 0;
     for (const Elastic& one : elastic_pendulums)
@@ -113,7 +114,7 @@ TEST(Auto, FollowsElasticPendulumsOrRefusesThemByName)
     EXPECT_GE(n_right, 20);
 }
 
-TEST(Auto, TakesRadauWhereLobattoDoesNotFollowAVibrationThatDoesNotMatter)
+TEST(AutomaticFamily, TakesRadauWhereLobattoDoesNotFollowAVibrationThatDoesNotMatter)
 {
     const Model model = elastic_pendulum(3e10, 0, 1e-7);
     const Solution s = to_accuracy(model, 5, 1e-4);
@@ -165,12 +166,12 @@ TEST(RadauEstimate, TellsAVibrationBesideAStrongDamper)
     EXPECT_GE(of_bob * s.estimate.length, off);
 }
 
-TEST(Auto, NeedsAnAccuracy)
+TEST(AutomaticFamily, NeedsAnAccuracy)
 {
     const Model model = slug();
-    EXPECT_THROW(solve(model, {model.start()}, make_time_mesh(0, 1, 10), Auto{}), InputError);
-    EXPECT_THROW(to_accuracy(model, 1, 1e-6, Auto{19}), InputError);
-    const Solution s = to_accuracy(model, 1, 1e-6, Auto{12});   // more than radau has
+    EXPECT_THROW(solve(model, {model.start()}, make_time_mesh(0, 1, 10), AutomaticFamily{}), InputError);
+    EXPECT_THROW(to_accuracy(model, 1, 1e-6, AutomaticFamily{19}), InputError);
+    const Solution s = to_accuracy(model, 1, 1e-6, AutomaticFamily{12});   // more than radau has
     EXPECT_EQ(std::get<Radau>(s.method).degree, 8);
 }
 

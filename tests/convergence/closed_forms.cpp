@@ -129,7 +129,7 @@ TEST(ClosedForms, AFastHeavyTopByAnAccuracyAlone)
     Model model({0, 0, -9.81});
     model.add_body(rigid_body("top", {100, {0, 0, 0.2}, {1, 0, 0, 0, 1, 0, 0, 0, 1}}, placement));
     model.add_joint(spherical("tip", world, 0, {}));
-    const Solution s = solve(model, {model.start()}, Span{0, 1, 1e-6}, Auto{});
+    const Solution s = solve(model, {model.start()}, Span{0, 1, 1e-6}, AutomaticFamily{});
     ASSERT_TRUE(s.report.converged()) << s.report.message;
     const Matrix34 X = last(s).X[0];
     const Vector3 d1{-0.952079138705748282, -0.241512594422143626, -0.187661877793028817},

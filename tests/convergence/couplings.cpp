@@ -155,12 +155,12 @@ TEST(Couplings, AStartOffTheTeethIsSeen)
     State state = model.start();
     state.X[1] = configuration(hub, directors_from_rotation_vector({0, 0, 0.01}));
     try {
-        close_start(model, state, StartPolicy::check);
+        consistent_start(model, state, StartPolicy::check);
         ADD_FAILURE() << "the wheels do not fit";
     } catch (const InputError& error) {
         EXPECT_EQ(error.complaint().code, "start-position");
     }
-    const ClosedStart closed = close_start(model, state, StartPolicy::project);
+    const ConsistentStart closed = consistent_start(model, state, StartPolicy::project);
     EXPECT_LE(std::abs(constraint_value(model.row(10), closed.start.X)), 1e-13);
 }
 

@@ -272,16 +272,16 @@ TEST(Drives, AStartMustMoveAsDriven)
     model.add_joint(
         bare("rod", world, 0, {}, {}, {driven_distance_row(world, point({}), 0, point({}), length, 1)}));
     try {
-        close_start(model, model.start(), StartPolicy::check);
+        consistent_start(model, model.start(), StartPolicy::check);
         ADD_FAILURE() << "a start at rest was taken";
     } catch (const InputError& error) {
         EXPECT_EQ(error.complaint().code, "start-velocity");
     }
-    const ClosedStart closed = close_start(model, model.start(), StartPolicy::project);
+    const ConsistentStart closed = consistent_start(model, model.start(), StartPolicy::project);
     EXPECT_LE(norm(closed.start.V[0].column(0) - Vector3{0.6, 0, -0.8}), 1e-15);
     State later = model.start();
     later.t = 0.2;
-    const ClosedStart moved = close_start(model, later, StartPolicy::project);
+    const ConsistentStart moved = consistent_start(model, later, StartPolicy::project);
     EXPECT_NEAR(norm(moved.start.X[0].column(0)), length({0.2}).value, 1e-15);
     EXPECT_NEAR(norm(moved.start.V[0].column(0)), std::abs(length({0.2}).first), 1e-14);
 }
@@ -293,7 +293,7 @@ TEST(Drives, TheOtherBranchOfAnAngleIsRefused)
     turned.X[0] = configuration({}, directors_from_rotation_vector({0, 0, 0.4 + std::numbers::pi}));
     turned.V[0] = rate(turned.X[0], {}, {0, 0, 6});
     try {
-        close_start(model, turned, StartPolicy::check);
+        consistent_start(model, turned, StartPolicy::check);
         ADD_FAILURE() << "half a turn was not seen";
     } catch (const InputError& error) {
         EXPECT_EQ(error.complaint().code, "joint-branch");

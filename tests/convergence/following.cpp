@@ -44,7 +44,7 @@ Model tumbling()
     return model;
 }
 
-TEST(Following, FindsTheSameSooner)
+TEST(ReferencePredictor, FindsTheSameSooner)
 {
     const std::vector<Model> models{two_bricks(), hinged_links(), four_bar(), cubes_on_rods(0.1),
                                     medley(),     heavy_top(),    tumbling()};
@@ -74,7 +74,7 @@ TEST(Following, FindsTheSameSooner)
     EXPECT_GT(apart, 1e-6) << "what is followed is another motion";
 }
 
-TEST(Following, GoesAgainstTimeToo)
+TEST(ReferencePredictor, GoesAgainstTimeToo)
 {
     const Model model = cubes_on_rods(0.1);
     const Motion there = solved(model, 2, 30, 5, nullptr).motion;
@@ -95,7 +95,7 @@ TEST(Following, GoesAgainstTimeToo)
 }
 
 /// Whose elements are others, or that goes elsewhere, is not followed: not a bit of it is seen.
-TEST(Following, TakesNothingFromOtherElementsAndOtherMotions)
+TEST(ReferencePredictor, TakesNothingFromOtherElementsAndOtherMotions)
 {
     const Model model = two_bricks();
     const Solution alone = solved(model, 0.5, 20, 6, nullptr);

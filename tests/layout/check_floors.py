@@ -261,9 +261,33 @@ def check_circles(check, graph):
             visit(path, [path])
 
 
+def check_namespace(check, path, room, text, installed):
+    """Names that users have stand in livens, those inside of a room in an inline namespace of its own: two rooms may then use
+    one word without being one type. What a header adds to a public class stays in livens."""
+    adds = re.search(r"^(struct|class) \w+::\w+ (final )?[:{]", text, re.M)
+    is_public = str(path.relative_to(check.root / "src")) in installed
+    for i, line in enumerate(text.splitlines(), 1):
+        inner = re.match(r"namespace livens::inline (\w+) \{", line)
+        if inner and is_public:
+            check.fault(path, i, "namespace", "an installed header declares in livens")
+        elif inner and inner[1] != f"{room}_internal" and not is_forward(text, i):
+            check.fault(path, i, "namespace", f"inside of this room is {room}_internal")
+        elif re.match(r"namespace (\[\[.*\]\] )?livens \{", line) and not is_public and not adds and not is_forward(text, i):
+            check.fault(path, i, "namespace", f"what is not installed stands in namespace livens::inline {room}_internal")
+
+
+def is_forward(text, line):
+    """Whether a namespace that opens in this line holds nothing but names of classes."""
+    body = text.splitlines()[line:]
+    end = next((i for i, other in enumerate(body) if other.startswith("}")), 0)
+    return all(re.match(r"(struct|class) \w+;|$", other) for other in body[:end])
+
+
 def check_floors(root):
     check = Check(root)
     check_licences(check)
+    listing = root / "cmake/headers.txt"
+    installed = set(listing.read_text(encoding="utf-8").split()) if listing.exists() else set()
     graph = {}
     base_lines = 0
     for path, room in files_with_rooms(root):
@@ -276,6 +300,8 @@ def check_floors(root):
         lines = check_sizes(check, path, text, TEST if is_test else SOURCE)
         if room in CORE and not is_test:
             check_wording(check, path, text)
+        if path.suffix == ".h" and root / "src" in path.parents:
+            check_namespace(check, path, room, text, installed)
         if room == "base" and not is_test:
             base_lines += lines
     if base_lines > BASE:
@@ -295,9 +321,21 @@ def tags(paths, options):
     if "Universal Ctags" not in version.stdout:
         return None
     command = [ctags, "--language-force=C++", *options, "-x", "-L", "-"]
-    names = "\n".join(map(str, paths))
-    listing = subprocess.run(command, input=names, capture_output=True, text=True, check=True)
-    return [line.split("\t") for line in listing.stdout.splitlines()]
+    with tempfile.TemporaryDirectory() as folder:
+        names, own = {}, {}
+        for i, path in enumerate(paths):
+            path = pathlib.Path(path)
+            text = path.read_text(encoding="utf-8")
+            plain = text.replace("namespace livens::inline ", "namespace livens::")   # which ctags does not know
+            seen = path
+            if plain != text:
+                seen = pathlib.Path(folder, f"{i}{path.suffix}")
+                seen.write_text(plain, encoding="utf-8")
+                own[str(seen)] = str(path)
+            names[str(seen)] = None
+        listing = subprocess.run(command, input="\n".join(names), capture_output=True, text=True, check=True)
+    lines = [line.split("\t") for line in listing.stdout.splitlines()]
+    return [[*fields[:-1], own.get(fields[-1], fields[-1])] for fields in lines]
 
 
 def check_functions(root):
@@ -356,6 +394,11 @@ def check_classes(root):
 # Negative controls: one fault a tree, and the rule that must name it.
 
 GOOD = {
+    "cmake/headers.txt": "@livens/multibody/model.h\n",
+    "src/livens/time/inside.h": "#pragma once\nnamespace livens::inline solvers_internal {\nclass Newton;\n}\n\n"
+                                "namespace livens::inline time_internal {\nint f();\n}\n",
+    "src/livens/multibody/outside.h": "#pragma once\n#include \"livens/multibody/model.h\"\nnamespace livens {\n\n"
+                                      "struct Model::Parts {\n};\n}\n",
     "src/livens/base/error.h": "#pragma once\n#include <string>\n",
     "src/livens/time/mesh.h": '#pragma once\n#include "livens/base/error.h"\n',
     "src/livens/solvers/newton.h": "#pragma once\n",
@@ -386,6 +429,10 @@ CONTROLS = [
     ("licence", {"cmake/late.cmake": f"@# rooms\n# {LICENCE}\n"}),
     ("licence", {"tests/mutants/script": "@#!/usr/bin/env python3\nprint()\n"}),
     ("licence", {"benchmarks/CMakeLists.txt": "@# SPDX-License-Identifier: MIT\n"}),
+    ("namespace", {"src/livens/time/inside.h": "#pragma once\nnamespace livens {\nint f();\n}\n"}),
+    ("namespace", {"src/livens/time/inside.h": "#pragma once\nnamespace livens::inline solvers_internal {\nint f();\n}\n"}),
+    ("namespace", {"src/livens/multibody/model.h": "#pragma once\nnamespace livens::inline multibody_internal {\nint f();\n}\n"}),
+    ("namespace", {"src/livens/time/inside.h": '#pragma once\nnamespace [[gnu::visibility("default")]] livens {\nint f();\n}\n'}),
     ("upward", {"src/livens/base/up.h": '#pragma once\n#include "livens/time/mesh.h"\n'}),
     ("upward", {"src/livens/multibody/up.cpp": '#  include   "livens/diagnostics/energy.h"\n'}),
     ("upward", {"src/livens/time/up.cpp": 'const char* s = "/*";\n#include "livens/io/file.h"\n'}),

@@ -121,7 +121,7 @@ livens_mutant(NAME loads_given_to_one_node
 
 # The instant of a node for what is taken at a Gauss point: right for constant loads only.
 livens_mutant(NAME loads_at_the_instants_of_nodes
-              FILE spacetime/nodal/stretch.h
+              FILE spacetime/nodal/window_layout.h
               RECOMPILE spacetime/nodal/element_loads.cpp spacetime/nodal/kernel/kernel_wrenches.cpp
               OLD [[rule.loads.points[c] * h(e), Side::middle}]]
               NEW [[rule.nodes[c] * h(e), Side::middle}]]
@@ -608,7 +608,7 @@ livens_mutant(NAME cut_on_both_sides
 
 # Rounding measured by what is stated alone: at rest everything breaks a joint.
 livens_mutant(NAME rounding_is_no_rest
-              FILE dynamics/start/closing.cpp
+              FILE dynamics/start/consistent_start.cpp
               OLD [[if (least > speed) fault]]
               NEW [[if (least > 1e99) fault]]
               TESTS_OF unit_dynamics

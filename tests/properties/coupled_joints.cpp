@@ -182,7 +182,7 @@ TEST(CoupledJoints, TablesOfThreeBodiesAgreeWithDifferences)
     joint.rows = {gear(2, -3)};
     joint.axis_first = joint.axis_second = {};
     model.add_joint(joint);
-    const Tables tables(model, {0});
+    const ModelTables tables(model, {0});
     ASSERT_EQ(tables.rows[0].n_sides, 3);
     for (int n = 0; n < 20; ++n) {
         Bodies X = wheels(random.rotation(), 3 * random.number(), 3 * random.number()), V;

@@ -126,7 +126,7 @@ TEST(DrivenJoints, AWrongDerivativeFailsTheRates)
 }
 
 /// What tables say of a row, against the row itself.
-void expect_tables_agree(const Tables& tables, int r, const std::vector<Matrix34>& X,
+void expect_tables_agree(const ModelTables& tables, int r, const std::vector<Matrix34>& X,
                          const std::vector<Matrix34>& V)
 {
     const ConstraintRow& row = tables.model->row(r);
@@ -177,7 +177,7 @@ TEST(DrivenJoints, TablesSayWhatRowsSay)
             model.add_joint(joint.make(first, second, frame, X_first, X_second));
             EXPECT_TRUE(model.has_drives());
             EXPECT_FALSE(frozen(model, kit_instant).has_drives());
-            const Tables tables(model, {});
+            const ModelTables tables(model, {});
             std::vector<Matrix34> V;
             for (Matrix34& x : X) {
                 x = random.matrix<3, 4>();

@@ -46,8 +46,9 @@ bool has(const std::function<bool(const Method&)>& wanted)
 TEST(IntegratorKit, EveryFamilyIsInTheRegistry)
 {
     for (std::size_t i = 0; i < std::variant_size_v<Method>; ++i)
-        EXPECT_TRUE(has([=](const Method& method) { return method.index() == i; }) ||
-                    i == Method(Auto{}).index())   // the choice between two others, with an accuracy only
+        EXPECT_TRUE(
+            has([=](const Method& method) { return method.index() == i; }) ||
+            i == Method(AutomaticFamily{}).index())   // the choice between two others, with an accuracy only
             << i;
 }
 

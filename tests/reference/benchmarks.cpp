@@ -43,7 +43,7 @@ TEST(Benchmarks, ATryOfALowerDegreeHasLessRounding)
         if (!use_instructions(set)) continue;
         for (const std::vector<double>& output : {std::vector<double>{}, p.times}) {
             const Span span{0, 5, 1e-10, output};
-            const Solution solution = solve(s.model, {s.model.start()}, span, Auto{}, s.options);
+            const Solution solution = solve(s.model, {s.model.start()}, span, AutomaticFamily{}, s.options);
             EXPECT_TRUE(solution.report.converged()) << to_string(set) << ": " << solution.report.message;
             EXPECT_LE(solution.report.tries, 5) << to_string(set);
         }

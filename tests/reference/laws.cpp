@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "livens/base/text.h"
-#include "livens/spacetime/march/pace.h"
+#include "livens/spacetime/march/step_size_controller.h"
 #include "livens/spacetime/march/windows.h"
 #include "livens/spacetime/nodal/window.h"
 #include "reference/shipped.h"
@@ -478,14 +478,14 @@ TEST(Laws, AnglesAreCountedWhileMarching)
     Conditions conditions;
     conditions.start = model.start();
     const Ends ends = close_ends(model, {conditions}, 0, 5, {});
-    const Tables tables(model, ends.independent);
+    const ModelTables tables(model, ends.independent);
     TimeMesh mesh{{0}};
     NodalWindow window(tables, mesh, ends, element_rule(Points::lobatto, 4));
-    Pace pace(Points::lobatto, 4, 1e-6, 0.01, {0, 5});
+    StepSizeController controller(Points::lobatto, 4, 1e-6, 0.01, {0, 5});
     std::vector<std::pair<double, std::vector<double>>> seen;
     WindowOptions options;
     options.length_of_model = model.length();
-    options.pace = &pace;
+    options.controller = &controller;
     options.goes_on = [&] {
         const Motion& so_far = *window.monitor().so_far();
         for (const int end : {so_far.n_elements() / 2, so_far.n_elements()})

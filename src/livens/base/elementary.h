@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace livens {
+namespace livens::inline base_internal {
 
 struct SineCosine {
     double sine, cosine;
@@ -54,4 +54,4 @@ inline double hyperbolic_tangent(double x) { return static_cast<double>(std::tan
 
 inline double power(double x, double n) { return static_cast<double>(std::pow(Wide{x}, Wide{n})); }
 
-}   // namespace livens
+}   // namespace livens::inline base_internal

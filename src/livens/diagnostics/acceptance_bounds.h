@@ -2,7 +2,7 @@
 // The bounds of judge(), for whoever shows them beside the figures.
 #pragma once
 
-namespace livens {
+namespace livens::inline diagnostics_internal {
 
 inline constexpr double acceptable_violation = 1e-6;
 // Bounds for constraints that hold weakly and for zig-zag are drawn between right and wrong runs of the
@@ -20,4 +20,4 @@ inline constexpr double acceptable_drift = 0.05;
 inline constexpr double acceptable_distance = 0.05;
 inline constexpr double acceptable_error = 1e-2;
 
-}   // namespace livens
+}   // namespace livens::inline diagnostics_internal

@@ -7,7 +7,7 @@
 
 #include "livens/multibody/model.h"
 #include "livens/multibody/motion.h"
-#include "livens/multibody/turns.h"
+#include "livens/multibody/unwrapped_angles.h"
 
 namespace [[gnu::visibility("default")]] livens {
 
@@ -69,14 +69,14 @@ class LoadTurns {
 public:
     LoadTurns(const Model& model, const Motion& motion);
 
-    const Turns& turns() const { return turns_; }
+    const UnwrappedAngles& turns() const { return turns_; }
     /// A row at an end of an element, and in a state of the motion.
     std::vector<double> at_end(int end) const;
     std::vector<double> at(const State& state) const;
 
 private:
     const Motion& motion_;
-    Turns turns_;
+    UnwrappedAngles turns_;
     std::vector<double> at_ends_;
 };
 

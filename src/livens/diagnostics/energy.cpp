@@ -4,7 +4,7 @@
 #include <cassert>
 
 #include "livens/diagnostics/diagnostics.h"
-#include "livens/multibody/turns.h"
+#include "livens/multibody/unwrapped_angles.h"
 
 namespace livens {
 
@@ -26,7 +26,7 @@ double potential_energy(const Model& model, Instant at, std::span<const Matrix34
     // The weight is constant, so its potential is -tr(F^T X) = -M g . x of the centre of mass.
     for (int b = 0; b < model.n_bodies(); ++b)
         energy -= dot(weight(model.bodies()[b], model.gravity()), X[b]);
-    const Turns turns(model);
+    const UnwrappedAngles turns(model);
     for (int l = 0; l < static_cast<int>(model.loads().size()); ++l) {
         const Load& load = model.loads()[l];
         if (load.potential) energy += load.potential(load_arguments(load, at, X, V, turns.of(l, angles)));

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace livens {
+namespace livens::inline diagnostics_internal {
 
 /// largest = max(largest, value), and NaN once either is: a motion that is not a number must not look
 /// perfect. Returns whether it was raised.
@@ -15,4 +15,4 @@ inline bool raise_to(double& largest, double value)
     return true;
 }
 
-}   // namespace livens
+}   // namespace livens::inline diagnostics_internal

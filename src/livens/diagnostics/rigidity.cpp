@@ -16,7 +16,7 @@
 #include "livens/diagnostics/sample.h"
 #include "livens/dynamics/instant/reactions.h"
 #include "livens/dynamics/rows/rows.h"
-#include "livens/multibody/turns.h"
+#include "livens/multibody/unwrapped_angles.h"
 #include "livens/statics/small_motions.h"
 
 namespace livens {
@@ -32,7 +32,7 @@ std::vector<Matrix34> forces_less_inertia(const Model& model, Instant at, std::s
     rest.reserve(X.size());
     for (std::size_t b = 0; b < X.size(); ++b)
         rest.push_back(weight(model.bodies()[b], model.gravity()) - A[b] * model.bodies()[b].mass);
-    const Turns turns(model);
+    const UnwrappedAngles turns(model);
     for (int l = 0; l < static_cast<int>(model.loads().size()); ++l) {
         const Load& load = model.loads()[l];
         LoadForces F{};
@@ -149,7 +149,7 @@ SideOfRigidity rigidity_on(const Model& model, const State& state, Side side)
     const std::size_t n = model.bodies().size(), s = side == Side::left ? 0 : 1;
     std::optional<PreparedState> prepared;
     // Between nodes rows hold to the order of the interpolation only: the state is closed first.
-    const TriedStart tried = try_close_start(model, state, StartPolicy::project);
+    const TriedStart tried = try_consistent_start(model, state, StartPolicy::project);
     if (tried.closed)
         prepared.emplace(model, *tried.closed, side, false);   // else the joints allow none near
     if (!prepared || !prepared->is_fit || !are_numbers(prepared->state.multipliers[s])) return unbounded(n);

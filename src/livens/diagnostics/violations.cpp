@@ -22,7 +22,7 @@ namespace livens {
 namespace {
 
 /// Phi / scale.
-double joint_violation(const Tables& tables, int row, double t, std::span<const Matrix34> X)
+double joint_violation(const ModelTables& tables, int row, double t, std::span<const Matrix34> X)
 {
     return tables.rows.value(row, {t}, X.data()->data()) / tables.rows[row].row->scale;
 }
@@ -52,7 +52,7 @@ double rigidity_violation(const Model& model, std::span<const Matrix34> X)
 }
 
 /// |dPhi/dt| / scale.
-double velocity_violation(const Tables& tables, int row, double t, std::span<const Matrix34> X,
+double velocity_violation(const ModelTables& tables, int row, double t, std::span<const Matrix34> X,
                           std::span<const Matrix34> V)
 {
     const RowTable& table = tables.rows[row];
@@ -66,14 +66,14 @@ double velocity_violation(const Tables& tables, int row, double t, std::span<con
 }
 
 /// Also at the ends of its time.
-bool is_held(const Tables& tables, int row, double t)
+bool is_held(const ModelTables& tables, int row, double t)
 {
     const Joint& joint = tables.model->joints()[tables.model->row_joint(row)];
     return joint.from <= t && t <= joint.until;
 }
 
 /// Largest |Phi| / scale of all rows that are held.
-double worst_joint(const Tables& tables, double t, std::span<const Matrix34> X, int& row)
+double worst_joint(const ModelTables& tables, double t, std::span<const Matrix34> X, int& row)
 {
     double largest = 0;
     for (int r = 0; r < tables.n_rows(); ++r)
@@ -83,7 +83,7 @@ double worst_joint(const Tables& tables, double t, std::span<const Matrix34> X, 
 
 /// visit(time, largest of the joints, its row, largest of rigidity), node after node.
 template <class Visit>
-void visit_nodes(const Tables& tables, const Motion& motion, const Visit& visit)
+void visit_nodes(const ModelTables& tables, const Motion& motion, const Visit& visit)
 {
     std::vector<Matrix34> X(static_cast<std::size_t>(motion.n_bodies));
     auto x = motion.X.values.begin();
@@ -98,7 +98,7 @@ void visit_nodes(const Tables& tables, const Motion& motion, const Visit& visit)
     }
 }
 
-void at_nodes(const Tables& tables, const Motion& motion, ViolationReport& report)
+void at_nodes(const ModelTables& tables, const Motion& motion, ViolationReport& report)
 {
     visit_nodes(tables, motion, [&](double t, double joints, int row, double rigidity) {
         raise_to(report.rigidity_at_nodes, rigidity);
@@ -119,7 +119,7 @@ std::vector<double> points_between(const std::vector<double>& nodes, int samples
     return points;
 }
 
-void at_velocity_level(const Tables& tables, const Motion& motion, std::span<Matrix34> X,
+void at_velocity_level(const ModelTables& tables, const Motion& motion, std::span<Matrix34> X,
                        ViolationReport& report)
 {
     for (int end = 0; end <= motion.n_elements(); ++end) {
@@ -132,7 +132,7 @@ void at_velocity_level(const Tables& tables, const Motion& motion, std::span<Mat
     }
 }
 
-void between_nodes(const Tables& tables, const Motion& motion, int samples, std::span<Matrix34> X,
+void between_nodes(const ModelTables& tables, const Motion& motion, int samples, std::span<Matrix34> X,
                    ViolationReport& report)
 {
     const ElementSampler between(motion, points_between(motion.X.basis().nodes(), samples));
@@ -149,7 +149,8 @@ void between_nodes(const Tables& tables, const Motion& motion, int samples, std:
 
 /// Means of all rows over each element: Phi has twice the degree of X, which the rule integrates exactly
 /// (quotients of polynomials nearly).
-void as_integrals(const Tables& tables, const Motion& motion, std::span<Matrix34> X, ViolationReport& report)
+void as_integrals(const ModelTables& tables, const Motion& motion, std::span<Matrix34> X,
+                  ViolationReport& report)
 {
     const Quadrature rule = gauss(std::min(2 * motion.X.degree, 64));
     const ElementSampler sampler(motion, rule.points);
@@ -189,7 +190,7 @@ ViolationReport violations(const Model& model, const Motion& motion, int samples
     ViolationReport report;
     if (motion.mesh.ends.empty()) return report;
     std::vector<Matrix34> X(static_cast<std::size_t>(motion.n_bodies));
-    const Tables tables(model, all_rows(model));
+    const ModelTables tables(model, all_rows(model));
     at_nodes(tables, motion, report);
     at_velocity_level(tables, motion, X, report);
     if (samples > 0) between_nodes(tables, motion, samples, X, report);
@@ -201,10 +202,11 @@ NodeViolations node_violations(const Model& model, const Motion& motion)
 {
     NodeViolations series;
     if (motion.X.empty()) return series;
-    visit_nodes(Tables(model, all_rows(model)), motion, [&](double, double joints, int, double rigidity) {
-        series.joints.push_back(joints);
-        series.rigidity.push_back(rigidity);
-    });
+    visit_nodes(ModelTables(model, all_rows(model)), motion,
+                [&](double, double joints, int, double rigidity) {
+                    series.joints.push_back(joints);
+                    series.rigidity.push_back(rigidity);
+                });
     return series;
 }
 

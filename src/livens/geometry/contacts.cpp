@@ -14,7 +14,7 @@
 #include "livens/geometry/detail/facets.h"
 #include "livens/geometry/detail/workers.h"
 
-namespace livens {
+namespace livens::inline geometry_internal {
 
 namespace {
 
@@ -280,4 +280,4 @@ void check_contacts(const Facets& f, const Triangles& triangles, const Rings& ri
                           "separate or unite what meets there"});
 }
 
-}   // namespace livens
+}   // namespace livens::inline geometry_internal

@@ -9,7 +9,7 @@
 #include <numbers>
 #include <utility>
 
-namespace livens {
+namespace livens::inline geometry_internal {
 
 namespace {
 
@@ -135,4 +135,4 @@ double share_of_view(const Facets& f, std::int32_t face, const Vector3& p)
     return angle / (4 * std::numbers::pi);
 }
 
-}   // namespace livens
+}   // namespace livens::inline geometry_internal

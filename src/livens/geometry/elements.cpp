@@ -6,7 +6,7 @@
 
 #include "livens/time/quadrature.h"
 
-namespace livens {
+namespace livens::inline geometry_internal {
 
 namespace {
 
@@ -151,4 +151,4 @@ ElementPoint element_point(const ShapeValues& shape, const Mesh& mesh, ElementKi
     return at;
 }
 
-}   // namespace livens
+}   // namespace livens::inline geometry_internal

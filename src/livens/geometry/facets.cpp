@@ -10,7 +10,7 @@
 #include "livens/geometry/detail/facets.h"
 #include "livens/geometry/detail/workers.h"
 
-namespace livens {
+namespace livens::inline geometry_internal {
 
 namespace {
 
@@ -280,4 +280,4 @@ Pieces pieces_of(const Facets& f)
                     [&](std::int32_t face) { return root_of(parents, f.corners[f.begin(face)]); });
 }
 
-}   // namespace livens
+}   // namespace livens::inline geometry_internal

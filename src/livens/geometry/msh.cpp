@@ -9,7 +9,7 @@
 
 #include "livens/geometry/detail/cursor.h"
 
-namespace livens {
+namespace livens::inline geometry_internal {
 
 namespace {
 
@@ -364,4 +364,4 @@ private:
 
 void read_msh(std::string_view bytes, Mesh& mesh) { MshReader(bytes, mesh).read(); }
 
-}   // namespace livens
+}   // namespace livens::inline geometry_internal

@@ -6,7 +6,7 @@
 
 #include "livens/geometry/detail/cursor.h"
 
-namespace livens {
+namespace livens::inline geometry_internal {
 
 namespace {
 
@@ -112,4 +112,4 @@ private:
 
 void read_obj(std::string_view bytes, Mesh& mesh) { ObjReader(bytes, mesh).read(); }
 
-}   // namespace livens
+}   // namespace livens::inline geometry_internal

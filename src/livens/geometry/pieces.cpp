@@ -155,7 +155,7 @@ void turn_faces(Mesh& mesh, const std::vector<bool>& is_turned)
 
 }   // namespace
 
-void turn_element(ElementKind kind, std::int32_t* nodes)
+void geometry_internal::turn_element(ElementKind kind, std::int32_t* nodes)
 {
     switch (kind) {
     case ElementKind::triangle:
@@ -178,7 +178,7 @@ void turn_element(ElementKind kind, std::int32_t* nodes)
     }
 }
 
-void check_pieces(const Facets& f, const Pieces& numbers, std::vector<Complaint>& faults)
+void geometry_internal::check_pieces(const Facets& f, const Pieces& numbers, std::vector<Complaint>& faults)
 {
     const std::string& name = f.mesh->name;
     if (numbers.n > most_pieces) {

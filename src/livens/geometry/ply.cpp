@@ -10,7 +10,7 @@
 #include "livens/geometry/detail/cursor.h"
 #include "livens/geometry/detail/workers.h"
 
-namespace livens {
+namespace livens::inline geometry_internal {
 
 namespace {
 
@@ -305,4 +305,4 @@ private:
 
 void read_ply(std::string_view bytes, Mesh& mesh) { PlyReader(bytes, mesh).read(); }
 
-}   // namespace livens
+}   // namespace livens::inline geometry_internal

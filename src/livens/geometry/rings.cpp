@@ -12,7 +12,7 @@
 
 #include "livens/geometry/detail/workers.h"
 
-namespace livens {
+namespace livens::inline geometry_internal {
 
 namespace {
 
@@ -176,4 +176,4 @@ Rings rings_of(const std::vector<Vector3>& points, std::span<const std::int32_t>
     return rings;
 }
 
-}   // namespace livens
+}   // namespace livens::inline geometry_internal

@@ -14,7 +14,7 @@
 #include "livens/geometry/detail/box_tree.h"
 #include "livens/geometry/detail/workers.h"
 
-namespace livens {
+namespace livens::inline geometry_internal {
 
 namespace {
 
@@ -145,4 +145,4 @@ std::vector<std::uint8_t> lone_sheets(const BoxTree& tree, const std::vector<Vec
     return is_lone;
 }
 
-}   // namespace livens
+}   // namespace livens::inline geometry_internal

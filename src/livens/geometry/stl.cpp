@@ -10,7 +10,7 @@
 #include "livens/geometry/detail/cursor.h"
 #include "livens/geometry/detail/workers.h"
 
-namespace livens {
+namespace livens::inline geometry_internal {
 
 namespace {
 
@@ -178,4 +178,4 @@ void read_stl(std::string_view bytes, Mesh& mesh)
     read_text(cursor, bytes.size(), mesh);
 }
 
-}   // namespace livens
+}   // namespace livens::inline geometry_internal

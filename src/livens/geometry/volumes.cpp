@@ -137,7 +137,7 @@ void check_jacobians(const Mesh& mesh, std::vector<Complaint>& faults)
 
 }   // namespace
 
-void check_volumes(const Mesh& mesh, std::vector<Complaint>& faults)
+void geometry_internal::check_volumes(const Mesh& mesh, std::vector<Complaint>& faults)
 {
     check_jacobians(mesh, faults);
     const std::vector<Side> sides = sides_of(mesh);
@@ -193,7 +193,7 @@ Mesh boundary_of(const Mesh& mesh)
     return boundary;
 }
 
-int n_pieces_of_volume(const Mesh& mesh)
+int geometry_internal::n_pieces_of_volume(const Mesh& mesh)
 {
     std::vector<std::int32_t> firsts, parents;   // of each block: the number of its first element
     std::int32_t n = 0;
@@ -218,7 +218,7 @@ int n_pieces_of_volume(const Mesh& mesh)
     return pieces;
 }
 
-void turn_volumes(Mesh& mesh)
+void geometry_internal::turn_volumes(Mesh& mesh)
 {
     for (ElementBlock& block : mesh.blocks)
         for (std::int64_t e = 0; dimension(block.kind) == 3 && e < block.size(); ++e)

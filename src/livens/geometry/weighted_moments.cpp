@@ -48,19 +48,20 @@ std::string text_of_point(const Vector3& p)
 
 }   // namespace
 
-void refuse_density(const std::string& what, const std::string& value, const std::string& help)
+void geometry_internal::refuse_density(const std::string& what, const std::string& value,
+                                       const std::string& help)
 {
     throw InputError({"density-field", "", what, value, "", "", help});
 }
 
-double checked_density(double density, const Vector3& at, double least)
+double geometry_internal::checked_density(double density, const Vector3& at, double least)
 {
     if (density >= least && std::isfinite(density)) return density;
     refuse_density("the density at " + text_of_point(at) + " of the shape's numbers is no density",
                    to_text(density), "it must be a number >= 0 all over the solid");
 }
 
-Moments about_centroid(const Sums& sums, const Vector3& about)
+Moments geometry_internal::about_centroid(const Sums& sums, const Vector3& about)
 {
     if (!(sums.mass > 0)) refuse_density("the density leaves no mass", to_text(sums.mass), "");
     const Vector3 off = (1 / sums.mass) * sums.first;

@@ -15,7 +15,7 @@
 #include <sys/mman.h>
 #endif
 
-namespace livens {
+namespace livens::inline geometry_internal {
 
 namespace {
 
@@ -62,4 +62,4 @@ void in_parallel(int n, const std::function<void(int)>& work)
     if (thrown) std::rethrow_exception(thrown);
 }
 
-}   // namespace livens
+}   // namespace livens::inline geometry_internal

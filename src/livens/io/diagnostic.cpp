@@ -190,7 +190,7 @@ std::string render_json(const std::vector<Diagnostic>& diagnostics)
 
 }   // namespace
 
-std::string first_invisible(std::string_view text)
+std::string io_internal::first_invisible(std::string_view text)
 {
     for (; !text.empty(); text.remove_prefix(character_length(text))) {
         const std::uint32_t code = code_point(text.substr(0, character_length(text)));

@@ -91,7 +91,7 @@ MemoryNeed memory_needed(const Scenario& scenario);
 inline constexpr std::size_t max_scenario_bytes = 16u << 20;
 inline constexpr int max_scenario_depth = 64;
 
-/// Reads and checks (including check_method() and close_start()). Throws nothing: every problem is a
+/// Reads and checks (including check_method() and consistent_start()). Throws nothing: every problem is a
 /// diagnostic; codes `io-...` mean the file could not be read at all. Meshes lie in the file's folder.
 ScenarioResult read_scenario(const std::filesystem::path& file);
 ScenarioResult parse_scenario(std::string text, const std::string& file_name, const MeshSource& meshes = {});

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-namespace livens {
+namespace livens::inline io_internal {
 
 namespace {
 
@@ -149,4 +149,4 @@ std::size_t triangles_of_each(std::span<const Surface> surfaces)
     return std::max(fewest_of_one, most_in_all / std::max<std::size_t>(n_large, 1));
 }
 
-}   // namespace livens
+}   // namespace livens::inline io_internal

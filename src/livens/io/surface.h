@@ -9,7 +9,7 @@
 
 #include "livens/base/linear.h"
 
-namespace livens {
+namespace livens::inline io_internal {
 
 /// Triangles that bound a body, in its own coordinates; seen from outside their corners go round to the left.
 struct Surface {
@@ -27,4 +27,4 @@ Surface thinned(Surface surface, std::size_t most_triangles);
 /// What the surfaces of a page may each have, so that all of them are a few MB.
 std::size_t triangles_of_each(std::span<const Surface> surfaces);
 
-}   // namespace livens
+}   // namespace livens::inline io_internal

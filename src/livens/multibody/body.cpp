@@ -49,7 +49,7 @@ void check_skew_directors(const Matrix3& directors, const std::string& path)
 
 }   // namespace
 
-void check_directors(const Matrix3& directors, const std::string& path)
+void multibody_internal::check_directors(const Matrix3& directors, const std::string& path)
 {
     require_finite(directors, path, "directors");
     const double gap = skewness(directors);

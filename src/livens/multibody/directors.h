@@ -6,9 +6,9 @@
 
 #include "livens/base/linear.h"
 
-namespace livens {
+namespace livens::inline multibody_internal {
 
 /// Throws InputError unless |D^T D - I| <= 1e-10 in every entry and det D > 0.
 void check_directors(const Matrix3& directors, const std::string& path);
 
-}   // namespace livens
+}   // namespace livens::inline multibody_internal

@@ -11,7 +11,8 @@
 
 namespace livens {
 
-Load start_load(const std::string& name, const char* type, const std::array<int, 2>& bodies)
+Load multibody_internal::start_load(const std::string& name, const char* type,
+                                    const std::array<int, 2>& bodies)
 {
     if (bodies[0] == bodies[1])
         throw InputError({"load-self", "load[" + name + "]",
@@ -26,19 +27,19 @@ Load start_load(const std::string& name, const char* type, const std::array<int,
     return load;
 }
 
-void check_load_vector(const Load& load, const Vector3& value, const std::string& what)
+void multibody_internal::check_load_vector(const Load& load, const Vector3& value, const std::string& what)
 {
     require_finite(value, "load[" + load.name + "]", what);
 }
 
-void check_not_negative(const Load& load, double value, const std::string& key)
+void multibody_internal::check_not_negative(const Load& load, double value, const std::string& key)
 {
     if (value >= 0 && std::isfinite(value)) return;
     throw InputError({"load-negative", "load[" + load.name + "]." + key, key + " must not be negative",
                       to_text(value), ">= 0", "", ""});
 }
 
-void set_load_value(Load& load, const TimeVector& value)
+void multibody_internal::set_load_value(Load& load, const TimeVector& value)
 {
     for (const TimeFunction& component : value) {
         // One look at t = 0 refuses what never is a number; what becomes one later ends the motion by the
@@ -55,7 +56,7 @@ void set_load_value(Load& load, const TimeVector& value)
     load.breaks.erase(repeated, load.breaks.end());
 }
 
-void report_load_value(Load& load, const TimeVector& value, const char* unit)
+void multibody_internal::report_load_value(Load& load, const TimeVector& value, const char* unit)
 {
     for (std::size_t k = 0; k < 3; ++k)
         load.readings.push_back(

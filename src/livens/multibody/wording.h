@@ -9,7 +9,9 @@
 #include "livens/base/linear.h"
 #include "livens/base/text.h"
 
-namespace livens {
+namespace livens::inline multibody_internal {
+
+using ::livens::to_text;   // of numbers: the one of vectors hides no others
 
 inline std::string to_text(const Vector3& v)
 {
@@ -34,4 +36,4 @@ void require_finite(const Matrix<R, C>& m, const std::string& path, const std::s
                 {"not-finite", path, what + " must be finite", to_text(entry), "finite numbers", "", ""});
 }
 
-}   // namespace livens
+}   // namespace livens::inline multibody_internal

@@ -11,7 +11,7 @@
 #include <string>
 #include <utility>
 
-namespace livens {
+namespace livens::inline solvers_internal {
 
 namespace {
 
@@ -176,4 +176,4 @@ SparseMatrix to_sparse(const BlockStructure& structure, const BlockMatrix& matri
     return A;
 }
 
-}   // namespace livens
+}   // namespace livens::inline solvers_internal

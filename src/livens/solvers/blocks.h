@@ -9,7 +9,7 @@
 
 #include "livens/solvers/sparse.h"
 
-namespace livens {
+namespace livens::inline solvers_internal {
 
 /// Unknowns and rows stand at nodes of time; an element couples consecutive nodes.
 ///
@@ -73,4 +73,4 @@ private:
 /// left out.
 SparseMatrix to_sparse(const BlockStructure& structure, const BlockMatrix& matrix);
 
-}   // namespace livens
+}   // namespace livens::inline solvers_internal

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-namespace livens {
+namespace livens::inline solvers_internal {
 
 /// LU with row exchanges of a square matrix stored row by row.
 class DenseLU {
@@ -126,4 +126,4 @@ private:
     std::vector<double> a_;
 };
 
-}   // namespace livens
+}   // namespace livens::inline solvers_internal

@@ -9,7 +9,7 @@
 
 #include <Eigen/Core>
 
-namespace livens {
+namespace livens::inline solvers_internal {
 
 namespace {
 
@@ -185,4 +185,4 @@ void add_scaled(std::span<double> y, double factor, std::span<const double> x)
     for (std::size_t i = 0; i < y.size(); ++i) y[i] += factor * x[i];
 }
 
-}   // namespace livens
+}   // namespace livens::inline solvers_internal

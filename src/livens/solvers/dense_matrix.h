@@ -11,7 +11,7 @@
 
 #include "livens/base/linear.h"
 
-namespace livens {
+namespace livens::inline solvers_internal {
 
 /// A matrix that somebody else keeps: rows x cols, column by column, without gaps.
 struct DenseView {
@@ -88,4 +88,4 @@ bool all_finite(std::span<const double> x);
 /// y <- y + factor x.
 void add_scaled(std::span<double> y, double factor, std::span<const double> x);
 
-}   // namespace livens
+}   // namespace livens::inline solvers_internal

@@ -12,7 +12,7 @@
 
 #include <Eigen/Dense>
 
-namespace livens {
+namespace livens::inline solvers_internal {
 
 namespace {
 
@@ -206,4 +206,4 @@ LUSolution lu_solution(DenseView A, std::span<const double> b)
     return {values_of(lu.solve(VectorXd(seen(b)))), pivots.minCoeff(), pivots.maxCoeff()};
 }
 
-}   // namespace livens
+}   // namespace livens::inline solvers_internal

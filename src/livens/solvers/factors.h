@@ -13,7 +13,7 @@
 #include "livens/base/linear.h"
 #include "livens/solvers/dense_matrix.h"
 
-namespace livens {
+namespace livens::inline solvers_internal {
 
 /// A P = Q R by Householder reflections, of what is left the longest column first.
 class PivotedQR {
@@ -68,4 +68,4 @@ struct LUSolution {
 };
 LUSolution lu_solution(DenseView A, std::span<const double> b);
 
-}   // namespace livens
+}   // namespace livens::inline solvers_internal

@@ -19,7 +19,7 @@
 #include "livens/solvers/linear_solver.h"
 #include "livens/solvers/patience.h"
 
-namespace livens {
+namespace livens::inline solvers_internal {
 
 namespace {
 
@@ -253,4 +253,4 @@ private:
 
 std::unique_ptr<LinearSolver> forward_solver() { return std::make_unique<ForwardSolver>(); }
 
-}   // namespace livens
+}   // namespace livens::inline solvers_internal

@@ -7,7 +7,7 @@
 
 #include "livens/solvers/blocks.h"
 
-namespace livens {
+namespace livens::inline solvers_internal {
 
 enum class Outcome { regular, singular, not_finite };
 
@@ -55,4 +55,4 @@ std::unique_ptr<LinearSolver> forward_solver();
 /// largest entry and singular node are not known. Throws InputError where the build lacks the backend.
 std::unique_ptr<LinearSolver> whole_solver(SparseBackend backend);
 
-}   // namespace livens
+}   // namespace livens::inline solvers_internal

@@ -8,7 +8,7 @@
 
 #include "livens/solvers/report.h"
 
-namespace livens {
+namespace livens::inline solvers_internal {
 
 /// A system of equations at a current point, as Newton's iteration sees it: no mechanics, no matrices.
 ///
@@ -104,4 +104,4 @@ private:
     std::vector<double> increment_, next_;
 };
 
-}   // namespace livens
+}   // namespace livens::inline solvers_internal

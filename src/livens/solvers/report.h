@@ -30,7 +30,7 @@ struct SolveCounters {
     long factorisations = 0;         ///< of the tangent of a window
     long guess_factorisations = 0;   ///< of the smaller tangents behind first guesses
     int rescued = 0;                 ///< windows that converged only from another guess than the first
-    int refused = 0;                 ///< elements that were solved again, shorter, for the accuracy asked for
+    int rejected = 0;                ///< elements that were solved again, shorter, for the accuracy asked for
     int tries = 0;                   ///< motions until the accuracy was reached: the most
     long long evaluations = 0;       ///< of the equations at a node of an element, in the motion
     long long evaluations_in_all = 0;   ///< of all tries and their second solutions
@@ -42,7 +42,7 @@ struct SolveCounters {
         factorisations += next.factorisations;
         guess_factorisations += next.guess_factorisations;
         rescued += next.rescued;
-        refused += next.refused;
+        rejected += next.rejected;
         evaluations += next.evaluations;
         evaluations_in_all += next.evaluations_in_all;
         unknowns = std::max(unknowns, next.unknowns);

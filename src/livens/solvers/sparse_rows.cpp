@@ -12,7 +12,7 @@
 #include <Eigen/SparseCholesky>
 #include <Eigen/SparseLU>
 
-namespace livens {
+namespace livens::inline solvers_internal {
 
 namespace {
 
@@ -83,4 +83,4 @@ std::optional<std::vector<double>> sparse_solution(std::span<const SparseEntry> 
     return std::vector<double>(x.begin(), x.end());
 }
 
-}   // namespace livens
+}   // namespace livens::inline solvers_internal

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-namespace livens {
+namespace livens::inline solvers_internal {
 
 /// Entries of the same place are added.
 struct SparseEntry {
@@ -47,4 +47,4 @@ private:
 /// finite. Throws std::bad_alloc alone.
 std::optional<std::vector<double>> sparse_solution(std::span<const SparseEntry> A, std::span<const double> b);
 
-}   // namespace livens
+}   // namespace livens::inline solvers_internal

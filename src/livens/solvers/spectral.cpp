@@ -12,7 +12,7 @@
 
 #include "livens/solvers/factors.h"
 
-namespace livens {
+namespace livens::inline solvers_internal {
 
 namespace {
 
@@ -177,4 +177,4 @@ Matrix3 orthogonal_factor(const Matrix3& A)
     return Q;
 }
 
-}   // namespace livens
+}   // namespace livens::inline solvers_internal

@@ -12,7 +12,7 @@
 #include "livens/base/linear.h"
 #include "livens/solvers/dense_matrix.h"
 
-namespace livens {
+namespace livens::inline solvers_internal {
 
 /// Of symmetric matrices, of which the lower triangle is read.
 struct SymmetricSpectrum {
@@ -57,4 +57,4 @@ DenseMatrix null_directions(DenseView A, double level);
 /// U V^T of A = U S V^T: the rotation or reflection next to A.
 Matrix3 orthogonal_factor(const Matrix3& A);
 
-}   // namespace livens
+}   // namespace livens::inline solvers_internal

@@ -11,7 +11,7 @@
 
 #include "livens/solvers/linear_solver.h"
 
-namespace livens {
+namespace livens::inline solvers_internal {
 
 namespace {
 
@@ -138,4 +138,4 @@ std::unique_ptr<LinearSolver> whole_solver(SparseBackend backend)
     return std::make_unique<WholeSolver>(backend);
 }
 
-}   // namespace livens
+}   // namespace livens::inline solvers_internal

@@ -106,7 +106,7 @@ void check_accuracy(const Conditions& given, const Span& span, const Method& met
                           why, "give elements instead of the accuracy"});
     };
     const auto* lobatto = std::get_if<Lobatto>(&method);
-    const auto* either = std::get_if<Auto>(&method);
+    const auto* either = std::get_if<AutomaticFamily>(&method);
     if (!is_nodal(method)) refuse("method.family", "only lobatto and radau find their elements themselves");
     if (given.at_start != Known::state)
         refuse("start.given", "they are found while marching from a state at the start");
@@ -155,7 +155,7 @@ std::string name_of(const Method& method)
         return "lobatto(" + std::to_string(lobatto->degree) + ")";
     if (const auto* radau = std::get_if<Radau>(&method))
         return "radau(" + std::to_string(radau->degree) + ")";
-    if (std::holds_alternative<Auto>(method)) return "auto";
+    if (std::holds_alternative<AutomaticFamily>(method)) return "auto";
     if (std::holds_alternative<Midpoint>(method)) return "midpoint";
     if (std::holds_alternative<Endpoint>(method)) return "endpoint";
     const Mixed& mixed = std::get<Mixed>(method);
@@ -194,7 +194,7 @@ void check_method(const Model& model, const Problem& problem, const Time& time, 
     if (options.estimate == SolveOptions::Estimate::local) refuse_laws_of_the_motion(model);
     if (!is_elements(method)) check_stepping(model);
     if (mesh == nullptr) return check_accuracy(problem.conditions, std::get<Span>(time), method, options);
-    if (std::holds_alternative<Auto>(method))
+    if (std::holds_alternative<AutomaticFamily>(method))
         throw InputError({"accuracy-elements", "method.family",
                           "the family of elements that are given is not chosen", "auto", "lobatto or radau",
                           "which of them suits depends on how long elements are found to be",

@@ -16,7 +16,7 @@
 #include "livens/spacetime/march/windows.h"
 #include "livens/spacetime/nodal/window.h"
 
-namespace livens {
+namespace livens::inline spacetime_internal {
 
 namespace {
 
@@ -87,13 +87,13 @@ MarchGuess guess_from_state(const Model& model, const State& state, std::span<co
     const TriedEnds tried = try_close_ends(model, problem, mesh.start(), mesh.end(), StartPolicy::project);
     if (!tried.ends) return {guess_steady(state), times.front(), false};
     const Ends& ends = *tried.ends;
-    const Tables tables(model, ends.independent);
+    const ModelTables tables(model, ends.independent);
     NodalWindow window(tables, mesh, ends, lobatto_rule(degree));
     SolveReport report;
     WindowOptions options;
     options.direction = is_forwards ? 1 : -1;
     options.may_divide = true;
-    options.trust = {acceptable_velocity_jump, true};
+    options.criteria = {acceptable_velocity_jump, true};
     solve_windows(window, mesh, options, report);
     auto march = std::make_shared<Motion>(window.take_motion());
     const double reached = march->mesh.ends.empty() ? times.front()
@@ -163,4 +163,4 @@ Guess guess_from_ends(const Model& model, const Ends& ends, std::span<const doub
                                                                                                     : motion;
 }
 
-}   // namespace livens
+}   // namespace livens::inline spacetime_internal

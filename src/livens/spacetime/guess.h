@@ -8,7 +8,7 @@
 #include "livens/spacetime/march/ends.h"
 #include "livens/spacetime/march/window.h"
 
-namespace livens {
+namespace livens::inline spacetime_internal {
 
 /// From a state along the given instants, which rise or fall from its own: a march of lobatto(degree) over
 /// them, dividing elements as solve() does, and where that fails straight on from its last good element.
@@ -30,4 +30,4 @@ Guess guess_between(const State& first, const State& last);
 /// at one end is complete that way, a march from it, bent steadily onto what is known at the other end.
 Guess guess_from_ends(const Model& model, const Ends& ends, std::span<const double> times);
 
-}   // namespace livens
+}   // namespace livens::inline spacetime_internal

@@ -106,17 +106,17 @@ struct Endpoint {
 
 /// Lobatto; Radau where fast decays, or vibrations that do not matter, would rule lobatto's elements. With an
 /// accuracy only; Solution::method says what was taken.
-struct Auto {
+struct AutomaticFamily {
     int degree = 0;   ///< 1..16, radau takes 8 of it at most; 0: as the accuracy has it, see Span
 };
 
-using Method = std::variant<Lobatto, Radau, Mixed, Midpoint, Endpoint, Auto>;
+using Method = std::variant<Lobatto, Radau, Mixed, Midpoint, Endpoint, AutomaticFamily>;
 
 /// Lobatto and Radau: one family on two sets of points, with constraints at the nodes.
 inline bool is_nodal(const Method& method)
 {
     return std::holds_alternative<Lobatto>(method) || std::holds_alternative<Radau>(method) ||
-           std::holds_alternative<Auto>(method);
+           std::holds_alternative<AutomaticFamily>(method);
 }
 
 /// Not the classical rules.

@@ -5,7 +5,7 @@
 #include <array>
 #include <string_view>
 
-#include "livens/dynamics/start/closing.h"
+#include "livens/dynamics/start/consistent_start.h"
 #include "livens/solvers/report.h"
 #include "livens/spacetime/method.h"
 #include "livens/time/time_mesh.h"

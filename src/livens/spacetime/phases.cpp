@@ -17,7 +17,7 @@
 #include "livens/spacetime/accuracy/until_accurate.h"
 #include "livens/spacetime/march/window_notes.h"
 
-namespace livens {
+namespace livens::inline spacetime_internal {
 
 namespace {
 
@@ -135,9 +135,9 @@ void join(Motion& whole, Motion&& next)
 
 }   // namespace
 
-Miss miss_at_event(const Model& model, const Motion& motion, int end)
+ActivationMismatch activation_mismatch(const Model& model, const Motion& motion, int end)
 {
-    Miss miss;
+    ActivationMismatch miss;
     const double t = motion.mesh.ends[end], gap = nearest_ends * (motion.end() - motion.start());
     const bool begins = std::ranges::any_of(
         model.joints(), [&](const Joint& joint) { return std::abs(joint.from - t) <= gap; });
@@ -145,7 +145,7 @@ Miss miss_at_event(const Model& model, const Motion& motion, int end)
     const State state = motion.at_end(end);
     // Just behind the event: the joints that begin are there, those that end are not.
     const ActingModel acting = acting_at(model, t + 0.5 * nearest_ends * (motion.end() - motion.start()));
-    const TriedStart tried = try_close_start(acting.model, state, StartPolicy::project);
+    const TriedStart tried = try_consistent_start(acting.model, state, StartPolicy::project);
     if (!tried.closed)   // no place near holds them
         miss.shift = std::numeric_limits<double>::infinity();
     for (std::size_t b = 0; tried.closed && b < state.X.size(); ++b) {
@@ -242,7 +242,7 @@ private:
         const double t = so_far.end();
         const std::string names = names_of(model_, t, &Joint::from, gap_);
         if (names.empty() || std::isinf(tolerance)) return true;
-        const Miss miss = miss_at_event(model_, so_far, so_far.n_elements());
+        const ActivationMismatch miss = activation_mismatch(model_, so_far, so_far.n_elements());
         // Velocities that must meet are compared with the fastest rate of the motion, and with one over its
         // duration at least.
         double fastest = 1 / (ends_.back() - ends_.front());
@@ -374,4 +374,4 @@ Solution solve_by_phases(const Model& model, const Problem& problem, const Time&
     return solution;
 }
 
-}   // namespace livens
+}   // namespace livens::inline spacetime_internal

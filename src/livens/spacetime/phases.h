@@ -9,7 +9,7 @@
 
 #include "livens/spacetime/solve.h"
 
-namespace livens {
+namespace livens::inline spacetime_internal {
 
 /// Solves a model without events in a part of the time.
 using SolvePhase =
@@ -27,9 +27,9 @@ Solution solve_by_phases(const Model& model, const Problem& problem, const Time&
 
 /// How far the joints that begin at an element end find the bodies from where they will hold them: what
 /// closing moves, in lengths and rad, and changes of velocities, by the model's length. Infinite: it fails.
-struct Miss {
+struct ActivationMismatch {
     double shift = 0, turn = 0, speed = 0, spin = 0;
 };
-Miss miss_at_event(const Model& model, const Motion& motion, int end);
+ActivationMismatch activation_mismatch(const Model& model, const Motion& motion, int end);
 
-}   // namespace livens
+}   // namespace livens::inline spacetime_internal

@@ -32,7 +32,7 @@ void lower_orders(const Model& model, Motion& motion)
 {
     const std::vector<double> breaks = missed(motion.mesh, model.load_breaks());
     if (breaks.empty()) return;
-    const Tables tables(model, {});
+    const ModelTables tables(model, {});
     for (const double t : breaks) {
         const State state = motion.at(t);
         std::vector<double> X, V, jump(12 * state.X.size(), 0.0);
@@ -93,8 +93,8 @@ void refuse_rounding(const Model& model, Solution& solution)
 
 }   // namespace
 
-Solution solve_unjudged(const Model& model, const Problem& stated, const Time& time, const Method& method,
-                        const SolveOptions& given)
+Solution spacetime_internal::solve_unjudged(const Model& model, const Problem& stated, const Time& time,
+                                            const Method& method, const SolveOptions& given)
 {
     const Problem problem = with_prepared(stated);
     SolveOptions options = given;

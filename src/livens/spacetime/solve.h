@@ -34,7 +34,7 @@ struct Solution {
     std::optional<Complaint> cannot_begin{};
 };
 
-/// Throws InputError for wrong input (degree out of range, a start that does not fit, see close_start(),
+/// Throws InputError for wrong input (degree out of range, a start that does not fit, see consistent_start(),
 /// pairings and conditions that make no solvable system, `mass-singular` where the method divides by m).
 /// Numerical failure is in the report.
 /// With an accuracy the motion comes with its estimate, or with the status `inaccurate`.

@@ -23,7 +23,7 @@
 #include "livens/spacetime/nodal/window.h"
 #include "livens/stepping/stepping.h"
 
-namespace livens {
+namespace livens::inline spacetime_internal {
 
 namespace {
 
@@ -31,7 +31,7 @@ namespace {
 /// condition number of N^2 or so, and 1e16 where the conditions leave a motion free.
 constexpr double undetermined = 1e11;
 
-std::unique_ptr<Window> make_window(const Tables& tables, const TimeMesh& mesh, const Ends& ends,
+std::unique_ptr<Window> make_window(const ModelTables& tables, const TimeMesh& mesh, const Ends& ends,
                                     const Method& method, bool look_at_laws, const Motion* near)
 {
     if (const auto* mixed = std::get_if<Mixed>(&method))
@@ -125,7 +125,7 @@ WindowOptions window_options(const Model& model, const Ends& ends, const Method&
         }
         w.may_divide = options.divide && ends.has_state();
         w.ends_at_bends = options.end_at_bends && model.has_pieces();
-        if (w.may_divide) w.trust = {acceptable_velocity_jump, true, true};
+        if (w.may_divide) w.criteria = {acceptable_velocity_jump, true, true};
     }
     if (!ends.has_state()) {
         w.length = 0;
@@ -207,7 +207,7 @@ Solution solve_by_windows(const Model& model, const Problem& problem, const Time
     // Ends at jumps of loads stay where they are, whatever is divided or shifted.
     std::ranges::sort(mesh.required);
     const bool is_mixed = std::holds_alternative<Mixed>(method);
-    const Tables tables(model, ends.independent, is_mixed, problem.prepared->pattern(model));
+    const ModelTables tables(model, ends.independent, is_mixed, problem.prepared->pattern(model));
     const std::unique_ptr<Window> window =
         make_window(tables, mesh, ends, method, options.look_at_laws, problem.near);
     Solution solution;
@@ -248,7 +248,7 @@ Solution solve_by_windows(const Model& model, const Problem& problem, const Time
 Solution solve_by_steps(const Model& model, const Problem& problem, const TimeMesh& mesh,
                         const Method& method, const SolveOptions& options)
 {
-    const ClosedStart start = problem.prepared->close(model, problem.conditions.start, options.initial);
+    const ConsistentStart start = problem.prepared->close(model, problem.conditions.start, options.initial);
     const auto rule =
         std::holds_alternative<Midpoint>(method) ? SteppingRule::midpoint : SteppingRule::endpoint;
     SteppingResult result = march_stepping(model, start, mesh, rule,
@@ -265,4 +265,4 @@ Solution solve_mesh(const Model& model, const Problem& problem, const TimeMesh& 
                                : solve_by_steps(model, problem, mesh, method, options);
 }
 
-}   // namespace livens
+}   // namespace livens::inline spacetime_internal

@@ -5,7 +5,7 @@
 #include "livens/spacetime/march/ends.h"
 #include "livens/spacetime/solve.h"
 
-namespace livens {
+namespace livens::inline spacetime_internal {
 
 /// On a mesh that is given, of a model without events. `ends`: closed; the problem keeps what is found.
 Solution solve_mesh(const Model& model, const Problem& problem, const TimeMesh& mesh, const Ends& ends,
@@ -16,4 +16,4 @@ Solution solve_mesh(const Model& model, const Problem& problem, const TimeMesh& 
 Solution solve_unjudged(const Model& model, const Problem& problem, const Time& time, const Method& method,
                         const SolveOptions& options);
 
-}   // namespace livens
+}   // namespace livens::inline spacetime_internal

@@ -47,7 +47,7 @@ struct RestPoint {
 
 class Search {
 public:
-    Search(const Model& model, const ClosedStart& closed)
+    Search(const Model& model, const ConsistentStart& closed)
         : model_(model), tables_(model, closed.independent), instant_(tables_), rows_(all_rows(model)),
           t_(closed.start.t)
     {
@@ -61,7 +61,7 @@ public:
             }
     }
 
-    const Tables& tables() const { return tables_; }
+    const ModelTables& tables() const { return tables_; }
 
     /// Forces in this configuration; false if they are no numbers or a free motion has no inertia.
     bool look(std::vector<Matrix34> X, RestPoint& point)
@@ -183,7 +183,7 @@ private:
     }
 
     const Model& model_;
-    Tables tables_;
+    ModelTables tables_;
     InstantSystem instant_;
     InstantState state_;
     std::vector<int> rows_;
@@ -361,7 +361,7 @@ Equilibrium find_equilibrium(const Model& the_model, const State& start, const E
     const Model model = frozen(the_model, {start.t});
     State at_rest = start;
     for (Matrix34& V : at_rest.V) V = {};
-    const ClosedStart closed = close_start(model, at_rest, options.initial);
+    const ConsistentStart closed = consistent_start(model, at_rest, options.initial);
 
     Equilibrium result;
     result.state = closed.start;
@@ -392,7 +392,7 @@ Equilibrium find_equilibrium(const Model& the_model, const State& start, const E
         result.message = why_not(model, search, here, outcome, result);
         return result;
     }
-    refuse_singular_start(model, close_start(model, result.state, StartPolicy::project));
+    refuse_singular_start(model, consistent_start(model, result.state, StartPolicy::project));
     result.stability = stability(linearise(model, result.state));
     return result;
 }

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "livens/dynamics/instant/reactions.h"
-#include "livens/dynamics/start/closing.h"
+#include "livens/dynamics/start/consistent_start.h"
 #include "livens/statics/linearisation.h"
 
 namespace [[gnu::visibility("default")]] livens {
@@ -32,7 +32,7 @@ struct Equilibrium {
     std::vector<bool> joint_is_unique;
     std::vector<SharedComponents> shared;           ///< of each joint that is not
     std::vector<std::vector<double>> coordinates;   ///< of each joint, as it counts them: turns included
-    std::vector<std::string> notes;                 ///< of close_start()
+    std::vector<std::string> notes;                 ///< of consistent_start()
     StabilityReport stability;                      ///< where it was found
 };
 
@@ -50,7 +50,7 @@ struct Equilibrium {
 /// Stiff springs that carry what moves far want short steps: about (k L / m g)^(1/3) of them.
 ///
 /// Not found: loads that are no number, a limit of iterations, or 25 steps in a row along directions that
-/// nothing restores (a free fall). Throws InputError, see close_start(); also
+/// nothing restores (a free fall). Throws InputError, see consistent_start(); also
 /// `start-singular` where the joints hold less at the rest than beside it.
 Equilibrium find_equilibrium(const Model& model, const State& start, const EquilibriumOptions& options = {});
 

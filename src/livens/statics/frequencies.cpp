@@ -29,7 +29,7 @@ using Values = std::vector<double>;
 /// Terms on the free motions: by a basis of these, or by what projects onto them.
 class Spectrum {
 public:
-    Spectrum(const Tables& tables, InstantState& state, const TwistTerms& mass)
+    Spectrum(const ModelTables& tables, InstantState& state, const TwistTerms& mass)
         : tables_(tables), state_(state)
     {
         // Long chains have no basis: to make one would cost more than the whole iteration.
@@ -203,7 +203,7 @@ private:
         return most;
     }
 
-    const Tables& tables_;
+    const ModelTables& tables_;
     InstantState& state_;
     std::optional<FreeMotions> free_;   // where the state has a basis
     DenseMatrix mass_;

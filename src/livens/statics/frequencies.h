@@ -43,9 +43,9 @@ struct HighestFrequencies {
     }
 };
 
-/// At a state of a model, closed as by StartPolicy::project; throws InputError, see close_start(). Work grows
-/// with the bodies, but with their cube where rows are no quadratic forms, inertias singular or joints badly
-/// held.
+/// At a state of a model, closed as by StartPolicy::project; throws InputError, see consistent_start(). Work
+/// grows with the bodies, but with their cube where rows are no quadratic forms, inertias singular or joints
+/// badly held.
 HighestFrequencies highest_frequencies(const Model& model, const State& state, Side side = Side::right);
 
 /// Of springs and constraints together, ascending rates; work grows with the cube of the freedoms. Throws

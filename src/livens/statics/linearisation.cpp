@@ -50,7 +50,7 @@ void refuse_imbalance(const Model& model, const Statics& statics)
 }
 
 /// [dphi; w] of all bodies by the free coordinates, six rows a body.
-DenseMatrix twists_of(const Tables& tables, const InstantState& state, const FreeMotions& free)
+DenseMatrix twists_of(const ModelTables& tables, const InstantState& state, const FreeMotions& free)
 {
     DenseMatrix twists(6 * tables.n_bodies(), free.n);
     for (int k = 0; k < free.n; ++k) {
@@ -71,7 +71,7 @@ bool is_symmetric(const DenseMatrix& A, double rounding)
 
 Linearisation linearise(const Model& the_model, const State& state, Side side)
 {
-    refuse_motion(the_model, close_start(the_model, state, StartPolicy::project).start);
+    refuse_motion(the_model, consistent_start(the_model, state, StartPolicy::project).start);
     // Drives are held where they are at the instant: the equations of a rest have no time.
     const Model model = frozen(the_model, {state.t, side});
     State rest = state;

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "livens/dynamics/start/closing.h"
+#include "livens/dynamics/start/consistent_start.h"
 
 namespace [[gnu::visibility("default")]] livens {
 
@@ -34,7 +34,7 @@ struct Linearisation {
 inline constexpr double equilibrium_tolerance = 1e-8;
 
 /// Closed as by StartPolicy::project. Where drives would move the mechanism it wants to be frozen(), as it is
-/// where find_equilibrium() found it. Throws InputError, see close_start(), and
+/// where find_equilibrium() found it. Throws InputError, see consistent_start(), and
 ///   `not-at-rest`         velocities, of drives too, above 1e-9 lengths of the model a second or 1e-9 rad/s
 ///   `not-in-equilibrium`  forces that are not balanced to equilibrium_tolerance; the body is named
 Linearisation linearise(const Model& model, const State& state, Side side = Side::right);

@@ -10,7 +10,7 @@
 #include "livens/dynamics/rows/twist.h"
 #include "livens/multibody/body.h"
 
-namespace livens {
+namespace livens::inline statics_internal {
 
 namespace {
 
@@ -31,7 +31,7 @@ Matrix<6, 1> times(const Matrix<6, 6>& K, std::span<const double> y)
     return Ky;
 }
 
-SmallMotions::SmallMotions(const Tables& tables, const InstantState& state, Side side)
+SmallMotions::SmallMotions(const ModelTables& tables, const InstantState& state, Side side)
     : tables_(tables), state_(state), at_{state.t, side}
 {
     std::vector<double> y(static_cast<std::size_t>(tables.n_twists), 0.0), xi(y.size());
@@ -147,7 +147,7 @@ std::vector<double> SmallMotions::forces_less_inertia(int side) const
     return r;
 }
 
-FreeMotions::FreeMotions(const Tables& tables, const InstantState& state)
+FreeMotions::FreeMotions(const ModelTables& tables, const InstantState& state)
     : n_twists(tables.n_twists), n(tables.freedoms()), Z(n_twists, n)
 {
     if (n == 0) return;
@@ -156,7 +156,7 @@ FreeMotions::FreeMotions(const Tables& tables, const InstantState& state)
     Z = transpose(by_rows);
 }
 
-DenseMatrix FreeMotions::reduced(const Tables& tables, const TwistTerms& terms) const
+DenseMatrix FreeMotions::reduced(const ModelTables& tables, const TwistTerms& terms) const
 {
     DenseMatrix KZ(n_twists, n);
     for (const TwistTerm& t : terms) {
@@ -169,7 +169,7 @@ DenseMatrix FreeMotions::reduced(const Tables& tables, const TwistTerms& terms) 
     return transposed_product(Z, KZ);
 }
 
-std::vector<double> FreeMotions::sizes(const Tables& tables, const TwistTerms& terms) const
+std::vector<double> FreeMotions::sizes(const ModelTables& tables, const TwistTerms& terms) const
 {
     DenseMatrix z = Z;
     for (double& entry : z.a) entry = std::abs(entry);
@@ -185,7 +185,7 @@ std::vector<double> FreeMotions::sizes(const Tables& tables, const TwistTerms& t
     return sum;
 }
 
-std::vector<double> FreeMotions::twists(const Tables& tables, const InstantState& state, int k) const
+std::vector<double> FreeMotions::twists(const ModelTables& tables, const InstantState& state, int k) const
 {
     std::vector<double> xi(static_cast<std::size_t>(n_twists));
     tables.bodies.to_twist(state.maps.data(), Z.column(k).data(), xi.data());
@@ -199,10 +199,10 @@ constexpr int many_freedoms = 60;   // from here on a basis of them costs more t
 }   // namespace
 
 PreparedState::PreparedState(const Model& model, const State& given, Side side, bool by_basis)
-    : PreparedState(model, close_start(model, given, StartPolicy::project), side, by_basis)
+    : PreparedState(model, consistent_start(model, given, StartPolicy::project), side, by_basis)
 {}
 
-PreparedState::PreparedState(const Model& model, const ClosedStart& closed, Side side, bool by_basis)
+PreparedState::PreparedState(const Model& model, const ConsistentStart& closed, Side side, bool by_basis)
     : tables(model, closed.independent)
 {
     const bool is_sparse = !by_basis && tables.freedoms() > many_freedoms && JointFactor::serves(tables);
@@ -222,4 +222,4 @@ PreparedState::PreparedState(const Model& model, const ClosedStart& closed, Side
     if (is_fit) instant.accelerate(state, side);
 }
 
-}   // namespace livens
+}   // namespace livens::inline statics_internal

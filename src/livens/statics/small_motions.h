@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "livens/dynamics/instant/instant.h"
-#include "livens/dynamics/start/closing.h"
+#include "livens/dynamics/start/consistent_start.h"
 #include "livens/solvers/dense_matrix.h"
 
-namespace livens {
+namespace livens::inline statics_internal {
 
 /// Part of a form on scaled twists: what a source (a load, a joint, or -1) does to body i when body j moves.
 struct TwistTerm {
@@ -30,7 +30,7 @@ using BodyColumns = Matrix<12, 6>;
 class SmallMotions {
 public:
     /// `state`: prepared, with multipliers and accelerations on this side.
-    SmallMotions(const Tables& tables, const InstantState& state, Side side);
+    SmallMotions(const ModelTables& tables, const InstantState& state, Side side);
 
     const std::vector<BodyColumns>& columns() const { return columns_; }
 
@@ -46,7 +46,7 @@ private:
     TwistTerm term(int source, const Matrix<12, 12>& K, double factor, int i, int j) const;
     std::vector<double> forces_less_inertia(int side) const;
 
-    const Tables& tables_;
+    const ModelTables& tables_;
     const InstantState& state_;
     Instant at_;
     std::vector<BodyColumns> columns_;
@@ -60,25 +60,25 @@ struct FreeMotions {
     DenseMatrix Z;   ///< n_twists x n
 
     /// Of a prepared state that has a basis.
-    FreeMotions(const Tables& tables, const InstantState& state);
+    FreeMotions(const ModelTables& tables, const InstantState& state);
 
     /// Z^T K Z, n x n.
-    DenseMatrix reduced(const Tables& tables, const TwistTerms& terms) const;
+    DenseMatrix reduced(const ModelTables& tables, const TwistTerms& terms) const;
     /// The diagonal of |Z|^T |K| |Z|: what rounding of Z^T K Z is relative to.
-    std::vector<double> sizes(const Tables& tables, const TwistTerms& terms) const;
+    std::vector<double> sizes(const ModelTables& tables, const TwistTerms& terms) const;
     /// Column k as plain twists, n_twists numbers.
-    std::vector<double> twists(const Tables& tables, const InstantState& state, int k) const;
+    std::vector<double> twists(const ModelTables& tables, const InstantState& state, int k) const;
 };
 
 /// A state, closed, with accelerations and multipliers on one side.
 struct PreparedState {
     /// `by_basis`: with a basis of what is free, however much that is.
     PreparedState(const Model& model, const State& given, Side side, bool by_basis);
-    PreparedState(const Model& model, const ClosedStart& closed, Side side, bool by_basis);
+    PreparedState(const Model& model, const ConsistentStart& closed, Side side, bool by_basis);
 
-    Tables tables;
+    ModelTables tables;
     mutable InstantState state;   // which projects in room of its own
-    bool is_fit;                  // else close_start() has refused it
+    bool is_fit;                  // else consistent_start() has refused it
 };
 
-}   // namespace livens
+}   // namespace livens::inline statics_internal

@@ -6,12 +6,12 @@
 #include <algorithm>
 #include <cmath>
 
-namespace livens {
+namespace livens::inline statics_internal {
 
 namespace {
 
 /// Rows of 12 numbers a body in scaled twists.
-std::vector<double> scaled_rows(const Tables& tables, const InstantState& state,
+std::vector<double> scaled_rows(const ModelTables& tables, const InstantState& state,
                                 const std::vector<double>& raw)
 {
     std::vector<double> q(static_cast<std::size_t>(tables.n_twists)), y(q.size());
@@ -20,14 +20,14 @@ std::vector<double> scaled_rows(const Tables& tables, const InstantState& state,
     return y;
 }
 
-double on_body(const Tables& tables, std::span<const double> y, int body)
+double on_body(const ModelTables& tables, std::span<const double> y, int body)
 {
     return norm(y.subspan(tables.bodies[body].first, tables.bodies[body].dofs));
 }
 
 }   // namespace
 
-Statics::Statics(const Tables& tables, InstantState& state, Side side) : free(tables, state)
+Statics::Statics(const ModelTables& tables, InstantState& state, Side side) : free(tables, state)
 {
     auto& acceleration = state.acceleration[side == Side::left ? 0 : 1];
     // Static forces alone: no part of them is balanced by inertia.
@@ -39,7 +39,7 @@ Statics::Statics(const Tables& tables, InstantState& state, Side side) : free(ta
     add_levels(tables, state);
 }
 
-void Statics::add_forces(const Tables& tables, const InstantState& state, Instant at)
+void Statics::add_forces(const ModelTables& tables, const InstantState& state, Instant at)
 {
     const double* X = state.X.data();
     const std::vector<double>& lambda = state.multipliers[at.side == Side::left ? 0 : 1];
@@ -65,7 +65,7 @@ void Statics::add_forces(const Tables& tables, const InstantState& state, Instan
     }
 }
 
-void Statics::add_levels(const Tables& tables, const InstantState& state)
+void Statics::add_levels(const ModelTables& tables, const InstantState& state)
 {
     double on_bodies = 0;
     for (int b = 0; b < tables.n_bodies(); ++b) on_bodies = std::max(on_bodies, on_body(tables, sizes_, b));
@@ -95,7 +95,7 @@ void Statics::add_levels(const Tables& tables, const InstantState& state)
     }
 }
 
-double largest_displacement(const Tables& tables, const double* twists)
+double largest_displacement(const ModelTables& tables, const double* twists)
 {
     double size = 0;
     for (const auto& body : tables.bodies)
@@ -107,4 +107,4 @@ double largest_displacement(const Tables& tables, const double* twists)
     return size;
 }
 
-}   // namespace livens
+}   // namespace livens::inline statics_internal

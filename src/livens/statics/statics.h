@@ -6,13 +6,13 @@
 
 #include "livens/statics/small_motions.h"
 
-namespace livens {
+namespace livens::inline statics_internal {
 
 /// Forces and linear terms at rest.
 struct Statics {
     /// `state`: prepared, without velocity, with a basis and with multipliers on that side; its accelerations
     /// become zero, since the tangent of forces has no inertia in it.
-    Statics(const Tables& tables, InstantState& state, Side side);
+    Statics(const ModelTables& tables, InstantState& state, Side side);
 
     FreeMotions free;
     TwistTerms stiffness, damping;
@@ -28,13 +28,13 @@ struct Statics {
     int body = -1;         ///< the body of that; -1: all are in balance
 
 private:
-    void add_forces(const Tables& tables, const InstantState& state, Instant at);
-    void add_levels(const Tables& tables, const InstantState& state);
+    void add_forces(const ModelTables& tables, const InstantState& state, Instant at);
+    void add_levels(const ModelTables& tables, const InstantState& state);
 
     std::vector<double> sizes_;   // of the terms of `rows`, entry by entry
 };
 
 /// Of all bodies the largest displacement of the reference point, by the model's length, or turn.
-double largest_displacement(const Tables& tables, const double* twists);
+double largest_displacement(const ModelTables& tables, const double* twists);
 
-}   // namespace livens
+}   // namespace livens::inline statics_internal

@@ -10,7 +10,7 @@
 #include "livens/solvers/spectral.h"
 #include "livens/statics/small_motions.h"
 
-namespace livens {
+namespace livens::inline statics_internal {
 
 namespace {
 
@@ -111,7 +111,7 @@ private:
         return std::span(y).subspan(tables_.bodies[b].first, tables_.bodies[b].dofs);
     }
 
-    const Tables& tables_;
+    const ModelTables& tables_;
     const InstantState& state_;
     SmallMotions forms_;
     FreeMotions free_;
@@ -178,4 +178,4 @@ std::vector<TurningVibration> turning_vibrations(const Model& model, const State
     return found;
 }
 
-}   // namespace livens
+}   // namespace livens::inline statics_internal

@@ -6,7 +6,7 @@
 
 #include "livens/statics/frequencies.h"
 
-namespace livens {
+namespace livens::inline statics_internal {
 
 /// A vibration by springs, and how fast its form leaves itself towards softer ones; where it turns into forms
 /// that are as stiff, as of a body held alike on all sides, it stays.
@@ -21,4 +21,4 @@ struct TurningVibration {
 /// their cube, and where the state is not fit.
 std::vector<TurningVibration> turning_vibrations(const Model& model, const State& state, double slowest);
 
-}   // namespace livens
+}   // namespace livens::inline statics_internal

@@ -19,7 +19,7 @@
 #include "livens/stepping/step_equations.h"
 #include "livens/stepping/stepping.h"
 
-namespace livens {
+namespace livens::inline stepping_internal {
 
 namespace {
 
@@ -86,7 +86,7 @@ struct StepOutcome {
 /// The march: its state, and the motion and report it fills.
 class Marcher {
 public:
-    Marcher(const Model& model, const ClosedStart& assembly, const TimeMesh& mesh, SteppingRule rule,
+    Marcher(const Model& model, const ConsistentStart& assembly, const TimeMesh& mesh, SteppingRule rule,
             const SteppingOptions& options)
         : model_(model), mesh_(mesh), options_(options), equations_(model, assembly, rule),
           solver_(equations_.size()), unknowns_(equations_.size(), 0.0)
@@ -112,7 +112,7 @@ public:
     }
 
 private:
-    void begin_motion(const ClosedStart& assembly, SteppingRule rule)
+    void begin_motion(const ConsistentStart& assembly, SteppingRule rule)
     {
         Motion& motion = result_.motion;
         motion.n_bodies = model_.n_bodies();
@@ -318,7 +318,7 @@ void check_stepping(const Model& model)
     }
 }
 
-SteppingResult march_stepping(const Model& model, const ClosedStart& assembly, const TimeMesh& mesh,
+SteppingResult march_stepping(const Model& model, const ConsistentStart& assembly, const TimeMesh& mesh,
                               SteppingRule rule, const SteppingOptions& options)
 {
     assert(!mesh.ends.empty() && static_cast<int>(assembly.start.X.size()) == model.n_bodies());
@@ -326,4 +326,4 @@ SteppingResult march_stepping(const Model& model, const ClosedStart& assembly, c
     return Marcher(model, assembly, mesh, rule, options).run();
 }
 
-}   // namespace livens
+}   // namespace livens::inline stepping_internal

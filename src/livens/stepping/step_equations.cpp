@@ -21,7 +21,7 @@ bool finite(const Matrix<R, C>& m)
 
 }   // namespace
 
-StepEquations::StepEquations(const Model& model, const ClosedStart& assembly, SteppingRule rule)
+StepEquations::StepEquations(const Model& model, const ConsistentStart& assembly, SteppingRule rule)
     : model_(model), a_(rule == SteppingRule::midpoint ? 0.5 : 1.0), length_(model.length())
 {
     for (int b = 0; b < model.n_bodies(); ++b) {

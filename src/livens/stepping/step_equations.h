@@ -5,12 +5,12 @@
 #include <string>
 #include <vector>
 
-#include "livens/dynamics/start/closing.h"
+#include "livens/dynamics/start/consistent_start.h"
 #include "livens/multibody/model.h"
 #include "livens/solvers/sparse_rows.h"
 #include "livens/stepping/stepping.h"
 
-namespace livens {
+namespace livens::inline stepping_internal {
 
 /// Where a step begins.
 struct StepStart {
@@ -35,7 +35,7 @@ struct StepStart {
 class StepEquations {
 public:
     /// Rows of `assembly.independent`, then the six rigidity rows of every body.
-    StepEquations(const Model& model, const ClosedStart& assembly, SteppingRule rule);
+    StepEquations(const Model& model, const ConsistentStart& assembly, SteppingRule rule);
 
     /// Unknowns: u, twelve numbers a body (columns of X) or three a point mass, then Lambda.
     int size() const { return n_displacements_ + static_cast<int>(rows_.size()); }
@@ -92,4 +92,4 @@ private:
     std::vector<Row> rows_;
 };
 
-}   // namespace livens
+}   // namespace livens::inline stepping_internal

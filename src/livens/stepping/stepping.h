@@ -3,13 +3,13 @@
 // spacetime.
 #pragma once
 
-#include "livens/dynamics/start/closing.h"
+#include "livens/dynamics/start/consistent_start.h"
 #include "livens/multibody/model.h"
 #include "livens/multibody/motion.h"
 #include "livens/solvers/report.h"
 #include "livens/time/time_mesh.h"
 
-namespace livens {
+namespace livens::inline stepping_internal {
 
 enum class SteppingRule {
     midpoint,   ///< q1 - q0 = h M^-1 p_mid,  p1 - p0 = h (F_mid - G(q_mid)^T lambda),  Phi(q1) = 0; order 2
@@ -36,7 +36,7 @@ struct SteppingResult {
 void check_stepping(const Model& model);
 
 /// One step per element of the mesh, from an assembled start, of what passes check_stepping().
-SteppingResult march_stepping(const Model& model, const ClosedStart& assembly, const TimeMesh& mesh,
+SteppingResult march_stepping(const Model& model, const ConsistentStart& assembly, const TimeMesh& mesh,
                               SteppingRule rule, const SteppingOptions& options);
 
-}   // namespace livens
+}   // namespace livens::inline stepping_internal

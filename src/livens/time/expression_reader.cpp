@@ -12,7 +12,7 @@
 #include "livens/base/text.h"
 #include "livens/time/detail/expression_reader.h"
 
-namespace livens {
+namespace livens::inline time_internal {
 
 namespace {
 
@@ -259,4 +259,4 @@ std::vector<Expression::Step> read_expression(std::string_view text, const std::
     return Reader(text, symbols).read();
 }
 
-}   // namespace livens
+}   // namespace livens::inline time_internal

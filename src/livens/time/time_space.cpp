@@ -15,7 +15,7 @@
 #include "livens/base/text.h"
 #include "livens/time/time_mesh.h"
 
-namespace livens {
+namespace livens::inline time_internal {
 namespace {
 
 constexpr int max_degree = 8;
@@ -388,4 +388,4 @@ std::vector<double> clamped_knots(int degree, std::span<const double> ends, std:
     return knots;
 }
 
-}   // namespace livens
+}   // namespace livens::inline time_internal

@@ -8,7 +8,7 @@
 
 #include "livens/time/basis.h"
 
-namespace livens {
+namespace livens::inline time_internal {
 
 /// A basis of functions on the elements [ends[e], ends[e + 1]]: test and trial functions of one field.
 ///
@@ -98,4 +98,4 @@ private:
 std::vector<double> clamped_knots(int degree, std::span<const double> ends,
                                   std::span<const double> kinks = {});
 
-}   // namespace livens
+}   // namespace livens::inline time_internal

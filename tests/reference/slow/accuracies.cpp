@@ -12,7 +12,7 @@ class EveryAccuracy : public ::testing::TestWithParam<double> {};
 void expect_reached(const Published& p, double accuracy)
 {
     const Span span{0, p.times.back(), accuracy, p.times};
-    const Solution s = solve(p.scenario.model, {p.scenario.model.start()}, span, Auto{});
+    const Solution s = solve(p.scenario.model, {p.scenario.model.start()}, span, AutomaticFamily{});
     if (accuracy < p.finest) {
         EXPECT_EQ(s.report.status, SolveStatus::inaccurate) << p.name;
         EXPECT_NE(s.report.message.find("rounding"), std::string::npos) << s.report.message;

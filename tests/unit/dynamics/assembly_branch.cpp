@@ -6,14 +6,14 @@
 
 #include "livens/base/error.h"
 #include "livens/base/text.h"
-#include "livens/dynamics/start/closing.h"
+#include "livens/dynamics/start/consistent_start.h"
 #include "livens/multibody/joints/drives.h"
 #include "unit/multibody/random_states.h"
 
 namespace livens {
 namespace {
 
-TEST(ClosedStart, RefusesARevoluteWithItsAxesTurnedEndForEnd)
+TEST(ConsistentStart, RefusesARevoluteWithItsAxesTurnedEndForEnd)
 {
     for (const double sign : {1.0, -1.0}) {
         Model model;
@@ -22,11 +22,11 @@ TEST(ClosedStart, RefusesARevoluteWithItsAxesTurnedEndForEnd)
         f.axis_second = {0, 0, sign};
         model.add_joint(revolute("hinge", world, 0, f));
         if (sign > 0) {
-            EXPECT_EQ(close_start(model, model.start(), StartPolicy::check).degrees_of_freedom, 1);
+            EXPECT_EQ(consistent_start(model, model.start(), StartPolicy::check).degrees_of_freedom, 1);
             continue;
         }
         try {
-            close_start(model, model.start(), StartPolicy::project);
+            consistent_start(model, model.start(), StartPolicy::project);
             FAIL() << "the opposite axis was accepted";
         } catch (const InputError& error) {
             EXPECT_EQ(error.complaint().code, "joint-branch");
@@ -52,7 +52,7 @@ Model driven_crank(double stated)
 std::string refusal(const Model& model, StartPolicy policy, const std::string& code)
 {
     try {
-        close_start(model, model.start(), policy);
+        consistent_start(model, model.start(), policy);
         ADD_FAILURE() << "no " << code;
     } catch (const InputError& error) {
         EXPECT_EQ(error.complaint().code, code);
@@ -61,12 +61,12 @@ std::string refusal(const Model& model, StartPolicy policy, const std::string& c
     return "";
 }
 
-TEST(ClosedStart, LeadsADrivenAngleBackFromAnywhere)
+TEST(ConsistentStart, LeadsADrivenAngleBackFromAnywhere)
 {
     for (int degrees = -180; degrees <= 180; degrees += 5) {
         const double stated = degrees * std::numbers::pi / 180;
         const Model model = driven_crank(stated);
-        const ClosedStart closed = close_start(model, model.start(), StartPolicy::project);
+        const ConsistentStart closed = consistent_start(model, model.start(), StartPolicy::project);
         for (const std::string& note : closed.notes)
             EXPECT_EQ(note.find("disturbed"), std::string::npos) << "not by chance: " << note;
         const Vector3 along = closed.start.X[0].column(1);
@@ -100,14 +100,14 @@ Model heap(int n, bool is_planar, double last)
     return model;
 }
 
-TEST(ClosedStart, ClosesBodiesThatStandAtOnePlace)
+TEST(ConsistentStart, ClosesBodiesThatStandAtOnePlace)
 {
     for (const bool is_planar : {true, false}) {
         for (const int n : {2, 3, 5}) {
             const Model model = heap(n, is_planar, 0.7 * n);
-            const ClosedStart closed = close_start(model, model.start(), StartPolicy::project),
-                              again = close_start(heap(n, is_planar, 0.7 * n), model.start(),
-                                                  StartPolicy::project);
+            const ConsistentStart closed = consistent_start(model, model.start(), StartPolicy::project),
+                                  again = consistent_start(heap(n, is_planar, 0.7 * n), model.start(),
+                                                           StartPolicy::project);
             EXPECT_EQ(closed.start.X, again.start.X) << "always the same";
             EXPECT_NEAR(norm(closed.start.X[n - 1] * point({0.5, 0, 0}) - Vector3{0.7 * n, 0, 0}), 0, 1e-12);
             EXPECT_NEAR(norm(closed.start.X[0] * point({-0.5, 0, 0})), 0, 1e-12);
@@ -122,7 +122,7 @@ TEST(ClosedStart, ClosesBodiesThatStandAtOnePlace)
 }
 
 /// Axes by more than a quarter of a turn apart close end for end where Newton's way leads there.
-TEST(ClosedStart, TurnsAxesThatAreFarFromEachOther)
+TEST(ConsistentStart, TurnsAxesThatAreFarFromEachOther)
 {
     Random random(3);
     for (int k = 0; k < 50; ++k) {
@@ -130,7 +130,7 @@ TEST(ClosedStart, TurnsAxesThatAreFarFromEachOther)
         model.add_body(rigid_body("box", box(1, {1, 2, 3}), {random.vector(), random.rotation()}));
         JointFrame frame{random.vector(), random.vector(), random.unit(), random.unit()};
         model.add_joint(revolute("hinge", world, 0, frame));
-        const ClosedStart closed = close_start(model, model.start(), StartPolicy::project);
+        const ConsistentStart closed = consistent_start(model, model.start(), StartPolicy::project);
         EXPECT_GT(dot(frame.axis_first, closed.start.X[0] * direction(frame.axis_second)), 1 - 1e-12);
     }
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "livens/dynamics/start/closing.h"
+#include "livens/dynamics/start/consistent_start.h"
 
 #include <algorithm>
 #include <cmath>
@@ -85,7 +85,7 @@ Complaint complaint_of(const std::function<void()>& act)
 
 Complaint refusal(const Model& model, const State& state, StartPolicy policy = StartPolicy::check)
 {
-    return complaint_of([&] { close_start(model, state, policy); });
+    return complaint_of([&] { consistent_start(model, state, policy); });
 }
 
 #define EXPECT_CONTAINS(text, part) EXPECT_NE(std::string(text).find(part), std::string::npos) << (text)
@@ -100,20 +100,20 @@ Body posed(Body body, const Vector3& position, const Vector3& rotation, const Ve
 
 // --- rank
 
-TEST(ClosedStart, CountsTheDegreesOfAFreeBodyAndAPointMass)
+TEST(ConsistentStart, CountsTheDegreesOfAFreeBodyAndAPointMass)
 {
     Model model;
     model.add_body(brick("box"));
     model.add_body(point_mass("dot", 1, {1, 2, 3}));
-    const ClosedStart assembly = close_start(model, model.start(), StartPolicy::check);
+    const ConsistentStart assembly = consistent_start(model, model.start(), StartPolicy::check);
     EXPECT_EQ(assembly.degrees_of_freedom, 9);
     EXPECT_TRUE(assembly.independent.empty());
 }
 
-TEST(ClosedStart, FindsThreeRedundantRowsInAFourBar)
+TEST(ConsistentStart, FindsThreeRedundantRowsInAFourBar)
 {
     const Model model = four_bar();   // 20 rows
-    const ClosedStart assembly = close_start(model, model.start(), StartPolicy::check);
+    const ConsistentStart assembly = consistent_start(model, model.start(), StartPolicy::check);
     EXPECT_EQ(assembly.independent.size(), 17u);
     EXPECT_EQ(assembly.degrees_of_freedom, 1);
     ASSERT_EQ(assembly.redundant.size(), 3u);
@@ -126,17 +126,17 @@ TEST(ClosedStart, FindsThreeRedundantRowsInAFourBar)
     EXPECT_CONTAINS(assembly.notes[0], "implied by the other rows; reactions of the joints in this loop");
 }
 
-TEST(ClosedStart, FourBarTiltedOutOfThePlaneHasFullRank)
+TEST(ConsistentStart, FourBarTiltedOutOfThePlaneHasFullRank)
 {
     // Negative control: the same bars with one axis tilted cannot move, and nothing is redundant but two
     // rows.
     const Model model = four_bar({0.1, 1, 0});
-    const ClosedStart assembly = close_start(model, model.start(), StartPolicy::check);
+    const ConsistentStart assembly = consistent_start(model, model.start(), StartPolicy::check);
     EXPECT_EQ(assembly.independent.size(), 18u);
     EXPECT_EQ(assembly.degrees_of_freedom, 0);
 }
 
-TEST(ClosedStart, RevoluteSphericalSphericalRevoluteHasTwoDegreesAndNoRedundancy)
+TEST(ConsistentStart, RevoluteSphericalSphericalRevoluteHasTwoDegreesAndNoRedundancy)
 {
     Model model;
     const Vector3 A{0, 0, 0}, B{0.3, 0, 1}, C{2.2, 0.4, 1.7}, D{2, 0.4, 0};
@@ -147,26 +147,26 @@ TEST(ClosedStart, RevoluteSphericalSphericalRevoluteHasTwoDegreesAndNoRedundancy
     model.add_joint(spherical("b", 0, 1, frame(model, 0, 1, B)));
     model.add_joint(spherical("c", 1, 2, frame(model, 1, 2, C)));
     model.add_joint(revolute("d", world, 2, frame(model, world, 2, D)));
-    const ClosedStart assembly = close_start(model, model.start(), StartPolicy::check);
+    const ConsistentStart assembly = consistent_start(model, model.start(), StartPolicy::check);
     EXPECT_EQ(model.n_rows(), 16);
     EXPECT_EQ(assembly.independent.size(), 16u);
     EXPECT_EQ(assembly.degrees_of_freedom, 2);
 }
 
-TEST(ClosedStart, DropsTheLaterOfTwoEqualBallJoints)
+TEST(ConsistentStart, DropsTheLaterOfTwoEqualBallJoints)
 {
     Model model;
     model.add_body(brick("box"));
     model.add_joint(spherical("first", world, 0, frame(model, world, 0, {0.3, 0.1, -0.2})));
     model.add_joint(spherical("second", world, 0, frame(model, world, 0, {0.3, 0.1, -0.2})));
-    const ClosedStart assembly = close_start(model, model.start(), StartPolicy::check);
+    const ConsistentStart assembly = consistent_start(model, model.start(), StartPolicy::check);
     EXPECT_EQ(assembly.independent, (std::vector<int>{0, 1, 2}));
     ASSERT_EQ(assembly.redundant.size(), 3u);
     ASSERT_EQ(assembly.notes.size(), 1u);
     EXPECT_CONTAINS(assembly.notes[0], "joint 'second': rows x, y, z are implied by the other rows");
 }
 
-TEST(ClosedStart, RankDoesNotDependOnUnitsNorOnMasses)
+TEST(ConsistentStart, RankDoesNotDependOnUnitsNorOnMasses)
 {
     for (const double unit : {1e-6, 1.0, 1e6}) {
         for (const double light : {1e-6, 1.0, 1e6}) {
@@ -181,7 +181,7 @@ TEST(ClosedStart, RankDoesNotDependOnUnitsNorOnMasses)
             model.add_joint(spherical("s", world, 0, frame(model, world, 0, {0, 0, 0}), unit));
             model.add_joint(revolute("r", 0, 1, frame(model, 0, 1, hinge), unit));
             model.add_joint(spherical("again", 0, 1, frame(model, 0, 1, hinge), unit));
-            const ClosedStart assembly = close_start(model, model.start(), StartPolicy::check);
+            const ConsistentStart assembly = consistent_start(model, model.start(), StartPolicy::check);
             EXPECT_EQ(assembly.independent.size(), 8u) << unit << ' ' << light;
             EXPECT_EQ(assembly.redundant.size(), 3u) << unit << ' ' << light;
         }
@@ -192,7 +192,7 @@ TEST(ClosedStart, RankDoesNotDependOnUnitsNorOnMasses)
 
 MassProperties needle() { return properties(1, {0.5, 0, 0}, {0, 1.0 / 12, 1.0 / 12}); }
 
-TEST(ClosedStart, RefusesTheFreeSpinOfANeedle)
+TEST(ConsistentStart, RefusesTheFreeSpinOfANeedle)
 {
     Model model;
     model.add_body(brick("box"));
@@ -206,12 +206,12 @@ TEST(ClosedStart, RefusesTheFreeSpinOfANeedle)
     EXPECT_FALSE(c.help.empty());
 }
 
-TEST(ClosedStart, AcceptsTheNeedleWhoseSpinAJointHolds)
+TEST(ConsistentStart, AcceptsTheNeedleWhoseSpinAJointHolds)
 {
     Model model;
     model.add_body(rigid_body("needle", needle()));
     model.add_joint(revolute("hinge", world, 0, frame(model, world, 0, {0, 0, 0}, {0, 1, 0})));
-    EXPECT_EQ(close_start(model, model.start(), StartPolicy::check).degrees_of_freedom, 1);
+    EXPECT_EQ(consistent_start(model, model.start(), StartPolicy::check).degrees_of_freedom, 1);
     // About the needle's own axis the hinge leaves exactly the spin that carries nothing.
     Model along;
     along.add_body(rigid_body("needle", needle()));
@@ -219,17 +219,17 @@ TEST(ClosedStart, AcceptsTheNeedleWhoseSpinAJointHolds)
     EXPECT_EQ(refusal(along, along.start()).code, "spin-without-inertia");
 }
 
-TEST(ClosedStart, AcceptsSingularMassesOfBodiesWithInertiaAboutEveryAxis)
+TEST(ConsistentStart, AcceptsSingularMassesOfBodiesWithInertiaAboutEveryAxis)
 {
     // J1 + J2 = J3: a lamina, E = diag(2, 1, 0).
     Model model;
     model.add_body(rigid_body("lamina", properties(1, {0, 0, 0}, {1, 2, 3})));
-    EXPECT_EQ(close_start(model, model.start(), StartPolicy::check).degrees_of_freedom, 6);
+    EXPECT_EQ(consistent_start(model, model.start(), StartPolicy::check).degrees_of_freedom, 6);
 }
 
 // --- positions
 
-TEST(ClosedStart, CheckNamesJointAndSizeOfAnOpenStart)
+TEST(ConsistentStart, CheckNamesJointAndSizeOfAnOpenStart)
 {
     Model model = four_bar();
     State start = model.start();
@@ -242,7 +242,7 @@ TEST(ClosedStart, CheckNamesJointAndSizeOfAnOpenStart)
     EXPECT_CONTAINS(c.help, "projected onto the joints");
 }
 
-TEST(ClosedStart, LeavesAConsistentStartUntouchedToTheBit)
+TEST(ConsistentStart, LeavesAConsistentStartUntouchedToTheBit)
 {
     Model model;
     model.add_body(posed(brick("box"), {1, -2, 0.3}, {0.3, 0.2, -0.7}, {0, 0, 0}, {0, 0, 0}));
@@ -250,14 +250,14 @@ TEST(ClosedStart, LeavesAConsistentStartUntouchedToTheBit)
     State start = model.start();
     start.V[0] = rate(start.X[0], {0, 0, 0}, {0.1, 2, -3});
     for (const StartPolicy policy : {StartPolicy::check, StartPolicy::project}) {
-        const ClosedStart assembly = close_start(model, start, policy);
+        const ConsistentStart assembly = consistent_start(model, start, policy);
         EXPECT_EQ(assembly.start.X, start.X);
         EXPECT_EQ(assembly.start.V, start.V);
         EXPECT_TRUE(assembly.notes.empty());
     }
 }
 
-TEST(ClosedStart, LeavesConsistentVelocitiesOfAChainUntouchedToTheBit)
+TEST(ConsistentStart, LeavesConsistentVelocitiesOfAChainUntouchedToTheBit)
 {
     // Rates that keep the joint by construction, at numbers that no second computation would meet to the bit.
     Model model;
@@ -267,26 +267,26 @@ TEST(ClosedStart, LeavesConsistentVelocitiesOfAChainUntouchedToTheBit)
     State start = model.start();
     start.V[0] = rate(start.X[0], {0.7, -0.1, 1.3}, {0.1, 2, -3});
     start.V[1] = rate(start.X[1], {0.7, -0.1, 1.3}, {0.9, -1.7, 0.3});
-    const ClosedStart assembly = close_start(model, start, StartPolicy::project);
+    const ConsistentStart assembly = consistent_start(model, start, StartPolicy::project);
     EXPECT_EQ(assembly.start.X, start.X);
     EXPECT_EQ(assembly.start.V, start.V);
     start.V[1].a[0] += 1e-10;   // negative control: here there is something to do
-    EXPECT_NE(close_start(model, start, StartPolicy::project).start.V, start.V);
+    EXPECT_NE(consistent_start(model, start, StartPolicy::project).start.V, start.V);
 }
 
-TEST(ClosedStart, PolishesSmallViolationsToRoundingUnderCheck)
+TEST(ConsistentStart, PolishesSmallViolationsToRoundingUnderCheck)
 {
     const Model model = four_bar();
     State start = model.start();
     start.X[1].a[0] += 3e-10;
     start.X[1].a[2] -= 2e-10;
     ASSERT_GT(largest_violation(model, start), 1e-10);
-    const ClosedStart assembly = close_start(model, start, StartPolicy::check);
+    const ConsistentStart assembly = consistent_start(model, start, StartPolicy::check);
     EXPECT_LT(largest_violation(model, assembly.start), 2e-15);
     for (const std::string& note : assembly.notes) EXPECT_CONTAINS(note, "implied by the other rows");
 }
 
-TEST(ClosedStart, KeepsPlanarDataExactlyPlanar)
+TEST(ConsistentStart, KeepsPlanarDataExactlyPlanar)
 {
     const Model model = four_bar();
     for (const double size : {1e-10, 0.05}) {
@@ -294,7 +294,7 @@ TEST(ClosedStart, KeepsPlanarDataExactlyPlanar)
         start.X[1].a[0] += size;
         start.X[2].a[2] -= size;
         start.V[0] = rate(start.X[0], {0, 0, 0}, {0, 1, 0});
-        const ClosedStart assembly = close_start(model, start, StartPolicy::project);
+        const ConsistentStart assembly = consistent_start(model, start, StartPolicy::project);
         EXPECT_LT(largest_violation(model, assembly.start), 3e-15);
         for (int b = 0; b < 3; ++b) {
             for (const Matrix34* m : {&assembly.start.X[b], &assembly.start.V[b]}) {
@@ -309,13 +309,13 @@ TEST(ClosedStart, KeepsPlanarDataExactlyPlanar)
     }
 }
 
-TEST(ClosedStart, ProjectionReachesRoundingFromFarInThreeDimensions)
+TEST(ConsistentStart, ProjectionReachesRoundingFromFarInThreeDimensions)
 {
     const Model model = four_bar();
     State start = model.start();
     start.X[0] = configuration({0.1, 0.05, -0.1}, directors_from_rotation_vector({0.1, -0.9, 0.2}));
     start.X[2] = configuration({2.1, -0.1, 0.1}, directors_from_rotation_vector({-0.1, -1.2, 0.15}));
-    const ClosedStart assembly = close_start(model, start, StartPolicy::project);
+    const ConsistentStart assembly = consistent_start(model, start, StartPolicy::project);
     EXPECT_LT(largest_violation(model, assembly.start), 1e-14);
     EXPECT_EQ(assembly.degrees_of_freedom, 1);
     EXPECT_FALSE(assembly.notes.empty());
@@ -325,7 +325,7 @@ TEST(ClosedStart, ProjectionReachesRoundingFromFarInThreeDimensions)
     }
 }
 
-TEST(ClosedStart, ProjectionComesBackFromLargeTurns)
+TEST(ConsistentStart, ProjectionComesBackFromLargeTurns)
 {
     Model model;
     model.add_body(brick("box"));
@@ -334,13 +334,13 @@ TEST(ClosedStart, ProjectionComesBackFromLargeTurns)
     for (const Vector3& turn : {Vector3{0, 0, 1.4}, Vector3{0.9, -0.9, 0.3}}) {
         State start = model.start();
         start.X[0] = configuration({0.3, -1, 2}, directors_from_rotation_vector(turn));
-        const State closed = close_start(model, start, StartPolicy::project).start;
+        const State closed = consistent_start(model, start, StartPolicy::project).start;
         EXPECT_LT(largest_violation(model, closed), 1e-14);
         EXPECT_LT(norm(closed.X[0] - model.bodies()[0].X), 1e-13);
     }
 }
 
-TEST(ClosedStart, ProjectionFindsTheNearestStateInTheMassMetric)
+TEST(ConsistentStart, ProjectionFindsTheNearestStateInTheMassMetric)
 {
     // Two bodies of unequal mass on one rod that is too long: they share the gap in the inverse ratio of
     // their masses.
@@ -350,14 +350,14 @@ TEST(ClosedStart, ProjectionFindsTheNearestStateInTheMassMetric)
     model.add_joint(rod("rod", 0, 1, frame(model, 0, 1, {0, 0, 0}), 1));
     State start = model.start();
     start.V[0].a[0] = 1;
-    const ClosedStart assembly = close_start(model, start, StartPolicy::project);
+    const ConsistentStart assembly = consistent_start(model, start, StartPolicy::project);
     EXPECT_NEAR(assembly.start.X[0](0, 0), 0.3, 1e-12);
     EXPECT_NEAR(assembly.start.X[1](0, 0), 1.3, 1e-12);
     EXPECT_NEAR(assembly.start.V[0](0, 0), 0.25, 1e-14);
     EXPECT_NEAR(assembly.start.V[1](0, 0), 0.25, 1e-14);
 }
 
-TEST(ClosedStart, ProjectionIsNearestForFiniteTurnsToo)
+TEST(ConsistentStart, ProjectionIsNearestForFiniteTurnsToo)
 {
     // A bar from its hinge, shifted: among all closed states none nearby is nearer to what was given.
     Model model;
@@ -366,7 +366,7 @@ TEST(ClosedStart, ProjectionIsNearestForFiniteTurnsToo)
     State start = model.start();
     start.X[0].a[0] += 0.1;
     start.X[0].a[2] -= 0.2;
-    const State closed = close_start(model, start, StartPolicy::project).start;
+    const State closed = consistent_start(model, start, StartPolicy::project).start;
     const auto distance = [&](const Matrix34& X) {
         return dot((X - start.X[0]) * model.bodies()[0].mass, X - start.X[0]);
     };
@@ -382,7 +382,7 @@ TEST(ClosedStart, ProjectionIsNearestForFiniteTurnsToo)
     }
 }
 
-TEST(ClosedStart, RefusesMirroredAndSkewDirectors)
+TEST(ConsistentStart, RefusesMirroredAndSkewDirectors)
 {
     Model model;
     model.add_body(brick("box"));
@@ -394,14 +394,14 @@ TEST(ClosedStart, RefusesMirroredAndSkewDirectors)
     const Complaint c = refusal(model, start);
     EXPECT_EQ(c.code, "start-position");
     EXPECT_CONTAINS(c.message, "d1.d2");
-    const ClosedStart assembly = close_start(model, start, StartPolicy::project);
+    const ConsistentStart assembly = consistent_start(model, start, StartPolicy::project);
     const Matrix3 D = directors(assembly.start.X[0]);
     EXPECT_LT(norm(transpose(D) * D - identity<3>()), 1e-15);
 }
 
 // --- contradiction
 
-TEST(ClosedStart, NamesTheRodThatContradictsAnother)
+TEST(ConsistentStart, NamesTheRodThatContradictsAnother)
 {
     Model model;
     model.add_body(point_mass("dot", 1, {0, 0, -1.2}));
@@ -415,7 +415,7 @@ TEST(ClosedStart, NamesTheRodThatContradictsAnother)
     }
 }
 
-TEST(ClosedStart, NamesBallJointsThatDoNotFitEachOther)
+TEST(ConsistentStart, NamesBallJointsThatDoNotFitEachOther)
 {
     Model model;
     model.add_body(brick("box"));
@@ -432,7 +432,7 @@ TEST(ClosedStart, NamesBallJointsThatDoNotFitEachOther)
     EXPECT_CONTAINS(c.value, "0.5");
 }
 
-TEST(ClosedStart, SaysWhenAMechanismDoesNotReach)
+TEST(ConsistentStart, SaysWhenAMechanismDoesNotReach)
 {
     // Two bars of length 1 between points 3 apart: no row is redundant where they point at each other,
     // nothing closes.
@@ -452,7 +452,7 @@ TEST(ClosedStart, SaysWhenAMechanismDoesNotReach)
 
 // --- velocities
 
-TEST(ClosedStart, NamesTheJointThatVelocitiesBreak)
+TEST(ConsistentStart, NamesTheJointThatVelocitiesBreak)
 {
     Model model;
     model.add_body(brick("box"));
@@ -463,27 +463,27 @@ TEST(ClosedStart, NamesTheJointThatVelocitiesBreak)
     EXPECT_EQ(c.code, "start-velocity");
     EXPECT_EQ(c.path, "joint[ball]");
     EXPECT_CONTAINS(c.message, "row 'y'");
-    const ClosedStart assembly = close_start(model, start, StartPolicy::project);
+    const ConsistentStart assembly = consistent_start(model, start, StartPolicy::project);
     EXPECT_LT(largest_rate(model, assembly.start), 1e-15);
     EXPECT_NEAR(angular_velocity(assembly.start.X[0], assembly.start.V[0])[2], 3, 1e-14);
     EXPECT_FALSE(assembly.notes.empty());
 }
 
 /// Velocities that are zero but for rounding break no joint.
-TEST(ClosedStart, TakesRoundingForRest)
+TEST(ConsistentStart, TakesRoundingForRest)
 {
     Model model({0, 0, -9.81});
     model.add_body(brick("box"));
     model.add_joint(spherical("ball", world, 0, frame(model, world, 0, {0, 0, 0})));
     State start = model.start();
     start.V[0] = rate(start.X[0], {0, 1e-16, 0}, {});
-    const ClosedStart assembly = close_start(model, start, StartPolicy::check);
+    const ConsistentStart assembly = consistent_start(model, start, StartPolicy::check);
     EXPECT_LT(largest_rate(model, assembly.start), 1e-16);
     start.V[0] = rate(start.X[0], {0, 1e-8, 0}, {});
     EXPECT_EQ(refusal(model, start).code, "start-velocity") << "that is no rounding";
 }
 
-TEST(ClosedStart, ProjectsThePapersInconsistentDirectorRates)
+TEST(ConsistentStart, ProjectsThePapersInconsistentDirectorRates)
 {
     // d3' = (0, 1, 0) with d2' = 0 breaks d2 . d3 and projects to half the spin.
     Model model;
@@ -496,7 +496,7 @@ TEST(ClosedStart, ProjectsThePapersInconsistentDirectorRates)
     EXPECT_CONTAINS(c.message, "'cube'");
     EXPECT_CONTAINS(c.message, "d2.d3");
     EXPECT_EQ(c.value, "d(d2.d3)/dt = 1 1/s");
-    const ClosedStart assembly = close_start(model, start, StartPolicy::project);
+    const ConsistentStart assembly = consistent_start(model, start, StartPolicy::project);
     const Vector3 w = angular_velocity(assembly.start.X[0], assembly.start.V[0]);
     EXPECT_NEAR(w[0], -0.5, 1e-13);
     EXPECT_EQ(w[1], 0);
@@ -504,7 +504,7 @@ TEST(ClosedStart, ProjectsThePapersInconsistentDirectorRates)
     EXPECT_LT(norm(assembly.start.V[0] - rate(assembly.start.X[0], {0, 0, 0}, w)), 1e-15);
 }
 
-TEST(ClosedStart, UnequalMomentsShareInconsistentRatesByMass)
+TEST(ConsistentStart, UnequalMomentsShareInconsistentRatesByMass)
 {
     // d3' = a, d2' = 0 with E = diag(e1, e2, e3): w1 (e2 + e3) = -e3 a.
     Model model;
@@ -512,17 +512,17 @@ TEST(ClosedStart, UnequalMomentsShareInconsistentRatesByMass)
     State start = model.start();
     start.V[0].set_column(3, {0, 2, 0});
     const Matrix4& m = model.bodies()[0].mass;
-    const ClosedStart assembly = close_start(model, start, StartPolicy::project);
+    const ConsistentStart assembly = consistent_start(model, start, StartPolicy::project);
     EXPECT_NEAR(angular_velocity(assembly.start.X[0], assembly.start.V[0])[0],
                 -2 * m(3, 3) / (m(2, 2) + m(3, 3)), 1e-13);
 }
 
-TEST(ClosedStart, VelocityProjectionIsNearestUnderRedundantJoints)
+TEST(ConsistentStart, VelocityProjectionIsNearestUnderRedundantJoints)
 {
     const Model model = four_bar();
     State start = model.start();
     start.V[0] = rate(start.X[0], {0, 0, 0}, {0, 1, 0});   // the crank alone
-    const ClosedStart assembly = close_start(model, start, StartPolicy::project);
+    const ConsistentStart assembly = consistent_start(model, start, StartPolicy::project);
     EXPECT_LT(largest_rate(model, assembly.start), 1e-14);
     // The rest of the given rates is perpendicular, by mass, to the one motion that is left.
     double along = 0, moved = 0;
@@ -534,7 +534,7 @@ TEST(ClosedStart, VelocityProjectionIsNearestUnderRedundantJoints)
     EXPECT_NEAR(along, 0, 1e-13 * moved);
 }
 
-TEST(ClosedStart, KeepsTheAngularVelocityOfABodyThatIsTurnedByTheProjection)
+TEST(ConsistentStart, KeepsTheAngularVelocityOfABodyThatIsTurnedByTheProjection)
 {
     Model model;
     model.add_body(posed(brick("box"), {0, 0, 0}, {0, 0, 0}, {}, {}));
@@ -542,12 +542,12 @@ TEST(ClosedStart, KeepsTheAngularVelocityOfABodyThatIsTurnedByTheProjection)
     State start = model.start();
     start.X[0] = configuration({0, 0, 0}, directors_from_rotation_vector({0.1, 0, 0}));
     start.V[0] = rate(start.X[0], {0, 0, 0}, {0, 0, 2});
-    const ClosedStart assembly = close_start(model, start, StartPolicy::project);
+    const ConsistentStart assembly = consistent_start(model, start, StartPolicy::project);
     EXPECT_LT(largest_violation(model, assembly.start), 1e-15);
     EXPECT_NEAR(angular_velocity(assembly.start.X[0], assembly.start.V[0])[2], 2, 1e-13);
 }
 
-TEST(ClosedStart, RefusesNumbersThatAreNone)
+TEST(ConsistentStart, RefusesNumbersThatAreNone)
 {
     Model model;
     model.add_body(brick("box"));
@@ -560,7 +560,7 @@ TEST(ClosedStart, RefusesNumbersThatAreNone)
     EXPECT_EQ(refusal(model, State{}).path, "start");
 }
 
-TEST(ClosedStart, ClosesAChainOfPointMassesOnRods)
+TEST(ConsistentStart, ClosesAChainOfPointMassesOnRods)
 {
     Model model;
     for (int k = 0; k < 5; ++k) {
@@ -570,7 +570,7 @@ TEST(ClosedStart, ClosesAChainOfPointMassesOnRods)
     }
     State start = model.start();
     start.V[4].a[2] = 1;
-    const ClosedStart assembly = close_start(model, start, StartPolicy::project);
+    const ConsistentStart assembly = consistent_start(model, start, StartPolicy::project);
     EXPECT_EQ(assembly.degrees_of_freedom, 10);
     EXPECT_LT(largest_violation(model, assembly.start), 5e-15);   // the squares that cancel are of size 25
     EXPECT_LT(largest_rate(model, assembly.start), 1e-15);

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "livens/dynamics/start/closing.h"
+#include "livens/dynamics/start/consistent_start.h"
 #include "workshop.h"
 
 namespace livens {
@@ -109,7 +109,7 @@ Accelerations dense(const Model& model, const std::vector<int>& chosen, Instant 
 /// A closed mechanism at the instant, with a velocity that its rows allow.
 struct Scene {
     explicit Scene(Model the_model, unsigned seed = 1)
-        : model(std::move(the_model)), closed(close_start(model, at_rest(model), StartPolicy::project)),
+        : model(std::move(the_model)), closed(consistent_start(model, at_rest(model), StartPolicy::project)),
           tables(model, closed.independent), system(tables), random(seed)
     {
         state.resize(tables);
@@ -175,8 +175,8 @@ struct Scene {
     }
 
     Model model;
-    ClosedStart closed;
-    Tables tables;
+    ConsistentStart closed;
+    ModelTables tables;
     InstantSystem system;
     Random random;
     InstantState state;
@@ -321,7 +321,7 @@ TEST(Instant, AMotionWithoutInertiaIsReported)
     const Matrix3 thin{0, 0, 0, 0, 0.5, 0, 0, 0, 0.5};
     Model model;
     model.add_body(rigid_body("needle", {2, {}, thin}));
-    const Tables tables(model, {});
+    const ModelTables tables(model, {});
     InstantSystem system(tables);
     InstantState state;
     state.resize(tables);
@@ -329,7 +329,7 @@ TEST(Instant, AMotionWithoutInertiaIsReported)
     EXPECT_FALSE(system.prepare(state, {}));
     Model solid;
     solid.add_body(rigid_body("solid", {2, {}, {0.5, 0, 0, 0, 0.5, 0, 0, 0, 0.5}}));
-    const Tables definite(solid, {});
+    const ModelTables definite(solid, {});
     InstantSystem regular(definite);
     state.resize(definite);
     state.X = flat(solid.start().X);
@@ -399,7 +399,7 @@ double pivot_of_rods(double angle)
     b.point_first = {std::cos(angle), std::sin(angle), 0};
     model.add_joint(rod("a", world, body, a, 1));
     model.add_joint(rod("b", world, body, b, 1));
-    const Tables tables(model, {0, 1});
+    const ModelTables tables(model, {0, 1});
     InstantSystem system(tables);
     InstantState state;
     state.resize(tables);
@@ -429,7 +429,7 @@ TEST(Instant, LookingBackFitsTheCubicThroughTwoEnds)
 {
     Model model;
     model.add_body(workshop(1).bodies()[0]);
-    const Tables tables(model, {});
+    const ModelTables tables(model, {});
     InstantState early, late;
     early.resize(tables);
     late.resize(tables);

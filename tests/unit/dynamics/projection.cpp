@@ -6,7 +6,7 @@
 
 #include "linkages.h"
 #include "livens/dynamics/rows/projection.h"
-#include "livens/dynamics/start/closing.h"
+#include "livens/dynamics/start/consistent_start.h"
 #include "violations.h"
 
 namespace livens {
@@ -48,7 +48,7 @@ TEST(Projection, ReachesRoundingAtAnyRatioOfMasses)
                 Random random(seed);
                 try {
                     const State start = disturbed(model, random, 1e-3);
-                    const ClosedStart a = close_start(model, start, StartPolicy::project);
+                    const ConsistentStart a = consistent_start(model, start, StartPolicy::project);
                     values = std::max(values, largest_violation(model, a.start));
                     rates = std::max(rates, relative_rate(model, a.start));
                 } catch (const InputError& error) {
@@ -83,7 +83,7 @@ TEST(Projection, SharesVelocitiesByMassAtAnyRatioOfMasses)
             sum += masses[b];
             momentum += masses[b] * v;
         }
-        const ClosedStart a = close_start(model, model.start(), StartPolicy::project);
+        const ConsistentStart a = consistent_start(model, model.start(), StartPolicy::project);
         for (const Matrix34& V : a.start.V) EXPECT_NEAR(V(0, 0), momentum / sum, 1e-14 * momentum / sum);
     }
 }
@@ -103,7 +103,7 @@ TEST(Projection, OfRatesIsNearestForRemoteReferencePoints)
             const Vector3 v = Vector3{0, 1.0 - b, 0} - cross(w, start.X[b] * direction(c));
             start.V[b] = rate(start.X[b], v, w);
         }
-        const State closed = close_start(l.model, start, StartPolicy::project).start;
+        const State closed = consistent_start(l.model, start, StartPolicy::project).start;
         return angular_velocity(closed.X[0], closed.V[0]);
     };
     EXPECT_GT(norm(spins(0) - Vector3{0.3, 0, -0.2}), 0.1);   // the joint has something to do

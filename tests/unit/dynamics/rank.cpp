@@ -8,7 +8,7 @@
 #include "linkages.h"
 #include "livens/dynamics/rows/rank.h"
 #include "livens/dynamics/rows/rows.h"
-#include "livens/dynamics/start/closing.h"
+#include "livens/dynamics/start/consistent_start.h"
 #include "livens/dynamics/start/singular.h"
 
 namespace livens {
@@ -23,7 +23,7 @@ int wrong_ranks(const std::function<Model(unsigned, int)>& make,
         const int n = 2 + static_cast<int>(seed % 5);
         const Model model = make(seed, n);
         try {
-            const ClosedStart a = close_start(model, model.start(), StartPolicy::check);
+            const ConsistentStart a = consistent_start(model, model.start(), StartPolicy::check);
             const int independent = static_cast<int>(a.independent.size());
             const int redundant = static_cast<int>(a.redundant.size());
             if (independent != rank(model, n) || independent + redundant != model.n_rows()) ++wrong;
@@ -94,7 +94,7 @@ TEST(Rank, BearsBodiesOfVeryDifferentSize)
             l.ball(b - 1, b, at + 0.3 * size * axis);
             at += size * l.random.unit();
         }
-        const ClosedStart a = close_start(l.model, l.model.start(), StartPolicy::check);
+        const ConsistentStart a = consistent_start(l.model, l.model.start(), StartPolicy::check);
         EXPECT_EQ(static_cast<int>(a.independent.size()), 5 * n) << seed;
     }
 }
@@ -104,12 +104,12 @@ TEST(Rank, OfLongChainsAndRingsIsFoundAlongTheJoints)
 {
     const int n = 400;
     const auto closed = [](const Model& model) {
-        return close_start(model, model.start(), StartPolicy::check);
+        return consistent_start(model, model.start(), StartPolicy::check);
     };
     const Model chain = open_chain(1, n, {});
     EXPECT_EQ(closed(chain).redundant, std::vector<int>{});
     const Model flat = ring(2, n, {}, true);
-    const ClosedStart start = closed(flat);
+    const ConsistentStart start = closed(flat);
     EXPECT_EQ(static_cast<int>(start.independent.size()), 5 * n + 2);
     for (const int row : start.redundant)
         EXPECT_EQ(flat.row_joint(row), n) << "the joint that closes the ring";
@@ -200,7 +200,7 @@ TEST(Rank, SeesWhatOneAxisOutOfParallelTakesAway)
         for (int k = 0; k <= 3; ++k)
             l.hinge(k == 0 ? world : k - 1, k == 3 ? world : k, {1.0 * k, 0.3 * k * k, 0},
                     {k == 2 ? tilt : 0, 0, 1});
-        return close_start(l.model, l.model.start(), StartPolicy::check).independent.size();
+        return consistent_start(l.model, l.model.start(), StartPolicy::check).independent.size();
     };
     EXPECT_EQ(tilted(3, 0), 17u);
     EXPECT_EQ(tilted(3, 1e-3), 18u);

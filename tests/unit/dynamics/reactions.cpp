@@ -10,7 +10,7 @@
 #include "linkages.h"
 #include "livens/dynamics/rows/rank.h"
 #include "livens/dynamics/rows/rows.h"
-#include "livens/dynamics/start/closing.h"
+#include "livens/dynamics/start/consistent_start.h"
 #include "livens/multibody/motion.h"
 #include "livens/solvers/dense.h"
 

@@ -9,7 +9,7 @@
 #include "livens/dynamics/rows/projection.h"
 #include "livens/dynamics/rows/rows.h"
 #include "livens/dynamics/rows/twist.h"
-#include "livens/dynamics/start/closing.h"
+#include "livens/dynamics/start/consistent_start.h"
 #include "livens/dynamics/start/singular.h"
 #include "parallelograms.h"
 
@@ -22,7 +22,7 @@ constexpr double flat = std::numbers::pi / 2;
 
 Mobility mobility_of(const Model& model, const State& start)
 {
-    return mobility(model, close_start(model, start, StartPolicy::check));
+    return mobility(model, consistent_start(model, start, StartPolicy::check));
 }
 Mobility mobility_of(const Model& model) { return mobility_of(model, model.start()); }
 
@@ -46,7 +46,8 @@ TEST(Mobility, IsThatOfTheFirstOrderWhereTheJointsKeepTheirRank)
         const Mobility m = mobility_of(model);
         EXPECT_EQ(m.first_order, 1);
         EXPECT_FALSE(m.is_singular()) << "redundant in all positions";
-        EXPECT_NO_THROW(refuse_singular_start(model, close_start(model, model.start(), StartPolicy::check)));
+        EXPECT_NO_THROW(
+            refuse_singular_start(model, consistent_start(model, model.start(), StartPolicy::check)));
     }
 }
 
@@ -153,7 +154,7 @@ TEST(Mobility, SlidesOnParallelRailsInAnyDirection)
             EXPECT_EQ(m.first_order, 1);
             EXPECT_FALSE(m.is_singular()) << axis[0] << " " << length;
             EXPECT_NO_THROW(
-                refuse_singular_start(model, close_start(model, model.start(), StartPolicy::check)));
+                refuse_singular_start(model, consistent_start(model, model.start(), StartPolicy::check)));
         }
     }
 }
@@ -162,7 +163,7 @@ TEST(SingularStart, IsRefusedWithWhatToGive)
 {
     const Model model = Parallelograms{1, flat, 0}.model();
     try {
-        refuse_singular_start(model, close_start(model, model.start(), StartPolicy::check));
+        refuse_singular_start(model, consistent_start(model, model.start(), StartPolicy::check));
         ADD_FAILURE() << "accepted";
     } catch (const InputError& error) {
         const Complaint& c = error.complaint();

@@ -80,7 +80,7 @@ TEST(StartCoordinates, LeadAFourBarAlongItsBranch)
         EXPECT_EQ(moved.model.joints()[0].coordinates[0].at_stated, turn) << "turns are counted";
         EXPECT_TRUE(moved.kept.empty());
         EXPECT_EQ(moved.left_free, 0);
-        const ClosedStart closed = close_start(moved.model, moved.model.start(), StartPolicy::check);
+        const ConsistentStart closed = consistent_start(moved.model, moved.model.start(), StartPolicy::check);
         EXPECT_EQ(closed.degrees_of_freedom, 1);
     }
 }

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "livens/base/error.h"
-#include "livens/dynamics/start/closing.h"
+#include "livens/dynamics/start/consistent_start.h"
 #include "livens/multibody/joints/drives.h"
 #include "livens/multibody/loads/load_laws.h"
 #include "livens/time/time_laws.h"
@@ -27,7 +27,7 @@ Model ball(double speed)
 bool is_taken(const Model& model)
 {
     try {
-        const ClosedStart closed = close_start(model, model.start(), StartPolicy::check);
+        const ConsistentStart closed = consistent_start(model, model.start(), StartPolicy::check);
         EXPECT_LT(norm(closed.start.V[0].column(0)), model.has_drives() ? 1e-12 : 1e-30) << "taken off";
         EXPECT_TRUE(closed.notes.empty());
         return true;

@@ -64,13 +64,13 @@ struct Bench {
 
     Random random;
     Model model;
-    Tables tables;
+    ModelTables tables;
     Numbers x, maps;
 };
 
 int n_rows(const Bench& bench) { return static_cast<int>(bench.tables.rows.size()); }
 
-TEST(Tables, ValuesAreThoseOfTheRows)
+TEST(ModelTables, ValuesAreThoseOfTheRows)
 {
     for (unsigned seed = 1; seed <= 10; ++seed) {
         const Bench bench(seed);
@@ -84,7 +84,7 @@ TEST(Tables, ValuesAreThoseOfTheRows)
     }
 }
 
-TEST(Tables, GradientsAreDifferencesOfValues)
+TEST(ModelTables, GradientsAreDifferencesOfValues)
 {
     double least_control = 1;
     for (unsigned seed = 1; seed <= 10; ++seed) {
@@ -103,7 +103,7 @@ TEST(Tables, GradientsAreDifferencesOfValues)
     EXPECT_GT(least_control, 0.02);
 }
 
-TEST(Tables, HessiansAreDifferencesOfGradients)
+TEST(ModelTables, HessiansAreDifferencesOfGradients)
 {
     for (unsigned seed = 1; seed <= 5; ++seed) {
         Bench bench(seed);
@@ -132,7 +132,7 @@ TEST(Tables, HessiansAreDifferencesOfGradients)
     }
 }
 
-TEST(Tables, RatesAreDerivativesInTime)
+TEST(ModelTables, RatesAreDerivativesInTime)
 {
     for (unsigned seed = 1; seed <= 5; ++seed) {
         const Bench bench(seed);
@@ -157,7 +157,7 @@ TEST(Tables, RatesAreDerivativesInTime)
     }
 }
 
-TEST(Tables, CurvatureIsTheSecondDerivativeOnAStraightLine)
+TEST(ModelTables, CurvatureIsTheSecondDerivativeOnAStraightLine)
 {
     for (unsigned seed = 1; seed <= 5; ++seed) {
         Bench bench(seed);
@@ -175,7 +175,7 @@ TEST(Tables, CurvatureIsTheSecondDerivativeOnAStraightLine)
     }
 }
 
-TEST(Tables, RowsOfTheWorldHaveOneSide)
+TEST(ModelTables, RowsOfTheWorldHaveOneSide)
 {
     const Bench bench(3);
     int held = 0;
@@ -191,20 +191,20 @@ TEST(Tables, RowsOfTheWorldHaveOneSide)
     EXPECT_GT(held, 1);
 }
 
-TEST(Tables, RigidityFollowsTheJointsWhereItIsAskedFor)
+TEST(ModelTables, RigidityFollowsTheJointsWhereItIsAskedFor)
 {
     const Bench bench(4, true);
     const int n = bench.model.n_rows();
     EXPECT_EQ(n_rows(bench), n + 6 * 5) << "a point has none";
     for (int r = n; r < n_rows(bench); ++r)
         EXPECT_NEAR(bench.tables.rows.value(r, now, bench.x.data()), 0, 1e-15);
-    const Tables without(bench.model, every_row(bench.model));
+    const ModelTables without(bench.model, every_row(bench.model));
     EXPECT_EQ(static_cast<int>(without.rows.size()), n);
     EXPECT_EQ(without.freedoms(), without.n_twists - n);
     EXPECT_EQ(without.n_twists, 6 * 5 + 3);
 }
 
-TEST(Tables, ScaledTwistsMeasureKineticEnergy)
+TEST(ModelTables, ScaledTwistsMeasureKineticEnergy)
 {
     for (unsigned seed = 1; seed <= 10; ++seed) {
         Bench bench(seed, true);
@@ -225,7 +225,7 @@ TEST(Tables, ScaledTwistsMeasureKineticEnergy)
     }
 }
 
-TEST(Tables, ScaledGradientsTakeScaledTwists)
+TEST(ModelTables, ScaledGradientsTakeScaledTwists)
 {
     for (unsigned seed = 1; seed <= 10; ++seed) {
         Bench bench(seed, true);
@@ -240,7 +240,7 @@ TEST(Tables, ScaledGradientsTakeScaledTwists)
     }
 }
 
-TEST(Tables, WrenchesAreForcesAndMomentsAboutTheCentre)
+TEST(ModelTables, WrenchesAreForcesAndMomentsAboutTheCentre)
 {
     Bench bench(2, true);
     for (int r = 0; r < bench.model.n_rows(); ++r) {
@@ -265,7 +265,7 @@ TEST(Tables, WrenchesAreForcesAndMomentsAboutTheCentre)
     }
 }
 
-TEST(Tables, ScaledRowsAreTheTransposeOfScaledTwists)
+TEST(ModelTables, ScaledRowsAreTheTransposeOfScaledTwists)
 {
     for (unsigned seed = 1; seed <= 10; ++seed) {
         Bench bench(seed, true);
@@ -280,7 +280,7 @@ TEST(Tables, ScaledRowsAreTheTransposeOfScaledTwists)
 /// The lower right 3 x 3 part of D_A^T N_A^T M N_B D_B of one body, column by column.
 std::vector<double> spin_mass_by_columns(const Bench& from, const Bench& to, int body)
 {
-    const Tables& tables = from.tables;
+    const ModelTables& tables = from.tables;
     std::vector<double> block;
     for (int j = 0; j < 3; ++j) {
         Numbers y(static_cast<std::size_t>(tables.n_twists), 0.0), q(y.size()), rows(y.size());
@@ -293,7 +293,7 @@ std::vector<double> spin_mass_by_columns(const Bench& from, const Bench& to, int
     return block;
 }
 
-TEST(Tables, SpinMassIsTheMassBetweenTwoConfigurations)
+TEST(ModelTables, SpinMassIsTheMassBetweenTwoConfigurations)
 {
     for (unsigned seed = 1; seed <= 5; ++seed) {
         Bench A(seed, true), B(seed, true);
@@ -313,7 +313,7 @@ TEST(Tables, SpinMassIsTheMassBetweenTwoConfigurations)
     }
 }
 
-TEST(Tables, MassesAreThoseOfTheBodies)
+TEST(ModelTables, MassesAreThoseOfTheBodies)
 {
     Bench bench(6);
     const Numbers Y = bench.any_rates();
@@ -325,7 +325,7 @@ TEST(Tables, MassesAreThoseOfTheBodies)
     }
 }
 
-TEST(Tables, WeightPullsAtTheCentresOfMass)
+TEST(ModelTables, WeightPullsAtTheCentresOfMass)
 {
     Bench bench(7, true);
     const Numbers dX = bench.rates(bench.any_twist());
@@ -340,7 +340,7 @@ TEST(Tables, WeightPullsAtTheCentresOfMass)
     EXPECT_NEAR(inner(raw, dX), power, 1e-11 * std::abs(power));
 }
 
-TEST(Tables, LoadsAreThoseOfTheModel)
+TEST(ModelTables, LoadsAreThoseOfTheModel)
 {
     Bench bench(8);
     const Numbers V = bench.any_rates();
@@ -371,7 +371,7 @@ TEST(Tables, LoadsAreThoseOfTheModel)
     EXPECT_EQ(bench.tables.loads.with_tangent, (std::vector<int>{0, 1, 2}));
 }
 
-TEST(Tables, TheFirstLoadThatIsNotFiniteIsNamed)
+TEST(ModelTables, TheFirstLoadThatIsNotFiniteIsNamed)
 {
     Model model = workshop(9);
     Random random(1);
@@ -382,17 +382,17 @@ TEST(Tables, TheFirstLoadThatIsNotFiniteIsNamed)
         bad.forces = [value](const LoadArguments& a, LoadForces& F) { F[0].a[0] = a.at.t > 1 ? value : 1; };
         const int index = with.add_load(bad);
         with.add_load(point_force("good", 3, {}, {1, 0, 0}, Frame::inertial));
-        const Tables tables(with, {});
+        const ModelTables tables(with, {});
         EXPECT_EQ(tables.loads.bad({2.0}, x.data(), V.data()), index);
         EXPECT_EQ(tables.loads.bad({0.5}, x.data(), V.data()), -1);
     }
 }
 
-TEST(Tables, BodiesWithoutInertiaKeepTheirMassAndLoseTheMetric)
+TEST(ModelTables, BodiesWithoutInertiaKeepTheirMassAndLoseTheMetric)
 {
     Model model;
     model.add_body(rigid_body("needle", {2, {0.3, 0, 0}, {0, 0, 0, 0, 0.5, 0, 0, 0, 0.5}}));
-    const Tables tables(model, {});
+    const ModelTables tables(model, {});
     EXPECT_FALSE(tables.bodies.are_regular());
     Random random(2);
     const Numbers x = flat({random.rigid()});

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "linkages.h"
-#include "livens/dynamics/start/closing.h"
+#include "livens/dynamics/start/consistent_start.h"
 
 namespace livens {
 namespace {
@@ -11,7 +11,7 @@ namespace {
 std::string verdict(const Model& model)
 {
     try {
-        return std::to_string(close_start(model, model.start(), StartPolicy::check).degrees_of_freedom);
+        return std::to_string(consistent_start(model, model.start(), StartPolicy::check).degrees_of_freedom);
     } catch (const InputError& error) {
         return error.complaint().code;
     }
@@ -77,7 +77,7 @@ TEST(WeightlessSpin, SaysWhereTheMassMatrixHoldsNoDigitOfTheInertia)
     Random random(7);
     try {
         const Model model = held(random, box_moments, 1e9, Hold::none);
-        close_start(model, model.start(), StartPolicy::check);
+        consistent_start(model, model.start(), StartPolicy::check);
         FAIL();
     } catch (const InputError& error) {
         EXPECT_EQ(error.complaint().code, "spin-without-inertia");

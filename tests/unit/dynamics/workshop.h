@@ -169,7 +169,7 @@ inline constexpr int numbers_a_row = 48;
 inline Numbers untouched() { return Numbers(numbers_a_row, std::numeric_limits<double>::quiet_NaN()); }
 
 /// The gradient of the tables, 12 numbers a body.
-inline Numbers table_gradient(const Tables& tables, int r, Instant at, const Numbers& x)
+inline Numbers table_gradient(const ModelTables& tables, int r, Instant at, const Numbers& x)
 {
     Numbers g = untouched(), full(x.size(), 0.0);
     tables.rows.gradient(r, at, x.data(), g.data());

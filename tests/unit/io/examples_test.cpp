@@ -166,7 +166,8 @@ TEST(Examples, TwoPointArrivesWhenItIsThrown)
 TEST(Examples, TheFourBarIsRedundantAndHasOneFreedom)
 {
     const Scenario scenario = example("four_bar");
-    const ClosedStart assembly = close_start(scenario.model, scenario.model.start(), StartPolicy::check);
+    const ConsistentStart assembly =
+        consistent_start(scenario.model, scenario.model.start(), StartPolicy::check);
     EXPECT_EQ(scenario.model.n_rows(), 20);
     EXPECT_EQ(assembly.independent.size(), 17u);
     EXPECT_EQ(assembly.redundant.size(), 3u);

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "livens/dynamics/instant/instant.h"
-#include "livens/dynamics/start/closing.h"
+#include "livens/dynamics/start/consistent_start.h"
 #include "livens/multibody/joints.h"
 #include "livens/spacetime/instructions.h"
 #include "livens/spacetime/nodal/system.h"
@@ -23,7 +23,7 @@ namespace livens {
 namespace {
 
 /// The state from which a march begins.
-InstantState instant_state(const Tables& tables, const State& start)
+InstantState instant_state(const ModelTables& tables, const State& start)
 {
     InstantState state;
     state.resize(tables);
@@ -64,7 +64,7 @@ double difference(const std::vector<double>& a, const std::vector<double>& b)
 double size_of(const std::vector<double>& a) { return difference(a, std::vector<double>(a.size(), 0.0)); }
 
 /// From the balance of all rows, as Newton's iteration left them.
-std::vector<double> end_momentum(const Tables& tables, const Stretch& stretch, NodalSystem& system,
+std::vector<double> end_momentum(const ModelTables& tables, const WindowLayout& stretch, NodalSystem& system,
                                  const InstantState& start)
 {
     std::vector<double> p = start.p, wrench(p.size()), raw(12 * tables.bodies.size());
@@ -83,7 +83,7 @@ std::vector<double> end_momentum(const Tables& tables, const Stretch& stretch, N
 }
 
 /// Twist rows of G^T impulses at node A, with the opposite sign.
-std::vector<double> taken_by(const Tables& tables, NodalSystem& system, const double* impulses, int A)
+std::vector<double> taken_by(const ModelTables& tables, NodalSystem& system, const double* impulses, int A)
 {
     std::vector<double> raw(12 * tables.bodies.size(), 0.0),
         wrench(static_cast<std::size_t>(tables.n_twists));
@@ -93,7 +93,7 @@ std::vector<double> taken_by(const Tables& tables, NodalSystem& system, const do
 }
 
 /// What constraints at X allow of a momentum, which is what is handed on; scaled rows.
-std::vector<double> tangent_part(const Tables& tables, double t, const double* X,
+std::vector<double> tangent_part(const ModelTables& tables, double t, const double* X,
                                  const std::vector<double>& momentum)
 {
     InstantSystem instant(tables);
@@ -110,13 +110,13 @@ std::vector<double> tangent_part(const Tables& tables, double t, const double* X
 /// One element of length h by both; `fault` is added to one entry k_AB of the kernel's rule.
 Comparison compare(const Model& model, int degree, double h, double fault = 0)
 {
-    const ClosedStart closed = close_start(model, model.start(), StartPolicy::project);
-    const Tables tables(model, closed.independent);
+    const ConsistentStart closed = consistent_start(model, model.start(), StartPolicy::project);
+    const ModelTables tables(model, closed.independent);
     const ElementRule rule = lobatto_rule(degree);
     ElementRule kernels_rule = rule;
     kernels_rule.k[static_cast<std::size_t>(rule.size() + 1)] += fault;
     const InstantState start = instant_state(tables, closed.start);
-    Stretch stretch;
+    WindowLayout stretch;
     stretch.times = {start.t, start.t + h};
     stretch.degree = degree;
 
@@ -315,8 +315,8 @@ TEST(MarchKernel, AFaultInOneLaneShows)
 TEST(JointFactor, AgreesWithOrthogonalBases)
 {
     const Model model = testing_models::everything();
-    const ClosedStart closed = close_start(model, model.start(), StartPolicy::project);
-    const Tables tables(model, closed.independent);
+    const ConsistentStart closed = consistent_start(model, model.start(), StartPolicy::project);
+    const ModelTables tables(model, closed.independent);
     InstantState states[2];
     std::vector<double> lambda[2];
     for (const bool sparse : {false, true}) {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "livens/base/error.h"
-#include "livens/dynamics/start/closing.h"
+#include "livens/dynamics/start/consistent_start.h"
 #include "livens/spacetime/mixed/tangent.h"
 #include "unit/spacetime/mechanisms.h"
 
@@ -60,9 +60,9 @@ class TornMultipliers : public MixedEquations {};
 /// Everything that a block needs, with fields that are no motion at all.
 struct Block {
     Block(const Model& model, const Case& c, const TimeSpace& space, std::vector<int> tears = {})
-        : tables(model, close_start(model, model.start(), StartPolicy::check).independent, true),
-          coordinates(tables),
-          equations(equations_of(model, c, space, tears)), tangent(equations), fields(unknown().zero())
+        : tables(model, consistent_start(model, model.start(), StartPolicy::check).independent, true),
+          coordinates(tables), equations(equations_of(model, c, space, tears)), tangent(equations),
+          fields(unknown().zero())
     {
         fields.X0 = coordinates.gather(model.start().X);
         std::mt19937_64 engine(7);
@@ -101,7 +101,7 @@ struct Block {
                 c.given.X_at_end ? known : turning};
     }
 
-    Tables tables;
+    ModelTables tables;
     mixed::Coordinates coordinates;
     Equations equations;
     mixed::Tangent tangent;
@@ -244,7 +244,7 @@ TEST(MixedCoordinates, RefusesASingularMassByTheBodysName)
     Model model;
     model.add_body(rigid_body("lamina", {1, {}, Matrix3{1, 0, 0, 0, 2, 0, 0, 0, 3}}));
     try {
-        const Tables tables(model, {}, true);
+        const ModelTables tables(model, {}, true);
         const mixed::Coordinates coordinates(tables);
         FAIL() << "a lamina has no inertia across its plane";
     } catch (const InputError& error) {

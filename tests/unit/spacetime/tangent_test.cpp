@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "livens/dynamics/instant/instant.h"
-#include "livens/dynamics/start/closing.h"
+#include "livens/dynamics/start/consistent_start.h"
 #include "livens/spacetime/nodal/nodes.h"
 #include "livens/spacetime/nodal/system.h"
 #include "livens/spacetime/solve.h"
@@ -32,7 +32,7 @@ private:
 
 /// The tangent without elimination.
 struct Dense final : TangentSink {
-    Dense(const Tables& the_tables, const Stretch& stretch) : tables(the_tables)
+    Dense(const ModelTables& the_tables, const WindowLayout& stretch) : tables(the_tables)
     {
         for (int A = 0; A < stretch.n_nodes(); ++A) {
             rows.push_back(stretch.is_active(A) ? n_rows++ * tables.n_twists : -1);
@@ -65,7 +65,7 @@ struct Dense final : TangentSink {
     }
     void close() override {}
 
-    const Tables& tables;
+    const ModelTables& tables;
     std::vector<int> rows, columns;   // of each node, -1: none
     int n_rows = 0, n_columns = 0, row = 0, column = 0;
     std::vector<double> entries;
@@ -86,7 +86,7 @@ void PrintTo(const Case& c, std::ostream* out)
 class Window {
 public:
     Window(const Model& model, const Case& c)
-        : assembly_(close_start(model, model.start(), StartPolicy::check)),
+        : assembly_(consistent_start(model, model.start(), StartPolicy::check)),
           tables(model, assembly_.independent), rule(lobatto_rule(c.degree)), system(tables, rule),
           ends_(tables)
     {
@@ -148,12 +148,12 @@ public:
     }
 
 private:
-    ClosedStart assembly_;
+    ConsistentStart assembly_;
 
 public:
-    Tables tables;
+    ModelTables tables;
     ElementRule rule;
-    Stretch stretch;
+    WindowLayout stretch;
     NodalSystem system;
     std::vector<std::vector<double>> maps, impulses;
 

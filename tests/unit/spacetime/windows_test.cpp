@@ -39,11 +39,11 @@ public:
         problem_.has_root = problem_.has_root || guess(0).t == 1;
         return true;
     }
-    Closed close(const Trust& trust, SolveReport&) override
+    AcceptedElements close(const AcceptanceCriteria& criteria, SolveReport&) override
     {
         if (!can_close) return {};
         const auto [first, last] = opened.back();
-        if (trust.full_rank && first == singular && --singular_times >= 0)
+        if (criteria.full_rank && first == singular && --singular_times >= 0)
             return {0, true, 0, singular_inside ? RankLoss::inside : RankLoss::at_end};
         if (first <= refused && refused < last && last - first > 1) {
             if (refused > first) closed.push_back({first, refused});
@@ -147,7 +147,7 @@ WindowOptions guarded(int direction)
     WindowOptions options;
     options.direction = direction;
     options.may_divide = true;
-    options.trust.full_rank = true;
+    options.criteria.full_rank = true;
     return options;
 }
 

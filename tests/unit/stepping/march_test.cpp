@@ -156,7 +156,7 @@ TEST(Stepping, MidpointKeepsAngularMomentumOfFloatingBodies)
     State start = model.start();
     start.V[0] = rate(start.X[0], {0.3, 0, 1}, {1, 2, 3});
     start.V[1] = rate(start.X[1], {0, 0.4, 0}, {-2, 1, 0.5});
-    const ClosedStart assembly = close_start(model, start, StartPolicy::project);
+    const ConsistentStart assembly = consistent_start(model, start, StartPolicy::project);
     const TimeMesh mesh = make_time_mesh(0, 3, 60);
     const auto drift = [&](SteppingRule rule) {
         const Motion motion = march_stepping(model, assembly, mesh, rule, {}).motion;
@@ -441,7 +441,7 @@ TEST(Stepping, UnequalStepsKeepTheOrder)
 {
     const Matrix3 exact = free_top_directors(1);
     const Model model = free_top();
-    const ClosedStart assembly = close_start(model, model.start(), StartPolicy::check);
+    const ConsistentStart assembly = consistent_start(model, model.start(), StartPolicy::check);
     expect_order(
         [&](int n) {
             TimeMesh mesh;

@@ -46,7 +46,7 @@ class StepTangent : public testing::TestWithParam<SteppingRule> {};
 TEST_P(StepTangent, MatchesDifferences)
 {
     const Model model = loaded_model();
-    const ClosedStart assembly = close_start(model, model.start(), StartPolicy::check);
+    const ConsistentStart assembly = consistent_start(model, model.start(), StartPolicy::check);
     const StepEquations equations(model, assembly, GetParam());
     StepStart start{0.1, 0.3, assembly.start.X, assembly.start.V};
     std::mt19937 random(7);
@@ -82,7 +82,7 @@ INSTANTIATE_TEST_SUITE_P(Rules, StepTangent, testing::Values(SteppingRule::midpo
 TEST(StepEquations, NamesTheRowThatIsWorst)
 {
     const Model model = two_bricks();
-    const ClosedStart assembly = close_start(model, model.start(), StartPolicy::check);
+    const ConsistentStart assembly = consistent_start(model, model.start(), StartPolicy::check);
     const StepEquations equations(model, assembly, SteppingRule::midpoint);
     ASSERT_EQ(equations.size(), 24 + 6 + 12);
     std::vector<double> residual(equations.size(), 0.0);

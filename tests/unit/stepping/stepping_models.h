@@ -116,7 +116,7 @@ inline Model two_bricks(const Vector3& gravity = {0, 0, -9.81}, bool to_world = 
 inline SteppingResult march(const Model& model, double end, int steps, SteppingRule rule,
                             const SteppingOptions& options = {})
 {
-    return march_stepping(model, close_start(model, model.start(), StartPolicy::check),
+    return march_stepping(model, consistent_start(model, model.start(), StartPolicy::check),
                           make_time_mesh(0, end, steps), rule, options);
 }
 

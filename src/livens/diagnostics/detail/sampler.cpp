@@ -9,7 +9,7 @@
 #include <cassert>
 #include <cstring>
 
-namespace livens {
+namespace livens::inline diagnostics_internal {
 namespace {
 
 void unstack(std::span<const double> stacked, std::span<Matrix34> bodies)
@@ -161,4 +161,4 @@ std::span<const Matrix34> velocities_at_end(const Motion& motion, int end)
     return std::span<const Matrix34>(motion.velocities).subspan(static_cast<std::size_t>(end) * n, n);
 }
 
-}   // namespace livens
+}   // namespace livens::inline diagnostics_internal

@@ -10,7 +10,7 @@
 #include "livens/base/linear.h"
 #include "livens/multibody/motion.h"
 
-namespace livens {
+namespace livens::inline diagnostics_internal {
 
 /// Evaluates a field at the same local points s of each element: the basis is tabulated once, so that a point
 /// costs (degree + 1) sums over the numbers of a coefficient and allocates nothing. Denominators differ from
@@ -73,4 +73,4 @@ void positions_before_end(const Motion& motion, int end, std::span<Matrix34> X);
 /// V of all bodies there, from the momentum.
 std::span<const Matrix34> velocities_at_end(const Motion& motion, int end);
 
-}   // namespace livens
+}   // namespace livens::inline diagnostics_internal

@@ -10,7 +10,7 @@
 #include "livens/dynamics/rows/tables.h"
 #include "livens/time/quadrature.h"
 
-namespace livens {
+namespace livens::inline diagnostics_internal {
 
 /// Rates at an instant, or their integrals.
 struct Supply {
@@ -67,7 +67,7 @@ public:
     Supply at(int element, int k);
 
 private:
-    const Tables tables_;
+    const ModelTables tables_;
     Quadrature rule_;
     ElementSampler points_;
     std::vector<Matrix34> X_;
@@ -75,4 +75,4 @@ private:
     std::vector<double> lambda_;
 };
 
-}   // namespace livens
+}   // namespace livens::inline diagnostics_internal

@@ -12,7 +12,7 @@ namespace livens {
 namespace {
 
 /// The last one, if it is of these rows.
-std::shared_ptr<const RowPattern> pattern_of(const Tables& tables, const std::vector<int>& rows)
+std::shared_ptr<const RowPattern> pattern_of(const ModelTables& tables, const std::vector<int>& rows)
 {
     std::shared_ptr<const RowPattern>& known = tables.known_pattern->last;
     if (known == nullptr || known->chosen() != rows) known = std::make_shared<const RowPattern>(tables, rows);
@@ -21,7 +21,7 @@ std::shared_ptr<const RowPattern> pattern_of(const Tables& tables, const std::ve
 
 }   // namespace
 
-void InstantState::resize(const Tables& tables)
+void InstantState::resize(const ModelTables& tables)
 {
     const auto n = static_cast<std::size_t>(tables.n_twists);
     X.assign(12 * tables.bodies.size(), 0.0);
@@ -63,7 +63,7 @@ void InstantState::forget_past()
     std::fill(snap.begin(), snap.end(), 0.0);
 }
 
-InstantSystem::InstantSystem(const Tables& tables, bool sparse) : tables_(tables), is_sparse_(sparse)
+InstantSystem::InstantSystem(const ModelTables& tables, bool sparse) : tables_(tables), is_sparse_(sparse)
 {
     const auto n = static_cast<std::size_t>(tables.n_twists);
     if (!tables.bodies.are_regular()) {

@@ -8,7 +8,7 @@
 #include "livens/dynamics/lanes/joint_factor.h"
 #include "livens/dynamics/rows/constraint_basis.h"
 
-namespace livens {
+namespace livens::inline dynamics_internal {
 
 /// What constraints hold at an instant: independent rows, and what solves for them.
 struct HeldRows {
@@ -38,7 +38,7 @@ struct InstantState {
     bool has_past = false;
     HeldRows held;
 
-    void resize(const Tables& tables);
+    void resize(const ModelTables& tables);
     /// jerk and snap of the cubic through velocity and acceleration here and at an earlier end; for guesses.
     /// `forwards`: the earlier end has the smaller t.
     void look_back(const InstantState& earlier, bool forwards);
@@ -50,7 +50,7 @@ class InstantSystem {
 public:
     /// `sparse`: by elimination along the joints where they hold well, JointFactor::serves() must be true;
     /// else by orthogonal bases.
-    explicit InstantSystem(const Tables& tables, bool sparse = false);
+    explicit InstantSystem(const ModelTables& tables, bool sparse = false);
 
     /// Prepares maps and what constraints hold at state.t and state.X, with the given independent rows as
     /// long as they are fit: the others hold to 1e-9 of their scale, and the smallest scaled pivot is above
@@ -93,7 +93,7 @@ private:
     void particular(const InstantState& state, Side from, double* y) const;
     void scatter(const InstantState& state, double* y, double weight, double* lambda) const;
 
-    const Tables& tables_;
+    const ModelTables& tables_;
     Cholesky reduced_;        // Z^T M Z, used only where an inertia is singular
     std::vector<double> z_;   // null space, n x f; likewise
     std::vector<double> a_, b_, V_, centripetal_, raw_, curvatures_;
@@ -102,4 +102,4 @@ private:
     double pivot_at_choice_ = 0;
 };
 
-}   // namespace livens
+}   // namespace livens::inline dynamics_internal

@@ -6,7 +6,7 @@
 #include <new>
 #include <vector>
 
-namespace livens {
+namespace livens::inline dynamics_internal {
 
 template <typename T>
 struct LineAllocator {
@@ -26,4 +26,4 @@ struct LineAllocator {
 
 using AlignedDoubles = std::vector<double, LineAllocator<double>>;
 
-}   // namespace livens
+}   // namespace livens::inline dynamics_internal

@@ -5,7 +5,7 @@
 #include <queue>
 #include <utility>
 
-namespace livens {
+namespace livens::inline dynamics_internal {
 
 namespace {
 
@@ -61,4 +61,4 @@ std::vector<int> order_of_least_degree(const Graph& things_of, int n_things, con
     return order;
 }
 
-}   // namespace livens
+}   // namespace livens::inline dynamics_internal

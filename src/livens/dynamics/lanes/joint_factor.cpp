@@ -15,7 +15,7 @@ namespace {
 using lanes::At;
 
 /// Columns of X to those of the pattern: the centre of mass for the reference point.
-void to_centres(const Tables& tables, const double* X, double* numbers)
+void to_centres(const ModelTables& tables, const double* X, double* numbers)
 {
     for (int b = 0; b < tables.n_bodies(); ++b, X += 12, numbers += 12) {
         std::copy_n(X, 12, numbers);
@@ -63,7 +63,7 @@ void LaneStore::resize(const RowPattern& pattern, int width)
         for (int l = 0; l < width; ++l) v.gradients[e * width + l] = p.gradients.entries.constants[e];
 }
 
-bool JointFactor::serves(const Tables& tables)
+bool JointFactor::serves(const ModelTables& tables)
 {
     return tables.bodies.are_regular() && std::all_of(tables.rows.begin(), tables.rows.end(),
                                                       [](const auto& row) { return row.is_quadratic; });
@@ -77,7 +77,7 @@ void JointFactor::use(std::shared_ptr<const RowPattern> pattern)
     work_.assign(static_cast<std::size_t>(pattern_->n_numbers()), 0.0);
 }
 
-double JointFactor::prepare(const Tables& tables, const double* X, const NearFactor& near)
+double JointFactor::prepare(const ModelTables& tables, const double* X, const NearFactor& near)
 {
     constexpr double rounding = 1e-16;   // of Phi: nothing to correct
     const lanes::Pattern& p = pattern_->view();
@@ -133,7 +133,7 @@ void JointFactor::add_wrenches(const double* mu, double factor, double* q)
     }
 }
 
-void JointFactor::curvatures(const Tables& tables, const double* V, const double* A, double* out)
+void JointFactor::curvatures(const ModelTables& tables, const double* V, const double* A, double* out)
 {
     const lanes::Pattern& p = pattern_->view();
     double *second = work_.data(), *rates = values().increments;

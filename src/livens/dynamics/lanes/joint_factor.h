@@ -10,7 +10,7 @@
 #include "livens/dynamics/lanes/aligned_doubles.h"
 #include "livens/dynamics/lanes/row_pattern.h"
 
-namespace livens {
+namespace livens::inline dynamics_internal {
 
 /// Room for lanes::Values, aligned for every set of instructions.
 class LaneStore {
@@ -40,7 +40,7 @@ public:
     static constexpr double well_held = 1e-5;
 
     /// Whether the tables have what it asks for.
-    static bool serves(const Tables& tables);
+    static bool serves(const ModelTables& tables);
 
     JointFactor() = default;
     JointFactor(const JointFactor&) = delete;
@@ -53,7 +53,7 @@ public:
     /// Gradients and factor at X. Returns the smallest pivot, |R_kk| of a QR of the scaled rows in the order
     /// of their elimination; nan if there is none. A `near` factor with the same pattern does instead of a
     /// new one.
-    double prepare(const Tables& tables, const double* X, const NearFactor& near = {});
+    double prepare(const ModelTables& tables, const double* X, const NearFactor& near = {});
     /// y <- the part of y that fits G y = rates (null: 0), and mu with y before = y + G^T mu, in the order of
     /// the pattern. Projected twice, where the smallest pivot is below 1e-3 four times: what is left is
     /// small.
@@ -61,7 +61,7 @@ public:
     /// q += factor times the twist rows of G^T mu.
     void add_wrenches(const double* mu, double factor, double* q);
     /// d2 Phi/dt2 where the columns have the rates V and the second derivatives A, 12 numbers a body.
-    void curvatures(const Tables& tables, const double* V, const double* A, double* out);
+    void curvatures(const ModelTables& tables, const double* V, const double* A, double* out);
     /// With one lane: numbers, gradients, violations and factor.
     const lanes::Values& values() const { return store_.values(); }
 
@@ -72,4 +72,4 @@ private:
     int n_passes_ = 2;
 };
 
-}   // namespace livens
+}   // namespace livens::inline dynamics_internal

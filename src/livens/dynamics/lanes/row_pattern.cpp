@@ -14,7 +14,7 @@ namespace {
 using Graph = std::vector<std::vector<int>>;
 
 /// Of rows that follow each other, those of one joint.
-std::vector<std::vector<int>> groups_of(const Tables& tables, const std::vector<int>& rows)
+std::vector<std::vector<int>> groups_of(const ModelTables& tables, const std::vector<int>& rows)
 {
     std::vector<std::vector<int>> groups;
     for (int first = 0, last = 0; first < std::ssize(rows); first = last) {
@@ -38,7 +38,7 @@ void sort_unique(std::vector<int>& numbers)
 
 }   // namespace
 
-RowPattern::RowPattern(const Tables& tables, const std::vector<int>& rows) : chosen_(rows)
+RowPattern::RowPattern(const ModelTables& tables, const std::vector<int>& rows) : chosen_(rows)
 {
     RowSums sums(tables, rows);
     bodies_ = std::move(sums.bodies);

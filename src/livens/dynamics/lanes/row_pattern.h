@@ -8,10 +8,10 @@
 
 #include "livens/dynamics/lanes/lanes.h"
 
-namespace livens {
+namespace livens::inline dynamics_internal {
 
 class RowSums;
-struct Tables;
+struct ModelTables;
 
 /// What lanes::Sums points to.
 struct SumTable {
@@ -68,7 +68,7 @@ private:
 class RowPattern {
 public:
     /// `rows`: of the tables; all quadratic.
-    RowPattern(const Tables& tables, const std::vector<int>& rows);
+    RowPattern(const ModelTables& tables, const std::vector<int>& rows);
     RowPattern(const RowPattern&) = delete;
     RowPattern& operator=(const RowPattern&) = delete;
 
@@ -94,4 +94,4 @@ private:
     lanes::Pattern view_{};
 };
 
-}   // namespace livens
+}   // namespace livens::inline dynamics_internal

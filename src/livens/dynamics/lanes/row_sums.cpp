@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace livens {
+namespace livens::inline dynamics_internal {
 
 /// A linear function of the numbers of a configuration.
 struct LinearSum {
@@ -46,7 +46,7 @@ public:
     bool has_B[size] = {}, has_K[size] = {};   // a joint's row knows few columns
     int n = 0;
 
-    CentredForm(const Tables& tables, const RowTable& row) : c(row.row->c), n(4 * row.n_sides)
+    CentredForm(const ModelTables& tables, const RowTable& row) : c(row.row->c), n(4 * row.n_sides)
     {
         for (int p = 0; p < n; ++p) {
             place[p] = 12 * row.bodies[p / 4] + 3 * (p % 4);
@@ -71,7 +71,7 @@ public:
     bool are_directors_of_one(int p, int q) const { return p / 4 == q / 4 && p % 4 != 0 && q % 4 != 0; }
 };
 
-RowSums::RowSums(const Tables& tables, const std::vector<int>& rows)
+RowSums::RowSums(const ModelTables& tables, const std::vector<int>& rows)
 {
     for (int b = 0; b < tables.n_bodies(); ++b) add_body(tables, b);
     LinearSum room;
@@ -83,7 +83,7 @@ RowSums::RowSums(const Tables& tables, const std::vector<int>& rows)
     }
 }
 
-void RowSums::add_body(const Tables& tables, int b)
+void RowSums::add_body(const ModelTables& tables, int b)
 {
     const BodyTable& table = tables.bodies[b];
     lanes::Body body;
@@ -186,4 +186,4 @@ void RowSums::add_violation(const CentredForm& form, LinearSum& phi)
     violations.add(phi.constant, phi.terms);
 }
 
-}   // namespace livens
+}   // namespace livens::inline dynamics_internal

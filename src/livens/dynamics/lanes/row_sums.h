@@ -8,7 +8,7 @@
 #include "livens/dynamics/lanes/row_pattern.h"
 #include "livens/dynamics/rows/tables.h"
 
-namespace livens {
+namespace livens::inline dynamics_internal {
 
 class CentredForm;
 struct LinearSum;
@@ -16,7 +16,7 @@ struct LinearSum;
 /// Gradients and violations of rows, in the order in which they are given; all quadratic.
 class RowSums {
 public:
-    RowSums(const Tables& tables, const std::vector<int>& rows);
+    RowSums(const ModelTables& tables, const std::vector<int>& rows);
 
     int first_product() const { return 12 * static_cast<int>(bodies.size()); }
 
@@ -27,11 +27,11 @@ public:
     SumTable entries, violations;
 
 private:
-    void add_body(const Tables& tables, int body);
+    void add_body(const ModelTables& tables, int body);
     int product(int x, int y);
     void add_moment(const CentredForm& form, int at, int p, double factor, LinearSum& sum);
     void add_gradient(const CentredForm& form, int side, LinearSum& sum);
     void add_violation(const CentredForm& form, LinearSum& phi);
 };
 
-}   // namespace livens
+}   // namespace livens::inline dynamics_internal

@@ -11,7 +11,7 @@
 
 #include "livens/multibody/model.h"
 
-namespace livens {
+namespace livens::inline dynamics_internal {
 
 /// A body's mass matrix m between columns of X.
 struct MassTable {
@@ -101,4 +101,4 @@ inline void scale_row(const BodyTable& body, const double* f, const double* q, d
     for (int i = 0; i < 3; ++i) y[3 + i] = f[3 * i] * q[3] + f[3 * i + 1] * q[4] + f[3 * i + 2] * q[5];
 }
 
-}   // namespace livens
+}   // namespace livens::inline dynamics_internal

@@ -8,7 +8,7 @@
 
 namespace livens {
 
-void ConstraintBasis::resize(const Tables& tables, bool all_rows)
+void ConstraintBasis::resize(const ModelTables& tables, bool all_rows)
 {
     const int most = all_rows ? tables.n_rows() : tables.rank;
     q.resize(tables.n_twists, most);
@@ -17,7 +17,7 @@ void ConstraintBasis::resize(const Tables& tables, bool all_rows)
     gradients.assign(static_cast<std::size_t>(RowTables::gradient_size * most), 0.0);
 }
 
-double ConstraintBasis::fill(const Tables& tables, int column, int row, Instant at, const double* X,
+double ConstraintBasis::fill(const ModelTables& tables, int column, int row, Instant at, const double* X,
                              const double* maps)
 {
     double* g = gradients.data() + RowTables::gradient_size * column;
@@ -32,7 +32,7 @@ double ConstraintBasis::fill(const Tables& tables, int column, int row, Instant 
     return scale;
 }
 
-double ConstraintBasis::build(const Tables& tables, Instant at, const double* X, const double* maps,
+double ConstraintBasis::build(const ModelTables& tables, Instant at, const double* X, const double* maps,
                               const std::vector<int>& which, bool keep_choices)
 {
     rows = which;
@@ -40,7 +40,7 @@ double ConstraintBasis::build(const Tables& tables, Instant at, const double* X,
     return smallest_pivot = q.factorise(tables.rank, keep_choices);
 }
 
-double ConstraintBasis::choose(const Tables& tables, Instant at, const double* X, const double* maps)
+double ConstraintBasis::choose(const ModelTables& tables, Instant at, const double* X, const double* maps)
 {
     const int all = tables.n_rows();
     std::vector<int> order(static_cast<std::size_t>(all));

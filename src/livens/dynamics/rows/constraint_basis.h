@@ -7,7 +7,7 @@
 #include "livens/dynamics/rows/tables.h"
 #include "livens/solvers/dense.h"
 
-namespace livens {
+namespace livens::inline dynamics_internal {
 
 /// An orthogonal basis of the constraint directions at one configuration, with the scaling of its rows.
 struct ConstraintBasis {
@@ -19,15 +19,16 @@ struct ConstraintBasis {
     double smallest_pivot = 1;   ///< of the last build() or choose()
 
     const double* gradient(int column) const { return gradients.data() + RowTables::gradient_size * column; }
-    void resize(const Tables& tables, bool all_rows);
+    void resize(const ModelTables& tables, bool all_rows);
     /// The basis for given rows. Returns the smallest scaled pivot.
-    double build(const Tables& tables, Instant at, const double* X, const double* maps,
+    double build(const ModelTables& tables, Instant at, const double* X, const double* maps,
                  const std::vector<int>& which, bool keep_choices);
     /// Chooses the rows by column pivoting among all.
-    double choose(const Tables& tables, Instant at, const double* X, const double* maps);
+    double choose(const ModelTables& tables, Instant at, const double* X, const double* maps);
 
 private:
-    double fill(const Tables& tables, int column, int row, Instant at, const double* X, const double* maps);
+    double fill(const ModelTables& tables, int column, int row, Instant at, const double* X,
+                const double* maps);
 };
 
-}   // namespace livens
+}   // namespace livens::inline dynamics_internal

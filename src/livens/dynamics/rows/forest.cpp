@@ -11,7 +11,7 @@
 
 #include "livens/multibody/motion.h"
 
-namespace livens {
+namespace livens::inline dynamics_internal {
 
 namespace {
 
@@ -150,4 +150,4 @@ std::vector<SparseRows::Entry> entries_of(const std::vector<BodyRow>& rows, cons
     return entries;
 }
 
-}   // namespace livens
+}   // namespace livens::inline dynamics_internal

@@ -6,7 +6,7 @@
 
 #include "livens/solvers/sparse_rows.h"
 
-namespace livens {
+namespace livens::inline dynamics_internal {
 
 /// A row by the bodies that it touches: its six entries on each, [force, moment / length] (rank.h).
 struct BodyRow {
@@ -34,4 +34,4 @@ Forest spanning_forest(const std::vector<BodyRow>& rows, int n_bodies, double le
 /// Entries of the given rows in the order of `which`, six columns a body.
 std::vector<SparseRows::Entry> entries_of(const std::vector<BodyRow>& rows, const std::vector<int>& which);
 
-}   // namespace livens
+}   // namespace livens::inline dynamics_internal

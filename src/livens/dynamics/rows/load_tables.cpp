@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "livens/multibody/model.h"
+
 namespace livens {
 
 namespace {

@@ -5,9 +5,10 @@
 #include <span>
 #include <vector>
 
-#include "livens/multibody/turns.h"
+#include "livens/multibody/loads.h"
+#include "livens/multibody/unwrapped_angles.h"
 
-namespace livens {
+namespace livens::inline dynamics_internal {
 
 class LoadTables {
 public:
@@ -24,10 +25,10 @@ public:
     int bad(Instant at, const double* X, const double* V, std::span<const double> angles = {}) const;
 
     std::vector<int> with_tangent;   ///< loads that depend on X or V
-    Turns turns;
+    UnwrappedAngles turns;
 
 private:
     const Model& model_;
 };
 
-}   // namespace livens
+}   // namespace livens::inline dynamics_internal

@@ -16,7 +16,7 @@
 #include "livens/solvers/dense.h"
 #include "livens/solvers/sparse_rows.h"
 
-namespace livens {
+namespace livens::inline dynamics_internal {
 
 namespace {
 
@@ -279,4 +279,4 @@ std::vector<Matrix34> nearest_rates(const Model& model, std::span<const Matrix34
     return rates;
 }
 
-}   // namespace livens
+}   // namespace livens::inline dynamics_internal

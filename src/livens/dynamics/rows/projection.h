@@ -7,7 +7,7 @@
 
 #include "livens/multibody/model.h"
 
-namespace livens {
+namespace livens::inline dynamics_internal {
 
 struct Closing {
     /// Every |Phi| is at its rounding level, or as near as 100 iterations come and |Phi| / scale < 1e-12.
@@ -34,4 +34,4 @@ std::vector<Matrix34> nearest_rates(const Model& model, std::span<const Matrix34
                                     std::span<const Matrix34> V, std::span<const int> rows,
                                     std::span<const double> drive_rates = {});
 
-}   // namespace livens
+}   // namespace livens::inline dynamics_internal

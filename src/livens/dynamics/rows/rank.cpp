@@ -16,7 +16,7 @@
 #include "livens/solvers/sparse_rows.h"
 #include "livens/solvers/spectral.h"
 
-namespace livens {
+namespace livens::inline dynamics_internal {
 
 namespace {
 
@@ -346,4 +346,4 @@ std::optional<WeightlessSpin> weightless_spin(const Model& model, std::span<cons
     return spin;
 }
 
-}   // namespace livens
+}   // namespace livens::inline dynamics_internal

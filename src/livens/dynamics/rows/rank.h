@@ -12,7 +12,7 @@
 #include "livens/dynamics/rows/rows.h"
 #include "livens/multibody/model.h"
 
-namespace livens {
+namespace livens::inline dynamics_internal {
 
 /// The twist Jacobian without masses: of each given row six entries for every body that it touches, [force,
 /// moment / length] about the mean of the body's joint points, scaled to norm 1. The length is sqrt(a A) with
@@ -67,4 +67,4 @@ struct WeightlessSpin {
 /// there is above (1e-9 + u) (|m| + (|r| + gyration) |f|) + 8 eps (position + |at| + |c|) |f|.
 std::optional<WeightlessSpin> weightless_spin(const Model& model, std::span<const Matrix34> X);
 
-}   // namespace livens
+}   // namespace livens::inline dynamics_internal

@@ -15,7 +15,7 @@
 #include "livens/dynamics/rows/rows.h"
 #include "livens/multibody/body.h"
 
-namespace livens {
+namespace livens::inline dynamics_internal {
 
 namespace {
 
@@ -238,4 +238,4 @@ std::string drive_help(const Model& model, int row, std::span<const Matrix34> X)
     return law + (is_of_joint ? ", lead its joint there by coordinates of the start, or " : ", or ");
 }
 
-}   // namespace livens
+}   // namespace livens::inline dynamics_internal

@@ -10,7 +10,7 @@
 #include "livens/base/error.h"
 #include "livens/dynamics/rows/projection.h"
 
-namespace livens {
+namespace livens::inline dynamics_internal {
 
 // All of models without drives, or frozen() at an instant.
 
@@ -41,4 +41,4 @@ Complaint why_open(const Model& model, const Closing& open, std::span<const Matr
 std::string drive_words(const Model& model, int row, std::span<const Matrix34> X);
 std::string drive_help(const Model& model, int row, std::span<const Matrix34> X);
 
-}   // namespace livens
+}   // namespace livens::inline dynamics_internal

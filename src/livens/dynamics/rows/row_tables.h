@@ -6,7 +6,7 @@
 
 #include "livens/multibody/model.h"
 
-namespace livens {
+namespace livens::inline dynamics_internal {
 
 /// A row and the bodies that it touches, its sides.
 struct RowTable {
@@ -59,4 +59,4 @@ private:
     std::vector<RowTable> tables_;
 };
 
-}   // namespace livens
+}   // namespace livens::inline dynamics_internal

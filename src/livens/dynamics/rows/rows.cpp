@@ -8,7 +8,7 @@
 #include <limits>
 #include <numeric>
 
-namespace livens {
+namespace livens::inline dynamics_internal {
 
 namespace {
 
@@ -145,4 +145,4 @@ Vector3 moment_about(const Wrench& wrench, const Matrix34& X, const Vector3& the
     return wrench.moment + cross(X * direction(wrench.at - theta), wrench.force);
 }
 
-}   // namespace livens
+}   // namespace livens::inline dynamics_internal

@@ -8,7 +8,7 @@
 
 #include "livens/multibody/model.h"
 
-namespace livens {
+namespace livens::inline dynamics_internal {
 
 std::vector<int> all_rows(const Model& model);
 
@@ -48,4 +48,4 @@ RowWrenches row_wrenches(const Model& model, std::span<const Matrix34> X);
 /// Moment about another point of the body, moment + D (at - theta) x force.
 Vector3 moment_about(const Wrench& wrench, const Matrix34& X, const Vector3& theta);
 
-}   // namespace livens
+}   // namespace livens::inline dynamics_internal

@@ -26,22 +26,23 @@ inline void plain_wrench(const RowTable& t, int side, const double* X, const dou
 
 }   // namespace
 
-Tables::Tables(const Model& the_model, std::vector<int> rows_to_solve, bool with_rigidity,
-               std::shared_ptr<KnownPattern> known)
+ModelTables::ModelTables(const Model& the_model, std::vector<int> rows_to_solve, bool with_rigidity,
+                         std::shared_ptr<KnownPattern> known)
     : model(&the_model), bodies(the_model), rows(the_model, with_rigidity), loads(the_model),
       length(the_model.length()), n_twists(bodies.n_twists()), independent(std::move(rows_to_solve)),
       rank(static_cast<int>(independent.size())),
       known_pattern(known != nullptr ? std::move(known) : std::make_shared<KnownPattern>())
 {}
 
-void Tables::wrench(int r, int side, const double* X, const double* maps, const double* g, double* q) const
+void ModelTables::wrench(int r, int side, const double* X, const double* maps, const double* g,
+                         double* q) const
 {
     const int body = rows[r].bodies[side];
     plain_wrench(rows[r], side, X, g, q);
     if (bodies[body].offset) BodyTables::to_centre(maps + 12 * body, q);
 }
 
-void Tables::scaled_wrench(int r, int side, const double* X, const double* g, double* y) const
+void ModelTables::scaled_wrench(int r, int side, const double* X, const double* g, double* y) const
 {
     const int body = rows[r].bodies[side];
     double map[12] = {}, q[6];
@@ -52,8 +53,8 @@ void Tables::scaled_wrench(int r, int side, const double* X, const double* g, do
     scale_row(bodies[body], map, q, y);
 }
 
-void Tables::add_wrenches(int r, const double* X, const double* maps, const double* g, double factor,
-                          double* q) const
+void ModelTables::add_wrenches(int r, const double* X, const double* maps, const double* g, double factor,
+                               double* q) const
 {
     for (int side = 0; side < rows[r].n_sides; ++side) {
         const BodyTable& body = bodies[rows[r].bodies[side]];
@@ -63,7 +64,8 @@ void Tables::add_wrenches(int r, const double* X, const double* maps, const doub
     }
 }
 
-void Tables::scaled_gradient(int r, const double* X, const double* maps, const double* g, double* out) const
+void ModelTables::scaled_gradient(int r, const double* X, const double* maps, const double* g,
+                                  double* out) const
 {
     std::fill(out, out + n_twists, 0.0);
     for (int side = 0; side < rows[r].n_sides; ++side) {

@@ -9,7 +9,7 @@
 #include "livens/dynamics/rows/load_tables.h"
 #include "livens/dynamics/rows/row_tables.h"
 
-namespace livens {
+namespace livens::inline dynamics_internal {
 
 class RowPattern;
 
@@ -19,14 +19,14 @@ struct KnownPattern {
 };
 
 /// Tables made once per solution.
-struct Tables {
+struct ModelTables {
     /// `independent`: rows of the joints, of full rank, that hold for all others.
     /// `with_rigidity`: rigidity_rows() of the bodies follow the rows of the joints.
     /// `known`: of the same model, see Prepared; null: these tables have their own.
-    Tables(const Model& the_model, std::vector<int> independent, bool with_rigidity = false,
-           std::shared_ptr<KnownPattern> known = nullptr);
-    Tables(const Tables&) = delete;
-    Tables& operator=(const Tables&) = delete;
+    ModelTables(const Model& the_model, std::vector<int> independent, bool with_rigidity = false,
+                std::shared_ptr<KnownPattern> known = nullptr);
+    ModelTables(const ModelTables&) = delete;
+    ModelTables& operator=(const ModelTables&) = delete;
 
     const Model* model;
     BodyTables bodies;
@@ -53,4 +53,4 @@ struct Tables {
     void scaled_gradient(int r, const double* X, const double* maps, const double* g, double* out) const;
 };
 
-}   // namespace livens
+}   // namespace livens::inline dynamics_internal

@@ -10,7 +10,7 @@
 #include "livens/dynamics/rows/rows.h"
 #include "livens/solvers/dense.h"
 
-namespace livens {
+namespace livens::inline dynamics_internal {
 
 namespace {
 
@@ -112,4 +112,4 @@ Lock joints_that_lock(const Model& model, const State& before, const State& now)
     return lock;
 }
 
-}   // namespace livens
+}   // namespace livens::inline dynamics_internal

@@ -6,7 +6,7 @@
 
 #include "livens/multibody/model.h"
 
-namespace livens {
+namespace livens::inline dynamics_internal {
 
 /// What holds less together than it did.
 struct Lock {
@@ -22,4 +22,4 @@ struct Lock {
 /// joints act for a part of the time.
 Lock joints_that_lock(const Model& model, const State& before, const State& now);
 
-}   // namespace livens
+}   // namespace livens::inline dynamics_internal

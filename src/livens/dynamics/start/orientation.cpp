@@ -40,7 +40,7 @@ int sign_of_determinant(double* A, int n)
 
 }   // namespace
 
-void Orientation::place(const Tables& tables, const std::vector<int>& rows, Instant at, const double* X)
+void Orientation::place(const ModelTables& tables, const std::vector<int>& rows, Instant at, const double* X)
 {
     n_rows_ = static_cast<int>(rows.size());
     sides_.clear();

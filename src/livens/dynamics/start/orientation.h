@@ -6,13 +6,13 @@
 
 #include "livens/dynamics/rows/tables.h"
 
-namespace livens {
+namespace livens::inline dynamics_internal {
 
 /// The gradients G of some rows at one place, by scaled twists, each of norm 1.
 class Orientation {
 public:
     /// X: 12 numbers for each body of the model, of which those of the rows' bodies are read.
-    void place(const Tables& tables, const std::vector<int>& rows, Instant at, const double* X);
+    void place(const ModelTables& tables, const std::vector<int>& rows, Instant at, const double* X);
     /// Against another place of the same rows: the determinant of G G_before^T is negative, since what passed
     /// zero on the way has changed its sign. Two that pass together are not seen.
     bool is_turned_over(const Orientation& before);
@@ -28,4 +28,4 @@ private:
     std::vector<double> gradient_, product_;
 };
 
-}   // namespace livens
+}   // namespace livens::inline dynamics_internal

@@ -41,12 +41,12 @@ TriedStart Prepared::try_close(const Model& model, const State& start, StartPoli
 {
     serve(model);
     if (closed_ && closed_->policy == policy && are_same(closed_->state, start)) return {closed_->closed, {}};
-    TriedStart tried = try_close_start(model, start, policy);
-    if (tried.closed) closed_ = Closed{start, policy, *tried.closed};
+    TriedStart tried = try_consistent_start(model, start, policy);
+    if (tried.closed) closed_ = AcceptedElements{start, policy, *tried.closed};
     return tried;
 }
 
-ClosedStart Prepared::close(const Model& model, const State& start, StartPolicy policy)
+ConsistentStart Prepared::close(const Model& model, const State& start, StartPolicy policy)
 {
     TriedStart tried = try_close(model, start, policy);
     if (!tried.closed) throw InputError(std::move(tried.why));

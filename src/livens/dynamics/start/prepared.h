@@ -6,11 +6,13 @@
 #include <memory>
 #include <optional>
 
-#include "livens/dynamics/start/closing.h"
+#include "livens/dynamics/start/consistent_start.h"
 
 namespace [[gnu::visibility("default")]] livens {
 
-struct KnownPattern;   // inside of the engine
+inline namespace dynamics_internal {
+struct KnownPattern;
+}   // namespace dynamics_internal
 
 /// What follows from a model alone and takes time to find: its last closed start and the pattern of its rows.
 /// It is passed from solution to solution in Problem::prepared, by one thread at a time; what was found of
@@ -22,24 +24,24 @@ public:
     Prepared(const Prepared&) = delete;
     Prepared& operator=(const Prepared&) = delete;
 
-    /// try_close_start(), which is not done anew for the state and policy that were given last.
+    /// try_consistent_start(), which is not done anew for the state and policy that were given last.
     TriedStart try_close(const Model& model, const State& start, StartPolicy policy);
-    /// The same, thrown as close_start() does.
-    ClosedStart close(const Model& model, const State& start, StartPolicy policy);
+    /// The same, thrown as consistent_start() does.
+    ConsistentStart close(const Model& model, const State& start, StartPolicy policy);
     /// Where the Tables of this model keep the pattern of their rows.
     std::shared_ptr<KnownPattern> pattern(const Model& model);
 
 private:
-    struct Closed {
+    struct AcceptedElements {
         State state;
         StartPolicy policy;
-        ClosedStart closed;
+        ConsistentStart closed;
     };
 
     void serve(const Model& model);
 
     std::uint64_t version_ = 0;
-    std::optional<Closed> closed_;
+    std::optional<AcceptedElements> closed_;
     std::shared_ptr<KnownPattern> pattern_;
 };
 

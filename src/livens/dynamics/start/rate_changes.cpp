@@ -10,7 +10,7 @@
 #include "livens/dynamics/start/rate_changes.h"
 #include "livens/multibody/joint_coordinates.h"
 
-namespace livens {
+namespace livens::inline dynamics_internal {
 
 namespace {
 
@@ -94,4 +94,4 @@ std::string velocity_change(const Body& body, const Matrix34& X, const Matrix34&
     return to_text(speed, 2) + " m/s and " + to_text(spin, 2) + " rad/s";
 }
 
-}   // namespace livens
+}   // namespace livens::inline dynamics_internal

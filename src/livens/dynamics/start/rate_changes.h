@@ -7,7 +7,7 @@
 
 #include "livens/multibody/model.h"
 
-namespace livens {
+namespace livens::inline dynamics_internal {
 
 /// "slider.displacement 0 -> 0.218 m/s, turning at 'ball' 0 -> 7.06 rad/s": the three that changed most of
 /// rates of joints, of how fast two bodies turn against each other without a coordinate, and of angular
@@ -19,4 +19,4 @@ std::string rate_changes(const Model& model, std::span<const Matrix34> X, std::s
 std::string velocity_change(const Body& body, const Matrix34& X, const Matrix34& before,
                             const Matrix34& after);
 
-}   // namespace livens
+}   // namespace livens::inline dynamics_internal

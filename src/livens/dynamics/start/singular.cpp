@@ -27,7 +27,7 @@ constexpr int most_directions = 8;   // in which branches are looked for
 /// The rows and their second derivatives at one configuration, for scaled twists y.
 class Curvatures {
 public:
-    Curvatures(const Model& model, const ClosedStart& closed)
+    Curvatures(const Model& model, const ConsistentStart& closed)
         : tables_(model, closed.independent), at_{closed.start.t}, maps_(12 * closed.start.X.size())
     {
         for (const Matrix34& X : closed.start.X) X_.insert(X_.end(), std::begin(X.a), std::end(X.a));
@@ -45,7 +45,7 @@ public:
         }
     }
 
-    const Tables& tables() const { return tables_; }
+    const ModelTables& tables() const { return tables_; }
     /// Of the rows' gradients, scaled to norm 1.
     const std::vector<SparseRows::Entry>& entries() const { return entries_; }
 
@@ -117,7 +117,7 @@ private:
     double* gradient(int r) { return gradients_.data() + RowTables::gradient_size * r; }
     const double* gradient(int r) const { return gradients_.data() + RowTables::gradient_size * r; }
 
-    Tables tables_;
+    ModelTables tables_;
     Instant at_;
     Values X_, maps_, gradients_, scale_;
     std::vector<SparseRows::Entry> entries_;
@@ -145,7 +145,7 @@ private:
 /// Whether redundant combinations ask nothing of any motion, judged by some motions at random: a quadratic
 /// form that is zero there is zero. Cost and room grow with the bodies. False also where that cannot be told
 /// so.
-bool asks_nothing(const Curvatures& curvatures, const ClosedStart& closed)
+bool asks_nothing(const Curvatures& curvatures, const ConsistentStart& closed)
 {
     const int n_columns = curvatures.tables().n_twists;
     const std::vector<int>&independent = closed.independent, &redundant = closed.redundant;
@@ -187,7 +187,7 @@ class SecondOrder {
 public:
     explicit SecondOrder(const Curvatures& curvatures) : curvatures_(curvatures)
     {
-        const Tables& tables = curvatures.tables();
+        const ModelTables& tables = curvatures.tables();
         DenseMatrix G(tables.n_twists, tables.n_rows());
         for (const auto& entry : curvatures.entries()) G(entry.column, entry.row) = entry.value;
         free_ = complement(G, tables.rank);
@@ -328,7 +328,7 @@ std::vector<Values> roots_of(const std::vector<DenseMatrix>& forms, int f)
 
 }   // namespace
 
-Mobility mobility(const Model& model, const ClosedStart& closed)
+Mobility mobility(const Model& model, const ConsistentStart& closed)
 {
     Mobility result;
     result.first_order = closed.degrees_of_freedom;

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "livens/dynamics/start/closing.h"
+#include "livens/dynamics/start/consistent_start.h"
 
 namespace [[gnu::visibility("default")]] livens {
 
@@ -32,12 +32,12 @@ struct Mobility {
 
 /// At a state that is closed. Numbers count as zero below 1e-6 of their terms; what only a higher order than
 /// the second tells is not seen.
-Mobility mobility(const Model& model, const ClosedStart& closed);
+Mobility mobility(const Model& model, const ConsistentStart& closed);
 
 /// `start-singular`, where the joints are in a singular position: no motion goes on from rest there, or
 /// several do, and rows that are independent beside it are not so there.
-std::optional<Complaint> why_singular(const Model& model, const ClosedStart& closed);
+std::optional<Complaint> why_singular(const Model& model, const ConsistentStart& closed);
 /// Throws it as InputError.
-void refuse_singular_start(const Model& model, const ClosedStart& closed);
+void refuse_singular_start(const Model& model, const ConsistentStart& closed);
 
 }   // namespace livens

@@ -39,7 +39,7 @@ std::string words_of(const Model& model, const State& state, const std::vector<M
 
 }   // namespace
 
-std::optional<Complaint> why_singular(const Model& model, const ClosedStart& closed)
+std::optional<Complaint> why_singular(const Model& model, const ConsistentStart& closed)
 {
     const Mobility m = mobility(model, closed);
     if (!m.is_singular()) return {};
@@ -68,7 +68,7 @@ std::optional<Complaint> why_singular(const Model& model, const ClosedStart& clo
                       help};
 }
 
-void refuse_singular_start(const Model& model, const ClosedStart& closed)
+void refuse_singular_start(const Model& model, const ConsistentStart& closed)
 {
     if (std::optional<Complaint> why = why_singular(model, closed)) throw InputError(std::move(*why));
 }

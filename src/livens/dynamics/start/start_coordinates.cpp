@@ -309,7 +309,7 @@ MovedStart move_start(const Model& model, const std::vector<StartCoordinate>& wa
     State stated = model.start();
     stated.t = t;
     const std::vector<Matrix34> V = std::exchange(stated.V, std::vector<Matrix34>(stated.X.size()));
-    const ClosedStart closed = close_start(model, stated, policy);
+    const ConsistentStart closed = consistent_start(model, stated, policy);
     MovedStart moved{model, {}, 0, {}};
     std::vector<Led> all = all_coordinates(model, wanted);
 

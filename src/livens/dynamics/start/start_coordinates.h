@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "livens/dynamics/start/closing.h"
+#include "livens/dynamics/start/consistent_start.h"
 
 namespace [[gnu::visibility("default")]] livens {
 
@@ -33,7 +33,7 @@ struct MovedStart {
 ///
 /// Throws InputError: `start-coordinate` for a coordinate that is not there, wanted twice, held by joints or
 /// by the other wanted ones, more than 1000 turns or lengths away, or not to be reached, with the value where
-/// the mechanism stops; std::logic_error for drives, loads or sensors; and what close_start() throws.
+/// the mechanism stops; std::logic_error for drives, loads or sensors; and what consistent_start() throws.
 MovedStart move_start(const Model& model, const std::vector<StartCoordinate>& wanted, StartPolicy policy,
                       double t = 0);
 

@@ -6,7 +6,7 @@
 
 #include "livens/dynamics/start/start_speeds.h"
 
-namespace livens {
+namespace livens::inline dynamics_internal {
 
 namespace {
 
@@ -107,4 +107,4 @@ double speed_of_rounding(const Model& model, const State& state, const RowWrench
     return std::max(slowest * std::sqrt(most * model.length()), per_second * model.length());
 }
 
-}   // namespace livens
+}   // namespace livens::inline dynamics_internal

@@ -8,7 +8,7 @@
 #include "livens/dynamics/rows/rows.h"
 #include "livens/multibody/model.h"
 
-namespace livens {
+namespace livens::inline dynamics_internal {
 
 std::vector<Vector3> centers_of_mass(const Model& model);
 
@@ -28,4 +28,4 @@ double speed_by_weight(const Model& model);
 double speed_of_rounding(const Model& model, const State& state, const RowWrenches& wrenches,
                          std::span<const Vector3> centers);
 
-}   // namespace livens
+}   // namespace livens::inline dynamics_internal

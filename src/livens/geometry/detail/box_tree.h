@@ -10,7 +10,7 @@
 
 #include "livens/geometry/detail/facets.h"
 
-namespace livens {
+namespace livens::inline geometry_internal {
 
 /// Three numbers of 20 bits each, with a bit between them that is free.
 using Packed = std::uint64_t;
@@ -152,4 +152,4 @@ private:
 /// Of each leaf: its triangles are known to touch no other but where they share corners.
 std::vector<std::uint8_t> lone_sheets(const BoxTree& tree, const std::vector<Vector3>& points);
 
-}   // namespace livens
+}   // namespace livens::inline geometry_internal

@@ -15,7 +15,7 @@
 
 #include "livens/geometry/mesh.h"
 
-namespace livens {
+namespace livens::inline geometry_internal {
 
 /// From its bytes, in the order of this machine or turned round.
 template <class Number>
@@ -106,4 +106,4 @@ void read_obj(std::string_view bytes, Mesh& mesh);
 void read_ply(std::string_view bytes, Mesh& mesh);
 void read_msh(std::string_view bytes, Mesh& mesh);
 
-}   // namespace livens
+}   // namespace livens::inline geometry_internal

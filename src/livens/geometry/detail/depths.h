@@ -9,7 +9,7 @@
 #include "livens/geometry/detail/facets.h"
 #include "livens/geometry/detail/triangle_grid.h"
 
-namespace livens {
+namespace livens::inline geometry_internal {
 
 /// Closed pieces along straight lines: what a line in the direction of the first axis crosses behind a point,
 /// counted by the side from which it comes. Where that is not clear (the line passes an edge, the point lies
@@ -56,4 +56,4 @@ private:
 /// 1983].
 double share_of_view(const Facets& facets, std::int32_t face, const Vector3& point);
 
-}   // namespace livens
+}   // namespace livens::inline geometry_internal

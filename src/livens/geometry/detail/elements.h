@@ -7,7 +7,7 @@
 
 #include "livens/geometry/mesh.h"
 
-namespace livens {
+namespace livens::inline geometry_internal {
 
 /// N_A and its derivatives at a point of the parent element.
 struct ShapeValues {
@@ -38,4 +38,4 @@ struct ElementPoint {
 ElementPoint element_point(const ShapeValues& shape, const Mesh& mesh, ElementKind kind,
                            const std::int32_t* nodes, const Vector3& about);
 
-}   // namespace livens
+}   // namespace livens::inline geometry_internal

@@ -10,7 +10,7 @@
 #include "livens/geometry/detail/rings.h"
 #include "livens/geometry/mesh.h"
 
-namespace livens {
+namespace livens::inline geometry_internal {
 
 /// Faces by their corners. The half-edge h goes from corner h to the next one of its face.
 struct Facets {
@@ -95,4 +95,4 @@ private:
 void check_contacts(const Facets& facets, const Triangles& triangles, const Rings& rings,
                     std::vector<Complaint>& faults);
 
-}   // namespace livens
+}   // namespace livens::inline geometry_internal

@@ -8,7 +8,7 @@
 
 #include "livens/base/linear.h"
 
-namespace livens {
+namespace livens::inline geometry_internal {
 
 struct Rings {
     /// Round each point that triangles use lies one ring of them, all turned the same way. Then the surface
@@ -24,4 +24,4 @@ struct Rings {
 /// `corners`: three points of each triangle.
 Rings rings_of(const std::vector<Vector3>& points, std::span<const std::int32_t> corners);
 
-}   // namespace livens
+}   // namespace livens::inline geometry_internal

@@ -8,7 +8,7 @@
 
 #include "livens/geometry/detail/facets.h"
 
-namespace livens {
+namespace livens::inline geometry_internal {
 
 /// Cells of the plane across the first axis, and the triangles that lie over them.
 class TriangleGrid {
@@ -26,4 +26,4 @@ private:
     std::vector<std::int32_t> begins_, triangles_;
 };
 
-}   // namespace livens
+}   // namespace livens::inline geometry_internal

@@ -9,7 +9,7 @@
 
 #include "livens/geometry/moments.h"
 
-namespace livens {
+namespace livens::inline geometry_internal {
 
 /// Points of rules in each direction, one finer than the other: a piece of space takes the first whose
 /// successor says the same. The first is exact for linear densities of elements, the others for polynomials
@@ -68,4 +68,4 @@ double checked_density(double density, const Vector3& at, double least);
 /// Throws `density-field` where no mass is left.
 Moments about_centroid(const Sums& sums, const Vector3& about);
 
-}   // namespace livens
+}   // namespace livens::inline geometry_internal

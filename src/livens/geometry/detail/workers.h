@@ -6,7 +6,7 @@
 #include <functional>
 #include <vector>
 
-namespace livens {
+namespace livens::inline geometry_internal {
 
 /// Asks the system for large pages behind memory that is not touched yet: each page costs about a
 /// microsecond, a thousand times what is in it.
@@ -44,4 +44,4 @@ void in_parts(std::size_t n, std::size_t size, Work work)
     });
 }
 
-}   // namespace livens
+}   // namespace livens::inline geometry_internal

@@ -40,7 +40,7 @@ constexpr ExportFormat formats[] = {
 
 std::span<const ExportFormat> export_formats() { return formats; }
 
-std::vector<double> reached_times(const Run& run)
+std::vector<double> io_internal::reached_times(const Run& run)
 {
     const auto first = std::ranges::lower_bound(run.output, run.motion.start());
     const auto last = std::ranges::upper_bound(run.output, run.motion.end());

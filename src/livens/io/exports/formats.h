@@ -12,7 +12,7 @@
 #include "livens/io/exports.h"
 #include "livens/io/surface.h"
 
-namespace livens {
+namespace livens::inline io_internal {
 
 /// Sizes and places from `narrow` on are written with 64 bits.
 void write_npz(const std::filesystem::path& file, const ExportInput& input,
@@ -46,4 +46,4 @@ std::vector<Surface> surfaces_of(const Scenario& scenario);
 /// The output times that the motion has reached.
 std::vector<double> reached_times(const Run& run);
 
-}   // namespace livens
+}   // namespace livens::inline io_internal

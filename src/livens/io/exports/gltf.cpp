@@ -12,7 +12,7 @@
 #include "livens/io/exports/formats.h"
 #include "livens/io/json.h"
 
-namespace livens {
+namespace livens::inline io_internal {
 
 namespace {
 
@@ -342,4 +342,4 @@ void write_gltf(const std::filesystem::path& file, const ExportInput& input)
     replace_file(file, Scene(input).take());
 }
 
-}   // namespace livens
+}   // namespace livens::inline io_internal

@@ -13,7 +13,7 @@
 #include "livens/io/results/atomic_file.h"
 #include "livens/io/results/classic_netcdf.h"
 
-namespace livens {
+namespace livens::inline io_internal {
 
 namespace {
 
@@ -238,4 +238,4 @@ void write_npz(const std::filesystem::path& path, const ExportInput& input, std:
     zip.commit();
 }
 
-}   // namespace livens
+}   // namespace livens::inline io_internal

@@ -11,7 +11,7 @@
 #include "livens/diagnostics/sample.h"
 #include "livens/io/exports/formats.h"
 
-namespace livens {
+namespace livens::inline io_internal {
 
 namespace {
 
@@ -153,4 +153,4 @@ void write_pvd(const fs::path& file, const ExportInput& input)
     replace_file(file, list + "</Collection>\n</VTKFile>\n");
 }
 
-}   // namespace livens
+}   // namespace livens::inline io_internal

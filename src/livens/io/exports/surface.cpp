@@ -11,7 +11,7 @@
 #include "livens/base/elementary.h"
 #include "livens/io/exports/formats.h"
 
-namespace livens {
+namespace livens::inline io_internal {
 
 namespace {
 
@@ -183,4 +183,4 @@ std::vector<Surface> surfaces_of(const Scenario& scenario)
     return surfaces;
 }
 
-}   // namespace livens
+}   // namespace livens::inline io_internal

@@ -11,7 +11,7 @@
 #include "livens/io/report/lines_of_action.h"
 #include "livens/io/report/parts.h"
 
-namespace livens {
+namespace livens::inline io_internal {
 
 namespace {
 
@@ -163,4 +163,4 @@ void write_curves(ReportData& data, const Scenario& scenario, const Run& run)
     json.end_array();
 }
 
-}   // namespace livens
+}   // namespace livens::inline io_internal

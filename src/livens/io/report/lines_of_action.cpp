@@ -10,7 +10,7 @@
 #include "livens/diagnostics/sample.h"
 #include "livens/multibody/body.h"
 
-namespace livens {
+namespace livens::inline io_internal {
 
 namespace {
 
@@ -148,7 +148,7 @@ std::vector<LineOfAction> lines_of_action(const Model& model, const Motion& moti
 std::vector<Reaction> load_reactions(const Model& model, const std::vector<LineOfAction>& lines,
                                      const State& state, std::span<const double> angles, Side side)
 {
-    const Turns turns(model);
+    const UnwrappedAngles turns(model);
     std::vector<Reaction> all;
     for (std::size_t l = 0; l < model.loads().size(); ++l) {
         const Load& load = model.loads()[l];
@@ -162,4 +162,4 @@ std::vector<Reaction> load_reactions(const Model& model, const std::vector<LineO
     return all;
 }
 
-}   // namespace livens
+}   // namespace livens::inline io_internal

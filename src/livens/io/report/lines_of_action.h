@@ -9,7 +9,7 @@
 #include "livens/multibody/model.h"
 #include "livens/multibody/motion.h"
 
-namespace livens {
+namespace livens::inline io_internal {
 
 /// A load that is a force f at one point of a body, F = f (1, theta)^T, at all instants looked at: theta in
 /// coordinates of each of its two bodies (the world's are world coordinates).
@@ -28,4 +28,4 @@ std::vector<LineOfAction> lines_of_action(const Model& model, const Motion& moti
 std::vector<Reaction> load_reactions(const Model& model, const std::vector<LineOfAction>& lines,
                                      const State& state, std::span<const double> angles, Side side);
 
-}   // namespace livens
+}   // namespace livens::inline io_internal

@@ -5,7 +5,7 @@
 #include "livens/io/report.h"
 #include "livens/io/report/payload.h"
 
-namespace livens {
+namespace livens::inline io_internal {
 
 /// Where numbers of a run go.
 struct ReportData {
@@ -25,4 +25,4 @@ void write_curves(ReportData& data, const Scenario& scenario, const Run& run);
 /// "quality": series that tell how right the run is, and the bounds of its acceptance.
 void write_quality(ReportData& data, const Scenario& scenario, const Run& run);
 
-}   // namespace livens
+}   // namespace livens::inline io_internal

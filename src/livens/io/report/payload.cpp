@@ -8,7 +8,7 @@
 
 #include <zlib.h>
 
-namespace livens {
+namespace livens::inline io_internal {
 
 namespace {
 
@@ -79,4 +79,4 @@ std::string base64(std::string_view bytes)
     return out;
 }
 
-}   // namespace livens
+}   // namespace livens::inline io_internal

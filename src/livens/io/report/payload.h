@@ -9,7 +9,7 @@
 
 #include "livens/io/json.h"
 
-namespace livens {
+namespace livens::inline io_internal {
 
 enum class Precision { whole, single, full };   ///< 4 bytes unsigned, 4 and 8 bytes of a real number
 
@@ -37,4 +37,4 @@ private:
 
 std::string base64(std::string_view bytes);
 
-}   // namespace livens
+}   // namespace livens::inline io_internal

@@ -11,7 +11,7 @@
 #include "livens/io/report/parts.h"
 #include "livens/multibody/body.h"
 
-namespace livens {
+namespace livens::inline io_internal {
 
 namespace {
 
@@ -252,4 +252,4 @@ void write_poses(ReportData& data, const Run& run, double most_bytes)
     json.end_array().end_object();
 }
 
-}   // namespace livens
+}   // namespace livens::inline io_internal

@@ -10,7 +10,7 @@
 #include "livens/diagnostics/diagnostics.h"
 #include "livens/io/report/parts.h"
 
-namespace livens {
+namespace livens::inline io_internal {
 
 namespace {
 
@@ -162,4 +162,4 @@ void write_quality(ReportData& data, const Scenario& scenario, const Run& run)
     json.end_object();
 }
 
-}   // namespace livens
+}   // namespace livens::inline io_internal

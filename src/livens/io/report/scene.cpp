@@ -15,7 +15,7 @@
 #include "livens/io/report/parts.h"
 #include "livens/multibody/body.h"
 
-namespace livens {
+namespace livens::inline io_internal {
 
 namespace {
 
@@ -221,4 +221,4 @@ void write_scene(ReportData& data, const Scenario& scenario, const Run& run)
     data.json.member("length", scenario.model.length());
 }
 
-}   // namespace livens
+}   // namespace livens::inline io_internal

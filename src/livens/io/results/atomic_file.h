@@ -7,7 +7,7 @@
 #include <span>
 #include <string_view>
 
-namespace livens {
+namespace livens::inline io_internal {
 
 /// A file descriptor that closes itself.
 class Descriptor {
@@ -61,4 +61,4 @@ private:
     std::uint64_t size_ = 0;
 };
 
-}   // namespace livens
+}   // namespace livens::inline io_internal

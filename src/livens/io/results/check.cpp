@@ -5,7 +5,7 @@
 
 #include "livens/io/results/layout.h"
 
-namespace livens {
+namespace livens::inline io_internal {
 
 namespace {
 
@@ -108,4 +108,4 @@ void check_run(const Run& run)
     }
 }
 
-}   // namespace livens
+}   // namespace livens::inline io_internal

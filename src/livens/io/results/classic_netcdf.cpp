@@ -7,7 +7,7 @@
 #include "livens/io/results.h"
 #include "livens/io/results/classic_netcdf_bytes.h"
 
-namespace livens {
+namespace livens::inline io_internal {
 
 namespace {
 
@@ -204,4 +204,4 @@ void ClassicWriter::finish()
     sink_(0, header_);
 }
 
-}   // namespace livens
+}   // namespace livens::inline io_internal

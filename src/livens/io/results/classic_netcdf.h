@@ -12,7 +12,7 @@
 #include <variant>
 #include <vector>
 
-namespace livens {
+namespace livens::inline io_internal {
 
 /// As the format numbers them; files of others may hold further ones, which are passed over.
 enum class NumberType : int { byte = 1, text = 2, integer = 4, real = 6 };
@@ -158,4 +158,4 @@ private:
 /// Of the attribute, nullptr if there is none.
 const AttributeValue* find_attribute(const std::vector<Attribute>& attributes, std::string_view name);
 
-}   // namespace livens
+}   // namespace livens::inline io_internal

@@ -8,7 +8,7 @@
 
 #include "livens/io/results/classic_netcdf.h"
 
-namespace livens {
+namespace livens::inline io_internal {
 
 inline constexpr std::uint32_t dimension_tag = 10, variable_tag = 11, attribute_tag = 12;
 inline constexpr std::size_t buffer_size = 128u << 10;
@@ -58,4 +58,4 @@ inline std::uint64_t length_of(const std::vector<ClassicDimension>& dimensions, 
     return found == nullptr ? 0 : found->length;
 }
 
-}   // namespace livens
+}   // namespace livens::inline io_internal

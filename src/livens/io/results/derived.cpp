@@ -10,7 +10,7 @@
 #include "livens/io/results/writing.h"
 #include "livens/spacetime/instructions.h"
 
-namespace livens {
+namespace livens::inline io_internal {
 
 namespace {
 
@@ -178,4 +178,4 @@ void write_derived(RunWriter& archive, const Model& model, const Run& run)
     archive.text("manifest", "versions, options, figures (JSON)", manifest(run));
 }
 
-}   // namespace livens
+}   // namespace livens::inline io_internal

@@ -26,9 +26,9 @@ constexpr Figure figures[] = {
     {"divided_at", "s", "near end of the first of them", &SolveReport::divided_at, false, 1},
     {"accuracy", "1", "that was asked for; 0: none", &SolveReport::accuracy, false, 2},
     {"tries", "1", "motions until it was reached", &SolveReport::tries, false, 2},
-    {"refused", "1", "elements that were solved again, shorter, for it", &SolveReport::refused, false, 2},
-    {"evaluations", "1", "of the equations at a node of an element, in the motion",
-     &SolveReport::evaluations, false, 2},
+    {"refused", "1", "elements that were solved again, shorter, for it", &SolveReport::rejected, false, 2},
+    {"evaluations", "1", "of the equations at a node of an element, in the motion", &SolveReport::evaluations,
+     false, 2},
     {"evaluations_in_all", "1", "of all tries and their second solutions, to an accuracy",
      &SolveReport::evaluations_in_all, false, 2},
     {"residual_norm", "1", "largest scaled residual at acceptance", &SolveReport::residual_norm},
@@ -139,20 +139,20 @@ auto with_number(AnyRun& run, const Figure& figure, Work work)
 
 const int format_minor = newest;
 
-std::span<const Figure> run_figures() { return figures; }
+std::span<const Figure> io_internal::run_figures() { return figures; }
 
-double figure_of(const Run& run, const Figure& figure)
+double io_internal::figure_of(const Run& run, const Figure& figure)
 {
     return with_number(run, figure, [](const auto& number) { return static_cast<double>(number); });
 }
 
-bool is_whole(const Figure& figure)
+bool io_internal::is_whole(const Figure& figure)
 {
     return std::visit([]<class Number, class Owner>(Number Owner::*) { return std::is_integral_v<Number>; },
                       figure.member);
 }
 
-bool set_figure(Run& run, const Figure& figure, double value)
+bool io_internal::set_figure(Run& run, const Figure& figure, double value)
 {
     return with_number(run, figure, [value]<class Number>(Number& number) {
         // Doubles hold whole numbers exactly up to 2^53; a file that says more is damaged.

@@ -7,7 +7,7 @@
 
 #include "livens/io/results.h"
 
-namespace livens {
+namespace livens::inline io_internal {
 
 /// Where the number stands in a Run.
 using FigureMember =
@@ -32,4 +32,4 @@ bool is_whole(const Figure& figure);
 /// False if the member cannot hold this number.
 bool set_figure(Run& run, const Figure& figure, double value);
 
-}   // namespace livens
+}   // namespace livens::inline io_internal

@@ -10,7 +10,7 @@
 #include "livens/io/results.h"
 #include "livens/io/results/classic_netcdf.h"
 
-namespace livens {
+namespace livens::inline io_internal {
 
 /// What a variable says about itself. `frame` is the frame that its components refer to.
 struct VariableInfo {
@@ -172,4 +172,4 @@ void visit_run(Archive& archive, AnyRun& run)
                  run.growth);
 }
 
-}   // namespace livens
+}   // namespace livens::inline io_internal

@@ -178,7 +178,7 @@ auto with_file(const std::filesystem::path& path, Work work)
 
 }   // namespace
 
-Run read_run_from(ByteSource source, bool verify)
+Run io_internal::read_run_from(ByteSource source, bool verify)
 {
     const ClassicReader file(std::move(source), verify);
     check_version(file);

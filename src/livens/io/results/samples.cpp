@@ -16,7 +16,7 @@
 #include "livens/diagnostics/sample.h"
 #include "livens/io/results/writing.h"
 
-namespace livens {
+namespace livens::inline io_internal {
 
 namespace {
 
@@ -361,4 +361,4 @@ void write_samples(RunWriter& archive, const Model& model, const Run& run)
     archive.later([samples] { samples->write(); });
 }
 
-}   // namespace livens
+}   // namespace livens::inline io_internal

@@ -10,7 +10,7 @@
 #include "livens/io/results/atomic_file.h"
 #include "livens/io/results/figures.h"
 #include "livens/io/results/writing.h"
-#include "livens/multibody/turns.h"
+#include "livens/multibody/unwrapped_angles.h"
 #include "livens/spacetime/solve.h"
 
 namespace livens {
@@ -40,7 +40,7 @@ void check_model(const Model& model, const Run& run)
         fits =
             model.bodies()[b].name == run.body_names[b] && model.bodies()[b].is_point == run.body_is_point[b];
     const std::vector<double>& angles = run.motion.load_angles;
-    fits &= angles.empty() || angles.size() == run.motion.mesh.ends.size() * Turns(model).size();
+    fits &= angles.empty() || angles.size() == run.motion.mesh.ends.size() * UnwrappedAngles(model).size();
     if (!fits) throw IoError("the motion is one of another model than the scenario's", "io-damaged");
 }
 
@@ -155,7 +155,8 @@ Run make_run(const Model& model, Solution solution, const Method& method)
     return run;
 }
 
-void write_run_to(const ByteSink& sink, const Model& model, const Run& run, std::uint64_t largest_in_cdf2)
+void io_internal::write_run_to(const ByteSink& sink, const Model& model, const Run& run,
+                               std::uint64_t largest_in_cdf2)
 {
     check_run(run);
     check_model(model, run);

@@ -10,7 +10,7 @@
 
 #include "livens/io/results/layout.h"
 
-namespace livens {
+namespace livens::inline io_internal {
 
 /// Values are kept as views where they are and as functions where they are made, so that no more memory is
 /// taken than the header's and what a function needs at a time. Empty parts are left out.
@@ -79,4 +79,4 @@ void write_derived(RunWriter& archive, const Model& model, const Run& run);
 /// The samples among them.
 void write_samples(RunWriter& archive, const Model& model, const Run& run);
 
-}   // namespace livens
+}   // namespace livens::inline io_internal

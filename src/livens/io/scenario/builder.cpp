@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-namespace livens {
+namespace livens::inline io_internal {
 
 namespace {
 
@@ -231,4 +231,4 @@ bool claim_name(const Section& section, const std::string& kind, const std::stri
                          advice);
 }
 
-}   // namespace livens
+}   // namespace livens::inline io_internal

@@ -14,7 +14,7 @@
 #include "livens/io/scenario/bodies/meshes.h"
 #include "livens/io/scenario/schema/section.h"
 
-namespace livens {
+namespace livens::inline io_internal {
 
 /// What a name in `between` or `body` stands for.
 struct BodyReference {
@@ -105,4 +105,4 @@ std::string default_name(const Section& section);
 bool claim_name(const Section& section, const std::string& kind, const std::string& name,
                 std::unordered_set<std::string>& taken, const Advice& advice);
 
-}   // namespace livens
+}   // namespace livens::inline io_internal

@@ -163,7 +163,8 @@ ScenarioResult parse_scenario(std::string text, const std::string& file_name, co
     return result;
 }
 
-ScenarioResult read_tree(const Node& root, std::string text, const MeshSource& meshes, TreePart part)
+ScenarioResult io_internal::read_tree(const Node& root, std::string text, const MeshSource& meshes,
+                                      TreePart part)
 {
     Findings findings;
     ScenarioResult result;

@@ -18,7 +18,7 @@ struct FittedJoint {
 
 /// The joint whose point and axes on the second body are moved by the least that closes its rows in X at an
 /// instant; `make` builds it from a frame. Turns count by `length`. What no such move closes, as rows that
-/// contradict each other or hold something else, stays open and is for close_start() to judge.
+/// contradict each other or hold something else, stays open and is for consistent_start() to judge.
 FittedJoint fit_joint(const std::function<Joint(const JointFrame&)>& make, const JointFrame& frame,
                       Instant at, const Configurations& X, double length);
 

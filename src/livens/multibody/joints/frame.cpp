@@ -37,8 +37,8 @@ JointFrame joint_frame(const Matrix34& X_first, const Matrix34& X_second, const 
             to_second * axis};
 }
 
-Joint start_joint(const std::string& name, const char* type, int first, int second, JointFrame& frame,
-                  double scale)
+Joint multibody_internal::start_joint(const std::string& name, const char* type, int first, int second,
+                                      JointFrame& frame, double scale)
 {
     const std::string path = "joint[" + name + "]";
     if (first == second)
@@ -70,7 +70,7 @@ Joint start_joint(const std::string& name, const char* type, int first, int seco
     return joint;
 }
 
-void normalise_axes(const Joint& joint, JointFrame& frame)
+void multibody_internal::normalise_axes(const Joint& joint, JointFrame& frame)
 {
     frame.axis_first = unit_axis(frame.axis_first, "joint[" + joint.name + "]");
     frame.axis_second = unit_axis(frame.axis_second, "joint[" + joint.name + "]");
@@ -85,8 +85,8 @@ void normalise_axes(const Joint& joint, JointFrame& frame)
     frame.across_second = across(frame.across_second, frame.axis_second);
 }
 
-void fix_across(JointFrame& frame, int first, int second, const Matrix34& X_first, const Matrix34& X_second,
-                const std::string& name)
+void multibody_internal::fix_across(JointFrame& frame, int first, int second, const Matrix34& X_first,
+                                    const Matrix34& X_second, const std::string& name)
 {
     if (dot(frame.across_first, frame.across_first) > 0 && dot(frame.across_second, frame.across_second) > 0)
         return;
@@ -110,7 +110,7 @@ void fix_across(JointFrame& frame, int first, int second, const Matrix34& X_firs
     frame.across_second = transpose(directors(Y)) * turned;
 }
 
-AxisPair across_axis(const Vector3& axis)
+AxisPair multibody_internal::across_axis(const Vector3& axis)
 {
     int smallest = 0;
     // The unit vector of the smallest component is the farthest from the axis, so no digits are lost in
@@ -124,20 +124,21 @@ AxisPair across_axis(const Vector3& axis)
     return {u, cross(axis, u)};
 }
 
-void hold_point(Joint& joint, double scale)
+void multibody_internal::hold_point(Joint& joint, double scale)
 {
     for (ConstraintRow& row : coincidence_rows(joint.first, point(joint.point_first), joint.second,
                                                point(joint.point_second), scale))
         joint.rows.push_back(std::move(row));
 }
 
-void hold_perpendicular(Joint& joint, const Vector3& a, const Vector3& b, const char* label)
+void multibody_internal::hold_perpendicular(Joint& joint, const Vector3& a, const Vector3& b,
+                                            const char* label)
 {
     joint.rows.push_back(inner_product_row(joint.first, direction(a), joint.second, direction(b), 0, 1));
     joint.rows.back().label = label;
 }
 
-void hold_axis(Joint& joint, const JointFrame& frame)
+void multibody_internal::hold_axis(Joint& joint, const JointFrame& frame)
 {
     joint.axis_first = frame.axis_first;
     joint.axis_second = frame.axis_second;
@@ -147,7 +148,7 @@ void hold_axis(Joint& joint, const JointFrame& frame)
     hold_perpendicular(joint, across.v, frame.axis_second, "axis 2");
 }
 
-void hold_spin(Joint& joint, const JointFrame& frame)
+void multibody_internal::hold_spin(Joint& joint, const JointFrame& frame)
 {
     const Vector3 v = cross(frame.axis_second, frame.across_second);
     hold_perpendicular(joint, frame.across_first, v, "turn");
@@ -157,28 +158,29 @@ void hold_spin(Joint& joint, const JointFrame& frame)
     joint.branches.back().label = "turn";
 }
 
-Slide slide_of(const Joint& joint, const JointFrame& frame, bool exchanged)
+Slide multibody_internal::slide_of(const Joint& joint, const JointFrame& frame, bool exchanged)
 {
     if (exchanged)
         return {joint.second, joint.point_second, -frame.axis_second, joint.first, joint.point_first};
     return {joint.first, joint.point_first, frame.axis_first, joint.second, joint.point_second};
 }
 
-void hold_in_plane(Joint& joint, const Slide& slide, const Vector3& n, const char* label, double scale)
+void multibody_internal::hold_in_plane(Joint& joint, const Slide& slide, const Vector3& n, const char* label,
+                                       double scale)
 {
     joint.rows.push_back(plane_row(slide.body, direction(n), point(slide.point), slide.other,
                                    point(slide.other_point), 0, scale));
     joint.rows.back().label = label;
 }
 
-void hold_on_line(Joint& joint, const Slide& slide, double scale)
+void multibody_internal::hold_on_line(Joint& joint, const Slide& slide, double scale)
 {
     const AxisPair across = across_axis(slide.axis);
     hold_in_plane(joint, slide, across.u, "across 1", scale);
     hold_in_plane(joint, slide, across.v, "across 2", scale);
 }
 
-NamedCoordinate angle_coordinate(const Joint& joint, const JointFrame& frame)
+NamedCoordinate multibody_internal::angle_coordinate(const Joint& joint, const JointFrame& frame)
 {
     const Vector3 u = frame.across_first, v = cross(frame.axis_first, u), w = frame.across_second;
     NamedCoordinate angle{"angle",
@@ -188,7 +190,7 @@ NamedCoordinate angle_coordinate(const Joint& joint, const JointFrame& frame)
     return angle;
 }
 
-NamedCoordinate displacement_coordinate(const Slide& slide)
+NamedCoordinate multibody_internal::displacement_coordinate(const Slide& slide)
 {
     return {"displacement", displacement_along(slide.body, direction(slide.axis), point(slide.point),
                                                slide.other, point(slide.other_point))};

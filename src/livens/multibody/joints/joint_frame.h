@@ -6,7 +6,7 @@
 
 #include "livens/multibody/joints.h"
 
-namespace livens {
+namespace livens::inline multibody_internal {
 
 /// A joint without rows, its bodies, points and scale checked. If `second` is the world the roles of the two
 /// are exchanged, in `frame` too: reactions are those on the body. Its axes are turned round then, so that
@@ -37,7 +37,7 @@ void hold_perpendicular(Joint& joint, const Vector3& a, const Vector3& b, const 
 
 // Of frames with normalised axes:
 
-/// Adds two rows: the second's axis stays parallel to the first's, which close_start() does not take the
+/// Adds two rows: the second's axis stays parallel to the first's, which consistent_start() does not take the
 /// wrong way round.
 void hold_axis(Joint& joint, const JointFrame& frame);
 /// Adds the row of the turn about an axis that is held already.
@@ -62,4 +62,4 @@ void hold_on_line(Joint& joint, const Slide& slide, double scale);
 NamedCoordinate angle_coordinate(const Joint& joint, const JointFrame& frame);
 NamedCoordinate displacement_coordinate(const Slide& slide);
 
-}   // namespace livens
+}   // namespace livens::inline multibody_internal

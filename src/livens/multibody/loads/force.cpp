@@ -5,8 +5,8 @@
 
 namespace livens {
 
-Load uniform_load(const std::string& name, const char* type, int body, const Vector4& w,
-                  const TimeVector& value, Frame frame, const char* unit)
+Load multibody_internal::uniform_load(const std::string& name, const char* type, int body, const Vector4& w,
+                                      const TimeVector& value, Frame frame, const char* unit)
 {
     Load load = start_load(name, type, {body, world});
     set_load_value(load, value);

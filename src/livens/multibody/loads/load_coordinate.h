@@ -8,7 +8,7 @@
 #include "livens/multibody/joints.h"
 #include "livens/multibody/loads.h"
 
-namespace livens {
+namespace livens::inline multibody_internal {
 
 /// A generalised force Q, N or N m, and its slopes.
 struct LawValue {
@@ -61,4 +61,4 @@ private:
     std::size_t n_ = 1;   ///< of bodies
 };
 
-}   // namespace livens
+}   // namespace livens::inline multibody_internal

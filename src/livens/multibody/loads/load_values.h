@@ -6,7 +6,7 @@
 
 #include "livens/multibody/loads.h"
 
-namespace livens {
+namespace livens::inline multibody_internal {
 
 /// A load without functions, its bodies checked.
 Load start_load(const std::string& name, const char* type, const std::array<int, 2>& bodies);
@@ -45,4 +45,4 @@ inline void add_outer(Matrix<12, 12>& tangent, const Matrix34& a, const Matrix34
         for (int i = 0; i < 12; ++i) tangent(i, j) += a.a[i] * b.a[j];
 }
 
-}   // namespace livens
+}   // namespace livens::inline multibody_internal

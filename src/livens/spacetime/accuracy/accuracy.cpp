@@ -13,13 +13,13 @@
 #include "livens/dynamics/start/prepared.h"
 #include "livens/multibody/body.h"
 #include "livens/spacetime/accuracy/measured_growth.h"
-#include "livens/spacetime/accuracy/second.h"
+#include "livens/spacetime/accuracy/reference_solution.h"
 #include "livens/spacetime/accuracy/until_accurate.h"
 #include "livens/spacetime/march/window_notes.h"
 #include "livens/spacetime/march/windows.h"
 #include "livens/spacetime/nodal/window.h"
 
-namespace livens {
+namespace livens::inline spacetime_internal {
 
 namespace {
 
@@ -82,7 +82,7 @@ std::vector<double> samples_of(const Model& model, const Span& span)
 struct Try {
     bool is_broken_off = false;   // the error became hopeless
     bool fits_badly = false;      // the degree is too high for the stops; nothing else counts then
-    std::optional<Pace> pace{};   // what was learnt of lengths
+    std::optional<StepSizeController> controller{};   // what was learnt of lengths
 };
 
 /// What shorter elements brought.
@@ -109,9 +109,9 @@ struct DegreeSearch {
 class ToAccuracy final : public RepeatedMarch {
 public:
     ToAccuracy(const Model& model, const Problem& problem, const Ends& ends, const Span& span,
-               const Method& method, const SolveOptions& options, const Doubt& doubt)
+               const Method& method, const SolveOptions& options, const StopPredicate& is_enough)
         : model_(model), problem_(problem), span_(span),
-          options_(with_tolerance_for(span.accuracy, 1, options)), doubt_(doubt), ends_(ends),
+          options_(with_tolerance_for(span.accuracy, 1, options)), is_enough_(is_enough), ends_(ends),
           tables_(model, ends_.independent, false, problem.prepared->pattern(model)),
           stops_(stops_of(model, span)), method_(method), search_{degree_of(method) == 0},
           tolerance_(first_share * span.accuracy),
@@ -135,7 +135,7 @@ public:
     {
         SolveReport& report = solution.report;
         if (last_.fits_badly) {
-            degree_of(method_) = fitting_degree(*last_.pace);
+            degree_of(method_) = fitting_degree(*last_.controller);
             search_.is_free = false;
             return AfterTry::uncounted;
         }
@@ -181,8 +181,8 @@ private:
         }
         if (!is_good) tolerance_ = std::max(finest, tolerance_);   // good once more has to be on another mesh
         // a degree that was too high for the stops may not be too high for shorter elements
-        if (!search_.is_free && search_.highest > 0) degree_of(method_) = fitting_degree(*last_.pace);
-        length_ = std::min(length_, last_.pace->mean_length(degree_of(method_), tolerance_));
+        if (!search_.is_free && search_.highest > 0) degree_of(method_) = fitting_degree(*last_.controller);
+        length_ = std::min(length_, last_.controller->mean_length(degree_of(method_), tolerance_));
     }
 
     Solution march(Try& one) const
@@ -192,23 +192,23 @@ private:
         TimeMesh mesh{{span_.start}};
         NodalWindow window(tables_, mesh, ends_, rule_of(method_));
         if (!options_.look_at_laws) window.ignore_laws();
-        Second second(model_, problem_, method_, options_, *window.monitor().so_far());
+        ReferenceSolution second(model_, problem_, method_, options_, *window.monitor().so_far());
         const ElementRule rule = rule_of(method_);
-        Pace pace(rule.points, rule.degree, tolerance_, length_, stops_);
-        pace.sample_at(samples_of(model_, span_), span_.accuracy);
+        StepSizeController controller(rule.points, rule.degree, tolerance_, length_, stops_);
+        controller.sample_at(samples_of(model_, span_), span_.accuracy);
         WindowOptions w;
         w.tolerance = options_.tolerance;
         w.by_newton = options_.by_newton;
         w.max_iterations = options_.max_iterations;
         w.progress = options_.progress;
         w.length_of_model = model_.length();
-        w.pace = &pace;
+        w.controller = &controller;
         w.locking = [this](const State& first, const State& last) { return of_locking(model_, first, last); };
         w.ends_at_bends = options_.end_at_bends && model_.has_pieces();
         w.goes_on = [&] {
             const int n = mesh.n_elements();
             if (search_.is_free && n == looked_at) {
-                one.fits_badly = fitting_degree(pace) < degree_of(method_);
+                one.fits_badly = fitting_degree(controller) < degree_of(method_);
                 if (one.fits_badly) return false;
             }
             if (n % 256 == 0 &&
@@ -217,9 +217,9 @@ private:
             const bool is_piece = n - second.reached() >= std::max(least_piece, second.reached() / 4);
             if (!is_piece && n != looked_at) return true;
             window.describe(report);
-            const Look look{*window.monitor().so_far(), pace.mean_length(),
-                            report.evaluations + second.evaluations()};
-            if (doubt_ && doubt_(look)) {
+            const MarchStatus look{*window.monitor().so_far(), controller.mean_length(),
+                                   report.evaluations + second.evaluations()};
+            if (is_enough_ && is_enough_(look)) {
                 report.status = SolveStatus::cancelled;
                 return false;
             }
@@ -229,20 +229,20 @@ private:
         };
         report.notes = ends_.notes;
         solve_windows(window, mesh, w, report);
-        one.pace = std::move(pace);
+        one.controller = std::move(controller);
         finish(solution, one, second, window.monitor().so_far()->n_elements());
         solution.unseen = window.monitor().take_unseen();
         solution.motion = window.take_motion();
         solution.method = method_;
         if (report.converged() && !one.is_broken_off) {
             add_lost_vibrations(model_, solution.motion, solution.estimate);
-            add_inside(model_, solution.motion, one.pace->left(), solution.estimate);
+            add_inside(model_, solution.motion, one.controller->left(), solution.estimate);
         }
         return solution;
     }
 
     /// The rest of the second solution, and what it says.
-    void finish(Solution& solution, Try& one, Second& second, int n) const
+    void finish(Solution& solution, Try& one, ReferenceSolution& second, int n) const
     {
         SolveReport& report = solution.report;
         const SolveReport& of_second = second.report();
@@ -272,7 +272,7 @@ private:
         return false;
     }
 
-    bool is_hopeless(const Second& second) const
+    bool is_hopeless(const ReferenceSolution& second) const
     {
         return !(second.so_far().largest <= hopeless * span_.accuracy);
     }
@@ -289,11 +289,13 @@ private:
     bool may_be_chance() const { return is_fine() && so_far_.in_vain > far_off * span_.accuracy; }
 
     /// The highest whose elements are not much longer than the time between stops, by what was learnt.
-    int fitting_degree(const Pace& pace) const
+    int fitting_degree(const StepSizeController& controller) const
     {
         int degree = search_.highest;
-        if (!pace.tells_length() && !model_.load_breaks().empty()) return degree;   // calm before what comes
-        while (degree > lowest_degree && pace.mean_length(degree, tolerance_) > fit * pace.mean_stop())
+        if (!controller.tells_length() && !model_.load_breaks().empty())
+            return degree;   // calm before what comes
+        while (degree > lowest_degree &&
+               controller.mean_length(degree, tolerance_) > fit * controller.mean_stop())
             --degree;
         return degree;
     }
@@ -335,9 +337,9 @@ private:
     const Problem& problem_;
     const Span& span_;
     SolveOptions options_;
-    const Doubt& doubt_;
+    const StopPredicate& is_enough_;
     const Ends& ends_;
-    Tables tables_;
+    ModelTables tables_;
     std::vector<double> stops_;
     Method method_;
     DegreeSearch search_;
@@ -358,12 +360,12 @@ double time_of_motion(const Model& model, const State& state)
 }
 
 Solution solve_to_accuracy(const Model& model, const Problem& problem, const Ends& ends, const Span& span,
-                           const Method& method, const SolveOptions& options, const Doubt& doubt)
+                           const Method& method, const SolveOptions& options, const StopPredicate& is_enough)
 {
-    if (const auto* either = std::get_if<Auto>(&method))
-        return solve_to_accuracy(model, problem, ends, span, *either, options);
-    ToAccuracy march(model, problem, ends, span, method, options, doubt);
+    if (const auto* automatic = std::get_if<AutomaticFamily>(&method))
+        return solve_to_accuracy(model, problem, ends, span, *automatic, options);
+    ToAccuracy march(model, problem, ends, span, method, options, is_enough);
     return until_accurate(march, model, span.accuracy, span.end);
 }
 
-}   // namespace livens
+}   // namespace livens::inline spacetime_internal

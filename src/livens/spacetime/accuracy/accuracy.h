@@ -7,16 +7,16 @@
 #include "livens/spacetime/march/ends.h"
 #include "livens/spacetime/solve.h"
 
-namespace livens {
+namespace livens::inline spacetime_internal {
 
 /// A march on its way.
-struct Look {
+struct MarchStatus {
     const Motion& motion;   ///< so far
     double mean_length;     ///< of its elements, s
     long long evaluations;
 };
 /// True: the march ends there, with SolveStatus::cancelled.
-using Doubt = std::function<bool(const Look&)>;
+using StopPredicate = std::function<bool(const MarchStatus&)>;
 
 /// Times the time of the motion: a vibration so fast may be one that nobody asked for.
 inline constexpr double fast_vibration = 50;
@@ -30,10 +30,11 @@ double time_of_motion(const Model& model, const State& state);
 /// is chosen.
 /// `ends`: closed.
 Solution solve_to_accuracy(const Model& model, const Problem& problem, const Ends& ends, const Span& span,
-                           const Method& method, const SolveOptions& options, const Doubt& doubt = {});
+                           const Method& method, const SolveOptions& options,
+                           const StopPredicate& stops = {});
 
 /// The same by lobatto or radau; a note says why radau was taken, and of which body, spring or joint.
 Solution solve_to_accuracy(const Model& model, const Problem& problem, const Ends& ends, const Span& span,
-                           const Auto& either, const SolveOptions& options);
+                           const AutomaticFamily& automatic, const SolveOptions& options);
 
-}   // namespace livens
+}   // namespace livens::inline spacetime_internal

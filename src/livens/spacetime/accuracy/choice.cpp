@@ -9,7 +9,7 @@
 #include "livens/spacetime/march/ends.h"
 #include "livens/statics/frequencies.h"
 
-namespace livens {
+namespace livens::inline spacetime_internal {
 
 namespace {
 
@@ -26,11 +26,10 @@ constexpr double small_tangent = 15;
 class Choice {
 public:
     Choice(const Model& model, const Problem& problem, const Ends& ends, const Span& span,
-           const Auto& either, const SolveOptions& options)
+           const AutomaticFamily& automatic, const SolveOptions& options)
         : model_(model), problem_(problem), span_(span),
-          options_(options), lobatto_{either.degree, 1}, radau_{std::min(either.degree, highest_radau)},
-          ends_(ends),
-          start_(ends_.start), freedoms_(Tables(model, ends_.independent).freedoms()),
+          options_(options), lobatto_{automatic.degree, 1}, radau_{std::min(automatic.degree, highest_radau)},
+          ends_(ends), start_(ends_.start), freedoms_(ModelTables(model, ends_.independent).freedoms()),
           at_start_(highest_frequencies(model, start_)),
           length_(std::min(time_of_motion(model, start_), span.end - span.start))
     {}
@@ -39,7 +38,7 @@ public:
     {
         if (decays(at_start_, length_)) return by_radau({});
         Solution solution = solve_to_accuracy(model_, problem_, ends_, span_, lobatto_, options_,
-                                              [this](const Look& look) { return doubts(look); });
+                                              [this](const MarchStatus& look) { return doubts(look); });
         if (!why_.empty()) return by_radau(std::move(solution));
         if (solution.report.status == SolveStatus::cancelled || is_good(solution)) return solution;
         const Frequency& vibration = at_start_.fastest_vibration();
@@ -51,7 +50,7 @@ public:
 
 private:
     /// Whether lobatto is to be left.
-    bool doubts(const Look& look)
+    bool doubts(const MarchStatus& look)
     {
         const int n = look.motion.n_elements();
         const double length = std::min(look.mean_length, span_.end - span_.start);
@@ -62,7 +61,7 @@ private:
         const Span part{span_.start, look.motion.end(), span_.accuracy};
         const double tangents = std::max(1.0, freedoms_ * freedoms_ / (small_tangent * small_tangent));
         const double allowed = gain * static_cast<double>(look.evaluations) / tangents;
-        const auto spend = [&](const Look& other) {
+        const auto spend = [&](const MarchStatus& other) {
             return static_cast<double>(other.evaluations) > allowed;
         };
         const Solution trial = solve_to_accuracy(model_, problem_, ends_, part, radau_, options_, spend);
@@ -128,9 +127,9 @@ private:
 }   // namespace
 
 Solution solve_to_accuracy(const Model& model, const Problem& problem, const Ends& ends, const Span& span,
-                           const Auto& either, const SolveOptions& options)
+                           const AutomaticFamily& automatic, const SolveOptions& options)
 {
-    return Choice(model, problem, ends, span, either, options).run();
+    return Choice(model, problem, ends, span, automatic, options).run();
 }
 
-}   // namespace livens
+}   // namespace livens::inline spacetime_internal

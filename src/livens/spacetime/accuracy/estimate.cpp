@@ -17,7 +17,7 @@
 #include "livens/diagnostics/largest.h"
 #include "livens/solvers/patience.h"
 #include "livens/spacetime/accuracy/accuracy.h"
-#include "livens/spacetime/accuracy/second.h"
+#include "livens/spacetime/accuracy/reference_solution.h"
 #include "livens/spacetime/march/ends.h"
 #include "livens/spacetime/phases.h"
 #include "livens/spacetime/solve_mesh.h"
@@ -57,8 +57,8 @@ bool has_bend(const Motion& motion, const TimeMesh& mesh, double end)
 
 }   // namespace
 
-Second::Second(const Model& model, const Problem& problem, const Method& method, const SolveOptions& options,
-               const Motion& first)
+ReferenceSolution::ReferenceSolution(const Model& model, const Problem& problem, const Method& method,
+                                     const SolveOptions& options, const Motion& first)
     : model_(model), problem_(problem), method_(witness_of(method)), options_(options), first_(first),
       meter_(model, first), is_backwards_(problem.conditions.at_end == Known::state),
       is_lobatto_(std::holds_alternative<Lobatto>(method)), at_(is_backwards_ ? first.n_elements() : 0)
@@ -72,7 +72,7 @@ Second::Second(const Model& model, const Problem& problem, const Method& method,
         options_.max_iterations = SolveOptions{}.max_iterations;
 }
 
-bool Second::advance(int end)
+bool ReferenceSolution::advance(int end)
 {
     const int first = std::min(at_, end), last = std::max(at_, end);
     if (is_lobatto_)
@@ -123,7 +123,8 @@ std::vector<int> event_ends(const Model& model, const Motion& motion)
 }
 
 /// Adds what grows from an event on: errors of place, and of rates that go on.
-void add_from(int event, const Miss& off, const Model& model, const Motion& motion, ErrorEstimate& found)
+void add_from(int event, const ActivationMismatch& off, const Model& model, const Motion& motion,
+              ErrorEstimate& found)
 {
     const auto n = static_cast<std::size_t>(found.n_bodies);
     for (std::size_t i = static_cast<std::size_t>(event) * n; i < found.position.size(); ++i) {
@@ -137,14 +138,14 @@ void add_from(int event, const Miss& off, const Model& model, const Motion& moti
 
 }   // namespace
 
-void add_events(const Model& model, const Motion& motion, ErrorEstimate& found)
+void spacetime_internal::add_events(const Model& model, const Motion& motion, ErrorEstimate& found)
 {
     if (!model.has_events() || found.empty()) return;
     const std::vector<double> jumps = velocity_jumps(model, motion);
     const double root = motion.damps() ? std::sqrt(2 * std::max(balance(model, motion).energy_loss, 0.0)) : 0;
     int before = 0;
     for (const int event : event_ends(model, motion)) {
-        Miss off = miss_at_event(model, motion, event);
+        ActivationMismatch off = activation_mismatch(model, motion, event);
         double slowest = std::numeric_limits<double>::infinity(), shift = 0, turn = 0;
         for (const Vibration& one : vibrations_beside(model, motion, event)) {
             if (one.rate * motion.mesh.length(event - 1) < motion.X.degree || one.decay > one.rate) continue;
@@ -168,7 +169,7 @@ void add_events(const Model& model, const Motion& motion, ErrorEstimate& found)
     }
 }
 
-void add_lost_vibrations(const Model& model, const Motion& motion, ErrorEstimate& found)
+void spacetime_internal::add_lost_vibrations(const Model& model, const Motion& motion, ErrorEstimate& found)
 {
     if (!motion.damps() || found.empty()) return;
     double longest = 0;
@@ -191,8 +192,8 @@ void add_lost_vibrations(const Model& model, const Motion& motion, ErrorEstimate
     found.find_largest(motion.mesh);
 }
 
-void add_inside(const Model& model, const Motion& motion, const std::vector<double>& instants,
-                ErrorEstimate& found)
+void spacetime_internal::add_inside(const Model& model, const Motion& motion,
+                                    const std::vector<double>& instants, ErrorEstimate& found)
 {
     if (instants.empty() || found.empty()) return;
     const std::vector<double> jumps = velocity_jumps(model, motion);
@@ -234,7 +235,7 @@ void measure_error(const Model& model, const Problem& problem, const Method& met
     const Conditions& given = problem.conditions;
     const bool is_march = given.at_end == Known::state || given.at_start == Known::state;
     const int piece = is_march ? std::min(n, elements_at_once) : n;
-    Second second(model, problem, method, options, solution.motion);
+    ReferenceSolution second(model, problem, method, options, solution.motion);
     for (int done = piece;; done = std::min(done + piece, n)) {
         const bool is_good = second.advance(given.at_end == Known::state ? n - done : done);
         solution.estimate_seconds = second.seconds();

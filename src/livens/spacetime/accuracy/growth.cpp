@@ -10,7 +10,7 @@
 #include "livens/diagnostics/largest.h"
 #include "livens/spacetime/accuracy/neighbour.h"
 #include "livens/spacetime/accuracy/perturbations.h"
-#include "livens/spacetime/accuracy/second.h"
+#include "livens/spacetime/accuracy/reference_solution.h"
 
 namespace livens {
 
@@ -357,7 +357,7 @@ Growth growth(const Model& model, const Problem& stated, const Method& method, c
 }
 
 /// What is rounded on the way may grow by more than what is rounded at the start, too.
-bool is_rounding_open(const Growth& grown, double told, double tolerance)
+bool spacetime_internal::is_rounding_open(const Growth& grown, double told, double tolerance)
 {
     return is_doubtful(grown, told) || rounded_by(tolerance) * grown.later > told;
 }

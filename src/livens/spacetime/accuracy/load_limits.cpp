@@ -8,7 +8,7 @@
 #include "livens/base/text.h"
 #include "livens/spacetime/accuracy/load_limits.h"
 
-namespace livens {
+namespace livens::inline spacetime_internal {
 
 namespace {
 
@@ -65,4 +65,4 @@ std::string turned_too_far(const Model& model, const Motion& motion, double most
     return first;
 }
 
-}   // namespace livens
+}   // namespace livens::inline spacetime_internal

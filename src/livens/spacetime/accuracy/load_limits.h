@@ -7,10 +7,10 @@
 #include "livens/multibody/model.h"
 #include "livens/multibody/motion.h"
 
-namespace livens {
+namespace livens::inline spacetime_internal {
 
 /// The first load by a rotation vector (a bushing) that turns further than `most` (rad) or through half a
 /// turn, where the vector changes its sign and the load jumps: which, when and why. Empty: none does.
 std::string turned_too_far(const Model& model, const Motion& motion, double most);
 
-}   // namespace livens
+}   // namespace livens::inline spacetime_internal

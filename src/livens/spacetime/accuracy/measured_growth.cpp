@@ -4,9 +4,9 @@
 #include <algorithm>
 
 #include "livens/diagnostics/largest.h"
-#include "livens/spacetime/accuracy/second.h"
+#include "livens/spacetime/accuracy/reference_solution.h"
 
-namespace livens {
+namespace livens::inline spacetime_internal {
 
 namespace {
 
@@ -108,4 +108,4 @@ double MeasuredGrowth::largest() const
     return growth_.rounding.empty() ? largest : std::min(largest, rounding);
 }
 
-}   // namespace livens
+}   // namespace livens::inline spacetime_internal

@@ -6,7 +6,7 @@
 
 #include "livens/spacetime/solve.h"
 
-namespace livens {
+namespace livens::inline spacetime_internal {
 
 /// That of the motion, whatever the elements.
 class MeasuredGrowth {
@@ -33,4 +33,4 @@ private:
     double rounding_ = 0, least_rounding_ = 0;
 };
 
-}   // namespace livens
+}   // namespace livens::inline spacetime_internal

@@ -10,7 +10,7 @@
 #include "livens/multibody/body.h"
 #include "livens/spacetime/march/ends.h"
 
-namespace livens {
+namespace livens::inline spacetime_internal {
 
 namespace {
 
@@ -172,4 +172,4 @@ std::vector<std::string> unmet(const Model& model, const Ends& ends, const Motio
     return reasons;
 }
 
-}   // namespace livens
+}   // namespace livens::inline spacetime_internal

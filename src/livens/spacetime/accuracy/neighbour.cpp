@@ -35,7 +35,7 @@ State rigid(const Model& model, State state)
 /// A window that goes on from piece to piece: what is made once is made once, and its guesses know the past.
 struct Neighbour::March {
     Ends ends;
-    Tables tables;
+    ModelTables tables;
     NodalWindow window;
 
     March(const Model& model, Prepared& prepared, const Method& method, const Ends& closed,
@@ -68,7 +68,7 @@ bool Neighbour::march(const State& start, const Motion& near, double left)
     w.progress = options_.progress;
     w.length_of_model = model_.length();
     w.may_divide = options_.divide;
-    w.trust = {acceptable_velocity_jump, true, true};
+    w.criteria = {acceptable_velocity_jump, true, true};
     w.ends_at_bends = !mesh_.bends.empty();
     SolveReport report;
     solve_windows(march_->window, mesh_, w, report);

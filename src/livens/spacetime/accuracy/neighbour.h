@@ -7,7 +7,7 @@
 #include "livens/spacetime/march/ends.h"
 #include "livens/spacetime/solve.h"
 
-namespace livens {
+namespace livens::inline spacetime_internal {
 
 class Neighbour {
 public:
@@ -42,4 +42,4 @@ private:
     Motion motion_;
 };
 
-}   // namespace livens
+}   // namespace livens::inline spacetime_internal

@@ -10,7 +10,7 @@
 #include "livens/dynamics/rows/twist.h"
 #include "livens/multibody/body.h"
 
-namespace livens {
+namespace livens::inline spacetime_internal {
 
 namespace {
 
@@ -260,4 +260,4 @@ double Difference::of_bodies(const Model& model, const State& one, const State& 
     return size;
 }
 
-}   // namespace livens
+}   // namespace livens::inline spacetime_internal

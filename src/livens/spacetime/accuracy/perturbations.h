@@ -11,7 +11,7 @@
 #include "livens/multibody/model.h"
 #include "livens/multibody/motion.h"
 
-namespace livens {
+namespace livens::inline spacetime_internal {
 
 /// Perturbations that are carried along.
 constexpr int n_perturbations = 2;
@@ -83,4 +83,4 @@ struct Difference {
     static double of_bodies(const Model& model, const State& one, const State& other, double rate);
 };
 
-}   // namespace livens
+}   // namespace livens::inline spacetime_internal

@@ -12,7 +12,7 @@
 #include "livens/diagnostics/diagnostics.h"
 #include "livens/statics/turning_vibrations.h"
 
-namespace livens {
+namespace livens::inline spacetime_internal {
 
 namespace {
 
@@ -179,4 +179,4 @@ std::string EnergyWatch::look(const Motion& so_far, double until)
     return of_turning_springs(model_, so_far, degree_, n, until);
 }
 
-}   // namespace livens
+}   // namespace livens::inline spacetime_internal

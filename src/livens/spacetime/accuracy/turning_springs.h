@@ -9,7 +9,7 @@
 #include "livens/multibody/model.h"
 #include "livens/multibody/motion.h"
 
-namespace livens {
+namespace livens::inline spacetime_internal {
 
 /// By what share a vibration grows in an element of lobatto of this degree in which it goes on by `phase`
 /// (rad, h omega) and turns by `turn` (rad); 0: by none.
@@ -50,4 +50,4 @@ private:
     bool is_started_ = false;
 };
 
-}   // namespace livens
+}   // namespace livens::inline spacetime_internal

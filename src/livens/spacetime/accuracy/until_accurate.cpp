@@ -4,7 +4,7 @@
 
 #include "livens/base/text.h"
 
-namespace livens {
+namespace livens::inline spacetime_internal {
 
 namespace {
 
@@ -48,4 +48,4 @@ Solution until_accurate(RepeatedMarch& march, const Model& model, double accurac
     }
 }
 
-}   // namespace livens
+}   // namespace livens::inline spacetime_internal

@@ -6,7 +6,7 @@
 
 #include "livens/spacetime/solve.h"
 
-namespace livens {
+namespace livens::inline spacetime_internal {
 
 /// What follows a try.
 enum class AfterTry {
@@ -33,4 +33,4 @@ public:
 /// how far it is as accurate. Up to `until`, s.
 Solution until_accurate(RepeatedMarch& march, const Model& model, double accuracy, double until);
 
-}   // namespace livens
+}   // namespace livens::inline spacetime_internal

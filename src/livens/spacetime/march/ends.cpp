@@ -6,7 +6,7 @@
 #include "livens/dynamics/start/prepared.h"
 #include "livens/dynamics/start/singular.h"
 
-namespace livens {
+namespace livens::inline spacetime_internal {
 
 namespace {
 
@@ -19,11 +19,11 @@ std::optional<Complaint> close_end(const Model& model, State& state, Known known
     if (known == Known::positions) state.V.assign(guessed.size(), Matrix34{});
     // positions alone need not move as drives do
     const bool is_still = known == Known::positions && model.has_drives();
-    TriedStart tried = is_still              ? try_close_start(frozen(model, {state.t}), state, policy)
+    TriedStart tried = is_still              ? try_consistent_start(frozen(model, {state.t}), state, policy)
                        : prepared != nullptr ? prepared->try_close(model, state, policy)
-                                             : try_close_start(model, state, policy);
+                                             : try_consistent_start(model, state, policy);
     if (!tried.closed) return std::move(tried.why);
-    ClosedStart& closed = *tried.closed;
+    ConsistentStart& closed = *tried.closed;
     if (known == Known::state)
         if (std::optional<Complaint> why = why_singular(model, closed)) return why;
     state = std::move(closed.start);
@@ -67,4 +67,4 @@ Ends close_ends(const Model& model, const Problem& problem, double start, double
     return std::move(*tried.ends);
 }
 
-}   // namespace livens
+}   // namespace livens::inline spacetime_internal

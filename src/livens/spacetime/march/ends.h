@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "livens/diagnostics/estimate.h"
-#include "livens/dynamics/start/closing.h"
+#include "livens/dynamics/start/consistent_start.h"
 #include "livens/spacetime/problem.h"
 
-namespace livens {
+namespace livens::inline spacetime_internal {
 
 /// States at both ends that fulfil the joints where they are known.
 struct Ends {
@@ -35,7 +35,7 @@ struct TriedEnds {
 TriedEnds try_close_ends(const Model& model, const Problem& problem, double start, double end,
                          StartPolicy policy);
 
-/// Throws InputError, see close_start().
+/// Throws InputError, see consistent_start().
 Ends close_ends(const Model& model, const Problem& problem, double start, double end, StartPolicy policy);
 
 /// What was stated at the ends of a whole motion and is not there: positions to 1e-8 (lengths of the model,
@@ -46,4 +46,4 @@ Ends close_ends(const Model& model, const Problem& problem, double start, double
 std::vector<std::string> unmet(const Model& model, const Ends& ends, const Motion& motion,
                                const ErrorEstimate& estimate);
 
-}   // namespace livens
+}   // namespace livens::inline spacetime_internal

@@ -14,7 +14,7 @@
 #include "livens/diagnostics/sample.h"
 #include "livens/solvers/patience.h"
 
-namespace livens {
+namespace livens::inline spacetime_internal {
 
 namespace {
 
@@ -51,12 +51,12 @@ bool may_help(const NewtonReport& outcome, const Window& window)
 
 March::March(Window& window, TimeMesh& mesh, const WindowOptions& options, SolveReport& report)
     : window_(window), mesh_(mesh), options_(options), report_(report), start_(mesh.start()),
-      end_(options.pace != nullptr ? options.pace->end() : mesh.end()), bends_(end_ - start_)
+      end_(options.controller != nullptr ? options.controller->end() : mesh.end()), events_(end_ - start_)
 {
-    bends_.expect(std::exchange(mesh.bends, {}));
+    events_.expect(std::exchange(mesh.bends, {}));
     if (options.direction < 0) std::swap(start_, end_);
-    if (options.pace != nullptr)
-        partition_ = std::make_unique<FoundLengths>(mesh, *options.pace, bends_);
+    if (options.controller != nullptr)
+        partition_ = std::make_unique<AdaptiveElements>(mesh, *options.controller, events_);
     else
         partition_ = std::make_unique<GivenMesh>(mesh, window.monitor(), options);
     time_ = start_;
@@ -82,7 +82,7 @@ void March::run()
         fail(SolveStatus::cancelled, of_stop(time_));
     }
     window_.describe(report_);
-    counts_.tolerance = options_.pace != nullptr ? 1 : options_.tolerance;
+    counts_.tolerance = options_.controller != nullptr ? 1 : options_.tolerance;
     add_notes(report_, counts_);
 }
 
@@ -95,7 +95,7 @@ bool March::advance(const Elements& of)
     const bool is_solved = outcome.status == SolveStatus::converged;
     if (!is_solved && of.size() > 1) return split(of, outcome);
     if (is_solved && ends_at_bend(of)) return true;
-    Closed closed{0, true, unseen};
+    AcceptedElements closed{0, true, unseen};
     if (is_solved) {
         if (attempt_.is_march) compare(of);
         closed = close(of);
@@ -124,7 +124,7 @@ NewtonReport March::attempt(const Elements& of)
         report_.factorisations += outcome.factorisations;
     };
     const bool soon =
-        options_.pace != nullptr && troubles_.shortened < most_shortened && is_tangent_too_costly(of);
+        options_.controller != nullptr && troubles_.shortened < most_shortened && is_tangent_too_costly(of);
     const bool is_solved = !options_.by_newton && window_.monitor().solve(newton_options_, soon, outcome);
     const bool is_left = !is_solved && !options_.by_newton && is_tangent_too_costly(of);
     if (is_solved) iterations = outcome.iterations;
@@ -153,7 +153,7 @@ NewtonReport March::attempt(const Elements& of)
 
 bool March::is_tangent_too_costly(const Elements& of) const
 {
-    const bool is_free = options_.pace != nullptr;
+    const bool is_free = options_.controller != nullptr;
     if (!partition_->may_shorten(of)) return false;
     if (is_free && mesh_.length(of.first) <= short_element * std::abs(end_ - start_)) return false;
     const double most = is_free && troubles_.shortened < most_shortened ? costly : too_costly;
@@ -164,12 +164,12 @@ bool March::ends_at_bend(const Elements& of)
 {
     if (!options_.ends_at_bends || options_.direction < 0 || of.size() > 1) return false;
     const double start = mesh_.ends[of.first], end = mesh_.ends[of.last];
-    bends_.begin(end);
-    const bool is_found = bends_.is_found(end);
-    const double wanted = bends_.end(start, partition_->wanted_end(of, is_found));
+    events_.begin(end);
+    const bool is_found = events_.is_found(end);
+    const double wanted = events_.end(start, partition_->wanted_end(of, is_found));
     const bool is_long = wanted < end && !(is_found && of.last < mesh_.n_elements());
-    if (!is_long && !bends_.moves(window_, start, end)) return false;
-    partition_->end_at(of, is_long ? wanted : bends_.found(), is_found);
+    if (!is_long && !events_.moves(window_, start, end)) return false;
+    partition_->end_at(of, is_long ? wanted : events_.found(), is_found);
     return true;
 }
 
@@ -184,16 +184,16 @@ void March::compare(const Elements& of)
     }
 }
 
-Closed March::close(const Elements& of)
+AcceptedElements March::close(const Elements& of)
 {
-    Trust trust = partition_->trust(of);
-    const Closed closed = window_.close(trust, report_);
+    AcceptanceCriteria criteria = partition_->criteria(of);
+    const AcceptedElements closed = window_.close(criteria, report_);
     if (closed.loss == RankLoss::none || closed.n_elements > 0 || of.size() > 1) return closed;
     const bool is_end = closed.loss == RankLoss::at_end, can_move = partition_->may_move_end(of);
     if (is_end && !can_move) troubles_.singular_end = mesh_.ends[far(of)];
     if ((is_end ? can_move : partition_->may_shorten(of)) && troubles_.avoided < most_shifts) return closed;
-    trust.full_rank = false;   // nothing can be done about it, or that did not help
-    return window_.close(trust, report_);
+    criteria.full_rank = false;   // nothing can be done about it, or that did not help
+    return window_.close(criteria, report_);
 }
 
 RankLoss March::loss_of_failed(const Elements& of)
@@ -211,7 +211,7 @@ void March::move_off(const Elements& of, RankLoss loss)
     partition_->avoid(of, loss);
 }
 
-Elements March::take(Elements of, const Closed& closed, const NewtonReport& outcome)
+Elements March::take(Elements of, const AcceptedElements& closed, const NewtonReport& outcome)
 {
     if (closed.n_elements == 0) return of;
     report_.iterations.push_back(outcome.iterations);
@@ -221,7 +221,7 @@ Elements March::take(Elements of, const Closed& closed, const NewtonReport& outc
     troubles_.avoided = 0;
     partition_->accepted(of, closed, outcome.iterations);
     const double end = mesh_.ends[far(of)];
-    if (options_.ends_at_bends && of.size() == 1 && bends_.accepted(mesh_.ends[of.first], end)) {
+    if (options_.ends_at_bends && of.size() == 1 && events_.accepted(mesh_.ends[of.first], end)) {
         ++counts_.bends;
         mesh_.bends.push_back(end);
     }
@@ -243,7 +243,7 @@ bool March::goes_on(const NewtonReport& outcome)
                         options_.progress({done_, n_elements(), time_, outcome.iterations, outcome.residual});
     if (!is_let && time_ != end_) return fail(SolveStatus::cancelled, of_stop(time_));
     if (options_.goes_on && !options_.goes_on()) return false;
-    const bool is_stuck = options_.pace != nullptr && options_.ends_at_bends && bends_.is_stuck();
+    const bool is_stuck = options_.controller != nullptr && options_.ends_at_bends && events_.is_stuck();
     const std::string load = is_stuck ? window_.monitor().jumping_load() : "";
     return load.empty() || fail(SolveStatus::not_converged, of_sticking(load, time_));
 }
@@ -259,7 +259,7 @@ bool March::split(const Elements& of, const NewtonReport& outcome)
     return true;
 }
 
-bool March::refuse(const Elements& of, const Closed& closed, const NewtonReport& outcome)
+bool March::refuse(const Elements& of, const AcceptedElements& closed, const NewtonReport& outcome)
 {
     if (of.size() > 1) {   // the near one has not seen the motion: it is solved alone
         partition_->split(of, options_.direction > 0 ? of.first + 1 : of.last - 1);
@@ -287,8 +287,8 @@ bool March::stop(const Elements& of)
         return fail(SolveStatus::not_converged, of_singular_end(troubles_.singular_end));
     std::string message = locking_in_words();
     if (message.empty())
-        message = options_.pace != nullptr ? of_vanishing(time_, troubles_.load)
-                                           : of_lie(window_at(mesh_, of.first, of.last));
+        message = options_.controller != nullptr ? of_vanishing(time_, troubles_.load)
+                                                 : of_spurious_root(window_at(mesh_, of.first, of.last));
     return fail(SolveStatus::not_converged, message);
 }
 
@@ -313,7 +313,7 @@ bool March::fail(SolveStatus status, const std::string& message)
 
 bool March::is_near_singular_end() const
 {
-    return options_.pace != nullptr &&
+    return options_.controller != nullptr &&
            std::abs(time_ - troubles_.singular_end) < near_singular * std::abs(end_ - start_);
 }
 
@@ -328,7 +328,7 @@ std::string March::locking_in_words() const
 
 int March::n_elements() const
 {
-    if (options_.pace == nullptr) return mesh_.n_elements();
+    if (options_.controller == nullptr) return mesh_.n_elements();
     const double share = (time_ - start_) / (end_ - start_);
     return share > 0 ? static_cast<int>(std::lround(std::min(done_ / share, 1e9))) : 0;
 }
@@ -338,4 +338,4 @@ void solve_windows(Window& window, TimeMesh& mesh, const WindowOptions& options,
     March(window, mesh, options, report).run();
 }
 
-}   // namespace livens
+}   // namespace livens::inline spacetime_internal

@@ -5,15 +5,15 @@
 #include <limits>
 #include <memory>
 
-#include "livens/spacetime/march/ends_at_bends.h"
+#include "livens/spacetime/march/event_locator.h"
 #include "livens/spacetime/march/partition.h"
 #include "livens/spacetime/march/window_notes.h"
 #include "livens/spacetime/march/windows.h"
 
-namespace livens {
+namespace livens::inline spacetime_internal {
 
 /// Counted on the way.
-struct Troubles {
+struct RetryCounts {
     int avoided = 0;          ///< nodes too near to a singular position, since an element was closed
     int shortened = 0;        ///< elements, since one was solved without a tangent
     int contradictions = 0;   ///< elements at whose ends rows contradict each other
@@ -48,18 +48,18 @@ private:
     void compare(const Elements& of);
     /// Closes the open window up to a node too near to a singular position; beyond that where nothing can be
     /// done about it, or where that did not help.
-    Closed close(const Elements& of);
+    AcceptedElements close(const Elements& of);
     /// Of an element that was not solved, whose end is near a singular position.
     RankLoss loss_of_failed(const Elements& of);
     void move_off(const Elements& of, RankLoss loss);
     /// Counts what was closed; what is left of the window.
-    Elements take(Elements of, const Closed& closed, const NewtonReport& outcome);
+    Elements take(Elements of, const AcceptedElements& closed, const NewtonReport& outcome);
     /// After a window that was closed: whether all who are asked let the march go on.
     bool goes_on(const NewtonReport& outcome);
     /// A window that failed as a whole.
     bool split(const Elements& of, const NewtonReport& outcome);
     /// Elements that were not accepted, from the near one on.
-    bool refuse(const Elements& of, const Closed& closed, const NewtonReport& outcome);
+    bool refuse(const Elements& of, const AcceptedElements& closed, const NewtonReport& outcome);
 
     // Ends of the march, all false.
     /// Elements have vanished, or an element has not seen the motion and shorter ones do not help.
@@ -81,12 +81,12 @@ private:
     NewtonOptions newton_options_;
     WindowCounts counts_;
     double start_, end_;   // in the direction of the march
-    EndsAtBends bends_;
+    EventLocator events_;
     std::unique_ptr<Partition> partition_;
     Attempt attempt_;
-    Troubles troubles_;
+    RetryCounts troubles_;
     int done_ = 0;      // elements
     double time_ = 0;   // up to which they are solved
 };
 
-}   // namespace livens
+}   // namespace livens::inline spacetime_internal

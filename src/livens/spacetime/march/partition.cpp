@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-namespace livens {
+namespace livens::inline spacetime_internal {
 
 namespace {
 
@@ -93,44 +93,44 @@ bool GivenMesh::reject(const Elements& of, double, bool can_help, SolveReport& r
 
 void GivenMesh::split(const Elements&, int middle) { far_ends_.push_back(mesh_.ends[middle]); }
 
-std::optional<Elements> FoundLengths::next(double t)
+std::optional<Elements> AdaptiveElements::next(double t)
 {
-    if (t >= pace_.end() || !pace_.ascends()) return {};
-    wanted_end_ = pace_.next_end(t);
-    mesh_.ends.push_back(bends_.end(t, wanted_end_));
+    if (t >= controller_.end() || !controller_.ascends()) return {};
+    wanted_end_ = controller_.next_end(t);
+    mesh_.ends.push_back(events_.end(t, wanted_end_));
     return Elements{mesh_.n_elements() - 1, mesh_.n_elements()};
 }
 
-Trust FoundLengths::trust(const Elements& of) const
+AcceptanceCriteria AdaptiveElements::criteria(const Elements& of) const
 {
-    return {pace_.largest_jump(mesh_.ends[of.first], mesh_.ends[of.last]), true, true};
+    return {controller_.largest_jump(mesh_.ends[of.first], mesh_.ends[of.last]), true, true};
 }
 
-bool FoundLengths::may_move_end(const Elements& of) const
+bool AdaptiveElements::may_move_end(const Elements& of) const
 {
     const double end = mesh_.ends[of.last];
-    return !pace_.is_stop(end) || pace_.may_leave(end);
+    return !controller_.is_stop(end) || controller_.may_leave(end);
 }
 
-void FoundLengths::avoid(const Elements& of, RankLoss loss)
+void AdaptiveElements::avoid(const Elements& of, RankLoss loss)
 {
-    if (loss == RankLoss::at_end) pace_.leave(mesh_.ends[of.last]);
-    pace_.shorten((1 - shift) * mesh_.length(of.first));
+    if (loss == RankLoss::at_end) controller_.leave(mesh_.ends[of.last]);
+    controller_.shorten((1 - shift) * mesh_.length(of.first));
     mesh_.ends.pop_back();
 }
 
-bool FoundLengths::reject(const Elements& of, double velocity_jump, bool can_help, SolveReport& report)
+bool AdaptiveElements::reject(const Elements& of, double velocity_jump, bool can_help, SolveReport& report)
 {
-    ++report.refused;
-    const double most = trust(of).velocity_jump;
-    if (!can_help || !pace_.refused(mesh_.length(of.first), velocity_jump, most)) return false;
+    ++report.rejected;
+    const double most = criteria(of).velocity_jump;
+    if (!can_help || !controller_.rejected(mesh_.length(of.first), velocity_jump, most)) return false;
     mesh_.ends.pop_back();
     return true;
 }
 
-void FoundLengths::accepted(const Elements& of, const Closed& closed, int iterations)
+void AdaptiveElements::accepted(const Elements& of, const AcceptedElements& closed, int iterations)
 {
-    pace_.accepted(mesh_.length(of.first), closed.velocity_jump, iterations);
+    controller_.accepted(mesh_.length(of.first), closed.velocity_jump, iterations);
 }
 
 std::vector<int> divide(int n_elements, int length, int shortest)
@@ -143,4 +143,4 @@ std::vector<int> divide(int n_elements, int length, int shortest)
     return ends;
 }
 
-}   // namespace livens
+}   // namespace livens::inline spacetime_internal

@@ -6,12 +6,12 @@
 #include <vector>
 
 #include "livens/solvers/report.h"
-#include "livens/spacetime/march/ends_at_bends.h"
-#include "livens/spacetime/march/pace.h"
+#include "livens/spacetime/march/event_locator.h"
+#include "livens/spacetime/march/step_size_controller.h"
 #include "livens/spacetime/march/window.h"
 #include "livens/time/time_mesh.h"
 
-namespace livens {
+namespace livens::inline spacetime_internal {
 
 /// Elements first..last - 1 of a mesh, solved together.
 struct Elements {
@@ -27,7 +27,7 @@ public:
 
     /// The next window from t on. None: t is the end of time, or elements have vanished.
     virtual std::optional<Elements> next(double t) = 0;
-    virtual Trust trust(const Elements&) const = 0;
+    virtual AcceptanceCriteria criteria(const Elements&) const = 0;
     /// Whether the far end may be elsewhere.
     virtual bool may_move_end(const Elements&) const = 0;
     /// Whether an element may be replaced by shorter ones.
@@ -43,7 +43,7 @@ public:
     virtual bool reject(const Elements&, double velocity_jump, bool can_help, SolveReport&) = 0;
     /// A window is solved in two, the first of which ends before element `middle`.
     virtual void split(const Elements&, int middle) = 0;
-    virtual void accepted(const Elements&, const Closed&, int iterations) = 0;
+    virtual void accepted(const Elements&, const AcceptedElements&, int iterations) = 0;
 };
 
 /// How windows of a mesh are divided.
@@ -53,7 +53,7 @@ struct DivisionOptions {
     int direction = 1;         ///< -1: from the end of time
     bool may_split = true;     ///< a window that fails is solved in two halves
     bool may_divide = false;   ///< an element that fails or is refused is divided into two
-    Trust trust{};
+    AcceptanceCriteria criteria{};
 };
 
 /// The mesh gets an end more for every element that is divided.
@@ -62,7 +62,7 @@ public:
     GivenMesh(TimeMesh& mesh, ElementMonitor& monitor, const DivisionOptions& options);
 
     std::optional<Elements> next(double t) override;
-    Trust trust(const Elements&) const override { return options_.trust; }
+    AcceptanceCriteria criteria(const Elements&) const override { return options_.criteria; }
     bool may_move_end(const Elements&) const override;
     bool may_shorten(const Elements&) const override;
     double wanted_end(const Elements&, bool is_found) const override;
@@ -70,7 +70,7 @@ public:
     void avoid(const Elements&, RankLoss) override;
     bool reject(const Elements&, double velocity_jump, bool can_help, SolveReport&) override;
     void split(const Elements&, int middle) override;
-    void accepted(const Elements&, const Closed&, int) override {}
+    void accepted(const Elements&, const AcceptedElements&, int) override {}
 
 private:
     int far(const Elements& of) const { return options_.direction > 0 ? of.last : of.first; }
@@ -84,12 +84,14 @@ private:
 };
 
 /// The mesh begins with the start alone and grows, one element a window.
-class FoundLengths final : public Partition {
+class AdaptiveElements final : public Partition {
 public:
-    FoundLengths(TimeMesh& mesh, Pace& pace, EndsAtBends& bends) : mesh_(mesh), pace_(pace), bends_(bends) {}
+    AdaptiveElements(TimeMesh& mesh, StepSizeController& controller, EventLocator& bends)
+        : mesh_(mesh), controller_(controller), events_(bends)
+    {}
 
     std::optional<Elements> next(double t) override;
-    Trust trust(const Elements&) const override;
+    AcceptanceCriteria criteria(const Elements&) const override;
     bool may_move_end(const Elements&) const override;
     bool may_shorten(const Elements&) const override { return true; }
     double wanted_end(const Elements&, bool) const override { return wanted_end_; }
@@ -97,12 +99,12 @@ public:
     void avoid(const Elements&, RankLoss) override;
     bool reject(const Elements&, double velocity_jump, bool can_help, SolveReport&) override;
     void split(const Elements&, int) override {}
-    void accepted(const Elements&, const Closed&, int iterations) override;
+    void accepted(const Elements&, const AcceptedElements&, int iterations) override;
 
 private:
     TimeMesh& mesh_;
-    Pace& pace_;
-    EndsAtBends& bends_;
+    StepSizeController& controller_;
+    EventLocator& events_;
     double wanted_end_ = 0;
 };
 
@@ -110,4 +112,4 @@ private:
 /// shorter than `shortest`.
 std::vector<int> divide(int n_elements, int length, int shortest);
 
-}   // namespace livens
+}   // namespace livens::inline spacetime_internal

@@ -12,7 +12,7 @@
 #include "livens/solvers/newton.h"
 #include "livens/solvers/report.h"
 
-namespace livens {
+namespace livens::inline spacetime_internal {
 
 /// A motion that is about right, at any instant.
 using Guess = std::function<State(double t)>;
@@ -26,7 +26,7 @@ struct WorstResidual {
 
 /// Beyond these an element has not seen the motion, or has met a root of its equations that is none
 /// (docs/theory.md, "Spurious elements").
-struct Trust {
+struct AcceptanceCriteria {
     double velocity_jump = std::numeric_limits<double>::infinity();   ///< see velocity_jump()
     bool turns = false;       ///< refuse also a body that turns by more than 90 degrees from node to node
     bool full_rank = false;   ///< refuse also an element with a node too near to a singular position
@@ -40,7 +40,7 @@ enum class RankLoss { none, inside, at_end };
 /// were left out as redundant do not hold at its end, and the velocity jump of the last one that was looked
 /// at (infinite where a body turned too far or rows do not hold; 0 if Trust asks for nothing, or if its rank
 /// is why it was refused).
-struct Closed {
+struct AcceptedElements {
     int n_elements = 0;
     bool is_refused = false;
     double velocity_jump = 0;
@@ -112,7 +112,7 @@ public:
     /// element by element from the near end, up to one that is not to be believed (a velocity jump or a turn
     /// between nodes beyond `trust`), or whose end is no state to go on from (the report says why). What was
     /// refused for its rank may be closed all the same, without asking for that.
-    virtual Closed close(const Trust& trust, SolveReport& report) = 0;
+    virtual AcceptedElements close(const AcceptanceCriteria& criteria, SolveReport& report) = 0;
     /// Where the residual is worst, or the load that is not finite.
     virtual WorstResidual worst() const = 0;
     /// Figures that only the family knows: unknowns, pivots, entries of factors.
@@ -125,4 +125,4 @@ private:
     ElementMonitor none_;
 };
 
-}   // namespace livens
+}   // namespace livens::inline spacetime_internal

@@ -7,7 +7,7 @@
 #include "livens/base/text.h"
 #include "livens/dynamics/start/locking.h"
 
-namespace livens {
+namespace livens::inline spacetime_internal {
 
 namespace {
 
@@ -69,7 +69,7 @@ std::string of_failure(const NewtonReport& outcome, int max_iterations, const st
     return what + " in " + window + where + "; try: " + advice;
 }
 
-std::string of_lie(const std::string& window)
+std::string of_spurious_root(const std::string& window)
 {
     return window + " meets its equations, but leaves the velocity that its momentum has, or turns a body by "
                     "more than "
@@ -155,4 +155,4 @@ void add_notes(SolveReport& report, const WindowCounts& counts)
                                " needed a guess from many small elements; more elements would be cheaper");
 }
 
-}   // namespace livens
+}   // namespace livens::inline spacetime_internal

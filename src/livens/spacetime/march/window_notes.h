@@ -10,7 +10,7 @@
 #include "livens/spacetime/march/window.h"
 #include "livens/time/time_mesh.h"
 
-namespace livens {
+namespace livens::inline spacetime_internal {
 
 /// Largest distance of points, by the length, and of directors.
 double distance_between(std::span<const Matrix34> X, std::span<const Matrix34> others, double length);
@@ -32,7 +32,7 @@ std::string of_failure(const NewtonReport& outcome, int max_iterations, const st
                        const WorstResidual& worst, std::string advice);
 
 /// Of a window that says nothing of the motion although its equations are met.
-std::string of_lie(const std::string& window);
+std::string of_spurious_root(const std::string& window);
 
 /// As the caller asked, after a window that ends at t.
 std::string of_stop(double t);
@@ -50,4 +50,4 @@ std::string of_sticking(const std::string& load, double t);
 /// "1 element", "2 elements".
 std::string count(int n, const char* what);
 
-}   // namespace livens
+}   // namespace livens::inline spacetime_internal

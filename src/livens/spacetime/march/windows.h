@@ -6,12 +6,12 @@
 #include <functional>
 #include <string>
 
-#include "livens/spacetime/march/pace.h"
 #include "livens/spacetime/march/partition.h"
+#include "livens/spacetime/march/step_size_controller.h"
 #include "livens/spacetime/march/window.h"
 #include "livens/time/time_mesh.h"
 
-namespace livens {
+namespace livens::inline spacetime_internal {
 
 struct WindowOptions : DivisionOptions {
     double tolerance = 1e-12;   ///< see NewtonOptions
@@ -33,7 +33,7 @@ struct WindowOptions : DivisionOptions {
     std::function<std::string(const State& first, const State& last)> locking{};
     ProgressCallback progress{};
     /// Set: the mesh begins with the start alone and grows, one element a window, as the pace has it.
-    Pace* pace = nullptr;
+    StepSizeController* controller = nullptr;
     /// Called with a march forwards, and where it ends, after an element that took a tangent: why it should
     /// go no further; else empty.
     std::function<std::string(const Motion& so_far, double until)> watch{};
@@ -45,4 +45,4 @@ struct WindowOptions : DivisionOptions {
 /// window's motion. The mesh, which the window reads too, gets an end more for every element that is divided.
 void solve_windows(Window& window, TimeMesh& mesh, const WindowOptions& options, SolveReport& report);
 
-}   // namespace livens
+}   // namespace livens::inline spacetime_internal

@@ -110,7 +110,8 @@ void check_blocks(const Conditions& conditions, const TimeMesh& mesh, const Mixe
 
 TimeMesh mesh_of_knots(const Mixed& method) { return {basis_of(method).space(method, {}, {}).ends()}; }
 
-void check_mixed(const Model& model, const Conditions& conditions, const TimeMesh& mesh, const Mixed& method)
+void spacetime_internal::check_mixed(const Model& model, const Conditions& conditions, const TimeMesh& mesh,
+                                     const Mixed& method)
 {
     if (method.degree < 1 || method.degree > 8)
         throw InputError({"degree-out-of-range", "method.degree",
@@ -120,7 +121,7 @@ void check_mixed(const Model& model, const Conditions& conditions, const TimeMes
     check_conditions(conditions, method);
     check_blocks(conditions, mesh, method);
     check_interfaces(mesh, method);
-    const Tables tables(model, {});
+    const ModelTables tables(model, {});
     const Coordinates refuses_singular_masses(tables);
     const SparseLU refuses_missing_backend(method.linear_solver);
     const std::vector<int> division = divide(mesh.n_elements(), method.window, shortest_block(method));

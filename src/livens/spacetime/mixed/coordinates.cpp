@@ -30,7 +30,7 @@ void refuse_singular(const Body& body)
 
 }   // namespace
 
-Coordinates::Coordinates(const Tables& the_tables) : tables(the_tables), rows(the_tables.independent)
+Coordinates::Coordinates(const ModelTables& the_tables) : tables(the_tables), rows(the_tables.independent)
 {
     for (int b = 0; b < static_cast<int>(tables.bodies.size()); ++b) {
         const Body& body = tables.model->bodies()[b];

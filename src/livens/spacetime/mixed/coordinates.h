@@ -31,9 +31,9 @@ struct HessianEntry {
 /// Drives are refused, see check_method(): rows are asked without an instant.
 struct Coordinates {
     /// Throws InputError `mass-singular` for a body whose m cannot be inverted.
-    explicit Coordinates(const Tables& tables);
+    explicit Coordinates(const ModelTables& tables);
 
-    const Tables& tables;
+    const ModelTables& tables;
     std::vector<int> first;   ///< coordinate of each body
     int size = 0;
     std::vector<int> rows;                 ///< of the tables

@@ -27,7 +27,7 @@ void LoadSums::clear()
 void LoadSums::add(const FieldSample& sample, int e, int g)
 {
     const BlockFunctions& functions = space_.functions;
-    const Tables& tables = space_.coordinates.tables;
+    const ModelTables& tables = space_.coordinates.tables;
     const double *M = functions.M(e, g), *D = functions.D(e, g);
     LoadTangent tangent;
     int of_load = -1;

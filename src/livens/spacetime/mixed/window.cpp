@@ -13,7 +13,7 @@
 #include "livens/spacetime/mixed/bases.h"
 #include "livens/spacetime/mixed/block.h"
 
-namespace livens {
+namespace livens::inline spacetime_internal {
 
 using namespace mixed;
 
@@ -75,7 +75,8 @@ TimeSpace space_of(const Model& model, const Mixed& method, const TimeMesh& mesh
     return basis_of(method).space(method, ends, model.load_breaks());
 }
 
-MixedWindow::MixedWindow(const Tables& tables, const TimeMesh& mesh, const Ends& ends, const Mixed& method)
+MixedWindow::MixedWindow(const ModelTables& tables, const TimeMesh& mesh, const Ends& ends,
+                         const Mixed& method)
     : tables_(tables), mesh_(mesh), ends_(ends), method_(method),
       coordinates_(tables), given_{knows_positions(ends.at_start), knows_momenta(ends.at_start),
                                    knows_positions(ends.at_end), knows_momenta(ends.at_end)},
@@ -203,7 +204,7 @@ void MixedWindow::fix_known()
     block_->equations().space().tie(fields);
 }
 
-Closed MixedWindow::close(const Trust&, SolveReport& report)
+AcceptedElements MixedWindow::close(const AcceptanceCriteria&, SolveReport& report)
 {
     motion_.add(first_, block_->equations(), block_->fields());
     report.unknowns = std::max(report.unknowns, block_->n_unknowns());
@@ -222,7 +223,7 @@ bool MixedWindow::hand_on(SolveReport& report)
     end.P = block_->equations().end_momentum(block_->fields(), !backwards);
     for (std::size_t b = 0; b < end.P.size(); ++b) end.state.V[b] = end.P[b] * coordinates_.inverse_masses[b];
     if (method_.interfaces == Mixed::Interfaces::carry) return true;
-    TriedStart tried = try_close_start(*tables_.model, end.state, StartPolicy::project);
+    TriedStart tried = try_consistent_start(*tables_.model, end.state, StartPolicy::project);
     if (!tried.closed) {
         report.status = SolveStatus::not_converged;
         report.message = "what the block before t = " + to_text(end.state.t, 6) +
@@ -268,4 +269,4 @@ Motion MixedWindow::take_motion()
     return motion;
 }
 
-}   // namespace livens
+}   // namespace livens::inline spacetime_internal

@@ -12,11 +12,11 @@
 #include "livens/spacetime/mixed/numbering.h"
 #include "livens/time/time_space.h"
 
-namespace livens {
-
-namespace mixed {
+namespace livens::mixed {
 class Block;
-}   // namespace mixed
+}   // namespace livens::mixed
+
+namespace livens::inline spacetime_internal {
 
 /// Throws InputError for a method that makes no solvable system on this mesh: degree, gauss_points, block,
 /// knots, weights, pairings (`mixed-pairing`), conditions at the ends.
@@ -31,14 +31,14 @@ TimeSpace space_of(const Model& model, const Mixed& method, const TimeMesh& mesh
 class MixedWindow final : public Window {
 public:
     /// References must outlive the window; `tables` are with rigidity.
-    MixedWindow(const Tables& tables, const TimeMesh& mesh, const Ends& ends, const Mixed& method);
+    MixedWindow(const ModelTables& tables, const TimeMesh& mesh, const Ends& ends, const Mixed& method);
     ~MixedWindow() override;
 
     bool open(int first, int last, SolveReport& report) override;
     NewtonProblem& equations() override;
     bool start_from(const Guess& guess) override;
     State at(int element_end) const override;
-    Closed close(const Trust& trust, SolveReport& report) override;
+    AcceptedElements close(const AcceptanceCriteria& criteria, SolveReport& report) override;
     WorstResidual worst() const override;
     void describe(SolveReport& report) const override;
     Motion take_motion() override;
@@ -55,7 +55,7 @@ private:
     void fix_known();
     bool hand_on(SolveReport& report);
 
-    const Tables& tables_;
+    const ModelTables& tables_;
     const TimeMesh& mesh_;
     const Ends& ends_;
     const Mixed& method_;
@@ -67,4 +67,4 @@ private:
     mixed::MotionOfBlocks motion_;
 };
 
-}   // namespace livens
+}   // namespace livens::inline spacetime_internal

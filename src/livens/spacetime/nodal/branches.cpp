@@ -28,7 +28,7 @@ int first_of(std::vector<int>& before, int body)
 
 }   // namespace
 
-Branches::Branches(const Tables& tables, const ElementRule& rule) : tables_(tables), rule_(rule)
+Branches::Branches(const ModelTables& tables, const ElementRule& rule) : tables_(tables), rule_(rule)
 {
     find_mechanisms();
     if (!mechanisms_.empty()) path_.emplace(tables, rule);
@@ -162,11 +162,11 @@ bool Branches::leaves(Mechanism& one)
     return false;
 }
 
-bool Branches::leaves(const Stretch& stretch, const Nodes& nodes, const std::vector<int>& rows, int e)
+bool Branches::leaves(const WindowLayout& layout, const Nodes& nodes, const std::vector<int>& rows, int e)
 {
     if (mechanisms_.empty()) return false;
     take(rows);
-    path_->begin(stretch, nodes, e);
+    path_->begin(layout, nodes, e);
     nodes_ = &nodes;
     first_ = e * rule_.degree;
     return std::ranges::any_of(mechanisms_, [this](Mechanism& one) { return leaves(one); });

@@ -9,7 +9,7 @@
 #include "livens/dynamics/start/orientation.h"
 #include "livens/spacetime/nodal/element_path.h"
 
-namespace livens {
+namespace livens::inline spacetime_internal {
 
 class Nodes;
 
@@ -20,11 +20,11 @@ class Nodes;
 class Branches {
 public:
     /// References must outlive it.
-    Branches(const Tables& tables, const ElementRule& rule);
+    Branches(const ModelTables& tables, const ElementRule& rule);
 
     /// Whether the polynomial of element e is on one branch before and on another behind, with joints open in
     /// between, or has joints open at its end. `rows`: the independent ones.
-    bool leaves(const Stretch& stretch, const Nodes& nodes, const std::vector<int>& rows, int e);
+    bool leaves(const WindowLayout& layout, const Nodes& nodes, const std::vector<int>& rows, int e);
 
 private:
     /// The last two, since an element begins where one has ended or where it was tried before.
@@ -51,7 +51,7 @@ private:
     bool is_bent(const Mechanism& one) const;
     bool is_open_between(const Mechanism& one, int from);
 
-    const Tables& tables_;
+    const ModelTables& tables_;
     const ElementRule& rule_;
     std::vector<Mechanism> mechanisms_;
     std::vector<int> rows_;             // all that were taken last
@@ -60,4 +60,4 @@ private:
     int first_ = 0;   // node of the element
 };
 
-}   // namespace livens
+}   // namespace livens::inline spacetime_internal

@@ -9,7 +9,7 @@
 #include <limits>
 
 #include "livens/diagnostics/largest.h"
-#include "livens/spacetime/march/pace.h"
+#include "livens/spacetime/march/step_size_controller.h"
 #include "livens/spacetime/nodal/element_end.h"
 #include "livens/spacetime/nodal/system.h"
 
@@ -23,7 +23,7 @@ constexpr double least_for_reactions = 1e-4;
 
 }   // namespace
 
-ElementChecks::ElementChecks(const Tables& tables, const ElementRule& rule)
+ElementChecks::ElementChecks(const ModelTables& tables, const ElementRule& rule)
     : tables_(tables), degree_(rule.degree), branches_(tables, rule), switching_points_(tables, rule)
 {
     if (!std::ranges::all_of(tables.model->loads(), &Load::is_smooth)) inside_.emplace(tables, rule);
@@ -48,7 +48,7 @@ double ElementChecks::velocity_jump(const NodalSystem& system, int e, const Elem
     if (refuse_turns && !has_small_turns(system.nodes(), e)) return std::numeric_limits<double>::infinity();
     const ElementRule& rule = system.rule();
     const bool at_start = rule.points == Points::radau;
-    const double *D = rule.D.data() + (at_start ? 0 : rule.degree * rule.size()), h = system.stretch().h(e);
+    const double *D = rule.D.data() + (at_start ? 0 : rule.degree * rule.size()), h = system.layout().h(e);
     const double* V = end.instant().rates();
     std::vector<double> first_V(at_start ? 12 * tables_.bodies.size() : 0);
     if (at_start) {
@@ -82,14 +82,15 @@ double ElementChecks::velocity_jump(const NodalSystem& system, int e, const Elem
 
 bool ElementChecks::leaves(const NodalSystem& system, int e, const ElementEnd& end)
 {
-    return branches_.leaves(system.stretch(), system.nodes(), end.here().held.rows, e);
+    return branches_.leaves(system.layout(), system.nodes(), end.here().held.rows, e);
 }
 
-Unseen ElementChecks::look_at_laws(const NodalSystem& system, int e, ElementEnd& end, Closed& closed)
+Unseen ElementChecks::look_at_laws(const NodalSystem& system, int e, ElementEnd& end,
+                                   AcceptedElements& closed)
 {
     if (!inside_) return {};
     Unseen unseen =
-        inside_->look(system.stretch(), system.nodes(), e, end.here().angles, end.instant(), end.next());
+        inside_->look(system.layout(), system.nodes(), e, end.here().angles, end.instant(), end.next());
     if (!(unseen.error > 0)) return unseen;
     const double jump = velocity_jump_of(system.rule().points, degree_, unseen.error);
     if (raise_to(closed.velocity_jump, jump)) closed.load = tables_.model->loads()[unseen.load].name;
@@ -123,7 +124,7 @@ bool ElementChecks::has_reactions(const Nodes& nodes, int e) const
 double ElementChecks::bend(const NodalSystem& system, double until)
 {
     if (switching_points_.empty()) return std::numeric_limits<double>::infinity();
-    return switching_points_.first(system.stretch(), system.nodes(), until);
+    return switching_points_.first(system.layout(), system.nodes(), until);
 }
 
 void ElementChecks::take(const Nodes& nodes, int e, Unseen unseen)

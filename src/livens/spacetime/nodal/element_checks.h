@@ -11,7 +11,7 @@
 #include "livens/spacetime/nodal/inside.h"
 #include "livens/spacetime/nodal/switching_points.h"
 
-namespace livens {
+namespace livens::inline spacetime_internal {
 
 class ElementEnd;
 class NodalSystem;
@@ -20,7 +20,7 @@ class NodalSystem;
 class ElementChecks {
 public:
     /// References must outlive it.
-    ElementChecks(const Tables& tables, const ElementRule& rule);
+    ElementChecks(const ModelTables& tables, const ElementRule& rule);
 
     /// Laws of loads are not inspected between load points.
     void ignore_laws() { inside_.reset(); }
@@ -31,7 +31,7 @@ public:
     /// The element has left the branch of the motion.
     bool leaves(const NodalSystem& system, int e, const ElementEnd& end);
     /// The error of unseen laws is converted into an equivalent velocity jump.
-    Unseen look_at_laws(const NodalSystem& system, int e, ElementEnd& end, Closed& closed);
+    Unseen look_at_laws(const NodalSystem& system, int e, ElementEnd& end, AcceptedElements& closed);
     RankLoss rank_loss(const Nodes& nodes, int e) const;
     /// Reactions at the end of an element have digits left.
     bool has_reactions(const Nodes& nodes, int e) const;
@@ -49,7 +49,7 @@ private:
     bool has_small_turns(const Nodes& nodes, int e) const;
     double rank_left(const Nodes& nodes, int e, int first, int last) const;
 
-    const Tables& tables_;
+    const ModelTables& tables_;
     int degree_;
     Branches branches_;
     SwitchingPoints switching_points_;
@@ -58,4 +58,4 @@ private:
     double smallest_pivot_ = 1;
 };
 
-}   // namespace livens
+}   // namespace livens::inline spacetime_internal

@@ -32,7 +32,7 @@ int node_without(const ElementRule& rule) { return rule.points == Points::radau 
 
 }   // namespace
 
-ElementEnd::ElementEnd(const Tables& tables, bool sparse)
+ElementEnd::ElementEnd(const ModelTables& tables, bool sparse)
     : tables_(tables), instant_(tables, sparse), jumps_(tables.model->load_breaks()),
       lambda_(tables.rows.size()), end_lambda_(lambda_), impulse_(tables.rank), momentum_(tables.n_twists),
       wrench_(momentum_), raw_(12 * tables.bodies.size())
@@ -74,11 +74,11 @@ void ElementEnd::accelerate(InstantState& state)
 /// With the multipliers that are left there when its momentum is tangent to the constraints.
 bool ElementEnd::find_first(NodalSystem& system)
 {
-    const Stretch& stretch = system.stretch();
+    const WindowLayout& layout = system.layout();
     InstantState& here = states_[now_];
-    const double weight = stretch.weight(system.rule(), 0);
-    here.t = stretch.times[0];
-    if (!stretch.X_first) {
+    const double weight = layout.weight(system.rule(), 0);
+    here.t = layout.times[0];
+    if (!layout.X_first) {
         here.angles = tables_.loads.turns.begin();
         tables_.loads.turns.follow(Configurations(system.nodes().X(0)), here.angles);
         std::copy_n(system.nodes().X(0), here.X.size(), here.X.begin());
@@ -86,19 +86,19 @@ bool ElementEnd::find_first(NodalSystem& system)
         if (!instant_.prepare(here, tables_.independent)) return false;
     }
     std::vector<double>& p = momentum_;
-    if (stretch.P_first) {
+    if (layout.P_first) {
         p = system.balances().end_momentum(false).about_reference;
         for (int b = 0; b < tables_.n_bodies(); ++b)
             if (tables_.bodies[b].dofs == 6)
                 BodyTables::to_centre(here.maps.data() + 12 * b, p.data() + tables_.bodies[b].first);
     } else {
-        system.balances().twist_row(stretch, system.nodes(), 0, p.data());
+        system.balances().twist_row(layout, system.nodes(), 0, p.data());
         for (double& value : p) value = -value;
     }
     instant_.from_momentum(here, p.data(), weight, lambda_.data());
     for (int c = 0; c < tables_.rank; ++c) {
         const double taken = weight * lambda_[here.held.rows[c]];
-        impulse_[c] = (stretch.P_first ? system.balances().impulses(0)[c] : 0.0) - taken;
+        impulse_[c] = (layout.P_first ? system.balances().impulses(0)[c] : 0.0) - taken;
     }
     accelerate(here);
     return true;
@@ -119,7 +119,7 @@ void ElementEnd::sum_momentum(const NodalSystem& system, int e)
     const Nodes& nodes = system.nodes();
     const NodalRows& rows = system.balances();
     const int p = system.rule().degree, without = node_without(system.rule());
-    const double h = system.stretch().h(e);
+    const double h = system.layout().h(e);
     const bool has_loads = !tables_.model->loads().empty();
     std::vector<double>& sum = momentum_;
     sum = here().p;
@@ -149,7 +149,7 @@ void ElementEnd::take_spin_of_polynomial(const NodalSystem& system, int e)
     std::vector<double> V(raw_.size(), 0.0);
     for (int B = 1; B <= p; ++B)
         for (std::size_t i = 0; i < V.size(); ++i)
-            V[i] += rule.D[p * rule.size() + B] / system.stretch().h(e) * nodes.dX(e, B)[i];
+            V[i] += rule.D[p * rule.size() + B] / system.layout().h(e) * nodes.dX(e, B)[i];
     tables_.bodies.times_mass(V.data(), 1.0, raw_.data());
     tables_.bodies.twist_rows(nodes.X(A), nodes.maps(A), raw_.data(), wrench_.data());
     for (const auto& body : tables_.bodies)
@@ -159,14 +159,14 @@ void ElementEnd::take_spin_of_polynomial(const NodalSystem& system, int e)
 bool ElementEnd::reach(NodalSystem& system, MarchKernel& kernel, int e, bool polish)
 {
     const ElementRule& rule = system.rule();
-    const Stretch& stretch = system.stretch();
+    const WindowLayout& layout = system.layout();
     const Nodes& nodes = system.nodes();
     const int p = rule.degree, A = (e + 1) * p;
-    const bool is_last = e + 1 == stretch.n_elements(), is_radau = rule.points == Points::radau;
+    const bool is_last = e + 1 == layout.n_elements(), is_radau = rule.points == Points::radau;
     InstantState &here = states_[now_], &next = states_[1 - now_];
-    next.t = stretch.times[e + 1];
+    next.t = layout.times[e + 1];
     if (kernel.is_solved())
-        kernel.momentum(stretch, here, momentum_.data());
+        kernel.momentum(layout, here, momentum_.data());
     else
         sum_momentum(system, e);
     if (is_radau) take_spin_of_polynomial(system, e);
@@ -178,10 +178,10 @@ bool ElementEnd::reach(NodalSystem& system, MarchKernel& kernel, int e, bool pol
     for (int b = 0; polish && b < tables_.n_bodies(); ++b)
         if (tables_.bodies[b].dofs == 6) orthonormalise(next.X.data() + 12 * b);
     // the node's own basis, where nothing asks for it any more
-    const bool is_free = is_last && !is_radau && stretch.is_unknown(A) && !kernel.is_solved();
+    const bool is_free = is_last && !is_radau && layout.is_unknown(A) && !kernel.is_solved();
     ConstraintBasis* known = is_free && system.bases_fit() ? &system.nodes().own_basis(A) : nullptr;
     if (!instant_.prepare(next, here.held.rows, known, kernel.factor_at_end())) return false;
-    const double weight = stretch.h(e) * rule.weights[p];
+    const double weight = layout.h(e) * rule.weights[p];
     instant_.from_momentum(next, momentum_.data(), weight, end_lambda_.data());
     accelerate(next);
     return true;
@@ -212,7 +212,7 @@ const double* ElementEnd::multipliers(const NodalSystem& system, int e, int a)
         lambda_ = end_lambda_;   // the part that the projection took, to which the node's own is added
     else if (tables_.rank < tables_.n_rows())
         std::ranges::fill(lambda_, 0.0);
-    const double weight = system.stretch().h(e) * rule.weights[a];
+    const double weight = system.layout().h(e) * rule.weights[a];
     const int* row = system.nodes().rows().data();
     for (int c = 0, n = tables_.rank; c < n; ++c) {
         const double own = impulses[c] / weight;
@@ -223,17 +223,17 @@ const double* ElementEnd::multipliers(const NodalSystem& system, int e, int a)
 
 void ElementEnd::pass_on(const NodalSystem& system, int e)
 {
-    const Stretch& stretch = system.stretch();
-    const int p = stretch.degree;
-    const double weight = stretch.h(e) * system.rule().weights[p];
-    if (e + 1 < stretch.n_elements())   // the shared node's other side
+    const WindowLayout& layout = system.layout();
+    const int p = layout.degree;
+    const double weight = layout.h(e) * system.rule().weights[p];
+    if (e + 1 < layout.n_elements())   // the shared node's other side
         for (int c = 0; c < tables_.rank; ++c)
             impulse_[c] =
                 system.balances().impulses((e + 1) * p)[c] - weight * end_lambda_[system.nodes().rows()[c]];
     if (is_jump(next().t))
         next().forget_past();
     else
-        next().look_back(here(), stretch.h(e) > 0);
+        next().look_back(here(), layout.h(e) > 0);
     now_ = 1 - now_;
 }
 

@@ -7,7 +7,7 @@
 
 #include "livens/dynamics/instant/instant.h"
 
-namespace livens {
+namespace livens::inline spacetime_internal {
 
 class MarchKernel;
 class NodalSystem;
@@ -17,7 +17,7 @@ class NodalSystem;
 class ElementEnd {
 public:
     /// `sparse`: see InstantSystem.
-    ElementEnd(const Tables& tables, bool sparse);
+    ElementEnd(const ModelTables& tables, bool sparse);
 
     InstantSystem& instant() { return instant_; }
     const InstantSystem& instant() const { return instant_; }
@@ -51,7 +51,7 @@ private:
     void sum_momentum(const NodalSystem& system, int e);
     void take_spin_of_polynomial(const NodalSystem& system, int e);
 
-    const Tables& tables_;
+    const ModelTables& tables_;
     InstantSystem instant_;
     std::vector<double> jumps_;   // instants
     InstantState states_[2];
@@ -62,4 +62,4 @@ private:
     std::vector<double> raw_;                   // 12 a body
 };
 
-}   // namespace livens
+}   // namespace livens::inline spacetime_internal

@@ -10,15 +10,15 @@
 
 namespace livens {
 
-ElementLoads::ElementLoads(const Tables& tables, const ElementRule& rule)
+ElementLoads::ElementLoads(const ModelTables& tables, const ElementRule& rule)
     : tables_(tables), rule_(rule), X_(12 * tables.bodies.size()), V_(X_), at_point_(X_)
 {}
 
-void ElementLoads::interpolate(const Stretch& stretch, const NodePositions& nodes, int e, int c, double* X,
-                               double* V) const
+void ElementLoads::interpolate(const WindowLayout& layout, const NodePositions& nodes, int e, int c,
+                               double* X, double* V) const
 {
     const int n_nodes = rule_.size();
-    const double inverse = 1 / stretch.h(e);
+    const double inverse = 1 / layout.h(e);
     std::copy_n(nodes.X(e * rule_.degree), X_.size(), X);
     std::fill_n(V, V_.size(), 0.0);
     for (int B = 1; B < n_nodes; ++B) {
@@ -27,12 +27,12 @@ void ElementLoads::interpolate(const Stretch& stretch, const NodePositions& node
     }
 }
 
-void ElementLoads::count_turns(const Stretch& stretch, const NodePositions& nodes)
+void ElementLoads::count_turns(const WindowLayout& layout, const NodePositions& nodes)
 {
     angles_.clear();
     if (tables_.loads.turns.empty()) return;
-    std::vector<double> now = stretch.angles;
-    for (int A = 0; A < stretch.n_nodes(); ++A) {
+    std::vector<double> now = layout.angles;
+    for (int A = 0; A < layout.n_nodes(); ++A) {
         tables_.loads.turns.follow(Configurations(nodes.X(A)), now);
         angles_.insert(angles_.end(), now.begin(), now.end());
     }
@@ -47,17 +47,17 @@ std::span<const double> ElementLoads::angles(int e, int c) const
     return std::span(angles_).subspan((e * rule_.degree + node) * n, n);
 }
 
-void ElementLoads::add_element(const Stretch& stretch, const NodePositions& nodes, int e)
+void ElementLoads::add_element(const WindowLayout& layout, const NodePositions& nodes, int e)
 {
     const int n_nodes = rule_.size();
     const std::size_t n = X_.size();
     double* first = forces_.data() + e * n_nodes * n;
     std::fill_n(first, n_nodes * n, 0.0);
     for (int c = 0; c < rule_.degree; ++c) {
-        interpolate(stretch, nodes, e, c, X_.data(), V_.data());
+        interpolate(layout, nodes, e, c, X_.data(), V_.data());
         std::ranges::fill(at_point_, 0.0);
-        const Instant at = stretch.load_point(rule_, e, c);
-        tables_.loads.add(at, X_.data(), V_.data(), stretch.h(e) * rule_.loads.weights[c], at_point_.data(),
+        const Instant at = layout.load_point(rule_, e, c);
+        tables_.loads.add(at, X_.data(), V_.data(), layout.h(e) * rule_.loads.weights[c], at_point_.data(),
                           angles(e, c));
         for (int A = 0; A < n_nodes; ++A) {
             const double m = rule_.M[c * n_nodes + A];
@@ -66,21 +66,21 @@ void ElementLoads::add_element(const Stretch& stretch, const NodePositions& node
     }
 }
 
-void ElementLoads::evaluate(const Stretch& stretch, const NodePositions& nodes)
+void ElementLoads::evaluate(const WindowLayout& layout, const NodePositions& nodes)
 {
-    count_turns(stretch, nodes);
+    count_turns(layout, nodes);
     if (tables_.model->loads().empty()) return;
-    forces_.resize(stretch.n_elements() * rule_.size() * X_.size());
-    for (int e = 0; e < stretch.n_elements(); ++e) add_element(stretch, nodes, e);
+    forces_.resize(layout.n_elements() * rule_.size() * X_.size());
+    for (int e = 0; e < layout.n_elements(); ++e) add_element(layout, nodes, e);
 }
 
-std::string ElementLoads::bad_load(const Stretch& stretch, const NodePositions& nodes) const
+std::string ElementLoads::bad_load(const WindowLayout& layout, const NodePositions& nodes) const
 {
     std::vector<double> X(X_.size()), V(X_.size());
-    for (int e = 0; e < stretch.n_elements(); ++e)
+    for (int e = 0; e < layout.n_elements(); ++e)
         for (int c = 0; c < rule_.degree; ++c) {
-            interpolate(stretch, nodes, e, c, X.data(), V.data());
-            const Instant at = stretch.load_point(rule_, e, c);
+            interpolate(layout, nodes, e, c, X.data(), V.data());
+            const Instant at = layout.load_point(rule_, e, c);
             const int load = tables_.loads.bad(at, X.data(), V.data(), angles(e, c));
             if (load >= 0) return not_finite(tables_.model->loads()[load]);
         }

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "livens/dynamics/rows/tables.h"
-#include "livens/spacetime/nodal/stretch.h"
+#include "livens/spacetime/nodal/window_layout.h"
 
-namespace livens {
+namespace livens::inline spacetime_internal {
 
 class NodePositions;
 
@@ -17,25 +17,25 @@ class NodePositions;
 /// element").
 class ElementLoads {
 public:
-    ElementLoads(const Tables& tables, const ElementRule& rule);
+    ElementLoads(const ModelTables& tables, const ElementRule& rule);
 
-    void evaluate(const Stretch& stretch, const NodePositions& nodes);
+    void evaluate(const WindowLayout& layout, const NodePositions& nodes);
     /// F_A of element e, local node A, without weight; 12 numbers a body. Only where there are loads.
     const double* forces(int e, int A) const { return forces_.data() + (e * rule_.size() + A) * X_.size(); }
     /// X and X' at load point c.
-    void interpolate(const Stretch& stretch, const NodePositions& nodes, int e, int c, double* X,
+    void interpolate(const WindowLayout& layout, const NodePositions& nodes, int e, int c, double* X,
                      double* V) const;
     /// Follows the angles of loads through all nodes, as evaluate() does; see Turns.
-    void count_turns(const Stretch& stretch, const NodePositions& nodes);
+    void count_turns(const WindowLayout& layout, const NodePositions& nodes);
     /// Approximate angles at load point c of element e: those at the node before.
     std::span<const double> angles(int e, int c) const;
     /// A message about a load that is not finite; empty if all are.
-    std::string bad_load(const Stretch& stretch, const NodePositions& nodes) const;
+    std::string bad_load(const WindowLayout& layout, const NodePositions& nodes) const;
 
 private:
-    void add_element(const Stretch& stretch, const NodePositions& nodes, int e);
+    void add_element(const WindowLayout& layout, const NodePositions& nodes, int e);
 
-    const Tables& tables_;
+    const ModelTables& tables_;
     const ElementRule& rule_;
     std::vector<double> forces_;   // F_A, element after element
     std::vector<double> angles_;   // node after node
@@ -49,4 +49,4 @@ inline void accumulate(double* __restrict sum, double factor, const double* __re
         for (std::size_t i = b; i < b + 12; ++i) sum[i] += factor * x[i];
 }
 
-}   // namespace livens
+}   // namespace livens::inline spacetime_internal

@@ -9,14 +9,14 @@
 
 namespace livens {
 
-ElementPath::ElementPath(const Tables& tables, const ElementRule& rule)
+ElementPath::ElementPath(const ModelTables& tables, const ElementRule& rule)
     : basis_(basis_on(rule.points, rule.degree)), X_(12 * tables.bodies.size()), V_(X_),
       values_(rule.nodes.size()), slopes_(values_)
 {}
 
-void ElementPath::begin(const Stretch& stretch, const NodePositions& nodes, int e)
+void ElementPath::begin(const WindowLayout& layout, const NodePositions& nodes, int e)
 {
-    stretch_ = &stretch;
+    layout_ = &layout;
     nodes_ = &nodes;
     element_ = e;
 }
@@ -30,7 +30,7 @@ void ElementPath::go(double share, const std::vector<int>& bodies)
     for (double& slope : slopes_) slope *= inverse;
     for (const int body : bodies) {
         double *X = X_.data() + 12 * body, *V = V_.data() + 12 * body;
-        std::copy_n(nodes_->X(element_ * stretch_->degree) + 12 * body, 12, X);
+        std::copy_n(nodes_->X(element_ * layout_->degree) + 12 * body, 12, X);
         std::fill_n(V, 12, 0.0);
         for (std::size_t A = 1; A < values_.size(); ++A) {
             const double* dX = nodes_->dX(element_, static_cast<int>(A)) + 12 * body;

@@ -14,30 +14,30 @@
 #include "livens/solvers/patience.h"
 #include "livens/spacetime/nodal/nodes.h"
 
-namespace livens {
+namespace livens::inline spacetime_internal {
 
 namespace {
 
 /// Rows of radau(p) are numbered with the node before their own, as a march has them.
-int place_of_row(const Stretch& stretch, int A) { return stretch.points == Points::radau ? A - 1 : A; }
+int place_of_row(const WindowLayout& layout, int A) { return layout.points == Points::radau ? A - 1 : A; }
 
-BlockStructure structure_of(const Stretch& stretch, int freedoms)
+BlockStructure structure_of(const WindowLayout& layout, int freedoms)
 {
     BlockStructure structure;
-    structure.n_rows.assign(static_cast<std::size_t>(stretch.n_nodes()), 0);
-    for (int A = 0; A < stretch.n_nodes(); ++A) {
-        structure.n_unknowns.push_back(stretch.is_unknown(A) ? freedoms : 0);
-        if (stretch.is_active(A)) structure.n_rows[place_of_row(stretch, A)] = freedoms;
+    structure.n_rows.assign(static_cast<std::size_t>(layout.n_nodes()), 0);
+    for (int A = 0; A < layout.n_nodes(); ++A) {
+        structure.n_unknowns.push_back(layout.is_unknown(A) ? freedoms : 0);
+        if (layout.is_active(A)) structure.n_rows[place_of_row(layout, A)] = freedoms;
     }
-    for (int e = 0; e < stretch.n_elements(); ++e)
-        structure.elements.push_back({e * stretch.degree, (e + 1) * stretch.degree});
+    for (int e = 0; e < layout.n_elements(); ++e)
+        structure.elements.push_back({e * layout.degree, (e + 1) * layout.degree});
     return structure;
 }
 
 class NullSpaces final : public Elimination {
 public:
-    NullSpaces(const Tables& tables, const Stretch& stretch, std::unique_ptr<LinearSolver> solver)
-        : tables_(tables), f_(tables.freedoms()), structure_(structure_of(stretch, tables.freedoms())),
+    NullSpaces(const ModelTables& tables, const WindowLayout& layout, std::unique_ptr<LinearSolver> solver)
+        : tables_(tables), f_(tables.freedoms()), structure_(structure_of(layout, tables.freedoms())),
           solver_(std::move(solver))
     {
         const auto n = static_cast<std::size_t>(tables.n_twists * f_);
@@ -45,15 +45,15 @@ public:
         matrix_.resize(structure_);
         solver_->analyse(structure_);
         product_.assign(n, 0.0);
-        z_.assign(n * static_cast<std::size_t>(stretch.n_nodes()), 0.0);
+        z_.assign(n * static_cast<std::size_t>(layout.n_nodes()), 0.0);
     }
 
-    void begin(const Stretch& stretch, const Nodes& nodes) override
+    void begin(const WindowLayout& layout, const Nodes& nodes) override
     {
-        stretch_ = &stretch;
+        layout_ = &layout;
         nodes_ = &nodes;
-        for (int A = 0; A < stretch.n_nodes(); ++A)
-            if (stretch.is_active(A) || stretch.is_unknown(A))
+        for (int A = 0; A < layout.n_nodes(); ++A)
+            if (layout.is_active(A) || layout.is_unknown(A))
                 nodes.basis(A).q.null_space(z_.data() + place(A));
     }
     void open(int e, int A, int B) override
@@ -85,8 +85,8 @@ private:
     }
     void multiply_pair(int r, double* u, double* w) const;
 
-    const Tables& tables_;
-    const Stretch* stretch_ = nullptr;   // current
+    const ModelTables& tables_;
+    const WindowLayout* layout_ = nullptr;   // current
     const Nodes* nodes_ = nullptr;
     int f_;
     BlockStructure structure_;
@@ -154,7 +154,7 @@ void NullSpaces::close()
 {
     if (f_ == 0) return;
     const int f = f_, n = tables_.n_twists, stride = matrix_.stride(e_);
-    double* block = matrix_.block(e_, place_of_row(*stretch_, A_), B_);
+    double* block = matrix_.block(e_, place_of_row(*layout_, A_), B_);
     int r = 0;
     for (; r + 1 < f; r += 2) {
         if (f >= 64) Patience::ask();
@@ -177,7 +177,7 @@ void NullSpaces::solve(std::span<const double> rows, const double*, double* y)
     if (f_ > 0) solver_->solve(x_);
     const double* x = x_.data();
     for (int A = 0; A < structure_.n_nodes(); ++A) {
-        if (!stretch_->is_unknown(A)) continue;
+        if (!layout_->is_unknown(A)) continue;
         std::fill(y, y + k, 0.0);
         std::copy(x, x + f_, y + k);
         nodes_->basis(A).q.apply(y);
@@ -215,7 +215,7 @@ void NullSpaces::measure_condition(SolveReport& report, const std::function<bool
 /// J y + Y_0 nu = x, Y_1^T y = 0, with the Schur complement Y_1^T J^-1 Y_0.
 class Bodies final : public Elimination {
 public:
-    explicit Bodies(const Tables& tables) : tables_(tables)
+    explicit Bodies(const ModelTables& tables) : tables_(tables)
     {
         const auto n = static_cast<std::size_t>(tables.n_twists);
         work_.assign(n, 0.0);
@@ -224,7 +224,7 @@ public:
         schur_.resize(tables.rank);
     }
 
-    void begin(const Stretch&, const Nodes& nodes) override
+    void begin(const WindowLayout&, const Nodes& nodes) override
     {
         first_ = &nodes.basis(0).q;
         last_ = &nodes.basis(1).q;
@@ -249,7 +249,7 @@ public:
 private:
     void invert_bodies(double* y) const;
 
-    const Tables& tables_;
+    const ModelTables& tables_;
     const OrthogonalBasis *first_ = nullptr, *last_ = nullptr;
     double factor_ = 1;              // of the mass
     std::vector<Matrix3> inverse_;   // of H
@@ -306,15 +306,15 @@ void Bodies::solve(std::span<const double> rows, const double* range, double* y)
 
 }   // namespace
 
-std::unique_ptr<Elimination> null_space_elimination(const Tables& tables, const Stretch& stretch,
+std::unique_ptr<Elimination> null_space_elimination(const ModelTables& tables, const WindowLayout& layout,
                                                     std::unique_ptr<LinearSolver> solver)
 {
-    return std::make_unique<NullSpaces>(tables, stretch, std::move(solver));
+    return std::make_unique<NullSpaces>(tables, layout, std::move(solver));
 }
 
-std::unique_ptr<Elimination> body_elimination(const Tables& tables)
+std::unique_ptr<Elimination> body_elimination(const ModelTables& tables)
 {
     return std::make_unique<Bodies>(tables);
 }
 
-}   // namespace livens
+}   // namespace livens::inline spacetime_internal

@@ -11,13 +11,13 @@
 #include "livens/solvers/report.h"
 #include "livens/spacetime/nodal/tangent.h"
 
-namespace livens {
+namespace livens::inline spacetime_internal {
 
 /// Reduced systems: rows Z_A^T at active nodes, columns Z_B at unknown ones.
 class Elimination : public TangentSink {
 public:
     /// Takes the null spaces of all nodes, before a tangent is formed.
-    virtual void begin(const Stretch& stretch, const Nodes& nodes) = 0;
+    virtual void begin(const WindowLayout& layout, const Nodes& nodes) = 0;
     virtual bool factorise() = 0;
     /// y <- the scaled twists of unknown nodes, node after node, that the reduced rows of active nodes ask
     /// for.
@@ -31,11 +31,11 @@ public:
 };
 
 /// Blocks on null spaces, for a LinearSolver.
-std::unique_ptr<Elimination> null_space_elimination(const Tables& tables, const Stretch& stretch,
+std::unique_ptr<Elimination> null_space_elimination(const ModelTables& tables, const WindowLayout& layout,
                                                     std::unique_ptr<LinearSolver> solver);
 
 /// One element of degree 1 with a known start and without loads that have a tangent: the tangent couples no
 /// bodies. They are inverted one by one, and the constraints added by their Schur complement, which is small.
-std::unique_ptr<Elimination> body_elimination(const Tables& tables);
+std::unique_ptr<Elimination> body_elimination(const ModelTables& tables);
 
-}   // namespace livens
+}   // namespace livens::inline spacetime_internal

@@ -20,7 +20,7 @@ constexpr double rounding = 1e-15;
 
 }   // namespace
 
-InsideLaws::InsideLaws(const Tables& tables, const ElementRule& rule)
+InsideLaws::InsideLaws(const ModelTables& tables, const ElementRule& rule)
     : tables_(tables), laws_(laws_to_inspect(tables)), path_(tables, rule), along_(tables, rule),
       missed_(rule), V_(12 * tables.bodies.size())
 {}
@@ -81,12 +81,12 @@ void InsideLaws::kick(const double* twist, const InstantState& end, Unseen& foun
     }
 }
 
-Unseen InsideLaws::look(const Stretch& stretch, const NodePositions& nodes, int e,
+Unseen InsideLaws::look(const WindowLayout& layout, const NodePositions& nodes, int e,
                         const std::vector<double>& angles, InstantSystem& instant, InstantState& end)
 {
     Unseen found;
     double largest = 0;
-    path_.begin(stretch, nodes, e);
+    path_.begin(layout, nodes, e);
     for (auto& forces : forces_) forces.assign(end.X.size(), 0.0);
     for (const InspectedLaw& law : laws_) {
         if (is_calm(law)) continue;
@@ -102,7 +102,7 @@ Unseen InsideLaws::look(const Stretch& stretch, const NodePositions& nodes, int 
     }
     if (found.load < 0) return found;
     found.t = end.t;
-    found.duration = std::abs(stretch.h(e));
+    found.duration = std::abs(layout.h(e));
     found.shift.assign(tables_.bodies.size(), 0.0);
     found.turn = found.shift;
     std::vector<double> twist(end.velocity.size());

@@ -8,10 +8,12 @@
 #include "livens/spacetime/nodal/law_on_path.h"
 #include "livens/spacetime/nodal/missed_moments.h"
 
-namespace livens {
-
+namespace livens::inline dynamics_internal {
 class InstantSystem;
 struct InstantState;
+}   // namespace livens::inline dynamics_internal
+
+namespace livens::inline spacetime_internal {
 
 /// Compares, along the polynomials of a solved element, the impulse of every law that need not be smooth with
 /// what the element's quadrature took of it, and estimates the velocity change that the difference would have
@@ -19,19 +21,19 @@ struct InstantState;
 class InsideLaws {
 public:
     /// References must outlive it.
-    InsideLaws(const Tables& tables, const ElementRule& rule);
+    InsideLaws(const ModelTables& tables, const ElementRule& rule);
 
     /// Of element e, whose end state is `end`, prepared by `instant`: how what was not seen would have kicked
     /// the bodies, and the load that kicks most. `angles`: at its first node, see Turns.
-    Unseen look(const Stretch& stretch, const NodePositions& nodes, int e, const std::vector<double>& angles,
-                InstantSystem& instant, InstantState& end);
+    Unseen look(const WindowLayout& layout, const NodePositions& nodes, int e,
+                const std::vector<double>& angles, InstantSystem& instant, InstantState& end);
 
 private:
     bool is_calm(const InspectedLaw& law);
     void add_forces(const InspectedLaw& law, const std::vector<double>& moments, const InstantState& end);
     void kick(const double* twist, const InstantState& end, Unseen& found);
 
-    const Tables& tables_;
+    const ModelTables& tables_;
     std::vector<InspectedLaw> laws_;
     ElementPath path_;
     LawOnPath along_;
@@ -40,4 +42,4 @@ private:
     std::vector<double> V_;
 };
 
-}   // namespace livens
+}   // namespace livens::inline spacetime_internal

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <utility>
 
-namespace livens {
+namespace livens::inline spacetime_internal {
 
 namespace {
 
@@ -48,7 +48,7 @@ LawInside whole(const Load& load)
 
 /// Mobilities by the bodies alone, at the start: an order of magnitude. Accepted kicks are computed with the
 /// joints.
-void weigh(const Tables& tables, InspectedLaw& law)
+void weigh(const ModelTables& tables, InspectedLaw& law)
 {
     const State start = tables.model->start();
     std::vector<double> X, V, maps(12 * tables.bodies.size()), q(static_cast<std::size_t>(tables.n_twists));
@@ -76,7 +76,7 @@ void weigh(const Tables& tables, InspectedLaw& law)
 
 }   // namespace
 
-std::vector<InspectedLaw> laws_to_inspect(const Tables& tables)
+std::vector<InspectedLaw> laws_to_inspect(const ModelTables& tables)
 {
     std::vector<InspectedLaw> laws;
     const std::vector<Load>& loads = tables.model->loads();
@@ -91,7 +91,7 @@ std::vector<InspectedLaw> laws_to_inspect(const Tables& tables)
     return laws;
 }
 
-LawOnPath::LawOnPath(const Tables& tables, const ElementRule& rule)
+LawOnPath::LawOnPath(const ModelTables& tables, const ElementRule& rule)
     : tables_(tables), basis_(lobatto_basis(rule.degree + 2))
 {}
 
@@ -176,4 +176,4 @@ void LawOnPath::bound_slopes(double first, double last, std::span<double> bounds
     law_->inside.steepest({t, Enclosure::of(h_)}, numbers, bounds);
 }
 
-}   // namespace livens
+}   // namespace livens::inline spacetime_internal

@@ -8,7 +8,7 @@
 
 #include "livens/spacetime/nodal/element_path.h"
 
-namespace livens {
+namespace livens::inline spacetime_internal {
 
 /// F = sum_k f_k(t, q) F_k with numbers q of the motion.
 struct InspectedLaw {
@@ -19,13 +19,13 @@ struct InspectedLaw {
 };
 
 /// Of all loads that are not smooth.
-std::vector<InspectedLaw> laws_to_inspect(const Tables& tables);
+std::vector<InspectedLaw> laws_to_inspect(const ModelTables& tables);
 
 /// The numbers q(s) of a law are taken at p + 3 points, and are the polynomial through them.
 class LawOnPath {
 public:
     /// References must outlive it.
-    LawOnPath(const Tables& tables, const ElementRule& rule);
+    LawOnPath(const ModelTables& tables, const ElementRule& rule);
 
     /// Takes the numbers of a law along the path. `angles`: at the first node, see Turns.
     void follow(const InspectedLaw& law, ElementPath& path, const std::vector<double>& angles);
@@ -40,7 +40,7 @@ public:
 private:
     EnclosedValue range(std::size_t number, double width) const;
 
-    const Tables& tables_;
+    const ModelTables& tables_;
     LagrangeBasis basis_;
     const InspectedLaw* law_ = nullptr;
     double start_ = 0, h_ = 0;
@@ -49,4 +49,4 @@ private:
     std::vector<double> values_, at_;
 };
 
-}   // namespace livens
+}   // namespace livens::inline spacetime_internal

@@ -6,7 +6,7 @@
 
 #include "livens/spacetime/nodal/rule.h"
 
-namespace livens {
+namespace livens::inline spacetime_internal {
 
 class LawOnPath;
 
@@ -37,4 +37,4 @@ private:
     CheckedRule fine_, some_, few_;   // of the whole way, of its pieces, and of those beside its ends
 };
 
-}   // namespace livens
+}   // namespace livens::inline spacetime_internal

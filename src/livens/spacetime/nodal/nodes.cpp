@@ -55,24 +55,24 @@ inline void subtract_two_sums(const double* __restrict x, const double* __restri
 
 }   // namespace
 
-NodePositions::NodePositions(const Tables& tables, const ElementRule& rule)
+NodePositions::NodePositions(const ModelTables& tables, const ElementRule& rule)
     : tables_(tables), rule_(rule), size_(12 * tables.bodies.size()), displacement_(size_, 0.0),
       twist_(size_, 0.0)
 {}
 
-void NodePositions::open(const Stretch& stretch)
+void NodePositions::open(const WindowLayout& layout)
 {
-    const std::size_t n = stretch.n_nodes();
+    const std::size_t n = layout.n_nodes();
     const bool is_alike = times_.size() == n;   // as all elements of a march are
     current_ = kept_ = 0;
     times_.resize(n);
-    for (int A = 0; A < stretch.n_nodes(); ++A) times_[A] = stretch.time(rule_, A);
+    for (int A = 0; A < layout.n_nodes(); ++A) times_[A] = layout.time(rule_, A);
     if (is_alike) return;
     for (Set& set : sets_) {
         set.X.assign(n * size_, 0.0);
         set.low.assign(n * size_, 0.0);
     }
-    dX_.assign(stretch.n_elements() * rule_.size() * size_, 0.0);
+    dX_.assign(layout.n_elements() * rule_.size() * size_, 0.0);
 }
 
 void NodePositions::fix(int A, const std::vector<double>& X, const std::vector<double>& low)
@@ -169,10 +169,10 @@ double NodePositions::size_of(const double* twist) const
     return size;
 }
 
-void Nodes::open(const Stretch& stretch)
+void Nodes::open(const WindowLayout& layout)
 {
-    NodePositions::open(stretch);
-    const std::size_t n = stretch.n_nodes();
+    NodePositions::open(layout);
+    const std::size_t n = layout.n_nodes();
     pivots_.assign(n, 1.0);
     first_rows_ = nullptr;
     if (known_.size() == n) {
@@ -210,16 +210,16 @@ void Nodes::begin_constraining()
     for (int c = 0; c < tables_.rank; ++c) phi_[c] = tables_.rows.value((*first_rows_)[c], at(0), X(0));
 }
 
-bool Nodes::constrain(const Stretch& stretch, bool same_choices)
+bool Nodes::constrain(const WindowLayout& layout, bool same_choices)
 {
     near_ = true;
     begin_constraining();
     double sum = 0;
-    for (int e = 0; e < stretch.n_elements(); ++e) {
+    for (int e = 0; e < layout.n_elements(); ++e) {
         Patience::ask();
         take_differences(e);
         for (int B = e == 0 ? 0 : 1; B <= rule_.degree; ++B)
-            if (stretch.is_unknown(e * rule_.degree + B)) constrain_node(e, B, same_choices, sum);
+            if (layout.is_unknown(e * rule_.degree + B)) constrain_node(e, B, same_choices, sum);
     }
     return std::isfinite(sum);
 }
@@ -262,13 +262,13 @@ double Nodes::followed(int e, int B, int c)
                                                                 Configurations(difference));
 }
 
-double Nodes::correct(const Stretch& stretch)
+double Nodes::correct(const WindowLayout& layout)
 {
     const int k = tables_.rank, n = tables_.n_twists;
     double correction = 0;
     double *y = work_.data(), *twist = y + size_;
-    for (int A = 0; A < stretch.n_nodes(); ++A) {
-        if (!stretch.is_unknown(A)) continue;
+    for (int A = 0; A < layout.n_nodes(); ++A) {
+        if (!layout.is_unknown(A)) continue;
         Patience::ask();
         const double* phi = violations(A);
         if (std::all_of(phi, phi + k, [](double value) { return value == 0; })) continue;
@@ -282,7 +282,7 @@ double Nodes::correct(const Stretch& stretch)
         place_from(A, A, twist);
     }
     if (correction > 0)
-        for (int e = 0; e < stretch.n_elements(); ++e) take_differences(e);
+        for (int e = 0; e < layout.n_elements(); ++e) take_differences(e);
     return correction;
 }
 

@@ -5,11 +5,13 @@
 #include <vector>
 
 #include "livens/dynamics/rows/constraint_basis.h"
-#include "livens/spacetime/nodal/stretch.h"
+#include "livens/spacetime/nodal/window_layout.h"
 
-namespace livens {
-
+namespace livens::inline dynamics_internal {
 struct InstantState;
+}   // namespace livens::inline dynamics_internal
+
+namespace livens::inline spacetime_internal {
 
 /// X of every node is the sum X + low of two doubles, so that differences of neighbours keep the digits of a
 /// small motion (docs/theory.md, "Increments").
@@ -18,9 +20,9 @@ struct InstantState;
 /// node after node.
 class NodePositions {
 public:
-    NodePositions(const Tables& tables, const ElementRule& rule);
+    NodePositions(const ModelTables& tables, const ElementRule& rule);
 
-    void open(const Stretch& stretch);
+    void open(const WindowLayout& layout);
     /// In both sets: the nodes that move() does not touch must be the same in them.
     void fix(int A, const std::vector<double>& X, const std::vector<double>& low);
 
@@ -50,7 +52,7 @@ public:
 protected:
     std::size_t place(int A) const { return A * size_; }
 
-    const Tables& tables_;
+    const ModelTables& tables_;
     const ElementRule& rule_;
     std::size_t size_;   // 12 a body
 
@@ -74,7 +76,7 @@ class Nodes : public NodePositions {
 public:
     using NodePositions::NodePositions;
 
-    void open(const Stretch& stretch);
+    void open(const WindowLayout& layout);
     /// Node A is a known state, whose basis and maps serve; node 0, or the last where X is given there. The
     /// basis is not looked at before constrain().
     void fix(int A, const InstantState& state);
@@ -96,12 +98,12 @@ public:
 
     /// Differences, constraints, their gradients and bases at all unknown nodes. False if not finite.
     /// `same_choices`: bases vary smoothly with the nodes, as a tangent in use asks.
-    bool constrain(const Stretch& stretch, bool same_choices);
+    bool constrain(const WindowLayout& layout, bool same_choices);
     /// Every violation is small enough to be taken off by one linear step.
     bool is_near() const { return near_; }
     /// Moves each node by itself back to the constraints, with the bases at hand, which are then stale by as
     /// much. Returns the largest move, in lengths and radians.
-    double correct(const Stretch& stretch);
+    double correct(const WindowLayout& layout);
 
 private:
     void begin_constraining();
@@ -118,4 +120,4 @@ private:
     bool near_ = true;
 };
 
-}   // namespace livens
+}   // namespace livens::inline spacetime_internal

@@ -11,7 +11,7 @@
 
 namespace livens {
 
-Record::Record(const Tables& tables, const TimeMesh& mesh, const ElementRule& rule)
+Record::Record(const ModelTables& tables, const TimeMesh& mesh, const ElementRule& rule)
     : tables_(tables), mesh_(mesh), degree_(rule.degree), first_(std::numeric_limits<int>::max()), last_(-1)
 {
     Motion& m = motion_;

@@ -9,15 +9,17 @@
 #include "livens/multibody/motion.h"
 #include "livens/spacetime/nodal/rule.h"
 
-namespace livens {
-
+namespace livens::inline dynamics_internal {
 class InstantSystem;
 struct InstantState;
+}   // namespace livens::inline dynamics_internal
+
+namespace livens::inline spacetime_internal {
 
 /// Fills a motion element by element; elements that were never closed are cut off at the end.
 class Record {
 public:
-    Record(const Tables& tables, const TimeMesh& mesh, const ElementRule& rule);
+    Record(const ModelTables& tables, const TimeMesh& mesh, const ElementRule& rule);
 
     /// X of local node A of a mesh element, 12 numbers a body; its joint multipliers, one-sided at the ends.
     void node(int element, int A, const double* X);
@@ -44,7 +46,7 @@ private:
     void for_arrays(Action&& action);
     void only(const State& start);
 
-    const Tables& tables_;
+    const ModelTables& tables_;
     const TimeMesh& mesh_;
     int degree_;
     int first_, last_;   // element ends from..to that were written
@@ -52,4 +54,4 @@ private:
     std::vector<double> work_;
 };
 
-}   // namespace livens
+}   // namespace livens::inline spacetime_internal

@@ -13,19 +13,19 @@
 
 namespace livens {
 
-NodalRows::NodalRows(const Tables& tables, const ElementRule& rule)
+NodalRows::NodalRows(const ModelTables& tables, const ElementRule& rule)
     : tables_(tables), rule_(rule), loads_(tables, rule), q_(tables.n_twists),
       work_(12 * tables.bodies.size()), second_(work_)
 {
     for (EndMomentum& momentum : momenta_) momentum.scaled = momentum.about_reference = q_;
 }
 
-void NodalRows::open(const Stretch& stretch)
+void NodalRows::open(const WindowLayout& layout)
 {
     int n_active = 0;
-    for (int A = 0; A < stretch.n_nodes(); ++A) n_active += stretch.is_active(A) ? 1 : 0;
-    raw_.resize(stretch.n_nodes() * work_.size());
-    impulses_.resize(stretch.n_nodes() * tables_.rank);
+    for (int A = 0; A < layout.n_nodes(); ++A) n_active += layout.is_active(A) ? 1 : 0;
+    raw_.resize(layout.n_nodes() * work_.size());
+    impulses_.resize(layout.n_nodes() * tables_.rank);
     reduced_.resize(n_active * tables_.freedoms());
 }
 
@@ -43,37 +43,36 @@ void NodalRows::start_with(const InstantState& first)
 
 /// raw += h^-1 sum_B k_AB (X_B - X_0) m + F_A of element e at its local node A; the first element at a node
 /// sets it. The weight is constant, and its integral against M_A is h w_A to the last digit.
-void NodalRows::add_element(const Stretch& stretch, const Nodes& nodes, int e, int A, double* raw)
+void NodalRows::add_element(const WindowLayout& layout, const Nodes& nodes, int e, int A, double* raw)
 {
     const int n_nodes = rule_.size();
     const double* k = rule_.k.data() + A * n_nodes;
     const double* y = nodes.dX(e, 1);
-    double factor = k[1] / stretch.h(e);
+    double factor = k[1] / layout.h(e);
     if (n_nodes > 2) {
         std::ranges::fill(work_, 0.0);
         for (int B = 1; B < n_nodes; ++B) accumulate(work_.data(), k[B], nodes.dX(e, B), work_.size());
         y = work_.data();
-        factor = 1 / stretch.h(e);
+        factor = 1 / layout.h(e);
     }
     const bool is_first = e == 0 || A > 0;
     double* sum = is_first ? raw : second_.data();
     tables_.bodies.times_mass(y, factor, sum);
     if (!is_first) accumulate(raw, 1, sum, work_.size());
-    tables_.bodies.add_weight(stretch.h(e) * rule_.weights[A], raw);
+    tables_.bodies.add_weight(layout.h(e) * rule_.weights[A], raw);
     if (!tables_.model->loads().empty()) accumulate(raw, 1, loads_.forces(e, A), work_.size());
 }
 
-void NodalRows::twist_row(const Stretch& stretch, const Nodes& nodes, int A, double* out)
+void NodalRows::twist_row(const WindowLayout& layout, const Nodes& nodes, int A, double* out)
 {
     double* raw = raw_.data() + A * work_.size();
-    for (int e = stretch.first_element(A); e <= stretch.last_element(A); ++e)
-        add_element(stretch, nodes, e, A - e * rule_.degree, raw);
-    if (stretch.points == Points::radau)
-        accumulate(raw, rule_.c[A], momenta_[0].columns.data(), work_.size());
+    for (int e = layout.first_element(A); e <= layout.last_element(A); ++e)
+        add_element(layout, nodes, e, A - e * rule_.degree, raw);
+    if (layout.points == Points::radau) accumulate(raw, rule_.c[A], momenta_[0].columns.data(), work_.size());
     tables_.bodies.twist_rows(nodes.X(A), nodes.maps(A), raw, out);
 }
 
-void EndMomentum::add_to(const Tables& tables, const double* maps, double sign, double* y) const
+void EndMomentum::add_to(const ModelTables& tables, const double* maps, double sign, double* y) const
 {
     std::vector<double> about_centre = about_reference, rows(about_centre.size());
     for (int b = 0; b < tables.n_bodies(); ++b)
@@ -84,15 +83,15 @@ void EndMomentum::add_to(const Tables& tables, const double* maps, double sign, 
 }
 
 /// lambda_A from the rows in the constraint directions; what is left are the reduced rows.
-bool NodalRows::eliminate(const Stretch& stretch, const Nodes& nodes, int A, double* reduced)
+bool NodalRows::eliminate(const WindowLayout& layout, const Nodes& nodes, int A, double* reduced)
 {
     const ConstraintBasis& basis = nodes.basis(A);
     const int k = tables_.rank, f = tables_.freedoms(), n = tables_.n_twists;
     double* y = work_.data();
     tables_.bodies.to_scaled_rows(nodes.maps(A), q_.data(), y);
     const EndMomentum& given = momenta_[A == 0 ? 0 : 1];
-    const bool has_momentum = A == 0 || (stretch.P_last && A == stretch.n_nodes() - 1);
-    if (has_momentum && stretch.is_unknown(A))
+    const bool has_momentum = A == 0 || (layout.P_last && A == layout.n_nodes() - 1);
+    if (has_momentum && layout.is_unknown(A))
         given.add_to(tables_, nodes.maps(A), A == 0 ? 1 : -1, y);
     else if (has_momentum)
         for (int i = 0; i < n; ++i) y[i] += given.scaled[i];
@@ -112,18 +111,18 @@ bool NodalRows::eliminate(const Stretch& stretch, const Nodes& nodes, int A, dou
     return std::isfinite(sum);
 }
 
-bool NodalRows::evaluate(const Stretch& stretch, const Nodes& nodes)
+bool NodalRows::evaluate(const WindowLayout& layout, const Nodes& nodes)
 {
     terms_ = start_terms_;
     size_ = 0;
     bool are_finite = true;
-    loads_.evaluate(stretch, nodes);
+    loads_.evaluate(layout, nodes);
     double* reduced = reduced_.data();
-    for (int A = 0; A < stretch.n_nodes(); ++A) {
-        if (!stretch.is_active(A)) continue;
+    for (int A = 0; A < layout.n_nodes(); ++A) {
+        if (!layout.is_active(A)) continue;
         Patience::ask();
-        twist_row(stretch, nodes, A, q_.data());
-        are_finite = eliminate(stretch, nodes, A, reduced) && are_finite;
+        twist_row(layout, nodes, A, q_.data());
+        are_finite = eliminate(layout, nodes, A, reduced) && are_finite;
         reduced += tables_.freedoms();
     }
     return are_finite && std::isfinite(terms_);

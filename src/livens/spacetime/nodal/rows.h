@@ -6,11 +6,14 @@
 
 #include "livens/spacetime/nodal/element_loads.h"
 
-namespace livens {
-
-class Nodes;
+namespace livens::inline dynamics_internal {
 struct ConstraintBasis;
 struct InstantState;
+}   // namespace livens::inline dynamics_internal
+
+namespace livens::inline spacetime_internal {
+
+class Nodes;
 
 /// Momentum at the first or the last node of a window: where X is known there, in scaled rows; else linear
 /// momentum and moment about the reference point, in world axes.
@@ -19,7 +22,7 @@ struct EndMomentum {
     std::vector<double> columns;   ///< X' m, 12 numbers a body, for rows that share it (radau)
 
     /// y, scaled rows of a node with these maps, += sign times the momentum about the reference points.
-    void add_to(const Tables& tables, const double* maps, double sign, double* y) const;
+    void add_to(const ModelTables& tables, const double* maps, double sign, double* y) const;
 };
 
 /// For every active node A
@@ -32,14 +35,14 @@ struct EndMomentum {
 /// the rows in the free directions are the reduced rows, which are solved.
 class NodalRows {
 public:
-    NodalRows(const Tables& tables, const ElementRule& rule);
+    NodalRows(const ModelTables& tables, const ElementRule& rule);
 
-    void open(const Stretch& stretch);
+    void open(const WindowLayout& layout);
     EndMomentum& end_momentum(bool last) { return momenta_[last ? 1 : 0]; }
     void start_with(const InstantState& first);
 
     /// False if something is not finite.
-    bool evaluate(const Stretch& stretch, const Nodes& nodes);
+    bool evaluate(const WindowLayout& layout, const Nodes& nodes);
     const ElementLoads& loads() const { return loads_; }
     ElementLoads& loads() { return loads_; }
     /// Reduced rows with the opposite sign, active node after active node.
@@ -54,15 +57,15 @@ public:
     /// The row before N^T and multipliers, at an active node.
     const double* raw(int A) const { return raw_.data() + A * work_.size(); }
     /// out <- N^T of the row without multipliers and end momenta, about the centres of mass, at any node.
-    void twist_row(const Stretch& stretch, const Nodes& nodes, int A, double* out);
+    void twist_row(const WindowLayout& layout, const Nodes& nodes, int A, double* out);
     /// out -= G^T impulses, in the order of the node's basis.
     void subtract(const ConstraintBasis& basis, const double* impulses, double* out) const;
 
 private:
-    void add_element(const Stretch& stretch, const Nodes& nodes, int e, int A, double* raw);
-    bool eliminate(const Stretch& stretch, const Nodes& nodes, int A, double* reduced);
+    void add_element(const WindowLayout& layout, const Nodes& nodes, int e, int A, double* raw);
+    bool eliminate(const WindowLayout& layout, const Nodes& nodes, int A, double* reduced);
 
-    const Tables& tables_;
+    const ModelTables& tables_;
     const ElementRule& rule_;
     EndMomentum momenta_[2];
     ElementLoads loads_;
@@ -72,4 +75,4 @@ private:
     double size_ = 0, terms_ = 0, start_terms_ = 0;
 };
 
-}   // namespace livens
+}   // namespace livens::inline spacetime_internal

@@ -13,7 +13,7 @@
 #include "livens/time/basis.h"
 #include "livens/time/quadrature.h"
 
-namespace livens {
+namespace livens::inline spacetime_internal {
 
 namespace {
 
@@ -172,4 +172,4 @@ std::vector<double> inverse_of_k(const ElementRule& rule)
     return inverse;
 }
 
-}   // namespace livens
+}   // namespace livens::inline spacetime_internal

@@ -8,7 +8,7 @@
 #include "livens/time/basis.h"
 #include "livens/time/quadrature.h"
 
-namespace livens {
+namespace livens::inline spacetime_internal {
 
 /// Degree p: n = p + 1 nodes, where constraints hold, and p points where loads are taken: Gauss points with
 /// lobatto; the nodes but the first, which has no weight and no row, with radau.
@@ -39,4 +39,4 @@ inline ElementRule lobatto_rule(int degree) { return element_rule(Points::lobatt
 /// The inverse of K_AB = k_AB with rows A = 0..p-1 and columns B = 1..p, row by row.
 std::vector<double> inverse_of_k(const ElementRule& rule);
 
-}   // namespace livens
+}   // namespace livens::inline spacetime_internal

@@ -35,7 +35,7 @@ long long Series::evaluations() const
     return coarse_ ? coarse_->evaluations() + coarse_series_->evaluations() : 0;
 }
 
-Series::Series(const Tables& tables, const ElementRule& rule) : tables_(tables)
+Series::Series(const ModelTables& tables, const ElementRule& rule) : tables_(tables)
 {
     if (rule.degree < 4) return;
     const ElementRule half = element_rule(rule.points, rule.degree / 2);
@@ -65,7 +65,7 @@ double Series::error(const InstantState& start, double h) const
     return size;
 }
 
-TwistSeries::TwistSeries(const Tables& tables, const InstantState& start, double h)
+TwistSeries::TwistSeries(const ModelTables& tables, const InstantState& start, double h)
     : tables_(tables), start_(start), acceleration_(start.acceleration[side_of(h)].data())
 {
     const double *a = acceleration_, *j = start.jerk.data(), *s = start.snap.data();
@@ -99,7 +99,7 @@ void TwistSeries::at(double tau, double* __restrict twist) const
 void Series::predict(NodalSystem& system, const InstantState& start) const
 {
     const ElementRule& rule = system.rule();
-    const double h = system.stretch().h(0);
+    const double h = system.layout().h(0);
     const TwistSeries series(tables_, start, h);
     std::vector<double> move(tables_.n_twists);
     for (int B = 1; B <= rule.degree; ++B) {
@@ -111,9 +111,9 @@ void Series::predict(NodalSystem& system, const InstantState& start) const
 /// Nodes interpolated from a solution of half the degree.
 bool Series::place_coarse(NodalSystem& system, const InstantState& start)
 {
-    Stretch stretch = system.stretch();
-    stretch.degree = coarse_->rule().degree;
-    coarse_->open(stretch, &start, nullptr);
+    WindowLayout layout = system.layout();
+    layout.degree = coarse_->rule().degree;
+    coarse_->open(layout, &start, nullptr);
     coarse_series_->place(*coarse_, start);
     if (!coarse_->settle()) return false;
     const NewtonReport report = newton_.run(*coarse_, {1e-5, 12, {}});
@@ -150,7 +150,7 @@ bool Series::place_coarse(NodalSystem& system, const InstantState& start)
 void Series::place(NodalSystem& system, const InstantState& start)
 {
     predict(system, start);
-    if (coarse_ && error(start, system.stretch().h(0)) > trusted_guess && !place_coarse(system, start))
+    if (coarse_ && error(start, system.layout().h(0)) > trusted_guess && !place_coarse(system, start))
         predict(system, start);
 }
 

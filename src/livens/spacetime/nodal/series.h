@@ -7,23 +7,26 @@
 
 #include "livens/dynamics/rows/tables.h"
 #include "livens/solvers/newton.h"
-#include "livens/spacetime/nodal/stretch.h"
+#include "livens/spacetime/nodal/window_layout.h"
 
-namespace livens {
+namespace livens::inline dynamics_internal {
+struct InstantState;
+}   // namespace livens::inline dynamics_internal
+
+namespace livens::inline spacetime_internal {
 
 class NodalSystem;
-struct InstantState;
 
 /// Twists from the start by their Taylor series. Where that bends by more than about a radian within h, or by
 /// half a length (a stiff spring that vibrates within the element), constant twist is the safer guess.
 class TwistSeries {
 public:
-    TwistSeries(const Tables& tables, const InstantState& start, double h);
+    TwistSeries(const ModelTables& tables, const InstantState& start, double h);
     /// The finite twist from the start to tau after it.
     void at(double tau, double* twist) const;
 
 private:
-    const Tables& tables_;
+    const ModelTables& tables_;
     const InstantState& start_;
     const double* acceleration_;
     double on_;   // 0: constant twist
@@ -33,7 +36,7 @@ private:
 /// ends too early, the solution of half the degree, which is guessed likewise.
 class Series {
 public:
-    Series(const Tables& tables, const ElementRule& rule);
+    Series(const ModelTables& tables, const ElementRule& rule);
     ~Series();
 
     /// Places all nodes of the open system.
@@ -51,7 +54,7 @@ private:
     double error(const InstantState& start, double h) const;
     bool place_coarse(NodalSystem& system, const InstantState& start);
 
-    const Tables& tables_;
+    const ModelTables& tables_;
     std::unique_ptr<NodalSystem> coarse_;   // half the degree
     std::unique_ptr<Series> coarse_series_;
     std::vector<double> to_fine_;   // values of its basis at the nodes here, node after node
@@ -59,4 +62,4 @@ private:
     long factorisations_ = 0;
 };
 
-}   // namespace livens
+}   // namespace livens::inline spacetime_internal

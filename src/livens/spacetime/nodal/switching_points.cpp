@@ -183,7 +183,7 @@ Passage Search::first(const std::vector<double>& angles)
 
 }   // namespace
 
-SwitchingPoints::SwitchingPoints(const Tables& tables, const ElementRule& rule)
+SwitchingPoints::SwitchingPoints(const ModelTables& tables, const ElementRule& rule)
     : tables_(tables), path_(tables, rule)
 {
     if (!tables.model->has_pieces()) return;
@@ -199,13 +199,13 @@ SwitchingPoints::SwitchingPoints(const Tables& tables, const ElementRule& rule)
     shares_.push_back(1);
 }
 
-double SwitchingPoints::first(const Stretch& stretch, const NodePositions& nodes, double until)
+double SwitchingPoints::first(const WindowLayout& layout, const NodePositions& nodes, double until)
 {
-    path_.begin(stretch, nodes, 0);
+    path_.begin(layout, nodes, 0);
     double share = std::numeric_limits<double>::infinity();
     for (const WatchedLaw& law : laws_) {
         // of later laws only what comes before counts
-        const Passage found = Search(law, path_, shares_, std::min(until, share)).first(stretch.angles);
+        const Passage found = Search(law, path_, shares_, std::min(until, share)).first(layout.angles);
         if (!(found.share < share)) continue;
         share = found.share;
         jumping_ = law.jumps(path_, found.before, found.after, found.end) ? law.load() : -1;

@@ -7,7 +7,7 @@
 
 #include "livens/spacetime/nodal/watched_law.h"
 
-namespace livens {
+namespace livens::inline spacetime_internal {
 
 /// Looks along the polynomials of an element that was solved as if no law bent there: what comes before the
 /// first bend is about right, so that an element that ends there is smooth (docs/theory.md, "Laws that
@@ -15,22 +15,22 @@ namespace livens {
 class SwitchingPoints {
 public:
     /// References must outlive it.
-    SwitchingPoints(const Tables& tables, const ElementRule& rule);
+    SwitchingPoints(const ModelTables& tables, const ElementRule& rule);
 
     /// No law of the model has pieces.
     bool empty() const { return laws_.empty(); }
     /// The first share of the only element's length, up to `until` (beyond 1: as it goes on), from which on
     /// laws are on other pieces than just behind its start; infinite: none.
-    double first(const Stretch& stretch, const NodePositions& nodes, double until);
+    double first(const WindowLayout& layout, const NodePositions& nodes, double until);
     /// The load whose force jumped there, when a bend was found last; empty: none was, or none jumps.
     std::string jumping_load() const { return jumping_ < 0 ? "" : tables_.model->loads()[jumping_].name; }
 
 private:
-    const Tables& tables_;
+    const ModelTables& tables_;
     std::vector<WatchedLaw> laws_;
     ElementPath path_;
     std::vector<double> shares_;   // of looks
     int jumping_ = -1;
 };
 
-}   // namespace livens
+}   // namespace livens::inline spacetime_internal

@@ -15,29 +15,29 @@ namespace livens {
 
 NodalSystem::~NodalSystem() = default;
 
-NodalSystem::NodalSystem(const Tables& tables, const ElementRule& rule)
+NodalSystem::NodalSystem(const ModelTables& tables, const ElementRule& rule)
     : tables_(tables), rule_(rule), nodes_(tables, rule_), rows_(tables, rule_), tangent_(tables, rule_),
       range_(tables.rank)
 {}
 
-void NodalSystem::open(const Stretch& stretch, const InstantState* first, const InstantState* last)
+void NodalSystem::open(const WindowLayout& layout, const InstantState* first, const InstantState* last)
 {
-    const bool is_alike = stretch.n_nodes() == stretch_.n_nodes() && stretch.X_first == stretch_.X_first &&
-                          stretch.P_first == stretch_.P_first && stretch.X_last == stretch_.X_last &&
-                          stretch.P_last == stretch_.P_last;
-    stretch_ = stretch;
-    nodes_.open(stretch_);
-    if (!is_alike) rows_.open(stretch_);
+    const bool is_alike = layout.n_nodes() == layout_.n_nodes() && layout.X_first == layout_.X_first &&
+                          layout.P_first == layout_.P_first && layout.X_last == layout_.X_last &&
+                          layout.P_last == layout_.P_last;
+    layout_ = layout;
+    nodes_.open(layout_);
+    if (!is_alike) rows_.open(layout_);
     if (first != nullptr) nodes_.fix(0, *first);
-    if (last != nullptr) nodes_.fix(stretch_.n_nodes() - 1, *last);
+    if (last != nullptr) nodes_.fix(layout_.n_nodes() - 1, *last);
     if (first != nullptr) rows_.start_with(*first);
     if (!is_alike) elimination_.reset();
 }
 
 void NodalSystem::choose_elimination()
 {
-    if (rule_.degree == 1 && rule_.points == Points::lobatto && stretch_.n_elements() == 1 &&
-        stretch_.is_march() && tables_.loads.with_tangent.empty())
+    if (rule_.degree == 1 && rule_.points == Points::lobatto && layout_.n_elements() == 1 &&
+        layout_.is_march() && tables_.loads.with_tangent.empty())
         elimination_ = body_elimination(tables_);
     else
         elimination_ = on_null_spaces();
@@ -45,8 +45,8 @@ void NodalSystem::choose_elimination()
 
 std::unique_ptr<Elimination> NodalSystem::on_null_spaces() const
 {
-    return null_space_elimination(
-        tables_, stretch_, stretch_.is_march() ? forward_solver() : whole_solver(SparseBackend::eigen));
+    return null_space_elimination(tables_, layout_,
+                                  layout_.is_march() ? forward_solver() : whole_solver(SparseBackend::eigen));
 }
 
 bool NodalSystem::settle()
@@ -54,11 +54,11 @@ bool NodalSystem::settle()
     if (elimination_ == nullptr) choose_elimination();
     in_use_ = pending_ = false;
     for (int round = 0; round < 6; ++round) {
-        if (!nodes_.constrain(stretch_, false)) return false;
+        if (!nodes_.constrain(layout_, false)) return false;
         pending_ = nodes_.is_near() && elimination_->takes_constraints();
         correction_ = 0;
         if (pending_) break;
-        correction_ = nodes_.correct(stretch_);
+        correction_ = nodes_.correct(layout_);
         if (correction_ < 1e-3) break;   // lengths and radians: bases turn by no more
     }
     return true;
@@ -66,15 +66,15 @@ bool NodalSystem::settle()
 
 int NodalSystem::n_unknowns() const
 {
-    const int n_known = (stretch_.X_first ? 1 : 0) + (stretch_.X_last ? 1 : 0);
-    return (stretch_.n_nodes() - n_known) * tables_.n_twists;
+    const int n_known = (layout_.X_first ? 1 : 0) + (layout_.X_last ? 1 : 0);
+    return (layout_.n_nodes() - n_known) * tables_.n_twists;
 }
 
 bool NodalSystem::factorise()
 {
     in_use_ = true;
-    elimination_->begin(stretch_, nodes_);
-    tangent_.form(stretch_, nodes_, rows_, *elimination_);
+    elimination_->begin(layout_, nodes_);
+    tangent_.form(layout_, nodes_, rows_, *elimination_);
     return elimination_->factorise();
 }
 
@@ -86,8 +86,8 @@ void NodalSystem::solve(std::span<double> dx)
     }
     elimination_->solve(rows_.reduced(), pending_ ? range_.data() : nullptr, dx.data());
     double* twist = dx.data();
-    for (int A = 0; A < stretch_.n_nodes(); ++A) {
-        if (!stretch_.is_unknown(A)) continue;
+    for (int A = 0; A < layout_.n_nodes(); ++A) {
+        if (!layout_.is_unknown(A)) continue;
         tables_.bodies.to_twist(nodes_.maps(A), twist, twist);
         twist += tables_.n_twists;
     }
@@ -97,14 +97,14 @@ bool NodalSystem::move(std::span<const double> dx, double damping)
 {
     nodes_.begin_move();
     const double* twist = dx.data();
-    for (int A = 0; A < stretch_.n_nodes(); ++A) {
-        if (!stretch_.is_unknown(A)) continue;
+    for (int A = 0; A < layout_.n_nodes(); ++A) {
+        if (!layout_.is_unknown(A)) continue;
         nodes_.move(A, twist, damping);
         twist += tables_.n_twists;
     }
     pending_ = false;
-    if (!nodes_.constrain(stretch_, in_use_)) return false;
-    correction_ = damping > 0 ? nodes_.correct(stretch_) : 0;   // the way back changes nothing
+    if (!nodes_.constrain(layout_, in_use_)) return false;
+    correction_ = damping > 0 ? nodes_.correct(layout_) : 0;   // the way back changes nothing
     measure();
     return true;
 }
@@ -113,8 +113,8 @@ bool NodalSystem::move(std::span<const double> dx, double damping)
 void NodalSystem::measure()
 {
     motion_ = impulse_ = 0;
-    for (int e = 0; e < stretch_.n_elements(); ++e) {
-        const double inverse = 1 / std::abs(stretch_.h(e));
+    for (int e = 0; e < layout_.n_elements(); ++e) {
+        const double inverse = 1 / std::abs(layout_.h(e));
         for (int B = 1; B <= rule_.degree; ++B) {
             for (int b = 0; b < tables_.n_bodies(); ++b) {
                 const double* d = nodes_.dX(e, B) + 12 * b;
@@ -151,20 +151,20 @@ NewtonProblem::Rows NodalSystem::rows() const
     for (const double k : rule_.k) largest_k = std::max(largest_k, std::abs(k));
     return {rows_.size(), std::max(impulse_, rows_.terms()),
             1e-16 * (largest_k * impulse_ + rows_.terms() + tangent_.load_rounding()),
-            stretch_.n_elements() == 1, correction_};
+            layout_.n_elements() == 1, correction_};
 }
 
 void NodalSystem::measure_condition(SolveReport& report, const std::function<bool()>& goes_on)
 {
-    const double f = tables_.freedoms(), p = stretch_.degree;
+    const double f = tables_.freedoms(), p = layout_.degree;
     if (f == 0) return;   // nothing moves: there is no matrix
-    if (stretch_.n_elements() * p * (2 * p + 1) * f * f > std::numeric_limits<int>::max()) {
+    if (layout_.n_elements() * p * (2 * p + 1) * f * f > std::numeric_limits<int>::max()) {
         report.notes.push_back("the whole matrix is too large for its condition number; use fewer elements");
         return;
     }
     elimination_.reset();
     const std::unique_ptr<Elimination> elimination = on_null_spaces();
-    elimination->begin(stretch_, nodes_);
+    elimination->begin(layout_, nodes_);
     form_tangent(*elimination);
     elimination->measure_condition(report, goes_on);
 }

@@ -10,7 +10,7 @@
 #include "livens/spacetime/nodal/rows.h"
 #include "livens/spacetime/nodal/tangent.h"
 
-namespace livens {
+namespace livens::inline spacetime_internal {
 
 class Elimination;
 
@@ -18,17 +18,17 @@ class Elimination;
 /// node after the other. Multipliers are eliminated; every move ends with a pull back onto the constraints.
 class NodalSystem final : public NewtonProblem {
 public:
-    NodalSystem(const Tables& tables, const ElementRule& rule);
+    NodalSystem(const ModelTables& tables, const ElementRule& rule);
     ~NodalSystem() override;
 
     /// Makes a stretch current, with the states known at its ends (null: X is unknown there). To be followed
     /// by places for all unknown nodes, and settle().
-    void open(const Stretch& stretch, const InstantState* first, const InstantState* last);
+    void open(const WindowLayout& layout, const InstantState* first, const InstantState* last);
     /// Placed nodes may lie far from the constraints: pulls until the bases fit the nodes. False: not finite.
     bool settle();
 
     const ElementRule& rule() const { return rule_; }
-    const Stretch& stretch() const { return stretch_; }
+    const WindowLayout& layout() const { return layout_; }
     Nodes& nodes() { return nodes_; }
     const Nodes& nodes() const { return nodes_; }
     NodalRows& balances() { return rows_; }
@@ -36,15 +36,15 @@ public:
     /// Null before settle().
     const Elimination* elimination() const { return elimination_.get(); }
     /// Forms the tangent at the current point into another sink, for tests.
-    void form_tangent(TangentSink& sink) { tangent_.form(stretch_, nodes_, rows_, sink); }
+    void form_tangent(TangentSink& sink) { tangent_.form(layout_, nodes_, rows_, sink); }
     /// The bases fit the nodes to rounding: nothing was pulled since they were made.
     bool bases_fit() const { return correction_ < 1e-15; }
 
     int n_unknowns() const override;
     bool residual() override
     {
-        evaluations_ += stretch_.n_nodes();
-        return rows_.evaluate(stretch_, nodes_);
+        evaluations_ += layout_.n_nodes();
+        return rows_.evaluate(layout_, nodes_);
     }
     /// Of the equations at a node, so far.
     long long evaluations() const { return evaluations_; }
@@ -63,9 +63,9 @@ private:
     std::unique_ptr<Elimination> on_null_spaces() const;
     void measure();
 
-    const Tables& tables_;
+    const ModelTables& tables_;
     ElementRule rule_;
-    Stretch stretch_;
+    WindowLayout layout_;
     Nodes nodes_;
     NodalRows rows_;
     Tangent tangent_;
@@ -79,4 +79,4 @@ private:
     std::vector<double> range_;   // violations that are left, in the basis
 };
 
-}   // namespace livens
+}   // namespace livens::inline spacetime_internal

@@ -33,7 +33,7 @@ void fill_map(const BodyTable& body, const double* maps, double* D)
 }
 
 /// out <- D_i^T block D_j, 6 x 6 row by row.
-void scale_block(const Tables& tables, const double* maps_A, int i, const double* maps_B, int j,
+void scale_block(const ModelTables& tables, const double* maps_A, int i, const double* maps_B, int j,
                  const double* block, double* out)
 {
     double left[36], right[36], columns[36];
@@ -74,35 +74,35 @@ void add_reduced(const Matrix<12, 12>& K, const double* X_row, const double* X_c
 
 }   // namespace
 
-Tangent::Tangent(const Tables& tables, const ElementRule& rule) : tables_(tables), rule_(rule)
+Tangent::Tangent(const ModelTables& tables, const ElementRule& rule) : tables_(tables), rule_(rule)
 {
     const std::size_t size = 12 * tables.bodies.size();
     blocks_.assign(3 * size, 0.0);
     for (auto* v : {&total_, &X_, &V_}) v->assign(size, 0.0);
 }
 
-void Tangent::form(const Stretch& stretch, const Nodes& nodes, const NodalRows& rows, TangentSink& sink)
+void Tangent::form(const WindowLayout& layout, const Nodes& nodes, const NodalRows& rows, TangentSink& sink)
 {
     double H[9] = {};
     load_rounding_ = 0;
-    for (int e = 0; e < stretch.n_elements(); ++e) {
+    for (int e = 0; e < layout.n_elements(); ++e) {
         Patience::ask();
-        if (!tables_.loads.with_tangent.empty()) evaluate_loads(stretch, nodes, rows, e);
+        if (!tables_.loads.with_tangent.empty()) evaluate_loads(layout, nodes, rows, e);
         for (int a = 0; a < rule_.size(); ++a) {
             const int A = e * rule_.degree + a;
-            if (!stretch.is_active(A)) continue;
+            if (!layout.is_active(A)) continue;
             for (int b = 0; b < rule_.size(); ++b) {
                 const int B = e * rule_.degree + b;
-                if (!stretch.is_unknown(B)) continue;
+                if (!layout.is_unknown(B)) continue;
                 sink.open(e, A, B);
-                const double factor = rule_.k[a * rule_.size() + b] / stretch.h(e);
+                const double factor = rule_.k[a * rule_.size() + b] / layout.h(e);
                 for (int body = 0; body < tables_.n_bodies(); ++body) {
                     if (tables_.bodies[body].dofs == 6)
                         tables_.bodies.spin_mass(body, nodes.X(A), nodes.X(B), H);
                     sink.mass(body, factor, H);
                 }
                 if (A == B && (a > 0 || e == 0)) add_node_terms(nodes, rows, A, sink);
-                if (!tables_.loads.with_tangent.empty()) add_loads(stretch, nodes, e, a, b, sink);
+                if (!tables_.loads.with_tangent.empty()) add_loads(layout, nodes, e, a, b, sink);
                 sink.close();
             }
         }
@@ -176,29 +176,30 @@ double Tangent::rounding_of(const Load& load, const LoadArguments& at, const Loa
 }
 
 /// dF/dX and dF/dX' of all loads at the load points of an element.
-void Tangent::evaluate_loads(const Stretch& stretch, const Nodes& nodes, const NodalRows& rows, int e)
+void Tangent::evaluate_loads(const WindowLayout& layout, const Nodes& nodes, const NodalRows& rows, int e)
 {
     const std::size_t n = tables_.loads.with_tangent.size();
     load_tangents_.resize(n * rule_.loads.points.size());
     for (int c = 0; c < rule_.degree; ++c) {
-        rows.loads().interpolate(stretch, nodes, e, c, X_.data(), V_.data());
+        rows.loads().interpolate(layout, nodes, e, c, X_.data(), V_.data());
         const std::span<const double> angles = rows.loads().angles(e, c);
         for (std::size_t l = 0; l < n; ++l) {
             const Load& load = tables_.model->loads()[tables_.loads.with_tangent[l]];
-            const Instant at = stretch.load_point(rule_, e, c);
+            const Instant at = layout.load_point(rule_, e, c);
             const LoadArguments arguments =
                 tables_.loads.arguments(tables_.loads.with_tangent[l], at, X_.data(), V_.data(), angles);
             LoadTangent& tangent = load_tangents_[c * n + l];
             tangent = LoadTangent(load.bodies.size());
             load.tangent(arguments, tangent);
-            const double size = std::abs(stretch.h(e)) * rounding_of(load, arguments, tangent);
+            const double size = std::abs(layout.h(e)) * rounding_of(load, arguments, tangent);
             load_rounding_ = std::max(load_rounding_, size);
         }
     }
 }
 
 /// sum_c h w_c M_A(s_c) N_A^T [ M_B(s_c) dF/dX + h^-1 M_B'(s_c) dF/dX' ] N_B.
-void Tangent::add_loads(const Stretch& stretch, const Nodes& nodes, int e, int a, int b, TangentSink& sink)
+void Tangent::add_loads(const WindowLayout& layout, const Nodes& nodes, int e, int a, int b,
+                        TangentSink& sink)
 {
     const std::size_t n = tables_.loads.with_tangent.size();
     const int A = e * rule_.degree + a, B = e * rule_.degree + b, size = rule_.size();
@@ -213,7 +214,7 @@ void Tangent::add_loads(const Stretch& stretch, const Nodes& nodes, int e, int a
                 for (int c = 0; c < rule_.degree; ++c) {
                     const LoadTangent& tangent = load_tangents_[c * n + l];
                     const double w = rule_.loads.weights[c] * rule_.M[c * size + a];
-                    const double by_X = load.depends_on_X ? stretch.h(e) * w * rule_.M[c * size + b] : 0.0;
+                    const double by_X = load.depends_on_X ? layout.h(e) * w * rule_.M[c * size + b] : 0.0;
                     const double by_V = load.depends_on_V ? w * rule_.dM[c * size + b] : 0.0;
                     for (int k = 0; k < 144; ++k)
                         K.a[k] += by_X * tangent.X[r][s].a[k] + by_V * tangent.V[r][s].a[k];

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "livens/dynamics/rows/tables.h"
-#include "livens/spacetime/nodal/stretch.h"
+#include "livens/spacetime/nodal/window_layout.h"
 
-namespace livens {
+namespace livens::inline spacetime_internal {
 
 class Nodes;
 class NodalRows;
@@ -29,22 +29,22 @@ public:
 /// which are not differentiated (docs/theory.md, "The tangent").
 class Tangent {
 public:
-    Tangent(const Tables& tables, const ElementRule& rule);
+    Tangent(const ModelTables& tables, const ElementRule& rule);
 
-    void form(const Stretch& stretch, const Nodes& nodes, const NodalRows& rows, TangentSink& sink);
+    void form(const WindowLayout& layout, const Nodes& nodes, const NodalRows& rows, TangentSink& sink);
 
     /// Size of what loads make of X and X' in scaled rows, of the last form(): times eps it is what rounding
     /// of X does to the rows, also where large terms of a load have cancelled (a stiff spring at rest).
     double load_rounding() const { return load_rounding_; }
 
 private:
-    void evaluate_loads(const Stretch& stretch, const Nodes& nodes, const NodalRows& rows, int e);
+    void evaluate_loads(const WindowLayout& layout, const Nodes& nodes, const NodalRows& rows, int e);
     double rounding_of(const Load& load, const LoadArguments& at, const LoadTangent& tangent) const;
     void add_node_terms(const Nodes& nodes, const NodalRows& rows, int A, TangentSink& sink);
     void add_constraints(const Nodes& nodes, const NodalRows& rows, int A, TangentSink& sink);
-    void add_loads(const Stretch& stretch, const Nodes& nodes, int e, int a, int b, TangentSink& sink);
+    void add_loads(const WindowLayout& layout, const Nodes& nodes, int e, int a, int b, TangentSink& sink);
 
-    const Tables& tables_;
+    const ModelTables& tables_;
     const ElementRule& rule_;
     std::vector<LoadTangent> load_tangents_;   // of one element: loads with tangents, Gauss point after point
     std::vector<double> blocks_;               // 36 a body
@@ -52,4 +52,4 @@ private:
     double load_rounding_ = 0;
 };
 
-}   // namespace livens
+}   // namespace livens::inline spacetime_internal

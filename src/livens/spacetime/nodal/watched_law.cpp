@@ -8,7 +8,7 @@
 
 namespace livens {
 
-WatchedLaw::WatchedLaw(const Tables& tables, int load, int row) : tables_(tables), load_(load), row_(row)
+WatchedLaw::WatchedLaw(const ModelTables& tables, int load, int row) : tables_(tables), load_(load), row_(row)
 {
     if (load >= 0) {
         const Load& of = tables.model->loads()[load];

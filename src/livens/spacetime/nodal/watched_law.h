@@ -6,7 +6,7 @@
 
 #include "livens/spacetime/nodal/element_path.h"
 
-namespace livens {
+namespace livens::inline spacetime_internal {
 
 /// The numbers that decide about the piece, at a share of the element's length.
 struct LawState {
@@ -19,7 +19,7 @@ struct LawState {
 class WatchedLaw {
 public:
     /// Of a load, or (load < 0) of a row. References must outlive it.
-    WatchedLaw(const Tables& tables, int load, int row);
+    WatchedLaw(const ModelTables& tables, int load, int row);
 
     bool has_pieces() const { return !guards_.empty() || has_centre_; }
     bool has_centre() const { return has_centre_; }
@@ -34,11 +34,11 @@ public:
 private:
     LoadForces forces(ElementPath& path, const LawState& at) const;
 
-    const Tables& tables_;
+    const ModelTables& tables_;
     int load_, row_;
     std::vector<int> bodies_;
     std::vector<Guard> guards_;
     bool has_centre_ = false;
 };
 
-}   // namespace livens
+}   // namespace livens::inline spacetime_internal

@@ -17,7 +17,7 @@
 
 namespace livens {
 
-NodalWindow::NodalWindow(const Tables& tables, const TimeMesh& mesh, const Ends& ends,
+NodalWindow::NodalWindow(const ModelTables& tables, const TimeMesh& mesh, const Ends& ends,
                          const ElementRule& rule)
     : Window(static_cast<ElementMonitor&>(*this)), tables_(tables), ends_(ends), system_(tables, rule),
       series_(tables, system_.rule()), kernel_(tables, system_.rule()),
@@ -41,23 +41,23 @@ bool NodalWindow::open(int first, int last, SolveReport& report)
 {
     first_ = first;
     last_ = last;
-    stretch_.degree = system_.rule().degree;
-    stretch_.points = system_.rule().points;
-    stretch_.times.resize(static_cast<std::size_t>(last - first) + 1);
-    for (int e = 0; e <= last - first; ++e) stretch_.times[e] = record_.mesh().ends[mesh_end(e)];
+    layout_.degree = system_.rule().degree;
+    layout_.points = system_.rule().points;
+    layout_.times.resize(static_cast<std::size_t>(last - first) + 1);
+    for (int e = 0; e <= last - first; ++e) layout_.times[e] = record_.mesh().ends[mesh_end(e)];
     if (!ends_.has_state()) {
-        stretch_.X_first = knows_positions(ends_.at_start);
-        stretch_.P_first = knows_momenta(ends_.at_start);
-        stretch_.X_last = knows_positions(ends_.at_end);
-        stretch_.P_last = knows_momenta(ends_.at_end);
+        layout_.X_first = knows_positions(ends_.at_start);
+        layout_.P_first = knows_momenta(ends_.at_start);
+        layout_.X_last = knows_positions(ends_.at_end);
+        layout_.P_last = knows_momenta(ends_.at_end);
     }
     if (!is_ready_ && !begin_front(report)) return false;
-    if (stretch_.X_last && !set_state(far_, ends_.end, report)) return false;
-    stretch_.angles = stretch_.X_first ? end_.here().angles : tables_.loads.turns.begin();
-    system_.open(stretch_, stretch_.X_first ? &end_.here() : nullptr, stretch_.X_last ? &far_ : nullptr);
-    if (!stretch_.X_first && stretch_.P_first)
+    if (layout_.X_last && !set_state(far_, ends_.end, report)) return false;
+    layout_.angles = layout_.X_first ? end_.here().angles : tables_.loads.turns.begin();
+    system_.open(layout_, layout_.X_first ? &end_.here() : nullptr, layout_.X_last ? &far_ : nullptr);
+    if (!layout_.X_first && layout_.P_first)
         set_momenta(ends_.start, system_.balances().end_momentum(false).about_reference);
-    if (stretch_.P_last) set_momenta(ends_.end, system_.balances().end_momentum(true).about_reference);
+    if (layout_.P_last) set_momenta(ends_.end, system_.balances().end_momentum(true).about_reference);
     return true;
 }
 
@@ -102,15 +102,15 @@ bool NodalWindow::fail(SolveReport& report, const std::string& message) const
 
 bool NodalWindow::solve(const NewtonOptions& options, bool soon, NewtonReport& report)
 {
-    if (!kernel_.serves() || !stretch_.is_march() || stretch_.n_elements() > 1 ||
-        !kernel_.solve(stretch_, end_.here(), options, soon, report))
+    if (!kernel_.serves() || !layout_.is_march() || layout_.n_elements() > 1 ||
+        !kernel_.solve(layout_, end_.here(), options, soon, report))
         return false;
-    for (int B = 0; B <= stretch_.degree; ++B) {
-        if (B < stretch_.degree) kernel_.impulses(B, system_.balances().own_impulses(B));
+    for (int B = 0; B <= layout_.degree; ++B) {
+        if (B < layout_.degree) kernel_.impulses(B, system_.balances().own_impulses(B));
         system_.nodes().set_pivot(B, kernel_.pivot(B));
     }
     system_.nodes().place_solved(kernel_.increments(), kernel_.width());
-    system_.balances().loads().count_turns(stretch_, system_.nodes());
+    system_.balances().loads().count_turns(layout_, system_.nodes());
     return true;
 }
 
@@ -119,19 +119,19 @@ bool NodalWindow::solve(const NewtonOptions& options, bool soon, NewtonReport& r
 double NodalWindow::tangent_cost() const
 {
     constexpr double measured = 1e-2;
-    const bool is_known = kernel_.serves() && stretch_.is_march() && end_.here().held.by_joints;
-    return is_known ? measured * stretch_.degree * std::pow(tables_.freedoms(), 2) : 0;
+    const bool is_known = kernel_.serves() && layout_.is_march() && end_.here().held.by_joints;
+    return is_known ? measured * layout_.degree * std::pow(tables_.freedoms(), 2) : 0;
 }
 
 void NodalWindow::begin_newton()
 {
     kernel_.forget();
-    if (stretch_.X_first) end_.instant().add_basis(end_.here());
+    if (layout_.X_first) end_.instant().add_basis(end_.here());
 }
 
 bool NodalWindow::start_by_series()
 {
-    if (!stretch_.is_march() || stretch_.n_elements() > 1) return false;
+    if (!layout_.is_march() || layout_.n_elements() > 1) return false;
     begin_newton();
     series_.place(system_, end_.here());
     return system_.settle();
@@ -143,10 +143,10 @@ bool NodalWindow::start_from(const Guess& guess)
     begin_newton();
     const ElementRule& rule = system_.rule();
     std::vector<double> X(12 * tables_.bodies.size());
-    for (int A = 0; A < stretch_.n_nodes(); ++A) {
-        if (!stretch_.is_unknown(A)) continue;
+    for (int A = 0; A < layout_.n_nodes(); ++A) {
+        if (!layout_.is_unknown(A)) continue;
         Patience::ask();
-        const State state = guess(stretch_.time(rule, A));
+        const State state = guess(layout_.time(rule, A));
         for (std::size_t b = 0; b < state.X.size(); ++b) {
             const Matrix34 rigid =
                 tables_.bodies[b].dofs == 3
@@ -165,7 +165,7 @@ State NodalWindow::at(int element_end) const
     state.X.resize(tables_.bodies.size());
     const int end = ends_.is_backwards() ? last_ - element_end : element_end - first_;
     if (end > 0 || !is_ready_) {
-        const double* X = system_.nodes().X(end * stretch_.degree);
+        const double* X = system_.nodes().X(end * layout_.degree);
         for (std::size_t b = 0; b < state.X.size(); ++b) std::copy_n(X + 12 * b, 12, state.X[b].a);
         return state;
     }
@@ -186,7 +186,7 @@ bool NodalWindow::find_first(SolveReport& report)
 {
     if (!end_.find_first(system_))
         return fail(report,
-                    "the free motions carry no inertia at t = " + to_text(stretch_.times[0], 6) + " s");
+                    "the free motions carry no inertia at t = " + to_text(layout_.times[0], 6) + " s");
     record_end(0);
     return true;
 }
@@ -197,43 +197,44 @@ void NodalWindow::record_end(int end)
 }
 
 /// Finds the end state of a solved element and applies the checks to it.
-bool NodalWindow::is_believed(int e, const Trust& trust, SolveReport& report, Closed& closed)
+bool NodalWindow::is_believed(int e, const AcceptanceCriteria& criteria, SolveReport& report,
+                              AcceptedElements& closed)
 {
     constexpr double infinite = std::numeric_limits<double>::infinity();
     const Nodes& nodes = system_.nodes();
-    closed.loss = trust.full_rank ? checks_.rank_loss(nodes, e) : RankLoss::none;
+    closed.loss = criteria.full_rank ? checks_.rank_loss(nodes, e) : RankLoss::none;
     closed.is_refused = closed.loss != RankLoss::none;
     if (closed.is_refused) return false;
     // directors drift by rounding alone: now and then is enough to mend them
     if (!end_.reach(system_, kernel_, e, mesh_end(e) % 16 == 15))
         return fail(report,
-                    "the free motions carry no inertia at t = " + to_text(stretch_.times[e + 1], 6) + " s");
+                    "the free motions carry no inertia at t = " + to_text(layout_.times[e + 1], 6) + " s");
     closed.contradiction = end_.contradiction();
     if (!closed.contradiction.empty()) {
         closed.velocity_jump = infinite;
-        closed.is_refused = stretch_.is_march() || fail(report, closed.contradiction);
+        closed.is_refused = layout_.is_march() || fail(report, closed.contradiction);
         return false;
     }
-    const bool is_watched = trust.turns || !std::isinf(trust.velocity_jump);
-    if (is_watched) closed.velocity_jump = checks_.velocity_jump(system_, e, end_, trust.turns);
+    const bool is_watched = criteria.turns || !std::isinf(criteria.velocity_jump);
+    if (is_watched) closed.velocity_jump = checks_.velocity_jump(system_, e, end_, criteria.turns);
     // an element near one of a motion that was watched is on its branch
     if (is_watched && !kernel_.has_followed() && checks_.leaves(system_, e, end_))
         closed.velocity_jump = infinite;
     Unseen unseen = checks_.look_at_laws(system_, e, end_, closed);
-    closed.is_refused = !(closed.velocity_jump <= trust.velocity_jump);
+    closed.is_refused = !(closed.velocity_jump <= criteria.velocity_jump);
     if (!closed.is_refused) checks_.take(nodes, e, std::move(unseen));
     return !closed.is_refused;
 }
 
-Closed NodalWindow::close(const Trust& trust, SolveReport& report)
+AcceptedElements NodalWindow::close(const AcceptanceCriteria& criteria, SolveReport& report)
 {
-    if (stretch_.is_march())
+    if (layout_.is_march())
         end_.begin(system_.balances().impulses(0));
     else if (!find_first(report))
         return {};
-    Closed closed;
-    for (int e = 0; e < stretch_.n_elements(); ++e) {
-        if (!is_believed(e, trust, report, closed)) return closed;
+    AcceptedElements closed;
+    for (int e = 0; e < layout_.n_elements(); ++e) {
+        if (!is_believed(e, criteria, report, closed)) return closed;
         close_element(e);
         ++closed.n_elements;
     }
@@ -244,7 +245,7 @@ Closed NodalWindow::close(const Trust& trust, SolveReport& report)
 /// The nodes and multipliers of a believed element into the motion, its end as the start of the next.
 void NodalWindow::close_element(int e)
 {
-    const int p = stretch_.degree, element = std::min(mesh_end(e), mesh_end(e + 1));
+    const int p = layout_.degree, element = std::min(mesh_end(e), mesh_end(e + 1));
     for (int a = 0; a <= p; ++a) {
         const int place = ends_.is_backwards() ? p - a : a;
         if (a > 0 && a < p) record_.node(element, place, system_.nodes().X(e * p + a));
@@ -258,24 +259,23 @@ void NodalWindow::close_element(int e)
 
 WorstResidual NodalWindow::worst() const
 {
-    WorstResidual place{"", stretch_.times[0],
-                        system_.balances().loads().bad_load(stretch_, system_.nodes())};
+    WorstResidual place{"", layout_.times[0], system_.balances().loads().bad_load(layout_, system_.nodes())};
     double worst = 0;
     int row = -1, body = -1;
-    for (int A = 0; A < stretch_.n_nodes(); ++A) {
-        if (!stretch_.is_unknown(A)) continue;
+    for (int A = 0; A < layout_.n_nodes(); ++A) {
+        if (!layout_.is_unknown(A)) continue;
         for (int c = 0; c < tables_.rank; ++c) {
             const double v = std::abs(system_.nodes().violations(A)[c]);
             if (v <= worst) continue;   // nan is worst of all
             worst = v;
             row = system_.nodes().rows()[c];
-            place.t = stretch_.times[stretch_.first_element(A)];
+            place.t = layout_.times[layout_.first_element(A)];
         }
     }
     worst = 0;
     std::vector<double> q(static_cast<std::size_t>(tables_.n_twists)), wrench(12 * tables_.bodies.size());
-    for (int A = 0; A < stretch_.n_nodes(); ++A) {
-        if (!stretch_.is_active(A)) continue;
+    for (int A = 0; A < layout_.n_nodes(); ++A) {
+        if (!layout_.is_active(A)) continue;
         const Nodes& nodes = system_.nodes();
         std::copy_n(system_.balances().raw(A), wrench.size(), wrench.begin());
         tables_.bodies.twist_rows(nodes.X(A), nodes.maps(A), wrench.data(), q.data());

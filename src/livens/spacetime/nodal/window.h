@@ -10,14 +10,14 @@
 #include "livens/spacetime/nodal/series.h"
 #include "livens/spacetime/nodal/system.h"
 
-namespace livens {
+namespace livens::inline spacetime_internal {
 
 /// Windows from the end where the state is known, or one window of all elements; radau: single elements from
 /// the state at the start.
 class NodalWindow final : public Window, private ElementMonitor {
 public:
     /// References must outlive the window.
-    NodalWindow(const Tables& tables, const TimeMesh& mesh, const Ends& ends, const ElementRule& rule);
+    NodalWindow(const ModelTables& tables, const TimeMesh& mesh, const Ends& ends, const ElementRule& rule);
 
     /// Laws of loads are not inspected between load points.
     void ignore_laws() { checks_.ignore_laws(); }
@@ -30,7 +30,7 @@ public:
     NewtonProblem& equations() override { return system_; }
     bool start_from(const Guess& guess) override;
     State at(int element_end) const override;
-    Closed close(const Trust& trust, SolveReport& report) override;
+    AcceptedElements close(const AcceptanceCriteria& criteria, SolveReport& report) override;
     WorstResidual worst() const override;
     void describe(SolveReport& report) const override;
     Motion take_motion() override { return record_.take(ends_.start); }
@@ -56,12 +56,13 @@ private:
     void begin_newton();
     bool start_by_series();
     bool find_first(SolveReport& report);
-    bool is_believed(int e, const Trust& trust, SolveReport& report, Closed& closed);
+    bool is_believed(int e, const AcceptanceCriteria& criteria, SolveReport& report,
+                     AcceptedElements& closed);
     void close_element(int e);
     void record_end(int end);
     bool fail(SolveReport& report, const std::string& message) const;
 
-    const Tables& tables_;
+    const ModelTables& tables_;
     const Ends& ends_;
     NodalSystem system_;
     Series series_;
@@ -69,10 +70,10 @@ private:
     ElementEnd end_;
     ElementChecks checks_;
     Record record_;
-    Stretch stretch_;
+    WindowLayout layout_;
     InstantState far_;        // where X is known at the far end
     bool is_ready_ = false;   // the state at hand is known and in the motion
     int first_ = 0, last_ = 0;
 };
 
-}   // namespace livens
+}   // namespace livens::inline spacetime_internal

@@ -8,9 +8,9 @@
 
 #include "livens/time/expression.h"
 
-namespace livens {
+namespace livens::inline time_internal {
 
 /// Throws InputError as Expression does.
 std::vector<Expression::Step> read_expression(std::string_view text, const std::vector<std::string>& symbols);
 
-}   // namespace livens
+}   // namespace livens::inline time_internal

@@ -9,7 +9,7 @@
 #include "livens/io/scenario/bodies/bodies.h"
 #include "livens/io/scenario/bodies/shapes.h"
 
-namespace livens {
+namespace livens::inline io_internal {
 
 namespace {
 
@@ -342,4 +342,4 @@ void read_bodies(Builder& builder)
     builder.close_bodies();
 }
 
-}   // namespace livens
+}   // namespace livens::inline io_internal

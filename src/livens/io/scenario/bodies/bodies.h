@@ -7,7 +7,7 @@
 
 #include "livens/io/scenario/builder.h"
 
-namespace livens {
+namespace livens::inline io_internal {
 
 /// `directors`, `quaternion`, `rotation_vector`: of a body or a joint's frame.
 std::vector<Key> orientation_keys();
@@ -23,4 +23,4 @@ Placement read_placement(const Section& body, const Matrix3& stretch = identity<
 /// Reports all it finds.
 void read_bodies(Builder& builder);
 
-}   // namespace livens
+}   // namespace livens::inline io_internal

@@ -12,7 +12,7 @@
 #include "livens/base/error.h"
 #include "livens/time/expression.h"
 
-namespace livens {
+namespace livens::inline io_internal {
 
 namespace {
 
@@ -92,4 +92,4 @@ Moments weighted_by_field(const PrimitiveSolid& solid, const std::string& text)
     return weighted_moments(solid, [&](const Vector3& p) { return density(0, p.a); });
 }
 
-}   // namespace livens
+}   // namespace livens::inline io_internal

@@ -18,7 +18,7 @@
 #include "livens/io/scenario/bodies/density_fields.h"
 #include "livens/io/scenario/text/findings.h"
 
-namespace livens {
+namespace livens::inline io_internal {
 
 namespace {
 
@@ -286,4 +286,4 @@ std::string MeshStore::kept() const
     return text;
 }
 
-}   // namespace livens
+}   // namespace livens::inline io_internal

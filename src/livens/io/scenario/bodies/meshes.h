@@ -12,7 +12,7 @@
 #include "livens/io/scenario.h"
 #include "livens/io/surface.h"
 
-namespace livens {
+namespace livens::inline io_internal {
 
 /// What a scenario takes of a mesh, in the mesh's unit. Bodies need no more, so that a run can do without the
 /// file.
@@ -57,4 +57,4 @@ private:
     std::vector<std::filesystem::path> files_;
 };
 
-}   // namespace livens
+}   // namespace livens::inline io_internal

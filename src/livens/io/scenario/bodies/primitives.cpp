@@ -115,7 +115,7 @@ PrimitiveSolid solid_of_cone(const Section& shape)
 
 }   // namespace
 
-const std::vector<Primitive>& primitives()
+const std::vector<Primitive>& io_internal::primitives()
 {
     static const std::vector<Primitive> all{
         {Key{"box", types::vector3, "Edges along d1, d2, d3.", "m"}.within(positive),
@@ -170,7 +170,7 @@ const std::vector<Primitive>& primitives()
     return all;
 }
 
-const Primitive* find_primitive(std::string_view key)
+const Primitive* io_internal::find_primitive(std::string_view key)
 {
     const auto found = std::ranges::find(primitives(), key, [](const Primitive& p) { return p.key.name; });
     return found == primitives().end() ? nullptr : &*found;

@@ -6,7 +6,7 @@
 #include "livens/io/scenario.h"
 #include "livens/io/scenario/schema/section.h"
 
-namespace livens {
+namespace livens::inline io_internal {
 
 struct Primitive {
     Key key;
@@ -17,4 +17,4 @@ struct Primitive {
 const std::vector<Primitive>& primitives();
 const Primitive* find_primitive(std::string_view key);
 
-}   // namespace livens
+}   // namespace livens::inline io_internal

@@ -271,7 +271,7 @@ double unit_of_length(const std::string& text)
     return unit->power_of_ten < 0 ? ratio / power : ratio * power;   // 1e-3 is no double, 1e3 is
 }
 
-Table shape_table()
+Table io_internal::shape_table()
 {
     Table part{
         "parts of shape",
@@ -302,13 +302,13 @@ Table shape_table()
     return shape;
 }
 
-bool is_point_mass(const Section& body)
+bool io_internal::is_point_mass(const Section& body)
 {
     const Section* shape = only_section(body, "shape");
     return shape != nullptr && shape->has("point");
 }
 
-bool check_shape(const Section& shape)
+bool io_internal::check_shape(const Section& shape)
 {
     const Key* kind = kind_of(shape);
     if (kind == nullptr || !shape.is_valid() || !check_mesh(shape)) return false;
@@ -327,7 +327,7 @@ bool check_shape(const Section& shape)
     });
 }
 
-DensityBy density_by(const Section& shape)
+DensityBy io_internal::density_by(const Section& shape)
 {
     const auto has_field = [](const Section& s) { return s.has("density_field"); };
     if (shape.has("densities") || has_field(shape)) return DensityBy::shape;
@@ -336,7 +336,7 @@ DensityBy density_by(const Section& shape)
     return std::ranges::all_of(parts, has_field) ? DensityBy::shape : DensityBy::both;
 }
 
-Solid read_shape(const Section& body, MeshStore& meshes, bool with_surfaces)
+Solid io_internal::read_shape(const Section& body, MeshStore& meshes, bool with_surfaces)
 {
     const Section* shape = only_section(body, "shape");
     if (shape == nullptr || is_point_mass(body)) return {};

@@ -6,7 +6,7 @@
 #include "livens/io/scenario/schema/section.h"
 #include "livens/multibody/solid.h"
 
-namespace livens {
+namespace livens::inline io_internal {
 
 /// Who states the densities in kg/m^3: the body; the shape; or the body, but for those parts of a union that
 /// have fields.
@@ -32,4 +32,4 @@ DensityBy density_by(const Section& shape);
 /// wanted. Throws InputError.
 Solid read_shape(const Section& body, MeshStore& meshes, bool with_surfaces);
 
-}   // namespace livens
+}   // namespace livens::inline io_internal

@@ -14,7 +14,7 @@
 #include "livens/multibody/joints/drives.h"
 #include "livens/time/time_laws.h"
 
-namespace livens {
+namespace livens::inline io_internal {
 
 namespace {
 
@@ -334,4 +334,4 @@ void read_drives(Builder& builder)
     for (const Section& drive : builder.top().sections("drive")) read_drive(builder, drive, taken);
 }
 
-}   // namespace livens
+}   // namespace livens::inline io_internal

@@ -8,7 +8,7 @@
 #include "livens/io/scenario/joints/expressions.h"
 #include "livens/io/scenario/joints/joints.h"
 
-namespace livens {
+namespace livens::inline io_internal {
 
 namespace {
 
@@ -223,4 +223,4 @@ LawGuards guards_of(const std::vector<Expression>& expressions, const Inputs& in
     return {guards, values};
 }
 
-}   // namespace livens
+}   // namespace livens::inline io_internal

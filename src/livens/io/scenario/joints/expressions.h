@@ -9,7 +9,7 @@
 #include "livens/multibody/loads/load_laws.h"
 #include "livens/time/expression.h"
 
-namespace livens {
+namespace livens::inline io_internal {
 
 /// `expression` for one number, or for three, and `inputs`.
 std::vector<Key> expression_keys(bool is_vector);
@@ -38,4 +38,4 @@ LawSteepness steepness_of(const std::vector<Expression>& expressions, const Inpu
 /// What decides on which smooth pieces they are; empty: they have but one.
 LawGuards guards_of(const std::vector<Expression>& expressions, const Inputs& inputs);
 
-}   // namespace livens
+}   // namespace livens::inline io_internal

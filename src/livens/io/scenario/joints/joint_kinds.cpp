@@ -10,7 +10,7 @@
 #include "livens/io/scenario/joints/joints.h"
 #include "livens/multibody/joints/spline_curve.h"
 
-namespace livens {
+namespace livens::inline io_internal {
 
 namespace {
 
@@ -226,4 +226,4 @@ Key frames_key(const std::string& heading, const std::string& doc)
     return Key{"frames", types::tables, doc}.holding({heading, "Point and axes.", keys});
 }
 
-}   // namespace livens
+}   // namespace livens::inline io_internal

@@ -9,7 +9,7 @@
 #include "livens/io/scenario/schema/section.h"
 #include "livens/multibody/joints.h"
 
-namespace livens {
+namespace livens::inline io_internal {
 
 /// What says where a joint is.
 enum class Location : std::uint8_t {
@@ -55,4 +55,4 @@ struct JointKind : Kind {
 
 const std::vector<JointKind>& joint_kinds();
 
-}   // namespace livens
+}   // namespace livens::inline io_internal

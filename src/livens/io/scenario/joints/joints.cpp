@@ -9,7 +9,7 @@
 #include "livens/io/scenario/joints/joint_kinds.h"
 #include "livens/multibody/joints/fit.h"
 
-namespace livens {
+namespace livens::inline io_internal {
 
 namespace {
 
@@ -397,4 +397,4 @@ void read_joints(Builder& builder)
         }
 }
 
-}   // namespace livens
+}   // namespace livens::inline io_internal

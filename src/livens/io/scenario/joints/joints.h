@@ -7,7 +7,7 @@
 
 #include "livens/io/scenario/builder.h"
 
-namespace livens {
+namespace livens::inline io_internal {
 
 /// `from` and `until` of a joint or drive, as far as they are inside the time.
 void read_times(const Builder& builder, const Section& section, Joint& joint);
@@ -35,4 +35,4 @@ void read_drives(Builder& builder);   ///< after the joints
 /// Those of loads follow the loads, whose expressions may read the others.
 void read_sensors(Builder& builder, bool of_loads);
 
-}   // namespace livens
+}   // namespace livens::inline io_internal

@@ -7,7 +7,7 @@
 #include "livens/base/text.h"
 #include "livens/io/scenario/joints/joints.h"
 
-namespace livens {
+namespace livens::inline io_internal {
 
 namespace {
 
@@ -58,4 +58,4 @@ void warn_of_world_points(Builder& builder, const Section& section, const std::a
     }
 }
 
-}   // namespace livens
+}   // namespace livens::inline io_internal

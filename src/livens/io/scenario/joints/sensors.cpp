@@ -6,7 +6,7 @@
 
 #include "livens/io/scenario/joints/joints.h"
 
-namespace livens {
+namespace livens::inline io_internal {
 
 namespace {
 
@@ -150,4 +150,4 @@ void read_sensors(Builder& builder, bool of_loads)
         if (reads_load(section) == of_loads) read_sensor(builder, section, taken);
 }
 
-}   // namespace livens
+}   // namespace livens::inline io_internal

@@ -6,7 +6,7 @@
 #include "livens/io/scenario/joints/joints.h"
 #include "livens/io/scenario/loads/load_makers.h"
 
-namespace livens {
+namespace livens::inline io_internal {
 
 namespace {
 
@@ -68,4 +68,4 @@ Load make_bushing(const LoadSources& p)
     return bushing(p.name, p.first, read_bushing_frame(p, 0), p.second, read_bushing_frame(p, 1), law, X);
 }
 
-}   // namespace livens
+}   // namespace livens::inline io_internal

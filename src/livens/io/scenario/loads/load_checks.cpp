@@ -7,7 +7,7 @@
 #include "livens/io/scenario/builder.h"
 #include "livens/io/scenario/loads/load_makers.h"
 
-namespace livens {
+namespace livens::inline io_internal {
 
 /// One of several keys that say how large a load is.
 bool check_value(const Section& load)
@@ -94,4 +94,4 @@ bool check_spring(const Section& load)
     return is_placed && has_law;
 }
 
-}   // namespace livens
+}   // namespace livens::inline io_internal

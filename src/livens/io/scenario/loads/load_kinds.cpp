@@ -8,7 +8,7 @@
 #include "livens/io/scenario/joints/joints.h"
 #include "livens/io/scenario/loads/load_makers.h"
 
-namespace livens {
+namespace livens::inline io_internal {
 
 namespace {
 
@@ -242,4 +242,4 @@ const std::vector<LoadKind>& load_kinds()
     return all;
 }
 
-}   // namespace livens
+}   // namespace livens::inline io_internal

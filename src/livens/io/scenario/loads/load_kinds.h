@@ -9,7 +9,7 @@
 #include "livens/io/scenario/schema/section.h"
 #include "livens/multibody/loads/load_laws.h"
 
-namespace livens {
+namespace livens::inline io_internal {
 
 class Builder;
 
@@ -41,4 +41,4 @@ const std::vector<LoadKind>& load_kinds();
 /// Reports all it finds.
 void read_loads(Builder& builder);
 
-}   // namespace livens
+}   // namespace livens::inline io_internal

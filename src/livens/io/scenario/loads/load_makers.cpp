@@ -14,7 +14,7 @@
 #include "livens/multibody/loads/surface_loads.h"
 #include "livens/time/time_laws.h"
 
-namespace livens {
+namespace livens::inline io_internal {
 
 namespace {
 
@@ -328,4 +328,4 @@ Load make_spring(const LoadSources& p)
                          p.builder.in_axes(p.second, s.row("points", 1)), law);
 }
 
-}   // namespace livens
+}   // namespace livens::inline io_internal

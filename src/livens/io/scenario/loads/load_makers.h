@@ -5,7 +5,7 @@
 
 #include "livens/io/scenario/loads/load_kinds.h"
 
-namespace livens {
+namespace livens::inline io_internal {
 
 /// `point`, in axes of the body.
 Vector3 point_of(const LoadSources& p);
@@ -28,4 +28,4 @@ Load make_traction(const LoadSources& p);
 Load make_pressure(const LoadSources& p);
 Load make_body_force(const LoadSources& p);
 
-}   // namespace livens
+}   // namespace livens::inline io_internal

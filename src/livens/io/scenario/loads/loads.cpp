@@ -7,7 +7,7 @@
 #include "livens/io/scenario/joints/joints.h"
 #include "livens/io/scenario/loads/load_kinds.h"
 
-namespace livens {
+namespace livens::inline io_internal {
 
 namespace {
 
@@ -130,4 +130,4 @@ void read_loads(Builder& builder)
     check_start(builder);
 }
 
-}   // namespace livens
+}   // namespace livens::inline io_internal

@@ -9,7 +9,7 @@
 #include "livens/io/scenario/joints/joints.h"
 #include "livens/io/scenario/run/run.h"
 
-namespace livens {
+namespace livens::inline io_internal {
 
 namespace {
 
@@ -202,7 +202,7 @@ void check_ends(Builder& builder, const Conditions& boundary, StartPolicy policy
         // Joints that have let go by then, or begin later, need not be closed at this end.
         const Model model =
             builder.model().has_events() ? acting_at(builder.model(), state.t).model : builder.model();
-        const ClosedStart closed = prepared.close(model, state, policy);
+        const ConsistentStart closed = prepared.close(model, state, policy);
         // A state at a singular position is judged besides (theory.md, Singular positions).
         if (given == Known::state) refuse_singular_start(model, closed);
     };
@@ -216,4 +216,4 @@ void check_ends(Builder& builder, const Conditions& boundary, StartPolicy policy
     });
 }
 
-}   // namespace livens
+}   // namespace livens::inline io_internal

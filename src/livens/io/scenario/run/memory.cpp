@@ -113,8 +113,8 @@ std::string gibibytes(double bytes)
 
 }   // namespace
 
-bool check_size(const Model& model, const Method& method, double n_elements, const SourceLocation& place,
-                Findings& findings)
+bool io_internal::check_size(const Model& model, const Method& method, double n_elements,
+                             const SourceLocation& place, Findings& findings)
 {
     const std::string what = std::to_string(static_cast<long long>(n_elements)) + " time elements for " +
                              std::to_string(model.n_bodies()) + " bodies";

@@ -8,7 +8,7 @@
 #include "livens/io/scenario/run/run.h"
 #include "livens/spacetime/mixed/bases.h"
 
-namespace livens {
+namespace livens::inline io_internal {
 
 namespace {
 
@@ -23,7 +23,7 @@ Method make_lobatto(const Section& section)
 
 Method make_auto(const Section& section)
 {
-    return Auto{section.has("degree") ? section.integer("degree") : 0};
+    return AutomaticFamily{section.has("degree") ? section.integer("degree") : 0};
 }
 
 Method make_radau(const Section& section) { return Radau{section.integer("degree")}; }
@@ -281,7 +281,7 @@ void write_method(JsonWriter& json, const Method& method)
     } else if (const Radau* radau = std::get_if<Radau>(&method)) {
         json.member("family", "radau");
         write_degree(json, radau->degree);
-    } else if (const Auto* either = std::get_if<Auto>(&method)) {
+    } else if (const AutomaticFamily* either = std::get_if<AutomaticFamily>(&method)) {
         json.member("family", "auto");
         write_degree(json, either->degree);
     } else
@@ -329,4 +329,4 @@ bool has_knots(const Method& method)
     return mixed != nullptr && mixed::basis_of(*mixed).has_knots && !mixed->knots.empty();
 }
 
-}   // namespace livens
+}   // namespace livens::inline io_internal

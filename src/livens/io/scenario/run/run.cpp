@@ -6,7 +6,7 @@
 
 #include "livens/io/json.h"
 
-namespace livens {
+namespace livens::inline io_internal {
 
 namespace {
 
@@ -48,7 +48,7 @@ void leave_open(Method& method, bool has_family, bool has_degree)
     auto* lobatto = std::get_if<Lobatto>(&method);
     // Degree 0 leaves the degree to the accuracy (theory.md, To an accuracy).
     if (!has_family && lobatto != nullptr)
-        method = Auto{has_degree ? lobatto->degree : 0};
+        method = AutomaticFamily{has_degree ? lobatto->degree : 0};
     else if (lobatto != nullptr && !has_degree)
         lobatto->degree = 0;
     else if (auto* radau = std::get_if<Radau>(&method); radau != nullptr && !has_degree)
@@ -96,4 +96,4 @@ void read_run(Builder& builder, Scenario& scenario)
     scenario.resolved = resolve(builder, *time, scenario);
 }
 
-}   // namespace livens
+}   // namespace livens::inline io_internal

@@ -7,8 +7,10 @@
 #include "livens/io/scenario/builder.h"
 
 namespace livens {
-
 class JsonWriter;
+}   // namespace livens
+
+namespace livens::inline io_internal {
 
 /// X and V of a body at the "start" or "end" of time; at the start what is left out is as in `state`.
 void read_pose_of(Builder& builder, const std::string& name, const Section& pose, const std::string& when,
@@ -43,4 +45,4 @@ bool has_knots(const Method& method);
 bool check_size(const Model& model, const Method& method, double n_elements, const SourceLocation& place,
                 Findings& findings);
 
-}   // namespace livens
+}   // namespace livens::inline io_internal

@@ -10,7 +10,7 @@
 #include "livens/io/scenario/joints/joints.h"
 #include "livens/io/scenario/run/run.h"
 
-namespace livens {
+namespace livens::inline io_internal {
 
 namespace {
 
@@ -112,4 +112,4 @@ void move_bodies(Builder& builder)
     });
 }
 
-}   // namespace livens
+}   // namespace livens::inline io_internal

@@ -10,7 +10,7 @@
 #include "livens/base/text.h"
 #include "livens/io/scenario/run/run.h"
 
-namespace livens {
+namespace livens::inline io_internal {
 
 namespace {
 
@@ -293,4 +293,4 @@ bool read_time(Builder& builder, const Section& time, const Section* method, Sce
     return true;
 }
 
-}   // namespace livens
+}   // namespace livens::inline io_internal

@@ -4,10 +4,10 @@
 
 #include <string_view>
 
-namespace livens {
+namespace livens::inline io_internal {
 
 /// docs/diagnostics.md, compiled in (cmake/diagnostics.cmake): a page begins with `## code`, pages stand in
 /// the order of their codes.
 std::string_view diagnostics_markdown();
 
-}   // namespace livens
+}   // namespace livens::inline io_internal

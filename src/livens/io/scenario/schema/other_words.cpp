@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-namespace livens {
+namespace livens::inline io_internal {
 
 namespace {
 
@@ -110,4 +110,4 @@ std::string type_told_by_keys(const Node& node, const Table& table)
                            : "write " + std::string(table.chooser) + " = \"" + std::string(only->word) + "\"";
 }
 
-}   // namespace livens
+}   // namespace livens::inline io_internal

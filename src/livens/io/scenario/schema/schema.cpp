@@ -9,7 +9,7 @@
 
 #include "livens/base/text.h"
 
-namespace livens {
+namespace livens::inline io_internal {
 
 namespace {
 
@@ -171,4 +171,4 @@ std::vector<double> fallback_numbers(const Key& key)
     return numbers;
 }
 
-}   // namespace livens
+}   // namespace livens::inline io_internal

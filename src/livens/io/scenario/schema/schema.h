@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-namespace livens {
+namespace livens::inline io_internal {
 
 /// One form of a value in the file.
 enum class Form : std::uint8_t {
@@ -162,4 +162,4 @@ std::string describe_type(const Key& key);
 /// The numbers of a fallback: "[0, 0, 0]" -> 0, 0, 0.
 std::vector<double> fallback_numbers(const Key& key);
 
-}   // namespace livens
+}   // namespace livens::inline io_internal

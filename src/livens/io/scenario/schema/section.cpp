@@ -9,7 +9,7 @@
 #include "livens/io/scenario/schema/other_words.h"
 #include "livens/io/scenario/text/units.h"
 
-namespace livens {
+namespace livens::inline io_internal {
 
 namespace {
 
@@ -396,4 +396,4 @@ const Section* only_section(const Section& section, std::string_view key)
     return sections.empty() ? nullptr : &sections.front();
 }
 
-}   // namespace livens
+}   // namespace livens::inline io_internal

@@ -13,7 +13,7 @@
 #include "livens/io/scenario/text/document.h"
 #include "livens/io/scenario/text/findings.h"
 
-namespace livens {
+namespace livens::inline io_internal {
 
 class Section;
 
@@ -101,4 +101,4 @@ private:
 /// The table `key` of a section; null if it is not there.
 const Section* only_section(const Section& section, std::string_view key);
 
-}   // namespace livens
+}   // namespace livens::inline io_internal

@@ -12,7 +12,7 @@
 
 #include "livens/io/scenario/text/findings.h"
 
-namespace livens {
+namespace livens::inline io_internal {
 
 struct NodeContent;
 
@@ -62,4 +62,4 @@ bool scan(std::string_view text, Findings& findings);
 /// only.
 std::optional<Node> parse_toml(std::string_view text, Findings& findings);
 
-}   // namespace livens
+}   // namespace livens::inline io_internal

@@ -8,7 +8,7 @@
 #include <cassert>
 #include <tuple>
 
-namespace livens {
+namespace livens::inline io_internal {
 
 namespace {
 
@@ -123,4 +123,4 @@ std::string suggest(std::string_view word, std::span<const std::string_view> can
     return text;
 }
 
-}   // namespace livens
+}   // namespace livens::inline io_internal

@@ -9,7 +9,7 @@
 
 #include "livens/io/diagnostic.h"
 
-namespace livens {
+namespace livens::inline io_internal {
 
 /// Where something stands in a file; line and column count characters from 1, line 0 is the whole file.
 struct SourceLocation {
@@ -57,4 +57,4 @@ std::string_view closest(std::string_view word, std::span<const std::string_view
 /// "did you mean 'position'?", or else what is allowed.
 std::string suggest(std::string_view word, std::span<const std::string_view> candidates);
 
-}   // namespace livens
+}   // namespace livens::inline io_internal

@@ -8,7 +8,7 @@
 #include "livens/io/scenario.h"
 #include "livens/io/scenario/text/document.h"
 
-namespace livens {
+namespace livens::inline io_internal {
 
 namespace {
 
@@ -177,4 +177,4 @@ std::string_view describe(Node::Kind kind)
     return "";
 }
 
-}   // namespace livens
+}   // namespace livens::inline io_internal

@@ -9,7 +9,7 @@
 
 #include "livens/io/scenario/text/document.h"
 
-namespace livens {
+namespace livens::inline io_internal {
 
 /// Thrown by the parser's assertions and where it holds that it cannot come: version 3.3 has some that a file
 /// can break, "[#]" is one. Aborting is no answer to a file, nor is going on as if they held.
@@ -17,7 +17,7 @@ struct ParserFault {};
 
 [[noreturn]] static void stop_parser() { throw ParserFault(); }
 
-}   // namespace livens
+}   // namespace livens::inline io_internal
 
 // Syntax errors as a value, not an exception; decimal numbers by from_chars: correctly rounded in every
 // locale. Without assertions (NDEBUG) toml++ takes TOML_ASSERT away again and lets Clang assume the
@@ -38,7 +38,7 @@ struct ParserFault {};
 #include <toml++/toml.h>
 #pragma pop_macro("NDEBUG")
 
-namespace livens {
+namespace livens::inline io_internal {
 
 namespace {
 
@@ -282,4 +282,4 @@ std::optional<Node> parse_toml(std::string_view text, Findings& findings)
     return std::nullopt;
 }
 
-}   // namespace livens
+}   // namespace livens::inline io_internal

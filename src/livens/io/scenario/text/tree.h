@@ -7,7 +7,7 @@
 #include "livens/io/scenario.h"
 #include "livens/io/scenario/text/document.h"
 
-namespace livens {
+namespace livens::inline io_internal {
 
 enum class TreePart {
     whole,
@@ -19,4 +19,4 @@ enum class TreePart {
 ScenarioResult read_tree(const Node& root, std::string text, const MeshSource& meshes = {},
                          TreePart part = TreePart::whole);
 
-}   // namespace livens
+}   // namespace livens::inline io_internal

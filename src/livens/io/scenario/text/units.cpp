@@ -11,7 +11,7 @@
 
 #include "livens/base/text.h"
 
-namespace livens {
+namespace livens::inline io_internal {
 
 namespace {
 
@@ -216,4 +216,4 @@ Quantity parse_quantity(std::string_view text, std::string_view si_unit)
     return {value, "", ""};
 }
 
-}   // namespace livens
+}   // namespace livens::inline io_internal

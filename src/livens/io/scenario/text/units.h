@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-namespace livens {
+namespace livens::inline io_internal {
 
 /// Exponents of the base quantities. Angles count, so that an angle cannot stand for a number or a spin for a
 /// frequency.
@@ -36,4 +36,4 @@ struct Quantity {
 /// A number and a unit of the dimension of `si_unit`.
 Quantity parse_quantity(std::string_view text, std::string_view si_unit);
 
-}   // namespace livens
+}   // namespace livens::inline io_internal

@@ -7,7 +7,7 @@
 
 #include "livens/solvers/dense.h"
 
-namespace livens {
+namespace livens::inline spacetime_internal {
 
 /// Anderson's acceleration [Anderson1965]: the combination of the last steps whose proposals cancel best.
 /// Where proposals are linear in what was taken it is a minimal residual method without the matrix
@@ -31,4 +31,4 @@ private:
     Cholesky gram_;
 };
 
-}   // namespace livens
+}   // namespace livens::inline spacetime_internal

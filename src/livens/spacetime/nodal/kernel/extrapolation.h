@@ -10,7 +10,7 @@
 #include "livens/spacetime/nodal/rule.h"
 #include "livens/time/basis.h"
 
-namespace livens {
+namespace livens::inline spacetime_internal {
 
 /// Places of nodes as lanes::Values has them: of each body the shift of its centre and the quaternion that
 /// turns it from the start of the element, 7 numbers, each for all nodes in lanes; lane 0 is the end of the
@@ -50,4 +50,4 @@ private:
     AlignedDoubles weights_;   // of lane l of what is remembered (last: its start), row by row of lanes
 };
 
-}   // namespace livens
+}   // namespace livens::inline spacetime_internal

@@ -21,7 +21,8 @@ constexpr int elements_alone = 16;   // behind one that was not found near the m
 
 }   // namespace
 
-KernelGuess::KernelGuess(const Tables& tables, const ElementRule& rule, const lanes::Functions* functions)
+KernelGuess::KernelGuess(const ModelTables& tables, const ElementRule& rule,
+                         const lanes::Functions* functions)
     : tables_(tables), rule_(rule), functions_(functions), twist_(tables.n_twists)
 {
     if (functions == nullptr) return;
@@ -55,17 +56,17 @@ void KernelGuess::place_series(const TwistSeries& series, double tau, const Inst
     }
 }
 
-void KernelGuess::place(const Stretch& stretch, const InstantState& start, double* place)
+void KernelGuess::place(const WindowLayout& layout, const InstantState& start, double* place)
 {
-    was_followed_ = n_alone_ == 0 && following_.place(stretch, place);
+    was_followed_ = n_alone_ == 0 && following_.place(layout, place);
     if (was_followed_) {
         by_polynomial_.is_known = false;   // nothing to compare
         return;
     }
-    const double h = stretch.h(0);
+    const double h = layout.h(0);
     const TwistSeries series(tables_, start, h);
     const int W = functions_->width;
-    by_polynomial_.is_known = start.has_past && polynomial_.follows(stretch.times.front(), h);
+    by_polynomial_.is_known = start.has_past && polynomial_.follows(layout.times.front(), h);
     by_series_.is_known = by_polynomial_.is_known;   // else there is nothing to compare
     if (by_polynomial_.is_known && is_polynomial_) {
         place_series(series, h, start, 1, by_series_.place.data());
@@ -107,9 +108,9 @@ void KernelGuess::compare(const double* place)
     is_polynomial_ = polynomial < (polynomial < near_enough ? much_nearer : 1) * series;
 }
 
-void KernelGuess::remember(const double* place, const Stretch& stretch)
+void KernelGuess::remember(const double* place, const WindowLayout& layout)
 {
-    polynomial_.remember(place, tables_.n_bodies(), stretch.times.front(), stretch.times.back());
+    polynomial_.remember(place, tables_.n_bodies(), layout.times.front(), layout.times.back());
 }
 
 void KernelGuess::forget()

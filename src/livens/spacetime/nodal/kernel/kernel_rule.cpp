@@ -15,7 +15,7 @@ namespace {
 constexpr int few_steps = 3;
 
 /// Whether some body's axis of turning turns itself. Where none does, as in a plane, nothing is gyroscopic.
-bool turns_in_space(const Tables& tables, const InstantState& start, double h)
+bool turns_in_space(const ModelTables& tables, const InstantState& start, double h)
 {
     const std::vector<double>& accelerations = start.acceleration[h > 0 ? 1 : 0];
     return std::ranges::any_of(tables.bodies, [&](const BodyTable& body) {
@@ -28,7 +28,7 @@ bool turns_in_space(const Tables& tables, const InstantState& start, double h)
 
 }   // namespace
 
-KernelRule::KernelRule(const Tables& tables, const ElementRule& rule, const lanes::Functions* functions)
+KernelRule::KernelRule(const ModelTables& tables, const ElementRule& rule, const lanes::Functions* functions)
     : tables_(tables), rule_(rule), width_(functions != nullptr ? functions->width : 0)
 {
     if (functions == nullptr) return;
@@ -66,12 +66,12 @@ void KernelRule::scale(double h)
     for (int A = 0; A < rule_.degree; ++A) weights[A] = h * rule_.weights[A];
 }
 
-void KernelRule::use(const Stretch& stretch, const InstantState& start, int last_steps)
+void KernelRule::use(const WindowLayout& layout, const InstantState& start, int last_steps)
 {
     lanes_.momentum = start.momentum.data();
     const int few = lanes_.in_still_axes ? few_steps - 1 : few_steps;   // which they made so few
-    lanes_.in_still_axes = last_steps > few && turns_in_space(tables_, start, stretch.h(0));
-    if (stretch.h(0) != h_) scale(stretch.h(0));
+    lanes_.in_still_axes = last_steps > few && turns_in_space(tables_, start, layout.h(0));
+    if (layout.h(0) != h_) scale(layout.h(0));
 }
 
 }   // namespace livens

@@ -5,29 +5,31 @@
 #include "livens/dynamics/lanes/aligned_doubles.h"
 #include "livens/dynamics/rows/tables.h"
 #include "livens/spacetime/nodal/kernel/kernel_functions.h"
-#include "livens/spacetime/nodal/stretch.h"
+#include "livens/spacetime/nodal/window_layout.h"
 
-namespace livens {
-
+namespace livens::inline dynamics_internal {
 struct InstantState;
+}   // namespace livens::inline dynamics_internal
+
+namespace livens::inline spacetime_internal {
 
 /// Numbers of an element of length 1, made once, and of one of length h.
 class KernelRule {
 public:
     /// References must outlive it; functions null: it is not asked for.
-    KernelRule(const Tables& tables, const ElementRule& rule, const lanes::Functions* functions);
+    KernelRule(const ModelTables& tables, const ElementRule& rule, const lanes::Functions* functions);
     KernelRule(const KernelRule&) = delete;
     KernelRule& operator=(const KernelRule&) = delete;
 
     /// For the element of `stretch` from `start`, if the last one took `last_steps` steps: turns go in still
     /// axes where these may save some.
-    void use(const Stretch& stretch, const InstantState& start, int last_steps);
+    void use(const WindowLayout& layout, const InstantState& start, int last_steps);
     const lanes::Rule& in_lanes() const { return lanes_; }
 
 private:
     void scale(double h);
 
-    const Tables& tables_;
+    const ModelTables& tables_;
     const ElementRule& rule_;
     int width_;
     AlignedDoubles numbers_;   // of length 1, then of length h
@@ -35,4 +37,4 @@ private:
     double h_ = 0;
 };
 
-}   // namespace livens
+}   // namespace livens::inline spacetime_internal

@@ -11,12 +11,12 @@
 
 namespace livens {
 
-KernelWrenches::KernelWrenches(const Tables& tables, const ElementRule& rule)
+KernelWrenches::KernelWrenches(const ModelTables& tables, const ElementRule& rule)
     : tables_(tables), rule_(rule), X_(12 * tables.bodies.size()), V_(X_), raw_(X_),
       of_loads_(6 * tables.bodies.size()), taken_(of_loads_)
 {}
 
-void KernelWrenches::evaluate_loads(const Stretch& stretch, const lanes::Pattern& pattern,
+void KernelWrenches::evaluate_loads(const WindowLayout& layout, const lanes::Pattern& pattern,
                                     const lanes::Values& nodes, int width)
 {
     std::ranges::fill(of_loads_, 0.0);
@@ -35,11 +35,11 @@ void KernelWrenches::evaluate_loads(const Stretch& stretch, const lanes::Pattern
                     V[i] -= center[a] * V[3 + 3 * a + i];
                 }
         }
-        if (c == 0) angles_ = stretch.angles;
+        if (c == 0) angles_ = layout.angles;
         tables_.loads.turns.follow(Configurations(X_.data()), angles_);
         std::ranges::fill(raw_, 0.0);
-        tables_.loads.add(stretch.load_point(rule_, 0, c), X_.data(), V_.data(),
-                          stretch.h(0) * rule_.loads.weights[c], raw_.data(), angles_);
+        tables_.loads.add(layout.load_point(rule_, 0, c), X_.data(), V_.data(),
+                          layout.h(0) * rule_.loads.weights[c], raw_.data(), angles_);
         for (int b = 0; b < tables_.n_bodies(); ++b) {
             if (!pattern.bodies[b].loaded) continue;
             double *F = raw_.data() + 12 * b, wrench[6];
@@ -52,12 +52,12 @@ void KernelWrenches::evaluate_loads(const Stretch& stretch, const lanes::Pattern
     }
 }
 
-void KernelWrenches::momentum(const Stretch& stretch, const InstantState& start, double* p) const
+void KernelWrenches::momentum(const WindowLayout& layout, const InstantState& start, double* p) const
 {
     for (int b = 0; b < tables_.n_bodies(); ++b) {
         const BodyTable& body = tables_.bodies[b];
         for (int i = 0; i < body.dofs; ++i) {
-            const double weight = i < 3 ? stretch.h(0) * body.weight[i] : 0;   // no moment about the centre
+            const double weight = i < 3 ? layout.h(0) * body.weight[i] : 0;   // no moment about the centre
             p[body.first + i] = start.p[body.first + i] + weight + of_loads_[6 * b + i] + taken_[6 * b + i];
         }
     }

@@ -32,7 +32,7 @@ constexpr double farthest_parting = 1e-3;
 constexpr double widest_tolerance = 1e-4;   // beyond, two steps hardly tell how they shrink
 
 /// Null: the kernel does not serve these rows, inertias or points.
-const lanes::Functions* functions_of(const Tables& tables, const ElementRule& rule)
+const lanes::Functions* functions_of(const ModelTables& tables, const ElementRule& rule)
 {
     const int n_lanes = rule.degree;
     if (rule.points != Points::lobatto || !JointFactor::serves(tables)) return nullptr;
@@ -102,7 +102,7 @@ struct Shrinking {
 
 }   // namespace
 
-MarchKernel::MarchKernel(const Tables& tables, const ElementRule& rule)
+MarchKernel::MarchKernel(const ModelTables& tables, const ElementRule& rule)
     : tables_(tables), rule_(rule), functions_(functions_of(tables, rule)),
       lane_rule_(tables, rule, functions_), wrenches_(tables, rule), guess_(tables, rule, functions_)
 {}
@@ -121,11 +121,11 @@ void MarchKernel::use(const InstantState& start)
     for (const int row : chosen) place_.push_back(places[row]);
 }
 
-void MarchKernel::evaluate_loads(const Stretch& stretch)
+void MarchKernel::evaluate_loads(const WindowLayout& layout)
 {
     if (tables_.model->loads().empty()) return;
     functions_->interpolate(pattern_->view(), start_->values(), nodes_.values(), lane_rule_.in_lanes());
-    wrenches_.evaluate_loads(stretch, pattern_->view(), nodes_.values(), functions_->width);
+    wrenches_.evaluate_loads(layout, pattern_->view(), nodes_.values(), functions_->width);
 }
 
 /// In lengths and radians.
@@ -147,10 +147,10 @@ double MarchKernel::size_of_proposal() const
     return std::max(far / tables_.length, wide);
 }
 
-bool MarchKernel::iterate(const Stretch& stretch, const InstantState& start, const NewtonOptions& options,
+bool MarchKernel::iterate(const WindowLayout& layout, const InstantState& start, const NewtonOptions& options,
                           bool is_accelerated, NewtonReport& report)
 {
-    guess_.place(stretch, start, nodes_.values().place);
+    guess_.place(layout, start, nodes_.values().place);
     const bool follows = guess_.was_followed();
     const lanes::Pattern& pattern = pattern_->view();
     const lanes::Values &nodes = nodes_.values(), &from = start_->values();
@@ -168,7 +168,7 @@ bool MarchKernel::iterate(const Stretch& stretch, const InstantState& start, con
             pivot = *std::min_element(nodes.pivots, nodes.pivots + rule_.degree);
             moved = 0;
         }
-        evaluate_loads(stretch);
+        evaluate_loads(layout);
         functions_->balance(pattern, from, nodes, lane_rule_.in_lanes(), steps == 0, sizes);
         evaluations_ += rule_.size();
         if (!std::isfinite(sizes.finite)) return false;
@@ -189,28 +189,28 @@ bool MarchKernel::iterate(const Stretch& stretch, const InstantState& start, con
     return std::min(pivot, from.pivots[0]) > least_pivot * least_pivot;   // false: also no number
 }
 
-bool MarchKernel::solve(const Stretch& stretch, const InstantState& start, const NewtonOptions& options,
+bool MarchKernel::solve(const WindowLayout& layout, const InstantState& start, const NewtonOptions& options,
                         bool soon, NewtonReport& report)
 {
     is_solved_ = false;
     if (!start.held.by_joints) return false;
     use(start);
-    lane_rule_.use(stretch, start, last_steps_);
+    lane_rule_.use(layout, start, last_steps_);
     const bool is_large = !soon && tables_.n_twists >= many_twists && options.max_iterations >= most_steps;
     const auto iterates = [&] {
         guess_.begin();
-        if (iterate(stretch, start, options, false, report)) return true;
+        if (iterate(layout, start, options, false, report)) return true;
         if (!guess_.was_followed()) return false;
         guess_.part();
-        return iterate(stretch, start, options, false, report);
+        return iterate(layout, start, options, false, report);
     };
     if (!(is_large && last_steps_ > most_steps)) is_solved_ = iterates();
-    if (is_large && !is_solved_) is_solved_ = iterate(stretch, start, options, true, report);
+    if (is_large && !is_solved_) is_solved_ = iterate(layout, start, options, true, report);
     last_steps_ = is_solved_ ? report.iterations : most_steps;
     if (is_solved_ && guess_.learns()) {
         guess_.compare(nodes_.values().place);
         nodes_.swap_places();
-        guess_.remember(nodes_.values().last_place, stretch);
+        guess_.remember(nodes_.values().last_place, layout);
     }
     return is_solved_;
 }
@@ -226,10 +226,10 @@ double MarchKernel::pivot(int A) const
     return std::sqrt(A == 0 ? start_->values().pivots[0] : nodes_.values().pivots[lane_of(A)]);
 }
 
-void MarchKernel::momentum(const Stretch& stretch, const InstantState& start, double* p)
+void MarchKernel::momentum(const WindowLayout& layout, const InstantState& start, double* p)
 {
     functions_->sum_impulses(pattern_->view(), start_->values(), nodes_.values(), wrenches_.taken());
-    wrenches_.momentum(stretch, start, p);
+    wrenches_.momentum(layout, start, p);
 }
 
 }   // namespace livens

@@ -11,7 +11,7 @@
 #include "livens/spacetime/nodal/kernel/kernel_rule.h"
 #include "livens/spacetime/nodal/kernel/kernel_wrenches.h"
 
-namespace livens {
+namespace livens::inline spacetime_internal {
 
 /// The equations of NodalSystem for one element from a known state, by
 ///
@@ -22,7 +22,7 @@ namespace livens {
 class MarchKernel {
 public:
     /// References must outlive the kernel.
-    MarchKernel(const Tables& tables, const ElementRule& rule);
+    MarchKernel(const ModelTables& tables, const ElementRule& rule);
 
     /// Whether there are lanes for the rule, and JointFactor serves.
     bool serves() const { return functions_ != nullptr; }
@@ -35,7 +35,7 @@ public:
     /// The element of `stretch` from `start`. False: not converged within 14 steps, steps that do not shrink
     /// to 0.3 twice, a number that is not finite, or a pivot that is nearly zero. Steps of many bodies, of
     /// which a tangent would be large, are then combined (Acceleration), unless it has to be told `soon`.
-    bool solve(const Stretch& stretch, const InstantState& start, const NewtonOptions& options, bool soon,
+    bool solve(const WindowLayout& layout, const InstantState& start, const NewtonOptions& options, bool soon,
                NewtonReport& report);
     /// The last solve() was successful, and nothing else was tried since.
     bool is_solved() const { return is_solved_; }
@@ -65,19 +65,19 @@ public:
     /// Smallest scaled pivot of the constraints at a node.
     double pivot(int A) const;
     /// Momentum and spin at the end, about the centres of mass.
-    void momentum(const Stretch& stretch, const InstantState& start, double* p);
+    void momentum(const WindowLayout& layout, const InstantState& start, double* p);
 
 private:
     static constexpr int many_twists = 100;
 
     void use(const InstantState& start);
-    void evaluate_loads(const Stretch& stretch);
-    bool iterate(const Stretch& stretch, const InstantState& start, const NewtonOptions& options,
+    void evaluate_loads(const WindowLayout& layout);
+    bool iterate(const WindowLayout& layout, const InstantState& start, const NewtonOptions& options,
                  bool is_accelerated, NewtonReport& report);
     double size_of_proposal() const;
     int lane_of(int B) const { return B == rule_.degree ? 0 : B; }
 
-    const Tables& tables_;
+    const ModelTables& tables_;
     const ElementRule& rule_;
     const lanes::Functions* functions_;   // null: no lanes for this rule or model
     std::shared_ptr<const RowPattern> pattern_;
@@ -93,4 +93,4 @@ private:
     bool is_solved_ = false, has_near_factor_ = false;
 };
 
-}   // namespace livens
+}   // namespace livens::inline spacetime_internal

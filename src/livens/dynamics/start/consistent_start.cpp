@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Consistent initial conditions: directors, positions, branches, rank, inertia and velocities of a start, in
 // this order, as each step takes the ones before for granted. theory.md, "Starting".
-#include "livens/dynamics/start/closing.h"
+#include "livens/dynamics/start/consistent_start.h"
 
 #include <algorithm>
 #include <cmath>
@@ -274,7 +274,7 @@ Fault why_weightless(const Model& model, std::span<const Matrix34> X)
 }
 
 /// One sentence a joint on its redundant rows, which ascend.
-void note_redundancy(const Model& model, ClosedStart& assembly)
+void note_redundancy(const Model& model, ConsistentStart& assembly)
 {
     for (std::size_t i = 0; i < assembly.redundant.size();) {
         const int joint = model.row_joint(assembly.redundant[i]);
@@ -291,9 +291,9 @@ void note_redundancy(const Model& model, ClosedStart& assembly)
 
 }   // namespace
 
-TriedStart try_close_start(const Model& the_model, const State& start, StartPolicy policy)
+TriedStart try_consistent_start(const Model& the_model, const State& start, StartPolicy policy)
 {
-    ClosedStart closed;
+    ConsistentStart closed;
     closed.start = start;
     std::optional<Model> now;
     if (the_model.has_drives()) now = frozen(the_model, {start.t});
@@ -325,9 +325,9 @@ TriedStart try_close_start(const Model& the_model, const State& start, StartPoli
     return {std::move(closed), {}};
 }
 
-ClosedStart close_start(const Model& model, const State& start, StartPolicy policy)
+ConsistentStart consistent_start(const Model& model, const State& start, StartPolicy policy)
 {
-    TriedStart tried = try_close_start(model, start, policy);
+    TriedStart tried = try_consistent_start(model, start, policy);
     if (!tried.closed) throw InputError(std::move(tried.why));
     return std::move(*tried.closed);
 }

@@ -2,7 +2,7 @@
 // Places of nodes as another motion on the same elements has them: shifts of centres of mass and quaternions
 // R_0^T R from the start of the element on, interpolated where its degree is another (docs/theory.md, "The
 // estimated error": the second solution follows the first).
-#include "livens/spacetime/nodal/kernel/following.h"
+#include "livens/spacetime/nodal/kernel/reference_predictor.h"
 
 #include <algorithm>
 #include <cmath>
@@ -51,13 +51,13 @@ Quaternion quaternion_of(const double* R)
 
 }   // namespace
 
-Following::Following(const Motion& motion, const Tables& tables, const ElementRule& rule,
-                     const lanes::Functions& functions)
+ReferencePredictor::ReferencePredictor(const Motion& motion, const ModelTables& tables,
+                                       const ElementRule& rule, const lanes::Functions& functions)
     : motion_(&motion), tables_(&tables), rule_(&rule), functions_(&functions)
 {}
 
 /// Of the motion's nodes at those of the rule.
-void Following::weigh()
+void ReferencePredictor::weigh()
 {
     degree_ = motion_->X.degree;
     const int W = functions_->width, p = rule_->degree;
@@ -79,7 +79,7 @@ void Following::weigh()
 }
 
 /// Nodes 1 .. degree of a body, from one end of an element, the last of them in its own lane.
-void Following::follow_body(int body, int element, bool is_backwards, int last_lane, double* places)
+void ReferencePredictor::follow_body(int body, int element, bool is_backwards, int last_lane, double* places)
 {
     const int W = functions_->width;
     const BodyTable& of = tables_->bodies[body];
@@ -110,7 +110,7 @@ void Following::follow_body(int body, int element, bool is_backwards, int last_l
     }
 }
 
-bool Following::place(const Stretch& stretch, double* place)
+bool ReferencePredictor::place(const WindowLayout& layout, double* place)
 {
     if (motion_ == nullptr) return false;
     const int n_bodies = tables_->n_bodies(), W = functions_->width;
@@ -119,13 +119,13 @@ bool Following::place(const Stretch& stretch, double* place)
         return false;
     const bool is_alike = motion_->X.degree == rule_->degree;   // its nodes are those that are asked for
     if (!is_alike && motion_->X.degree >= W) return false;
-    const auto [start, end] = std::minmax(stretch.times.front(), stretch.times.back());
+    const auto [start, end] = std::minmax(layout.times.front(), layout.times.back());
     const std::vector<double>& ends = motion_->mesh.ends;
     const auto found = std::ranges::lower_bound(ends, start);
     if (found == ends.end() || *found != start || found + 1 == ends.end() || *(found + 1) != end)
         return false;
     const int element = static_cast<int>(found - ends.begin());
-    const bool is_backwards = stretch.times.front() == end;
+    const bool is_backwards = layout.times.front() == end;
     if (is_alike) {   // also where there are as many nodes as lanes
         degree_ = rule_->degree;
         for (int i = 0; i < 7 * n_bodies; ++i) std::fill_n(place + i * W, W, i % 7 == 3 ? 1.0 : 0.0);

@@ -9,17 +9,18 @@
 
 #include "livens/time/basis.h"
 
-namespace livens {
+namespace livens::inline spacetime_internal {
 
 /// The velocity jump of an element that loses `error`: local_error() the other way round.
 double velocity_jump_of(Points points, int degree, double error);
 
 /// Says where the next element ends, and hears how the last one went.
-class Pace {
+class StepSizeController {
 public:
     /// `stops` ascend and become element ends: start, output times, jumps of loads, end. Elements aim at a
     /// local error of `tolerance` and are refused far above it.
-    Pace(Points points, int degree, double tolerance, double first_length, std::vector<double> stops);
+    StepSizeController(Points points, int degree, double tolerance, double first_length,
+                       std::vector<double> stops);
 
     /// End of the next element, which begins at t.
     double next_end(double t) const;
@@ -45,7 +46,7 @@ public:
     bool is_stop(double t) const;
     /// Whether shorter elements may help; if not they vanish.
     /// `most`: the jump it might have had; 0: largest_jump().
-    bool refused(double length, double jump, double most = 0);
+    bool rejected(double length, double jump, double most = 0);
 
     double end() const { return stops_.back(); }
     /// Length that the motion would have allowed up to here without any stops, and that of elements of
@@ -76,4 +77,4 @@ private:
     bool tells_length_ = false;   // by some jump above rounding; else a sum of lower bounds
 };
 
-}   // namespace livens
+}   // namespace livens::inline spacetime_internal

@@ -21,7 +21,7 @@ enum class StartPolicy {
 /// In scenarios, in this order.
 constexpr std::array<std::string_view, 2> words_of(StartPolicy) { return {"check", "project"}; }
 
-struct ClosedStart {
+struct ConsistentStart {
     State start;                           ///< consistent; directors orthonormal, V = [v, w x d_i]
     std::vector<int> independent;          ///< rows of the model, ascending
     std::vector<int> redundant;     ///< rows implied by the others: dropped, multipliers not unique
@@ -38,13 +38,13 @@ struct ClosedStart {
 ///   `joint-branch`        axes that must coincide are opposite
 ///   `joint-contradiction` a redundant row that cannot be fulfilled with the others
 ///   `spin-without-inertia` a motion that no joint holds and that carries no inertia (a needle's free spin)
-ClosedStart close_start(const Model& model, const State& start, StartPolicy policy);
+ConsistentStart consistent_start(const Model& model, const State& start, StartPolicy policy);
 
-/// A closed start, or what close_start() would throw.
+/// A closed start, or what consistent_start() would throw.
 struct TriedStart {
-    std::optional<ClosedStart> closed;
+    std::optional<ConsistentStart> closed;
     Complaint why;   ///< where there is none
 };
-TriedStart try_close_start(const Model& model, const State& start, StartPolicy policy);
+TriedStart try_consistent_start(const Model& model, const State& start, StartPolicy policy);
 
 }   // namespace livens

@@ -9,7 +9,7 @@
 #include "livens/spacetime/nodal/rule.h"
 #include "livens/time/time_mesh.h"
 
-namespace livens {
+namespace livens::inline spacetime_internal {
 
 /// Nodes 0..n of consecutive elements of degree p; element e spans nodes e p .. (e + 1) p. Where the state is
 /// given at the end of time the elements are numbered, and their nodes lie, against time: all lengths are
@@ -24,7 +24,7 @@ namespace livens {
 /// | P at the first, X at the last| 0..n-1    | 0..n-1               | 0..n-1      |
 /// | P at both                    | 0..n      | 0..n                 | 0..n        |
 /// | X and P at the first, radau  | 1..n      | 1..n                 | 1..n        |
-struct Stretch {
+struct WindowLayout {
     std::vector<double> times;    ///< element ends
     std::vector<double> angles;   ///< of loads at the first node, or about there; see Turns
     int degree = 1;
@@ -65,4 +65,4 @@ struct Stretch {
     }
 };
 
-}   // namespace livens
+}   // namespace livens::inline spacetime_internal

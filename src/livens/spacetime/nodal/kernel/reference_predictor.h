@@ -9,29 +9,29 @@
 #include "livens/multibody/motion.h"
 #include "livens/spacetime/nodal/kernel/kernel_functions.h"
 #include "livens/spacetime/nodal/rule.h"
-#include "livens/spacetime/nodal/stretch.h"
+#include "livens/spacetime/nodal/window_layout.h"
 
-namespace livens {
+namespace livens::inline spacetime_internal {
 
 /// Bodies move and turn, from the start of an element on, as they do in the motion that is followed: what
 /// both motions are apart at the start does not count, only what they part by inside the element.
-class Following {
+class ReferencePredictor {
 public:
-    Following() = default;
+    ReferencePredictor() = default;
     /// References must outlive it; the motion may grow.
-    Following(const Motion& motion, const Tables& tables, const ElementRule& rule,
-              const lanes::Functions& functions);
+    ReferencePredictor(const Motion& motion, const ModelTables& tables, const ElementRule& rule,
+                       const lanes::Functions& functions);
 
     /// Places of all nodes, as lanes::Values has them. False: the motion has no element there with these
     /// ends.
-    bool place(const Stretch& stretch, double* place);
+    bool place(const WindowLayout& layout, double* place);
 
 private:
     void weigh();
     void follow_body(int body, int element, bool is_backwards, int last_lane, double* places);
 
     const Motion* motion_ = nullptr;
-    const Tables* tables_ = nullptr;
+    const ModelTables* tables_ = nullptr;
     const ElementRule* rule_ = nullptr;
     const lanes::Functions* functions_ = nullptr;
     int degree_ = 0;   // of the motion, for which the weights below are
@@ -40,4 +40,4 @@ private:
     AlignedDoubles places_;   // of its nodes
 };
 
-}   // namespace livens
+}   // namespace livens::inline spacetime_internal

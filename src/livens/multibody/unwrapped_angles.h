@@ -5,23 +5,24 @@
 #include <span>
 #include <vector>
 
-#include "livens/multibody/model.h"
+#include "livens/multibody/joint_coordinates.h"
 
 namespace [[gnu::visibility("default")]] livens {
 
+class Model;
+struct State;
+
 /// Load::angles of all loads of a model. A row holds a number for each, less what it is where the bodies are
 /// stated; whoever goes along a motion carries it with him.
-class Turns {
+class UnwrappedAngles {
 public:
-    explicit Turns(const Model& model);
+    explicit UnwrappedAngles(const Model& model);
 
     bool empty() const { return angles_.empty(); }
     std::size_t size() const { return angles_.size(); }
     /// The row where nothing has turned yet, or that of a state.
-    std::vector<double> begin(const State& state = {}) const
-    {
-        return state.angles.empty() ? std::vector<double>(angles_.size(), 0.0) : state.angles;
-    }
+    std::vector<double> begin() const { return std::vector<double>(angles_.size(), 0.0); }
+    std::vector<double> begin(const State& state) const;
     /// Goes on to X, each angle the shorter way.
     void follow(const Configurations& X, std::span<double> row) const;
     /// The same of the angles of one load, for which X of its bodies is enough.

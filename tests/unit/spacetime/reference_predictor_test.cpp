@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Places of nodes as a motion nearby has them.
-#include "livens/spacetime/nodal/kernel/following.h"
+#include "livens/spacetime/nodal/kernel/reference_predictor.h"
 
 #include <gtest/gtest.h>
 
@@ -56,24 +56,24 @@ Motion motion_of(const Turn& turn, int degree)
     return motion;
 }
 
-Stretch stretch_of(double from, double to, int degree)
+WindowLayout stretch_of(double from, double to, int degree)
 {
-    Stretch stretch;
+    WindowLayout stretch;
     stretch.times = {from, to};
     stretch.degree = degree;
     return stretch;
 }
 
 /// Largest difference between where the found places have the slab and the bob and where they are.
-double error_of(const Turn& turn, const Stretch& stretch, int of_motion)
+double error_of(const Turn& turn, const WindowLayout& stretch, int of_motion)
 {
     const Model model = two_bodies();
-    const Tables tables(model, {});
+    const ModelTables tables(model, {});
     const ElementRule rule = lobatto_rule(stretch.degree);
     const lanes::Functions& functions = *lanes::sse2(stretch.degree);
     const int W = functions.width;
     const Motion motion = motion_of(turn, of_motion);
-    Following following(motion, tables, rule, functions);
+    ReferencePredictor following(motion, tables, rule, functions);
     std::vector<double> place(static_cast<std::size_t>(14 * W), 0.25);
     EXPECT_TRUE(following.place(stretch, place.data()));
     const Matrix3 first = directors_from_rotation_vector({0.4, -1, 0.7});
@@ -103,7 +103,7 @@ double error_of(const Turn& turn, const Stretch& stretch, int of_motion)
     return error;
 }
 
-TEST(Following, HasThePlacesOfTheMotion)
+TEST(ReferencePredictor, HasThePlacesOfTheMotion)
 {
     // from small turns to more than a whole one in an element, about axes that each make another number the
     // largest of the quaternion
@@ -123,15 +123,16 @@ TEST(Following, HasThePlacesOfTheMotion)
     EXPECT_GT(error_of(about({0, 0, 1}, 5), stretch_of(0, 1, 5), 3), 1e-3);
 }
 
-TEST(Following, RefusesWhatItHasNoElementFor)
+TEST(ReferencePredictor, RefusesWhatItHasNoElementFor)
 {
     const Model model = two_bodies();
-    const Tables tables(model, {});
+    const ModelTables tables(model, {});
     const ElementRule rule = lobatto_rule(6);
     const lanes::Functions& functions = *lanes::sse2(6);
     std::vector<double> place(static_cast<std::size_t>(14 * functions.width));
     const auto follows = [&](const Motion& motion, double from, double to) {
-        return Following(motion, tables, rule, functions).place(stretch_of(from, to, 6), place.data());
+        return ReferencePredictor(motion, tables, rule, functions)
+            .place(stretch_of(from, to, 6), place.data());
     };
     const Turn turn = about({0, 0, 1}, 1);
     const Motion motion = motion_of(turn, 4);
@@ -148,9 +149,9 @@ TEST(Following, RefusesWhatItHasNoElementFor)
     EXPECT_FALSE(follows(other, 0, 1));
     Model alone;
     alone.add_body(point_mass("bob", 1, {}));
-    const Tables fewer(alone, {});
-    EXPECT_FALSE(Following(motion, fewer, rule, functions).place(stretch_of(0, 1, 6), place.data()));
-    EXPECT_FALSE(Following().place(stretch_of(0, 1, 6), place.data())) << "nothing to follow";
+    const ModelTables fewer(alone, {});
+    EXPECT_FALSE(ReferencePredictor(motion, fewer, rule, functions).place(stretch_of(0, 1, 6), place.data()));
+    EXPECT_FALSE(ReferencePredictor().place(stretch_of(0, 1, 6), place.data())) << "nothing to follow";
 }
 
 }   // namespace

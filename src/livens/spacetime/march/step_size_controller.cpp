@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "livens/spacetime/march/pace.h"
+#include "livens/spacetime/march/step_size_controller.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@
 #include "livens/diagnostics/acceptance.h"
 #include "livens/diagnostics/diagnostics.h"
 
-namespace livens {
+namespace livens::inline spacetime_internal {
 
 namespace {
 
@@ -44,14 +44,15 @@ double velocity_jump_of(Points points, int degree, double error)
     return power(error / local_error(points, degree, 1), 1 / exponent(points, degree));
 }
 
-Pace::Pace(Points points, int degree, double tolerance, double first_length, std::vector<double> stops)
+StepSizeController::StepSizeController(Points points, int degree, double tolerance, double first_length,
+                                       std::vector<double> stops)
     : points_(points), degree_(degree), tolerance_(tolerance), length_(first_length),
       largest_jump_(
           std::min(acceptable_velocity_jump, velocity_jump_of(points, degree, refused_above * tolerance))),
       stops_(std::move(stops))
 {}
 
-double Pace::next_end(double t) const
+double StepSizeController::next_end(double t) const
 {
     const double stop = *std::upper_bound(stops_.begin(), stops_.end() - 1, t);
     const double left = stop - t, pieces = std::ceil(0.98 * left / length_);
@@ -60,31 +61,37 @@ double Pace::next_end(double t) const
     return end < stop ? end : stop;
 }
 
-bool Pace::is_stop(double t) const { return std::binary_search(stops_.begin(), stops_.end(), t); }
+bool StepSizeController::is_stop(double t) const
+{
+    return std::binary_search(stops_.begin(), stops_.end(), t);
+}
 
-void Pace::sample_at(std::vector<double> stops, double error) { sampled_ = {std::move(stops), error}; }
+void StepSizeController::sample_at(std::vector<double> stops, double error)
+{
+    sampled_ = {std::move(stops), error};
+}
 
-bool Pace::may_leave(double stop) const
+bool StepSizeController::may_leave(double stop) const
 {
     return is_stop(stop) && stop != stops_.front() && stop != stops_.back() &&
            std::ranges::binary_search(sampled_.first, stop);
 }
 
-void Pace::leave(double stop)
+void StepSizeController::leave(double stop)
 {
     if (!may_leave(stop)) return;
     stops_.erase(std::ranges::lower_bound(stops_, stop));
     left_.push_back(stop);
 }
 
-double Pace::largest_jump(double start, double end) const
+double StepSizeController::largest_jump(double start, double end) const
 {
     const auto inside = std::ranges::upper_bound(left_, start);
     const bool is_sampled = inside != left_.end() && *inside < end;
     return is_sampled ? std::min(largest_jump_, sampled_.second) : largest_jump_;
 }
 
-double Pace::suggestion(double length, double jump) const
+double StepSizeController::suggestion(double length, double jump) const
 {
     const double error = local_error(points_, degree_, jump);
     return length * safety * power(tolerance_ / error, 1 / order(points_, degree_));
@@ -92,14 +99,14 @@ double Pace::suggestion(double length, double jump) const
 
 /// By how much the next scale will be smaller than this one, if scales go on as they do. The smaller of the
 /// two before counts, since jumps that pass through zero make single scales large.
-double Pace::trend_to(double scale)
+double StepSizeController::trend_to(double scale)
 {
     const double before = std::min(scales_[0], scales_[1]);
     scales_[0] = std::exchange(scales_[1], scale);
     return std::clamp(scale / before, steepest, 1.0);
 }
 
-void Pace::accepted(double length, double jump, int steps)
+void StepSizeController::accepted(double length, double jump, int steps)
 {
     // an element that a stop cut short says as much as a whole one, but not beyond what was tried before
     const double tried = steps <= far_too_many && length < length_ ? length_ : 0;
@@ -120,7 +127,7 @@ void Pace::accepted(double length, double jump, int steps)
     ++n_accepted_;
 }
 
-bool Pace::refused(double length, double jump, double most)
+bool StepSizeController::rejected(double length, double jump, double most)
 {
     if (most == 0) most = largest_jump_;
     const bool is_lie = !(jump <= acceptable_velocity_jump);
@@ -136,22 +143,22 @@ bool Pace::refused(double length, double jump, double most)
     return ascends() && length_ > shortest * (stops_.back() - stops_.front());
 }
 
-bool Pace::ascends() const
+bool StepSizeController::ascends() const
 {
     const double latest = std::max(std::abs(stops_.front()), std::abs(stops_.back()));
     return length_ > 4 * std::numeric_limits<double>::epsilon() * latest;
 }
 
-double Pace::mean_length(int degree, double tolerance) const
+double StepSizeController::mean_length(int degree, double tolerance) const
 {
     if (n_accepted_ == 0) return 0;
     const double scale = exponential(sum_of_scales_ / n_accepted_);
     return safety * scale * power(velocity_jump_of(points_, degree, tolerance), 1.0 / (degree + 1));
 }
 
-double Pace::mean_stop() const
+double StepSizeController::mean_stop() const
 {
     return (stops_.back() - stops_.front()) / static_cast<double>(stops_.size() - 1);
 }
 
-}   // namespace livens
+}   // namespace livens::inline spacetime_internal

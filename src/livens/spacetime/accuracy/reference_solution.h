@@ -4,17 +4,17 @@
 
 #include "livens/spacetime/solve.h"
 
-namespace livens {
+namespace livens::inline spacetime_internal {
 
 /// The same problem with one or two degrees more (two: lobatto from degree 4, under loads or in elements
 /// that hardly resolve the motion; mixed and the classical rules: by witness_of() them) on the same elements,
 /// of which it may divide some. It goes on from its own end states, so what it finds are global errors.
 /// Nothing of it is kept but these.
-class Second {
+class ReferenceSolution {
 public:
     /// References must outlive it; the motion may grow. `method` is that of the first solution.
-    Second(const Model& model, const Problem& problem, const Method& method, const SolveOptions& options,
-           const Motion& first);
+    ReferenceSolution(const Model& model, const Problem& problem, const Method& method,
+                      const SolveOptions& options, const Motion& first);
 
     /// From where it is to an element end of the first motion. False: it failed, see report().
     bool advance(int end);
@@ -75,4 +75,4 @@ double told_without_rounding(const ErrorEstimate& found);
 void count_rounding(const Model& model, std::span<const double> rounding, const TimeMesh& mesh,
                     ErrorEstimate& found);
 
-}   // namespace livens
+}   // namespace livens::inline spacetime_internal

@@ -6,16 +6,16 @@
 #include <utility>
 #include <vector>
 
-#include "livens/spacetime/march/window.h"
+namespace livens::inline spacetime_internal {
 
-namespace livens {
+class Window;
 
 /// Of a march forwards. An element that was solved over a bend is solved again up to there, and once or twice
 /// more until that is where it bends: what comes before is then smooth, and so is what comes behind
 /// (docs/theory.md, "Laws that bend").
-class EndsAtBends {
+class EventLocator {
 public:
-    explicit EndsAtBends(double duration) : shortest_(shortest * duration) {}
+    explicit EventLocator(double duration) : shortest_(shortest * duration) {}
 
     /// Where the element from `start` ends that would end at `wanted`.
     double end(double start, double wanted);
@@ -62,4 +62,4 @@ private:
     bool is_met_ = false, is_expected_ = false;
 };
 
-}   // namespace livens
+}   // namespace livens::inline spacetime_internal

@@ -1,26 +1,28 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "livens/spacetime/march/ends_at_bends.h"
+#include "livens/spacetime/march/event_locator.h"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include "livens/spacetime/march/window.h"
+
 namespace livens {
 
-double EndsAtBends::end(double start, double wanted)
+double EventLocator::end(double start, double wanted)
 {
     wanted_ = std::min(wanted, start + longest_);
     return at_ > start && at_ < wanted_ ? at_ : wanted_;
 }
 
-void EndsAtBends::begin(double end)
+void EventLocator::begin(double end)
 {
     if (is_found(end) || !std::ranges::binary_search(expected_, end)) return;
     at_ = end;
     is_expected_ = true;
 }
 
-bool EndsAtBends::moves(Window& window, double start, double end)
+bool EventLocator::moves(Window& window, double start, double end)
 {
     if (n_crowded_ >= most_crowded) return false;
     constexpr double spacings = 4 * std::numeric_limits<double>::epsilon();
@@ -38,7 +40,7 @@ bool EndsAtBends::moves(Window& window, double start, double end)
     return at_ < wanted_;
 }
 
-bool EndsAtBends::accepted(double start, double end)
+bool EventLocator::accepted(double start, double end)
 {
     const bool was_found = is_found(end);
     longest_so_far_ = std::max(longest_so_far_, end - start);

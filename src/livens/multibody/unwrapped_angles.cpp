@@ -2,13 +2,14 @@
 // Unwrapped angles of loads: whole turns, which X does not tell, are counted along the motion (theory.md,
 // "Coordinates of joints", Loads along coordinates). The count is right while no angle turns by half a turn
 // between two calls.
-#include "livens/multibody/turns.h"
+#include "livens/multibody/unwrapped_angles.h"
 
 #include "livens/base/elementary.h"
+#include "livens/multibody/model.h"
 
 namespace livens {
 
-Turns::Turns(const Model& model) : first_{0}
+UnwrappedAngles::UnwrappedAngles(const Model& model) : first_{0}
 {
     for (const Load& load : model.loads()) {
         angles_.insert(angles_.end(), load.angles.begin(), load.angles.end());
@@ -16,17 +17,22 @@ Turns::Turns(const Model& model) : first_{0}
     }
 }
 
-void Turns::follow(const Configurations& X, std::span<double> row) const
+std::vector<double> UnwrappedAngles::begin(const State& state) const
+{
+    return state.angles.empty() ? begin() : state.angles;
+}
+
+void UnwrappedAngles::follow(const Configurations& X, std::span<double> row) const
 {
     follow_some(X, row, 0, static_cast<int>(row.size()));
 }
 
-void Turns::follow_of(int load, const Configurations& X, std::span<double> row) const
+void UnwrappedAngles::follow_of(int load, const Configurations& X, std::span<double> row) const
 {
     if (!row.empty()) follow_some(X, row, first_[load], first_[load + 1]);
 }
 
-void Turns::follow_some(const Configurations& X, std::span<double> row, int from, int until) const
+void UnwrappedAngles::follow_some(const Configurations& X, std::span<double> row, int from, int until) const
 {
     for (int i = from; i < until; ++i) {
         const PairForm &c = angles_[i].forms[0], &s = angles_[i].forms[1];
