@@ -5,7 +5,8 @@ find_package(Threads REQUIRED)
 
 add_library(livens_flags INTERFACE)
 target_include_directories(livens_flags INTERFACE ${PROJECT_SOURCE_DIR}/src)
-target_compile_options(livens_flags INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
+target_compile_options(livens_flags INTERFACE -Wall -Wextra -Wpedantic -Wconversion -Wno-sign-conversion
+                       $<$<NOT:$<BOOL:${LIVENS_UNITY}>>:-Wshadow>   # of names in other sources of a group
                        $<$<BOOL:${LIVENS_WARNINGS_AS_ERRORS}>:-Werror>)
 # GCC 12 sees overlapping copies in every sum of std::strings (its bug 105651), from -O2 on.
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
@@ -80,7 +81,6 @@ function(livens_room name)
     target_compile_options(livens_room_${name} PRIVATE ${level} ${livens_sections})
     if(LIVENS_UNITY AND NOT arg_EIGEN)   # where the same names stand for other things
         set_target_properties(livens_room_${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
-        target_compile_options(livens_room_${name} PRIVATE -Wno-shadow)   # of constants of other sources
     endif()
     livens_harden(livens_room_${name} ${stacks})
     target_link_libraries(livens_room_${name} PRIVATE $<BUILD_INTERFACE:livens_flags> ${arg_LIBRARIES})
