@@ -59,6 +59,31 @@ def check_names(root):
     return check.faults
 
 
+def check_hidden(root):
+    """Names that are hidden in a source: one of a room is one, so that its sources compile in groups (LIVENS_UNITY), and a
+    reader who finds a name has found it. An alias may stand in several. Rooms with Eigen are not compiled so."""
+    check = check_floors.Check(root)
+    paths = [path for path, room in check_floors.files_with_rooms(root)
+             if path.suffix == ".cpp" and root / "src" in path.parents and room != "solvers"]
+    for path in paths:
+        check.read(path)
+    listing = check_floors.tags(paths, ["--kinds-C++=csgufv", "--fields=+nsSKZ",
+                                        "--_xformat=%{kind}\t%{scope}\t%{signature}\t%n\t%N\t%F"])
+    if listing is None:
+        return None
+    found = {}
+    for kind, scope, signature, line, name, file in listing:
+        if re.fullmatch(rf"livens(::\w+_internal)?::{ANONYMOUS}\w+", scope):
+            room = pathlib.Path(file).relative_to(root / "src/livens").parts[0]
+            what = parameters(signature) if kind == "function" else "thing"
+            found.setdefault((room, name, what), {})[file] = int(line)
+    for (room, name, _), places in found.items():
+        if len(places) > 1:
+            (file, line), *others = places.items()
+            check.fault(pathlib.Path(file), line, "two-hidden", f"{name} stands in {pathlib.Path(others[0][0]).name}, too")
+    return check.faults
+
+
 TYPE = "#pragma once\nnamespace livens {\nstruct Place {\n    int line = 0;\n};\n}\n"
 INLINE = "#pragma once\nnamespace livens {\ninline double twice(const double* a, int n) { return 2 * a[n]; }\n}\n"
 HIDDEN = "namespace livens {\nnamespace {\nstruct Place {\n    double t = 0;\n};\ndouble twice(const double* b, int m) { return b[m]; }\n}\n}\n"
@@ -75,10 +100,16 @@ CONTROLS = [
 def main():
     root = pathlib.Path(sys.argv[1]).resolve()
     if "--controls" not in sys.argv:
-        return check_floors.report(check_names(root), "names with one definition")
+        faults = check_names(root)
+        return check_floors.report(faults if faults is None else faults + check_hidden(root), "names with one definition")
     good = [{**check_floors.GOOD, "src/livens/time/place.h": TYPE, "src/livens/solvers/hidden.cpp": HIDDEN,
              "src/livens/solvers/other.h": OTHER}]
-    return check_floors.report(check_floors.run_controls(check_names, CONTROLS, good), "negative controls of names")
+    wrong = check_floors.run_controls(check_names, CONTROLS, good)
+    hidden = [("two-hidden", {"src/livens/solvers/hidden.cpp": "", "src/livens/time/one.cpp": HIDDEN, "src/livens/time/two.cpp": text})
+              for text in (HIDDEN.split("double twice")[0] + "}\n}\n", "namespace livens {\nnamespace {\nconst int Place = 1;\n}\n}\n")]
+    apart = [{**check_floors.GOOD, "src/livens/time/one.cpp": HIDDEN, "src/livens/geometry/two.cpp": HIDDEN}]
+    return check_floors.report(wrong if wrong is None else wrong + check_floors.run_controls(check_hidden, hidden, apart),
+                               "negative controls of names")
 
 
 if __name__ == "__main__":

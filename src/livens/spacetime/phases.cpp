@@ -21,8 +21,8 @@ namespace livens::inline spacetime_internal {
 
 namespace {
 
-constexpr double first_share = 0.3, target = 0.3;   // of the accuracy
-constexpr int most_tries = 4;
+constexpr double first_phase_share = 0.3, phase_target = 0.3;   // of the accuracy
+constexpr int most_phase_tries = 4;
 
 std::vector<double> events_inside(const Model& model, double start, double end)
 {
@@ -304,7 +304,7 @@ public:
     PhasesToAccuracy(const Chain& chain, const Model& model, const Problem& problem, const Span& span,
                      const Method& method, const SolveOptions& options)
         : chain_(chain), model_(model), problem_(problem), method_(method), options_(options),
-          accuracy_(span.accuracy), share_(first_share * span.accuracy)
+          accuracy_(span.accuracy), share_(first_phase_share * span.accuracy)
     {
         options_.growth = false;   // of the whole motion once, when it is accepted
     }
@@ -321,9 +321,9 @@ public:
         const ErrorEstimate& found = whole.estimate;
         if (!whole.report.converged() || (!found.empty() && found.largest <= accuracy_))
             return AfterTry::accept;
-        if (found.empty() || tries == most_tries) return AfterTry::give_up;
+        if (found.empty() || tries == most_phase_tries) return AfterTry::give_up;
         // errors of phases add up and grow by factors that nobody knows beforehand; the measured one tells
-        share_ *= std::min(0.3, target * accuracy_ / found.largest);
+        share_ *= std::min(0.3, phase_target * accuracy_ / found.largest);
         return AfterTry::again;
     }
 

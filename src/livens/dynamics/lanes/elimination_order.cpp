@@ -9,11 +9,11 @@ namespace livens::inline dynamics_internal {
 
 namespace {
 
-using Graph = std::vector<std::vector<int>>;
+using Neighbours = std::vector<std::vector<int>>;
 
-Graph coupled(const Graph& things_of, int n_things)
+Neighbours coupled(const Neighbours& things_of, int n_things)
 {
-    Graph nodes_at(n_things), beside(things_of.size());
+    Neighbours nodes_at(n_things), beside(things_of.size());
     for (int node = 0; node < std::ssize(things_of); ++node)
         for (const int thing : things_of[node]) nodes_at[thing].push_back(node);
     std::vector<int> seen(things_of.size(), -1);   // by which node last
@@ -28,9 +28,10 @@ Graph coupled(const Graph& things_of, int n_things)
 
 }   // namespace
 
-std::vector<int> order_of_least_degree(const Graph& things_of, int n_things, const std::vector<int>& sizes)
+std::vector<int> order_of_least_degree(const Neighbours& things_of, int n_things,
+                                       const std::vector<int>& sizes)
 {
-    Graph beside = coupled(things_of, n_things);
+    Neighbours beside = coupled(things_of, n_things);
     const auto degree = [&](int node) {
         int sum = 0;
         for (const int other : beside[node]) sum += sizes[other];

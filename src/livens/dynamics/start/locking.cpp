@@ -15,7 +15,7 @@ namespace livens::inline dynamics_internal {
 namespace {
 
 constexpr std::size_t most_rows = 400;   // their matrix is dense
-constexpr double much_nearer = 1e-2, least_part = 0.02;
+constexpr double much_nearer = 1e-2, least_share = 0.02;
 
 Model as_at(const Model& model, const State& state)
 {
@@ -94,7 +94,7 @@ Lock joints_that_lock(const Model& model, const State& before, const State& now)
     Lock lock;
     for (int j = 0; j < static_cast<int>(parts.size()); ++j) {
         if (model.joints()[j].type != "drive") {
-            if (parts[static_cast<std::size_t>(j)] > least_part) lock.joints.push_back(j);
+            if (parts[static_cast<std::size_t>(j)] > least_share) lock.joints.push_back(j);
             continue;
         }
         // a row of a torque weighs less than those of forces: what counts is whether the others hold alone

@@ -20,7 +20,7 @@ namespace livens::inline io_internal {
 
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double unknown_number = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t chunk = 1u << 15;   // numbers of samples that are held at a time
 
 template <class Values>
@@ -155,7 +155,7 @@ Sampled sampled_bodies(RunWriter& archive, const Model& model, const Motion& mot
 Sampled sampled_rigidity(RunWriter& archive, const Model& model, const Motion& motion, std::size_t n_times)
 {
     std::vector<double> volumes;
-    for (const Body& body : model.bodies()) volumes.push_back(body.volume > 0 ? body.volume : nan);
+    for (const Body& body : model.bodies()) volumes.push_back(body.volume > 0 ? body.volume : unknown_number);
     if (volumes.empty()) return {};
     const std::size_t n = n_times * volumes.size() * 6;
     archive.list({"body_volume", {"body"}, "m3", "none", "volume of the body's shape"}, std::move(volumes));
@@ -200,7 +200,7 @@ Sampled sampled_errors(RunWriter& archive, const Run& run, std::size_t n_times)
                     values.push_back(
                         ErrorEstimate::at(*at_ends[i], static_cast<int>(n), static_cast<int>(k), mesh, t));
             else
-                values.insert(values.end(), n, nan);
+                values.insert(values.end(), n, unknown_number);
         }
     };
     return sampled;
@@ -275,7 +275,8 @@ Sampled sampled_reactions(RunWriter& archive, const Model& model, const Motion& 
     const auto add = [&model, &motion](std::vector<Column>& columns, double t) {
         std::vector<JointSample> samples = sample_joints(model, motion, t);
         if (samples.empty()) {   // this instant has no multipliers, others have
-            const Reaction none{{nan, nan, nan}, {nan, nan, nan}};
+            const Reaction none{{unknown_number, unknown_number, unknown_number},
+                                {unknown_number, unknown_number, unknown_number}};
             samples.assign(model.joints().size(), {none, none, false, false, false});
         }
         for (const JointSample& joint : samples) {

@@ -11,7 +11,7 @@ namespace livens::inline io_internal {
 namespace {
 
 // Names become rows of characters in results, all as wide as the longest.
-constexpr std::size_t longest_name = 200;
+constexpr std::size_t longest_part_name = 200;
 
 /// How files spell what the advice of a complaint speaks of.
 struct Spelling {
@@ -202,9 +202,9 @@ bool check_name(const Section& section)
     if (text.empty()) return section.error("name", "name-empty", "a name must not be empty");
     if (text == "world")
         return section.error("name", "name-reserved", "the name 'world' is reserved for the fixed world");
-    if (text.size() > longest_name)
+    if (text.size() > longest_part_name)
         return section.error("name", "name-invalid",
-                             "a name has at most " + std::to_string(longest_name) + " bytes");
+                             "a name has at most " + std::to_string(longest_part_name) + " bytes");
     const std::string culprit = first_invisible(text);
     return culprit.empty() ||
            section.error("name", "name-invalid", "a name must not contain " + culprit,

@@ -16,7 +16,7 @@ namespace livens {
 
 namespace {
 
-double value_of(const PairForm& form, const Configurations& X)
+double form_at(const PairForm& form, const Configurations& X)
 {
     return form_value(form, form.body_i, form.body_j, X);
 }
@@ -42,7 +42,7 @@ Joint driven_coordinate(const std::string& name, const Joint& joint, const Named
     if (!coordinate.coordinate.is_angle()) {
         // The law counts from the stated value of the coordinate; its form counts from where the bodies
         // stand.
-        const TimeFunction raw = shifted(law, value_of(forms[0], X) - coordinate.at_stated);
+        const TimeFunction raw = shifted(law, form_at(forms[0], X) - coordinate.at_stated);
         static_cast<PairForm&>(row) = forms[0];
         QuadraticForm one;
         one.c = -1;
@@ -50,7 +50,7 @@ Joint driven_coordinate(const std::string& name, const Joint& joint, const Named
         driven.rows = {row};
         return driven;
     }
-    const double now = arc_tangent(value_of(forms[1], X), value_of(forms[0], X));
+    const double now = arc_tangent(form_at(forms[1], X), form_at(forms[0], X));
     const TimeFunction angle = shifted(law, now - coordinate.at_stated);
     const auto sine = [=](Instant at) {
         const TimeValue f = angle(at);

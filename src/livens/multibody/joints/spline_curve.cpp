@@ -23,8 +23,8 @@ namespace {
 constexpr int steps_a_piece = 8;   // of the normals' turn, whose error is rounding then
 constexpr int overlap = 30;        // knots, by which what a spline does at its ends has died away
 
-[[noreturn]] void refuse(const std::string& message, const std::string& value, const std::string& bound,
-                         const std::string& code = "curve-points")
+[[noreturn]] void refuse_curve(const std::string& message, const std::string& value, const std::string& bound,
+                               const std::string& code = "curve-points")
 {
     throw InputError({code, "joint.curve", message, value, bound, "", ""});
 }
@@ -37,9 +37,10 @@ public:
     {
         const int n = static_cast<int>(points.size()), least = is_closed ? 3 : 2;
         if (n < least)
-            refuse("a curve has too few points", std::to_string(n), "at least " + std::to_string(least));
+            refuse_curve("a curve has too few points", std::to_string(n),
+                         "at least " + std::to_string(least));
         for (const Vector3& point : points)
-            if (!std::isfinite(norm(point))) refuse("a curve needs finite points", "", "");
+            if (!std::isfinite(norm(point))) refuse_curve("a curve needs finite points", "", "");
         // A closed one goes on beyond its seam, far enough for both sides of it to be the same.
         const int around = is_closed ? overlap : 0, n_knots = n + (is_closed ? 1 : 0) + 2 * around;
         const auto point = [&](int k) {
@@ -49,7 +50,7 @@ public:
         for (int k = 1; k < n_knots; ++k) {
             const double chord = norm(point(k) - point(k - 1));
             if (!(chord > 0))
-                refuse("a curve has a point twice in a row", "point " + std::to_string(k + 1), "");
+                refuse_curve("a curve has a point twice in a row", "point " + std::to_string(k + 1), "");
             knots.push_back(knots.back() + chord);
         }
         const double begin = knots[static_cast<std::size_t>(around)];
@@ -146,8 +147,8 @@ private:
         for (const double s : places_) {
             const CurvePoint here = shape(s);
             if (!(norm(here.first) > 0.05))   // by chord lengths it is one where the curve is straight
-                refuse("the curve turns back on itself", "at the parameter " + to_text(s, 6),
-                       "more points there", "curve-straight-back");
+                refuse_curve("the curve turns back on itself", "at the parameter " + to_text(s, 6),
+                             "more points there", "curve-straight-back");
             const Vector3 normal = cross(begin, here.first);
             if (norm(normal) > widest) {
                 widest = norm(normal);

@@ -21,7 +21,7 @@ namespace livens {
 namespace {
 
 /// A potential of a place y with its derivatives.
-struct Value {
+struct Attracted {
     double energy = 0;
     Vector3 slope{};
     Matrix3 curvature{};
@@ -40,42 +40,42 @@ struct Value {
 };
 
 /// -mu m / r.
-Value of_the_centre(double mu, double mass, const Vector3& y)
+Attracted of_the_centre(double mu, double mass, const Vector3& y)
 {
-    Value V;
+    Attracted V;
     V.add(-mu * mass, y, -1, 1, {}, {});
     return V;
 }
 
 /// -mu (tr J - 3 y . J y / r^2) / (2 r^3), in axes in which J does not change.
-Value of_the_extent(double mu, const Matrix3& J, const Vector3& y)
+Attracted of_the_extent(double mu, const Matrix3& J, const Vector3& y)
 {
     const Vector3 Jy = J * y;
-    Value V;
+    Attracted V;
     V.add(-0.5 * mu * trace(J), y, -3, 1, {}, {});
     V.add(1.5 * mu, y, -5, dot(y, Jy), 2 * Jy, 2.0 * J);
     return V;
 }
 
 /// A term of the potential, and where its three coordinates begin among those of the load.
-struct Term {
+struct AttractionTerm {
     std::size_t first = 0;
-    std::function<Value(const Vector3&)> of;
+    std::function<Attracted(const Vector3&)> of;
 
-    Value at(const LawArguments& arguments) const
+    Attracted at(const LawArguments& arguments) const
     {
         const std::span<const double> y = arguments.values.subspan(first);
         return of({y[0], y[1], y[2]});
     }
 };
 
-LoadLaw law_of(const std::vector<Term>& terms)
+LoadLaw law_of(const std::vector<AttractionTerm>& terms)
 {
     return [terms](const LawArguments& arguments, std::span<double> factors, std::span<double> slopes) {
         const std::size_t n = factors.size();
         std::ranges::fill(slopes, 0.0);
-        for (const Term& term : terms) {
-            const Value V = term.at(arguments);
+        for (const AttractionTerm& term : terms) {
+            const Attracted V = term.at(arguments);
             for (int k = 0; k < 3; ++k) {
                 const std::size_t unit = term.first + static_cast<std::size_t>(k);
                 factors[unit] = -V.slope[k];
@@ -121,7 +121,7 @@ Load attraction(const std::string& name, int body, const Body& properties, const
         parts.units.push_back(unit_along(name, {{form}}, X));
     };
     for (const PairForm& row : coincidence_rows(world, there, body, centre, 1)) add(row);
-    std::vector<Term> terms{
+    std::vector<AttractionTerm> terms{
         {0, [mu = law.mu, m = mass.mass](const Vector3& y) { return of_the_centre(mu, m, y); }}};
     // A point has no extent, and no axes in which J could be constant.
     if (law.has_gradient && !properties.is_point) {
@@ -137,7 +137,7 @@ Load attraction(const std::string& name, int body, const Body& properties, const
     parts.law = law_of(terms);
     parts.potential = [terms](const LawArguments& arguments) {
         double energy = 0;
-        for (const Term& term : terms) energy += term.at(arguments).energy;
+        for (const AttractionTerm& term : terms) energy += term.at(arguments).energy;
         return energy;
     };
     parts.domain = "it has no size at the attracting point";

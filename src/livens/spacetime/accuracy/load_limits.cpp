@@ -12,7 +12,7 @@ namespace livens::inline spacetime_internal {
 
 namespace {
 
-constexpr int looks = 16;   // at an element
+constexpr int looks_an_element = 16;   // at an element
 
 /// The readings of a load that are a rotation vector; empty: it has none.
 std::optional<std::array<const LoadReading*, 3>> rotation_of(const Load& load)
@@ -30,10 +30,12 @@ double too_far_at(const Load& load, const std::array<const LoadReading*, 3>& rea
                   double most)
 {
     Vector3 before{};
-    for (int n = 0; n <= looks * motion.n_elements(); ++n) {
-        const int e = n / looks;
-        const double t = n % looks == 0 ? motion.mesh.ends[e]
-                                        : motion.mesh.ends[e] + motion.mesh.length(e) * (n % looks) / looks;
+    for (int n = 0; n <= looks_an_element * motion.n_elements(); ++n) {
+        const int e = n / looks_an_element;
+        const double t =
+            n % looks_an_element == 0
+                ? motion.mesh.ends[e]
+                : motion.mesh.ends[e] + motion.mesh.length(e) * (n % looks_an_element) / looks_an_element;
         const State state = motion.at(t);
         const LoadArguments at = load_arguments(load, {t}, state.X, state.V, {});
         Vector3 now{};

@@ -17,7 +17,7 @@ namespace {
 constexpr double met_place = 1e-8;       // lengths of the model, or of directors
 constexpr double met_momentum = 1e-6;    // of what the motion's largest speed makes of the body
 constexpr double unknown_error = 1e-3;   // likewise, where nobody estimated the errors
-constexpr double safety = 10;            // by which these may be too small
+constexpr double ends_safety = 10;       // by which these may be too small
 
 /// A component that was stated.
 struct Component {
@@ -49,7 +49,7 @@ public:
             const std::size_t at = static_cast<std::size_t>(end.index * model.n_bodies() + b);
             const double error = estimate.position[at] + estimate.orientation[at] +
                                  (speed_ > 0 ? estimate.velocity[at] / speed_ : 0);
-            if (std::isfinite(error)) allowed_ = std::max(allowed_, safety * error);
+            if (std::isfinite(error)) allowed_ = std::max(allowed_, ends_safety * error);
         }
     }
 

@@ -25,7 +25,7 @@ constexpr double steeper = 4;
 constexpr double negligible = 1e-11;
 constexpr std::size_t most_panels = 64;
 /// Where nothing bounds its slopes a law is looked at this near to both ends.
-constexpr double beside_ends[] = {1e-4, 1e-2};
+constexpr double beside_moments[] = {1e-4, 1e-2};
 
 /// Legendre polynomials of degree 0, 1, 2 at a share.
 std::array<double, n_moments> legendre(double s) { return {1, 2 * s - 1, 6 * s * (s - 1) + 1}; }
@@ -159,7 +159,8 @@ std::vector<double> MissedMoments::of(LawOnPath& path) const
         integrate(path, fine_, panels[0]);
         divide(path, some_, panels);
     } else {
-        const double ends[] = {0, beside_ends[0], beside_ends[1], 1 - beside_ends[1], 1 - beside_ends[0], 1};
+        const double ends[] = {
+            0, beside_moments[0], beside_moments[1], 1 - beside_moments[1], 1 - beside_moments[0], 1};
         for (std::size_t i = 0; i + 1 < std::size(ends); ++i) {
             panels.push_back({ends[i], ends[i + 1], 0, {}});
             integrate(path, i == 2 ? fine_ : few_, panels.back());

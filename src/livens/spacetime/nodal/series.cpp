@@ -21,7 +21,7 @@ namespace {
 constexpr double trusted_guess = 1e-3;
 
 /// Lengths of the model that the series may add to a steady flight before it is not believed.
-constexpr double far = 0.5;
+constexpr double far_away = 0.5;
 
 /// The side of the start on which the element lies.
 int side_of(double h) { return h > 0 ? 1 : 0; }
@@ -76,7 +76,7 @@ TwistSeries::TwistSeries(const ModelTables& tables, const InstantState& start, d
                                       std::abs(h) / 3 * (std::abs(j[i]) + std::abs(h) / 4 * std::abs(s[i])));
         for (int i = 3; i < body.dofs; ++i) turn = std::max(turn, std::abs(a[body.first + i]));
     }
-    on_ = h * h * std::max(away / (2 * far * tables_.length), turn) < 1 ? 1 : 0;
+    on_ = h * h * std::max(away / (2 * far_away * tables_.length), turn) < 1 ? 1 : 0;
 }
 
 void TwistSeries::at(double tau, double* __restrict twist) const

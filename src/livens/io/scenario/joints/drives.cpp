@@ -18,7 +18,7 @@ namespace livens::inline io_internal {
 
 namespace {
 
-const std::vector<Kind>& kinds()
+const std::vector<Kind>& drive_kinds()
 {
     static const std::vector<Kind> all{
         {"joint",
@@ -45,7 +45,7 @@ const std::vector<Kind>& kinds()
 
 bool is_path(const Section& drive)
 {
-    return kinds()[static_cast<std::size_t>(drive.kind())].keys[0].name == "body";
+    return drive_kinds()[static_cast<std::size_t>(drive.kind())].keys[0].name == "body";
 }
 
 constexpr std::array<std::string_view, 7> laws{"value",      "rate",  "harmonic",  "step",
@@ -324,7 +324,7 @@ Table drive_table()
          Key{"expression", types::text_or_list,
              "A formula of t, in rad or m: `0.1*sin(2*pi*t)`; without kinks."},
          Key{"polynomial", types::list, "Coefficients of 1, t, t^2, ..; of a path x, y, z of each."}, table}}
-        .with_kinds("type", kinds());
+        .with_kinds("type", drive_kinds());
 }
 
 void read_drives(Builder& builder)

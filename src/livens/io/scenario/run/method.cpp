@@ -112,7 +112,7 @@ std::vector<Key> mixed_keys()
                               "Library for the sparse systems; umfpack is an option when livens is built.")};
 }
 
-const std::vector<MethodKind>& kinds()
+const std::vector<MethodKind>& method_kinds()
 {
     static const std::vector<MethodKind> all{
         {{"lobatto",
@@ -267,7 +267,7 @@ Table method_table()
                            "With an `accuracy` auto, unless something else stands here", "", "lobatto"}};
     for (const OptionKey& one : option_keys()) keys.push_back(one.key);
     return Table{"[method]", "How it is solved.", std::move(keys)}.with_kinds(
-        "family", {kinds().begin(), kinds().end()});
+        "family", {method_kinds().begin(), method_kinds().end()});
 }
 
 void write_method(JsonWriter& json, const Method& method)
@@ -318,7 +318,7 @@ void write_options(JsonWriter& json, const SolveOptions& options)
 Method read_method(const Section* section, Findings&)
 {
     if (section == nullptr || section->kind() == any_kind) return Lobatto{};
-    const Method method = kinds()[static_cast<std::size_t>(section->kind())].make(*section);
+    const Method method = method_kinds()[static_cast<std::size_t>(section->kind())].make(*section);
     if (const Mixed* mixed = std::get_if<Mixed>(&method)) check_mixed(*section, *mixed);
     return method;
 }

@@ -12,7 +12,7 @@ namespace livens::inline io_internal {
 
 namespace {
 
-constexpr int most_shown = 20;
+constexpr int most_findings = 20;
 constexpr int most_kept = 2000;            // of a file with a million mistakes
 constexpr std::size_t longest_word = 64;   // the distance costs the product of the lengths
 
@@ -79,10 +79,10 @@ std::vector<Diagnostic> Findings::take(const std::string& file)
     const auto by_severity = [](const Diagnostic& a, const Diagnostic& b) { return a.severity < b.severity; };
     std::stable_sort(found_.begin(), found_.end(), in_file);
     // Errors stay before warnings where not all fit, but are shown in the order of the file.
-    if (found_.size() > most_shown) {
+    if (found_.size() > most_findings) {
         std::stable_sort(found_.begin(), found_.end(), by_severity);
-        n_dropped_ += static_cast<int>(found_.size()) - most_shown;
-        found_.resize(most_shown);
+        n_dropped_ += static_cast<int>(found_.size()) - most_findings;
+        found_.resize(most_findings);
         std::stable_sort(found_.begin(), found_.end(), in_file);
         std::string& note = found_.back().note;
         note += (note.empty() ? "" : "; ") + std::to_string(n_dropped_) + " more are not shown";

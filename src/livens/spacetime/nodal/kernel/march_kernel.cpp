@@ -15,7 +15,7 @@ namespace livens {
 namespace {
 
 constexpr double slow_contraction = 0.3;
-constexpr int most_slow_steps = 2, most_steps = 14;
+constexpr int most_slow_steps = 2, most_kernel_steps = 14;
 constexpr int most_combinations = 150, most_slow_combinations = 20;
 constexpr double hopeless_step = 10;      // lengths or radians
 constexpr double smallest_step = 1e-18;   // likewise: nothing moves
@@ -154,7 +154,7 @@ bool MarchKernel::iterate(const WindowLayout& layout, const InstantState& start,
     const bool follows = guess_.was_followed();
     const lanes::Pattern& pattern = pattern_->view();
     const lanes::Values &nodes = nodes_.values(), &from = start_->values();
-    const int most = is_accelerated ? most_combinations : std::min(most_steps, options.max_iterations);
+    const int most = is_accelerated ? most_combinations : std::min(most_kernel_steps, options.max_iterations);
     lanes::Sizes sizes;
     Shrinking progress{std::min(options.tolerance, widest_tolerance), follows};
     if (is_accelerated) acceleration_.begin(static_cast<std::size_t>(pattern.n_twists * functions_->width));
@@ -196,7 +196,8 @@ bool MarchKernel::solve(const WindowLayout& layout, const InstantState& start, c
     if (!start.held.by_joints) return false;
     use(start);
     lane_rule_.use(layout, start, last_steps_);
-    const bool is_large = !soon && tables_.n_twists >= many_twists && options.max_iterations >= most_steps;
+    const bool is_large =
+        !soon && tables_.n_twists >= many_twists && options.max_iterations >= most_kernel_steps;
     const auto iterates = [&] {
         guess_.begin();
         if (iterate(layout, start, options, false, report)) return true;
@@ -204,9 +205,9 @@ bool MarchKernel::solve(const WindowLayout& layout, const InstantState& start, c
         guess_.part();
         return iterate(layout, start, options, false, report);
     };
-    if (!(is_large && last_steps_ > most_steps)) is_solved_ = iterates();
+    if (!(is_large && last_steps_ > most_kernel_steps)) is_solved_ = iterates();
     if (is_large && !is_solved_) is_solved_ = iterate(layout, start, options, true, report);
-    last_steps_ = is_solved_ ? report.iterations : most_steps;
+    last_steps_ = is_solved_ ? report.iterations : most_kernel_steps;
     if (is_solved_ && guess_.learns()) {
         guess_.compare(nodes_.values().place);
         nodes_.swap_places();

@@ -14,7 +14,7 @@ namespace livens {
 namespace {
 
 /// Lower degrees say less than velocities and accelerations at the start do.
-constexpr int lowest_degree = 3;
+constexpr int lowest_known_degree = 3;
 
 struct Quaternion {
     double s, v[3];
@@ -115,7 +115,7 @@ bool ReferencePredictor::place(const WindowLayout& layout, double* place)
     if (motion_ == nullptr) return false;
     const int n_bodies = tables_->n_bodies(), W = functions_->width;
     if (motion_->X.points != Points::lobatto || !motion_->X.denominators.empty() ||
-        motion_->X.degree < lowest_degree || motion_->X.n_values != 12 * n_bodies)
+        motion_->X.degree < lowest_known_degree || motion_->X.n_values != 12 * n_bodies)
         return false;
     const bool is_alike = motion_->X.degree == rule_->degree;   // its nodes are those that are asked for
     if (!is_alike && motion_->X.degree >= W) return false;
