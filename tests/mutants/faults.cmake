@@ -872,8 +872,8 @@ livens_mutant(NAME no_witness
 # Opaque forces are not looked at beside the ends of elements.
 livens_mutant(NAME ends_of_elements_unseen
               FILE spacetime/nodal/missed_moments.cpp
-              OLD [[constexpr double beside_ends[] = {1e-4, 1e-2};]]
-              NEW [[constexpr double beside_ends[] = {1e-15, 1e-14};]]
+              OLD [[constexpr double beside_moments[] = {1e-4, 1e-2};]]
+              NEW [[constexpr double beside_moments[] = {1e-15, 1e-14};]]
               TESTS_OF unit_spacetime
               MUST_FAIL InsideLaws.ALayerAtTheStartIsSeenOfForcesThatAreOpaque)
 

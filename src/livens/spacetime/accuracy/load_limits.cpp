@@ -12,7 +12,7 @@ namespace livens::inline spacetime_internal {
 
 namespace {
 
-constexpr int looks_an_element = 16;   // at an element
+constexpr int looks_an_element = 16;
 
 /// The readings of a load that are a rotation vector; empty: it has none.
 std::optional<std::array<const LoadReading*, 3>> rotation_of(const Load& load)
