@@ -81,7 +81,7 @@ TIES = [
     ("a residual below $«10^{-10}»$ is an equilibrium", "src/livens/statics/equilibrium.cpp", r"balance_tolerance = ([^;]+);"),
     ("where $|k|$ is below $«10^{-9}»$ of the terms", "src/livens/statics/equilibrium.cpp", r"is_unrestored\(.*?stiffness\[i\]\) <= (\S+) \* point\.scale"),
     ("for «25» steps in a row", "src/livens/statics/equilibrium.cpp", r"most_unrestored = (\d+);"),
-    ("(violations below «1e-9» are polished; of rates: «1e-9» of what the largest speed can make", f"{DYNAMICS}/start/closing.cpp",
+    ("(violations below «1e-9» are polished; of rates: «1e-9» of what the largest speed can make", f"{DYNAMICS}/start/consistent_start.cpp",
      r"(?=.*?start_tolerance = ([^;]+);).*?start_tolerance = ([^;]+);"),
     ("of the model, or $«10^{-6}» L$ a second", f"{DYNAMICS}/start/start_speeds.cpp", r"per_second = ([^;]+);"),
     ("at random by up to «0.03» rad and lengths at first and «3» in the end", f"{DYNAMICS}/rows/reach.cpp",
