@@ -588,7 +588,7 @@ livens_mutant(NAME driven_angle_by_its_sine
               OLD [[is_driven_angle(joint) ? by_angle(joint) : joint]]
               NEW [[joint]]
               TESTS_OF unit_dynamics
-              MUST_FAIL ClosedStart.LeadsADrivenAngleBackFromAnywhere)
+              MUST_FAIL ConsistentStart.LeadsADrivenAngleBackFromAnywhere)
 
 # One try: bodies that stand at one place are told that they cannot be joined.
 livens_mutant(NAME one_start_alone
@@ -596,7 +596,7 @@ livens_mutant(NAME one_start_alone
               OLD [[for (const double size : disturbances) {]]
               NEW [[for (const double size : {0.0}) {]]
               TESTS_OF unit_dynamics
-              MUST_FAIL ClosedStart.ClosesBodiesThatStandAtOnePlace)
+              MUST_FAIL ConsistentStart.ClosesBodiesThatStandAtOnePlace)
 
 # atan2(y, x) taken to jump wherever y passes zero.
 livens_mutant(NAME cut_on_both_sides
