@@ -245,4 +245,5 @@ TRUTHS["drive_at_90_stated"] = drive_at_90_projected
 REFUSED = {"turning_springs": (4, ["load 's", "radau"]), "drive_at_90": (3, ["'motor'", "rad"]),
            "ball_joint_spring": (3, ["joint 'ball' (spherical) has no coordinate"]),
            "bushing_as_damper": (7, ["bushing 'damper'", "half a turn"]),
-           "bushing_half_turn": (4, ["bushing 'bush'", "half a turn"])}
+           # rounding decides whether tries run out (4) or one is within the accuracy, and suspect for the half turn (7)
+           "bushing_half_turn": ((4, 7), ["bushing 'bush'", "half a turn"])}
