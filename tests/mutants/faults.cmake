@@ -892,3 +892,19 @@ livens_mutant(NAME products_are_linear
               NEW [[more]]
               TESTS_OF unit_time
               MUST_FAIL Expression.KnowsWhetherItIsLinearInItsSymbols)
+
+# Elements end in singular positions, where neither velocities nor reactions are determined.
+livens_mutant(NAME ends_in_singular_positions
+              FILE spacetime/march/partition.cpp
+              OLD [[options_.direction * shift * length;]]
+              NEW [[0 * shift * length;]]
+              TESTS_OF unit_spacetime
+              MUST_FAIL Windows.EndsMoveOffSingularPositions)
+
+# An accuracy that was not reached is called reached.
+livens_mutant(NAME inaccurate_is_fine
+              FILE spacetime/accuracy/until_accurate.cpp
+              OLD [[report.status = SolveStatus::inaccurate;]]
+              NEW [[report.status = SolveStatus::converged;]]
+              TESTS_OF convergence
+              MUST_FAIL Accuracy.SaysWhereItIsLost)

@@ -5,13 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <utility>
 
 #include "livens/dynamics/rows/tables.h"
 #include "livens/dynamics/rows/twist.h"
 #include "livens/multibody/body.h"
 #include "livens/solvers/factors.h"
+#include "livens/solvers/noise.h"
 #include "livens/solvers/sparse_rows.h"
 #include "livens/solvers/spectral.h"
 
@@ -123,24 +123,12 @@ private:
     std::vector<SparseRows::Entry> entries_;
 };
 
-/// Numbers between -1 and 1, the same in each run.
-class Noise {
-public:
-    double next()
-    {
-        state_ ^= state_ << 13, state_ ^= state_ >> 7, state_ ^= state_ << 17;
-        return 2 * static_cast<double>(state_ >> 11) / 9007199254740992.0 - 1;
-    }
-    Values vector(int n)
-    {
-        Values x(static_cast<std::size_t>(n));
-        for (double& entry : x) entry = next();
-        return x;
-    }
-
-private:
-    std::uint64_t state_ = 0x9e3779b97f4a7c15u;
-};
+Values random_vector(Noise& noise, int n)
+{
+    Values x(static_cast<std::size_t>(n));
+    for (double& entry : x) entry = noise();
+    return x;
+}
 
 /// Whether redundant combinations ask nothing of any motion, judged by some motions at random: a quadratic
 /// form that is zero there is zero. Cost and room grow with the bodies. False also where that cannot be told
@@ -165,7 +153,7 @@ bool asks_nothing(const Curvatures& curvatures, const ConsistentStart& closed)
     std::vector<std::pair<Values, double>> bends;   // of motions, and their size
     Noise noise;
     for (int motion = 0; motion < 3; ++motion) {
-        Values y = noise.vector(n_columns);
+        Values y = random_vector(noise, n_columns);
         rows.project(y, zero);
         const Values bend = curvatures.of(y);
         bends.emplace_back(bend, std::max(largest_size(bend), 1e3 * curvatures.least_size(y)));
@@ -317,7 +305,7 @@ std::vector<Values> roots_of(const std::vector<DenseMatrix>& forms, int f)
     Noise noise;
     const int starts = 64 << f;   // of 2^(f - 1) roots at most
     for (int i = 0; i < starts; ++i) {
-        const Values root = root_near(forms, normalised(noise.vector(f)));
+        const Values root = root_near(forms, normalised(random_vector(noise, f)));
         if (root.empty()) continue;
         const bool is_known = std::ranges::any_of(
             roots, [&](const Values& other) { return 1 - std::abs(dot(root, other)) < 1e-9; });

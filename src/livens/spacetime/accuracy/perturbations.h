@@ -3,31 +3,18 @@
 #pragma once
 
 #include <array>
-#include <cstdint>
 #include <span>
 #include <vector>
 
 #include "livens/diagnostics/acceptance.h"
 #include "livens/multibody/model.h"
 #include "livens/multibody/motion.h"
+#include "livens/solvers/noise.h"
 
 namespace livens::inline spacetime_internal {
 
 /// Perturbations that are carried along.
 constexpr int n_perturbations = 2;
-
-/// Numbers between -1 and 1 that are the same on every machine.
-class Noise {
-public:
-    double operator()()
-    {
-        state_ ^= state_ << 13, state_ ^= state_ >> 7, state_ ^= state_ << 17;
-        return 2 * static_cast<double>(state_ >> 11) / 9007199254740992.0 - 1;
-    }
-
-private:
-    std::uint64_t state_ = 0x9e3779b97f4a7c15u;
-};
 
 /// What one body is moved, turned, pushed and spun by; m, rad, m/s and rad/s in world axes.
 struct Kick {
