@@ -51,14 +51,13 @@ bool may_help(const NewtonReport& outcome, const Window& window)
 
 March::March(Window& window, TimeMesh& mesh, const WindowOptions& options, SolveReport& report)
     : window_(window), mesh_(mesh), options_(options), report_(report), start_(mesh.start()),
-      end_(options.controller != nullptr ? options.controller->end() : mesh.end()), events_(end_ - start_)
+      end_(options.controller != nullptr ? options.controller->end() : mesh.end()), events_(end_ - start_),
+      partition_(options.controller != nullptr
+                     ? decltype(partition_)(AdaptiveElements(mesh, *options.controller, events_))
+                     : decltype(partition_)(GivenMesh(mesh, window.monitor(), options)))
 {
     events_.expect(std::exchange(mesh.bends, {}));
     if (options.direction < 0) std::swap(start_, end_);
-    if (options.controller != nullptr)
-        partition_ = std::make_unique<AdaptiveElements>(mesh, *options.controller, events_);
-    else
-        partition_ = std::make_unique<GivenMesh>(mesh, window.monitor(), options);
     time_ = start_;
     newton_options_.tolerance = options.tolerance;
     newton_options_.max_iterations = options.max_iterations;
@@ -68,12 +67,18 @@ March::March(Window& window, TimeMesh& mesh, const WindowOptions& options, Solve
         };
 }
 
+Partition& March::partition()
+{
+    if (auto* given = std::get_if<GivenMesh>(&partition_)) return *given;
+    return *std::get_if<AdaptiveElements>(&partition_);
+}
+
 void March::run()
 {
     bool goes_on = true;
     try {
         while (goes_on) {
-            const std::optional<Elements> next = partition_->next(time_);
+            const std::optional<Elements> next = partition().next(time_);
             if (!next) break;
             goes_on = advance(*next);
         }
@@ -99,7 +104,7 @@ bool March::advance(const Elements& of)
     if (is_solved) {
         if (attempt_.is_march) compare(of);
         closed = close(of);
-    } else if (partition_->may_shorten(of) && may_help(outcome, window_)) {
+    } else if (partition().may_shorten(of) && may_help(outcome, window_)) {
         closed.loss = loss_of_failed(of);
     }
     if (of.size() == 1 && closed.loss != RankLoss::none) {
@@ -151,10 +156,10 @@ NewtonReport March::attempt(const Elements& of)
     return outcome;
 }
 
-bool March::is_tangent_too_costly(const Elements& of) const
+bool March::is_tangent_too_costly(const Elements& of)
 {
     const bool is_free = options_.controller != nullptr;
-    if (!partition_->may_shorten(of)) return false;
+    if (!partition().may_shorten(of)) return false;
     if (is_free && mesh_.length(of.first) <= short_element * std::abs(end_ - start_)) return false;
     const double most = is_free && troubles_.shortened < most_shortened ? costly : too_costly;
     return window_.monitor().tangent_cost() > most;
@@ -166,10 +171,10 @@ bool March::ends_at_bend(const Elements& of)
     const double start = mesh_.ends[of.first], end = mesh_.ends[of.last];
     events_.begin(end);
     const bool is_found = events_.is_found(end);
-    const double wanted = events_.end(start, partition_->wanted_end(of, is_found));
+    const double wanted = events_.end(start, partition().wanted_end(of, is_found));
     const bool is_long = wanted < end && !(is_found && of.last < mesh_.n_elements());
     if (!is_long && !events_.moves(window_, start, end)) return false;
-    partition_->end_at(of, is_long ? wanted : events_.found(), is_found);
+    partition().end_at(of, is_long ? wanted : events_.found(), is_found);
     return true;
 }
 
@@ -186,12 +191,12 @@ void March::compare(const Elements& of)
 
 AcceptedElements March::close(const Elements& of)
 {
-    AcceptanceCriteria criteria = partition_->criteria(of);
+    AcceptanceCriteria criteria = partition().criteria(of);
     const AcceptedElements closed = window_.close(criteria, report_);
     if (closed.loss == RankLoss::none || closed.n_elements > 0 || of.size() > 1) return closed;
-    const bool is_end = closed.loss == RankLoss::at_end, can_move = partition_->may_move_end(of);
+    const bool is_end = closed.loss == RankLoss::at_end, can_move = partition().may_move_end(of);
     if (is_end && !can_move) troubles_.singular_end = mesh_.ends[far(of)];
-    if ((is_end ? can_move : partition_->may_shorten(of)) && troubles_.avoided < most_shifts) return closed;
+    if ((is_end ? can_move : partition().may_shorten(of)) && troubles_.avoided < most_shifts) return closed;
     criteria.full_rank = false;   // nothing can be done about it, or that did not help
     return window_.close(criteria, report_);
 }
@@ -199,7 +204,7 @@ AcceptedElements March::close(const Elements& of)
 RankLoss March::loss_of_failed(const Elements& of)
 {
     if (window_.monitor().rank_loss() != RankLoss::at_end) return RankLoss::none;
-    const bool can_move = partition_->may_move_end(of);
+    const bool can_move = partition().may_move_end(of);
     if (!can_move) troubles_.singular_end = mesh_.ends[far(of)];
     return can_move && troubles_.avoided < most_shifts ? RankLoss::at_end : RankLoss::none;
 }
@@ -208,7 +213,7 @@ void March::move_off(const Elements& of, RankLoss loss)
 {
     ++troubles_.avoided;
     if (report_.shifted++ == 0) report_.shifted_at = mesh_.ends[far(of)];
-    partition_->avoid(of, loss);
+    partition().avoid(of, loss);
 }
 
 Elements March::take(Elements of, const AcceptedElements& closed, const NewtonReport& outcome)
@@ -219,7 +224,7 @@ Elements March::take(Elements of, const AcceptedElements& closed, const NewtonRe
     if (attempt_.is_rescued) ++report_.rescued;
     if (outcome.ended_by_rounding) ++counts_.rounded;
     troubles_.avoided = 0;
-    partition_->accepted(of, closed, outcome.iterations);
+    partition().accepted(of, closed, outcome.iterations);
     const double end = mesh_.ends[far(of)];
     if (options_.ends_at_bends && of.size() == 1 && events_.accepted(mesh_.ends[of.first], end)) {
         ++counts_.bends;
@@ -255,14 +260,14 @@ bool March::split(const Elements& of, const NewtonReport& outcome)
                            middle - of.first >= options_.shortest && of.last - middle >= options_.shortest;
     if (!can_split) return explain(of, outcome);
     ++counts_.splits;
-    partition_->split(of, middle);
+    partition().split(of, middle);
     return true;
 }
 
 bool March::refuse(const Elements& of, const AcceptedElements& closed, const NewtonReport& outcome)
 {
     if (of.size() > 1) {   // the near one has not seen the motion: it is solved alone
-        partition_->split(of, options_.direction > 0 ? of.first + 1 : of.last - 1);
+        partition().split(of, options_.direction > 0 ? of.first + 1 : of.last - 1);
         return true;
     }
     troubles_.load = closed.load;
@@ -270,7 +275,7 @@ bool March::refuse(const Elements& of, const AcceptedElements& closed, const New
     if (!closed.contradiction.empty()) ++troubles_.contradictions;
     const bool is_contradictory = troubles_.contradictions > most_contradictions + done_ / 2;
     const bool can_help = !is_contradictory && may_help(outcome, window_);
-    if (partition_->reject(of, closed.velocity_jump, can_help, report_)) return true;
+    if (partition().reject(of, closed.velocity_jump, can_help, report_)) return true;
     if (!closed.contradiction.empty()) {   // rows that were redundant give way where a mechanism locks, too
         const std::string lock = locking_in_words();
         return lock.empty() ? fail(SolveStatus::singular, closed.contradiction)

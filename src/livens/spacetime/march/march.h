@@ -3,7 +3,7 @@
 #pragma once
 
 #include <limits>
-#include <memory>
+#include <variant>
 
 #include "livens/spacetime/march/event_locator.h"
 #include "livens/spacetime/march/partition.h"
@@ -40,7 +40,7 @@ private:
     /// solution, the first one tells why.
     NewtonReport attempt(const Elements& of);
     /// Whether shorter elements cost less than the tangent of one that has no solution yet.
-    bool is_tangent_too_costly(const Elements& of) const;
+    bool is_tangent_too_costly(const Elements& of);
     /// What was solved steps over a bend of a law: an element is to end there.
     bool ends_at_bend(const Elements& of);
     /// How far the motion has left the march from the same state, at element ends: another method's opinion
@@ -67,6 +67,7 @@ private:
     bool explain(const Elements& of, const NewtonReport& outcome);
     bool fail(SolveStatus status, const std::string& message);
 
+    Partition& partition();
     bool is_near_singular_end() const;
     std::string locking_in_words() const;
     int far(const Elements& of) const { return options_.direction > 0 ? of.last : of.first; }
@@ -82,7 +83,7 @@ private:
     WindowCounts counts_;
     double start_, end_;   // in the direction of the march
     EventLocator events_;
-    std::unique_ptr<Partition> partition_;
+    std::variant<GivenMesh, AdaptiveElements> partition_;   // in place: many marches are an element long
     Attempt attempt_;
     RetryCounts troubles_;
     int done_ = 0;      // elements

@@ -26,6 +26,7 @@ GivenMesh::GivenMesh(TimeMesh& mesh, ElementMonitor& monitor, const DivisionOpti
     : mesh_(mesh), monitor_(monitor), options_(options), most_divided_(200 + 4 * mesh.n_elements())
 {
     const std::vector<int> division = divide(mesh.n_elements(), options.length, options.shortest);
+    far_ends_.reserve(division.size());
     for (std::size_t k = 0; k < division.size(); ++k) far_ends_.push_back(mesh.ends[division[k]]);
     if (options.direction > 0) std::ranges::reverse(far_ends_);
     far_ends_.pop_back();   // where the first one begins
@@ -35,11 +36,13 @@ std::optional<Elements> GivenMesh::next(double t)
 {
     while (!far_ends_.empty() && far_ends_.back() == t) far_ends_.pop_back();
     if (far_ends_.empty()) return {};
-    // ends are compared as they are: each was taken from the mesh
-    const auto index = [&](double end) {
+    // ends are compared as they are, for each was taken from the mesh; windows follow each other as a rule
+    const auto index = [&](double end, int likely) {
+        if (likely >= 0 && likely <= mesh_.n_elements() && mesh_.ends[likely] == end) return likely;
         return static_cast<int>(std::ranges::lower_bound(mesh_.ends, end) - mesh_.ends.begin());
     };
-    const int near = index(t), far = index(far_ends_.back());
+    const int near = index(t, last_), far = index(far_ends_.back(), near + options_.direction);
+    last_ = far;
     return Elements{std::min(near, far), std::max(near, far)};
 }
 

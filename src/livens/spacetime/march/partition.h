@@ -80,6 +80,7 @@ private:
     ElementMonitor& monitor_;
     const DivisionOptions& options_;
     std::vector<double> far_ends_;   // of windows to come, the next one last
+    int last_ = 0;                   // the far end of the window before
     int n_divided_ = 0, most_divided_;
 };
 
