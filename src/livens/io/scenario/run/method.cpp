@@ -220,14 +220,17 @@ void with_option(Options& options, const OptionKey& one, const Work& work)
     std::visit([&](const auto member) { work(options.*member); }, one.member);
 }
 
-void write_window(JsonWriter& json, int window)
+/// A count, or the word for what none stands for.
+void write_count(JsonWriter& json, const char* key, int count, const char* none)
 {
-    json.key("window");
-    if (window > 0)
-        json.value(window);
+    json.key(key);
+    if (count > 0)
+        json.value(count);
     else
-        json.value("all");
+        json.value(none);
 }
+
+void write_window(JsonWriter& json, int window) { write_count(json, "window", window, "all"); }
 
 void write_mixed(JsonWriter& json, const Mixed& mixed)
 {
@@ -237,11 +240,7 @@ void write_mixed(JsonWriter& json, const Mixed& mixed)
     json.member("momentum", word_of(mixed.start));
     json.member("multipliers", word_of(mixed.multipliers));
     json.member("end_multiplier", word_of(mixed.end_multiplier));
-    json.key("gauss_points");
-    if (mixed.gauss_points > 0)
-        json.value(mixed.gauss_points);
-    else
-        json.value("exact");
+    write_count(json, "gauss_points", mixed.gauss_points, "exact");
     write_window(json, mixed.window);
     json.member("interfaces", word_of(mixed.interfaces));
     json.member("first_guess", word_of(mixed.first_guess));
@@ -250,14 +249,7 @@ void write_mixed(JsonWriter& json, const Mixed& mixed)
     json.member("linear_solver", word_of(mixed.linear_solver));
 }
 
-void write_degree(JsonWriter& json, int degree)
-{
-    json.key("degree");
-    if (degree > 0)
-        json.value(degree);
-    else
-        json.value("by accuracy");
-}
+void write_degree(JsonWriter& json, int degree) { write_count(json, "degree", degree, "by accuracy"); }
 
 }   // namespace
 
