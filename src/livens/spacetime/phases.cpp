@@ -319,6 +319,9 @@ public:
     AfterTry judge(Solution& whole, int tries) override
     {
         const ErrorEstimate& found = whole.estimate;
+        if (whole.report.status == SolveStatus::inaccurate)   // a phase, whose message has its own accuracy
+            whole.report.message += "; this is the share of a phase in the accuracy " +
+                                    to_text(accuracy_, 6) + " that is asked for over events";
         if (!whole.report.converged() || (!found.empty() && found.largest <= accuracy_))
             return AfterTry::accept;
         if (found.empty() || tries == most_phase_tries) return AfterTry::give_up;
