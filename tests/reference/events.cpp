@@ -287,6 +287,17 @@ TEST(Events, TheTrebuchetAsShippedThrowsAsFarAsItsEquationsSay)
     }
 }
 
+/// A phase has a share of the accuracy: what was asked for has to stand in the message.
+TEST(Events, WhatAPhaseCannotReachIsToldOfWhatWasAskedFor)
+{
+    Scenario s = read_scenario(root / "examples" / "trebuchet.toml").scenario.value();
+    std::get<Span>(s.time).accuracy = 1e-15;
+    const SolveReport report = solve(s.model, {s.model.start()}, s.time, s.method, s.options).report;
+    EXPECT_EQ(report.status, SolveStatus::inaccurate);
+    EXPECT_NE(report.message.find("the accuracy 1e-15 that is asked for over events"), std::string::npos)
+        << report.message;
+}
+
 /// What a drive misses by is part of the error that is told, since the second solution is moved as well.
 TEST(Events, WhatADriveMissesByIsTold)
 {

@@ -91,6 +91,7 @@ MarchGuess guess_from_state(const Model& model, const State& state, std::span<co
     NodalWindow window(tables, mesh, ends, lobatto_rule(degree));
     SolveReport report;
     WindowOptions options;
+    options.solve.tolerance = 1e-12;
     options.direction = is_forwards ? 1 : -1;
     options.may_divide = true;
     options.criteria = {acceptable_velocity_jump, true};

@@ -97,22 +97,18 @@ double compared_tolerance(const SolveOptions& options)
     return is_compared ? std::min(options.tolerance, 1e-10) : options.tolerance;
 }
 
-WindowOptions window_options(const Model& model, const Ends& ends, const Method& method,
-                             const SolveOptions& options)
+WindowOptions options_of_mesh(const Model& model, const Ends& ends, const Method& method,
+                              const SolveOptions& options)
 {
-    WindowOptions w;
-    w.by_newton = options.by_newton;
+    WindowOptions w = window_options(model, options);
     w.direction = ends.is_backwards() ? -1 : 1;
-    w.tolerance = is_nodal(method) ? compared_tolerance(options) : options.tolerance;
-    w.max_iterations = options.max_iterations;
-    w.progress = options.progress;
-    w.length_of_model = model.length();
-    w.locking = [&model](const State& first, const State& last) { return of_locking(model, first, last); };
+    if (is_nodal(method)) w.solve.tolerance = compared_tolerance(options);
     if (const auto* mixed = std::get_if<Mixed>(&method)) {
         w.length = mixed->window;
         w.shortest = shortest_block(*mixed);
         w.may_split = false;   // shorter blocks are other equations
         w.advice = "shorter elements, or fewer of them at once";
+        w.ends_at_bends = false;
     } else {
         if (const auto* lobatto = std::get_if<Lobatto>(&method)) {
             w.length = lobatto->window;
@@ -124,7 +120,6 @@ WindowOptions window_options(const Model& model, const Ends& ends, const Method&
                 };
         }
         w.may_divide = options.divide && ends.has_state();
-        w.ends_at_bends = options.end_at_bends && model.has_pieces();
         if (w.may_divide) w.criteria = {acceptable_velocity_jump, true, true};
     }
     if (!ends.has_state()) {
@@ -214,7 +209,7 @@ Solution solve_by_windows(const Model& model, const Problem& problem, const Time
     solution.method = method;
     SolveReport& report = solution.report;
     report.notes = ends.notes;
-    WindowOptions w = window_options(model, ends, method, options);
+    WindowOptions w = options_of_mesh(model, ends, method, options);
     w.propose = Proposals(model, problem, mesh, ends, method, *window);
     solve_windows(*window, mesh, w, report);
     ConditionNumbersOfLast last(options, mesh, w.direction > 0 ? mesh.end() : mesh.start());
@@ -257,6 +252,16 @@ Solution solve_by_steps(const Model& model, const Problem& problem, const TimeMe
 }
 
 }   // namespace
+
+WindowOptions window_options(const Model& model, const SolveOptions& options)
+{
+    WindowOptions w;
+    w.solve = options;
+    w.length_of_model = model.length();
+    w.ends_at_bends = options.end_at_bends && model.has_pieces();
+    w.locking = [&model](const State& first, const State& last) { return of_locking(model, first, last); };
+    return w;
+}
 
 Solution solve_mesh(const Model& model, const Problem& problem, const TimeMesh& mesh, const Ends& ends,
                     const Method& method, const SolveOptions& options)

@@ -3,9 +3,13 @@
 #pragma once
 
 #include "livens/spacetime/march/ends.h"
+#include "livens/spacetime/march/windows.h"
 #include "livens/spacetime/solve.h"
 
 namespace livens::inline spacetime_internal {
+
+/// What every march takes from the caller's options and the model.
+WindowOptions window_options(const Model& model, const SolveOptions& options);
 
 /// On a mesh that is given, of a model without events. `ends`: closed; the problem keeps what is found.
 Solution solve_mesh(const Model& model, const Problem& problem, const TimeMesh& mesh, const Ends& ends,

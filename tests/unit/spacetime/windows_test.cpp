@@ -311,7 +311,7 @@ TEST(Windows, TellProgressInOneWay)
         WindowOptions options;
         options.direction = direction;
         options.length = 2;
-        options.progress = [&](const Progress& progress) {
+        options.solve.progress = [&](const Progress& progress) {
             EXPECT_EQ(progress.n_elements, 6);
             done.push_back(progress.done);
             times.push_back(progress.t);
@@ -332,7 +332,7 @@ TEST(Windows, StopBetweenAndWithinThemselves)
         int n = 0;
         WindowOptions options;
         options.length = 3;
-        options.progress = [&](const Progress&) { return ++n < calls; };
+        options.solve.progress = [&](const Progress&) { return ++n < calls; };
         const SolveReport report = run(window, options);
         EXPECT_EQ(report.status, SolveStatus::cancelled);
         EXPECT_EQ(report.n_elements, 3);

@@ -16,8 +16,8 @@
 #include "livens/spacetime/accuracy/reference_solution.h"
 #include "livens/spacetime/accuracy/until_accurate.h"
 #include "livens/spacetime/march/window_notes.h"
-#include "livens/spacetime/march/windows.h"
 #include "livens/spacetime/nodal/window.h"
+#include "livens/spacetime/solve_mesh.h"
 
 namespace livens::inline spacetime_internal {
 
@@ -196,15 +196,8 @@ private:
         const ElementRule rule = rule_of(method_);
         StepSizeController controller(rule.points, rule.degree, tolerance_, length_, stops_);
         controller.sample_at(samples_of(model_, span_), span_.accuracy);
-        WindowOptions w;
-        w.tolerance = options_.tolerance;
-        w.by_newton = options_.by_newton;
-        w.max_iterations = options_.max_iterations;
-        w.progress = options_.progress;
-        w.length_of_model = model_.length();
+        WindowOptions w = window_options(model_, options_);
         w.controller = &controller;
-        w.locking = [this](const State& first, const State& last) { return of_locking(model_, first, last); };
-        w.ends_at_bends = options_.end_at_bends && model_.has_pieces();
         w.goes_on = [&] {
             const int n = mesh.n_elements();
             if (search_.is_free && n == looked_at) {

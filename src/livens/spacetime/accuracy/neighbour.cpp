@@ -61,12 +61,8 @@ bool Neighbour::march(const State& start, const Motion& near, double left)
     march_->ends.start = rigid(model_, start);
     if (!is_new) march_->window.restart();
     march_->window.follow(near);
-    WindowOptions w;
-    w.by_newton = options_.by_newton;
-    w.tolerance = std::clamp(left, least_tolerance, most_tolerance);
-    w.max_iterations = options_.max_iterations;
-    w.progress = options_.progress;
-    w.length_of_model = model_.length();
+    WindowOptions w = window_options(model_, options_);
+    w.solve.tolerance = std::clamp(left, least_tolerance, most_tolerance);
     w.may_divide = options_.divide;
     w.criteria = {acceptable_velocity_jump, true, true};
     w.ends_at_bends = !mesh_.bends.empty();

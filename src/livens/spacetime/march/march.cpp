@@ -59,11 +59,11 @@ March::March(Window& window, TimeMesh& mesh, const WindowOptions& options, Solve
     events_.expect(std::exchange(mesh.bends, {}));
     if (options.direction < 0) std::swap(start_, end_);
     time_ = start_;
-    newton_options_.tolerance = options.tolerance;
-    newton_options_.max_iterations = options.max_iterations;
-    if (options.progress)
+    newton_options_.tolerance = options.solve.tolerance;
+    newton_options_.max_iterations = options.solve.max_iterations;
+    if (options.solve.progress)
         newton_options_.goes_on = [this](int iterations) {
-            return options_.progress({done_, n_elements(), time_, iterations, 0});
+            return options_.solve.progress({done_, n_elements(), time_, iterations, 0});
         };
 }
 
@@ -87,7 +87,7 @@ void March::run()
         fail(SolveStatus::cancelled, of_stop(time_));
     }
     window_.describe(report_);
-    counts_.tolerance = options_.controller != nullptr ? 1 : options_.tolerance;
+    counts_.tolerance = options_.controller != nullptr ? 1 : options_.solve.tolerance;
     add_notes(report_, counts_);
 }
 
@@ -130,8 +130,9 @@ NewtonReport March::attempt(const Elements& of)
     };
     const bool soon =
         options_.controller != nullptr && troubles_.shortened < most_shortened && is_tangent_too_costly(of);
-    const bool is_solved = !options_.by_newton && window_.monitor().solve(newton_options_, soon, outcome);
-    const bool is_left = !is_solved && !options_.by_newton && is_tangent_too_costly(of);
+    const bool is_quick = !options_.solve.by_newton;
+    const bool is_solved = is_quick && window_.monitor().solve(newton_options_, soon, outcome);
+    const bool is_left = !is_solved && is_quick && is_tangent_too_costly(of);
     if (is_solved) iterations = outcome.iterations;
     if (!is_solved) outcome.status = SolveStatus::not_converged;
     if (is_solved) troubles_.shortened = 0;
@@ -244,8 +245,9 @@ bool March::goes_on(const NewtonReport& outcome)
         const std::string why = motion != nullptr ? options_.watch(*motion, mesh_.end()) : "";
         if (!why.empty()) return fail(SolveStatus::not_converged, why);
     }
-    const bool is_let = !options_.progress ||
-                        options_.progress({done_, n_elements(), time_, outcome.iterations, outcome.residual});
+    const ProgressCallback& progress = options_.solve.progress;
+    const bool is_let =
+        !progress || progress({done_, n_elements(), time_, outcome.iterations, outcome.residual});
     if (!is_let && time_ != end_) return fail(SolveStatus::cancelled, of_stop(time_));
     if (options_.goes_on && !options_.goes_on()) return false;
     const bool is_stuck = options_.controller != nullptr && options_.ends_at_bends && events_.is_stuck();
@@ -303,7 +305,7 @@ bool March::explain(const Elements& of, const NewtonReport& outcome)
         outcome.status == SolveStatus::not_converged || outcome.status == SolveStatus::singular;
     std::string message = may_lock ? locking_in_words() : "";
     if (message.empty())
-        message = of_failure(outcome, options_.max_iterations, window_at(mesh_, of.first, of.last),
+        message = of_failure(outcome, options_.solve.max_iterations, window_at(mesh_, of.first, of.last),
                              window_.worst(), options_.advice);
     return fail(outcome.status, message);
 }

@@ -9,14 +9,13 @@
 #include "livens/spacetime/march/partition.h"
 #include "livens/spacetime/march/step_size_controller.h"
 #include "livens/spacetime/march/window.h"
+#include "livens/spacetime/options.h"
 #include "livens/time/time_mesh.h"
 
 namespace livens::inline spacetime_internal {
 
 struct WindowOptions : DivisionOptions {
-    double tolerance = 1e-12;   ///< see NewtonOptions
-    int max_iterations = 30;
-    bool by_newton = false;       ///< whatever quicker way the window has
+    SolveOptions solve;           ///< the caller's; what is below stands above them
     bool ends_at_bends = false;   ///< elements end where laws of loads bend, if forwards and alone
     double length_of_model = 1;   ///< m, what distances are relative to
     std::string advice{};         ///< what may help a window that failed; empty: what helps a march
@@ -31,7 +30,6 @@ struct WindowOptions : DivisionOptions {
     /// Why a motion that went from the first of these states to the second goes no further, if the joints are
     /// to blame; else empty.
     std::function<std::string(const State& first, const State& last)> locking{};
-    ProgressCallback progress{};
     /// Set: the mesh begins with the start alone and grows, one element a window, as the pace has it.
     StepSizeController* controller = nullptr;
     /// Called with a march forwards, and where it ends, after an element that took a tangent: why it should
