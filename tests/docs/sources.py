@@ -7,6 +7,7 @@ FORMULAS    numbers that are nobody's measurement: examples that are stated, res
 
 Any other number on the page that looks measured (a decimal, a power of ten, a percentage) is a fault: tie it, or say it without.
 """
+import functools
 import re
 
 PAGE = "docs/theory.md"
@@ -207,18 +208,24 @@ def value(word):
     return float(f"{match.group(1) or 1}e{match.group(2)}") if match else float(word)
 
 
+@functools.lru_cache(maxsize=256)   # controls change one document at a time
 def plain(text):
     """Without fenced formulas and the list of sources; one space between words."""
     text = re.sub(r"(?ms)^```.*?^```$", " ", text).partition("## Sources")[0]
     return " ".join(text.split())
 
 
+@functools.lru_cache(maxsize=8192)
+def search(pattern, text):
+    return re.search(pattern, text, re.S)
+
+
 def check_sources(d):
     rest = {page: plain(d.texts[page]) for page in (PAGE, PROGRAM, VALIDATION)}
     for page, words, file, pattern in [*((PAGE, *tie) for tie in TIES), *OTHERS]:
         parts = re.split(r"«[^»]*»", " ".join(words.split()))
-        found = re.search(STATED.join(re.escape(part) for part in parts), plain(d.texts[page]))
-        source = re.search(pattern, d.found["sources"][file], re.S)
+        found = search(STATED.join(re.escape(part) for part in parts), plain(d.texts[page]))
+        source = search(pattern, d.found["sources"][file])
         if not found or not source:
             d.holds(False, f"{page} should say: {words}" if not found else f"{file}: nothing like {pattern}, for {page}: {words}")
             continue

@@ -13,6 +13,7 @@ element is one 4 x 4 matrix, of which the spectral radius is taken. "python3 sta
 """
 import cmath
 import functools
+import functools
 import math
 import re
 
@@ -192,6 +193,7 @@ def turning_map(p, points, a, z):
     return [[sum(back[m % 2][k] * end[2 * (m // 2) + k][n] for k in (0, 1)) for n in range(4)] for m in range(4)]
 
 
+@functools.lru_cache(maxsize=None)
 def turning_growth(p, a, z, points="gauss"):
     """An element; of Gauss points, whose map is symplectic, from its two invariants, else by squaring."""
     M = turning_map(p, points, a, z)
