@@ -3,17 +3,25 @@
 // every one. Prints a line "name elements error" each; fails if a motion is not the right one.
 // `instructions chain KIND BODIES ELEMENTS` solves a chain and prints "KIND BODIES ELEMENTS steps", the most
 // of an element; fails if that needed a tangent.
+// `instructions scenario FILE [bare | again]` solves a scenario as it asks, without estimate and growth, or
+// without them on the mesh and with the method that it ended with, and prints "elements largest-estimate";
+// what is counted is neither reading nor judging nor writing.
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <functional>
+#include <string>
+#include <utility>
 
 #include "kernels.h"
+#include "livens/io/scenario.h"
+#include "livens/io/solve_scenario.h"
 
 namespace {
 
 using livens::benchmarks::Kernel;
 
-const Kernel* counted_kernel = nullptr;
+std::function<livens::Solution()> counted_work;
 livens::Solution* counted_solution = nullptr;
 
 }   // namespace
@@ -23,19 +31,53 @@ livens::Solution* counted_solution = nullptr;
 extern "C" void livens_counted_solve();
 __attribute__((noinline, used)) void livens_counted_solve()
 {
-    *counted_solution = livens::benchmarks::run(*counted_kernel);
+    *counted_solution = counted_work();
 }
 
 namespace {
 
-livens::Solution solve_counted(const Kernel& kernel)
+livens::Solution count(std::function<livens::Solution()> work)
 {
     void (*volatile counted)() = livens_counted_solve;
     livens::Solution solution;
-    counted_kernel = &kernel;
+    counted_work = std::move(work);
     counted_solution = &solution;
     counted();
     return solution;
+}
+
+livens::Solution solve_counted(const Kernel& kernel)
+{
+    return count([&] { return livens::benchmarks::run(kernel); });
+}
+
+int solve_file(const char* path, const std::string& how)
+{
+    const livens::ScenarioResult read = livens::read_scenario(path);
+    if (!read.scenario) {
+        std::fprintf(stderr, "%s cannot be read\n", path);
+        return 2;
+    }
+    const livens::Scenario& scenario = *read.scenario;
+    livens::SolveOptions bare = scenario.options;
+    bare.estimate = livens::SolveOptions::Estimate::none;
+    bare.growth = bare.judge = false;
+    const auto solve_as = [&](const livens::SolveOptions& options) {
+        return livens::solve_scenario(scenario, options, std::make_shared<livens::Prepared>()).solution;
+    };
+    livens::Solution solution;
+    if (how == "again") {
+        const livens::Solution first = solve_as(scenario.options);
+        solution = count([&] {
+            return livens::solve(scenario.model, {scenario.model.start()}, first.motion.mesh, first.method, bare);
+        });
+    } else {
+        solution = count([&] { return solve_as(how == "bare" ? bare : scenario.options); });
+    }
+    std::printf("%d %.2e\n", solution.motion.n_elements(), solution.estimate.largest);
+    if (solution.report.converged()) return 0;
+    std::fprintf(stderr, "%s\n", solution.report.message.c_str());
+    return 1;
 }
 
 int solve_chain(int n, const char* kind, int n_elements)
@@ -57,8 +99,10 @@ int main(int argc, char** argv)
 {
     if (argc == 5 && std::strcmp(argv[1], "chain") == 0)
         return solve_chain(std::atoi(argv[3]), argv[2], std::atoi(argv[4]));
+    if (argc >= 3 && std::strcmp(argv[1], "scenario") == 0) return solve_file(argv[2], argc > 3 ? argv[3] : "");
     if (argc != 2) {
-        std::fprintf(stderr, "usage: instructions NAME | --all | chain KIND BODIES ELEMENTS\n");
+        std::fprintf(stderr, "usage: instructions NAME | --all | chain KIND BODIES ELEMENTS\n"
+                             "       instructions scenario FILE [bare | again]\n");
         return 2;
     }
     bool found = false, good = true;

@@ -116,7 +116,7 @@ TEST(AutomaticFamily, FollowsElasticPendulumsOrRefusesThemByName)
 
 TEST(AutomaticFamily, TakesRadauWhereLobattoDoesNotFollowAVibrationThatDoesNotMatter)
 {
-    const Model model = elastic_pendulum(3e10, 0, 1e-7);
+    const Model model = elastic_pendulum(5e9, 0, 1e-7);
     const Solution s = to_accuracy(model, 5, 1e-4);
     ASSERT_TRUE(s.report.converged()) << s.report.message;
     EXPECT_TRUE(is_radau(s));

@@ -52,6 +52,9 @@ TIES = [
     ("Where the first step is longer than $«10^{-3}»$ lengths", f"{KERNEL}/march_kernel.cpp", r"farthest_parting = ([^;]+);"),
     ("Steps that shrink by less than «0.3» twice", f"{KERNEL}/march_kernel.cpp", r"slow_contraction = ([^;]+);"),
     ("too long), «14» steps", f"{KERNEL}/march_kernel.cpp", r"most_kernel_steps = (\d+)"),
+    ("holds both against each other to «1e-14» of what", "tests/properties/load_kit_lanes.cpp", r"difference < ([^)]+)\)"),
+    ("(more than «8» steps, or steps that do not shrink)", f"{KERNEL}/step_choice.cpp", r"many_steps = (\d+);"),
+    ("After «8» elements, then ever more", f"{KERNEL}/step_choice.cpp", r"first_trial = (\d+)"),
     ("or a pivot below «1e-5» leave the element", f"{KERNEL}/march_kernel.cpp", r"least_pivot = ([^;]+);"),
     ("So a factor is kept up to $\\varepsilon = «10^{-2}»$ while steps shrink (by less than that, they would not be steps of the method), up to $«10^{-7}»$ for the evaluation that ends the element and "
      "gives its multipliers (whose last change is of the size of the last step), and up to $«10^{-8}»$ its part", f"{KERNEL}/march_kernel.cpp",

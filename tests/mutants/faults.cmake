@@ -908,3 +908,45 @@ livens_mutant(NAME inaccurate_is_fine
               NEW [[report.status = SolveStatus::converged;]]
               TESTS_OF convergence
               MUST_FAIL Accuracy.SaysWhereItIsLost)
+
+# Loads in lanes take places from the reference point, though lanes have centres of mass.
+livens_mutant(NAME arms_about_the_reference_point
+              FILE dynamics/lanes/load_program.cpp
+              OLD [[: arm.w[a] - arm.w[0] * centre[a - 1];
+        if (w != 0) terms_.push_back({12]]
+              NEW [[: arm.w[a] + 0 * centre[a - 1];
+        if (w != 0) terms_.push_back({12]]
+              TESTS_OF properties
+              MUST_FAIL LoadKit/EveryLoad.Passes/spring_damper_spring_and_damper)
+
+# Loads that record nothing are left out.
+livens_mutant(NAME loads_without_a_tape_unseen
+              FILE dynamics/lanes/load_lanes.cpp
+              OLD [[if (program_->others().empty()) return;]]
+              NEW [[return;]]
+              TESTS_OF properties
+              MUST_FAIL LoadKit/EveryLoad.Passes/pressure_*)
+
+# The rate of a coordinate knows the motion of one body alone.
+livens_mutant(NAME rates_of_tapes_by_one_factor
+              FILE multibody/loads/load_coordinate_on_tape.cpp
+              OLD [[add(sum, dot(tape.arm(side_u, u), tape.arm(side_v, v, true)));]]
+              NEW [[;]]
+              TESTS_OF properties
+              MUST_FAIL LoadKit/EveryLoad.Passes/joint_spring_damper_about_an_axis)
+
+# What bodies bear is not passed to those that they hang on.
+livens_mutant(NAME what_a_child_bears_is_not_its_parents
+              FILE spacetime/nodal/kernel/tree_tangent.cpp
+              OLD [[add(blocks_.of(above, above), from_b(above));]]
+              NEW [[;]]
+              TESTS_OF unit_spacetime
+              MUST_FAIL MarchKernel.StiffLoadsAreSolvedWithTheirSlopes)
+
+# Joints that close loops take no forces in the tangent.
+livens_mutant(NAME loops_are_open_in_the_tangent
+              FILE spacetime/nodal/kernel/tree_tangent.cpp
+              OLD [[if (node < p) J[(i * p + node) * m * p + r * p + node] = of[r * d + i];]]
+              NEW [[;]]
+              TESTS_OF unit_spacetime
+              MUST_FAIL MarchKernel.StiffLoadsAreSolvedWithTheirSlopes)

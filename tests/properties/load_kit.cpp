@@ -15,25 +15,6 @@ LoadForces forces(const Load& load, const LoadArguments& at)
     return F;
 }
 
-/// Skew and moving bodies, some way apart so that no two points meet.
-LoadArguments random_state(Random& random, const Load& load, const LoadCase& load_case)
-{
-    LoadArguments at(load.bodies.size());
-    at.at.t = random.number();
-    for (std::size_t b = 0; b < load.bodies.size(); ++b) {
-        if (load.bodies[b] == world) continue;
-        at.X[b] = random.skew();
-        at.V[b] = random.matrix<3, 4>();
-    }
-    if (load_case.place) {
-        const std::array<Matrix34, 2> X = load_case.place(random);
-        for (std::size_t b = 0; b < 2; ++b) at.X[b] = X[b];
-    } else {
-        at.X[0](0, 0) += 4;
-    }
-    return at;
-}
-
 /// f'(0) by central differences of order 8.
 template <typename Function>
 auto derivative(Function f, double h)
@@ -94,13 +75,31 @@ double potential(const Load& load, const LoadArguments& at)
 
 }   // namespace
 
+LoadArguments random_arguments(Random& random, const Load& load, const LoadCase& load_case)
+{
+    LoadArguments at(load.bodies.size());
+    at.at.t = random.number();
+    for (std::size_t b = 0; b < load.bodies.size(); ++b) {
+        if (load.bodies[b] == world) continue;
+        at.X[b] = random.skew();
+        at.V[b] = random.matrix<3, 4>();
+    }
+    if (load_case.place) {
+        const std::array<Matrix34, 2> X = load_case.place(random);
+        for (std::size_t b = 0; b < 2; ++b) at.X[b] = X[b];
+    } else {
+        at.X[0](0, 0) += 4;
+    }
+    return at;
+}
+
 Failures check_load_tangent(const LoadCase& load_case)
 {
     Random random(1);
     Failures failures;
     for (int n = 0; n < of_states(1000) && failures.size() < 10; ++n) {
         const Load load = load_case.make(random);
-        const LoadArguments at = random_state(random, load, load_case);
+        const LoadArguments at = random_arguments(random, load, load_case);
         LoadTangent tangent(load.bodies.size());
         if (load.depends_on_X || load.depends_on_V) load.tangent(at, tangent);
         for (const bool of_V : {false, true}) {
@@ -122,7 +121,7 @@ Failures check_load_energy(const LoadCase& load_case)
     Failures failures;
     for (int n = 0; n < 200; ++n) {
         const Load load = load_case.make(random);
-        const LoadArguments at = random_state(random, load, load_case);
+        const LoadArguments at = random_arguments(random, load, load_case);
         const double gain = derivative(
             [&](double h) {
                 LoadArguments moved = at;
@@ -144,7 +143,7 @@ Failures check_load_potential(const LoadCase& load_case)
     for (int n = 0; n < 200; ++n) {
         const Load load = load_case.make(random);
         if (!load.potential) continue;
-        LoadArguments at = random_state(random, load, load_case);
+        LoadArguments at = random_arguments(random, load, load_case);
         at.V = PerBody<Matrix34>(at.V.size());
         const LoadForces F = forces(load, at);
         for (int i = 0; i < 24; ++i) {
@@ -168,7 +167,7 @@ Failures check_load_breaks(const LoadCase& load_case)
 {
     Random random(4);
     const Load load = load_case.make(random);
-    const LoadArguments state = random_state(random, load, load_case);
+    const LoadArguments state = random_arguments(random, load, load_case);
     const auto force_at = [&](double t, Side side) {
         LoadArguments at = state;
         at.at = {t, side};
@@ -201,7 +200,7 @@ Failures check_load_directors(const LoadCase& load_case)
     Failures failures;
     for (int n = 0; n < 20; ++n) {
         const Load load = load_case.make(random);
-        const LoadForces F = forces(load, random_state(random, load, load_case));
+        const LoadForces F = forces(load, random_arguments(random, load, load_case));
         for (int b = 0; b < 2; ++b) {
             if (load.bodies[b] == world || load.needs_directors[b]) continue;
             if (std::any_of(F[b].a + 3, F[b].a + 12, [](double entry) { return entry != 0; }))
@@ -215,7 +214,7 @@ Failures check_load(const LoadCase& load)
 {
     Failures all;
     for (const auto check : {check_load_tangent, check_load_energy, check_load_potential, check_load_breaks,
-                             check_load_directors})
+                             check_load_directors, check_load_lanes})
         for (const std::string& failure : check(load)) all.push_back(load.what + ": " + failure);
     Random random(6);
     if (load.make(random).type != load.type)

@@ -23,6 +23,9 @@ struct LoadCase {
 /// Every load of the library, in every variant.
 const std::vector<LoadCase>& load_cases();
 
+/// Skew and moving bodies, some way apart so that no two points meet.
+LoadArguments random_arguments(Random& random, const Load& load, const LoadCase& load_case);
+
 /// dF/dX and dF/dV equal differences of order 8 (error about 1e-12) at 1000 states with skew directors; where
 /// a flag says that there is no dependence, there is none.
 Failures check_load_tangent(const LoadCase& load);
@@ -32,6 +35,9 @@ Failures check_load_energy(const LoadCase& load);
 Failures check_load_potential(const LoadCase& load);
 /// F is smooth in time between its breaks, and at a break each side is the limit from there.
 Failures check_load_breaks(const LoadCase& load);
+/// In lanes of every set of instructions that is here F is what it is alone, to 1e-14 of its scale, also
+/// turn after turn.
+Failures check_load_lanes(const LoadCase& load);
 /// No force outside the first column unless needs_directors says so.
 Failures check_load_directors(const LoadCase& load);
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "livens/multibody/loads/load_tape.h"
 #include "properties/load_kit.h"
 
 namespace livens {
@@ -20,7 +21,7 @@ INSTANTIATE_TEST_SUITE_P(LoadKit, EveryLoad, testing::ValuesIn(load_cases()),
 
 TEST(LoadKit, EveryFileOfALoadIsInTheRegistry)
 {
-    expect_sources_in(load_cases(), "src/livens/multibody/loads", {"spring_laws"}, 10);
+    expect_sources_in(load_cases(), "src/livens/multibody/loads", {"spring_laws", "load_coordinate_on_tape"}, 10);
 }
 
 const LoadCase& find_case(const std::string& what)
@@ -50,6 +51,16 @@ TEST(LoadKit, OneWrongSignFailsTheTangent)
         };
     });
     EXPECT_FALSE(check_load_tangent(load).empty());
+}
+
+TEST(LoadKit, AFaultOnTheTapeFailsTheLanes)
+{
+    const LoadCase load = broken("torque in body axes", [](Load& l) {
+        l.forces.record = [record = l.forces.record](LoadTape& tape, const TapeNumber& factor) {
+            record(tape, (1 + 1e-13) * factor);
+        };
+    });
+    EXPECT_FALSE(check_load_lanes(load).empty());
 }
 
 TEST(LoadKit, AMissingTermFailsTheTangent)

@@ -3,12 +3,15 @@
 #pragma once
 
 #include <array>
+#include <concepts>
+#include <cstddef>
 #include <functional>
 #include <limits>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "livens/base/linear.h"
@@ -18,6 +21,11 @@
 #include "livens/time/time_function.h"
 
 namespace [[gnu::visibility("default")]] livens {
+
+inline namespace multibody_internal {
+class LoadTape;
+struct TapeNumber;
+}   // namespace multibody_internal
 
 /// One value for each body of a load; two are held in place.
 template <class T>
@@ -120,6 +128,24 @@ struct LoadEnergy {
     std::function<double(const LoadArguments&)> power;
 };
 
+/// F of a load, added to forces that arrive as zero. Any function will do; one that replaces it forgets what
+/// was recorded.
+struct LoadFunction {
+    LoadFunction() = default;
+    LoadFunction(std::nullptr_t) {}   // NOLINT
+    template <std::invocable<const LoadArguments&, LoadForces&> Function>
+    LoadFunction(Function function) : evaluate(std::move(function))   // NOLINT: a function is one
+    {}
+
+    void operator()(const LoadArguments& arguments, LoadForces& F) const { evaluate(arguments, F); }
+    explicit operator bool() const { return static_cast<bool>(evaluate); }
+
+    std::function<void(const LoadArguments&, LoadForces&)> evaluate;
+    /// The same times a number, as operations that are run at many instants side by side
+    /// (multibody/loads/load_tape.h). Empty: `evaluate` is called at each.
+    std::function<void(LoadTape&, const TapeNumber& factor)> record = nullptr;
+};
+
 /// A load is data and functions; a new one is a new maker.
 struct Load : LoadSmoothness, LoadEnergy {
     std::string name;
@@ -136,8 +162,7 @@ struct Load : LoadSmoothness, LoadEnergy {
     /// Angles that F counts with their turns, zero where the bodies are stated; see LoadArguments::angles.
     std::vector<JointCoordinate> angles{};
 
-    /// F; required. Forces arrive as zero.
-    std::function<void(const LoadArguments&, LoadForces&)> forces;
+    LoadFunction forces;   ///< F; required
     /// dF/dX and dF/dV; required if one of the flags is set. The tangent arrives as zero.
     std::function<void(const LoadArguments&, LoadTangent&)> tangent;
     /// For sensors and people.

@@ -28,38 +28,6 @@ public:
     static constexpr int deepest = 64;             ///< of parentheses, signs and powers
     static constexpr std::size_t most_symbols = 64;
 
-    /// Throws InputError (`expression-size`, `expression-syntax`, `expression-name`, `expression-value`) with
-    /// the column in the text.
-    Expression(std::string_view text, std::vector<std::string> symbols);
-
-    const std::string& text() const { return text_; }
-    /// Whether the value may change with a symbol.
-    bool depends_on(std::size_t symbol) const;
-
-    /// The value, and its derivatives by the symbols unless `slopes` is empty; one number for each symbol.
-    double operator()(double t, std::span<const double> symbols, std::span<double> slopes = {}) const;
-    /// Value and two derivatives by time, where symbols do not change.
-    TimeValue by_time(double t, std::span<const double> symbols = {}) const;
-    /// "division by 0 at column 5": the first operation that has no value there; empty if all have.
-    std::string without_value(double t, std::span<const double> symbols) const;
-
-    /// Instants in between at which an operation on time alone jumps or bends (abs, min, max, atan2, a
-    /// division by what passes zero), and around what comes and goes faster than a hundredth of the time: an
-    /// element that steps over these sees nothing of them. Pulses shorter than a 4096th may be overlooked.
-    std::vector<double> events(double from, double until) const;
-    /// Of operations that jump or bend where symbols decide: abs at 0, min and max where both are alike,
-    /// atan2 at half a turn.
-    const std::vector<Guard>& guards() const { return guards_; }
-    /// Their numbers.
-    void guarded(double t, std::span<const double> symbols, std::span<double> numbers) const;
-    /// Where time and symbols are within ranges, and their slopes by the share of a way: bounds of the value
-    /// and of its slope, wider than they are where a symbol stands more than once.
-    EnclosedValue over(const EnclosedValue& t, std::span<const EnclosedValue> symbols) const;
-    /// A sum of numbers times symbols, and of what time alone decides.
-    bool is_affine() const;
-    /// "max at column 5": the first operation that may jump or bend where symbols decide; empty: none does.
-    std::string kink_by_symbols() const;
-
     enum class Operation : std::uint8_t {
         number,
         time,
@@ -89,6 +57,40 @@ public:
         int column = 0;                ///< in the text, from 1
         double number = 0;
     };
+
+    /// Throws InputError (`expression-size`, `expression-syntax`, `expression-name`, `expression-value`) with
+    /// the column in the text.
+    Expression(std::string_view text, std::vector<std::string> symbols);
+
+    const std::string& text() const { return text_; }
+    /// What it is made of; the last is the value.
+    const std::vector<Step>& steps() const { return steps_; }
+    /// Whether the value may change with a symbol.
+    bool depends_on(std::size_t symbol) const;
+
+    /// The value, and its derivatives by the symbols unless `slopes` is empty; one number for each symbol.
+    double operator()(double t, std::span<const double> symbols, std::span<double> slopes = {}) const;
+    /// Value and two derivatives by time, where symbols do not change.
+    TimeValue by_time(double t, std::span<const double> symbols = {}) const;
+    /// "division by 0 at column 5": the first operation that has no value there; empty if all have.
+    std::string without_value(double t, std::span<const double> symbols) const;
+
+    /// Instants in between at which an operation on time alone jumps or bends (abs, min, max, atan2, a
+    /// division by what passes zero), and around what comes and goes faster than a hundredth of the time: an
+    /// element that steps over these sees nothing of them. Pulses shorter than a 4096th may be overlooked.
+    std::vector<double> events(double from, double until) const;
+    /// Of operations that jump or bend where symbols decide: abs at 0, min and max where both are alike,
+    /// atan2 at half a turn.
+    const std::vector<Guard>& guards() const { return guards_; }
+    /// Their numbers.
+    void guarded(double t, std::span<const double> symbols, std::span<double> numbers) const;
+    /// Where time and symbols are within ranges, and their slopes by the share of a way: bounds of the value
+    /// and of its slope, wider than they are where a symbol stands more than once.
+    EnclosedValue over(const EnclosedValue& t, std::span<const EnclosedValue> symbols) const;
+    /// A sum of numbers times symbols, and of what time alone decides.
+    bool is_affine() const;
+    /// "max at column 5": the first operation that may jump or bend where symbols decide; empty: none does.
+    std::string kink_by_symbols() const;
 
 private:
     std::vector<bool> steps_with_symbols() const;

@@ -48,7 +48,7 @@ InstantState instant_state(const ModelTables& tables, const State& start)
 }
 
 struct Comparison {
-    bool is_solved = false;
+    bool is_solved = false, has_reference = false;
     double X = 0, wrench = 0, momentum = 0;   // largest differences, see below
     double worst() const { return std::max({X, wrench, momentum}); }
 };
@@ -107,8 +107,9 @@ std::vector<double> tangent_part(const ModelTables& tables, double t, const doub
     return state.momentum;
 }
 
-/// One element of length h by both; `fault` is added to one entry k_AB of the kernel's rule.
-Comparison compare(const Model& model, int degree, double h, double fault = 0)
+/// One element of length h by both; `fault` is added to one entry k_AB of the kernel's rule. `kernels`: the
+/// model as the kernel sees it, if that is another one.
+Comparison compare(const Model& model, int degree, double h, double fault = 0, const Model* kernels = nullptr)
 {
     const ConsistentStart closed = consistent_start(model, model.start(), StartPolicy::project);
     const ModelTables tables(model, closed.independent);
@@ -119,6 +120,7 @@ Comparison compare(const Model& model, int degree, double h, double fault = 0)
     WindowLayout stretch;
     stretch.times = {start.t, start.t + h};
     stretch.degree = degree;
+    stretch.angles = tables.loads.turns.begin();
 
     NodalSystem system(tables, rule);
     Series series(tables, rule);
@@ -128,10 +130,12 @@ Comparison compare(const Model& model, int degree, double h, double fault = 0)
     Newton newton;
     if (newton.run(system, {1e-14, 30, {}}).status != SolveStatus::converged) return {};
 
-    MarchKernel kernel(tables, kernels_rule);
+    const ModelTables kernels_tables(kernels != nullptr ? *kernels : model, closed.independent);
+    MarchKernel kernel(kernels_tables, kernels_rule);
     EXPECT_TRUE(kernel.serves());
     NewtonReport report;
     Comparison found;
+    found.has_reference = true;
     found.is_solved = kernel.solve(stretch, start, {1e-14, 30, {}}, false, report);
     if (!found.is_solved) return found;
     Nodes nodes(tables, kernels_rule);
@@ -276,6 +280,55 @@ std::vector<double> differences(int n, double fault, int& unsolved)
     return found;
 }
 
+/// Springs so stiff that steps of free bodies do not shrink: at coordinates of joints, between any two bodies
+/// and to the world, where they are at rest.
+void add_stiff_loads(Random& random, Model& model, bool have_slopes)
+{
+    const auto add = [&](Load load) {
+        if (!have_slopes)
+            load.tangent = [](const LoadArguments&, LoadTangent&) {};
+        model.add_load(load);
+    };
+    const std::vector<Matrix34> X = model.start().X;
+    for (std::size_t j = 0; j < model.joints().size(); ++j)
+        for (const NamedCoordinate& q : model.joints()[j].coordinates)
+            if (random.number() > -0.5)
+                add(joint_spring("at " + q.name + std::to_string(j), q, {3e4, 2, q.at_stated, 0.1}, X));
+    const int n = static_cast<int>(model.bodies().size());
+    for (const int other : {world, 0}) {
+        if (other == n - 1) continue;
+        const Vector3 from = 3.0 * random.unit();
+        const Vector3 way = X[static_cast<std::size_t>(n - 1)].column(0) -
+                            (other == world ? world_configuration : X[0]) * point(from);
+        add(spring_damper("from " + std::to_string(other), other,
+                          other != world && model.bodies()[0].is_point ? Vector3{} : from, n - 1, {},
+                          {5e4, 1, norm(way)}));
+    }
+}
+
+/// How many elements with stiff loads are solved, of n that Newton solves; `found`: their differences.
+int solved_with_stiff_loads(int n, bool have_slopes, std::vector<double>& found)
+{
+    Random random(11);
+    for (int tried = 0; tried < n;) {
+        Model model = any_mechanism(random);
+        const int degree = 2 + static_cast<int>(3.5 * (1 + random.number()));
+        const double h = (random.number() > -0.7 ? 1 : -1) * (0.02 + 0.015 * random.number());
+        try {
+            Model blunt = model;
+            Random same = random;
+            add_stiff_loads(same, blunt, false);
+            add_stiff_loads(random, model, true);
+            const Comparison comparison = compare(model, degree, h, 0, have_slopes ? nullptr : &blunt);
+            tried += comparison.has_reference ? 1 : 0;
+            if (comparison.is_solved) found.push_back(comparison.worst());
+        } catch (const InputError&) {   // overdetermined: no start
+        }
+    }
+    std::sort(found.begin(), found.end());
+    return static_cast<int>(found.size());
+}
+
 /// With each set of instructions that the processor has.
 template <class Act>
 void with_all_instructions(const Act& act)
@@ -298,6 +351,17 @@ TEST(MarchKernel, AgreesWithNewtonOnRandomMechanisms)
         ASSERT_GT(found.size(), 250U);
         EXPECT_LT(found[found.size() / 2], 1e-14);
         EXPECT_LT(found.back(), 1e-13);
+    });
+}
+
+TEST(MarchKernel, StiffLoadsAreSolvedWithTheirSlopes)
+{
+    with_all_instructions([] {
+        std::vector<double> found, without;
+        EXPECT_GT(solved_with_stiff_loads(150, true, found), 125);
+        EXPECT_LT(found[found.size() / 2], 5e-13);   // forces of 5e4 N a metre, of which digits are left
+        EXPECT_LT(found.back(), 1e-11);
+        EXPECT_LT(solved_with_stiff_loads(150, false, without), 75) << "negative control";
     });
 }
 

@@ -63,7 +63,8 @@ void InstantState::forget_past()
     std::fill(snap.begin(), snap.end(), 0.0);
 }
 
-InstantSystem::InstantSystem(const ModelTables& tables, bool sparse) : tables_(tables), is_sparse_(sparse)
+InstantSystem::InstantSystem(const ModelTables& tables, bool sparse)
+    : tables_(tables), loads_(tables), is_sparse_(sparse)
 {
     const auto n = static_cast<std::size_t>(tables.n_twists);
     if (!tables.bodies.are_regular()) {
@@ -333,7 +334,7 @@ void InstantSystem::accelerate(InstantState& state, Side side)
     }
     tables_.bodies.times_mass(centripetal_.data(), -1.0, raw_.data());
     tables_.bodies.add_weight(1.0, raw_.data());
-    tables_.loads.add({state.t, side}, X, V_.data(), 1.0, raw_.data(), state.angles);
+    loads_.add({state.t, side}, X, V_.data(), raw_.data(), state.angles);
     double* y = a_.data();
     double* forces = b_.data();
     tables_.bodies.twist_rows(X, state.maps.data(), raw_.data(), y);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "livens/dynamics/lanes/joint_factor.h"
+#include "livens/dynamics/lanes/load_lanes.h"
 #include "livens/dynamics/rows/constraint_basis.h"
 
 namespace livens::inline dynamics_internal {
@@ -94,6 +95,7 @@ private:
     void scatter(const InstantState& state, double* y, double weight, double* lambda) const;
 
     const ModelTables& tables_;
+    LoadsAtInstant loads_;
     Cholesky reduced_;        // Z^T M Z, used only where an inertia is singular
     std::vector<double> z_;   // null space, n x f; likewise
     std::vector<double> a_, b_, V_, centripetal_, raw_, curvatures_;

@@ -98,6 +98,59 @@ struct Pattern {
     Sums violations;
 };
 
+/// What a step of loads does; the kinds of multibody/loads/load_tape.h that are evaluated in lanes.
+enum class LoadKind : std::int32_t {
+    arm,   ///< of X, sum of terms; arm_rate of V
+    arm_rate,
+    plus,
+    minus,
+    times,
+    divided,
+    scaled,
+    shifted,
+    root,
+    absolute,
+    inverse,
+    least,
+    greatest,
+    chosen,
+    function,
+    unwrapped,
+    outer,
+    sum,
+    difference,
+    stretched,
+    cross,
+    dot,
+    pull,        ///< register `to` of an arm's force += a times b
+    first_pull   ///< likewise, =
+};
+/// Registers of W lanes by their numbers; three in a row are a vector.
+struct LoadStep {
+    LoadKind kind;
+    std::int32_t to, a, b;
+    std::int32_t begin, end;   ///< terms of an arm; of a call its number, and how many results
+    double number;
+    double (*function)(double, double);
+};
+/// Column of the forces on a body: a sum of arms' forces, of their first registers.
+struct LoadColumn {
+    std::int32_t number;   ///< its first
+    std::int32_t begin, end;
+};
+/// Loads at their points: one lane a point, of which there are n; lanes behind them are as the last one.
+struct LoadProgram {
+    int n_lanes, n_steps, n_columns;
+    const LoadStep* steps;
+    const LoadColumn* columns;
+    const Term* terms;
+    double* registers;
+    double* turns;   ///< of angles at the instant before; they go on
+    /// What no step says, in one lane.
+    void (*call)(void* caller, const LoadStep& step, int lane);
+    void* caller;
+};
+
 /// Arrays of W lanes each; with W = 1 an instant.
 struct Values {
     double* numbers;      ///< 12 n_bodies + n_products

@@ -44,15 +44,20 @@ LoadArguments LoadTables::arguments(int index, Instant instant, const double* X,
 void LoadTables::add(Instant instant, const double* X, const double* V, double factor, double* raw,
                      std::span<const double> angles) const
 {
-    for (std::size_t l = 0; l < model_.loads().size(); ++l) {
-        const Load& load = model_.loads()[l];
-        LoadForces forces{};
-        load.forces(arguments(static_cast<int>(l), instant, X, V, angles), forces);
-        for (int side = 0; side < 2; ++side) {
-            if (load.bodies[side] == world) continue;
-            double* f = raw + 12 * load.bodies[side];
-            for (int i = 0; i < 12; ++i) f[i] += factor * forces[side].a[i];
-        }
+    for (int l = 0; l < static_cast<int>(model_.loads().size()); ++l)
+        add_one(l, instant, X, V, factor, raw, angles);
+}
+
+void LoadTables::add_one(int l, Instant instant, const double* X, const double* V, double factor, double* raw,
+                         std::span<const double> angles) const
+{
+    const Load& load = model_.loads()[l];
+    LoadForces forces{};
+    load.forces(arguments(l, instant, X, V, angles), forces);
+    for (int side = 0; side < 2; ++side) {
+        if (load.bodies[side] == world) continue;
+        double* f = raw + 12 * load.bodies[side];
+        for (int i = 0; i < 12; ++i) f[i] += factor * forces[side].a[i];
     }
 }
 

@@ -18,6 +18,9 @@ public:
     /// turns are not known.
     void add(Instant at, const double* X, const double* V, double factor, double* raw,
              std::span<const double> angles = {}) const;
+    /// The same of one of them.
+    void add_one(int load, Instant at, const double* X, const double* V, double factor, double* raw,
+                 std::span<const double> angles = {}) const;
     /// What a load is asked with.
     LoadArguments arguments(int load, Instant at, const double* X, const double* V,
                             std::span<const double> angles = {}) const;

@@ -11,11 +11,13 @@
 
 namespace livens::inline dynamics_internal {
 
+class LoadProgram;
 class RowPattern;
 
-/// The last pattern that was made of a model's rows.
+/// The last pattern that was made of a model's rows, and its loads in lanes.
 struct KnownPattern {
     std::shared_ptr<const RowPattern> last;
+    std::shared_ptr<const LoadProgram> loads, loads_without_bends;
 };
 
 /// Tables made once per solution.

@@ -17,6 +17,9 @@ Load actuator(const std::string& name, const NamedCoordinate& coordinate, const 
         unit.forces(arguments, F);
         for (Matrix34& of_body : F) of_body *= value(arguments.at).value;
     };
+    load.forces.record = [unit, value](LoadTape& tape, const TapeNumber& factor) {
+        unit.forces.record(tape, factor * tape.of_time(value));
+    };
     load.tangent = [unit, value](const LoadArguments& arguments, LoadTangent& tangent) {
         unit.tangent(arguments, tangent);
         for (auto& of_body : tangent.X)

@@ -86,6 +86,27 @@ LoadLaw law_of(const std::vector<AttractionTerm>& terms)
     };
 }
 
+/// The slopes of both terms, as of_the_centre() and of_the_extent() have them, less.
+void record_attraction(const LawOnTape& at, double mu, double mass, const Matrix3& J,
+                       std::span<TapeNumber> factors)
+{
+    const auto squared = [](const TapeNumber* y) { return y[0] * y[0] + y[1] * y[1] + y[2] * y[2]; };
+    for (std::size_t first = 0; first < factors.size(); first += 3) {
+        const TapeNumber y[3] = {at.value(first), at.value(first + 1), at.value(first + 2)};
+        const TapeNumber r2 = squared(y), by_r3 = at.tape.number(1) / (r2 * root(r2));
+        if (first == 0) {
+            for (std::size_t k = 0; k < 3; ++k) factors[k] = -mu * mass * (by_r3 * y[k]);
+            continue;
+        }
+        TapeNumber Jy[3];
+        for (int k = 0; k < 3; ++k) Jy[k] = J(k, 0) * y[0] + J(k, 1) * y[1] + J(k, 2) * y[2];
+        const TapeNumber by_r5 = by_r3 / r2;
+        const TapeNumber across = 5.0 * ((y[0] * Jy[0] + y[1] * Jy[1] + y[2] * Jy[2]) / r2);
+        for (std::size_t k = 0; k < 3; ++k)
+            factors[first + k] = -1.5 * mu * (by_r5 * ((trace(J) + -across) * y[k] + 2.0 * Jy[k]));
+    }
+}
+
 /// What is exerted on the body, world axes.
 std::vector<LoadReading> forces_of(const Load& load)
 {
@@ -135,6 +156,9 @@ Load attraction(const std::string& name, int body, const Body& properties, const
     }
     parts.is_smooth = true;   // the nearer the faster: elements see it by the motion
     parts.law = law_of(terms);
+    parts.recorded_law = [mu = law.mu, mass](const LawOnTape& at, std::span<TapeNumber> factors) {
+        record_attraction(at, mu, mass.mass, mass.inertia, factors);
+    };
     parts.potential = [terms](const LawArguments& arguments) {
         double energy = 0;
         for (const AttractionTerm& term : terms) energy += term.at(arguments).energy;

@@ -176,6 +176,49 @@ struct BushingLaw {
         }
     }
 
+    /// The same on a tape: J^T f with the few sums that J is made of.
+    void record(const LawOnTape& at, std::span<TapeNumber> factors) const
+    {
+        const auto product = [](const TapeNumber* a, const TapeNumber* b) {
+            return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+        };
+        const TapeNumber s[3] = {at.value(3), at.value(4), at.value(5)}, c = at.value(6);
+        const TapeNumber sigma = product(s, s), by_c = -(at.tape.number(1) / (sigma + c * c));
+        const TapeNumber factor = function_of([](double x, double y) { return psi(x, y).value; }, sigma, c);
+        const TapeNumber twice_by_sigma =
+            function_of([](double x, double y) { return 2 * psi(x, y).by_sigma; }, sigma, c);
+        TapeNumber u[6], rate[6], f[6];
+        for (std::size_t k = 0; k < 3; ++k) {
+            u[k] = at.value(k);
+            u[3 + k] = factor * s[k];
+        }
+        if (of_rates()) {
+            const TapeNumber s_rate[3] = {at.rate(3), at.rate(4), at.rate(5)};
+            const TapeNumber along = twice_by_sigma * product(s, s_rate) + by_c * at.rate(6);
+            for (std::size_t k = 0; k < 3; ++k) {
+                rate[k] = at.rate(k);
+                rate[3 + k] = factor * s_rate[k] + along * s[k];
+            }
+        }
+        for (int k = 0; k < 6; ++k) f[k] = recorded_force(at.tape, u, rate, k);
+        const TapeNumber along = product(s, f + 3);
+        for (std::size_t k = 0; k < 3; ++k) {
+            factors[k] = f[k];
+            factors[3 + k] = factor * f[3 + k] + twice_by_sigma * along * s[k];
+        }
+        factors[6] = by_c * along;
+    }
+    bool of_rates() const { return of.damping != Matrix<6, 6>{}; }
+    TapeNumber recorded_force(LoadTape& tape, const TapeNumber* u, const TapeNumber* rate, int k) const
+    {
+        TapeNumber f = tape.number(-of.preload[k]);
+        for (int l = 0; l < 6; ++l) {
+            if (of.stiffness(k, l) != 0) f = f - of.stiffness(k, l) * u[l];
+            if (of.damping(k, l) != 0) f = f - of.damping(k, l) * rate[l];
+        }
+        return f;
+    }
+
     double potential(const LawArguments& at) const
     {
         const Motion m = motion(at);
@@ -276,8 +319,9 @@ Load bushing(const std::string& name, int first, const BodyFrame& frame_first, i
     }
     const BushingLaw at{law};
     parts.law = at;
+    parts.recorded_law = [at](const LawOnTape& on, std::span<TapeNumber> factors) { at.record(on, factors); };
     parts.is_smooth = true;   // up to half a turn, where it ends
-    parts.depends_on_rates = law.damping != Matrix<6, 6>{};
+    parts.depends_on_rates = at.of_rates();
     parts.potential = [at](const LawArguments& q) { return at.potential(q); };
     parts.power = [at](const LawArguments& q) { return at.power(q); };
     for (int k = 0; k < 6; ++k) {   // on u, as the law has them, and u

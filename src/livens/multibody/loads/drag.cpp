@@ -38,6 +38,14 @@ Load drag(const std::string& name, int body, const Vector3& point, const Drag& l
             }
         }
     };
+    parts.recorded_law = [law](const LawOnTape& at, std::span<TapeNumber> factors) {
+        const TapeNumber v[3] = {at.rate(0) - law.medium[0], at.rate(1) - law.medium[1],
+                                 at.rate(2) - law.medium[2]};
+        TapeNumber size = at.tape.number(law.linear);
+        if (law.quadratic > 0)
+            size = law.linear + law.quadratic * root(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+        for (std::size_t k = 0; k < 3; ++k) factors[k] = -(size * v[k]);
+    };
     // |d(|v| v)/ds| <= 2 |v| |dv/ds|
     parts.steepest = [law](const EnclosedValue&, std::span<const EnclosedValue> numbers,
                            std::span<double> bounds) {
@@ -51,6 +59,7 @@ Load drag(const std::string& name, int body, const Vector3& point, const Drag& l
         std::ranges::fill(bounds, steepest);
     };
     parts.is_smooth = law.quadratic == 0;
+    parts.is_smooth_off_centre = true;
     if (law.quadratic > 0)
         parts.guards.centre = [law](const LawArguments& at) {
             return Vector3{at.rates[0], at.rates[1], at.rates[2]} - law.medium;

@@ -17,10 +17,16 @@ Load multibody_internal::uniform_load(const std::string& name, const char* type,
         load.forces = [w, value](const LoadArguments& arguments, LoadForces& F) {
             F[0] = outer(load_value(value, arguments.at), w);
         };
+        load.forces.record = [w, value](LoadTape& tape, const TapeNumber& factor) {
+            tape.pull(0, w, factor, tape.of_time(value));
+        };
         return load;
     }
     load.forces = [w, value](const LoadArguments& arguments, LoadForces& F) {
         F[0] = outer(directors(arguments.X[0]) * load_value(value, arguments.at), w);
+    };
+    load.forces.record = [w, value](LoadTape& tape, const TapeNumber& factor) {
+        tape.pull(0, w, factor, along_directors(tape.of_time(value)));
     };
     // dF_a / dd_i = w_a t_i I.
     load.tangent = [w, value](const LoadArguments& arguments, LoadTangent& tangent) {

@@ -26,6 +26,21 @@ struct AlongJoint {
         const SpringValue value = elastic(q.value);
         return {-value.force - drag, -value.stiffness, -spring.damping};
     }
+    void record(LoadTape& tape, TapeNumber factor) const
+    {
+        TapeNumber Q{&tape};
+        const auto add = [&](TapeNumber more) { Q = Q.place < 0 ? more : Q + more; };
+        if (spring.damping > 0) add(-spring.damping * along.rate(tape));
+        if (is_elastic()) {
+            const TapeNumber e = along.value(tape) - spring.rest;
+            add(spring.law ? -recorded(spring.law, e) : -spring.stiffness * e);
+        }
+        if (Q.place < 0)
+            Q = tape.number(-spring.preload);
+        else
+            Q = -spring.preload + Q;
+        along.pull(tape, factor * Q);
+    }
     double potential(const CoordinateState& q) const
     {
         return (is_elastic() ? elastic(q.value).energy : 0) +
@@ -57,6 +72,7 @@ Load joint_spring(const std::string& name, const NamedCoordinate& coordinate, co
     load.forces = [of](const LoadArguments& arguments, LoadForces& F) {
         of.along.add_forces(arguments, of.force(of.along.look(arguments)).force, F);
     };
+    load.forces.record = [of](LoadTape& tape, const TapeNumber& factor) { of.record(tape, factor); };
     load.tangent = [of](const LoadArguments& arguments, LoadTangent& tangent) {
         of.along.add_tangent(arguments, of.force(of.along.look(arguments)), tangent);
     };

@@ -7,6 +7,7 @@
 
 #include "livens/multibody/joints.h"
 #include "livens/multibody/loads.h"
+#include "livens/multibody/loads/load_tape.h"
 
 namespace livens::inline multibody_internal {
 
@@ -49,6 +50,11 @@ public:
     /// by_X += by_value dq/dX + by_rate dq'/dX and by_V += by_rate dq'/dX', for all bodies of the load.
     void add_slopes(const LoadArguments& arguments, double by_value, double by_rate, PerBody<Matrix34>& by_X,
                     PerBody<Matrix34>& by_V) const;
+
+    // The same on a tape; F += Q dq/dX.
+    TapeNumber value(LoadTape& tape) const;
+    TapeNumber rate(LoadTape& tape) const;
+    void pull(LoadTape& tape, TapeNumber Q) const;
 
 private:
     JointCoordinate coordinate_;

@@ -49,6 +49,35 @@ struct Modulated {
         }
     }
 
+    void record(LoadTape& tape, TapeNumber factor) const
+    {
+        std::vector<TapeNumber> factors(parts.units.size(), TapeNumber{&tape});
+        const LawOnTape at{tape, [&](std::size_t i) { return coordinates[i].value(tape); },
+                           [&](std::size_t i) { return coordinates[i].rate(tape); }};
+        if (parts.recorded_law)
+            parts.recorded_law(at, factors);
+        else
+            call_law(at, factors);
+        for (std::size_t k = 0; k < factors.size(); ++k)
+            parts.units[k].forces.record(tape, factor * factors[k]);
+    }
+
+    /// Where the law is not known but by its values.
+    void call_law(const LawOnTape& at, std::span<TapeNumber> factors) const
+    {
+        const std::size_t m = coordinates.size();
+        std::vector<TapeNumber> numbers;
+        for (std::size_t i = 0; i < m; ++i) numbers.push_back(at.value(i));
+        for (std::size_t i = 0; i < m; ++i) numbers.push_back(at.rate(i));
+        const auto call = [law = parts.law, m](Instant instant, std::span<const double> in,
+                                               std::span<double> out) {
+            law({instant, in.first(m), in.subspan(m)}, out, {});
+        };
+        const int n = static_cast<int>(factors.size());
+        const TapeVector results = at.tape.outer(call, numbers, n);
+        for (int k = 0; k < n; ++k) factors[static_cast<std::size_t>(k)] = results[k];
+    }
+
     LawInside inside() const
     {
         const std::size_t m = coordinates.size();
@@ -68,6 +97,7 @@ struct Modulated {
             units[k].forces(arguments, F);
         };
         law.steepest = parts.steepest;
+        law.only_at_centre = parts.is_smooth_off_centre;
         return law;
     }
 
@@ -142,6 +172,8 @@ Load modulated(const std::string& name, const std::string& type, const LoadParts
     load.tangent = [all](const LoadArguments& arguments, LoadTangent& tangent) {
         all.tangent(arguments, tangent);
     };
+    if (std::ranges::all_of(parts.units, [](const Load& unit) { return unit.forces.record != nullptr; }))
+        load.forces.record = [all](LoadTape& tape, const TapeNumber& factor) { all.record(tape, factor); };
     const auto energy = [&](const LawEnergy& of) -> std::function<double(const LoadArguments&)> {
         if (!of) return nullptr;
         return [all, of](const LoadArguments& arguments) {
@@ -191,6 +223,7 @@ Load unit_along(const std::string& name, const JointCoordinate& coordinate, cons
     load.tangent = [along](const LoadArguments& arguments, LoadTangent& tangent) {
         along.add_tangent(arguments, {1, 0, 0}, tangent);
     };
+    load.forces.record = [along](LoadTape& tape, const TapeNumber& factor) { along.pull(tape, factor); };
     return load;
 }
 

@@ -28,6 +28,12 @@ struct LawArguments {
 /// What units are multiplied by: one number for each into `factors`. Unless `slopes` is empty also their
 /// derivatives: for each unit those by all values, then those by all rates.
 using LoadLaw = std::function<void(const LawArguments&, std::span<double> factors, std::span<double> slopes)>;
+/// The same factors on a tape, of values and rates of the coordinates there.
+struct LawOnTape {
+    LoadTape& tape;
+    std::function<TapeNumber(std::size_t coordinate)> value, rate;
+};
+using RecordedLaw = std::function<void(const LawOnTape&, std::span<TapeNumber> factors)>;
 /// A number made of these: J, W.
 using LawEnergy = std::function<double(const LawArguments&)>;
 
@@ -53,6 +59,7 @@ struct LoadParts {
     std::vector<Load> units;   ///< of size one, on the same bodies: along coordinates, forces, torques
     std::vector<LawCoordinate> coordinates;
     LoadLaw law;
+    RecordedLaw recorded_law = nullptr;   ///< empty: `law` is called for each instant
     bool depends_on_rates = false;
     LawEnergy potential = nullptr;   ///< empty: it has none
     LawEnergy power = nullptr;       ///< of the rest; see Load::power
@@ -60,6 +67,7 @@ struct LoadParts {
     /// The law is linear, or as smooth as the motion for other reasons; see Load::is_smooth.
     bool is_smooth = false;
     LawSteepness steepest = nullptr;   ///< if not
+    bool is_smooth_off_centre = false;   ///< but for where guards.centre is zero; see LawInside
     std::vector<double> breaks{};
     std::string domain{};
     std::vector<LawReading> readings{};

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "livens/multibody/loads.h"
+#include "livens/multibody/loads/load_tape.h"
 
 namespace livens::inline multibody_internal {
 
@@ -29,6 +30,28 @@ Load uniform_load(const std::string& name, const char* type, int body, const Vec
 inline Vector3 load_value(const TimeVector& value, Instant at)
 {
     return {value[0](at).value, value[1](at).value, value[2](at).value};
+}
+
+/// The force of a spring's law, on a tape.
+inline TapeNumber recorded(const SpringLaw& law, TapeNumber e)
+{
+    const auto force = [law](Instant, std::span<const double> in, std::span<double> out) {
+        out[0] = law(in[0]).force;
+    };
+    return e.tape->outer(force, {e}, 1)[0];
+}
+
+/// Director i of the first body, and t_1 d_1 + t_2 d_2 + t_3 d_3.
+inline TapeVector director_on(LoadTape& tape, int i)
+{
+    Vector3 unit{};
+    unit[i] = 1;
+    return tape.arm(0, direction(unit));
+}
+inline TapeVector along_directors(TapeVector t)
+{
+    LoadTape& tape = *t.tape;
+    return t[0] * director_on(tape, 0) + t[1] * director_on(tape, 1) + t[2] * director_on(tape, 2);
 }
 
 /// Adds the derivative of column i of F by column j of X (or V) to its place among the stacked columns.

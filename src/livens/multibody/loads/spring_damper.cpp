@@ -62,6 +62,26 @@ struct Spring {
         return p.stiffness * line.r + p.tension * line.u;
     }
 
+    void record(LoadTape& tape, TapeNumber factor) const
+    {
+        const TapeVector r = tape.arm(1, points[1]) - tape.arm(0, points[0]);
+        const auto add = [&](TapeNumber s, TapeVector v) {
+            tape.pull(0, points[0], factor * s, v);
+            tape.pull(1, points[1], factor * -s, v);
+        };
+        if (!law.law && law.stiffness != 0) add(tape.number(law.stiffness), r);
+        const bool is_tight = law.law || law.preload != 0 || law.damping != 0 || law.free_length != 0;
+        if (!is_tight) return;
+        const TapeNumber l = root(dot(r, r)), by_l = inverse(l);
+        TapeNumber tension = tape.number(law.preload - (law.law ? 0 : law.stiffness * law.free_length));
+        if (law.law) tension = tension + recorded(law.law, l - law.free_length);
+        if (law.damping != 0) {
+            const TapeVector w = tape.arm(1, points[1], true) - tape.arm(0, points[0], true);
+            tension = tension + law.damping * (by_l * dot(r, w));
+        }
+        add(tension * by_l, r);
+    }
+
     /// d pull / dr. At coinciding points: k I without tension, else none.
     Matrix3 pull_by_r(const Line& line) const
     {
@@ -191,6 +211,7 @@ Load spring_damper(const std::string& name, int first, const Vector3& point_firs
     for (int b = 0; b < 2; ++b)
         load.needs_directors[b] = law.points[b] != point({}) && load.bodies[b] != world;
     load.forces = [law](const LoadArguments& arguments, LoadForces& F) { law.forces(arguments, F); };
+    load.forces.record = [law](LoadTape& tape, const TapeNumber& factor) { law.record(tape, factor); };
     load.tangent = [law](const LoadArguments& arguments, LoadTangent& tangent) {
         law.tangent(arguments, tangent);
     };

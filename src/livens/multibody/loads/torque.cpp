@@ -31,6 +31,18 @@ Load torque(const std::string& name, int body, const TimeVector& value, Frame fr
         const Vector3 mu = torque_in_world(arguments.X[0], load_value(value, arguments.at), frame);
         for (int i = 0; i < 3; ++i) F[0].set_column(i + 1, 0.5 * cross(mu, D.column(i)));
     };
+    load.forces.record = [value, frame](LoadTape& tape, const TapeNumber& factor) {
+        const TapeVector components = tape.of_time(value);
+        const TapeVector mu = frame == Frame::body_fixed ? along_directors(components) : components;
+        const auto d = [&](int i) { return director_on(tape, i); };
+        const TapeVector crossed[3] = {cross(d(1), d(2)), cross(d(2), d(0)), cross(d(0), d(1))};
+        const TapeNumber share = factor * (0.5 * (tape.number(1) / dot(d(0), crossed[0])));
+        for (int i = 0; i < 3; ++i) {
+            Vector3 unit{};
+            unit[i] = 1;
+            tape.pull(0, direction(unit), share, cross(mu, crossed[i]));
+        }
+    };
     // From d(D^-T) = -D^-T dD^T D^-T: the derivative of d^i by d_j is -d^j (d^i)^T.
     load.tangent = [value, frame](const LoadArguments& arguments, LoadTangent& tangent) {
         const Matrix3 D = contravariant_directors(arguments.X[0]);

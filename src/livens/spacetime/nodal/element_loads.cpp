@@ -6,24 +6,42 @@
 
 #include <algorithm>
 
+#include "livens/spacetime/nodal/kernel/kernel_functions.h"
 #include "livens/spacetime/nodal/nodes.h"
 
 namespace livens {
 
 ElementLoads::ElementLoads(const ModelTables& tables, const ElementRule& rule)
-    : tables_(tables), rule_(rule), X_(12 * tables.bodies.size()), V_(X_), at_point_(X_)
-{}
+    : tables_(tables), rule_(rule), n_(12 * tables.n_bodies())
+{
+    if (tables.model->loads().empty()) return;
+    const lanes::Functions& functions = *lanes::functions(rule.degree);
+    const int W = functions.width;
+    lanes_.emplace(tables, functions.loads, W, rule.degree);
+    M_.resize(static_cast<std::size_t>(rule.size() * W));
+    dM_ = M_;
+    for (int B = 0; B < rule.size(); ++B)
+        for (int l = 0; l < W; ++l) {   // lanes behind the last point are as this one
+            const int c = std::min(l, rule.degree - 1);
+            M_[B * W + l] = rule.M[c * rule.size() + B];
+            dM_[B * W + l] = rule.dM[c * rule.size() + B];
+        }
+    X_.assign(12 * tables.bodies.size() * static_cast<std::size_t>(W), 0.0);
+    V_ = F_ = X_;
+    factors_.assign(static_cast<std::size_t>(W), 0.0);
+}
 
 void ElementLoads::interpolate(const WindowLayout& layout, const NodePositions& nodes, int e, int c,
                                double* X, double* V) const
 {
     const int n_nodes = rule_.size();
     const double inverse = 1 / layout.h(e);
-    std::copy_n(nodes.X(e * rule_.degree), X_.size(), X);
-    std::fill_n(V, V_.size(), 0.0);
+    const std::size_t n = 12 * tables_.bodies.size();
+    std::copy_n(nodes.X(e * rule_.degree), n, X);
+    std::fill_n(V, n, 0.0);
     for (int B = 1; B < n_nodes; ++B) {
-        accumulate(X, rule_.M[c * n_nodes + B], nodes.dX(e, B), X_.size());
-        accumulate(V, rule_.dM[c * n_nodes + B] * inverse, nodes.dX(e, B), V_.size());
+        accumulate(X, rule_.M[c * n_nodes + B], nodes.dX(e, B), n);
+        accumulate(V, rule_.dM[c * n_nodes + B] * inverse, nodes.dX(e, B), n);
     }
 }
 
@@ -47,36 +65,64 @@ std::span<const double> ElementLoads::angles(int e, int c) const
     return std::span(angles_).subspan((e * rule_.degree + node) * n, n);
 }
 
+/// X and X' at all load points, about the centres of mass.
+void ElementLoads::interpolate_all(const WindowLayout& layout, const NodePositions& nodes, int e)
+{
+    const int W = lanes_->width();
+    const double inverse = 1 / layout.h(e);
+    const double* first = nodes.X(e * rule_.degree);
+    for (int i = 0; i < 12 * tables_.n_bodies(); ++i) {
+        double *X = X_.data() + i * W, *V = V_.data() + i * W;
+        std::fill_n(X, W, first[i]);
+        std::fill_n(V, W, 0.0);
+        for (int B = 1; B < rule_.size(); ++B) {
+            const double dX = nodes.dX(e, B)[i], rate = inverse * dX;
+            for (int l = 0; l < W; ++l) {
+                X[l] += M_[B * W + l] * dX;
+                V[l] += dM_[B * W + l] * rate;
+            }
+        }
+    }
+    for (int b = 0; b < tables_.n_bodies(); ++b)
+        for (int a = 0; tables_.bodies[b].offset && a < 3; ++a)
+            for (int k = 0; k < 3 * W; ++k) {
+                const double center = tables_.bodies[b].center[a];
+                X_[12 * b * W + k] += center * X_[(12 * b + 3 + 3 * a) * W + k];
+                V_[12 * b * W + k] += center * V_[(12 * b + 3 + 3 * a) * W + k];
+            }
+}
+
 void ElementLoads::add_element(const WindowLayout& layout, const NodePositions& nodes, int e)
 {
-    const int n_nodes = rule_.size();
-    const std::size_t n = X_.size();
-    double* first = forces_.data() + e * n_nodes * n;
-    std::fill_n(first, n_nodes * n, 0.0);
-    for (int c = 0; c < rule_.degree; ++c) {
-        interpolate(layout, nodes, e, c, X_.data(), V_.data());
-        std::ranges::fill(at_point_, 0.0);
-        const Instant at = layout.load_point(rule_, e, c);
-        tables_.loads.add(at, X_.data(), V_.data(), layout.h(e) * rule_.loads.weights[c], at_point_.data(),
-                          angles(e, c));
-        for (int A = 0; A < n_nodes; ++A) {
-            const double m = rule_.M[c * n_nodes + A];
-            accumulate(first + A * n, m, at_point_.data(), n);
+    const int n_nodes = rule_.size(), n = 12 * tables_.n_bodies(), W = lanes_->width();
+    interpolate_all(layout, nodes, e);
+    for (int c = 0; c < rule_.degree; ++c) factors_[c] = layout.h(e) * rule_.loads.weights[c];
+    lanes_->begin(layout.load_points(rule_, e));
+    const std::span<const double> turns = angles(e, 0);
+    lanes_->evaluate(X_.data(), V_.data(), factors_.data(), turns, F_.data());
+    for (int A = 0; A < n_nodes; ++A) {
+        double* forces = forces_.data() + (e * n_nodes + A) * n;
+        for (int i = 0; i < n; ++i) {
+            forces[i] = 0;
+            for (int c = 0; c < rule_.degree; ++c) forces[i] += rule_.M[c * n_nodes + A] * F_[i * W + c];
         }
+        for (int b = 0; b < tables_.n_bodies(); ++b)   // about the reference points
+            for (int k = 0; tables_.bodies[b].offset && k < 9; ++k)
+                forces[12 * b + 3 + k] += tables_.bodies[b].center[k / 3] * forces[12 * b + k % 3];
     }
 }
 
 void ElementLoads::evaluate(const WindowLayout& layout, const NodePositions& nodes)
 {
     count_turns(layout, nodes);
-    if (tables_.model->loads().empty()) return;
-    forces_.resize(layout.n_elements() * rule_.size() * X_.size());
+    if (!lanes_) return;
+    forces_.resize(layout.n_elements() * rule_.size() * 12 * tables_.bodies.size());
     for (int e = 0; e < layout.n_elements(); ++e) add_element(layout, nodes, e);
 }
 
 std::string ElementLoads::bad_load(const WindowLayout& layout, const NodePositions& nodes) const
 {
-    std::vector<double> X(X_.size()), V(X_.size());
+    std::vector<double> X(12 * tables_.bodies.size()), V(X);
     for (int e = 0; e < layout.n_elements(); ++e)
         for (int c = 0; c < rule_.degree; ++c) {
             interpolate(layout, nodes, e, c, X.data(), V.data());

@@ -2,11 +2,12 @@
 // Loads on the elements of a window: their quadrature on X and X' of the elements' own polynomials.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "livens/dynamics/rows/tables.h"
+#include "livens/dynamics/lanes/load_lanes.h"
 #include "livens/spacetime/nodal/window_layout.h"
 
 namespace livens::inline spacetime_internal {
@@ -21,7 +22,7 @@ public:
 
     void evaluate(const WindowLayout& layout, const NodePositions& nodes);
     /// F_A of element e, local node A, without weight; 12 numbers a body. Only where there are loads.
-    const double* forces(int e, int A) const { return forces_.data() + (e * rule_.size() + A) * X_.size(); }
+    const double* forces(int e, int A) const { return forces_.data() + (e * rule_.size() + A) * n_; }
     /// X and X' at load point c.
     void interpolate(const WindowLayout& layout, const NodePositions& nodes, int e, int c, double* X,
                      double* V) const;
@@ -33,13 +34,17 @@ public:
     std::string bad_load(const WindowLayout& layout, const NodePositions& nodes) const;
 
 private:
+    void interpolate_all(const WindowLayout& layout, const NodePositions& nodes, int e);
     void add_element(const WindowLayout& layout, const NodePositions& nodes, int e);
 
     const ModelTables& tables_;
     const ElementRule& rule_;
-    std::vector<double> forces_;   // F_A, element after element
-    std::vector<double> angles_;   // node after node
-    std::vector<double> X_, V_, at_point_;
+    std::ptrdiff_t n_;   // numbers of all bodies
+    std::optional<LoadLanes> lanes_;
+    AlignedDoubles M_, dM_;             // M_B(s_c) and its slope, a row of lanes over c for each B
+    AlignedDoubles X_, V_, F_, factors_;   // in lanes, about the centres of mass
+    std::vector<double> forces_;        // F_A, element after element
+    std::vector<double> angles_;        // node after node
 };
 
 /// sum += factor * x, 12 numbers a body, for arrays that do not overlap.

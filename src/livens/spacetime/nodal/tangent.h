@@ -39,7 +39,6 @@ public:
 
 private:
     void evaluate_loads(const WindowLayout& layout, const Nodes& nodes, const NodalRows& rows, int e);
-    double rounding_of(const Load& load, const LoadArguments& at, const LoadTangent& tangent) const;
     void add_node_terms(const Nodes& nodes, const NodalRows& rows, int A, TangentSink& sink);
     void add_constraints(const Nodes& nodes, const NodalRows& rows, int A, TangentSink& sink);
     void add_loads(const WindowLayout& layout, const Nodes& nodes, int e, int a, int b, TangentSink& sink);

@@ -56,6 +56,12 @@ struct WindowLayout {
         if (rule.loads.points[c] == 1) return {times[e + 1], Side::left};
         return {times[e] + rule.loads.points[c] * h(e), Side::middle};
     }
+    std::vector<Instant> load_points(const ElementRule& rule, int e) const
+    {
+        std::vector<Instant> instants;
+        for (int c = 0; c < degree; ++c) instants.push_back(load_point(rule, e, c));
+        return instants;
+    }
     /// Quadrature weight of node A: the sum of h w over its elements.
     double weight(const ElementRule& rule, int A) const
     {

@@ -31,6 +31,8 @@ std::vector<Expression> read_expressions(const Section& section, const Inputs& i
 std::vector<double> breaks_of(const Builder& builder, const Section& section,
                               const std::vector<Expression>& expressions);
 /// One factor for each expression.
+RecordedLaw recorded_law_of(const std::vector<Expression>& expressions, const Inputs& inputs,
+                            const std::vector<double>& breaks, const TimeFunction& acts);
 LoadLaw law_of(const std::vector<Expression>& expressions, const Inputs& inputs,
                const std::vector<double>& breaks);
 /// How steep they may be.

@@ -102,6 +102,7 @@ Load by_formula(const LoadSources& p, const std::string& type, const std::string
         std::ranges::fill(factors, 0.0);
         std::ranges::fill(slopes, 0.0);
     };
+    parts.recorded_law = recorded_law_of(expressions, inputs, breaks, acts);
     for (const Inputs::Read& read : inputs.reads) parts.depends_on_rates |= read.is_rate;
     parts.guards = guards_of(expressions, inputs);
     parts.is_smooth = std::ranges::all_of(expressions, [](const Expression& e) { return e.is_affine(); });

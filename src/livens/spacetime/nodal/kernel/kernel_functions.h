@@ -14,6 +14,7 @@ struct Rule {
     const double* M;          ///< M_B(s_c), lanes over load points
     const double* dM;         ///< M_B'(s_c) / h
     const double* M_rows;     ///< M_A(s_c), one for each load point
+    const double* load_weights;   ///< h times those of load points; 0 in lanes behind them
     const double* momentum;   ///< at the start, n_twists scalars
     double length;
     bool in_still_axes = false;   ///< turns, on the way from rows to a step
@@ -39,18 +40,23 @@ struct Functions {
     void (*factorise)(const Pattern&, const Values& nodes);
     /// X and X' at the load points.
     void (*interpolate)(const Pattern&, const Values& start, const Values& nodes, const Rule&);
+    /// Loads there.
+    void (*loads)(const LoadProgram&, const double* X, const double* V, const double* factors, double* F);
     /// Balances, less what multipliers take.
     void (*balance)(const Pattern&, const Values& start, const Values& nodes, const Rule&, bool first,
                     Sizes&);
-    /// A step onto the solution.
+    /// A step towards the solution, of free bodies.
     void (*propose)(const Pattern&, const Values& nodes, const Rule&);
+    /// The part of a step that constraints leave free, and what mends their violations.
+    void (*project)(const Pattern&, const Values& nodes);
     /// Places moved by the step.
     void (*move)(const Pattern&, const Values& nodes, const Rule&, Sizes&);
     /// Twist rows, about the centres, of what multipliers take at all nodes: 6 scalars a body.
     void (*sum_impulses)(const Pattern&, const Values& start, const Values& nodes, double* sum);
 };
 
-/// For at least so many lanes; null: there are none.
+/// For at least so many lanes, on the registers that are in use; null: there are none.
+const Functions* functions(int n);
 const Functions* sse2(int n);
 const Functions* avx2(int n);
 const Functions* avx512(int n);

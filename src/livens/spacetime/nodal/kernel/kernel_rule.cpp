@@ -43,12 +43,14 @@ KernelRule::KernelRule(const ModelTables& tables, const ElementRule& rule, const
         for (int A = 0; A < p; ++A) {
             k[l * W + A] = rule.k[A * n + node_of(l)];
             inverse[A * W + l] = -K[static_cast<std::size_t>((node_of(l) - 1) * p + A)];
-            M[l * W + A] = rule.M[A * n + node_of(l)];   // here A is a load point
-            dM[l * W + A] = rule.dM[A * n + node_of(l)];
-            M_rows[A * W + l] = rule.M[A * n + l];
+            M_rows[A * W + l] = rule.M[A * n + l];   // here A is a load point
+        }
+        for (int c = 0; c < W; ++c) {   // lanes behind the last load point are as this one
+            M[l * W + c] = rule.M[std::min(c, p - 1) * n + node_of(l)];
+            dM[l * W + c] = rule.dM[std::min(c, p - 1) * n + node_of(l)];
         }
     }
-    lanes_ = {scaled_k, scaled_inverse, weights, M, scaled_dM, M_rows, nullptr, tables.length};
+    lanes_ = {scaled_k, scaled_inverse, weights, M, scaled_dM, M_rows, weights + W, nullptr, tables.length};
 }
 
 void KernelRule::scale(double h)
@@ -64,6 +66,7 @@ void KernelRule::scale(double h)
     fill(k + block, scaled + block, [h](double x) { return x * h; });
     fill(k + 3 * block, scaled + 2 * block, [h](double x) { return x / h; });
     for (int A = 0; A < rule_.degree; ++A) weights[A] = h * rule_.weights[A];
+    for (int c = 0; c < rule_.degree; ++c) weights[W + c] = h * rule_.loads.weights[c];
 }
 
 void KernelRule::use(const WindowLayout& layout, const InstantState& start, int last_steps)

@@ -2,10 +2,12 @@
 // Wrenches on the bodies over an element, of loads and of multipliers, and the momentum that they leave.
 #pragma once
 
+#include <optional>
 #include <vector>
 
-#include "livens/dynamics/lanes/lanes.h"
+#include "livens/dynamics/lanes/load_lanes.h"
 #include "livens/dynamics/rows/tables.h"
+#include "livens/spacetime/nodal/kernel/kernel_functions.h"
 #include "livens/spacetime/nodal/window_layout.h"
 
 namespace livens::inline dynamics_internal {
@@ -17,23 +19,24 @@ namespace livens::inline spacetime_internal {
 /// About the centres of mass, six numbers a body, summed over the element.
 class KernelWrenches {
 public:
-    KernelWrenches(const ModelTables& tables, const ElementRule& rule);
+    /// Functions null: it is not asked for.
+    KernelWrenches(const ModelTables& tables, const ElementRule& rule, const lanes::Functions* functions);
 
-    /// Of loads at their points, where X and X' were interpolated, `width` lanes: into nodes.loads and the
-    /// sum.
-    void evaluate_loads(const WindowLayout& layout, const lanes::Pattern& pattern, const lanes::Values& nodes,
-                        int width);
+    /// An element, whose load points are new.
+    void begin(const WindowLayout& layout);
+    /// Of loads at their points, where X and X' were interpolated, into nodes.loads.
+    void evaluate_loads(const WindowLayout& layout, const lanes::Values& nodes, const lanes::Rule& rule);
     /// Room for those that multipliers take.
     double* taken() { return taken_.data(); }
-    /// p <- momentum and spin at the end, the balance of all rows.
-    void momentum(const WindowLayout& layout, const InstantState& start, double* p) const;
+    /// p <- momentum and spin at the end, the balance of all rows, with the loads that were evaluated last.
+    void momentum(const WindowLayout& layout, const InstantState& start, const lanes::Values& nodes,
+                  double* p) const;
 
 private:
     const ModelTables& tables_;
     const ElementRule& rule_;
-    std::vector<double> X_, V_, raw_;   // at a load point
-    std::vector<double> angles_;        // of loads, see Turns
-    std::vector<double> of_loads_, taken_;
+    std::optional<LoadLanes> loads_;
+    std::vector<double> taken_;
 };
 
 }   // namespace livens::inline spacetime_internal

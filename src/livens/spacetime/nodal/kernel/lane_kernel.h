@@ -3,6 +3,7 @@
 // with.
 #pragma once
 
+#include "livens/dynamics/lanes/lane_loads.h"
 #include "livens/dynamics/lanes/lane_rows.h"
 #include "livens/spacetime/nodal/kernel/lane_places.h"
 
@@ -189,11 +190,16 @@ LIVENS_INLINE void form_step(const Body& body, const double* place, const Rule& 
 template <int W>
 void propose(const Pattern& p, const Values& v, const Rule& rule)
 {
-    const At<W, false> G{v.gradients, nullptr}, factor{v.factor, nullptr};
     for (int b = 0; b < p.n_bodies; ++b) {
         const int first = p.bodies[b].first * W;
         form_step<W>(p.bodies[b], v.place + 7 * b * W, rule, v.rows + first, v.step + first);
     }
+}
+
+template <int W>
+void project(const Pattern& p, const Values& v)
+{
+    const At<W, false> G{v.gradients, nullptr}, factor{v.factor, nullptr};
     multiply(p, G, v.step, v.violations, v.work);
     solve(p, factor, v.work);
     take_off(p, G, v.work, v.step);
@@ -222,8 +228,17 @@ void sum_impulses(const Pattern& p, const Values& start, const Values& v, double
 }
 
 template <int W>
-constexpr Functions functions_of{W,          extrapolate<W>, configure<W>, factorise<W>,   interpolate<W>,
-                                 balance<W>, propose<W>,     move<W>,      sum_impulses<W>};
+constexpr Functions functions_of{W,
+                                 extrapolate<W>,
+                                 configure<W>,
+                                 factorise<W>,
+                                 interpolate<W>,
+                                 run_loads<W>,
+                                 balance<W>,
+                                 propose<W>,
+                                 project<W>,
+                                 move<W>,
+                                 sum_impulses<W>};
 
 /// For degrees up to 18, with as few lanes as registers have room for.
 template <int W = LIVENS_REGISTER>

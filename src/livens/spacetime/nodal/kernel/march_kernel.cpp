@@ -8,19 +8,19 @@
 #include <cmath>
 
 #include "livens/dynamics/instant/instant.h"
-#include "livens/spacetime/instructions.h"
 
 namespace livens {
 
 namespace {
 
 constexpr double slow_contraction = 0.3;
-constexpr int most_slow_steps = 2, most_kernel_steps = 14;
+constexpr int most_slow_steps = 2, most_slow_factors = 5, most_kernel_steps = 14;
 constexpr int most_combinations = 150, most_slow_combinations = 20;
 constexpr double hopeless_step = 10;      // lengths or radians
 constexpr double smallest_step = 1e-18;   // likewise: nothing moves
 // Of the motion: what steps that shrink no more may be; also by the smallest squared pivot, and at most.
 constexpr double least_rounding = 1e-14, rounding_by_pivot = 4e-16, most_rounding = 1e-13;
+constexpr double rows_rounding = 4e-16;   // of the largest terms: as Newton's iteration has it
 constexpr double fits_on_the_way = 1e-2;   // times the smallest pivot: motion at which a factor is still good
 constexpr double fits_at_end = 1e-4;       // for multipliers, whose last change it takes with this error
 constexpr double fits_for_next = 1e-8;     // NearFactor
@@ -34,24 +34,16 @@ constexpr double widest_tolerance = 1e-4;   // beyond, two steps hardly tell how
 /// Null: the kernel does not serve these rows, inertias or points.
 const lanes::Functions* functions_of(const ModelTables& tables, const ElementRule& rule)
 {
-    const int n_lanes = rule.degree;
-    if (rule.points != Points::lobatto || !JointFactor::serves(tables)) return nullptr;
-    if (n_lanes == 1) return lanes::sse2(1);   // there is nothing beside it
-    switch (instructions()) {
-    case Instructions::avx512:
-        return lanes::avx512(n_lanes);
-    case Instructions::avx2:
-        return lanes::avx2(n_lanes);
-    case Instructions::sse2:
-        break;
-    }
-    return lanes::sse2(n_lanes);
+    const bool serves = rule.points == Points::lobatto && JointFactor::serves(tables);
+    return serves ? lanes::functions(rule.degree) : nullptr;
 }
 
 /// How steps shrink, and whether what is left is small enough.
 struct Shrinking {
     double tolerance;
     bool has_contracted;   // at first: the guess may be right to rounding
+    int most_slow = most_slow_steps;
+    double rows_rounding = 0;   // known of steps by the slopes of loads
     int n_steps = 0, n_slow = 0;
     double step = 0, contraction = 0;
     bool is_done = false, is_rounded = false;
@@ -68,12 +60,13 @@ struct Shrinking {
         if (n_steps == 1 || is_done) return step < hopeless_step;
         const bool is_slow = !(contraction <= slow_contraction);
         // steps that were seen to shrink, and shrink no more, have met their rounding
-        is_done = is_slow ? has_contracted && step <= std::max(allowed, rounding * motion)
+        const bool is_noise = step <= std::max(allowed, rounding * motion) || sizes.rows <= rows_rounding;
+        is_done = is_slow ? has_contracted && is_noise
                           : step * contraction / (1 - contraction) <= share_of_tolerance * allowed;
         is_rounded = is_done && is_slow && step > allowed;
         has_contracted = has_contracted || !is_slow;
         n_slow += is_slow ? 1 : 0;
-        return is_done || n_slow < most_slow_steps;
+        return is_done || n_slow < most_slow;
     }
     /// The same of combined steps, which do not shrink one by one; `left` is what is proposed.
     bool approach(double left, const lanes::Sizes& sizes)
@@ -104,7 +97,8 @@ struct Shrinking {
 
 MarchKernel::MarchKernel(const ModelTables& tables, const ElementRule& rule)
     : tables_(tables), rule_(rule), functions_(functions_of(tables, rule)),
-      lane_rule_(tables, rule, functions_), wrenches_(tables, rule), guess_(tables, rule, functions_)
+      lane_rule_(tables, rule, functions_), wrenches_(tables, rule, functions_),
+      guess_(tables, rule, functions_), choice_(tables, rule, functions_)
 {}
 
 void MarchKernel::use(const InstantState& start)
@@ -125,7 +119,7 @@ void MarchKernel::evaluate_loads(const WindowLayout& layout)
 {
     if (tables_.model->loads().empty()) return;
     functions_->interpolate(pattern_->view(), start_->values(), nodes_.values(), lane_rule_.in_lanes());
-    wrenches_.evaluate_loads(layout, pattern_->view(), nodes_.values(), functions_->width);
+    wrenches_.evaluate_loads(layout, nodes_.values(), lane_rule_.in_lanes());
 }
 
 /// In lengths and radians.
@@ -147,9 +141,29 @@ double MarchKernel::size_of_proposal() const
     return std::max(far / tables_.length, wide);
 }
 
-bool MarchKernel::iterate(const WindowLayout& layout, const InstantState& start, const NewtonOptions& options,
-                          bool is_accelerated, NewtonReport& report)
+/// A step, where the factor of loads is made anew unless it is kept. False: there is none.
+bool MarchKernel::propose(const WindowLayout& layout, Steps kind)
 {
+    const lanes::Pattern& pattern = pattern_->view();
+    if (kind == Steps::by_tangent) {
+        if (!choice_.is_kept()) {
+            const bool is_good =
+                choice_.tangent().factorise(layout, start_->values(), nodes_.values());
+            choice_.factorised(is_good, layout.h(0));
+            if (!is_good) return false;
+        }
+        choice_.tangent().propose(nodes_.values());
+    } else {
+        functions_->propose(pattern, nodes_.values(), lane_rule_.in_lanes());
+    }
+    functions_->project(pattern, nodes_.values());
+    return true;
+}
+
+bool MarchKernel::iterate(const WindowLayout& layout, const InstantState& start, const NewtonOptions& options,
+                          Steps kind, NewtonReport& report)
+{
+    const bool is_accelerated = kind == Steps::combined;
     guess_.place(layout, start, nodes_.values().place);
     const bool follows = guess_.was_followed();
     const lanes::Pattern& pattern = pattern_->view();
@@ -157,6 +171,8 @@ bool MarchKernel::iterate(const WindowLayout& layout, const InstantState& start,
     const int most = is_accelerated ? most_combinations : std::min(most_kernel_steps, options.max_iterations);
     lanes::Sizes sizes;
     Shrinking progress{std::min(options.tolerance, widest_tolerance), follows};
+    // each is followed by a new factor
+    if (kind == Steps::by_tangent) progress.most_slow = most_slow_factors;
     if (is_accelerated) acceleration_.begin(static_cast<std::size_t>(pattern.n_twists * functions_->width));
     double moved = 0, pivot = 0;   // since the factor was made, lengths and radians; its own, squared
     for (int steps = 0;; ++steps) {
@@ -174,7 +190,9 @@ bool MarchKernel::iterate(const WindowLayout& layout, const InstantState& start,
         if (!std::isfinite(sizes.finite)) return false;
         if (progress.is_done) break;
         if (steps == most) return false;
-        functions_->propose(pattern, nodes, lane_rule_.in_lanes());
+        if (!propose(layout, kind)) return false;
+        if (kind == Steps::by_tangent)
+            progress.rows_rounding = rows_rounding * (sizes.terms + choice_.tangent().load_terms());
         const double left = is_accelerated ? size_of_proposal() : 0;
         if (is_accelerated) acceleration_.apply(nodes.step);
         functions_->move(pattern, nodes, lane_rule_.in_lanes(), sizes);
@@ -183,6 +201,7 @@ bool MarchKernel::iterate(const WindowLayout& layout, const InstantState& start,
         moved += sizes.step;
         const double noise = std::clamp(rounding_by_pivot / pivot, least_rounding, most_rounding);
         if (!(is_accelerated ? progress.approach(left, sizes) : progress.take(sizes, noise))) return false;
+        if (kind == Steps::by_tangent && progress.contraction > slow_contraction) choice_.forget_factor();
     }
     has_near_factor_ = moved <= fits_for_next * pivot;
     report = progress.report(sizes, start.momentum);
@@ -195,19 +214,33 @@ bool MarchKernel::solve(const WindowLayout& layout, const InstantState& start, c
     is_solved_ = false;
     if (!start.held.by_joints) return false;
     use(start);
-    lane_rule_.use(layout, start, last_steps_);
+    lane_rule_.use(layout, start, choice_.last_steps());
+    choice_.begin(pattern_, layout);
+    wrenches_.begin(layout);
     const bool is_large =
         !soon && tables_.n_twists >= many_twists && options.max_iterations >= most_kernel_steps;
-    const auto iterates = [&] {
+    const auto iterates = [&](Steps kind) {
         guess_.begin();
-        if (iterate(layout, start, options, false, report)) return true;
+        if (iterate(layout, start, options, kind, report)) return true;
         if (!guess_.was_followed()) return false;
         guess_.part();
-        return iterate(layout, start, options, false, report);
+        return iterate(layout, start, options, kind, report);
     };
-    if (!(is_large && last_steps_ > most_kernel_steps)) is_solved_ = iterates();
-    if (is_large && !is_solved_) is_solved_ = iterate(layout, start, options, true, report);
-    last_steps_ = is_solved_ ? report.iterations : most_kernel_steps;
+    const auto tries = [&](Steps kind) {
+        is_solved_ = iterates(kind);
+        choice_.took(is_solved_ ? report.iterations : most_kernel_steps, is_solved_,
+                     kind == Steps::by_tangent);
+        return is_solved_;
+    };
+    const bool was_kept = choice_.is_kept(), was_slow = choice_.last_steps() > most_kernel_steps;
+    bool is_done =
+        choice_.by_tangent() && (tries(Steps::by_tangent) || (was_kept && tries(Steps::by_tangent)));
+    if (!is_done && !choice_.by_tangent() && !(is_large && was_slow))
+        is_done = tries(Steps::free) || (choice_.has_tangent() && tries(Steps::by_tangent));
+    if (is_large && !is_done) {
+        is_solved_ = iterate(layout, start, options, Steps::combined, report);
+        choice_.took(is_solved_ ? report.iterations : most_kernel_steps, is_solved_, false);
+    }
     if (is_solved_ && guess_.learns()) {
         guess_.compare(nodes_.values().place);
         nodes_.swap_places();
@@ -230,7 +263,7 @@ double MarchKernel::pivot(int A) const
 void MarchKernel::momentum(const WindowLayout& layout, const InstantState& start, double* p)
 {
     functions_->sum_impulses(pattern_->view(), start_->values(), nodes_.values(), wrenches_.taken());
-    wrenches_.momentum(layout, start, p);
+    wrenches_.momentum(layout, start, nodes_.values(), p);
 }
 
 }   // namespace livens

@@ -10,6 +10,7 @@
 #include "livens/spacetime/nodal/kernel/kernel_guess.h"
 #include "livens/spacetime/nodal/kernel/kernel_rule.h"
 #include "livens/spacetime/nodal/kernel/kernel_wrenches.h"
+#include "livens/spacetime/nodal/kernel/step_choice.h"
 
 namespace livens::inline spacetime_internal {
 
@@ -72,8 +73,10 @@ private:
 
     void use(const InstantState& start);
     void evaluate_loads(const WindowLayout& layout);
+    enum class Steps { free, by_tangent, combined };
     bool iterate(const WindowLayout& layout, const InstantState& start, const NewtonOptions& options,
-                 bool is_accelerated, NewtonReport& report);
+                 Steps kind, NewtonReport& report);
+    bool propose(const WindowLayout& layout, Steps kind);
     double size_of_proposal() const;
     int lane_of(int B) const { return B == rule_.degree ? 0 : B; }
 
@@ -88,7 +91,7 @@ private:
     KernelWrenches wrenches_;
     KernelGuess guess_;
     Acceleration acceleration_;
-    int last_steps_ = 0;   // for the last element
+    StepChoice choice_;
     long long evaluations_ = 0;
     bool is_solved_ = false, has_near_factor_ = false;
 };

@@ -1,0 +1,53 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Instructions of a motion to an accuracy over those of the bare solution on the same mesh, with the method it ended with.
+
+    benchmarks/accuracies.py PROGRAM [FILE ..]      PROGRAM: build/release/benchmarks/instructions; default: six examples
+
+Counted by callgrind within solve() and estimate(). Exit status 1 where the largest or the median is above what is allowed,
+77 without valgrind.
+"""
+
+import os
+import pathlib
+import re
+import shutil
+import statistics
+import subprocess
+import sys
+
+LARGEST, MEDIAN = 4, 3
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+EXAMPLES = ("four_bar", "furuta_pendulum", "slider_crank", "wheel_suspension")
+
+
+def count(program: str, path: pathlib.Path, *how: str) -> tuple[float, str]:
+    run = subprocess.run(["valgrind", "--tool=callgrind", "--callgrind-out-file=/dev/null", "--collect-atstart=no",
+                          "--toggle-collect=livens_counted_solve*", program, "scenario", str(path), *how],
+                         capture_output=True, text=True, env={"LIVENS_SIMD": "sse2", **os.environ})
+    found = re.search(r"Collected : (\d+)", run.stderr)
+    if run.returncode not in (0, 1) or not found:
+        sys.exit(f"{path}: {run.stderr}")
+    return float(found.group(1)), run.stdout.strip()
+
+
+def main() -> int:
+    if shutil.which("valgrind") is None:
+        print("SKIPPED: instruction counts (valgrind is not installed)")
+        return 77
+    if len(sys.argv) < 2:
+        sys.exit(__doc__)
+    program, *names = sys.argv[1:]
+    paths = [pathlib.Path(name) for name in names] or [ROOT / "examples" / f"{name}.toml" for name in EXAMPLES]
+    ratios = []
+    for path in paths:
+        whole, told = count(program, path)
+        bare, _ = count(program, path, "again")
+        ratios.append(whole / bare)
+        print(f"{path.stem:30s} {whole / 1e6:9.2f} M over {bare / 1e6:8.2f} M: {whole / bare:6.2f}   {told}", flush=True)
+    print(f"largest {max(ratios):.2f} of {LARGEST}, median {statistics.median(ratios):.2f} of {MEDIAN}")
+    return int(max(ratios) > LARGEST or statistics.median(ratios) > MEDIAN)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

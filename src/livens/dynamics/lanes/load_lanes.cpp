@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "livens/dynamics/lanes/load_lanes.h"
+
+#include <algorithm>
+#include <cassert>
+
+#include "livens/dynamics/lanes/lane_loads.h"
+#include "livens/multibody/model.h"
+
+namespace livens {
+
+namespace {
+
+/// About the reference points, from what is about centres of mass in lane c.
+void take_point(const ModelTables& tables, const double* lanes, int width, int c, std::vector<double>& x)
+{
+    for (int b = 0; b < tables.n_bodies(); ++b) {
+        double* of = x.data() + 12 * b;
+        for (int i = 0; i < 12; ++i) of[i] = lanes[(12 * b + i) * width + c];
+        const BodyTable& body = tables.bodies[b];
+        for (int i = 0; body.offset && i < 3; ++i)
+            for (int a = 0; a < 3; ++a) of[i] -= body.center[a] * of[3 + 3 * a + i];
+    }
+}
+
+}   // namespace
+
+LoadLanes::LoadLanes(const ModelTables& tables, Run run, int width, int n, LoadProgram::Which which)
+    : tables_(tables), program_(LoadProgram::of(tables, which)),
+      run_(run != nullptr ? run : &lanes::run_loads<1>), width_(width), n_(n),
+      registers_(static_cast<std::size_t>(program_->n_registers() * width), 0.0),
+      X_(program_->others().empty() ? 0 : 12 * tables.bodies.size()), V_(X_), F_(X_)
+{
+    for (const TapeStep& step : program_->tape().steps()) {
+        double* to = registers_.data() + step.place * width_;
+        if (step.kind == TapeKind::number) std::fill_n(to, width_, step.number);
+        if (step.kind != TapeKind::vector) continue;
+        const Vector3& value = program_->tape().vectors()[static_cast<std::size_t>(step.index)];
+        for (int i = 0; i < 3; ++i) std::fill_n(to + i * width_, width_, value[i]);
+    }
+}
+
+lanes::LoadProgram LoadLanes::view(const std::vector<lanes::LoadStep>& steps)
+{
+    return {n_,
+            static_cast<int>(steps.size()),
+            static_cast<int>(program_->columns().size()),
+            steps.data(),
+            program_->columns().data(),
+            program_->terms().data(),
+            registers_.data(),
+            turns_.data(),
+            &LoadLanes::call,
+            this};
+}
+
+void LoadLanes::begin(std::span<const Instant> points)
+{
+    const auto are_same = [](const Instant& a, const Instant& b) { return a.t == b.t && a.side == b.side; };
+    if (std::ranges::equal(points, points_, are_same)) return;
+    points_.assign(points.begin(), points.end());
+    for (const TapeStep& step : program_->tape().steps()) {
+        if (step.kind != TapeKind::time) continue;
+        const auto& of = program_->tape().times()[static_cast<std::size_t>(step.index)];
+        for (int l = 0; l < width_; ++l) {
+            const Vector3 value = of(points_[static_cast<std::size_t>(std::min(l, n_ - 1))]);
+            for (int i = 0; i < step.b; ++i) registers_[(step.place + i) * width_ + l] = value[i];
+        }
+    }
+    if (!program_->known_steps().empty())
+        run_(view(program_->known_steps()), nullptr, nullptr, nullptr, nullptr);
+}
+
+void LoadLanes::evaluate(const double* X, const double* V, const double* factors,
+                         std::span<const double> turns, double* F)
+{
+    assert(turns.size() == tables_.loads.turns.size());
+    turns_.assign(turns.begin(), turns.end());
+    run_(view(program_->steps()), X, V, factors, F);
+    if (program_->others().empty()) return;
+    turns_.assign(turns.begin(), turns.end());
+    add_others(X, V, factors, F);
+}
+
+void LoadLanes::add_others(const double* X, const double* V, const double* factors, double* F)
+{
+    for (int c = 0; c < n_; ++c) {
+        take_point(tables_, X, width_, c, X_);
+        take_point(tables_, V, width_, c, V_);
+        tables_.loads.turns.follow(Configurations(X_.data()), turns_);
+        std::ranges::fill(F_, 0.0);
+        for (const int load : program_->others())
+            tables_.loads.add_one(load, points_[static_cast<std::size_t>(c)], X_.data(), V_.data(),
+                                  factors[c], F_.data(), turns_);
+        for (const lanes::LoadColumn& column : program_->columns()) {
+            const int b = column.number / 12, a = column.number % 12 / 3;
+            const double shift = a == 0 ? 0 : tables_.bodies[b].center[a - 1];
+            for (int i = 0; i < 3; ++i)
+                F[(column.number + i) * width_ + c] += F_[column.number + i] - shift * F_[12 * b + i];
+        }
+    }
+}
+
+LoadsAtInstant::LoadsAtInstant(const ModelTables& tables)
+    : tables_(tables), lanes_(tables, nullptr, 1, 1, LoadProgram::Which::without_bends),
+      X_(12 * tables.bodies.size()), V_(X_), F_(X_)
+{}
+
+void LoadsAtInstant::add(Instant at, const double* X, const double* V, double* raw,
+                         std::span<const double> turns)
+{
+    if (turns.empty() && !tables_.loads.turns.empty()) return tables_.loads.add(at, X, V, 1, raw, turns);
+    const auto to_centres = [this](const double* of, std::vector<double>& x) {
+        std::copy_n(of, x.size(), x.begin());
+        for (int b = 0; b < tables_.n_bodies(); ++b)
+            for (int a = 0; tables_.bodies[b].offset && a < 3; ++a)
+                for (int i = 0; i < 3; ++i)
+                    x[12 * b + i] += tables_.bodies[b].center[a] * x[12 * b + 3 + 3 * a + i];
+    };
+    to_centres(X, X_);
+    to_centres(V, V_);
+    const double one = 1;
+    lanes_.begin({&at, 1});
+    lanes_.evaluate(X_.data(), V_.data(), &one, turns, F_.data());
+    for (int b = 0; b < tables_.n_bodies(); ++b)
+        for (int i = 0; i < 12; ++i) {
+            const double centre = i < 3 ? 0 : tables_.bodies[b].center[i / 3 - 1];
+            raw[12 * b + i] += F_[12 * b + i] + centre * F_[12 * b + i % 3];
+        }
+}
+
+void LoadLanes::call(void* self, const lanes::LoadStep& step, int lane)
+{
+    LoadLanes& me = *static_cast<LoadLanes*>(self);
+    const auto which = static_cast<std::size_t>(step.begin);
+    const std::vector<int>& inputs = me.program_->tape().inputs()[which];
+    me.in_.resize(inputs.size());
+    me.out_.resize(static_cast<std::size_t>(step.end));
+    for (std::size_t i = 0; i < inputs.size(); ++i) me.in_[i] = me.registers_[inputs[i] * me.width_ + lane];
+    me.program_->tape().calls()[which](me.points_[static_cast<std::size_t>(lane)], me.in_, me.out_);
+    for (std::size_t i = 0; i < me.out_.size(); ++i)
+        me.registers_[(step.to + static_cast<int>(i)) * me.width_ + lane] = me.out_[i];
+}
+
+}   // namespace livens

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Loads at all load points of an element, side by side.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "livens/dynamics/lanes/aligned_doubles.h"
+#include "livens/dynamics/lanes/load_program.h"
+
+namespace livens::inline dynamics_internal {
+
+/// The registers of a model's LoadProgram, for one element after the other. Loads that are in no program are
+/// asked point by point.
+class LoadLanes {
+public:
+    using Run = void (*)(const lanes::LoadProgram&, const double* X, const double* V, const double* factors,
+                         double* F);
+
+    /// `run` is that of `width` lanes, of which n are load points; null: of one. The tables must outlive it.
+    LoadLanes(const ModelTables& tables, Run run, int width, int n,
+              LoadProgram::Which which = LoadProgram::Which::all);
+    LoadLanes(const LoadLanes&) = delete;
+    LoadLanes& operator=(const LoadLanes&) = delete;
+
+    int width() const { return width_; }
+    /// The instants of the element's load points.
+    void begin(std::span<const Instant> points);
+    /// F of all bodies with loads, 12 numbers each in lanes, times `factors`, which are 0 in lanes that are
+    /// no points; X, V and F about centres of mass. `turns`: a row of LoadTables::turns at the element's
+    /// start.
+    void evaluate(const double* X, const double* V, const double* factors, std::span<const double> turns,
+                  double* F);
+
+private:
+    lanes::LoadProgram view(const std::vector<lanes::LoadStep>& steps);
+    void add_others(const double* X, const double* V, const double* factors, double* F);
+    static void call(void* self, const lanes::LoadStep& step, int lane);
+
+    const ModelTables& tables_;
+    std::shared_ptr<const LoadProgram> program_;
+    Run run_;
+    int width_, n_;
+    std::vector<Instant> points_;
+    AlignedDoubles registers_;
+    std::vector<double> turns_, in_, out_;
+    std::vector<double> X_, V_, F_;   // of others, at a point
+};
+
+/// The same at one instant, about the reference points.
+class LoadsAtInstant {
+public:
+    /// The tables must outlive it.
+    explicit LoadsAtInstant(const ModelTables& tables);
+
+    /// LoadTables::add() once.
+    void add(Instant at, const double* X, const double* V, double* raw, std::span<const double> turns);
+
+private:
+    const ModelTables& tables_;
+    LoadLanes lanes_;
+    std::vector<double> X_, V_, F_;
+};
+
+}   // namespace livens::inline dynamics_internal

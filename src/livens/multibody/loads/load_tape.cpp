@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "livens/multibody/loads/load_tape.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace livens::inline multibody_internal {
+
+int TapeStep::size() const
+{
+    switch (kind) {
+    case TapeKind::vector:
+    case TapeKind::arm:
+    case TapeKind::arm_rate:
+    case TapeKind::sum:
+    case TapeKind::difference:
+    case TapeKind::stretched:
+    case TapeKind::cross:
+        return 3;
+    case TapeKind::time:
+    case TapeKind::outer:
+        return b;
+    case TapeKind::pull:
+        return 0;
+    default:
+        return 1;
+    }
+}
+
+void LoadTape::begin(const Load& load, int first_angle)
+{
+    bodies_ = load.bodies;
+    first_angle_ = first_angle;
+}
+
+int LoadTape::add(TapeStep step)
+{
+    const bool is_one = step.kind == TapeKind::pull;   // forces add up, also where they are the same
+    const std::tuple key{step.kind, step.a, step.b, step.index, step.number};
+    if (const auto found = known_.find(key); !is_one && found != known_.end()) return found->second;
+    step.place = size_;
+    size_ += step.size();
+    steps_.push_back(step);
+    if (!is_one) known_.emplace(key, step.place);
+    return step.place;
+}
+
+TapeVector LoadTape::vector(const Vector3& value)
+{
+    const auto found = std::ranges::find(vectors_, value);
+    const int index = static_cast<int>(found - vectors_.begin());
+    if (found == vectors_.end()) vectors_.push_back(value);
+    return {this, add({TapeKind::vector, -1, -1, -1, index, 0})};
+}
+
+TapeNumber LoadTape::of_time(const TimeFunction& value)
+{
+    if (value.is_constant()) return number(value({}).value);
+    times_.push_back([value](Instant at) { return Vector3{value(at).value, 0, 0}; });
+    return {this, add({TapeKind::time, -1, -1, 1, static_cast<int>(times_.size()) - 1, 0})};
+}
+
+TapeVector LoadTape::of_time(const TimeVector& value)
+{
+    const auto all = [value](Instant at) {
+        return Vector3{value[0](at).value, value[1](at).value, value[2](at).value};
+    };
+    if (std::ranges::all_of(value, [](const TimeFunction& f) { return f.is_constant(); }))
+        return vector(all({}));
+    times_.push_back(all);
+    return {this, add({TapeKind::time, -1, -1, 3, static_cast<int>(times_.size()) - 1, 0})};
+}
+
+int LoadTape::find_arm(int side, const Vector4& w)
+{
+    const int body = bodies_[static_cast<std::size_t>(side)];
+    const auto found =
+        std::ranges::find_if(arms_, [&](const TapeArm& arm) { return arm.body == body && arm.w == w; });
+    const int index = static_cast<int>(found - arms_.begin());
+    if (found == arms_.end()) arms_.push_back({body, w});
+    return index;
+}
+
+TapeVector LoadTape::arm(int side, const Vector4& w, bool is_rate)
+{
+    if (bodies_[static_cast<std::size_t>(side)] == world)
+        return vector(is_rate ? Vector3{} : world_configuration * w);
+    return {this, add({is_rate ? TapeKind::arm_rate : TapeKind::arm, -1, -1, -1, find_arm(side, w), 0})};
+}
+
+TapeNumber LoadTape::unwrapped(TapeNumber value, int angle)
+{
+    return {this, add({TapeKind::unwrapped, -1, value.place, -1, first_angle_ + angle, 0})};
+}
+
+TapeVector LoadTape::outer(Outer call, const std::vector<TapeNumber>& of, int n)
+{
+    calls_.push_back(std::move(call));
+    std::vector<int>& places = inputs_.emplace_back();
+    for (const TapeNumber& one : of) places.push_back(one.place);
+    return {this, add({TapeKind::outer, -1, -1, n, static_cast<int>(calls_.size()) - 1, 0})};
+}
+
+void LoadTape::pull(int side, const Vector4& w, TapeNumber s, TapeVector v)
+{
+    if (bodies_[static_cast<std::size_t>(side)] == world) return;
+    if (s.place < 0) s = number(1);
+    add({TapeKind::pull, -1, s.place, v.place, find_arm(side, w), 0});
+}
+
+int LoadTape::index_of(Function function)
+{
+    const auto found = std::ranges::find(functions_, function);
+    const int index = static_cast<int>(found - functions_.begin());
+    if (found == functions_.end()) functions_.push_back(function);
+    return index;
+}
+
+TapeNumber operator*(TapeNumber a, TapeNumber b)
+{
+    if (a.place < 0) return b;
+    return b.place < 0 ? a : made(TapeKind::times, a, b.place);
+}
+
+TapeNumber operator*(double a, TapeNumber b)
+{
+    if (b.place < 0) return b.tape->number(a);
+    return a == 1 ? b : made(TapeKind::scaled, b, -1, a);
+}
+
+TapeNumber operator+(double a, TapeNumber b) { return a == 0 ? b : made(TapeKind::shifted, b, -1, a); }
+
+TapeNumber function_of(LoadTape::Function function, TapeNumber a, TapeNumber b)
+{
+    LoadTape& tape = *a.tape;
+    return {&tape, tape.add({TapeKind::function, -1, a.place, b.place, tape.index_of(function), 0})};
+}
+
+TapeVector operator+(TapeVector a, TapeVector b)
+{
+    return {a.tape, a.tape->add({TapeKind::sum, -1, a.place, b.place, -1, 0})};
+}
+
+TapeVector operator-(TapeVector a, TapeVector b)
+{
+    return {a.tape, a.tape->add({TapeKind::difference, -1, a.place, b.place, -1, 0})};
+}
+
+TapeVector operator*(TapeNumber a, TapeVector b)
+{
+    return {a.tape, a.tape->add({TapeKind::stretched, -1, a.place, b.place, -1, 0})};
+}
+
+TapeVector cross(TapeVector a, TapeVector b)
+{
+    return {a.tape, a.tape->add({TapeKind::cross, -1, a.place, b.place, -1, 0})};
+}
+
+TapeNumber dot(TapeVector a, TapeVector b)
+{
+    return {a.tape, a.tape->add({TapeKind::dot, -1, a.place, b.place, -1, 0})};
+}
+
+}   // namespace livens::inline multibody_internal

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What loads do, as a tape: a list of operations on numbers and vectors, which lanes run at many instants
+// side by side (docs/theory.md, "Without a tangent", Loads in lanes).
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <span>
+#include <tuple>
+#include <vector>
+
+#include "livens/multibody/loads.h"
+
+namespace livens::inline multibody_internal {
+
+class LoadTape;
+
+/// A number of a tape: the place of what is evaluated there; as a factor that has none, 1.
+struct TapeNumber {
+    LoadTape* tape = nullptr;
+    int place = -1;
+};
+/// Three numbers, one after the other.
+struct TapeVector {
+    LoadTape* tape = nullptr;
+    int place = -1;
+
+    TapeNumber operator[](int k) const { return {tape, place + k}; }
+};
+
+enum class TapeKind : std::uint8_t {
+    // known before an element is solved
+    number,   ///< `number`
+    vector,   ///< vectors[index]
+    time,     ///< times[index] at the instant, the first b of three
+    // of the configuration: X w and X' w of arms[index]
+    arm,
+    arm_rate,
+    // of numbers
+    plus,
+    minus,
+    times,
+    divided,
+    scaled,      ///< number times a
+    shifted,     ///< number plus a
+    root,        ///< of a
+    absolute,    ///< of a
+    inverse,     ///< 1 / a, and 0 where a is not positive
+    least,       ///< of a and b; b only if it is smaller
+    greatest,    ///< of a and b; b only if it is larger
+    chosen,      ///< b where a is not 0, else 0
+    function,    ///< functions[index] of a and b
+    unwrapped,   ///< the angle a by whole turns next to what angle `index` is at the instant before
+    outer,       ///< of the numbers inputs[index]: calls[index]; its results follow, b numbers
+    // of vectors
+    sum,
+    difference,
+    stretched,   ///< number a times vector b
+    cross,
+    dot,   ///< a number
+    // without a value
+    pull   ///< number a times vector b on arms[index]
+};
+
+struct TapeStep {
+    TapeKind kind{};
+    int place = -1;   ///< of its first number
+    int a = -1, b = -1;
+    int index = -1;
+    double number = 0;
+
+    /// How many numbers it has.
+    int size() const;
+};
+
+/// A material vector of a body of the model: a direction (0, a) or a point (1, theta).
+struct TapeArm {
+    int body;
+    Vector4 w;
+};
+
+/// What is recorded twice is evaluated once. Forces leave by pull(): F of a body is the sum of s v w^T over
+/// material vectors X w, its arms.
+class LoadTape {
+public:
+    using OfTime = std::function<Vector3(Instant)>;
+    using Function = double (*)(double, double);
+    using Outer = std::function<void(Instant, std::span<const double>, std::span<double>)>;
+
+    /// What follows is of this load: its bodies are meant by their places in it, its angles begin at number
+    /// `first_angle` of the model's.
+    void begin(const Load& load, int first_angle);
+
+    TapeNumber number(double value) { return {this, add({TapeKind::number, -1, -1, -1, -1, value})}; }
+    TapeVector vector(const Vector3& value);
+    /// Asked once for each instant, however often forces are.
+    TapeNumber of_time(const TimeFunction& value);
+    TapeVector of_time(const TimeVector& value);
+    TapeVector arm(int side, const Vector4& w, bool is_rate = false);
+    /// An angle with its turns; `angle`: its place in Load::angles.
+    TapeNumber unwrapped(TapeNumber value, int angle);
+    /// What no list of operations says. The place of the first of n results.
+    TapeVector outer(Outer call, const std::vector<TapeNumber>& of, int n);
+    void pull(int side, const Vector4& w, TapeNumber s, TapeVector v);
+    /// Any other step: the place of its value.
+    int add(TapeStep step);
+
+    const std::vector<TapeStep>& steps() const { return steps_; }
+    const std::vector<TapeArm>& arms() const { return arms_; }
+    const std::vector<Vector3>& vectors() const { return vectors_; }
+    const std::vector<OfTime>& times() const { return times_; }
+    const std::vector<Function>& functions() const { return functions_; }
+    const std::vector<Outer>& calls() const { return calls_; }
+    const std::vector<std::vector<int>>& inputs() const { return inputs_; }
+    int size() const { return size_; }
+    int index_of(Function function);
+
+private:
+    int find_arm(int side, const Vector4& w);
+
+    std::vector<TapeStep> steps_;
+    std::map<std::tuple<TapeKind, int, int, int, double>, int> known_;   ///< places
+    std::vector<TapeArm> arms_;
+    std::vector<Vector3> vectors_;
+    std::vector<OfTime> times_;
+    std::vector<Function> functions_;
+    std::vector<Outer> calls_;
+    std::vector<std::vector<int>> inputs_;
+    std::vector<int> bodies_;   ///< of the load at hand
+    int first_angle_ = 0, size_ = 0;
+};
+
+inline TapeNumber made(TapeKind kind, TapeNumber a, int b = -1, double number = 0)
+{
+    return {a.tape, a.tape->add({kind, -1, a.place, b, -1, number})};
+}
+inline TapeNumber operator+(TapeNumber a, TapeNumber b) { return made(TapeKind::plus, a, b.place); }
+inline TapeNumber operator-(TapeNumber a, TapeNumber b) { return made(TapeKind::minus, a, b.place); }
+TapeNumber operator*(TapeNumber a, TapeNumber b);
+inline TapeNumber operator/(TapeNumber a, TapeNumber b) { return made(TapeKind::divided, a, b.place); }
+TapeNumber operator*(double a, TapeNumber b);
+TapeNumber operator+(double a, TapeNumber b);
+inline TapeNumber operator-(TapeNumber a, double b) { return -b + a; }
+inline TapeNumber operator-(TapeNumber a) { return -1.0 * a; }
+inline TapeNumber root(TapeNumber a) { return made(TapeKind::root, a); }
+/// 0 where a is not positive.
+inline TapeNumber inverse(TapeNumber a) { return made(TapeKind::inverse, a); }
+/// b where a is not 0, else 0, whatever b is.
+inline TapeNumber chosen(TapeNumber a, TapeNumber b) { return made(TapeKind::chosen, a, b.place); }
+TapeNumber function_of(LoadTape::Function function, TapeNumber a, TapeNumber b);
+
+TapeVector operator+(TapeVector a, TapeVector b);
+TapeVector operator-(TapeVector a, TapeVector b);
+TapeVector operator*(TapeNumber a, TapeVector b);
+TapeVector cross(TapeVector a, TapeVector b);
+TapeNumber dot(TapeVector a, TapeVector b);
+
+}   // namespace livens::inline multibody_internal

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "livens/spacetime/nodal/kernel/load_slopes.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "livens/multibody/model.h"
+#include "livens/spacetime/nodal/twist_blocks.h"
+
+namespace livens {
+
+/// S_AB = sum_c w_c M_A(s_c) M_B(s_c), C_AB = sum_c w_c M_A(s_c) M_B'(s_c).
+LoadSlopes::LoadSlopes(const ModelTables& tables, const ElementRule& rule, int width)
+    : tables_(tables), rule_(rule), width_(width), middle_(rule.degree / 2),
+      S_(static_cast<std::size_t>(rule.degree * rule.degree), 0.0), C_(S_), X_(12 * tables.bodies.size()),
+      V_(X_), maps_(X_)
+{
+    const int p = rule.degree, n = rule.size();
+    for (int A = 0; A < p; ++A)
+        for (int l = 0; l < p; ++l)
+            for (int c = 0; c < p; ++c) {
+                const int B = l == 0 ? p : l;
+                const double w = rule.loads.weights[c] * rule.M[c * n + A];
+                S_[A * p + l] += w * rule.M[c * n + B];
+                C_[A * p + l] += w * rule.dM[c * n + B];
+            }
+}
+
+/// About the reference points, as loads want them.
+void LoadSlopes::place(const lanes::Values& nodes)
+{
+    for (int b = 0; b < tables_.n_bodies(); ++b) {
+        const BodyTable& body = tables_.bodies[b];
+        double *X = X_.data() + 12 * b, *V = V_.data() + 12 * b;
+        for (int i = 0; i < 12; ++i) {
+            X[i] = nodes.load_X[(12 * b + i) * width_ + middle_];
+            V[i] = nodes.load_V[(12 * b + i) * width_ + middle_];
+        }
+        for (int i = 0; body.offset && i < 3; ++i)
+            for (int a = 0; a < 3; ++a) {
+                X[i] -= body.center[a] * X[3 + 3 * a + i];
+                V[i] -= body.center[a] * V[3 + 3 * a + i];
+            }
+        tables_.bodies.map_twist(b, X_.data(), maps_.data() + 12 * b);
+    }
+}
+
+void LoadSlopes::add(int l, const WindowLayout& layout)
+{
+    const Load& load = tables_.model->loads()[l];
+    LoadTangent slopes(load.bodies.size());
+    const Instant at = layout.load_point(rule_, 0, middle_);
+    const LoadArguments arguments = tables_.loads.arguments(l, at, X_.data(), V_.data(), angles_);
+    load.tangent(arguments, slopes);
+    terms_ = std::max(terms_, std::abs(layout.h(0)) * load_terms(tables_, load, arguments, slopes));
+    for (std::size_t r = 0; r < 2; ++r)
+        for (std::size_t s = 0; s < load.bodies.size(); ++s) {
+            const int i = load.bodies[r], j = load.bodies[s];
+            if (i == world || j == world) continue;
+            SlopesOfPair& pair = pairs_.emplace_back(SlopesOfPair{i, j, {}, {}});
+            const auto reduce = [&](const Matrix<12, 12>& K, double* scaled) {
+                double raw[36] = {};
+                add_reduced(K, X_.data() + 12 * i, X_.data() + 12 * j, tables_.bodies[j].dofs, raw);
+                scale_block(tables_, maps_.data(), i, maps_.data(), j, raw, scaled);
+            };
+            if (load.depends_on_X) reduce(slopes.X[r][s], pair.by_X);
+            if (load.depends_on_V) reduce(slopes.V[r][s], pair.by_V);
+        }
+}
+
+const std::vector<SlopesOfPair>& LoadSlopes::find(const WindowLayout& layout, const lanes::Values& nodes)
+{
+    pairs_.clear();
+    terms_ = 0;
+    place(nodes);
+    angles_ = layout.angles;
+    tables_.loads.turns.follow(Configurations(X_.data()), angles_);
+    for (const int l : tables_.loads.with_tangent) add(l, layout);
+    return pairs_;
+}
+
+}   // namespace livens

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What loads add to the tangent of an element.
+#pragma once
+
+#include <vector>
+
+#include "livens/dynamics/lanes/lanes.h"
+#include "livens/dynamics/rows/tables.h"
+#include "livens/spacetime/nodal/window_layout.h"
+
+namespace livens::inline spacetime_internal {
+
+/// dF_i/dX_j and dF_i/dX'_j by scaled twists, 6 x 6 row by row; the bodies may be one.
+struct SlopesOfPair {
+    int i, j;
+    double by_X[36], by_V[36];
+};
+
+/// Slopes of loads in the middle of an element by scaled twists, as if bodies had them all over it in their
+/// own axes: J_AB of bodies i, j is S_AB dF_i/dX_j + C_AB dF_i/dX'_j.
+class LoadSlopes {
+public:
+    LoadSlopes(const ModelTables& tables, const ElementRule& rule, int width);
+
+    /// Where the kernel has its load points.
+    const std::vector<SlopesOfPair>& find(const WindowLayout& layout, const lanes::Values& nodes);
+    /// Row A by column l, p square; column 0 is the last node. To be multiplied by h: of X.
+    const std::vector<double>& in_time_by_X() const { return S_; }
+    const std::vector<double>& in_time_by_V() const { return C_; }
+    /// load_terms() over the element: what rounding of X does to rows is that of these.
+    double terms() const { return terms_; }
+
+private:
+    void place(const lanes::Values& nodes);
+    void add(int load, const WindowLayout& layout);
+
+    const ModelTables& tables_;
+    const ElementRule& rule_;
+    int width_, middle_;
+    std::vector<double> S_, C_;
+    std::vector<double> X_, V_, maps_, angles_;   // at the middle load point
+    std::vector<SlopesOfPair> pairs_;
+    double terms_ = 0;
+};
+
+}   // namespace livens::inline spacetime_internal

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "livens/spacetime/nodal/kernel/step_choice.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace livens {
+
+namespace {
+
+constexpr int many_steps = 8;                      // of free bodies: a factor costs about as much
+constexpr int more_than_fresh = 2;                 // steps with a factor of an element before
+constexpr int first_trial = 8, last_trial = 512;   // elements until steps of free bodies are tried again
+constexpr double same_length = 1e-3;
+
+}   // namespace
+
+StepChoice::StepChoice(const ModelTables& tables, const ElementRule& rule, const lanes::Functions* functions)
+{
+    if (functions != nullptr && !tables.loads.with_tangent.empty())
+        tangent_.emplace(tables, rule, functions->width);
+}
+
+void StepChoice::begin(const std::shared_ptr<const RowPattern>& pattern, const WindowLayout& layout)
+{
+    serves_ = tangent_ && tangent_->use(pattern);
+    is_kept_ = is_kept_ && serves_ && std::abs(layout.h(0) - h_) <= same_length * std::abs(h_);
+}
+
+void StepChoice::factorised(bool is_good, double h)
+{
+    is_kept_ = is_good;
+    h_ = h;
+    fresh_steps_ = 0;
+}
+
+void StepChoice::took(int steps, bool is_solved, bool was_by_tangent)
+{
+    last_steps_ = steps;
+    if (!was_by_tangent) {
+        const bool was_stiff = is_stiff_;
+        is_stiff_ = !is_solved || steps > many_steps;
+        if (is_stiff_) trial_after_ = was_stiff ? std::min(2 * trial_after_, last_trial) : first_trial;
+        n_until_trial_ = trial_after_;
+        return;
+    }
+    --n_until_trial_;
+    if (fresh_steps_ == 0) fresh_steps_ = steps;
+    if (!is_solved || steps > fresh_steps_ + more_than_fresh) is_kept_ = false;
+}
+
+}   // namespace livens

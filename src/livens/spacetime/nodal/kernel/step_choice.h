@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// By which steps an element is solved: those of free bodies, or those that know the slopes of loads.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "livens/spacetime/nodal/kernel/kernel_functions.h"
+#include "livens/spacetime/nodal/kernel/tree_tangent.h"
+
+namespace livens::inline spacetime_internal {
+
+/// What earlier elements took.
+class StepChoice {
+public:
+    StepChoice(const ModelTables& tables, const ElementRule& rule, const lanes::Functions* functions);
+
+    /// An element with these rows.
+    void begin(const std::shared_ptr<const RowPattern>& pattern, const WindowLayout& layout);
+    /// Whether there are loads with slopes, along joints that TreeTangent knows.
+    bool has_tangent() const { return serves_; }
+    /// Such steps first: those of free bodies were many, or did not shrink.
+    bool by_tangent() const { return serves_ && is_stiff_ && n_until_trial_ > 0; }
+    /// The factor at hand fits the element, as far as is known.
+    bool is_kept() const { return is_kept_; }
+    TreeTangent& tangent() { return *tangent_; }
+    void factorised(bool is_good, double h);
+    void forget_factor() { is_kept_ = false; }
+    /// The element was solved, or not.
+    void took(int steps, bool is_solved, bool was_by_tangent);
+    int last_steps() const { return last_steps_; }
+
+private:
+    std::optional<TreeTangent> tangent_;
+    bool serves_ = false, is_stiff_ = false, is_kept_ = false;
+    double h_ = 0;
+    int last_steps_ = 0, n_until_trial_ = 0, trial_after_ = 0, fresh_steps_ = 0;
+};
+
+}   // namespace livens::inline spacetime_internal

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "livens/spacetime/nodal/kernel/tree_plan.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "livens/multibody/model.h"
+
+namespace livens {
+
+namespace {
+
+/// The bodies that a group of rows has twists of, ascending.
+std::vector<int> bodies_of(const ModelTables& tables, const lanes::Pattern& p, const lanes::Group& group)
+{
+    std::vector<char> twists(static_cast<std::size_t>(p.n_twists), 0);
+    for (int r = group.first; r < group.first + group.n; ++r)
+        for (int u = p.gradients.unit_begin[r]; u < p.gradients.unit_begin[r + 1]; ++u)
+            twists[static_cast<std::size_t>(p.gradients.units[u].twist)] = 1;
+    for (int c = group.columns; c < (&group)[1].columns; ++c)
+        twists[static_cast<std::size_t>(p.gradients.columns[c].twist)] = 1;
+    std::vector<int> bodies;
+    for (int b = 0; b < tables.n_bodies(); ++b) {
+        const BodyTable& body = tables.bodies[b];
+        const auto first = twists.begin() + body.first;
+        if (std::any_of(first, first + body.dofs, [](char is_in) { return is_in; })) bodies.push_back(b);
+    }
+    return bodies;
+}
+
+void add_once(std::vector<int>& to, int what)
+{
+    if (std::ranges::find(to, what) == to.end()) to.push_back(what);
+}
+
+}   // namespace
+
+TreePlan::TreePlan(const ModelTables& tables, const RowPattern& pattern)
+{
+    std::vector<JointRows> joints;
+    collect(tables, pattern, joints);
+    if (!serves) return;
+    grow(tables.n_bodies(), joints);
+    couple(tables);
+}
+
+/// Groups between the same bodies are one joint.
+void TreePlan::collect(const ModelTables& tables, const RowPattern& pattern, std::vector<JointRows>& joints)
+{
+    const lanes::Pattern& p = pattern.view();
+    for (int g = 0; g < p.n_groups; ++g) {
+        const lanes::Group& group = p.groups[g];
+        const std::vector<int> bodies = bodies_of(tables, p, group);
+        serves = serves && !bodies.empty() && bodies.size() <= 2;
+        if (!serves) return;
+        const std::array<int, 2> between = {bodies.size() == 2 ? bodies[0] : world, bodies.back()};
+        auto joint = std::ranges::find(joints, between, &JointRows::bodies);
+        if (joint == joints.end()) joint = joints.insert(joint, {between, {}});
+        for (int r = group.first; r < group.first + group.n; ++r) joint->rows.push_back(r);
+    }
+}
+
+/// A spanning tree from the world, and from a body of each part that floats.
+void TreePlan::grow(int n_bodies, std::vector<JointRows>& joints)
+{
+    const auto n = static_cast<std::size_t>(n_bodies);
+    parent.assign(n, world);
+    held.assign(n, {});
+    std::vector<char> is_reached(n, 0), is_used(joints.size(), 0);
+    const auto reach_from = [&](std::vector<int> front) {
+        for (std::size_t at = 0; at < front.size(); ++at)
+            for (std::size_t j = 0; j < joints.size(); ++j) {
+                const auto [a, b] = joints[j].bodies;
+                if (is_used[j] || (a != front[at] && b != front[at])) continue;
+                const int next = a == front[at] ? b : a;
+                if (next == world || is_reached[static_cast<std::size_t>(next)]) continue;
+                is_used[j] = is_reached[static_cast<std::size_t>(next)] = 1;
+                parent[static_cast<std::size_t>(next)] = front[at];
+                held[static_cast<std::size_t>(next)] = joints[j];
+                front.push_back(next);
+            }
+        order.insert(order.end(), front.begin() + (front[0] == world ? 1 : 0), front.end());
+    };
+    reach_from({world});
+    for (int b = 0; b < n_bodies; ++b) {
+        if (is_reached[static_cast<std::size_t>(b)]) continue;
+        is_reached[static_cast<std::size_t>(b)] = 1;
+        reach_from({b});
+    }
+    std::ranges::reverse(order);
+    for (std::size_t j = 0; j < joints.size(); ++j)
+        if (!is_used[j]) closing.push_back(std::move(joints[j]));
+}
+
+/// What elimination fills in.
+void TreePlan::couple(const ModelTables& tables)
+{
+    const int n = tables.n_bodies();
+    std::vector<std::vector<int>> neighbours(static_cast<std::size_t>(n));
+    const auto pair_up = [&](int a, int b) {
+        if (a == b || a == world || b == world) return;
+        if (a < n) add_once(neighbours[static_cast<std::size_t>(a)], b);
+        if (b < n) add_once(neighbours[static_cast<std::size_t>(b)], a);
+    };
+    for (const int l : tables.loads.with_tangent)
+        for (const int a : tables.model->loads()[l].bodies)
+            for (const int b : tables.model->loads()[l].bodies) pair_up(a, b);
+    for (std::size_t j = 0; j < closing.size(); ++j)
+        for (const int b : closing[j].bodies) pair_up(b, n + static_cast<int>(j));
+    coupled.assign(static_cast<std::size_t>(n), {});
+    std::vector<char> is_gone(static_cast<std::size_t>(n), 0);
+    for (const int b : order) {
+        std::vector<int>& later = coupled[static_cast<std::size_t>(b)];
+        const int above = parent[static_cast<std::size_t>(b)];
+        if (above != world) later.push_back(above);
+        for (const int other : neighbours[static_cast<std::size_t>(b)])
+            if (other >= n || !is_gone[static_cast<std::size_t>(other)]) add_once(later, other);
+        is_gone[static_cast<std::size_t>(b)] = 1;
+        for (const int one : later)
+            for (const int other : later) pair_up(one, other);
+    }
+}
+
+}   // namespace livens

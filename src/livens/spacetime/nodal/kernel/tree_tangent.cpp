@@ -1,0 +1,285 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Outwards from the world a body moves with its parent and by its own freedoms, y_b = T y_p + z theta at each
+// node, with T and z from the gradients of its joint there. From the leaves inwards the freedoms of all nodes
+// of a body are eliminated together, and what is left of its inertia, mass and loads goes to its parent.
+// Joints that close loops are unknowns of their own, which come last (docs/theory.md, "Without a tangent",
+// Stiff loads).
+#include "livens/spacetime/nodal/kernel/tree_tangent.h"
+
+#include <algorithm>
+
+namespace livens {
+
+void TreeBlocks::resize(const std::vector<int>& sizes, int p)
+{
+    p_ = p;
+    sizes_ = sizes;
+    first_ = {0};
+    for (const int size : sizes) first_.push_back(first_.back() + size * p);
+    place_.assign(sizes.size() * sizes.size(), -1);
+    blocks_.clear();
+}
+
+void TreeBlocks::clear()
+{
+    for (Numbers& block : blocks_) std::ranges::fill(block, 0.0);
+}
+
+Numbers& TreeBlocks::of(int u, int v)
+{
+    int& place = place_[static_cast<std::size_t>(u) * sizes_.size() + static_cast<std::size_t>(v)];
+    if (place < 0) {
+        place = static_cast<int>(blocks_.size());
+        blocks_.emplace_back(static_cast<std::size_t>(size(u) * p_ * size(v) * p_), 0.0);
+    }
+    return blocks_[static_cast<std::size_t>(place)];
+}
+
+TreeTangent::TreeTangent(const ModelTables& tables, const ElementRule& rule, int width)
+    : tables_(tables), rule_(rule), width_(width), slopes_(tables, rule, width)
+{}
+
+bool TreeTangent::use(const std::shared_ptr<const RowPattern>& pattern)
+{
+    if (pattern == pattern_) return plan_->serves;
+    pattern_ = pattern;
+    plan_.emplace(tables_, *pattern);
+    if (!plan_->serves) return false;
+    std::vector<int> sizes;
+    for (const BodyTable& body : tables_.bodies) sizes.push_back(body.dofs);
+    for (const JointRows& joint : plan_->closing) sizes.push_back(joint.n());
+    blocks_.resize(sizes, rule_.degree);
+    right_.assign(static_cast<std::size_t>(blocks_.first(blocks_.n_unknowns())), 0.0);
+    left_ = right_;
+    motions_.assign(tables_.bodies.size(), {});
+    gone_.assign(tables_.bodies.size(), {});
+    return true;
+}
+
+/// All that elimination will ask for, before anyone holds one.
+void TreeTangent::prepare_blocks()
+{
+    blocks_.clear();
+    for (const int b : plan_->order) {
+        const std::vector<int>& coupled = plan_->coupled[static_cast<std::size_t>(b)];
+        blocks_.of(b, b);
+        for (const int u : coupled) {
+            blocks_.of(b, u);
+            blocks_.of(u, b);
+            for (const int v : coupled) blocks_.of(u, v);
+        }
+    }
+}
+
+/// k_AB / h: scaled twists have the mass 1.
+void TreeTangent::add_mass(double h)
+{
+    const int p = rule_.degree;
+    for (int b = 0; b < tables_.n_bodies(); ++b) {
+        const int d = blocks_.size(b);
+        Numbers& J = blocks_.of(b, b);
+        for (int i = 0; i < d; ++i)
+            for (int A = 0; A < p; ++A)
+                for (int l = 0; l < p; ++l)
+                    J[(i * p + A) * d * p + i * p + l] += rule_.k[A * rule_.size() + (l == 0 ? p : l)] / h;
+    }
+}
+
+void TreeTangent::add_loads(const WindowLayout& layout, const lanes::Values& nodes)
+{
+    const int p = rule_.degree;
+    const auto add_by = [&](const SlopesOfPair& pair, const double* slopes, const Numbers& in_time,
+                            double factor) {
+        Numbers& J = blocks_.of(pair.i, pair.j);
+        const int n = blocks_.size(pair.j);
+        for (int a = 0; a < blocks_.size(pair.i); ++a)
+            for (int b = 0; b < n; ++b) {
+                const double slope = factor * slopes[6 * a + b];
+                if (slope == 0) continue;
+                for (int A = 0; A < p; ++A)
+                    for (int l = 0; l < p; ++l)
+                        J[((a * p + A) * n + b) * p + l] += slope * in_time[A * p + l];
+            }
+    };
+    for (const SlopesOfPair& pair : slopes_.find(layout, nodes)) {
+        add_by(pair, pair.by_X, slopes_.in_time_by_X(), layout.h(0));
+        add_by(pair, pair.by_V, slopes_.in_time_by_V(), 1);
+    }
+}
+
+/// The rows of what closes loops, at row nodes by multipliers and at columns by twists.
+void TreeTangent::add_loops(const NodeGradients& gradients)
+{
+    const int p = rule_.degree;
+    for (std::size_t k = 0; k < plan_->closing.size(); ++k) {
+        const JointRows& joint = plan_->closing[k];
+        const int u = first_loop() + static_cast<int>(k), m = joint.n();
+        blocks_.of(u, u);
+        for (int side = 0; side < 2; ++side) {
+            const int b = joint.bodies[side];
+            if (b == world) continue;
+            const int d = blocks_.size(b);
+            blocks_.of(u, b);   // both first: one more may move the other
+            Numbers &J = blocks_.of(b, u), &G = blocks_.of(u, b);
+            for (int node = 0; node <= p; ++node) {
+                Numbers of(static_cast<std::size_t>(m * d));
+                gradients.of(joint, side, node, of.data());
+                for (int r = 0; r < m; ++r)
+                    for (int i = 0; i < d; ++i) {
+                        if (node < p) J[(i * p + node) * m * p + r * p + node] = of[r * d + i];
+                        const int lane = node % p;
+                        if (node > 0) G[(r * p + lane) * d * p + i * p + lane] = of[r * d + i];
+                    }
+            }
+        }
+    }
+}
+
+/// What moves a parent moves its child: rows of the child go to it, and columns.
+void TreeTangent::pass_to_parent(int b)
+{
+    const JointMotion& motion = motions_[static_cast<std::size_t>(b)];
+    const int above = plan_->parent[static_cast<std::size_t>(b)], p = rule_.degree, d = blocks_.size(b),
+              n = blocks_.size(above);
+    const auto from_b = [&](int v) -> Numbers {   // T^T J_bv
+        return from_left(motion.T_rows, d, n, p, {blocks_.of(b, v), d * p, blocks_.size(v) * p});
+    };
+    const auto to_b = [&](int u) -> Numbers {   // J_ub T
+        return from_right({blocks_.of(u, b), blocks_.size(u) * p, d * p}, motion.T_columns, d, n, p);
+    };
+    for (const int v : plan_->coupled[static_cast<std::size_t>(b)]) {
+        if (v == above) continue;
+        add(blocks_.of(above, v), from_b(v));
+        add(blocks_.of(v, above), to_b(v));
+    }
+    add(blocks_.of(above, above), to_b(above));
+    add(blocks_.of(b, above), to_b(b));   // J_bp + J_bb T
+    add(blocks_.of(above, above), from_b(above));
+    add(blocks_.of(above, b), from_b(b));   // J_pb + T^T J_bb
+}
+
+bool TreeTangent::eliminate(int b)
+{
+    const JointMotion& motion = motions_[static_cast<std::size_t>(b)];
+    const std::vector<int>& coupled = plan_->coupled[static_cast<std::size_t>(b)];
+    Eliminated& gone = gone_[static_cast<std::size_t>(b)];
+    const int p = rule_.degree, d = blocks_.size(b), f = motion.f;
+    if (plan_->parent[static_cast<std::size_t>(b)] != world) pass_to_parent(b);
+    gone.E.assign(coupled.size(), {});
+    gone.W.assign(coupled.size(), {});
+    if (f == 0) return true;
+    const Numbers Jz = from_right({blocks_.of(b, b), d * p, d * p}, motion.z_columns, d, f, p);
+    gone.D.A = from_left(motion.z_rows, d, f, p, {Jz, d * p, f * p});
+    if (!gone.D.factorise(f * p)) return false;
+    for (std::size_t k = 0; k < coupled.size(); ++k) {
+        const int v = coupled[k], n = blocks_.size(v);
+        gone.E[k] = from_right({blocks_.of(v, b), n * p, d * p}, motion.z_columns, d, f, p);
+        gone.W[k] = from_left(motion.z_rows, d, f, p, {blocks_.of(b, v), d * p, n * p});
+        gone.D.solve(gone.W[k].data(), n * p);
+    }
+    for (std::size_t k = 0; k < coupled.size(); ++k)
+        for (std::size_t l = 0; l < coupled.size(); ++l)
+            subtract_product(blocks_.of(coupled[k], coupled[l]), gone.E[k], gone.W[l],
+                             blocks_.size(coupled[k]) * p, f * p, blocks_.size(coupled[l]) * p);
+    return true;
+}
+
+/// What is left once all bodies are gone.
+bool TreeTangent::factorise_loops()
+{
+    const int p = rule_.degree, begin = blocks_.first(first_loop()), n = blocks_.n_unknowns();
+    const int size = blocks_.first(n) - begin;
+    loops_.A.assign(static_cast<std::size_t>(size * size), 0.0);
+    for (int u = first_loop(); u < n; ++u)
+        for (int v = first_loop(); v < n; ++v) {
+            const Numbers& J = blocks_.of(u, v);
+            const int columns = blocks_.size(v) * p;
+            for (int r = 0; r < blocks_.size(u) * p; ++r)
+                std::copy_n(J.begin() + r * columns, columns,
+                            loops_.A.begin() + (blocks_.first(u) - begin + r) * size + blocks_.first(v) -
+                                begin);
+        }
+    return loops_.factorise(size);
+}
+
+bool TreeTangent::factorise(const WindowLayout& layout, const lanes::Values& start,
+                            const lanes::Values& nodes)
+{
+    const NodeGradients gradients{tables_, *pattern_, start, nodes, width_, rule_.degree};
+    prepare_blocks();
+    add_mass(layout.h(0));
+    add_loads(layout, nodes);
+    add_loops(gradients);
+    for (const int b : plan_->order)
+        if (!gradients.find(b, *plan_, motions_[static_cast<std::size_t>(b)]) || !eliminate(b)) return false;
+    return factorise_loops();
+}
+
+/// The body's freedoms as its own rows ask for, which its parent and others will change.
+void TreeTangent::go_inwards(int b)
+{
+    const JointMotion& motion = motions_[static_cast<std::size_t>(b)];
+    const Eliminated& gone = gone_[static_cast<std::size_t>(b)];
+    const std::vector<int>& coupled = plan_->coupled[static_cast<std::size_t>(b)];
+    const int p = rule_.degree, d = blocks_.size(b), above = plan_->parent[static_cast<std::size_t>(b)];
+    const Numbers own(right_.begin() + blocks_.first(b), right_.begin() + blocks_.first(b) + d * p);
+    if (above != world) {
+        const Numbers passed = from_left(motion.T_rows, d, blocks_.size(above), p, {own, d * p, 1});
+        for (std::size_t i = 0; i < passed.size(); ++i) right_[blocks_.first(above) + i] += passed[i];
+    }
+    if (motion.f == 0) return;
+    Numbers theta = from_left(motion.z_rows, d, motion.f, p, {own, d * p, 1});
+    gone.D.solve(theta.data(), 1);
+    for (std::size_t k = 0; k < coupled.size(); ++k)
+        for (int r = 0; r < blocks_.size(coupled[k]) * p; ++r)
+            for (std::size_t i = 0; i < theta.size(); ++i)
+                right_[blocks_.first(coupled[k]) + r] -= gone.E[k][r * theta.size() + i] * theta[i];
+    std::ranges::copy(theta, left_.begin() + blocks_.first(b));
+}
+
+void TreeTangent::go_outwards(int b, const lanes::Values& nodes)
+{
+    const JointMotion& motion = motions_[static_cast<std::size_t>(b)];
+    const Eliminated& gone = gone_[static_cast<std::size_t>(b)];
+    const std::vector<int>& coupled = plan_->coupled[static_cast<std::size_t>(b)];
+    const int p = rule_.degree, d = blocks_.size(b), above = plan_->parent[static_cast<std::size_t>(b)];
+    const int n = above == world ? 0 : blocks_.size(above);
+    double* own = left_.data() + blocks_.first(b);
+    Numbers theta(own, own + motion.f * p);
+    for (std::size_t k = 0; motion.f > 0 && k < coupled.size(); ++k) {
+        const int columns = blocks_.size(coupled[k]) * p;
+        const double* y = left_.data() + blocks_.first(coupled[k]);
+        for (std::size_t r = 0; r < theta.size(); ++r)
+            for (int c = 0; c < columns; ++c) theta[r] -= gone.W[k][r * columns + c] * y[c];
+    }
+    std::fill_n(own, d * p, 0.0);
+    for (int i = 0; i < d; ++i)
+        for (int l = 0; l < p; ++l) {
+            double& y = own[i * p + l];
+            for (int k = 0; k < motion.f; ++k)
+                y += motion.z_columns[(i * motion.f + k) * p + l] * theta[k * p + l];
+            for (int k = 0; k < n; ++k)
+                y += motion.T_columns[(i * n + k) * p + l] * left_[blocks_.first(above) + k * p + l];
+            nodes.step[(tables_.bodies[b].first + i) * width_ + l] = y;
+        }
+}
+
+void TreeTangent::propose(const lanes::Values& nodes)
+{
+    const int p = rule_.degree;
+    std::ranges::fill(right_, 0.0);
+    for (int b = 0; b < tables_.n_bodies(); ++b)
+        for (int i = 0; i < blocks_.size(b); ++i)
+            for (int A = 0; A < p; ++A)
+                right_[blocks_.first(b) + i * p + A] =
+                    -nodes.rows[(tables_.bodies[b].first + i) * width_ + A];
+    for (const int b : plan_->order) go_inwards(b);
+    if (!plan_->closing.empty()) {
+        const int begin = blocks_.first(first_loop());
+        std::copy(right_.begin() + begin, right_.end(), left_.begin() + begin);
+        loops_.solve(left_.data() + begin, 1);
+    }
+    for (std::size_t i = plan_->order.size(); i-- > 0;) go_outwards(plan_->order[i], nodes);
+}
+
+}   // namespace livens

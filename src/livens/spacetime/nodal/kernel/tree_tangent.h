@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The tangent of an element with its loads, eliminated along the joints (docs/theory.md, "Without a
+// tangent", Stiff loads).
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "livens/spacetime/nodal/kernel/joint_motion.h"
+#include "livens/spacetime/nodal/kernel/load_slopes.h"
+
+namespace livens::inline spacetime_internal {
+
+/// Blocks of pairs of unknowns, made as they are asked for.
+class TreeBlocks {
+public:
+    /// `sizes`: numbers at a node; p nodes.
+    void resize(const std::vector<int>& sizes, int p);
+    void clear();
+    /// References hold until a block is made that was not there.
+    Numbers& of(int u, int v);
+    int size(int u) const { return sizes_[static_cast<std::size_t>(u)]; }
+    /// Where its numbers begin, and those of the one behind the last.
+    int first(int u) const { return first_[static_cast<std::size_t>(u)]; }
+    int n_unknowns() const { return static_cast<int>(sizes_.size()); }
+
+private:
+    int p_ = 0;
+    std::vector<int> sizes_, first_, place_;   ///< places of pairs; -1: none
+    std::vector<Numbers> blocks_;
+};
+
+/// J = h^-1 K + h S dF/dX + C dF/dX' in scaled twists of all nodes of one element, on what the joints leave
+/// free. A step by it need not be exact: rows and constraints are those of the kernel, and tell when it is
+/// done.
+class TreeTangent {
+public:
+    TreeTangent(const ModelTables& tables, const ElementRule& rule, int width);
+
+    /// For the rows of this pattern. False: it does not serve them.
+    bool use(const std::shared_ptr<const RowPattern>& pattern);
+    /// At the numbers, gradients and load points of the kernel. False: singular, or not finite.
+    bool factorise(const WindowLayout& layout, const lanes::Values& start, const lanes::Values& nodes);
+    /// See LoadSlopes, of the last factor.
+    double load_terms() const { return slopes_.terms(); }
+    /// step <- - J^-1 rows, in lanes.
+    void propose(const lanes::Values& nodes);
+
+private:
+    /// What is left of a body when it is gone: D = z^T J z, and for each unknown that it is coupled with J z
+    /// and D^-1 z^T J.
+    struct Eliminated {
+        SquareFactor D;
+        std::vector<Numbers> E, W;
+    };
+
+    void prepare_blocks();
+    void add_mass(double h);
+    void add_loads(const WindowLayout& layout, const lanes::Values& nodes);
+    void add_loops(const NodeGradients& gradients);
+    bool eliminate(int body);
+    void pass_to_parent(int body);
+    bool factorise_loops();
+    void go_inwards(int body);
+    void go_outwards(int body, const lanes::Values& nodes);
+    int first_loop() const { return tables_.n_bodies(); }
+
+    const ModelTables& tables_;
+    const ElementRule& rule_;
+    int width_;
+    std::shared_ptr<const RowPattern> pattern_;
+    std::optional<TreePlan> plan_;
+    LoadSlopes slopes_;
+    TreeBlocks blocks_;
+    std::vector<JointMotion> motions_;
+    std::vector<Eliminated> gone_;
+    SquareFactor loops_;
+    Numbers right_, left_;
+};
+
+}   // namespace livens::inline spacetime_internal
