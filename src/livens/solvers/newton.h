@@ -68,6 +68,7 @@ struct NewtonReport {
     SolveStatus status = SolveStatus::converged;
     int iterations = 0;   ///< accepted steps
     int factorisations = 0;
+    bool took_slopes = false;     ///< of stiff loads, in steps without a tangent of the whole
     bool reached_limit = false;   ///< of iterations; else not_converged means that no step, however short,
                                   ///< made the increment smaller
     bool ended_by_rounding = false;   ///< converged, but short of the tolerance

@@ -46,6 +46,12 @@ lanes::LoadKind in_lanes(TapeKind kind)
     return kinds.at(kind);
 }
 
+/// X w = x_c w_0 + sum d_a (w_a - w_0 c_a) with the centre of mass (1, c): the factor of column a.
+double centred(const ModelTables& tables, const TapeArm& arm, int a)
+{
+    return a == 0 ? arm.w[0] : arm.w[a] - arm.w[0] * tables.bodies[arm.body].center[a - 1];
+}
+
 /// act(place) for the numbers that a step takes.
 template <class Act>
 void for_operands(const LoadTape& tape, const TapeStep& step, const Act& act)
@@ -119,16 +125,13 @@ std::vector<char> LoadProgram::find_known() const
     return known;
 }
 
-/// X w = x_c w_0 + sum d_a (w_a - w_0 c_a) with the centre of mass (1, c).
 void LoadProgram::add_arm(const ModelTables& tables, const TapeArm& arm, std::int32_t& begin,
                           std::int32_t& end)
 {
     begin = static_cast<std::int32_t>(terms_.size());
-    const double* centre = tables.bodies[arm.body].center;
-    for (int a = 0; a < 4; ++a) {
-        const double w = a == 0 ? arm.w[0] : arm.w[a] - arm.w[0] * centre[a - 1];
-        if (w != 0) terms_.push_back({12 * arm.body + 3 * a, w});
-    }
+    for (int a = 0; a < 4; ++a)
+        if (const double w = centred(tables, arm, a); w != 0)
+            terms_.push_back({12 * arm.body + 3 * a, w});
     end = static_cast<std::int32_t>(terms_.size());
 }
 
@@ -167,15 +170,15 @@ void LoadProgram::add_columns(const ModelTables& tables)
     for (const Load& load : tables.model->loads())
         for (const int body : load.bodies)
             if (body != world) is_loaded[static_cast<std::size_t>(body)] = 1;
+    std::vector<std::vector<std::size_t>> arms_of(is_loaded.size());
+    for (std::size_t k = 0; k < forces_.size(); ++k)
+        if (forces_[k] >= 0) arms_of[static_cast<std::size_t>(tape_.arms()[k].body)].push_back(k);
     for (int b = 0; b < tables.n_bodies(); ++b)
         for (int a = 0; is_loaded[static_cast<std::size_t>(b)] && a < 4; ++a) {
             const auto begin = static_cast<std::int32_t>(terms_.size());
-            for (std::size_t k = 0; k < forces_.size(); ++k) {
-                const TapeArm& arm = tape_.arms()[k];
-                const double* centre = tables.bodies[b].center;
-                const double w = a == 0 ? arm.w[0] : arm.w[a] - arm.w[0] * centre[a - 1];
-                if (forces_[k] >= 0 && arm.body == b && w != 0) terms_.push_back({forces_[k], w});
-            }
+            for (const std::size_t k : arms_of[static_cast<std::size_t>(b)])
+                if (const double w = centred(tables, tape_.arms()[k], a); w != 0)
+                    terms_.push_back({forces_[k], w});
             columns_.push_back({12 * b + 3 * a, begin, static_cast<std::int32_t>(terms_.size())});
         }
 }

@@ -54,6 +54,9 @@ RowPattern::RowPattern(const ModelTables& tables, const std::vector<int>& rows) 
     }
     const std::vector<int> order = order_of_least_degree(twists, tables.n_twists, sizes);
     arrange(sums, groups, order, tables.n_twists);
+    std::vector<int> at(static_cast<std::size_t>(tables.n_rows()));
+    for (std::size_t i = 0; i < rows_.size(); ++i) at[rows_[i]] = static_cast<int>(i);
+    for (const int row : chosen_) places_.push_back(at[row]);
     for (const int g : order) arranged.push_back(std::move(twists[g]));
     factor_.add(arranged, tables.n_twists, groups_);
     view_ = {.n_bodies = tables.n_bodies(),

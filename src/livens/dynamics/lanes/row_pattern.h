@@ -77,6 +77,8 @@ public:
     const std::vector<int>& chosen() const { return chosen_; }
     /// Row of the tables at each place of the elimination.
     const std::vector<int>& rows() const { return rows_; }
+    /// The place of each row as they were given.
+    const std::vector<int>& places() const { return places_; }
     int n_factor() const { return factor_.size(); }
     int n_numbers() const { return view_.n_bodies * 12 + view_.n_products; }
 
@@ -90,7 +92,7 @@ private:
     GradientTables gradients_;
     FactorTables factor_{gradients_};
     SumTable violations_;
-    std::vector<int> chosen_, rows_;
+    std::vector<int> chosen_, rows_, places_;
     lanes::Pattern view_{};
 };
 

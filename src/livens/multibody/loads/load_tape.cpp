@@ -74,11 +74,10 @@ TapeVector LoadTape::of_time(const TimeVector& value)
 int LoadTape::find_arm(int side, const Vector4& w)
 {
     const int body = bodies_[static_cast<std::size_t>(side)];
-    const auto found =
-        std::ranges::find_if(arms_, [&](const TapeArm& arm) { return arm.body == body && arm.w == w; });
-    const int index = static_cast<int>(found - arms_.begin());
-    if (found == arms_.end()) arms_.push_back({body, w});
-    return index;
+    const int index = static_cast<int>(arms_.size());
+    const auto [at, is_new] = arm_at_.try_emplace({1.0 * body, w[0], w[1], w[2], w[3]}, index);
+    if (is_new) arms_.push_back({body, w});
+    return at->second;
 }
 
 TapeVector LoadTape::arm(int side, const Vector4& w, bool is_rate)

@@ -3,6 +3,7 @@
 // side by side (docs/theory.md, "Without a tangent", Loads in lanes).
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -122,6 +123,7 @@ private:
     std::vector<TapeStep> steps_;
     std::map<std::tuple<TapeKind, int, int, int, double>, int> known_;   ///< places
     std::vector<TapeArm> arms_;
+    std::map<std::array<double, 5>, int> arm_at_;   ///< by body and w
     std::vector<Vector3> vectors_;
     std::vector<OfTime> times_;
     std::vector<Function> functions_;

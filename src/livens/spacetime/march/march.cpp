@@ -240,7 +240,7 @@ Elements March::take(Elements of, const AcceptedElements& closed, const NewtonRe
 
 bool March::goes_on(const NewtonReport& outcome)
 {
-    if (options_.watch && outcome.factorisations > 0) {
+    if (options_.watch && (outcome.factorisations > 0 || outcome.took_slopes)) {
         const Motion* motion = options_.direction > 0 ? window_.monitor().so_far() : nullptr;
         const std::string why = motion != nullptr ? options_.watch(*motion, mesh_.end()) : "";
         if (!why.empty()) return fail(SolveStatus::not_converged, why);

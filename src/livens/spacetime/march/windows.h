@@ -32,8 +32,8 @@ struct WindowOptions : DivisionOptions {
     std::function<std::string(const State& first, const State& last)> locking{};
     /// Set: the mesh begins with the start alone and grows, one element a window, as the pace has it.
     StepSizeController* controller = nullptr;
-    /// Called with a march forwards, and where it ends, after an element that took a tangent: why it should
-    /// go no further; else empty.
+    /// Called with a march forwards, and where it ends, after an element that took a tangent, or slopes of
+    /// loads: why it should go no further; else empty.
     std::function<std::string(const Motion& so_far, double until)> watch{};
     /// Called when elements were closed; false ends the march there, which is no failure.
     std::function<bool()> goes_on{};

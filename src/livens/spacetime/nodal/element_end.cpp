@@ -151,7 +151,7 @@ void ElementEnd::take_spin_of_polynomial(const NodalSystem& system, int e)
         for (std::size_t i = 0; i < V.size(); ++i)
             V[i] += rule.D[p * rule.size() + B] / system.layout().h(e) * nodes.dX(e, B)[i];
     tables_.bodies.times_mass(V.data(), 1.0, raw_.data());
-    tables_.bodies.twist_rows(nodes.X(A), nodes.maps(A), raw_.data(), wrench_.data());
+    tables_.bodies.twist_rows(nodes.X(A), states_[1 - now_].maps.data(), raw_.data(), wrench_.data());
     for (const auto& body : tables_.bodies)
         for (int i = 3; i < body.dofs; ++i) momentum_[body.first + i] = wrench_[body.first + i];
 }
@@ -169,12 +169,15 @@ bool ElementEnd::reach(NodalSystem& system, MarchKernel& kernel, int e, bool pol
         kernel.momentum(layout, here, momentum_.data());
     else
         sum_momentum(system, e);
-    if (is_radau) take_spin_of_polynomial(system, e);
     next.angles = here.angles;
     for (int a = 1; a <= p; ++a) tables_.loads.turns.follow(Configurations(nodes.X(e * p + a)), next.angles);
     std::copy_n(nodes.X(A), next.X.size(), next.X.begin());
     std::copy_n(nodes.low(A), next.X.size(), next.X_low.begin());
-    if (!kernel.is_solved()) std::copy_n(nodes.maps(A), next.X.size(), next.maps.begin());
+    if (kernel.is_solved() && is_radau)   // the kernel has no maps of nodes
+        tables_.bodies.map_twists(nodes.X(A), next.maps.data());
+    else if (!kernel.is_solved())
+        std::copy_n(nodes.maps(A), next.X.size(), next.maps.begin());
+    if (is_radau) take_spin_of_polynomial(system, e);
     for (int b = 0; polish && b < tables_.n_bodies(); ++b)
         if (tables_.bodies[b].dofs == 6) orthonormalise(next.X.data() + 12 * b);
     // the node's own basis, where nothing asks for it any more

@@ -151,7 +151,7 @@ std::vector<double> inverse_of_k(const ElementRule& rule)
     std::vector<Wide> a(static_cast<std::size_t>(2 * p * p), 0);   // [K 1] by rows
     const auto at = [&](int i, int j) -> Wide& { return a[2 * p * i + j]; };
     for (int A = 0; A < p; ++A) {
-        for (int B = 0; B < p; ++B) at(A, B) = rule.k[A * rule.size() + B + 1];
+        for (int B = 0; B < p; ++B) at(A, B) = rule.k[node_of_row(rule, A) * rule.size() + B + 1];
         at(A, p + A) = 1;
     }
     for (int i = 0; i < p; ++i) {

@@ -36,7 +36,14 @@ ElementRule rule_of(const Method& method);
 void check_degree(const Method& method, bool is_second);
 inline ElementRule lobatto_rule(int degree) { return element_rule(Points::lobatto, degree); }
 
-/// The inverse of K_AB = k_AB with rows A = 0..p-1 and columns B = 1..p, row by row.
+/// The node of row A, A < p: that one, or with radau the one behind it.
+inline int node_of_row(const ElementRule& rule, int A) { return A + (rule.points == Points::radau ? 1 : 0); }
+/// The node of the row in lane A of the march kernel, whose lane 0 is node p where nodes are columns.
+inline int row_in_lane(const ElementRule& rule, int A)
+{
+    return rule.points == Points::radau && A == 0 ? rule.degree : A;
+}
+/// The inverse of K_AB = k_AB with the p rows and the columns B = 1..p, row by row.
 std::vector<double> inverse_of_k(const ElementRule& rule);
 
 }   // namespace livens::inline spacetime_internal

@@ -106,7 +106,7 @@ bool NodalWindow::solve(const NewtonOptions& options, bool soon, NewtonReport& r
         !kernel_.solve(layout_, end_.here(), options, soon, report))
         return false;
     for (int B = 0; B <= layout_.degree; ++B) {
-        if (B < layout_.degree) kernel_.impulses(B, system_.balances().own_impulses(B));
+        if (layout_.is_active(B)) kernel_.impulses(B, system_.balances().own_impulses(B));
         system_.nodes().set_pivot(B, kernel_.pivot(B));
     }
     system_.nodes().place_solved(kernel_.increments(), kernel_.width());

@@ -113,8 +113,8 @@ bool NodeGradients::find(int b, const TreePlan& plan, JointMotion& motion) const
         const auto put = [&](Numbers& to, const double* from, int size, int lane) {
             for (int i = 0; i < size; ++i) to[i * p + lane] = from[i];
         };
-        if (node < p) put(motion.z_rows, z, d * motion.f, node);
-        if (node < p) put(motion.T_rows, T, d * n, node);
+        if (is_row(node)) put(motion.z_rows, z, d * motion.f, node % p);
+        if (is_row(node)) put(motion.T_rows, T, d * n, node % p);
         if (node > 0) put(motion.z_columns, z, d * motion.f, node % p);
         if (node > 0) put(motion.T_columns, T, d * n, node % p);
     }

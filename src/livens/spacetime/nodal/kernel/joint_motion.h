@@ -21,7 +21,9 @@ struct NodeGradients {
     const RowPattern& pattern;
     const lanes::Values &start, &nodes;
     int width, p;
+    bool has_first_row;   ///< rows are those of the nodes before columns (lobatto), else those of columns
 
+    bool is_row(int node) const { return has_first_row ? node < p : node > 0; }
     /// Of the rows of a joint by the twists of one of its bodies, row by row.
     void of(const JointRows& joint, int side, int node, double* G) const;
     /// How body b moves by what holds it on its parent. False: its rows hang together.

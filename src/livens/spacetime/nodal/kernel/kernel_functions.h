@@ -15,7 +15,9 @@ struct Rule {
     const double* dM;         ///< M_B'(s_c) / h
     const double* M_rows;     ///< M_A(s_c), one for each load point
     const double* load_weights;   ///< h times those of load points; 0 in lanes behind them
-    const double* momentum;   ///< at the start, n_twists scalars
+    const double* momentum;   ///< at the start, n_twists scalars: of row 0
+    const double* share;      ///< c_A of all rows in start_rates, lanes; null: none has one
+    const double* start_rates;   ///< 12 a body, about its centre of mass
     double length;
     bool in_still_axes = false;   ///< turns, on the way from rows to a step
 };

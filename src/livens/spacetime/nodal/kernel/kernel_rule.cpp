@@ -33,24 +33,33 @@ KernelRule::KernelRule(const ModelTables& tables, const ElementRule& rule, const
 {
     if (functions == nullptr) return;
     const int p = rule.degree, W = width_, n = rule.size(), block = W * W;
-    numbers_.assign(8 * block + 2 * W, 0.0);
+    numbers_.assign(8 * block + 3 * W, 0.0);
     double *k = numbers_.data(), *inverse = k + block, *M = inverse + block, *dM = M + block,
            *M_rows = dM + block, *scaled_k = M_rows + block, *scaled_inverse = scaled_k + block,
            *scaled_dM = scaled_inverse + block, *weights = scaled_dM + block;
     const std::vector<double> K = inverse_of_k(rule);
-    const auto node_of = [p](int lane) { return lane == 0 ? p : lane; };
     for (int l = 0; l < p; ++l) {
         for (int A = 0; A < p; ++A) {
-            k[l * W + A] = rule.k[A * n + node_of(l)];
-            inverse[A * W + l] = -K[static_cast<std::size_t>((node_of(l) - 1) * p + A)];
-            M_rows[A * W + l] = rule.M[A * n + l];   // here A is a load point
+            k[l * W + A] = rule.k[row_of(A) * n + node_of(l)];
+            // rows are in the order of their nodes
+            const int row = row_of(A) - node_of_row(rule, 0);
+            inverse[A * W + l] = -K[static_cast<std::size_t>((node_of(l) - 1) * p + row)];
+            M_rows[A * W + l] = rule.M[A * n + row_of(l)];   // here A is a load point
         }
         for (int c = 0; c < W; ++c) {   // lanes behind the last load point are as this one
             M[l * W + c] = rule.M[std::min(c, p - 1) * n + node_of(l)];
             dM[l * W + c] = rule.dM[std::min(c, p - 1) * n + node_of(l)];
         }
     }
-    lanes_ = {scaled_k, scaled_inverse, weights, M, scaled_dM, M_rows, weights + W, nullptr, tables.length};
+    lanes_ = {scaled_k,    scaled_inverse, weights, M,       scaled_dM,    M_rows,
+              weights + W, nullptr,        nullptr, nullptr, tables.length};
+    if (rule.points != Points::radau) return;
+    double* share = weights + 2 * W;
+    for (int A = 0; A < p; ++A) share[A] = rule.c[row_of(A)];
+    start_rates_.assign(12 * tables.bodies.size(), 0.0);
+    no_momentum_.assign(static_cast<std::size_t>(tables.n_twists), 0.0);
+    lanes_.share = share;
+    lanes_.start_rates = start_rates_.data();
 }
 
 void KernelRule::scale(double h)
@@ -65,15 +74,28 @@ void KernelRule::scale(double h)
     fill(k, scaled, [h](double x) { return x / h; });
     fill(k + block, scaled + block, [h](double x) { return x * h; });
     fill(k + 3 * block, scaled + 2 * block, [h](double x) { return x / h; });
-    for (int A = 0; A < rule_.degree; ++A) weights[A] = h * rule_.weights[A];
+    for (int A = 0; A < rule_.degree; ++A) weights[A] = h * rule_.weights[row_of(A)];
     for (int c = 0; c < rule_.degree; ++c) weights[W + c] = h * rule_.loads.weights[c];
+}
+
+/// X' of centres of mass and directors.
+void KernelRule::find_start_rates(const InstantState& start)
+{
+    tables_.bodies.rates_of(start.X.data(), start.velocity.data(), start_rates_.data());
+    for (int b = 0; b < tables_.n_bodies(); ++b)
+        for (int a = 0; tables_.bodies[b].offset && a < 3; ++a)
+            for (int i = 0; i < 3; ++i)
+                start_rates_[12 * b + i] +=
+                    tables_.bodies[b].center[a] * start_rates_[12 * b + 3 + 3 * a + i];
 }
 
 void KernelRule::use(const WindowLayout& layout, const InstantState& start, int last_steps)
 {
-    lanes_.momentum = start.momentum.data();
+    const bool is_shared = lanes_.share != nullptr;
+    lanes_.momentum = is_shared ? no_momentum_.data() : start.momentum.data();
+    if (is_shared) find_start_rates(start);
     const int few = lanes_.in_still_axes ? few_steps - 1 : few_steps;   // which they made so few
-    lanes_.in_still_axes = last_steps > few && turns_in_space(tables_, start, layout.h(0));
+    lanes_.in_still_axes = !is_shared && last_steps > few && turns_in_space(tables_, start, layout.h(0));
     if (layout.h(0) != h_) scale(layout.h(0));
 }
 

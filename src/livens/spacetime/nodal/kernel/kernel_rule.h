@@ -2,6 +2,8 @@
 // The tables of an element's rule in lanes, for the length of the element at hand.
 #pragma once
 
+#include <vector>
+
 #include "livens/dynamics/lanes/aligned_doubles.h"
 #include "livens/dynamics/rows/tables.h"
 #include "livens/spacetime/nodal/kernel/kernel_functions.h"
@@ -28,11 +30,16 @@ public:
 
 private:
     void scale(double h);
+    void find_start_rates(const InstantState& start);
+    /// Of lane l, as a column or as a row.
+    int node_of(int lane) const { return lane == 0 ? rule_.degree : lane; }
+    int row_of(int lane) const { return row_in_lane(rule_, lane); }
 
     const ModelTables& tables_;
     const ElementRule& rule_;
     int width_;
     AlignedDoubles numbers_;   // of length 1, then of length h
+    std::vector<double> start_rates_, no_momentum_;   // radau
     lanes::Rule lanes_{};
     double h_ = 0;
 };

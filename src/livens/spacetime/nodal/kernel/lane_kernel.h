@@ -63,6 +63,18 @@ LIVENS_INLINE void form_columns(const Body& body, const double* dX, const double
         }
 }
 
+/// What each row has of the momentum at the start: directors.
+template <int W>
+LIVENS_INLINE void add_start(const Body& body, const double* rates, const Rule& rule, Three<W>* g)
+{
+    const Lanes<W> share = load<W>(rule.share);
+    for (int a = 0; a < 3; ++a)
+        for (int i = 0; i < 3; ++i) {
+            const double* e = body.euler + 3 * a;
+            g[a].x[i] += (e[0] * rates[i] + e[1] * rates[3 + i] + e[2] * rates[6 + i]) * share;
+        }
+}
+
 template <int W>
 void form_rows(const Pattern& p, const Values& start, const Values& v, const Rule& rule)
 {
@@ -76,10 +88,13 @@ void form_rows(const Pattern& p, const Values& start, const Values& v, const Rul
         for (int i = 0; i < 3; ++i) {
             y[i] = body.root_mass * times<W>(dX + i * W, rule.k) + body.weight[i] * weights;
             if (body.loaded) y[i] += body.inverse_root_mass * times<W>(loads + i * W, rule.M_rows);
+            if (rule.share != nullptr)
+                y[i] += body.root_mass * rule.start_rates[12 * b + i] * load<W>(rule.share);
         }
         if (body.dofs == 6) {
             Three<W> g[3], t;
             form_columns(body, dX + 3 * W, loads + 3 * W, rule, g);
+            if (rule.share != nullptr) add_start(body, rule.start_rates + 12 * b + 3, rule, g);
             const Three<W> d[3] = {numbers.column(12 * b + 3), numbers.column(12 * b + 6),
                                    numbers.column(12 * b + 9)};
             for (int a = 0; a < 3; ++a) t.x[a] = moment(d, g, a);

@@ -20,7 +20,7 @@ LoadSlopes::LoadSlopes(const ModelTables& tables, const ElementRule& rule, int w
         for (int l = 0; l < p; ++l)
             for (int c = 0; c < p; ++c) {
                 const int B = l == 0 ? p : l;
-                const double w = rule.loads.weights[c] * rule.M[c * n + A];
+                const double w = rule.loads.weights[c] * rule.M[c * n + row_in_lane(rule, A)];
                 S_[A * p + l] += w * rule.M[c * n + B];
                 C_[A * p + l] += w * rule.dM[c * n + B];
             }

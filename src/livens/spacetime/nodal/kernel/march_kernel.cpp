@@ -34,8 +34,7 @@ constexpr double widest_tolerance = 1e-4;   // beyond, two steps hardly tell how
 /// Null: the kernel does not serve these rows, inertias or points.
 const lanes::Functions* functions_of(const ModelTables& tables, const ElementRule& rule)
 {
-    const bool serves = rule.points == Points::lobatto && JointFactor::serves(tables);
-    return serves ? lanes::functions(rule.degree) : nullptr;
+    return JointFactor::serves(tables) ? lanes::functions(rule.degree) : nullptr;
 }
 
 /// How steps shrink, and whether what is left is small enough.
@@ -107,12 +106,8 @@ void MarchKernel::use(const InstantState& start)
     if (pattern_ == start_->pattern()) return;
     pattern_ = start_->pattern();
     nodes_.resize(*pattern_, functions_->width);
+    if (is_radau()) end_.resize(*pattern_, 1);
     guess_.forget_polynomial();
-    const std::vector<int>&chosen = pattern_->chosen(), &order = pattern_->rows();
-    std::vector<int> places(static_cast<std::size_t>(tables_.n_rows()));
-    for (std::size_t i = 0; i < order.size(); ++i) places[order[i]] = static_cast<int>(i);
-    place_.clear();
-    for (const int row : chosen) place_.push_back(places[row]);
 }
 
 void MarchKernel::evaluate_loads(const WindowLayout& layout)
@@ -139,6 +134,20 @@ double MarchKernel::size_of_proposal() const
         }
     }
     return std::max(far / tables_.length, wide);
+}
+
+/// With lobatto that of the start, whose numbers are scalars; with radau rows are where columns are.
+const lanes::Values& MarchKernel::first_row()
+{
+    if (!is_radau()) return start_->values();
+    const lanes::Values &from = nodes_.values(), &to = end_.values();
+    const auto take = [W = functions_->width](const double* lanes, double* scalars, int n) {
+        for (int i = 0; i < n; ++i) scalars[i] = lanes[i * W];
+    };
+    take(from.numbers, to.numbers, pattern_->n_numbers());
+    take(from.gradients, to.gradients, pattern_->view().n_entries);
+    take(from.factor, to.factor, pattern_->n_factor());
+    return to;
 }
 
 /// A step, where the factor of loads is made anew unless it is kept. False: there is none.
@@ -185,7 +194,7 @@ bool MarchKernel::iterate(const WindowLayout& layout, const InstantState& start,
             moved = 0;
         }
         evaluate_loads(layout);
-        functions_->balance(pattern, from, nodes, lane_rule_.in_lanes(), steps == 0, sizes);
+        functions_->balance(pattern, first_row(), nodes, lane_rule_.in_lanes(), steps == 0, sizes);
         evaluations_ += rule_.size();
         if (!std::isfinite(sizes.finite)) return false;
         if (progress.is_done) break;
@@ -205,6 +214,7 @@ bool MarchKernel::iterate(const WindowLayout& layout, const InstantState& start,
     }
     has_near_factor_ = moved <= fits_for_next * pivot;
     report = progress.report(sizes, start.momentum);
+    report.took_slopes = kind == Steps::by_tangent;
     return std::min(pivot, from.pivots[0]) > least_pivot * least_pivot;   // false: also no number
 }
 
@@ -251,8 +261,9 @@ bool MarchKernel::solve(const WindowLayout& layout, const InstantState& start, c
 
 void MarchKernel::impulses(int A, double* out) const
 {
-    for (std::size_t c = 0; c < place_.size(); ++c)
-        out[c] = nodes_.values().impulses[place_[c] * functions_->width + A];
+    const int lane = is_radau() ? lane_of(A) : A;
+    for (const int place : pattern_->places())
+        *out++ = nodes_.values().impulses[place * functions_->width + lane];
 }
 
 double MarchKernel::pivot(int A) const
@@ -262,7 +273,7 @@ double MarchKernel::pivot(int A) const
 
 void MarchKernel::momentum(const WindowLayout& layout, const InstantState& start, double* p)
 {
-    functions_->sum_impulses(pattern_->view(), start_->values(), nodes_.values(), wrenches_.taken());
+    functions_->sum_impulses(pattern_->view(), first_row(), nodes_.values(), wrenches_.taken());
     wrenches_.momentum(layout, start, nodes_.values(), p);
 }
 

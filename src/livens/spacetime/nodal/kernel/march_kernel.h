@@ -14,7 +14,7 @@
 
 namespace livens::inline spacetime_internal {
 
-/// The equations of NodalSystem for one element from a known state, by
+/// The equations of NodalSystem for one element of lobatto or radau from a known state, by
 ///
 ///     y_B <- P_B [ - h sum_A (K^-1)_BA P_A r_A ] - G_B^+ Phi_B,      P = 1 - G^T (G G^T)^-1 G
 ///
@@ -61,7 +61,7 @@ public:
         if (!is_solved_ || !has_near_factor_) return {};
         return {pattern_.get(), &nodes_.values(), functions_->width};
     }
-    /// W_A lambda_A, in the order of the start's rows.
+    /// W_A lambda_A of an active node, in the order of the start's rows.
     void impulses(int A, double* out) const;
     /// Smallest scaled pivot of the constraints at a node.
     double pivot(int A) const;
@@ -76,6 +76,9 @@ private:
     enum class Steps { free, by_tangent, combined };
     bool iterate(const WindowLayout& layout, const InstantState& start, const NewtonOptions& options,
                  Steps kind, NewtonReport& report);
+    /// Numbers, gradients and factor of the row in lane 0.
+    const lanes::Values& first_row();
+    bool is_radau() const { return rule_.points == Points::radau; }
     bool propose(const WindowLayout& layout, Steps kind);
     double size_of_proposal() const;
     int lane_of(int B) const { return B == rule_.degree ? 0 : B; }
@@ -84,9 +87,8 @@ private:
     const ElementRule& rule_;
     const lanes::Functions* functions_;   // null: no lanes for this rule or model
     std::shared_ptr<const RowPattern> pattern_;
-    std::vector<int> place_;   // of each row that was chosen among those of the pattern
     const JointFactor* start_ = nullptr;
-    LaneStore nodes_;
+    LaneStore nodes_, end_;   // end_, with radau: of node p, as scalars
     KernelRule lane_rule_;
     KernelWrenches wrenches_;
     KernelGuess guess_;

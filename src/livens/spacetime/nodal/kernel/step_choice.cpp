@@ -11,7 +11,7 @@ namespace {
 constexpr int many_steps = 8;                      // of free bodies: a factor costs about as much
 constexpr int more_than_fresh = 2;                 // steps with a factor of an element before
 constexpr int first_trial = 8, last_trial = 512;   // elements until steps of free bodies are tried again
-constexpr double same_length = 1e-3;
+constexpr double same_length = 0.03;   // of the motion of stiff loads a factor then leaves about twice that
 
 }   // namespace
 
@@ -23,8 +23,9 @@ StepChoice::StepChoice(const ModelTables& tables, const ElementRule& rule, const
 
 void StepChoice::begin(const std::shared_ptr<const RowPattern>& pattern, const WindowLayout& layout)
 {
-    serves_ = tangent_ && tangent_->use(pattern);
-    is_kept_ = is_kept_ && serves_ && std::abs(layout.h(0) - h_) <= same_length * std::abs(h_);
+    is_kept_ =
+        is_kept_ && pattern == pattern_ && std::abs(layout.h(0) - h_) <= same_length * std::abs(h_);
+    pattern_ = pattern;
 }
 
 void StepChoice::factorised(bool is_good, double h)

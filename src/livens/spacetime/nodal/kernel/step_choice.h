@@ -18,9 +18,9 @@ public:
     /// An element with these rows.
     void begin(const std::shared_ptr<const RowPattern>& pattern, const WindowLayout& layout);
     /// Whether there are loads with slopes, along joints that TreeTangent knows.
-    bool has_tangent() const { return serves_; }
+    bool has_tangent() { return tangent_ && tangent_->use(pattern_); }
     /// Such steps first: those of free bodies were many, or did not shrink.
-    bool by_tangent() const { return serves_ && is_stiff_ && n_until_trial_ > 0; }
+    bool by_tangent() { return is_stiff_ && n_until_trial_ > 0 && has_tangent(); }
     /// The factor at hand fits the element, as far as is known.
     bool is_kept() const { return is_kept_; }
     TreeTangent& tangent() { return *tangent_; }
@@ -32,7 +32,8 @@ public:
 
 private:
     std::optional<TreeTangent> tangent_;
-    bool serves_ = false, is_stiff_ = false, is_kept_ = false;
+    std::shared_ptr<const RowPattern> pattern_;
+    bool is_stiff_ = false, is_kept_ = false;
     double h_ = 0;
     int last_steps_ = 0, n_until_trial_ = 0, trial_after_ = 0, fresh_steps_ = 0;
 };

@@ -16,23 +16,19 @@ void TreeBlocks::resize(const std::vector<int>& sizes, int p)
     sizes_ = sizes;
     first_ = {0};
     for (const int size : sizes) first_.push_back(first_.back() + size * p);
-    place_.assign(sizes.size() * sizes.size(), -1);
     blocks_.clear();
 }
 
 void TreeBlocks::clear()
 {
-    for (Numbers& block : blocks_) std::ranges::fill(block, 0.0);
+    for (auto& [pair, block] : blocks_) std::ranges::fill(block, 0.0);
 }
 
 Numbers& TreeBlocks::of(int u, int v)
 {
-    int& place = place_[static_cast<std::size_t>(u) * sizes_.size() + static_cast<std::size_t>(v)];
-    if (place < 0) {
-        place = static_cast<int>(blocks_.size());
-        blocks_.emplace_back(static_cast<std::size_t>(size(u) * p_ * size(v) * p_), 0.0);
-    }
-    return blocks_[static_cast<std::size_t>(place)];
+    Numbers& block = blocks_[{u, v}];
+    if (block.empty()) block.assign(static_cast<std::size_t>(size(u) * p_ * size(v) * p_), 0.0);
+    return block;
 }
 
 TreeTangent::TreeTangent(const ModelTables& tables, const ElementRule& rule, int width)
@@ -56,21 +52,6 @@ bool TreeTangent::use(const std::shared_ptr<const RowPattern>& pattern)
     return true;
 }
 
-/// All that elimination will ask for, before anyone holds one.
-void TreeTangent::prepare_blocks()
-{
-    blocks_.clear();
-    for (const int b : plan_->order) {
-        const std::vector<int>& coupled = plan_->coupled[static_cast<std::size_t>(b)];
-        blocks_.of(b, b);
-        for (const int u : coupled) {
-            blocks_.of(b, u);
-            blocks_.of(u, b);
-            for (const int v : coupled) blocks_.of(u, v);
-        }
-    }
-}
-
 /// k_AB / h: scaled twists have the mass 1.
 void TreeTangent::add_mass(double h)
 {
@@ -81,7 +62,8 @@ void TreeTangent::add_mass(double h)
         for (int i = 0; i < d; ++i)
             for (int A = 0; A < p; ++A)
                 for (int l = 0; l < p; ++l)
-                    J[(i * p + A) * d * p + i * p + l] += rule_.k[A * rule_.size() + (l == 0 ? p : l)] / h;
+                    J[(i * p + A) * d * p + i * p + l] +=
+                        rule_.k[row_in_lane(rule_, A) * rule_.size() + (l == 0 ? p : l)] / h;
     }
 }
 
@@ -114,20 +96,18 @@ void TreeTangent::add_loops(const NodeGradients& gradients)
     for (std::size_t k = 0; k < plan_->closing.size(); ++k) {
         const JointRows& joint = plan_->closing[k];
         const int u = first_loop() + static_cast<int>(k), m = joint.n();
-        blocks_.of(u, u);
         for (int side = 0; side < 2; ++side) {
             const int b = joint.bodies[side];
             if (b == world) continue;
             const int d = blocks_.size(b);
-            blocks_.of(u, b);   // both first: one more may move the other
             Numbers &J = blocks_.of(b, u), &G = blocks_.of(u, b);
             for (int node = 0; node <= p; ++node) {
                 Numbers of(static_cast<std::size_t>(m * d));
                 gradients.of(joint, side, node, of.data());
                 for (int r = 0; r < m; ++r)
                     for (int i = 0; i < d; ++i) {
-                        if (node < p) J[(i * p + node) * m * p + r * p + node] = of[r * d + i];
                         const int lane = node % p;
+                        if (gradients.is_row(node)) J[(i * p + lane) * m * p + r * p + lane] = of[r * d + i];
                         if (node > 0) G[(r * p + lane) * d * p + i * p + lane] = of[r * d + i];
                     }
             }
@@ -205,8 +185,9 @@ bool TreeTangent::factorise_loops()
 bool TreeTangent::factorise(const WindowLayout& layout, const lanes::Values& start,
                             const lanes::Values& nodes)
 {
-    const NodeGradients gradients{tables_, *pattern_, start, nodes, width_, rule_.degree};
-    prepare_blocks();
+    const bool has_first_row = rule_.points == Points::lobatto;
+    const NodeGradients gradients{tables_, *pattern_, start, nodes, width_, rule_.degree, has_first_row};
+    blocks_.clear();
     add_mass(layout.h(0));
     add_loads(layout, nodes);
     add_loops(gradients);

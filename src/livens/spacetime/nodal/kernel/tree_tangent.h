@@ -3,8 +3,10 @@
 // tangent", Stiff loads).
 #pragma once
 
+#include <map>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "livens/spacetime/nodal/kernel/joint_motion.h"
@@ -18,7 +20,6 @@ public:
     /// `sizes`: numbers at a node; p nodes.
     void resize(const std::vector<int>& sizes, int p);
     void clear();
-    /// References hold until a block is made that was not there.
     Numbers& of(int u, int v);
     int size(int u) const { return sizes_[static_cast<std::size_t>(u)]; }
     /// Where its numbers begin, and those of the one behind the last.
@@ -27,8 +28,8 @@ public:
 
 private:
     int p_ = 0;
-    std::vector<int> sizes_, first_, place_;   ///< places of pairs; -1: none
-    std::vector<Numbers> blocks_;
+    std::vector<int> sizes_, first_;
+    std::map<std::pair<int, int>, Numbers> blocks_;
 };
 
 /// J = h^-1 K + h S dF/dX + C dF/dX' in scaled twists of all nodes of one element, on what the joints leave
@@ -55,7 +56,6 @@ private:
         std::vector<Numbers> E, W;
     };
 
-    void prepare_blocks();
     void add_mass(double h);
     void add_loads(const WindowLayout& layout, const lanes::Values& nodes);
     void add_loops(const NodeGradients& gradients);
