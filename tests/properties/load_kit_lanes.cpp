@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "livens/dynamics/lanes/load_lanes.h"
+#include "livens/dynamics/rows/tables.h"
 #include "livens/multibody/model.h"
 #include "livens/spacetime/instructions.h"
 #include "livens/spacetime/nodal/kernel/kernel_functions.h"

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// The steps of a LoadProgram on registers of lanes, one lane a load point: constants are set once, what time
+// alone decides once an element, the rest whenever bodies move (docs/theory.md, "Without a tangent", Loads in
+// lanes).
 #include "livens/dynamics/lanes/load_lanes.h"
 
 #include <algorithm>
 #include <cassert>
 
 #include "livens/dynamics/lanes/lane_loads.h"
+#include "livens/dynamics/lanes/load_program.h"
 #include "livens/multibody/model.h"
 
 namespace livens {
@@ -25,7 +29,7 @@ void take_point(const ModelTables& tables, const double* lanes, int width, int c
 
 }   // namespace
 
-LoadLanes::LoadLanes(const ModelTables& tables, Run run, int width, int n, LoadProgram::Which which)
+LoadLanes::LoadLanes(const ModelTables& tables, Run run, int width, int n, RecordedLoads which)
     : tables_(tables), program_(LoadProgram::of(tables, which)),
       run_(run != nullptr ? run : &lanes::run_loads<1>), width_(width), n_(n),
       registers_(static_cast<std::size_t>(program_->n_registers() * width), 0.0),
@@ -102,7 +106,7 @@ void LoadLanes::add_others(const double* X, const double* V, const double* facto
 }
 
 LoadsAtInstant::LoadsAtInstant(const ModelTables& tables)
-    : tables_(tables), lanes_(tables, nullptr, 1, 1, LoadProgram::Which::without_bends),
+    : tables_(tables), lanes_(tables, nullptr, 1, 1, RecordedLoads::without_bends),
       X_(12 * tables.bodies.size()), V_(X_), F_(X_)
 {}
 

@@ -7,9 +7,17 @@
 #include <vector>
 
 #include "livens/dynamics/lanes/aligned_doubles.h"
-#include "livens/dynamics/lanes/load_program.h"
+#include "livens/dynamics/lanes/lanes.h"
+#include "livens/time/time_mesh.h"
 
 namespace livens::inline dynamics_internal {
+
+struct ModelTables;
+class LoadProgram;
+
+/// Which loads are recorded. Where elements end because the law of one bends or jumps there, its last digits
+/// tell the side, and they are those of Load::forces.
+enum class RecordedLoads { all, without_bends };
 
 /// The registers of a model's LoadProgram, for one element after the other. Loads that are in no program are
 /// asked point by point.
@@ -19,8 +27,7 @@ public:
                          double* F);
 
     /// `run` is that of `width` lanes, of which n are load points; null: of one. The tables must outlive it.
-    LoadLanes(const ModelTables& tables, Run run, int width, int n,
-              LoadProgram::Which which = LoadProgram::Which::all);
+    LoadLanes(const ModelTables& tables, Run run, int width, int n, RecordedLoads which = RecordedLoads::all);
     LoadLanes(const LoadLanes&) = delete;
     LoadLanes& operator=(const LoadLanes&) = delete;
 

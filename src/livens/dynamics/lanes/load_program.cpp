@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// From tapes to steps: what no force hangs on is left out, arms are taken about centres of mass, and forces
+// on arms are gathered into the columns of F (docs/theory.md, "Without a tangent", Loads in lanes).
 #include "livens/dynamics/lanes/load_program.h"
 
 #include <algorithm>
@@ -67,7 +69,7 @@ void for_operands(const LoadTape& tape, const TapeStep& step, const Act& act)
 
 }   // namespace
 
-LoadProgram::LoadProgram(const ModelTables& tables, Which which)
+LoadProgram::LoadProgram(const ModelTables& tables, RecordedLoads which)
 {
     record(*tables.model, which);
     const std::vector<char> needed = find_needed(), known = find_known();
@@ -80,7 +82,7 @@ LoadProgram::LoadProgram(const ModelTables& tables, Which which)
     add_columns(tables);
 }
 
-void LoadProgram::record(const Model& model, Which which)
+void LoadProgram::record(const Model& model, RecordedLoads which)
 {
     int first_angle = 0;
     for (std::size_t l = 0; l < model.loads().size(); ++l) {
@@ -88,7 +90,7 @@ void LoadProgram::record(const Model& model, Which which)
         tape_.begin(load, first_angle);
         first_angle += static_cast<int>(load.angles.size());
         const bool bends = !load.guards.empty() || load.bends_at_centre;
-        if (load.forces.record && !(bends && which == Which::without_bends))
+        if (load.forces.record && !(bends && which == RecordedLoads::without_bends))
             load.forces.record(tape_, TapeNumber{&tape_});
         else
             others_.push_back(static_cast<int>(l));
@@ -130,8 +132,7 @@ void LoadProgram::add_arm(const ModelTables& tables, const TapeArm& arm, std::in
 {
     begin = static_cast<std::int32_t>(terms_.size());
     for (int a = 0; a < 4; ++a)
-        if (const double w = centred(tables, arm, a); w != 0)
-            terms_.push_back({12 * arm.body + 3 * a, w});
+        if (const double w = centred(tables, arm, a); w != 0) terms_.push_back({12 * arm.body + 3 * a, w});
     end = static_cast<std::int32_t>(terms_.size());
 }
 
@@ -183,10 +184,11 @@ void LoadProgram::add_columns(const ModelTables& tables)
         }
 }
 
-std::shared_ptr<const LoadProgram> LoadProgram::of(const ModelTables& tables, Which which)
+std::shared_ptr<const LoadProgram> LoadProgram::of(const ModelTables& tables, RecordedLoads which)
 {
     KnownPattern& all = *tables.known_pattern;
-    std::shared_ptr<const LoadProgram>& known = which == Which::all ? all.loads : all.loads_without_bends;
+    std::shared_ptr<const LoadProgram>& known =
+        which == RecordedLoads::all ? all.loads : all.loads_without_bends;
     if (known == nullptr) known = std::make_shared<LoadProgram>(tables, which);
     return known;
 }

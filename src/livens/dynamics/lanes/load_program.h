@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "livens/dynamics/lanes/lanes.h"
+#include "livens/dynamics/lanes/load_lanes.h"
 #include "livens/dynamics/rows/tables.h"
 #include "livens/multibody/loads/load_tape.h"
 
@@ -14,13 +14,10 @@ namespace livens::inline dynamics_internal {
 /// What is known of a model's loads before the numbers. Forces and places are about centres of mass.
 class LoadProgram {
 public:
-    /// Which loads are recorded. Where elements end because the law of one bends or jumps there, its last
-    /// digits tell the side, and they are those of Load::forces.
-    enum class Which { all, without_bends };
-    LoadProgram(const ModelTables& tables, Which which);
+    LoadProgram(const ModelTables& tables, RecordedLoads which);
 
     /// Of the model of these tables, which keep it.
-    static std::shared_ptr<const LoadProgram> of(const ModelTables& tables, Which which);
+    static std::shared_ptr<const LoadProgram> of(const ModelTables& tables, RecordedLoads which);
 
     const LoadTape& tape() const { return tape_; }
     /// Steps that time alone decides, for an element once; and those for whenever bodies move.
@@ -33,7 +30,7 @@ public:
     const std::vector<int>& others() const { return others_; }
 
 private:
-    void record(const Model& model, Which which);
+    void record(const Model& model, RecordedLoads which);
     std::vector<char> find_needed() const;
     std::vector<char> find_known() const;
     void add_arm(const ModelTables& tables, const TapeArm& arm, std::int32_t& begin, std::int32_t& end);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// A tape holds each operation once: what is recorded again is found by its kind and operands.
 #include "livens/multibody/loads/load_tape.h"
 
 #include <algorithm>

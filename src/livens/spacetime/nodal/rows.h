@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "livens/dynamics/rows/tables.h"
 #include "livens/spacetime/nodal/element_loads.h"
 
 namespace livens::inline dynamics_internal {

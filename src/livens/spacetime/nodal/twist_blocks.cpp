@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// N^T K N of loads and rows, and the maps of scaled twists on both sides (docs/theory.md, "The tangent").
 #include "livens/spacetime/nodal/twist_blocks.h"
 
 #include <algorithm>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// y = T y_parent + z theta at each node: with G_c y_c + G_p y_p = 0 and G_c^T = Q R, T = - Q R^-T G_p, and z
+// spans what is across Q (docs/theory.md, "Without a tangent", Stiff loads).
 #include "livens/spacetime/nodal/kernel/joint_motion.h"
 
 #include <algorithm>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Slopes of loads at the middle load point of an element by scaled twists, and what they are multiplied by in
+// time (docs/theory.md, "Without a tangent", Stiff loads).
 #include "livens/spacetime/nodal/kernel/load_slopes.h"
 
 #include <algorithm>

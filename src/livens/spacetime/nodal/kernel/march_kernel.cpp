@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "livens/dynamics/instant/instant.h"
+#include "livens/spacetime/nodal/kernel/tree_tangent.h"
 
 namespace livens {
 

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Steps of free bodies, or by slopes of loads: what an element took decides for the next ones, and the former
+// are tried again now and then (docs/theory.md, "Without a tangent", Stiff loads).
 #include "livens/spacetime/nodal/kernel/step_choice.h"
 
 #include <algorithm>
 #include <cmath>
+
+#include "livens/spacetime/nodal/kernel/tree_tangent.h"
 
 namespace livens {
 
@@ -18,13 +22,16 @@ constexpr double same_length = 0.03;   // of the motion of stiff loads a factor 
 StepChoice::StepChoice(const ModelTables& tables, const ElementRule& rule, const lanes::Functions* functions)
 {
     if (functions != nullptr && !tables.loads.with_tangent.empty())
-        tangent_.emplace(tables, rule, functions->width);
+        tangent_ = std::make_unique<TreeTangent>(tables, rule, functions->width);
 }
+
+StepChoice::~StepChoice() = default;
+
+bool StepChoice::has_tangent() { return tangent_ != nullptr && tangent_->use(pattern_); }
 
 void StepChoice::begin(const std::shared_ptr<const RowPattern>& pattern, const WindowLayout& layout)
 {
-    is_kept_ =
-        is_kept_ && pattern == pattern_ && std::abs(layout.h(0) - h_) <= same_length * std::abs(h_);
+    is_kept_ = is_kept_ && pattern == pattern_ && std::abs(layout.h(0) - h_) <= same_length * std::abs(h_);
     pattern_ = pattern;
 }
 

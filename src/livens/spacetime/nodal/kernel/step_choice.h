@@ -3,22 +3,25 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 
+#include "livens/dynamics/lanes/row_pattern.h"
 #include "livens/spacetime/nodal/kernel/kernel_functions.h"
-#include "livens/spacetime/nodal/kernel/tree_tangent.h"
+#include "livens/spacetime/nodal/window_layout.h"
 
 namespace livens::inline spacetime_internal {
+
+class TreeTangent;
 
 /// What earlier elements took.
 class StepChoice {
 public:
     StepChoice(const ModelTables& tables, const ElementRule& rule, const lanes::Functions* functions);
+    ~StepChoice();
 
     /// An element with these rows.
     void begin(const std::shared_ptr<const RowPattern>& pattern, const WindowLayout& layout);
     /// Whether there are loads with slopes, along joints that TreeTangent knows.
-    bool has_tangent() { return tangent_ && tangent_->use(pattern_); }
+    bool has_tangent();
     /// Such steps first: those of free bodies were many, or did not shrink.
     bool by_tangent() { return is_stiff_ && n_until_trial_ > 0 && has_tangent(); }
     /// The factor at hand fits the element, as far as is known.
@@ -31,7 +34,7 @@ public:
     int last_steps() const { return last_steps_; }
 
 private:
-    std::optional<TreeTangent> tangent_;
+    std::unique_ptr<TreeTangent> tangent_;
     std::shared_ptr<const RowPattern> pattern_;
     bool is_stiff_ = false, is_kept_ = false;
     double h_ = 0;

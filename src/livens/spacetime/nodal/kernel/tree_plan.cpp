@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// A spanning tree of the joints, and what eliminating bodies from its leaves on couples: loads between bodies
+// that no joint couples, and joints that close loops (docs/theory.md, "Without a tangent", Stiff loads).
 #include "livens/spacetime/nodal/kernel/tree_plan.h"
 
 #include <algorithm>
