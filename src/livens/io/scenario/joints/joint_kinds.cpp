@@ -126,40 +126,44 @@ std::vector<JointKind> kinds_of_one_axis()
 std::vector<JointKind> kinds_of_points_and_axes()
 {
     static const Key frames = frames_of_joint();
+    return {{{"universal", "turns about two perpendicular axes (4)", {at, points, axes, frames}},
+             Location::on_two_axes,
+             by_frame<universal>},
+            {{"constant_velocity",
+              "two shafts that turn equally, however they are bent (4)",
+              {at, points, axes, frames}},
+             Location::on_two_axes,
+             as_it_stands<constant_velocity>},
+            {{"spherical", "one common point (3)", {at, points}}, Location::at_point, by_frame<spherical>},
+            {{"point_on_line",
+              "a point of the second body on a line of the first (2)",
+              {at, line, points, frames, displacement, displacement_rate}},
+             Location::on_line,
+             by_frame<point_on_line>},
+            {{"point_in_plane",
+              "a point of the second body in a plane of the first (1)",
+              {at, line, points, frames}},
+             Location::on_line,
+             by_frame<point_in_plane>},
+            {{"parallel_axes",
+              "an axis of each that stay parallel (2)",
+              {free_axis, axes, frames, angle, angle_rate}},
+             Location::along_axis,
+             by_frame<parallel_axes>},
+            {{"perpendicular_axes", "an axis of each that stay perpendicular (1)", {at, axes, frames}},
+             Location::along_two_axes,
+             by_frame<perpendicular_axes>},
+            {{"constant_angle",
+              "an axis of each at a constant angle (1)",
+              {at, axes, frames,
+               Key{"angle", types::number, "Between the axes. Default: what it is at the start.", "rad"}}},
+             Location::along_two_axes,
+             make_constant_angle}};
+}
+
+std::vector<JointKind> kinds_of_curves_and_distances()
+{
     return {
-        {{"universal", "turns about two perpendicular axes (4)", {at, points, axes, frames}},
-         Location::on_two_axes,
-         by_frame<universal>},
-        {{"constant_velocity",
-          "two shafts that turn equally, however they are bent (4)",
-          {at, points, axes, frames}},
-         Location::on_two_axes,
-         as_it_stands<constant_velocity>},
-        {{"spherical", "one common point (3)", {at, points}}, Location::at_point, by_frame<spherical>},
-        {{"point_on_line",
-          "a point of the second body on a line of the first (2)",
-          {at, line, points, frames, displacement, displacement_rate}},
-         Location::on_line,
-         by_frame<point_on_line>},
-        {{"point_in_plane",
-          "a point of the second body in a plane of the first (1)",
-          {at, line, points, frames}},
-         Location::on_line,
-         by_frame<point_in_plane>},
-        {{"parallel_axes",
-          "an axis of each that stay parallel (2)",
-          {free_axis, axes, frames, angle, angle_rate}},
-         Location::along_axis,
-         by_frame<parallel_axes>},
-        {{"perpendicular_axes", "an axis of each that stay perpendicular (1)", {at, axes, frames}},
-         Location::along_two_axes,
-         by_frame<perpendicular_axes>},
-        {{"constant_angle",
-          "an axis of each at a constant angle (1)",
-          {at, axes, frames,
-           Key{"angle", types::number, "Between the axes. Default: what it is at the start.", "rad"}}},
-         Location::along_two_axes,
-         make_constant_angle},
         {{"slot",
           "a point of the second body on a curve of the first (2); for a straight one point_on_line, or "
           "point_in_plane where nothing has to hold it sideways",
@@ -212,7 +216,8 @@ const std::vector<JointKind>& joint_kinds()
 {
     static const std::vector<JointKind> all = [] {
         std::vector<JointKind> kinds = kinds_of_one_axis();
-        for (const std::vector<JointKind>& more : {kinds_of_points_and_axes(), kinds_of_coordinates()})
+        for (const std::vector<JointKind>& more :
+             {kinds_of_points_and_axes(), kinds_of_curves_and_distances(), kinds_of_coordinates()})
             kinds.insert(kinds.end(), more.begin(), more.end());
         return kinds;
     }();

@@ -174,13 +174,6 @@ void check_units(const Section& section, bool is_angle, const std::string& path)
         check_units(*table, is_angle, path + ".table");
 }
 
-const NamedCoordinate& coordinate_of(const LoadSources& p)
-{
-    const NamedCoordinate& coordinate = *find_coordinate(p.builder, p.section, p.path()).coordinate;
-    check_units(p.section, coordinate.coordinate.is_angle(), p.path());
-    return coordinate;
-}
-
 /// Straight lines bend where they meet, which happens when the motion is there.
 void warn_of_kinks(const LoadSources& p, const std::vector<double>& bends)
 {
@@ -208,6 +201,13 @@ SpringLaw read_law(const LoadSources& p)
 }
 
 }   // namespace
+
+const NamedCoordinate& coordinate_of(const LoadSources& p)
+{
+    const NamedCoordinate& coordinate = *find_coordinate(p.builder, p.section, p.path()).coordinate;
+    check_units(p.section, coordinate.coordinate.is_angle(), p.path());
+    return coordinate;
+}
 
 Vector3 point_of(const LoadSources& p) { return p.builder.in_axes(p.first, p.section.vector("point")); }
 

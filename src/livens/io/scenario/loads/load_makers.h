@@ -9,6 +9,8 @@ namespace livens::inline io_internal {
 
 /// `point`, in axes of the body.
 Vector3 point_of(const LoadSources& p);
+/// Of a load along a joint: what `joint` and `coordinate` say, with the units of a length or an angle.
+const NamedCoordinate& coordinate_of(const LoadSources& p);
 /// X of all bodies at the start.
 std::vector<Matrix34> places(const Builder& builder);
 
