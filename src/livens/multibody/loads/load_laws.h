@@ -9,6 +9,7 @@
 
 #include "livens/multibody/body.h"
 #include "livens/multibody/loads.h"
+#include "livens/time/expression.h"
 
 namespace [[gnu::visibility("default")]] livens {
 
@@ -34,6 +35,14 @@ struct LawOnTape {
     std::function<TapeNumber(std::size_t coordinate)> value, rate;
 };
 using RecordedLaw = std::function<void(const LawOnTape&, std::span<TapeNumber> factors)>;
+/// What symbol k of expressions reads: the value of a coordinate, or its rate.
+struct LawRead {
+    std::size_t coordinate;
+    bool is_rate;
+};
+/// One factor for each expression, 0 where `acts` is. `breaks`: see expression_of_time().
+RecordedLaw recorded_law(const std::vector<Expression>& expressions, const std::vector<LawRead>& reads,
+                         const std::vector<double>& breaks, const TimeFunction& acts);
 /// A number made of these: J, W.
 using LawEnergy = std::function<double(const LawArguments&)>;
 

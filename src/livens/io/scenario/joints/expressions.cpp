@@ -7,9 +7,7 @@
 
 #include <algorithm>
 
-#include "livens/base/elementary.h"
 #include "livens/io/scenario/joints/joints.h"
-#include "livens/multibody/loads/load_tape.h"
 
 namespace livens::inline io_internal {
 
@@ -196,82 +194,12 @@ LoadLaw law_of(const std::vector<Expression>& expressions, const Inputs& inputs,
     };
 }
 
-namespace {
-
-/// One operation of an expression on a tape, of operands that are there.
-TapeNumber recorded(const Expression::Step& step, const std::vector<TapeNumber>& known)
-{
-    using Operation = Expression::Operation;
-    const auto of = [&](int place) {
-        return place >= 0 ? known[static_cast<std::size_t>(place)] : TapeNumber{};
-    };
-    const TapeNumber a = of(step.first), b = of(step.second);
-    const auto applied = [&](LoadTape::Function function) { return function_of(function, a, a); };
-    switch (step.operation) {
-    case Operation::negative:
-        return -a;
-    case Operation::plus:
-        return a + b;
-    case Operation::minus:
-        return a - b;
-    case Operation::times:
-        return a * b;
-    case Operation::divided:
-        return a / b;
-    case Operation::power:
-        return function_of(&power, a, b);
-    case Operation::sine:
-        return applied([](double x, double) { return sine_cosine(x).sine; });
-    case Operation::cosine:
-        return applied([](double x, double) { return sine_cosine(x).cosine; });
-    case Operation::tangent:
-        return recorded({Operation::sine, step.first}, known) /
-               recorded({Operation::cosine, step.first}, known);
-    case Operation::hyperbolic_tangent:
-        return applied([](double x, double) { return hyperbolic_tangent(x); });
-    case Operation::exponential:
-        return applied([](double x, double) { return exponential(x); });
-    case Operation::logarithm:
-        return applied([](double x, double) { return logarithm(x); });
-    case Operation::root:
-        return root(a);
-    case Operation::absolute:
-        return made(TapeKind::absolute, a);
-    case Operation::arc_tangent:
-        return function_of(&arc_tangent, a, b);
-    case Operation::least:
-        return made(TapeKind::least, a, b.place);
-    case Operation::greatest:
-        return made(TapeKind::greatest, a, b.place);
-    default:
-        return {};
-    }
-}
-
-}   // namespace
-
 RecordedLaw recorded_law_of(const std::vector<Expression>& expressions, const Inputs& inputs,
                             const std::vector<double>& breaks, const TimeFunction& acts)
 {
-    const TimeFunction time([breaks](Instant at) { return TimeValue{beside_breaks(at, breaks), 1, 0}; }, {});
-    return [expressions, inputs, time, acts](const LawOnTape& at, std::span<TapeNumber> factors) {
-        for (std::size_t i = 0; i < expressions.size(); ++i) {
-            std::vector<TapeNumber> known;
-            for (const Expression::Step& step : expressions[i].steps()) {
-                if (step.operation == Expression::Operation::symbol) {
-                    const Inputs::Read& read = inputs.reads[static_cast<std::size_t>(step.first)];
-                    known.push_back((read.is_rate ? at.rate : at.value)(read.coordinate));
-                } else if (step.operation == Expression::Operation::number) {
-                    known.push_back(at.tape.number(step.number));
-                } else if (step.operation == Expression::Operation::time) {
-                    known.push_back(at.tape.of_time(time));
-                } else {
-                    known.push_back(recorded(step, known));
-                }
-            }
-            factors[i] = acts.is_constant() ? known.back() : chosen(at.tape.of_time(acts), known.back());
-        }
-    };
+    std::vector<LawRead> reads;
+    for (const Inputs::Read& read : inputs.reads) reads.push_back({read.coordinate, read.is_rate});
+    return recorded_law(expressions, reads, breaks, acts);
 }
 
 LawSteepness steepness_of(const std::vector<Expression>& expressions, const Inputs& inputs)
