@@ -83,7 +83,7 @@ struct TapeArm {
 
 /// What is recorded twice is evaluated once. Forces leave by pull(): F of a body is the sum of s v w^T over
 /// material vectors X w, its arms.
-class LoadTape {
+class LoadTape {   // named in a public header: what it does is still no library's
 public:
     using OfTime = std::function<Vector3(Instant)>;
     using Function = double (*)(double, double);
@@ -91,21 +91,21 @@ public:
 
     /// What follows is of this load: its bodies are meant by their places in it, its angles begin at number
     /// `first_angle` of the model's.
-    void begin(const Load& load, int first_angle);
+    [[gnu::visibility("hidden")]] void begin(const Load& load, int first_angle);
 
     TapeNumber number(double value) { return {this, add({TapeKind::number, -1, -1, -1, -1, value})}; }
-    TapeVector vector(const Vector3& value);
+    [[gnu::visibility("hidden")]] TapeVector vector(const Vector3& value);
     /// Asked once for each instant, however often forces are.
-    TapeNumber of_time(const TimeFunction& value);
-    TapeVector of_time(const TimeVector& value);
-    TapeVector arm(int side, const Vector4& w, bool is_rate = false);
+    [[gnu::visibility("hidden")]] TapeNumber of_time(const TimeFunction& value);
+    [[gnu::visibility("hidden")]] TapeVector of_time(const TimeVector& value);
+    [[gnu::visibility("hidden")]] TapeVector arm(int side, const Vector4& w, bool is_rate = false);
     /// An angle with its turns; `angle`: its place in Load::angles.
-    TapeNumber unwrapped(TapeNumber value, int angle);
+    [[gnu::visibility("hidden")]] TapeNumber unwrapped(TapeNumber value, int angle);
     /// What no list of operations says. The place of the first of n results.
-    TapeVector outer(Outer call, const std::vector<TapeNumber>& of, int n);
-    void pull(int side, const Vector4& w, TapeNumber s, TapeVector v);
+    [[gnu::visibility("hidden")]] TapeVector outer(Outer call, const std::vector<TapeNumber>& of, int n);
+    [[gnu::visibility("hidden")]] void pull(int side, const Vector4& w, TapeNumber s, TapeVector v);
     /// Any other step: the place of its value.
-    int add(TapeStep step);
+    [[gnu::visibility("hidden")]] int add(TapeStep step);
 
     const std::vector<TapeStep>& steps() const { return steps_; }
     const std::vector<TapeArm>& arms() const { return arms_; }
@@ -115,10 +115,10 @@ public:
     const std::vector<Outer>& calls() const { return calls_; }
     const std::vector<std::vector<int>>& inputs() const { return inputs_; }
     int size() const { return size_; }
-    int index_of(Function function);
+    [[gnu::visibility("hidden")]] int index_of(Function function);
 
 private:
-    int find_arm(int side, const Vector4& w);
+    [[gnu::visibility("hidden")]] int find_arm(int side, const Vector4& w);
 
     std::vector<TapeStep> steps_;
     std::map<std::tuple<TapeKind, int, int, int, double>, int> known_;   ///< places
