@@ -8,13 +8,12 @@ Counted by callgrind within solve() and estimate(). Exit status 1 where the larg
 77 without valgrind.
 """
 
-import os
 import pathlib
-import re
 import shutil
 import statistics
-import subprocess
 import sys
+
+import loads
 
 LARGEST, MEDIAN = 4, 3
 ROOT = pathlib.Path(__file__).resolve().parent.parent
@@ -22,13 +21,10 @@ EXAMPLES = ("four_bar", "furuta_pendulum", "slider_crank", "wheel_suspension")
 
 
 def count(program: str, path: pathlib.Path, *how: str) -> tuple[float, str]:
-    run = subprocess.run(["valgrind", "--tool=callgrind", "--callgrind-out-file=/dev/null", "--collect-atstart=no",
-                          "--toggle-collect=livens_counted_solve*", program, "scenario", str(path), *how],
-                         capture_output=True, text=True, env={"LIVENS_SIMD": "sse2", **os.environ})
-    found = re.search(r"Collected : (\d+)", run.stderr)
-    if run.returncode not in (0, 1) or not found:
-        sys.exit(f"{path}: {run.stderr}")
-    return float(found.group(1)), run.stdout.strip()
+    counted, told = loads.count_file(program, path, *how)
+    if counted != counted:   # nan
+        sys.exit(f"{path}: {told}")
+    return counted, told
 
 
 def main() -> int:

@@ -49,17 +49,22 @@ def chain(n: int, load: str, end: float, elements: int) -> str:
     return "\n".join(text) + "\n"
 
 
-def count(program: str, text: str, *more: str) -> tuple[float, str]:
+def count_file(program: str, path: pathlib.Path, *how: str) -> tuple[float, str]:
+    """Instructions of solving it, and what the program tells; nan, and why, where it is not solved."""
+    run = subprocess.run(["valgrind", "--tool=callgrind", "--callgrind-out-file=/dev/null", "--collect-atstart=no",
+                          "--toggle-collect=livens_counted_solve*", program, "scenario", str(path), *how],
+                         capture_output=True, text=True, env={"LIVENS_SIMD": "sse2", **os.environ})
+    found = re.search(r"Collected : (\d+)", run.stderr)
+    if run.returncode or not found:
+        return float("nan"), " ".join(line for line in run.stderr.splitlines() if not line.startswith("=="))
+    return float(found.group(1)), run.stdout.strip()
+
+
+def count(program: str, text: str, *how: str) -> tuple[float, str]:
     with tempfile.TemporaryDirectory() as folder:
         path = pathlib.Path(folder, "scenario.toml")
         path.write_text(text)
-        run = subprocess.run(["valgrind", "--tool=callgrind", "--callgrind-out-file=/dev/null", "--collect-atstart=no",
-                              "--toggle-collect=livens_counted_solve*", program, "scenario", str(path), *more],
-                             capture_output=True, text=True, env={"LIVENS_SIMD": "sse2", **os.environ})
-    if run.returncode:
-        return float("nan"), run.stderr.splitlines()[-1] if "==" not in run.stderr.splitlines()[0] else " ".join(
-            line for line in run.stderr.splitlines() if not line.startswith("=="))
-    return float(re.search(r"Collected : (\d+)", run.stderr).group(1)), run.stdout.strip()
+        return count_file(program, path, *how)
 
 
 def main() -> int:
