@@ -948,3 +948,24 @@ livens_mutant(NAME loops_are_open_in_the_tangent
               NEW [[;]]
               TESTS_OF unit_spacetime
               MUST_FAIL MarchKernel.StiffLoadsAreSolvedWithTheirSlopes)
+
+# Rows that follow functions of time, in lanes.
+livens_mutant(NAME drives_stand_still_in_lanes
+              FILE dynamics/lanes/row_forms.cpp
+              OLD [[factor({times[static_cast<std::size_t>(l)]}).value]]
+              NEW [[factor({times[0]}).value]]
+              TESTS_OF unit_spacetime
+              MUST_FAIL MarchKernel.AgreesWithNewtonOnRowsThatFollowFunctions)
+livens_mutant(NAME functions_keep_their_gradients_in_lanes
+              FILE dynamics/lanes/row_forms.cpp
+              OLD [[nodes.forms.weights[(row.first_coordinate() + k) * width + l] =]]
+              NEW [[nodes.forms.weights[row.first_coordinate() * width + l] =]]
+              TESTS_OF unit_spacetime
+              MUST_FAIL MarchKernel.AgreesWithNewtonOnRowsThatFollowFunctions)
+# Links that a heavy mass draws are stiff.
+livens_mutant(NAME forces_of_joints_have_no_slopes
+              FILE spacetime/nodal/kernel/joint_slopes.cpp
+              OLD [[if (tables_.bodies[b].dofs == 6) add_turning(b);]]
+              NEW [[if (tables_.bodies[b].dofs == 7) add_turning(b);]]
+              TESTS_OF unit_spacetime
+              MUST_FAIL MarchKernel.LinksThatAHeavyMassDrawsNeedNoNewton)

@@ -55,9 +55,9 @@ struct SmoothFunction {
         std::array<Point, most> hessian{};
     };
     std::function<Value(const Point& q)> at;
-    /// F(from + step) - F(from) along the straight way: angles turn on, also where their value at a point
-    /// begins again.
-    std::function<double(const Point& from, const Point& step)> change;
+    /// Derivatives at from + step, and for the value F(from + step) - F(from) along the straight way: angles
+    /// turn on, also where their value at a point begins again.
+    std::function<Value(const Point& from, const Point& step)> moved;
 };
 
 /// Where a smooth function of q is smooth piece by piece only, as a spline is.

@@ -133,16 +133,18 @@ double coupling_change(const std::vector<Term>& terms, const Point& q, const Poi
 
 // --- curves
 
-constexpr int n_samples = 256;
+constexpr int n_samples = 256, few = 16;
 
 /// A curve with samples from which nearest points are sought.
 struct SampledCurve : Curve {
     std::vector<Vector3> samples;   ///< at first + k step
+    double longest = 0;             ///< from one to the next
 
     explicit SampledCurve(const Curve& curve) : Curve(curve)
     {
         if (!without_normals) without_normals = at;
         for (int k = 0; k <= n_samples; ++k) samples.push_back(without_normals(first + k * step()).x);
+        for (int k = 0; k < n_samples; ++k) longest = std::max(longest, norm(samples[k + 1] - samples[k]));
         refuse_crossings();
     }
 
@@ -168,8 +170,19 @@ struct SampledCurve : Curve {
     double nearest(const Vector3& x) const
     {
         int best = 0;
-        for (int k = 1; k <= n_samples; ++k)
-            if (norm(x - samples[k]) < norm(x - samples[best])) best = k;
+        double least = norm(x - samples[0]);
+        const auto look = [&](int k) {
+            const double distance = norm(x - samples[k]);
+            if (distance < least || (distance == least && k < best)) best = k, least = distance;
+            return distance;
+        };
+        for (int k = few; k <= n_samples; k += few) look(k);
+        // none that is nearer lies between here and as many samples on as the longest way from one to the
+        // next goes into what this one is farther
+        for (int k = 1; k <= n_samples;) {
+            const double farther = (look(k) - least) / longest;   // no number: one on
+            k += farther > 1 ? 1 + static_cast<int>(std::min<double>(farther, n_samples)) : 1;
+        }
         return nearest(x, first + best * step());
     }
 
@@ -293,7 +306,13 @@ ConstraintRow coupling_row(const std::vector<CoupledCoordinate>& coupled, double
     const double period = 2 * std::numbers::pi * measure;
     return row_of(forms,
                   {[=](const Point& q) { return coupling_at(terms, constant, period, q); },
-                   [=](const Point& q, const Point& step) { return coupling_change(terms, q, step); }},
+                   [=](const Point& q, const Point& step) {
+                       Point there = q;
+                       for (std::size_t k = 0; k < there.size(); ++k) there[k] += step[k];
+                       Value moved = coupling_at(terms, 0, 0, there);
+                       moved.value = coupling_change(terms, q, step);
+                       return moved;
+                   }},
                   scale, label);
 }
 
@@ -312,13 +331,14 @@ std::vector<ConstraintRow> curve_rows(const Curve& curve, int body_i, int body_j
         const auto at = [sampled, k](const Point& q) {
             return across_curve(*sampled, k, place_of(q), sampled->nearest(place_of(q)));
         };
-        const auto change = [sampled, k](const Point& q, const Point& step) {
+        const auto moved = [sampled, k](const Point& q, const Point& step) {
             const Vector3 from = place_of(q), to = from + place_of(step);
             const double s = sampled->nearest(from);
-            return across_curve(*sampled, k, to, sampled->nearest(to, s)).value -
-                   across_curve(*sampled, k, from, s).value;
+            Value value = across_curve(*sampled, k, to, sampled->nearest(to, s));
+            value.value -= across_curve(*sampled, k, from, s).value;
+            return value;
         };
-        rows.push_back(row_of(place, {at, change}, scale, k == 0 ? "curve, normal 1" : "curve, normal 2"));
+        rows.push_back(row_of(place, {at, moved}, scale, k == 0 ? "curve, normal 1" : "curve, normal 2"));
     }
     if (!curve.knots.empty())
         rows[0].guard = {{curve.knots, curve.is_closed ? curve.last - curve.first : 0},

@@ -165,7 +165,7 @@ void check_drive(const Drive& drive, double scale, const std::string& path)
 /// Forms with bodies of their own, which need not be the joint's: gears turn about other joints.
 void check_coordinates(const ConstraintRow& row, const std::vector<Body>& bodies, const std::string& path)
 {
-    if (row.function ? row.coordinates.empty() || !row.function->at || !row.function->change
+    if (row.function ? row.coordinates.empty() || !row.function->at || !row.function->moved
                      : !row.coordinates.empty())
         refuse("joint-row", path, "a row needs coordinates and a function of them, or none of both");
     if (row.coordinates.size() > SmoothFunction::most)

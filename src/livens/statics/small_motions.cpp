@@ -205,7 +205,8 @@ PreparedState::PreparedState(const Model& model, const State& given, Side side, 
 PreparedState::PreparedState(const Model& model, const ConsistentStart& closed, Side side, bool by_basis)
     : tables(model, closed.independent)
 {
-    const bool is_sparse = !by_basis && tables.freedoms() > many_freedoms && JointFactor::serves(tables);
+    const bool is_sparse = !by_basis && tables.freedoms() > many_freedoms && JointFactor::serves(tables) &&
+                           tables.rows.are_quadratic();
     InstantSystem instant(tables, is_sparse);
     state.resize(tables);
     state.t = closed.start.t;

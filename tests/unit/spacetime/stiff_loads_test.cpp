@@ -2,6 +2,8 @@
 // Elements with stiff loads, and elements on Radau points, by the march kernel against Newton's iteration.
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "livens/multibody/joints.h"
 #include "livens/multibody/loads.h"
 #include "unit/spacetime/kernel_comparison.h"
@@ -67,6 +69,46 @@ TEST(MarchKernel, StiffLoadsAreSolvedWithTheirSlopes)
         EXPECT_LT(found[found.size() / 2], 5e-13);   // forces of 5e4 N a metre, of which digits are left
         EXPECT_LT(found.back(), 1e-11);
         EXPECT_LT(solved_with_stiff_loads(150, false, without), 75) << "negative control";
+    });
+}
+
+/// A heavy mass that hangs on light links and swings: what draws them stiffens them.
+Model heavy_on_light(Random& random)
+{
+    Model model({0, 0, -9.81});
+    const int n = 3 + static_cast<int>(1.5 * (1 + random.number()));
+    const double tilt = 0.5 * random.number();
+    const Vector3 along{std::sin(tilt), 0, -std::cos(tilt)};
+    const auto X = [&](int b) { return b == world ? world_configuration : model.bodies()[b].X; };
+    for (int b = 0; b < n; ++b) {
+        model.add_body(rigid_body("link " + std::to_string(b), with_mass(box(1, {0.1, 0.1, 0.3}), 1),
+                                  {(0.3 * b + 0.15) * along, random.rotation()}));
+        const JointFrame frame = joint_frame(X(b - 1), X(b), 0.3 * b * along, random.unit());
+        model.add_joint(random.number() > -0.5 ? spherical("ball " + std::to_string(b), b - 1, b, frame)
+                                               : revolute("hinge " + std::to_string(b), b - 1, b, frame));
+    }
+    model.add_body(point_mass("heavy", 1e5, 0.3 * n * along, {0, random.number(), 0}));
+    const JointFrame frame = joint_frame(X(n - 1), X(n), 0.3 * n * along, {1, 0, 0});
+    model.add_joint(spherical("hook", n - 1, n, frame));
+    return model;
+}
+
+TEST(MarchKernel, LinksThatAHeavyMassDrawsNeedNoNewton)
+{
+    with_all_instructions([] {
+        Random random(3);
+        int solved = 0, tried = 0;
+        std::vector<double> found;
+        while (tried < 60) {
+            const Model model = heavy_on_light(random);
+            const int degree = 3 + static_cast<int>(3 * (1 + random.number()));
+            const Comparison comparison = compare(model, degree, 0.0008 + 0.0004 * random.number());
+            tried += comparison.has_reference ? 1 : 0;
+            solved += comparison.is_solved ? 1 : 0;
+            if (comparison.is_solved) found.push_back(std::max(comparison.X, comparison.momentum / 1e5));
+        }
+        EXPECT_GT(solved, 45);
+        EXPECT_LT(*std::ranges::max_element(found), 1e-11);
     });
 }
 

@@ -72,7 +72,7 @@ InstantSystem::InstantSystem(const ModelTables& tables, bool sparse)
         z_.assign(n * static_cast<std::size_t>(tables.freedoms()), 0.0);
     }
     for (auto* v : {&a_, &b_}) v->assign(n, 0.0);
-    curvatures_.assign(static_cast<std::size_t>(tables.rank), 0.0);
+    row_rates_.assign(static_cast<std::size_t>(tables.rank), 0.0);
     for (auto* v : {&V_, &centripetal_, &raw_}) v->assign(12 * tables.bodies.size(), 0.0);
 }
 
@@ -115,7 +115,7 @@ void InstantSystem::hold(InstantState& state, const std::vector<int>& rows, cons
     if (is_sparse_) {
         if (pattern_ == nullptr || pattern_->chosen() != rows) pattern_ = pattern_of(tables_, rows);
         state.held.joints.use(pattern_);
-        state.held.smallest_pivot = state.held.joints.prepare(tables_, state.X.data(), near);
+        state.held.smallest_pivot = state.held.joints.prepare(tables_, {state.t}, state.X.data(), near);
         state.held.by_joints = state.held.smallest_pivot > JointFactor::well_held;
         if (state.held.by_joints) return;
     }
@@ -231,7 +231,9 @@ void InstantSystem::from_momentum(InstantState& state, const double* p, double w
     double* rest = b_.data();
     if (state.held.by_joints) {
         tables_.bodies.to_scaled_rows(state.maps.data(), p, y);
-        state.held.joints.project(y, nullptr, rest);
+        const bool is_driven = state.held.joints.rates({state.t}, row_rates_.data());
+        for (double& rate : row_rates_) rate = -rate;
+        state.held.joints.project(y, is_driven ? row_rates_.data() : nullptr, rest);
         std::copy(p, p + tables_.n_twists, state.p.begin());
         state.held.joints.add_wrenches(rest, -1, state.p.data());
         scatter(state, rest, weight, lambda);
@@ -311,8 +313,8 @@ void InstantSystem::respond(InstantState& state, const double* raw, double* acce
     tables_.bodies.to_scaled_rows(state.maps.data(), y, forces);
     if (state.held.by_joints) {
         std::swap(y, forces);
-        std::ranges::fill(curvatures_, 0.0);
-        state.held.joints.project(y, curvatures_.data(), forces);
+        std::ranges::fill(row_rates_, 0.0);
+        state.held.joints.project(y, row_rates_.data(), forces);
     } else {
         std::fill(y, y + tables_.rank, 0.0);
         solve(state, forces, y);
@@ -342,9 +344,10 @@ void InstantSystem::accelerate(InstantState& state, Side side)
     const int s = side == Side::right ? 1 : 0;
     if (state.held.by_joints) {
         std::swap(y, forces);
-        state.held.joints.curvatures(tables_, V_.data(), centripetal_.data(), curvatures_.data());
-        for (double& value : curvatures_) value = -value;
-        state.held.joints.project(y, curvatures_.data(), forces);
+        state.held.joints.curvatures(tables_, {state.t, side}, V_.data(), centripetal_.data(),
+                                     row_rates_.data());
+        for (double& value : row_rates_) value = -value;
+        state.held.joints.project(y, row_rates_.data(), forces);
     } else {
         particular(state, side, y);
         solve(state, forces, y);

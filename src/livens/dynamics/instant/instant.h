@@ -98,7 +98,7 @@ private:
     LoadsAtInstant loads_;
     Cholesky reduced_;        // Z^T M Z, used only where an inertia is singular
     std::vector<double> z_;   // null space, n x f; likewise
-    std::vector<double> a_, b_, V_, centripetal_, raw_, curvatures_;
+    std::vector<double> a_, b_, V_, centripetal_, raw_, row_rates_;
     bool is_sparse_;
     std::shared_ptr<const RowPattern> pattern_;   // of the last rows
     double pivot_at_choice_ = 0;

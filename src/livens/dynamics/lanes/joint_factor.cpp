@@ -44,9 +44,12 @@ void LaneStore::resize(const RowPattern& pattern, int width)
                                                {&v.step, p.n_twists},
                                                {&v.work, p.n_rows},
                                                {&v.pivots, 1},
-                                               {&v.loads, X},
-                                               {&v.load_X, X},
-                                               {&v.load_V, X}};
+                                               {&v.forms.values, p.forms.n_forms},
+                                               {&v.forms.weights, p.forms.n_forms},
+                                               {&v.forms.by_rows, p.forms.n_rows},
+                                               {&v.at_loads.F, X},
+                                               {&v.at_loads.X, X},
+                                               {&v.at_loads.V, X}};
     const auto room = [width](int size) { return static_cast<std::size_t>((size * width + 7) / 8 * 8); };
     std::size_t n = 0;
     for (const auto& [array, size] : arrays) n += room(size);
@@ -63,29 +66,30 @@ void LaneStore::resize(const RowPattern& pattern, int width)
         for (int l = 0; l < width; ++l) v.gradients[e * width + l] = p.gradients.entries.constants[e];
 }
 
-bool JointFactor::serves(const ModelTables& tables)
-{
-    return tables.bodies.are_regular() && std::all_of(tables.rows.begin(), tables.rows.end(),
-                                                      [](const auto& row) { return row.is_quadratic; });
-}
+bool JointFactor::serves(const ModelTables& tables) { return tables.bodies.are_regular(); }
 
 void JointFactor::use(std::shared_ptr<const RowPattern> pattern)
 {
     if (pattern == pattern_) return;
     pattern_ = std::move(pattern);
     store_.resize(*pattern_, 1);
-    work_.assign(static_cast<std::size_t>(pattern_->n_numbers()), 0.0);
+    // numbers, and two derivatives of forms
+    work_.assign(static_cast<std::size_t>(pattern_->n_numbers() + 2 * pattern_->forms().n_forms()), 0.0);
 }
 
-double JointFactor::prepare(const ModelTables& tables, const double* X, const NearFactor& near)
+double JointFactor::prepare(const ModelTables& tables, Instant at, const double* X, const NearFactor& near)
 {
     constexpr double rounding = 1e-16;   // of Phi: nothing to correct
     const lanes::Pattern& p = pattern_->view();
     const lanes::Values& v = values();
     to_centres(tables, X, v.numbers);
     lanes::form_products<1>(p, v, v, false);
+    for (int k = 0; k < p.forms.n_forms; ++k)
+        lanes::store(v.forms.values + k,
+                     p.forms.values.constants[k] + lanes::sum_of<1>(p.forms.values, k, v.numbers));
+    pattern_->forms().weigh_at(at, v);
     lanes::form_gradients<1>(p, v);
-    lanes::form_violations<1>(p, p.violations.constants, v.numbers, v.violations);
+    lanes::form_violations<1>(p, p.violations.constants, v.numbers, v);
     for (int r = 0; r < p.n_rows; ++r)
         if (std::abs(v.violations[r]) < rounding * tables.rows[pattern_->rows()[r]].row->scale)
             v.violations[r] = 0;
@@ -100,7 +104,7 @@ double JointFactor::prepare(const ModelTables& tables, const double* X, const Ne
     return pivot;
 }
 
-void JointFactor::project(double* y, const double* rates, double* mu)
+void JointFactor::project(double* y, const double* rates, double* mu) const
 {
     const lanes::Pattern& p = pattern_->view();
     const At<1, false> G{values().gradients, nullptr}, factor{values().factor, nullptr};
@@ -133,25 +137,40 @@ void JointFactor::add_wrenches(const double* mu, double factor, double* q)
     }
 }
 
-void JointFactor::curvatures(const ModelTables& tables, const double* V, const double* A, double* out)
+bool JointFactor::rates(Instant at, double* out) const
+{
+    const RowForms& forms = pattern_->forms();
+    if (forms.n_rows() == 0) return false;
+    std::fill_n(out, pattern_->view().n_rows, 0.0);
+    forms.add_rates(at, values(), out);
+    return true;
+}
+
+void JointFactor::curvatures(const ModelTables& tables, Instant at, const double* V, const double* A,
+                             double* out)
 {
     const lanes::Pattern& p = pattern_->view();
-    double *second = work_.data(), *rates = values().increments;
+    double *second = work_.data(), *first = values().increments;
     const double* x = values().numbers;
-    to_centres(tables, V, rates);
+    to_centres(tables, V, first);
     to_centres(tables, A, second);
     for (int m = 0; m < p.n_products; ++m) {
         const auto [i, j] = p.products[m];
-        double sum = 0;
-        for (int k = 0; k < 3; ++k)
-            sum += second[i + k] * x[j + k] + 2 * rates[i + k] * rates[j + k] + x[i + k] * second[j + k];
+        double sum = 0, rate = 0;
+        for (int k = 0; k < 3; ++k) {
+            sum += second[i + k] * x[j + k] + 2 * first[i + k] * first[j + k] + x[i + k] * second[j + k];
+            rate += first[i + k] * x[j + k] + x[i + k] * first[j + k];
+        }
+        first[12 * p.n_bodies + m] = rate;
         second[12 * p.n_bodies + m] = sum;
     }
-    for (int r = 0; r < p.n_rows; ++r) {
-        out[r] = 0;
-        for (int t = p.violations.begin[r]; t < p.violations.begin[r + 1]; ++t)
-            out[r] += p.violations.terms[t].factor * second[p.violations.terms[t].number];
+    for (int r = 0; r < p.n_rows; ++r) lanes::store(out + r, lanes::sum_of<1>(p.violations, r, second));
+    double *form_first = second + pattern_->n_numbers(), *form_second = form_first + p.forms.n_forms;
+    for (int k = 0; k < p.forms.n_forms; ++k) {
+        lanes::store(form_first + k, lanes::sum_of<1>(p.forms.values, k, first));
+        lanes::store(form_second + k, lanes::sum_of<1>(p.forms.values, k, second));
     }
+    pattern_->forms().add_curvatures(at, values(), form_first, form_second, out);
 }
 
 }   // namespace livens

@@ -23,6 +23,31 @@ void form_products(const Pattern& p, const Values& start, const Values& v, bool 
     }
 }
 
+/// The terms of a sum, without its constant.
+template <int W>
+LIVENS_INLINE Lanes<W> sum_of(const Sums& sums, int i, const double* numbers)
+{
+    Lanes<W> sum = all<W>(0);
+    for (int t = sums.begin[i]; t < sums.begin[i + 1]; ++t)
+        sum += sums.terms[t].factor * load<W>(numbers + sums.terms[t].number * W);
+    return sum;
+}
+
+/// What forms add to gradients, by their weights.
+template <int W>
+void add_weighted(const Pattern& p, const Values& v)
+{
+    const Sums& constant = p.gradients.entries;
+    for (int i = 0; i < p.forms.n_entries; ++i) {
+        const WeightedEntry& of = p.forms.entries[i];
+        double* g = v.gradients + of.entry * W;
+        const bool stays = of.is_first && constant.begin[of.entry] == constant.begin[of.entry + 1];
+        const Lanes<W> before = stays ? all<W>(constant.constants[of.entry]) : load<W>(g);
+        const Lanes<W> of_form = p.forms.gradients.constants[i] + sum_of<W>(p.forms.gradients, i, v.numbers);
+        store(g, before + load<W>(v.forms.weights + of.form * W) * of_form);
+    }
+}
+
 template <int W>
 void form_gradients(const Pattern& p, const Values& v)
 {
@@ -37,17 +62,28 @@ void form_gradients(const Pattern& p, const Values& v)
         if (p.gradients.entries.constants[e] != 0) g = p.gradients.entries.constants[e] + g;
         store(v.gradients + e * W, g);
     }
+    add_weighted<W>(p, v);
 }
 
 template <int W>
-void form_violations(const Pattern& p, const double* constants, const double* numbers, double* violations)
+void form_violations(const Pattern& p, const double* constants, const double* numbers, const Values& v)
 {
-    for (int r = 0; r < p.n_rows; ++r) {
-        Lanes<W> phi = all<W>(0);
-        for (int t = p.violations.begin[r]; t < p.violations.begin[r + 1]; ++t)
-            phi += p.violations.terms[t].factor * load<W>(numbers + p.violations.terms[t].number * W);
-        store(violations + r * W, constants[r] + phi);
+    for (int r = 0; r < p.n_rows; ++r)
+        store(v.violations + r * W, constants[r] + sum_of<W>(p.violations, r, numbers));
+    for (int i = 0; i < p.forms.n_rows; ++i) {
+        double* phi = v.violations + p.forms.rows[i] * W;
+        store(phi, load<W>(phi) + load<W>(v.forms.by_rows + i * W));
     }
+}
+
+/// How forms have changed; then their weights, and what they make of violations.
+template <int W>
+void weigh_forms(const Pattern& p, const Values& start, const Values& v)
+{
+    if (p.forms.n_rows == 0) return;
+    for (int k = 0; k < p.forms.n_forms; ++k)
+        store(v.forms.values + k * W, sum_of<W>(p.forms.values, k, v.increments));
+    p.forms.weigh(p.forms.caller, start, v, W);
 }
 
 template <int m, bool is_start, int W, bool rows>

@@ -86,6 +86,24 @@ struct FactorPattern {
     const double* constants;   ///< of each entry: products of units
 };
 
+/// A part of an entry of the gradients: the weight of a form times a sum.
+struct WeightedEntry {
+    std::int32_t entry, form;
+    bool is_first;   ///< of its entry
+};
+struct Values;
+/// Forms that rows have times weights, which are functions of time or of all forms of the row.
+struct FormPattern {
+    int n_forms, n_rows, n_entries;   ///< rows that have some
+    Sums values;                      ///< of each form
+    const WeightedEntry* entries;
+    Sums gradients;             ///< of each weighted entry, without its weight
+    const std::int32_t* rows;   ///< the place of each of n_rows
+    /// Weights of functions of forms, and how the rows change by forms, from how forms have changed.
+    void (*weigh)(const void* caller, const Values& start, const Values& nodes, int width);
+    const void* caller;
+};
+
 /// What is known before the numbers: the mechanism and which rows it has, in the order of their elimination.
 /// Of groups and blocks there is one more, behind the last.
 struct Pattern {
@@ -96,6 +114,7 @@ struct Pattern {
     GradientPattern gradients;
     FactorPattern factor;
     Sums violations;
+    FormPattern forms;
 };
 
 /// What a step of loads does; the kinds of multibody/loads/load_tape.h that are evaluated in lanes.
@@ -151,6 +170,18 @@ struct LoadProgram {
     void* caller;
 };
 
+/// Of weighted forms.
+struct FormValues {
+    double* values;    ///< with one lane; else how they have changed since the start
+    double* weights;   ///< of each
+    double* by_rows;   ///< of each row that has forms: the part of its violation
+};
+
+/// 12 numbers a body, lane c: load point c; kernel columns.
+struct LoadValues {
+    double *F, *X, *V;
+};
+
 /// Arrays of W lanes each; with W = 1 an instant.
 struct Values {
     double* numbers;      ///< 12 n_bodies + n_products
@@ -165,9 +196,8 @@ struct Values {
     double* step;         ///< n_twists
     double* work;         ///< n_rows
     double* pivots;       ///< one: the smallest pivot over its row's own square
-    double* loads;        ///< 12 a body, lane c: load point c; kernel columns
-    double* load_X;       ///< likewise
-    double* load_V;
+    FormValues forms;
+    LoadValues at_loads;
 };
 
 }   // namespace livens::lanes

@@ -30,6 +30,30 @@ std::vector<std::vector<int>> groups_of(const ModelTables& tables, const std::ve
     return groups;
 }
 
+/// Sums go over with products numbered as they come.
+struct NumberedProducts {
+    const RowSums& sums;
+    std::vector<lanes::Columns>& products;
+    std::vector<int> number;   // of those of `sums`
+    std::vector<lanes::Term> sum;
+
+    void move(const SumTable& from, int i, SumTable& to)
+    {
+        const int first = sums.first_product();
+        sum.assign(from.terms.begin() + from.begin[i], from.terms.begin() + from.begin[i + 1]);
+        for (lanes::Term& term : sum) {
+            if (term.number < first) continue;
+            const auto m = static_cast<std::size_t>(term.number - first);
+            if (number[m] < 0) {
+                number[m] = first + static_cast<int>(products.size());
+                products.push_back(sums.products[m]);
+            }
+            term.number = number[m];
+        }
+        to.add(from.constants[i], sum);
+    }
+};
+
 void sort_unique(std::vector<int>& numbers)
 {
     std::ranges::sort(numbers);
@@ -41,7 +65,6 @@ void sort_unique(std::vector<int>& numbers)
 RowPattern::RowPattern(const ModelTables& tables, const std::vector<int>& rows) : chosen_(rows)
 {
     RowSums sums(tables, rows);
-    bodies_ = std::move(sums.bodies);
     const Graph groups = groups_of(tables, rows);
     Graph twists(groups.size()), arranged;
     std::vector<int> sizes;
@@ -54,9 +77,14 @@ RowPattern::RowPattern(const ModelTables& tables, const std::vector<int>& rows) 
     }
     const std::vector<int> order = order_of_least_degree(twists, tables.n_twists, sizes);
     arrange(sums, groups, order, tables.n_twists);
+    bodies_ = std::move(sums.bodies);
     std::vector<int> at(static_cast<std::size_t>(tables.n_rows()));
     for (std::size_t i = 0; i < rows_.size(); ++i) at[rows_[i]] = static_cast<int>(i);
     for (const int row : chosen_) places_.push_back(at[row]);
+    std::vector<std::int32_t> of_forms;
+    for (const int r : sums.with_forms) of_forms.push_back(places_[static_cast<std::size_t>(r)]);
+    forms_ = std::move(sums.forms);
+    forms_.place(std::move(of_forms));
     for (const int g : order) arranged.push_back(std::move(twists[g]));
     factor_.add(arranged, tables.n_twists, groups_);
     view_ = {.n_bodies = tables.n_bodies(),
@@ -70,7 +98,16 @@ RowPattern::RowPattern(const ModelTables& tables, const std::vector<int>& rows) 
              .groups = groups_.data(),
              .gradients = gradients_.view(),
              .factor = factor_.view(),
-             .violations = violations_.view()};
+             .violations = violations_.view(),
+             .forms = {.n_forms = forms_.n_forms(),
+                       .n_rows = forms_.n_rows(),
+                       .n_entries = static_cast<int>(weighted_.size()),
+                       .values = form_values_.view(),
+                       .entries = weighted_.data(),
+                       .gradients = form_gradients_.view(),
+                       .rows = forms_.places(),
+                       .weigh = RowForms::weigh,
+                       .caller = &forms_}};
 }
 
 /// Groups in this order, a column for each twist that varies; products are numbered as they then come.
@@ -80,22 +117,10 @@ void RowPattern::arrange(const RowSums& sums, const Graph& groups, const std::ve
     std::vector<bool> varies(n_twists, false);   // some entry by this twist
     for (int e = 0; e < std::ssize(sums.twist); ++e)
         if (!sums.entries.is_constant(e)) varies[sums.twist[e]] = true;
-    const int first_product = 12 * static_cast<int>(bodies_.size());
-    std::vector<int> number(sums.products.size(), -1), twists;
-    std::vector<lanes::Term> sum;
-    const auto move = [&](const SumTable& from, int i, SumTable& to) {
-        sum.assign(from.terms.begin() + from.begin[i], from.terms.begin() + from.begin[i + 1]);
-        for (lanes::Term& term : sum) {
-            if (term.number < first_product) continue;
-            const auto m = static_cast<std::size_t>(term.number - first_product);
-            if (number[m] < 0) {
-                number[m] = first_product + static_cast<int>(products_.size());
-                products_.push_back(sums.products[m]);
-            }
-            term.number = number[m];
-        }
-        to.add(from.constants[i], sum);
-    };
+    for (const lanes::WeightedEntry& of : sums.weighted) varies[sums.twist[of.entry]] = true;
+    std::vector<int> moved(sums.twist.size(), -1);   // entries
+    std::vector<int> twists;
+    NumberedProducts numbered{sums, products_, std::vector<int>(sums.products.size(), -1), {}};
     for (const int g : order) {
         groups_.push_back({static_cast<int>(rows_.size()), static_cast<int>(groups[g].size()),
                            static_cast<int>(gradients_.columns.size()), 0, 0});
@@ -108,7 +133,7 @@ void RowPattern::arrange(const RowSums& sums, const Graph& groups, const std::ve
                 else
                     gradients_.units.push_back({sums.entries.constants[e], sums.twist[e]});
             gradients_.unit_begin.push_back(static_cast<int>(gradients_.units.size()));
-            move(sums.violations, r, violations_);
+            numbered.move(sums.violations, r, violations_);
         }
         sort_unique(twists);
         for (const int twist : twists) {
@@ -119,11 +144,21 @@ void RowPattern::arrange(const RowSums& sums, const Graph& groups, const std::ve
                 const auto found = std::find(first, last, twist);
                 if (found == last)
                     gradients_.entries.add(0, {});
-                else
-                    move(sums.entries, static_cast<int>(found - sums.twist.begin()), gradients_.entries);
+                else {
+                    const auto e = found - sums.twist.begin();
+                    moved[static_cast<std::size_t>(e)] =
+                        static_cast<int>(gradients_.entries.constants.size());
+                    numbered.move(sums.entries, static_cast<int>(e), gradients_.entries);
+                }
             }
         }
     }
+    for (std::size_t i = 0; i < sums.weighted.size(); ++i) {
+        weighted_.push_back(sums.weighted[i]);
+        weighted_.back().entry = moved[static_cast<std::size_t>(sums.weighted[i].entry)];
+        numbered.move(sums.form_gradients, static_cast<int>(i), form_gradients_);
+    }
+    for (int k = 0; k < sums.forms.n_forms(); ++k) numbered.move(sums.form_values, k, form_values_);
     groups_.push_back({static_cast<int>(rows_.size()), 0, static_cast<int>(gradients_.columns.size()), 0, 0});
 }
 

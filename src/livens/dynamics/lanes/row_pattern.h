@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "livens/dynamics/lanes/lanes.h"
+#include "livens/dynamics/lanes/row_forms.h"
 
 namespace livens::inline dynamics_internal {
 
@@ -67,7 +68,7 @@ private:
 /// degree, so that trees have no fill and loops little.
 class RowPattern {
 public:
-    /// `rows`: of the tables; all quadratic.
+    /// `rows`: of the tables.
     RowPattern(const ModelTables& tables, const std::vector<int>& rows);
     RowPattern(const RowPattern&) = delete;
     RowPattern& operator=(const RowPattern&) = delete;
@@ -81,6 +82,7 @@ public:
     const std::vector<int>& places() const { return places_; }
     int n_factor() const { return factor_.size(); }
     int n_numbers() const { return view_.n_bodies * 12 + view_.n_products; }
+    const RowForms& forms() const { return forms_; }
 
 private:
     void arrange(const RowSums& sums, const std::vector<std::vector<int>>& groups,
@@ -91,7 +93,9 @@ private:
     std::vector<lanes::Group> groups_;
     GradientTables gradients_;
     FactorTables factor_{gradients_};
-    SumTable violations_;
+    SumTable violations_, form_values_, form_gradients_;
+    RowForms forms_;
+    std::vector<lanes::WeightedEntry> weighted_;
     std::vector<int> chosen_, rows_, places_;
     lanes::Pattern view_{};
 };

@@ -37,7 +37,7 @@ void SumTable::add(double constant, std::span<const lanes::Term> sum)
 }
 
 /// 1/2 sum K_pq x_p . x_q + sum B_p . x_p + c over the columns p of both sides, four a side, the first of
-/// them the centre of mass.
+/// them the centre of mass. Where body i is the world there is one side.
 class CentredForm {
 public:
     static constexpr int size = 8;
@@ -46,15 +46,23 @@ public:
     bool has_B[size] = {}, has_K[size] = {};   // a joint's row knows few columns
     int n = 0;
 
-    CentredForm(const ModelTables& tables, const RowTable& row) : c(row.row->c), n(4 * row.n_sides)
+    CentredForm(const ModelTables& tables, const QuadraticForm& form, int body_i, int body_j)
+        : c(form.c), n(body_i == world ? 4 : 8)
     {
-        for (int p = 0; p < n; ++p) {
-            place[p] = 12 * row.bodies[p / 4] + 3 * (p % 4);
-            for (int i = 0; i < 3; ++i) B[p][i] = row.B[p / 4](i, p % 4);
-            for (int q = 0; q < n; ++q) K[p][q] = row.K[p / 4][q / 4](p % 4, q % 4);
+        const int bodies[2] = {body_i == world ? body_j : body_i, body_j}, j = n - 4;
+        for (int a = 0; a < 4; ++a) {
+            for (int i = 0; j > 0 && i < 3; ++i) B[a][i] = form.b_i(i, a);
+            for (int i = 0; i < 3; ++i) B[j + a][i] = form.b_j(i, a);
+            for (int b = 0; b < 4; ++b) {
+                if (j > 0) K[a][b] = form.c_ii(a, b);
+                if (j > 0) K[a][j + b] = form.c_ij(a, b);
+                if (j > 0) K[j + b][a] = form.c_ij(a, b);
+                K[j + a][j + b] = form.c_jj(a, b);
+            }
         }
+        for (int p = 0; p < n; ++p) place[p] = 12 * bodies[p / 4] + 3 * (p % 4);
         for (int side = 0; side < n; side += 4) {   // x_0 is the reference point no more
-            const double* center = tables.bodies[row.bodies[side / 4]].center;
+            const double* center = tables.bodies[bodies[side / 4]].center;
             for (int a = 0; a < 3; ++a) {
                 const double shift = center[a];
                 if (shift == 0) continue;
@@ -75,12 +83,47 @@ RowSums::RowSums(const ModelTables& tables, const std::vector<int>& rows)
 {
     for (int b = 0; b < tables.n_bodies(); ++b) add_body(tables, b);
     LinearSum room;
-    for (const int row : rows) {
-        const CentredForm form(tables, tables.rows[row]);
-        for (int side = 0; side < form.n; side += 4) add_gradient(form, side, room);
+    for (std::size_t r = 0; r < rows.size(); ++r) {
+        const ConstraintRow& row = *tables.rows[rows[r]].row;
+        const CentredForm form(tables, row, row.body_i, row.body_j);
+        const int first_entry = static_cast<int>(twist.size());
+        for (int side = 0; side < form.n; side += 4)
+            add_gradient(form, side, room, [&](int of) {
+                entries.add(room.constant, room.terms);
+                twist.push_back(of);
+            });
+        add_value(form, room, violations);
+        for (const Drive& drive : row.drives)
+            add_form({tables, drive.form, row.body_i, row.body_j}, first_entry, room);
+        for (const PairForm& q : row.coordinates)
+            add_form({tables, q, q.body_i, q.body_j}, first_entry, room);
         begin.push_back(static_cast<int>(twist.size()));
-        add_violation(form, room);
+        if (row.is_quadratic()) continue;
+        forms.add(row);
+        with_forms.push_back(static_cast<int>(r));
     }
+}
+
+/// One more form with a weight; the row's entries begin at `first_entry`.
+void RowSums::add_form(const CentredForm& form, int first_entry, LinearSum& room)
+{
+    const int number = static_cast<int>(form_values.constants.size());
+    for (int side = 0; side < form.n; side += 4)
+        add_gradient(form, side, room, [&](int of) {
+            const auto found = std::find(twist.begin() + first_entry, twist.end(), of);
+            const int entry = static_cast<int>(found - twist.begin());
+            if (found == twist.end()) {
+                entries.add(0, {});
+                twist.push_back(of);
+            }
+            bool is_first = true;
+            for (auto other = weighted.rbegin(); other != weighted.rend() && other->entry >= first_entry;
+                 ++other)
+                is_first = is_first && other->entry != entry;
+            weighted.push_back({entry, number, is_first});
+            form_gradients.add(room.constant, room.terms);
+        });
+    add_value(form, room, form_values);
 }
 
 void RowSums::add_body(const ModelTables& tables, int b)
@@ -139,15 +182,14 @@ void RowSums::add_moment(const CentredForm& form, int at, int p, double factor, 
 }
 
 /// A side's gradient by scaled twists: g_0 / sqrt(M), and L^-1 t with the torque in body axes
-/// t_a = d_c . g_b - d_b . g_c.
-void RowSums::add_gradient(const CentredForm& form, int side, LinearSum& sum)
+/// t_a = d_c . g_b - d_b . g_c. take(twist) of what is not zero, in `sum`.
+template <class Take>
+void RowSums::add_gradient(const CentredForm& form, int side, LinearSum& sum, const Take& take)
 {
     const auto add_entry = [&](int of) {
         const bool has_terms =
             std::ranges::any_of(sum.terms, [](const auto& term) { return term.factor != 0; });
-        if (!has_terms && sum.constant == 0) return;
-        entries.add(sum.constant, sum.terms);
-        twist.push_back(of);
+        if (has_terms || sum.constant != 0) take(of);
     };
     const lanes::Body& body = bodies[form.place[side] / 12];
     for (int i = 0; i < 3; ++i) {
@@ -169,7 +211,7 @@ void RowSums::add_gradient(const CentredForm& form, int side, LinearSum& sum)
     }
 }
 
-void RowSums::add_violation(const CentredForm& form, LinearSum& phi)
+void RowSums::add_value(const CentredForm& form, LinearSum& phi, SumTable& to)
 {
     phi.clear(form.c);
     for (int p = 0; p < form.n; ++p) {
@@ -183,7 +225,7 @@ void RowSums::add_violation(const CentredForm& form, LinearSum& phi)
                 phi.add(product(form.place[p], form.place[q]), k);
         }
     }
-    violations.add(phi.constant, phi.terms);
+    to.add(phi.constant, phi.terms);
 }
 
 }   // namespace livens::inline dynamics_internal

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "livens/dynamics/lanes/row_forms.h"
 #include "livens/dynamics/lanes/row_pattern.h"
 #include "livens/dynamics/rows/tables.h"
 
@@ -13,7 +14,8 @@ namespace livens::inline dynamics_internal {
 class CentredForm;
 struct LinearSum;
 
-/// Gradients and violations of rows, in the order in which they are given; all quadratic.
+/// Gradients and violations of rows, in the order in which they are given. Of what is not one quadratic form
+/// the weighted forms stand apart.
 class RowSums {
 public:
     RowSums(const ModelTables& tables, const std::vector<int>& rows);
@@ -25,13 +27,19 @@ public:
     std::vector<std::int32_t> begin{0};     ///< of each row among the entries
     std::vector<std::int32_t> twist;        ///< of each entry
     SumTable entries, violations;
+    RowForms forms;
+    std::vector<int> with_forms;            ///< places among the rows
+    SumTable form_values, form_gradients;   ///< of forms, and of weighted entries
+    std::vector<lanes::WeightedEntry> weighted;
 
 private:
     void add_body(const ModelTables& tables, int body);
     int product(int x, int y);
     void add_moment(const CentredForm& form, int at, int p, double factor, LinearSum& sum);
-    void add_gradient(const CentredForm& form, int side, LinearSum& sum);
-    void add_violation(const CentredForm& form, LinearSum& phi);
+    template <class Take>
+    void add_gradient(const CentredForm& form, int side, LinearSum& sum, const Take& take);
+    void add_value(const CentredForm& form, LinearSum& phi, SumTable& to);
+    void add_form(const CentredForm& form, int first_entry, LinearSum& room);
 };
 
 }   // namespace livens::inline dynamics_internal

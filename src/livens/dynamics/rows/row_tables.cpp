@@ -76,6 +76,8 @@ RowTables::RowTables(const Model& model, bool with_rigidity)
     for (const ConstraintRow& row : rigidity_) tables_.push_back(row_table(row));
 }
 
+bool RowTables::are_quadratic() const { return std::ranges::all_of(tables_, &RowTable::is_quadratic); }
+
 void RowTables::gradient(int r, Instant at, const double* X, double* g) const
 {
     const RowTable& t = tables_[r];

@@ -40,6 +40,7 @@ public:
     const RowTable& operator[](std::size_t row) const { return tables_[row]; }
     auto begin() const { return tables_.begin(); }
     auto end() const { return tables_.end(); }
+    bool are_quadratic() const;
 
     /// Gradients of row r by X of its sides, 12 numbers each, one after the other. Only the columns that the
     /// row touches (RowTable::columns) are written, and only they may be read.

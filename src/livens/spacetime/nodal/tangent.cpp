@@ -8,10 +8,10 @@
 #include <cmath>
 
 #include "livens/dynamics/rows/twist.h"
+#include "livens/dynamics/rows/twist_blocks.h"
 #include "livens/solvers/patience.h"
 #include "livens/spacetime/nodal/nodes.h"
 #include "livens/spacetime/nodal/rows.h"
-#include "livens/spacetime/nodal/twist_blocks.h"
 
 namespace livens {
 

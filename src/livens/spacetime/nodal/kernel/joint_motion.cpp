@@ -72,9 +72,9 @@ bool motion_of(const double* own, int m, int d, const double* above, int n, doub
 
 }   // namespace
 
-void NodeGradients::of(const JointRows& joint, int side, int node, double* G) const
+void NodeGradients::of(const JointRows& joint, int b, int node, double* G) const
 {
-    const BodyTable& body = tables.bodies[joint.bodies[side]];
+    const BodyTable& body = tables.bodies[b];
     const lanes::Pattern& all = pattern.view();
     std::fill_n(G, joint.n() * body.dofs, 0.0);
     for (int i = 0; i < joint.n(); ++i) {
@@ -106,11 +106,10 @@ bool NodeGradients::find(int b, const TreePlan& plan, JointMotion& motion) const
     for (Numbers* z : {&motion.z_rows, &motion.z_columns})
         z->resize(static_cast<std::size_t>(d * motion.f * p));
     for (Numbers* T : {&motion.T_rows, &motion.T_columns}) T->resize(static_cast<std::size_t>(d * n * p));
-    const int side = joint.bodies[1] == b ? 1 : 0;
     for (int node = 0; node <= p; ++node) {
         double own[36], over[36], z[36], T[36];
-        if (m > 0) of(joint, side, node, own);
-        if (m > 0 && above != world) of(joint, 1 - side, node, over);
+        if (m > 0) of(joint, b, node, own);
+        if (m > 0 && above != world) of(joint, above, node, over);
         if (!motion_of(own, m, d, over, n, z, T)) return false;
         const auto put = [&](Numbers& to, const double* from, int size, int lane) {
             for (int i = 0; i < size; ++i) to[i * p + lane] = from[i];

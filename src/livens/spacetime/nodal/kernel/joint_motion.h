@@ -25,7 +25,7 @@ struct NodeGradients {
 
     bool is_row(int node) const { return has_first_row ? node < p : node > 0; }
     /// Of the rows of a joint by the twists of one of its bodies, row by row.
-    void of(const JointRows& joint, int side, int node, double* G) const;
+    void of(const JointRows& joint, int b, int node, double* G) const;
     /// How body b moves by what holds it on its parent. False: its rows hang together.
     bool find(int b, const TreePlan& plan, JointMotion& motion) const;
 };

@@ -91,6 +91,8 @@ void KernelRule::find_start_rates(const InstantState& start)
 
 void KernelRule::use(const WindowLayout& layout, const InstantState& start, int last_steps)
 {
+    times_.clear();
+    for (int l = 0; l < rule_.degree; ++l) times_.push_back(layout.time(rule_, node_of(l)));
     const bool is_shared = lanes_.share != nullptr;
     lanes_.momentum = is_shared ? no_momentum_.data() : start.momentum.data();
     if (is_shared) find_start_rates(start);

@@ -27,6 +27,8 @@ public:
     /// axes where these may save some.
     void use(const WindowLayout& layout, const InstantState& start, int last_steps);
     const lanes::Rule& in_lanes() const { return lanes_; }
+    /// Of nodes, in the order of their lanes.
+    const std::vector<double>& times() const { return times_; }
 
 private:
     void scale(double h);
@@ -39,6 +41,7 @@ private:
     const ElementRule& rule_;
     int width_;
     AlignedDoubles numbers_;   // of length 1, then of length h
+    std::vector<double> times_;
     std::vector<double> start_rates_, no_momentum_;   // radau
     lanes::Rule lanes_{};
     double h_ = 0;

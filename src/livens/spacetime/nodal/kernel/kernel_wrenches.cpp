@@ -27,7 +27,7 @@ void KernelWrenches::begin(const WindowLayout& layout)
 void KernelWrenches::evaluate_loads(const WindowLayout& layout, const lanes::Values& nodes,
                                     const lanes::Rule& rule)
 {
-    loads_->evaluate(nodes.load_X, nodes.load_V, rule.load_weights, layout.angles, nodes.loads);
+    loads_->evaluate(nodes.at_loads.X, nodes.at_loads.V, rule.load_weights, layout.angles, nodes.at_loads.F);
 }
 
 void KernelWrenches::momentum(const WindowLayout& layout, const InstantState& start,
@@ -40,8 +40,8 @@ void KernelWrenches::momentum(const WindowLayout& layout, const InstantState& st
         for (int c = 0; loads_ && c < rule_.degree; ++c) {
             double X[12], F[12], wrench[6];
             for (int i = 0; i < 12; ++i) {
-                X[i] = nodes.load_X[(12 * b + i) * W + c];
-                F[i] = nodes.loads[(12 * b + i) * W + c];
+                X[i] = nodes.at_loads.X[(12 * b + i) * W + c];
+                F[i] = nodes.at_loads.F[(12 * b + i) * W + c];
             }
             twist::rows(X, F, wrench);
             for (int i = 0; i < 6; ++i) of_loads[i] += wrench[i];

@@ -24,7 +24,7 @@ public:
 
     /// An element, whose load points are new.
     void begin(const WindowLayout& layout);
-    /// Of loads at their points, where X and X' were interpolated, into nodes.loads.
+    /// Of loads at their points, where X and X' were interpolated, into nodes.at_loads.F.
     void evaluate_loads(const WindowLayout& layout, const lanes::Values& nodes, const lanes::Rule& rule);
     /// Room for those that multipliers take.
     double* taken() { return taken_.data(); }

@@ -15,8 +15,9 @@ void configure(const Pattern& p, const Values& start, const Values& v)
 {
     place_numbers<W>(p, start, v);
     form_products<W>(p, start, v, true);
+    weigh_forms<W>(p, start, v);
     form_gradients<W>(p, v);
-    form_violations<W>(p, start.violations, v.increments, v.violations);
+    form_violations<W>(p, start.violations, v.increments, v);
 }
 
 template <int W>
@@ -24,8 +25,8 @@ void interpolate(const Pattern& p, const Values& start, const Values& v, const R
 {
     for (int b = 0; b < p.n_bodies; ++b)
         for (int i = 12 * b; p.bodies[b].loaded && i < 12 * b + (p.bodies[b].dofs == 6 ? 12 : 3); ++i) {
-            store(v.load_X + i * W, start.numbers[i] + times<W>(v.increments + i * W, rule.M));
-            store(v.load_V + i * W, times<W>(v.increments + i * W, rule.dM));
+            store(v.at_loads.X + i * W, start.numbers[i] + times<W>(v.increments + i * W, rule.M));
+            store(v.at_loads.V + i * W, times<W>(v.increments + i * W, rule.dM));
         }
 }
 
@@ -82,7 +83,7 @@ void form_rows(const Pattern& p, const Values& start, const Values& v, const Rul
     const At<W, true> numbers{v.numbers, start.numbers};
     for (int b = 0; b < p.n_bodies; ++b) {
         const Body& body = p.bodies[b];
-        const double *dX = v.increments + 12 * b * W, *loads = v.loads + 12 * b * W,
+        const double *dX = v.increments + 12 * b * W, *loads = v.at_loads.F + 12 * b * W,
                      *momentum = rule.momentum + body.first;
         Lanes<W> y[6];
         for (int i = 0; i < 3; ++i) {

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "livens/dynamics/rows/twist_blocks.h"
 #include "livens/multibody/model.h"
-#include "livens/spacetime/nodal/twist_blocks.h"
 
 namespace livens {
 
@@ -35,8 +35,8 @@ void LoadSlopes::place(const lanes::Values& nodes)
         const BodyTable& body = tables_.bodies[b];
         double *X = X_.data() + 12 * b, *V = V_.data() + 12 * b;
         for (int i = 0; i < 12; ++i) {
-            X[i] = nodes.load_X[(12 * b + i) * width_ + middle_];
-            V[i] = nodes.load_V[(12 * b + i) * width_ + middle_];
+            X[i] = nodes.at_loads.X[(12 * b + i) * width_ + middle_];
+            V[i] = nodes.at_loads.V[(12 * b + i) * width_ + middle_];
         }
         for (int i = 0; body.offset && i < 3; ++i)
             for (int a = 0; a < 3; ++a) {

@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "livens/dynamics/instant/instant.h"
-#include "livens/spacetime/nodal/kernel/tree_tangent.h"
+#include "livens/spacetime/nodal/kernel/kernel_tangent.h"
 
 namespace livens {
 
@@ -21,7 +21,7 @@ constexpr double hopeless_step = 10;      // lengths or radians
 constexpr double smallest_step = 1e-18;   // likewise: nothing moves
 // Of the motion: what steps that shrink no more may be; also by the smallest squared pivot, and at most.
 constexpr double least_rounding = 1e-14, rounding_by_pivot = 4e-16, most_rounding = 1e-13;
-constexpr double rows_rounding = 4e-16;   // of the largest terms: as Newton's iteration has it
+constexpr double rows_rounding = 4e-16;    // of the largest terms: as Newton's iteration has it
 constexpr double fits_on_the_way = 1e-2;   // times the smallest pivot: motion at which a factor is still good
 constexpr double fits_at_end = 1e-4;       // for multipliers, whose last change it takes with this error
 constexpr double fits_for_next = 1e-8;     // NearFactor
@@ -157,8 +157,7 @@ bool MarchKernel::propose(const WindowLayout& layout, Steps kind)
     const lanes::Pattern& pattern = pattern_->view();
     if (kind == Steps::by_tangent) {
         if (!choice_.is_kept()) {
-            const bool is_good =
-                choice_.tangent().factorise(layout, start_->values(), nodes_.values());
+            const bool is_good = choice_.tangent().factorise(layout, *start_, nodes_.values());
             choice_.factorised(is_good, layout.h(0));
             if (!is_good) return false;
         }
@@ -202,7 +201,7 @@ bool MarchKernel::iterate(const WindowLayout& layout, const InstantState& start,
         if (steps == most) return false;
         if (!propose(layout, kind)) return false;
         if (kind == Steps::by_tangent)
-            progress.rows_rounding = rows_rounding * (sizes.terms + choice_.tangent().load_terms());
+            progress.rows_rounding = rows_rounding * (sizes.terms + choice_.tangent().terms());
         const double left = is_accelerated ? size_of_proposal() : 0;
         if (is_accelerated) acceleration_.apply(nodes.step);
         functions_->move(pattern, nodes, lane_rule_.in_lanes(), sizes);
@@ -228,6 +227,7 @@ bool MarchKernel::solve(const WindowLayout& layout, const InstantState& start, c
     lane_rule_.use(layout, start, choice_.last_steps());
     choice_.begin(pattern_, layout);
     wrenches_.begin(layout);
+    pattern_->forms().weigh_nodes(lane_rule_.times(), start_->values(), nodes_.values(), functions_->width);
     const bool is_large =
         !soon && tables_.n_twists >= many_twists && options.max_iterations >= most_kernel_steps;
     const auto iterates = [&](Steps kind) {
@@ -247,7 +247,7 @@ bool MarchKernel::solve(const WindowLayout& layout, const InstantState& start, c
     bool is_done =
         choice_.by_tangent() && (tries(Steps::by_tangent) || (was_kept && tries(Steps::by_tangent)));
     if (!is_done && !choice_.by_tangent() && !(is_large && was_slow))
-        is_done = tries(Steps::free) || (choice_.has_tangent() && tries(Steps::by_tangent));
+        is_done = tries(Steps::free) || tries(Steps::by_tangent);
     if (is_large && !is_done) {
         is_solved_ = iterate(layout, start, options, Steps::combined, report);
         choice_.took(is_solved_ ? report.iterations : most_kernel_steps, is_solved_, false);

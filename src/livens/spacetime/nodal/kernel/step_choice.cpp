@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "livens/spacetime/nodal/kernel/tree_tangent.h"
+#include "livens/spacetime/nodal/kernel/kernel_tangent.h"
 
 namespace livens {
 
@@ -21,13 +21,16 @@ constexpr double same_length = 0.03;   // of the motion of stiff loads a factor 
 
 StepChoice::StepChoice(const ModelTables& tables, const ElementRule& rule, const lanes::Functions* functions)
 {
-    if (functions != nullptr && !tables.loads.with_tangent.empty())
-        tangent_ = std::make_unique<TreeTangent>(tables, rule, functions->width);
+    if (functions != nullptr) tangent_ = std::make_unique<KernelTangent>(tables, rule, functions);
 }
 
 StepChoice::~StepChoice() = default;
 
-bool StepChoice::has_tangent() { return tangent_ != nullptr && tangent_->use(pattern_); }
+KernelTangent& StepChoice::tangent()
+{
+    tangent_->use(pattern_);
+    return *tangent_;
+}
 
 void StepChoice::begin(const std::shared_ptr<const RowPattern>& pattern, const WindowLayout& layout)
 {

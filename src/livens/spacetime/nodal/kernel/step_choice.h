@@ -10,7 +10,7 @@
 
 namespace livens::inline spacetime_internal {
 
-class TreeTangent;
+class KernelTangent;
 
 /// What earlier elements took.
 class StepChoice {
@@ -20,13 +20,12 @@ public:
 
     /// An element with these rows.
     void begin(const std::shared_ptr<const RowPattern>& pattern, const WindowLayout& layout);
-    /// Whether there are loads with slopes, along joints that TreeTangent knows.
-    bool has_tangent();
     /// Such steps first: those of free bodies were many, or did not shrink.
-    bool by_tangent() { return is_stiff_ && n_until_trial_ > 0 && has_tangent(); }
+    bool by_tangent() const { return is_stiff_ && n_until_trial_ > 0; }
     /// The factor at hand fits the element, as far as is known.
     bool is_kept() const { return is_kept_; }
-    TreeTangent& tangent() { return *tangent_; }
+    /// Of the rows at hand.
+    KernelTangent& tangent();
     void factorised(bool is_good, double h);
     void forget_factor() { is_kept_ = false; }
     /// The element was solved, or not.
@@ -34,7 +33,7 @@ public:
     int last_steps() const { return last_steps_; }
 
 private:
-    std::unique_ptr<TreeTangent> tangent_;
+    std::unique_ptr<KernelTangent> tangent_;
     std::shared_ptr<const RowPattern> pattern_;
     bool is_stiff_ = false, is_kept_ = false;
     double h_ = 0;

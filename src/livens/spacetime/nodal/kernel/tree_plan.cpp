@@ -41,7 +41,6 @@ TreePlan::TreePlan(const ModelTables& tables, const RowPattern& pattern)
 {
     std::vector<JointRows> joints;
     collect(tables, pattern, joints);
-    if (!serves) return;
     grow(tables.n_bodies(), joints);
     couple(tables);
 }
@@ -52,12 +51,10 @@ void TreePlan::collect(const ModelTables& tables, const RowPattern& pattern, std
     const lanes::Pattern& p = pattern.view();
     for (int g = 0; g < p.n_groups; ++g) {
         const lanes::Group& group = p.groups[g];
-        const std::vector<int> bodies = bodies_of(tables, p, group);
-        serves = serves && !bodies.empty() && bodies.size() <= 2;
-        if (!serves) return;
-        const std::array<int, 2> between = {bodies.size() == 2 ? bodies[0] : world, bodies.back()};
-        auto joint = std::ranges::find(joints, between, &JointRows::bodies);
-        if (joint == joints.end()) joint = joints.insert(joint, {between, {}});
+        std::vector<int> bodies = bodies_of(tables, p, group);
+        while (bodies.size() < 2) bodies.insert(bodies.begin(), world);
+        auto joint = std::ranges::find(joints, bodies, &JointRows::bodies);
+        if (joint == joints.end()) joint = joints.insert(joint, {bodies, {}});
         for (int r = group.first; r < group.first + group.n; ++r) joint->rows.push_back(r);
     }
 }
@@ -72,8 +69,8 @@ void TreePlan::grow(int n_bodies, std::vector<JointRows>& joints)
     const auto reach_from = [&](std::vector<int> front) {
         for (std::size_t at = 0; at < front.size(); ++at)
             for (std::size_t j = 0; j < joints.size(); ++j) {
-                const auto [a, b] = joints[j].bodies;
-                if (is_used[j] || (a != front[at] && b != front[at])) continue;
+                const int a = joints[j].bodies[0], b = joints[j].bodies[1];
+                if (is_used[j] || joints[j].bodies.size() > 2 || (a != front[at] && b != front[at])) continue;
                 const int next = a == front[at] ? b : a;
                 if (next == world || is_reached[static_cast<std::size_t>(next)]) continue;
                 is_used[j] = is_reached[static_cast<std::size_t>(next)] = 1;
@@ -107,8 +104,12 @@ void TreePlan::couple(const ModelTables& tables)
     for (const int l : tables.loads.with_tangent)
         for (const int a : tables.model->loads()[l].bodies)
             for (const int b : tables.model->loads()[l].bodies) pair_up(a, b);
-    for (std::size_t j = 0; j < closing.size(); ++j)
-        for (const int b : closing[j].bodies) pair_up(b, n + static_cast<int>(j));
+    for (std::size_t j = 0; j < closing.size(); ++j) {
+        for (const int b : closing[j].bodies) {
+            for (const int other : closing[j].bodies) pair_up(b, other);
+            pair_up(b, n + static_cast<int>(j));
+        }
+    }
     coupled.assign(static_cast<std::size_t>(n), {});
     std::vector<char> is_gone(static_cast<std::size_t>(n), 0);
     for (const int b : order) {

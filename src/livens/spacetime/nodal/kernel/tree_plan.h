@@ -2,7 +2,6 @@
 // In which order bodies are eliminated along their joints, and which of them are coupled then.
 #pragma once
 
-#include <array>
 #include <vector>
 
 #include "livens/dynamics/lanes/row_pattern.h"
@@ -10,9 +9,9 @@
 
 namespace livens::inline spacetime_internal {
 
-/// Rows of a joint between two bodies; the first may be the world.
+/// Rows of a joint between two bodies, of which the first may be the world, or of what couples more.
 struct JointRows {
-    std::array<int, 2> bodies{world, world};
+    std::vector<int> bodies{world, world};
     std::vector<int> rows;   ///< places in the pattern
 
     int n() const { return static_cast<int>(rows.size()); }
@@ -21,14 +20,12 @@ struct JointRows {
 /// Unknowns are bodies, by their numbers, and behind them joints that close loops. A tree needs no more room
 /// than its bodies; a load between two of them that no joint couples, or a loop, couples what lies between.
 struct TreePlan {
-    /// Not served: a row that holds more than two bodies.
     TreePlan(const ModelTables& tables, const RowPattern& pattern);
 
-    bool serves = true;
     std::vector<int> order;           ///< of elimination: bodies, outer ones first
     std::vector<int> parent;          ///< of each body; world: it hangs there, or on nothing
     std::vector<JointRows> held;      ///< what holds each body on its parent; no rows: it floats
-    std::vector<JointRows> closing;   ///< loops
+    std::vector<JointRows> closing;   ///< loops, and couplings of more than two bodies
     std::vector<std::vector<int>>
         coupled;   ///< of each body, unknowns that are eliminated later; the parent first
 

@@ -32,15 +32,14 @@ Numbers& TreeBlocks::of(int u, int v)
 }
 
 TreeTangent::TreeTangent(const ModelTables& tables, const ElementRule& rule, int width)
-    : tables_(tables), rule_(rule), width_(width), slopes_(tables, rule, width)
+    : tables_(tables), rule_(rule), width_(width)
 {}
 
-bool TreeTangent::use(const std::shared_ptr<const RowPattern>& pattern)
+void TreeTangent::use(const std::shared_ptr<const RowPattern>& pattern)
 {
-    if (pattern == pattern_) return plan_->serves;
+    if (pattern == pattern_) return;
     pattern_ = pattern;
     plan_.emplace(tables_, *pattern);
-    if (!plan_->serves) return false;
     std::vector<int> sizes;
     for (const BodyTable& body : tables_.bodies) sizes.push_back(body.dofs);
     for (const JointRows& joint : plan_->closing) sizes.push_back(joint.n());
@@ -49,7 +48,6 @@ bool TreeTangent::use(const std::shared_ptr<const RowPattern>& pattern)
     left_ = right_;
     motions_.assign(tables_.bodies.size(), {});
     gone_.assign(tables_.bodies.size(), {});
-    return true;
 }
 
 /// k_AB / h: scaled twists have the mass 1.
@@ -67,26 +65,40 @@ void TreeTangent::add_mass(double h)
     }
 }
 
-void TreeTangent::add_loads(const WindowLayout& layout, const lanes::Values& nodes)
+void TreeTangent::add_loads(const WindowLayout& layout, const lanes::Values& nodes, LoadSlopes& slopes)
 {
     const int p = rule_.degree;
-    const auto add_by = [&](const SlopesOfPair& pair, const double* slopes, const Numbers& in_time,
+    const auto add_by = [&](const SlopesOfPair& pair, const double* of_pair, const Numbers& in_time,
                             double factor) {
         Numbers& J = blocks_.of(pair.i, pair.j);
         const int n = blocks_.size(pair.j);
         for (int a = 0; a < blocks_.size(pair.i); ++a)
             for (int b = 0; b < n; ++b) {
-                const double slope = factor * slopes[6 * a + b];
+                const double slope = factor * of_pair[6 * a + b];
                 if (slope == 0) continue;
                 for (int A = 0; A < p; ++A)
                     for (int l = 0; l < p; ++l)
                         J[((a * p + A) * n + b) * p + l] += slope * in_time[A * p + l];
             }
     };
-    for (const SlopesOfPair& pair : slopes_.find(layout, nodes)) {
-        add_by(pair, pair.by_X, slopes_.in_time_by_X(), layout.h(0));
-        add_by(pair, pair.by_V, slopes_.in_time_by_V(), 1);
+    for (const SlopesOfPair& pair : slopes.find(layout, nodes)) {
+        add_by(pair, pair.by_X, slopes.in_time_by_X(), layout.h(0));
+        add_by(pair, pair.by_V, slopes.in_time_by_V(), 1);
     }
+}
+
+/// Node by node: multipliers are those of the last balance.
+void TreeTangent::add_forces_of_joints(const WindowLayout& layout, const lanes::Values& nodes,
+                                       JointSlopes& slopes)
+{
+    const int p = rule_.degree;
+    for (int node = 1; node <= last_of_rows(rule_); ++node)
+        for (const SlopesOfPair& pair : slopes.find(node, layout, *pattern_, nodes)) {
+            Numbers& J = blocks_.of(pair.i, pair.j);
+            const int n = blocks_.size(pair.j), lane = node % p;
+            for (int a = 0; a < blocks_.size(pair.i); ++a)
+                for (int b = 0; b < n; ++b) J[((a * p + lane) * n + b) * p + lane] += pair.by_X[6 * a + b];
+        }
 }
 
 /// The rows of what closes loops, at row nodes by multipliers and at columns by twists.
@@ -96,14 +108,13 @@ void TreeTangent::add_loops(const NodeGradients& gradients)
     for (std::size_t k = 0; k < plan_->closing.size(); ++k) {
         const JointRows& joint = plan_->closing[k];
         const int u = first_loop() + static_cast<int>(k), m = joint.n();
-        for (int side = 0; side < 2; ++side) {
-            const int b = joint.bodies[side];
+        for (const int b : joint.bodies) {
             if (b == world) continue;
             const int d = blocks_.size(b);
             Numbers &J = blocks_.of(b, u), &G = blocks_.of(u, b);
             for (int node = 0; node <= p; ++node) {
                 Numbers of(static_cast<std::size_t>(m * d));
-                gradients.of(joint, side, node, of.data());
+                gradients.of(joint, b, node, of.data());
                 for (int r = 0; r < m; ++r)
                     for (int i = 0; i < d; ++i) {
                         const int lane = node % p;
@@ -183,13 +194,14 @@ bool TreeTangent::factorise_loops()
 }
 
 bool TreeTangent::factorise(const WindowLayout& layout, const lanes::Values& start,
-                            const lanes::Values& nodes)
+                            const lanes::Values& nodes, TangentSlopes& slopes)
 {
     const bool has_first_row = rule_.points == Points::lobatto;
     const NodeGradients gradients{tables_, *pattern_, start, nodes, width_, rule_.degree, has_first_row};
     blocks_.clear();
     add_mass(layout.h(0));
-    add_loads(layout, nodes);
+    add_loads(layout, nodes, slopes.loads);
+    add_forces_of_joints(layout, nodes, slopes.joints);
     add_loops(gradients);
     for (const int b : plan_->order)
         if (!gradients.find(b, *plan_, motions_[static_cast<std::size_t>(b)]) || !eliminate(b)) return false;

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "livens/spacetime/nodal/kernel/joint_motion.h"
-#include "livens/spacetime/nodal/kernel/load_slopes.h"
+#include "livens/spacetime/nodal/kernel/tangent_slopes.h"
 
 namespace livens::inline spacetime_internal {
 
@@ -32,20 +32,16 @@ private:
     std::map<std::pair<int, int>, Numbers> blocks_;
 };
 
-/// J = h^-1 K + h S dF/dX + C dF/dX' in scaled twists of all nodes of one element, on what the joints leave
-/// free. A step by it need not be exact: rows and constraints are those of the kernel, and tell when it is
-/// done.
+/// The tangent of KernelTangent, all nodes of a body together, from the leaves inwards.
 class TreeTangent {
 public:
     TreeTangent(const ModelTables& tables, const ElementRule& rule, int width);
 
-    /// For the rows of this pattern. False: it does not serve them.
-    bool use(const std::shared_ptr<const RowPattern>& pattern);
-    /// At the numbers, gradients and load points of the kernel. False: singular, or not finite.
-    bool factorise(const WindowLayout& layout, const lanes::Values& start, const lanes::Values& nodes);
-    /// See LoadSlopes, of the last factor.
-    double load_terms() const { return slopes_.terms(); }
-    /// step <- - J^-1 rows, in lanes.
+    /// For the rows of this pattern.
+    void use(const std::shared_ptr<const RowPattern>& pattern);
+    /// See KernelTangent.
+    bool factorise(const WindowLayout& layout, const lanes::Values& start, const lanes::Values& nodes,
+                   TangentSlopes& slopes);
     void propose(const lanes::Values& nodes);
 
 private:
@@ -57,7 +53,8 @@ private:
     };
 
     void add_mass(double h);
-    void add_loads(const WindowLayout& layout, const lanes::Values& nodes);
+    void add_loads(const WindowLayout& layout, const lanes::Values& nodes, LoadSlopes& slopes);
+    void add_forces_of_joints(const WindowLayout& layout, const lanes::Values& nodes, JointSlopes& slopes);
     void add_loops(const NodeGradients& gradients);
     bool eliminate(int body);
     void pass_to_parent(int body);
@@ -71,7 +68,6 @@ private:
     int width_;
     std::shared_ptr<const RowPattern> pattern_;
     std::optional<TreePlan> plan_;
-    LoadSlopes slopes_;
     TreeBlocks blocks_;
     std::vector<JointMotion> motions_;
     std::vector<Eliminated> gone_;

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // N^T K N of loads and rows, and the maps of scaled twists on both sides (docs/theory.md, "The tangent").
-#include "livens/spacetime/nodal/twist_blocks.h"
+#include "livens/dynamics/rows/twist_blocks.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "livens/dynamics/rows/twist.h"
 
-namespace livens::inline spacetime_internal {
+namespace livens::inline dynamics_internal {
 
 namespace {
 
@@ -88,4 +88,4 @@ double load_terms(const ModelTables& tables, const Load& load, const LoadArgumen
     return size;
 }
 
-}   // namespace livens::inline spacetime_internal
+}   // namespace livens::inline dynamics_internal

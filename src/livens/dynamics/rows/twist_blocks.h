@@ -4,7 +4,7 @@
 
 #include "livens/dynamics/rows/tables.h"
 
-namespace livens::inline spacetime_internal {
+namespace livens::inline dynamics_internal {
 
 /// block += N(X_row)^T K N(X_column), 6 x 6 row by row.
 void add_reduced(const Matrix<12, 12>& K, const double* X_row, const double* X_column, int dofs,
@@ -18,4 +18,4 @@ void scale_block(const ModelTables& tables, const double* maps_A, int i, const d
 double load_terms(const ModelTables& tables, const Load& load, const LoadArguments& at,
                   const LoadTangent& tangent);
 
-}   // namespace livens::inline spacetime_internal
+}   // namespace livens::inline dynamics_internal

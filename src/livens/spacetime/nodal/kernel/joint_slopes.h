@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the forces of joints add to the tangent of an element.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "livens/dynamics/lanes/row_pattern.h"
+#include "livens/spacetime/nodal/kernel/load_slopes.h"
+
+namespace livens::inline spacetime_internal {
+
+/// Slopes of - G^T mu at fixed multipliers, by scaled twists of the same node: forces of joints turn with the
+/// bodies whose axes they have, and arms turn under them, as those of a link that is drawn do.
+class JointSlopes {
+public:
+    JointSlopes(const ModelTables& tables, const ElementRule& rule, int width);
+
+    /// At a node where there are rows and columns, with the kernel's numbers and multipliers there.
+    const std::vector<SlopesOfPair>& find(int node, const WindowLayout& layout, const RowPattern& pattern,
+                                          const lanes::Values& nodes);
+    /// Largest share of one row in the balances, over all nodes since begin(): what rounding leaves of them.
+    double terms() const { return terms_; }
+    void begin() { terms_ = 0; }
+
+private:
+    struct Pair {
+        int i, j;
+        Matrix<12, 12> K;
+    };
+
+    void place(int lane, const lanes::Values& nodes);
+    void add_row(int r, double mu, Instant at);
+    void add_hessian(int r, double mu, Instant at);
+    Matrix<12, 12>& of(int i, int j);
+    void add_turning(int body);
+
+    const ModelTables& tables_;
+    const ElementRule& rule_;
+    int width_;
+    std::vector<double> X_, maps_, forces_;   // 12 a body, about reference points
+    std::vector<Pair> pairs_;
+    std::vector<SlopesOfPair> slopes_;
+    double terms_ = 0;
+};
+
+}   // namespace livens::inline spacetime_internal

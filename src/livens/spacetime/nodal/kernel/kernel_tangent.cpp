@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "livens/spacetime/nodal/kernel/kernel_tangent.h"
+
+#include <algorithm>
+
+namespace livens {
+
+namespace {
+
+constexpr int most_reduced = 48;   // freedoms of all nodes: beyond, a tree costs less
+
+}   // namespace
+
+KernelTangent::KernelTangent(const ModelTables& tables, const ElementRule& rule,
+                             const lanes::Functions* functions)
+    : degree_(rule.degree), n_twists_(tables.n_twists), slopes_(tables, rule, functions->width),
+      reduced_(tables, rule, functions), tree_(tables, rule, functions->width)
+{}
+
+void KernelTangent::use(const std::shared_ptr<const RowPattern>& pattern)
+{
+    is_reduced_ = degree_ * (n_twists_ - pattern->view().n_rows) <= most_reduced;
+    if (is_reduced_)
+        reduced_.use(pattern);
+    else
+        tree_.use(pattern);
+}
+
+bool KernelTangent::factorise(const WindowLayout& layout, const JointFactor& start,
+                              const lanes::Values& nodes)
+{
+    slopes_.joints.begin();
+    return is_reduced_ ? reduced_.factorise(layout, start, nodes, slopes_)
+                       : tree_.factorise(layout, start.values(), nodes, slopes_);
+}
+
+void KernelTangent::propose(const lanes::Values& nodes)
+{
+    if (is_reduced_)
+        reduced_.propose(nodes);
+    else
+        tree_.propose(nodes);
+}
+
+double KernelTangent::terms() const { return std::max(slopes_.loads.terms(), slopes_.joints.terms()); }
+
+}   // namespace livens

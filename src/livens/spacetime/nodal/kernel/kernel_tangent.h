@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Steps that know the slopes of loads and of joints' forces.
+#pragma once
+
+#include "livens/spacetime/nodal/kernel/reduced_tangent.h"
+#include "livens/spacetime/nodal/kernel/tree_tangent.h"
+
+namespace livens::inline spacetime_internal {
+
+/// J = h^-1 K + h S dF/dX + C dF/dX' - d(G^T mu)/dX in scaled twists of all nodes of one element, on what the
+/// constraints leave free: of few freedoms at once, of many along the joints. A step by it need not be exact:
+/// rows and constraints are those of the kernel, and tell when it is done.
+class KernelTangent {
+public:
+    KernelTangent(const ModelTables& tables, const ElementRule& rule, const lanes::Functions* functions);
+
+    /// For the rows of this pattern.
+    void use(const std::shared_ptr<const RowPattern>& pattern);
+    /// At the numbers, gradients, multipliers and load points of the kernel. False: singular, or not finite.
+    bool factorise(const WindowLayout& layout, const JointFactor& start, const lanes::Values& nodes);
+    /// step <- - J^-1 rows, in lanes.
+    void propose(const lanes::Values& nodes);
+    /// Of loads and of joints' forces, whose rounding is that of the rows; of the last factor.
+    double terms() const;
+
+private:
+    int degree_, n_twists_;
+    TangentSlopes slopes_;
+    ReducedTangent reduced_;
+    TreeTangent tree_;
+    bool is_reduced_ = false;
+};
+
+}   // namespace livens::inline spacetime_internal

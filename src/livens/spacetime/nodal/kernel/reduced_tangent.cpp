@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// P = Z Z^T has the largest pivots at twists that span what is free; as projected at every node they are a
+// basis there (docs/theory.md, "Without a tangent", Stiff loads).
+#include "livens/spacetime/nodal/kernel/reduced_tangent.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace livens {
+
+namespace {
+
+/// Of a projected twist, across those before: the mechanism has moved on, and others are better.
+constexpr double least_of_twist = 1e-2;
+
+double product(const double* a, const double* b, int n)
+{
+    double sum = 0;
+    for (int i = 0; i < n; ++i) sum += a[i] * b[i];
+    return sum;
+}
+
+}   // namespace
+
+ReducedTangent::ReducedTangent(const ModelTables& tables, const ElementRule& rule,
+                               const lanes::Functions* functions)
+    : tables_(tables), rule_(rule), functions_(functions), n_(tables.n_twists)
+{}
+
+void ReducedTangent::use(const std::shared_ptr<const RowPattern>& pattern)
+{
+    if (pattern == pattern_) return;
+    pattern_ = pattern;
+    f_ = n_ - pattern->view().n_rows;
+    chosen_.clear();
+    const auto p = static_cast<std::size_t>(rule_.degree), f = static_cast<std::size_t>(f_);
+    bases_.assign((p + 1) * f * static_cast<std::size_t>(n_), 0.0);
+    theta_.assign(p * f, 0.0);
+    work_.assign(static_cast<std::size_t>((n_ + 2 * pattern->view().n_rows) * functions_->width), 0.0);
+}
+
+/// By Cholesky's factorisation of P with the largest pivots, at the start.
+void ReducedTangent::choose(const JointFactor& start)
+{
+    const auto n = static_cast<std::size_t>(n_);
+    std::vector<double> P(n * n, 0.0), mu(n);
+    for (std::size_t i = 0; i < n; ++i) {
+        P[i * n + i] = 1;
+        start.project(P.data() + i * n, nullptr, mu.data());
+    }
+    chosen_.clear();
+    while (std::ssize(chosen_) < f_) {
+        std::size_t best = 0;
+        for (std::size_t i = 0; i < n; ++i)
+            if (P[i * n + i] > P[best * n + best]) best = i;
+        const std::vector<double> row(P.begin() + static_cast<std::ptrdiff_t>(best * n),
+                                      P.begin() + static_cast<std::ptrdiff_t>((best + 1) * n));
+        for (std::size_t i = 0; i < n; ++i)
+            for (std::size_t j = 0; j < n; ++j) P[i * n + j] -= row[i] * row[j] / row[best];
+        chosen_.push_back(static_cast<int>(best));
+    }
+}
+
+bool ReducedTangent::orthonormalise(int node)
+{
+    for (int k = 0; k < f_; ++k) {
+        double* v = z(node, k);
+        for (int before = 0; before < k; ++before) {
+            const double along = product(z(node, before), v, n_);
+            for (int i = 0; i < n_; ++i) v[i] -= along * z(node, before)[i];
+        }
+        const double size = std::sqrt(product(v, v, n_));
+        if (!(size > least_of_twist)) return false;
+        for (int i = 0; i < n_; ++i) v[i] /= size;
+    }
+    return true;
+}
+
+bool ReducedTangent::find_bases(const JointFactor& start, const lanes::Values& nodes)
+{
+    const int W = functions_->width, p = rule_.degree, n_rows = pattern_->view().n_rows;
+    lanes::Values twist = nodes;   // the same numbers and factor, for another step
+    twist.step = work_.data();
+    twist.violations = twist.step + static_cast<std::ptrdiff_t>(n_ * W);
+    twist.work = twist.violations + static_cast<std::ptrdiff_t>(n_rows * W);
+    std::vector<double> mu(static_cast<std::size_t>(n_rows));
+    for (int k = 0; k < f_; ++k) {
+        const int own = chosen_[static_cast<std::size_t>(k)];
+        std::fill_n(z(0, k), n_, 0.0);
+        z(0, k)[own] = 1;
+        start.project(z(0, k), nullptr, mu.data());
+        std::fill_n(twist.step, n_ * W, 0.0);
+        std::fill_n(twist.step + static_cast<std::ptrdiff_t>(own * W), W, 1.0);
+        functions_->project(pattern_->view(), twist);
+        for (int node = 1; node <= p; ++node)
+            for (int i = 0; i < n_; ++i) z(node, k)[i] = twist.step[i * W + node % p];
+    }
+    for (int node = 0; node <= p; ++node)
+        if (!orthonormalise(node)) return false;
+    return true;
+}
+
+/// k_AB / h: scaled twists have the mass 1.
+void ReducedTangent::add_mass(double h)
+{
+    const int p = rule_.degree;
+    for (int A = 0; A < p; ++A)
+        for (int l = 0; l < p; ++l) {
+            const int row = row_in_lane(rule_, A), node = l == 0 ? p : l;
+            const double factor = rule_.k[row * rule_.size() + node] / h;
+            for (int k = 0; k < f_; ++k)
+                for (int m = 0; m < f_; ++m) entry(A, k, l, m) = factor * product(z(row, k), z(node, m), n_);
+        }
+}
+
+void ReducedTangent::add_load(const SlopesOfPair& pair, const double* slopes, const Numbers& in_time,
+                              double factor)
+{
+    const int p = rule_.degree, first = tables_.bodies[pair.i].first, n = tables_.bodies[pair.i].dofs,
+              from = tables_.bodies[pair.j].first, m_of = tables_.bodies[pair.j].dofs;
+    for (int l = 0; l < p; ++l)
+        for (int m = 0; m < f_; ++m) {
+            double force[6] = {};
+            const double* y = z(l == 0 ? p : l, m) + from;
+            for (int a = 0; a < n; ++a) force[a] = factor * product(slopes + 6 * a, y, m_of);
+            for (int A = 0; A < p; ++A)
+                for (int k = 0; k < f_; ++k)
+                    entry(A, k, l, m) += in_time[static_cast<std::size_t>(A * p + l)] *
+                                         product(z(row_in_lane(rule_, A), k) + first, force, n);
+        }
+}
+
+void ReducedTangent::add_at_node(int node, const SlopesOfPair& pair)
+{
+    const int lane = node % rule_.degree, n = tables_.bodies[pair.i].dofs;
+    for (int m = 0; m < f_; ++m) {
+        double force[6] = {};
+        const double* y = z(node, m) + tables_.bodies[pair.j].first;
+        for (int a = 0; a < n; ++a) force[a] = product(pair.by_X + 6 * a, y, tables_.bodies[pair.j].dofs);
+        for (int k = 0; k < f_; ++k)
+            entry(lane, k, lane, m) += product(z(node, k) + tables_.bodies[pair.i].first, force, n);
+    }
+}
+
+bool ReducedTangent::factorise(const WindowLayout& layout, const JointFactor& start,
+                               const lanes::Values& nodes, TangentSlopes& slopes)
+{
+    const int size = rule_.degree * f_;
+    const bool were_chosen = !chosen_.empty();
+    if (!were_chosen) choose(start);
+    if (!find_bases(start, nodes)) {
+        if (!were_chosen) return false;
+        choose(start);
+        if (!find_bases(start, nodes)) return false;
+    }
+    factor_.A.assign(static_cast<std::size_t>(size * size), 0.0);
+    add_mass(layout.h(0));
+    for (const SlopesOfPair& pair : slopes.loads.find(layout, nodes)) {
+        add_load(pair, pair.by_X, slopes.loads.in_time_by_X(), layout.h(0));
+        add_load(pair, pair.by_V, slopes.loads.in_time_by_V(), 1);
+    }
+    for (int node = 1; node <= last_of_rows(rule_); ++node)
+        for (const SlopesOfPair& pair : slopes.joints.find(node, layout, *pattern_, nodes))
+            add_at_node(node, pair);
+    return factor_.factorise(size);
+}
+
+void ReducedTangent::propose(const lanes::Values& nodes)
+{
+    const int p = rule_.degree, W = functions_->width;
+    for (int A = 0; A < p; ++A)
+        for (int k = 0; k < f_; ++k) {
+            const double* y = z(row_in_lane(rule_, A), k);
+            double sum = 0;
+            for (int i = 0; i < n_; ++i) sum -= y[i] * nodes.rows[i * W + A];
+            theta_[static_cast<std::size_t>(A * f_ + k)] = sum;
+        }
+    factor_.solve(theta_.data(), 1);
+    std::fill_n(nodes.step, n_ * W, 0.0);
+    for (int l = 0; l < p; ++l)
+        for (int m = 0; m < f_; ++m) {
+            const double* y = z(l == 0 ? p : l, m);
+            const double by = theta_[static_cast<std::size_t>(l * f_ + m)];
+            for (int i = 0; i < n_; ++i) nodes.step[i * W + l] += y[i] * by;
+        }
+}
+
+}   // namespace livens
