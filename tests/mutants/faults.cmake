@@ -958,8 +958,8 @@ livens_mutant(NAME drives_stand_still_in_lanes
               MUST_FAIL MarchKernel.AgreesWithNewtonOnRowsThatFollowFunctions)
 livens_mutant(NAME functions_keep_their_gradients_in_lanes
               FILE dynamics/lanes/row_forms.cpp
-              OLD [[nodes.forms.weights[(row.first_coordinate() + k) * width + l] =]]
-              NEW [[nodes.forms.weights[row.first_coordinate() * width + l] =]]
+              OLD [[after[i].gradient[static_cast<std::size_t>(k)];]]
+              NEW [[after[0].gradient[static_cast<std::size_t>(k)];]]
               TESTS_OF unit_spacetime
               MUST_FAIL MarchKernel.AgreesWithNewtonOnRowsThatFollowFunctions)
 # Links that a heavy mass draws are stiff.

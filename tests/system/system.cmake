@@ -25,7 +25,7 @@ if(LIVENS_BUILD_PROGRAM)
         foreach(line ${classes})
             string(REGEX REPLACE "^class ([A-Za-z]+).*" "\\1" name "${line}")
             set(labels ${label})
-            if(name MATCHES "^(Locking|Report|Solve)$")   # whole motions: minutes under sanitizers, which scripts/test leaves out
+            if(name MATCHES "^(Locking|Looks|Report|Skew|Solve|View)$")   # whole motions: minutes under sanitizers, which scripts/test leaves out
                 list(APPEND labels motions)
             endif()
             add_test(NAME system.${name} COMMAND ${livens_python} -B ${script} ${name})

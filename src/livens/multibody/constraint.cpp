@@ -191,7 +191,7 @@ double constraint_change(const ConstraintRow& row, Instant from, const Configura
                   (after - before) * form_value(drive.form, row.body_i, row.body_j, X_from);
     }
     if (row.function)
-        change += row.function->moved(coordinates(row, X_from), of_coordinates(row, change_of)).value;
+        change += row.function->after(coordinates(row, X_from), of_coordinates(row, change_of)).value;
     return change;
 }
 

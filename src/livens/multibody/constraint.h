@@ -55,9 +55,16 @@ struct SmoothFunction {
         std::array<Point, most> hessian{};
     };
     std::function<Value(const Point& q)> at;
-    /// Derivatives at from + step, and for the value F(from + step) - F(from) along the straight way: angles
-    /// turn on, also where their value at a point begins again.
-    std::function<Value(const Point& from, const Point& step)> moved;
+    /// Of each step derivatives at from + step, and for the value F(from + step) - F(from) along the straight
+    /// way: angles turn on, also where their value at a point begins again.
+    std::function<void(const Point& from, std::span<const Point> steps, std::span<Value> out)> moved;
+
+    Value after(const Point& from, const Point& step) const
+    {
+        Value value;
+        moved(from, {&step, 1}, {&value, 1});
+        return value;
+    }
 };
 
 /// Where a smooth function of q is smooth piece by piece only, as a spline is.

@@ -306,12 +306,13 @@ ConstraintRow coupling_row(const std::vector<CoupledCoordinate>& coupled, double
     const double period = 2 * std::numbers::pi * measure;
     return row_of(forms,
                   {[=](const Point& q) { return coupling_at(terms, constant, period, q); },
-                   [=](const Point& q, const Point& step) {
-                       Point there = q;
-                       for (std::size_t k = 0; k < there.size(); ++k) there[k] += step[k];
-                       Value moved = coupling_at(terms, 0, 0, there);
-                       moved.value = coupling_change(terms, q, step);
-                       return moved;
+                   [=](const Point& q, std::span<const Point> steps, std::span<Value> out) {
+                       for (std::size_t i = 0; i < steps.size(); ++i) {
+                           Point there = q;
+                           for (std::size_t k = 0; k < there.size(); ++k) there[k] += steps[i][k];
+                           out[i] = coupling_at(terms, 0, 0, there);
+                           out[i].value = coupling_change(terms, q, steps[i]);
+                       }
                    }},
                   scale, label);
 }
@@ -331,12 +332,14 @@ std::vector<ConstraintRow> curve_rows(const Curve& curve, int body_i, int body_j
         const auto at = [sampled, k](const Point& q) {
             return across_curve(*sampled, k, place_of(q), sampled->nearest(place_of(q)));
         };
-        const auto moved = [sampled, k](const Point& q, const Point& step) {
-            const Vector3 from = place_of(q), to = from + place_of(step);
-            const double s = sampled->nearest(from);
-            Value value = across_curve(*sampled, k, to, sampled->nearest(to, s));
-            value.value -= across_curve(*sampled, k, from, s).value;
-            return value;
+        const auto moved = [sampled, k](const Point& q, std::span<const Point> steps, std::span<Value> out) {
+            const Vector3 from = place_of(q);
+            const double s = sampled->nearest(from), before = across_curve(*sampled, k, from, s).value;
+            for (std::size_t i = 0; i < steps.size(); ++i) {
+                const Vector3 to = from + place_of(steps[i]);
+                out[i] = across_curve(*sampled, k, to, sampled->nearest(to, s));
+                out[i].value -= before;
+            }
         };
         rows.push_back(row_of(place, {at, moved}, scale, k == 0 ? "curve, normal 1" : "curve, normal 2"));
     }

@@ -146,6 +146,12 @@ struct LoadFunction {
     std::function<void(LoadTape&, const TapeNumber& factor)> record = nullptr;
 };
 
+/// Of a force along one coordinate, F_b = Q(q, q') dq/dX_b, at an instant.
+struct CoordinateSlopes {
+    PerBody<Matrix34> direction;   ///< dq/dX of all bodies of the load
+    double by_value = 0, by_rate = 0;
+};
+
 /// A load is data and functions; a new one is a new maker.
 struct Load : LoadSmoothness, LoadEnergy {
     std::string name;
@@ -165,6 +171,8 @@ struct Load : LoadSmoothness, LoadEnergy {
     LoadFunction forces;   ///< F; required
     /// dF/dX and dF/dV; required if one of the flags is set. The tangent arrives as zero.
     std::function<void(const LoadArguments&, LoadTangent&)> tangent;
+    /// The same of a force along one coordinate, but for what turning of dq/dX adds; empty: it is none.
+    std::function<CoordinateSlopes(const LoadArguments&)> along = nullptr;
     /// For sensors and people.
     std::vector<LoadReading> readings;
     /// For people: where it acts on its two bodies, in their coordinates; empty: not along a line.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "livens/dynamics/lanes/row_forms.h"
 
+#include <algorithm>
+
 namespace livens::inline dynamics_internal {
 
 void RowForms::add(const ConstraintRow& row)
@@ -55,6 +57,31 @@ void RowForms::weigh_nodes(std::span<const double> times, const lanes::Values& s
     }
 }
 
+/// F of the coordinates of all lanes: change += its own, and its gradient are their weights.
+void RowForms::add_function(const Row& row, const lanes::Values& start, const lanes::Values& nodes, int width,
+                            double* change)
+{
+    constexpr int most = 8;   // lanes at a time
+    SmoothFunction::Point from{}, steps[most]{};
+    SmoothFunction::Value after[most];
+    const int first = row.first_coordinate(), n = row.n_coordinates;
+    for (int k = 0; k < n; ++k) from[static_cast<std::size_t>(k)] = start.forms.values[first + k];
+    for (int l = 0; l < width; l += most) {
+        const int count = std::min(most, width - l);
+        for (int k = 0; k < n; ++k)
+            for (int i = 0; i < count; ++i)
+                steps[i][static_cast<std::size_t>(k)] = nodes.forms.values[(first + k) * width + l + i];
+        const auto n_steps = static_cast<std::size_t>(count);
+        row.function->moved(from, {steps, n_steps}, {after, n_steps});
+        for (int i = 0; i < count; ++i) {
+            change[l + i] += after[i].value;
+            for (int k = 0; k < n; ++k)
+                nodes.forms.weights[(first + k) * width + l + i] =
+                    after[i].gradient[static_cast<std::size_t>(k)];
+        }
+    }
+}
+
 /// f_k changes with the form as it was at the start, the form with f_k as it is at the node: both are
 /// differences, so that small elements lose no digits (docs/theory.md, "Drives").
 void RowForms::weigh(const void* forms, const lanes::Values& start, const lanes::Values& nodes, int width)
@@ -70,19 +97,8 @@ void RowForms::weigh(const void* forms, const lanes::Values& start, const lanes:
                 change[l] += w * nodes.forms.values[form * width + l] +
                              (w - start.forms.weights[form]) * start.forms.values[form];
             }
-            if (!row.function) continue;
-            SmoothFunction::Point from{}, step{};
-            for (int k = 0; k < row.n_coordinates; ++k) {
-                const int form = row.first_coordinate() + k;
-                from[static_cast<std::size_t>(k)] = start.forms.values[form];
-                step[static_cast<std::size_t>(k)] = nodes.forms.values[form * width + l];
-            }
-            const SmoothFunction::Value F = row.function->moved(from, step);
-            change[l] += F.value;
-            for (int k = 0; k < row.n_coordinates; ++k)
-                nodes.forms.weights[(row.first_coordinate() + k) * width + l] =
-                    F.gradient[static_cast<std::size_t>(k)];
         }
+        if (row.function) add_function(row, start, nodes, width, change);
         change += width;
     }
 }

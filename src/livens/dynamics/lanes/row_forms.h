@@ -51,6 +51,8 @@ private:
     };
 
     SmoothFunction::Value function_at(const Row& row, const double* forms) const;
+    static void add_function(const Row& row, const lanes::Values& start, const lanes::Values& nodes,
+                             int width, double* change);
 
     int n_forms_ = 0;
     std::vector<Row> rows_;

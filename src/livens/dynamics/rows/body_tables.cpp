@@ -163,6 +163,15 @@ void BodyTables::to_scaled_rows(const double* maps, const double* q, double* y) 
         scale_row(tables_[b], maps + 12 * b, q + tables_[b].first, y + tables_[b].first);
 }
 
+void BodyTables::scaled_row(int body, const double* X, const double* map, const double* g, double* y) const
+{
+    double q[6];
+    twist::rows(X, g, q);
+    if (tables_[body].offset) to_centre(map, q);
+    std::fill_n(y, 6, 0.0);
+    scale_row(tables_[body], map, q, y);
+}
+
 /// With Q = R_A^T R_B it is L^-1 Q (tr(E Q) 1 - E Q) L^-T.
 void BodyTables::spin_mass(int body, const double* X_A, const double* X_B, double* H) const
 {

@@ -71,6 +71,8 @@ public:
     void to_twist(const double* maps, const double* y, double* xi) const;
     /// Central rows in scaled twists: y_1 = f / sqrt(M), y_2 = K^T tau.
     void to_scaled_rows(const double* maps, const double* q, double* y) const;
+    /// Central rows in scaled twists of a load g, 12 numbers, on one body; 0 for what a point has not.
+    void scaled_row(int body, const double* X, const double* map, const double* g, double* y) const;
     /// Rows of one body about its reference point to rows about its centre of mass.
     static void to_centre(const double* f, double* q)
     {

@@ -21,6 +21,7 @@ namespace livens {
 namespace {
 
 constexpr int steps_a_piece = 8;   // of the normals' turn, whose error is rounding then
+constexpr double flat = 1e-14;     // of a unit vector, out of its plane: nothing turns then
 constexpr int overlap = 30;        // knots, by which what a spline does at its ends has died away
 
 [[noreturn]] void refuse_curve(const std::string& message, const std::string& value, const std::string& bound,
@@ -58,10 +59,11 @@ public:
         first_ = 0;
         last_ = knots[static_cast<std::size_t>(n_knots - 1 - around)];
         keep_knots(knots, around);
-        for (std::size_t c = 0; c < 3; ++c) {
+        pieces_.resize(knots.size() + 1);
+        for (int c = 0; c < 3; ++c) {
             std::vector<double> values;
-            for (int k = 0; k < n_knots; ++k) values.push_back(point(k)[static_cast<int>(c)]);
-            components_[c] = straight_on(spline_table(knots, std::move(values)), knots.front(), knots.back());
+            for (int k = 0; k < n_knots; ++k) values.push_back(point(k)[c]);
+            add_component(c, knots, values);
         }
         for (int k = around; k + 1 < n_knots - around; ++k)
             for (int i = 0; i < steps_a_piece; ++i)
@@ -91,18 +93,47 @@ public:
     /// Without normals.
     CurvePoint shape(double s) const
     {
+        const auto behind = std::upper_bound(pieces_.begin() + 1, pieces_.end(), s,
+                                             [](double at, const Piece& piece) { return at < piece.from; });
+        const Piece& piece = behind[-1];
+        const double d = s - piece.from;
         CurvePoint here;
-        for (std::size_t c = 0; c < 3; ++c) {
-            const TimeValue value = components_[c]({s});
-            const int i = static_cast<int>(c);
-            here.x[i] = value.value;
-            here.first[i] = value.first;
-            here.second[i] = value.second;
+        for (int i = 0; i < 3; ++i) {
+            const auto& [x, slope, c2, c3] = piece.of[i];
+            here.x[i] = x + d * (slope + d * (c2 + d * c3));
+            here.first[i] = slope + d * (2 * c2 + d * 3 * c3);
+            here.second[i] = 2 * c2 + 6 * d * c3;
         }
         return here;
     }
 
 private:
+    /// A cubic from a knot on, by the powers of the way; beyond the ends of the knots a straight line.
+    struct Piece {
+        double from;
+        std::array<double, 4> of[3];
+    };
+
+    void add_component(int c, const std::vector<double>& knots, const std::vector<double>& values)
+    {
+        const TimeFunction spline = spline_table(knots, values);
+        const std::size_t n = knots.size();
+        const auto slope = [&](std::size_t k) {
+            return spline({knots[k], k + 1 < n ? Side::right : Side::left}).first;
+        };
+        pieces_[0].from = knots[0];
+        pieces_[0].of[c] = {values[0], slope(0), 0, 0};
+        for (std::size_t k = 0; k < n; ++k) {
+            pieces_[k + 1].from = knots[k];
+            pieces_[k + 1].of[c] = {values[k], slope(k), 0, 0};
+            if (k + 1 == n) continue;
+            const double length = knots[k + 1] - knots[k], chord = (values[k + 1] - values[k]) / length,
+                         before = slope(k), behind = slope(k + 1);
+            pieces_[k + 1].of[c][2] = (3 * chord - 2 * before - behind) / length;
+            pieces_[k + 1].of[c][3] = (before + behind - 2 * chord) / (length * length);
+        }
+    }
+
     /// The normal carried on from where it is n: with the part a of n across the tangent t and b = t x a it
     /// is cos(angle) a + sin(angle) b, where angle' = -a'.b = (n . t) (gamma'' . b) / (|gamma'| |n - (n . t)
     /// t|).
@@ -118,13 +149,14 @@ private:
             const Vector3 a = unit(part), b = cross(t, a);
             return Across{a, b, dot(n, t) * dot(here.second, b) / (norm(here.first) * norm(part))};
         };
+        const Across there = across(until);
+        if (is_flat_) return there.a;
         double angle = 0;
         for (std::size_t i = 0; i < rule_.points.size(); ++i)
             // The angle is an integral of a smooth function over an eighth of a piece, for which five Gauss
             // points leave rounding.
             angle +=
                 (until - from) * rule_.weights[i] * across(from + rule_.points[i] * (until - from)).turning;
-        const Across there = across(until);
         const auto [sine, cosine] = sine_cosine(angle);
         return cosine * there.a + sine * there.b;
     }
@@ -160,14 +192,20 @@ private:
             const Vector3 x{1, 0, 0}, y{0, 1, 0};
             plane = cross(begin, std::abs(begin[0]) < 0.7 ? x : y);
         }
-        normals_.push_back(cross(unit(plane), begin));
+        const Vector3 across = unit(plane);
+        is_flat_ = std::ranges::all_of(places_, [&](double s) {
+            const CurvePoint here = shape(s);
+            return std::abs(dot(across, here.first)) <= flat &&
+                   std::abs(dot(across, here.second)) <= flat * norm(here.second);
+        });
+        normals_.push_back(cross(across, begin));
         for (std::size_t i = 1; i < places_.size(); ++i)
             normals_.push_back(carried(normals_.back(), places_[i - 1], places_[i]));
     }
 
-    std::array<TimeFunction, 3> components_;
+    std::vector<Piece> pieces_;   ///< the first before the first knot
     Quadrature rule_ = gauss(5);
-    bool is_closed_;
+    bool is_closed_, is_flat_ = false;
     double first_ = 0, last_ = 0;
     std::vector<double> knots_;
     std::vector<double> places_;

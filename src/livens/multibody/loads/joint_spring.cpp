@@ -76,6 +76,9 @@ Load joint_spring(const std::string& name, const NamedCoordinate& coordinate, co
     load.tangent = [of](const LoadArguments& arguments, LoadTangent& tangent) {
         of.along.add_tangent(arguments, of.force(of.along.look(arguments)), tangent);
     };
+    load.along = [of](const LoadArguments& arguments) {
+        return of.along.slopes(arguments, of.force(of.along.look(arguments)));
+    };
     if (!spring.law.bends.empty()) {
         load.guards = {{spring.law.bends}};
         load.guarded = [of](const LoadArguments& arguments, std::span<double> e) {

@@ -110,6 +110,15 @@ CoordinateState LoadCoordinate::look(const LoadArguments& arguments) const
     return seen;
 }
 
+CoordinateSlopes LoadCoordinate::slopes(const LoadArguments& arguments, const LawValue& Q) const
+{
+    const RowGradient gradient = constraint_gradient(row_, Configurations(arguments.X.data()->data()));
+    CoordinateSlopes found{PerBody<Matrix34>(arguments.X.size()), Q.by_value, Q.by_rate};
+    for (std::size_t b = 0; b < n_; ++b)
+        found.direction[static_cast<std::size_t>(places_[b])] = gradient.of(places_[b]);
+    return found;
+}
+
 void LoadCoordinate::add_forces(const LoadArguments& arguments, double Q, LoadForces& F) const
 {
     const RowGradient gradient = constraint_gradient(row_, Configurations(arguments.X.data()->data()));

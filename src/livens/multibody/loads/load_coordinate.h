@@ -44,6 +44,7 @@ public:
     void place(Load& load, bool counts_turns = true);
     CoordinateState look(const LoadArguments& arguments) const;
 
+    CoordinateSlopes slopes(const LoadArguments& arguments, const LawValue& Q) const;
     void add_forces(const LoadArguments& arguments, double Q, LoadForces& F) const;
     /// Of Q(q, q').
     void add_tangent(const LoadArguments& arguments, const LawValue& Q, LoadTangent& tangent) const;

@@ -176,6 +176,9 @@ std::string EnergyWatch::look(const Motion& so_far, double until)
     if (n < next_ || !(std::abs(energy - last_) > noticeable * moving_)) return "";
     last_ = energy;
     next_ = n + static_cast<int>(std::ceil(patience * n));
+    // what could grow costs less than the balance of all elements so far
+    const double h = length_before(so_far.mesh, n);
+    if (!(fastest_growing(model_, so_far, n, h, degree_).growth > slowest_growth)) return "";
     return of_turning_springs(model_, so_far, degree_, n, until);
 }
 

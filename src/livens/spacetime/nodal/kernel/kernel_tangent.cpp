@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "livens/spacetime/nodal/kernel/kernel_tangent.h"
 
-#include <algorithm>
-
 namespace livens {
 
 namespace {
@@ -15,15 +13,16 @@ KernelTangent::KernelTangent(const ModelTables& tables, const ElementRule& rule,
                              const lanes::Functions* functions)
     : degree_(rule.degree), n_twists_(tables.n_twists), slopes_(tables, rule, functions->width),
       reduced_(tables, rule, functions), tree_(tables, rule, functions->width)
-{}
+{
+    slopes_.has_joints = tables.loads.with_tangent.empty();
+}
 
 void KernelTangent::use(const std::shared_ptr<const RowPattern>& pattern)
 {
     is_reduced_ = degree_ * (n_twists_ - pattern->view().n_rows) <= most_reduced;
-    if (is_reduced_)
-        reduced_.use(pattern);
-    else
-        tree_.use(pattern);
+    if (!is_reduced_) return tree_.use(pattern);
+    reduced_.use(pattern);
+    ask_joints();   // of few bodies they cost little
 }
 
 bool KernelTangent::factorise(const WindowLayout& layout, const JointFactor& start,
@@ -41,7 +40,5 @@ void KernelTangent::propose(const lanes::Values& nodes)
     else
         tree_.propose(nodes);
 }
-
-double KernelTangent::terms() const { return std::max(slopes_.loads.terms(), slopes_.joints.terms()); }
 
 }   // namespace livens

@@ -20,8 +20,10 @@ public:
     bool factorise(const WindowLayout& layout, const JointFactor& start, const lanes::Values& nodes);
     /// step <- - J^-1 rows, in lanes.
     void propose(const lanes::Values& nodes);
-    /// Of loads and of joints' forces, whose rounding is that of the rows; of the last factor.
-    double terms() const;
+    /// Steps by loads alone, which cost less, shrank too little: joints' forces count from now on.
+    void ask_joints() { slopes_.has_joints = true; }
+    /// Of the last factor.
+    const TangentSlopes& slopes() const { return slopes_; }
 
 private:
     int degree_, n_twists_;

@@ -50,9 +50,10 @@ void LoadSlopes::place(const lanes::Values& nodes)
 void LoadSlopes::add(int l, const WindowLayout& layout)
 {
     const Load& load = tables_.model->loads()[l];
-    LoadTangent slopes(load.bodies.size());
     const Instant at = layout.load_point(rule_, 0, middle_);
     const LoadArguments arguments = tables_.loads.arguments(l, at, X_.data(), V_.data(), angles_);
+    if (load.along) return add_coordinate(load, load.along(arguments), layout.h(0));
+    LoadTangent slopes(load.bodies.size());
     load.tangent(arguments, slopes);
     terms_ = std::max(terms_, std::abs(layout.h(0)) * load_terms(tables_, load, arguments, slopes));
     for (std::size_t r = 0; r < 2; ++r)
@@ -70,15 +71,35 @@ void LoadSlopes::add(int l, const WindowLayout& layout)
         }
 }
 
-const std::vector<SlopesOfPair>& LoadSlopes::find(const WindowLayout& layout, const lanes::Values& nodes)
+void LoadSlopes::add_coordinate(const Load& load, const CoordinateSlopes& slopes, double h)
+{
+    SlopesOfCoordinate found{{load.bodies[0], load.bodies[1]}, {}, slopes.by_value, slopes.by_rate};
+    double of_value = 0, of_rate = 0, largest = 0;   // what q and q' are sums of
+    for (std::size_t side = 0; side < 2; ++side) {
+        const int b = load.bodies[side];
+        if (b == world) continue;
+        const double *g = slopes.direction[side].a, *X = X_.data() + 12 * b, *V = V_.data() + 12 * b;
+        tables_.bodies.scaled_row(b, X, maps_.data() + 12 * b, g, found.direction[side]);
+        for (int i = 0; i < 12; ++i) {
+            of_value += std::abs(g[i] * X[i]);
+            of_rate += std::abs(g[i] * V[i]);
+        }
+        for (const double share : found.direction[side]) largest = std::max(largest, std::abs(share));
+    }
+    const double force = std::abs(found.by_value) * of_value + std::abs(found.by_rate) * of_rate;
+    terms_ = std::max(terms_, std::abs(h) * largest * force);
+    coordinates_.push_back(found);
+}
+
+void LoadSlopes::find(const WindowLayout& layout, const lanes::Values& nodes)
 {
     pairs_.clear();
+    coordinates_.clear();
     terms_ = 0;
     place(nodes);
     angles_ = layout.angles;
     tables_.loads.turns.follow(Configurations(X_.data()), angles_);
     for (const int l : tables_.loads.with_tangent) add(l, layout);
-    return pairs_;
 }
 
 }   // namespace livens

@@ -2,6 +2,7 @@
 // What loads add to the tangent of an element.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "livens/dynamics/lanes/lanes.h"
@@ -16,14 +17,35 @@ struct SlopesOfPair {
     double by_X[36], by_V[36];
 };
 
+/// Q by q and q' and dq/dX by scaled twists of two bodies, of a force Q dq/dX.
+struct SlopesOfCoordinate {
+    std::array<int, 2> bodies;   ///< the second may be the world
+    double direction[2][6] = {};
+    double by_value = 0, by_rate = 0;
+
+    SlopesOfPair of(std::size_t r, std::size_t s) const
+    {
+        SlopesOfPair pair{bodies[r], bodies[s], {}, {}};
+        for (int a = 0; a < 36; ++a) {
+            const double product = direction[r][a / 6] * direction[s][a % 6];
+            pair.by_X[a] = by_value * product;
+            pair.by_V[a] = by_rate * product;
+        }
+        return pair;
+    }
+};
+
 /// Slopes of loads in the middle of an element by scaled twists, as if bodies had them all over it in their
 /// own axes: J_AB of bodies i, j is S_AB dF_i/dX_j + C_AB dF_i/dX'_j.
 class LoadSlopes {
 public:
     LoadSlopes(const ModelTables& tables, const ElementRule& rule, int width);
 
-    /// Where the kernel has its load points.
-    const std::vector<SlopesOfPair>& find(const WindowLayout& layout, const lanes::Values& nodes);
+    /// Where the kernel has its load points; then they stand in pairs() and coordinates().
+    void find(const WindowLayout& layout, const lanes::Values& nodes);
+    const std::vector<SlopesOfPair>& pairs() const { return pairs_; }
+    /// Of forces along one coordinate, but for what turning of their directions adds.
+    const std::vector<SlopesOfCoordinate>& coordinates() const { return coordinates_; }
     /// Row A by column l, p square; column 0 is the last node. To be multiplied by h: of X.
     const std::vector<double>& in_time_by_X() const { return S_; }
     const std::vector<double>& in_time_by_V() const { return C_; }
@@ -33,6 +55,7 @@ public:
 private:
     void place(const lanes::Values& nodes);
     void add(int load, const WindowLayout& layout);
+    void add_coordinate(const Load& load, const CoordinateSlopes& slopes, double h);
 
     const ModelTables& tables_;
     const ElementRule& rule_;
@@ -40,6 +63,7 @@ private:
     std::vector<double> S_, C_;
     std::vector<double> X_, V_, maps_, angles_;   // at the middle load point
     std::vector<SlopesOfPair> pairs_;
+    std::vector<SlopesOfCoordinate> coordinates_;
     double terms_ = 0;
 };
 

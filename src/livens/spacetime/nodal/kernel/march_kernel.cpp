@@ -21,7 +21,8 @@ constexpr double hopeless_step = 10;      // lengths or radians
 constexpr double smallest_step = 1e-18;   // likewise: nothing moves
 // Of the motion: what steps that shrink no more may be; also by the smallest squared pivot, and at most.
 constexpr double least_rounding = 1e-14, rounding_by_pivot = 4e-16, most_rounding = 1e-13;
-constexpr double rows_rounding = 4e-16;    // of the largest terms: as Newton's iteration has it
+constexpr double rounding_of_rows = 4e-16;   // of the largest terms: as Newton's iteration has it
+constexpr double spacing = 1e-15;   // lengths or radians: less is rounding where joints' forces are large
 constexpr double fits_on_the_way = 1e-2;   // times the smallest pivot: motion at which a factor is still good
 constexpr double fits_at_end = 1e-4;       // for multipliers, whose last change it takes with this error
 constexpr double fits_for_next = 1e-8;     // NearFactor
@@ -30,6 +31,7 @@ constexpr double share_of_tolerance = 0.1;   // left after the last step, as far
 // Lengths or radians from a motion nearby, beyond which it is not followed: it may have met a root that is
 // none.
 constexpr double farthest_parting = 1e-3;
+constexpr double least_rate = 0.05;         // at which steps by slopes are taken to shrink
 constexpr double widest_tolerance = 1e-4;   // beyond, two steps hardly tell how they shrink
 
 /// Null: the kernel does not serve these rows, inertias or points.
@@ -43,26 +45,38 @@ struct Shrinking {
     double tolerance;
     bool has_contracted;   // at first: the guess may be right to rounding
     int most_slow = most_slow_steps;
-    double rows_rounding = 0;   // known of steps by the slopes of loads
+    bool has_slopes = false;
+    // Known of steps by slopes: of loads, and with joints' forces.
+    double rows_rounding = 0, joints_rounding = 0;
     int n_steps = 0, n_slow = 0;
     double step = 0, contraction = 0;
     bool is_done = false, is_rounded = false;
 
+    void know_terms(double of_rows, const TangentSlopes& slopes)
+    {
+        rows_rounding = rounding_of_rows * (of_rows + slopes.loads.terms());
+        joints_rounding = rounding_of_rows * slopes.joints.terms();
+    }
     /// False: there is no hope.
     bool take(const lanes::Sizes& sizes, double rounding)
     {
         const double motion = std::clamp(sizes.motion, 1e-6, 1.0), allowed = tolerance * motion,
                      before = step;
         step = sizes.step;
+        const double contraction_before = contraction;
         contraction = before > 0 ? step / before : 0;
         ++n_steps;
         is_done = step <= smallest_step;
         if (n_steps == 1 || is_done) return step < hopeless_step;
         const bool is_slow = !(contraction <= slow_contraction);
+        // what slopes lack is not the same at each step: one that was good by chance foretells nothing
+        const double rate =
+            has_slopes ? std::max({contraction, contraction_before, least_rate}) : contraction;
         // steps that were seen to shrink, and shrink no more, have met their rounding
-        const bool is_noise = step <= std::max(allowed, rounding * motion) || sizes.rows <= rows_rounding;
+        const bool is_noise = step <= std::max(allowed, rounding * motion) || sizes.rows <= rows_rounding ||
+                              (step <= spacing && sizes.rows <= joints_rounding);
         is_done = is_slow ? has_contracted && is_noise
-                          : step * contraction / (1 - contraction) <= share_of_tolerance * allowed;
+                          : step * rate <= share_of_tolerance * allowed * (1 - rate);
         is_rounded = is_done && is_slow && step > allowed;
         has_contracted = has_contracted || !is_slow;
         n_slow += is_slow ? 1 : 0;
@@ -182,6 +196,7 @@ bool MarchKernel::iterate(const WindowLayout& layout, const InstantState& start,
     Shrinking progress{std::min(options.tolerance, widest_tolerance), follows};
     // each is followed by a new factor
     if (kind == Steps::by_tangent) progress.most_slow = most_slow_factors;
+    progress.has_slopes = kind == Steps::by_tangent;
     if (is_accelerated) acceleration_.begin(static_cast<std::size_t>(pattern.n_twists * functions_->width));
     double moved = 0, pivot = 0;   // since the factor was made, lengths and radians; its own, squared
     for (int steps = 0;; ++steps) {
@@ -200,8 +215,7 @@ bool MarchKernel::iterate(const WindowLayout& layout, const InstantState& start,
         if (progress.is_done) break;
         if (steps == most) return false;
         if (!propose(layout, kind)) return false;
-        if (kind == Steps::by_tangent)
-            progress.rows_rounding = rows_rounding * (sizes.terms + choice_.tangent().terms());
+        if (kind == Steps::by_tangent) progress.know_terms(sizes.terms, choice_.tangent().slopes());
         const double left = is_accelerated ? size_of_proposal() : 0;
         if (is_accelerated) acceleration_.apply(nodes.step);
         functions_->move(pattern, nodes, lane_rule_.in_lanes(), sizes);

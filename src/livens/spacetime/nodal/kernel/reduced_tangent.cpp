@@ -35,7 +35,7 @@ void ReducedTangent::use(const std::shared_ptr<const RowPattern>& pattern)
     chosen_.clear();
     const auto p = static_cast<std::size_t>(rule_.degree), f = static_cast<std::size_t>(f_);
     bases_.assign((p + 1) * f * static_cast<std::size_t>(n_), 0.0);
-    theta_.assign(p * f, 0.0);
+    theta_.assign((p + 1) * f, 0.0);
     work_.assign(static_cast<std::size_t>((n_ + 2 * pattern->view().n_rows) * functions_->width), 0.0);
 }
 
@@ -130,6 +130,30 @@ void ReducedTangent::add_load(const SlopesOfPair& pair, const double* slopes, co
         }
 }
 
+void ReducedTangent::add_coordinate(const SlopesOfCoordinate& along, const LoadSlopes& slopes, double h)
+{
+    const int p = rule_.degree;
+    for (int node = 0; node <= p; ++node)
+        for (int k = 0; k < f_; ++k) {
+            double& rate = theta_[static_cast<std::size_t>(node * f_ + k)] = 0;   // of q
+            for (std::size_t side = 0; side < 2; ++side) {
+                if (along.bodies[side] == world) continue;
+                const BodyTable& body = tables_.bodies[along.bodies[side]];
+                rate += product(along.direction[side], z(node, k) + body.first, body.dofs);
+            }
+        }
+    for (int A = 0; A < p; ++A)
+        for (int l = 0; l < p; ++l) {
+            const double *of_row = theta_.data() + row_in_lane(rule_, A) * f_,
+                         *of_column = theta_.data() + (l == 0 ? p : l) * f_;
+            const auto at = static_cast<std::size_t>(A * p + l);
+            const double slope =
+                h * along.by_value * slopes.in_time_by_X()[at] + along.by_rate * slopes.in_time_by_V()[at];
+            for (int k = 0; k < f_; ++k)
+                for (int m = 0; m < f_; ++m) entry(A, k, l, m) += slope * of_row[k] * of_column[m];
+        }
+}
+
 void ReducedTangent::add_at_node(int node, const SlopesOfPair& pair)
 {
     const int lane = node % rule_.degree, n = tables_.bodies[pair.i].dofs;
@@ -155,11 +179,14 @@ bool ReducedTangent::factorise(const WindowLayout& layout, const JointFactor& st
     }
     factor_.A.assign(static_cast<std::size_t>(size * size), 0.0);
     add_mass(layout.h(0));
-    for (const SlopesOfPair& pair : slopes.loads.find(layout, nodes)) {
+    slopes.loads.find(layout, nodes);
+    for (const SlopesOfCoordinate& along : slopes.loads.coordinates())
+        add_coordinate(along, slopes.loads, layout.h(0));
+    for (const SlopesOfPair& pair : slopes.loads.pairs()) {
         add_load(pair, pair.by_X, slopes.loads.in_time_by_X(), layout.h(0));
         add_load(pair, pair.by_V, slopes.loads.in_time_by_V(), 1);
     }
-    for (int node = 1; node <= last_of_rows(rule_); ++node)
+    for (int node = 1; node <= last_with_joints(rule_, slopes); ++node)
         for (const SlopesOfPair& pair : slopes.joints.find(node, layout, *pattern_, nodes))
             add_at_node(node, pair);
     return factor_.factorise(size);

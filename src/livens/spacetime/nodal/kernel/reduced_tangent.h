@@ -30,6 +30,7 @@ private:
     bool orthonormalise(int node);
     void add_mass(double h);
     void add_load(const SlopesOfPair& pair, const double* slopes, const Numbers& in_time, double factor);
+    void add_coordinate(const SlopesOfCoordinate& along, const LoadSlopes& slopes, double h);
     void add_at_node(int node, const SlopesOfPair& pair);
     double* z(int node, int k) { return bases_.data() + static_cast<std::ptrdiff_t>((node * f_ + k) * n_); }
     double& entry(int A, int k, int l, int m)

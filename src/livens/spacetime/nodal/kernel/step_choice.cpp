@@ -45,6 +45,12 @@ void StepChoice::factorised(bool is_good, double h)
     fresh_steps_ = 0;
 }
 
+void StepChoice::forget_factor()
+{
+    is_kept_ = false;
+    tangent_->ask_joints();
+}
+
 void StepChoice::took(int steps, bool is_solved, bool was_by_tangent)
 {
     last_steps_ = steps;

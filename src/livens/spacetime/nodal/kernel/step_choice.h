@@ -27,7 +27,8 @@ public:
     /// Of the rows at hand.
     KernelTangent& tangent();
     void factorised(bool is_good, double h);
-    void forget_factor() { is_kept_ = false; }
+    /// Steps with it shrink too little.
+    void forget_factor();
     /// The element was solved, or not.
     void took(int steps, bool is_solved, bool was_by_tangent);
     int last_steps() const { return last_steps_; }

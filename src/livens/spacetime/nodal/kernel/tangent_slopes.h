@@ -11,15 +11,17 @@ namespace livens::inline spacetime_internal {
 struct TangentSlopes {
     LoadSlopes loads;
     JointSlopes joints;
+    bool has_joints = true;   ///< whether joints are asked
 
     TangentSlopes(const ModelTables& tables, const ElementRule& rule, int width)
         : loads(tables, rule, width), joints(tables, rule, width)
     {}
 };
 
-/// The last node that has rows, of those that have columns.
-inline int last_of_rows(const ElementRule& rule)
+/// The last node at which joints' forces count: one that has rows and columns.
+inline int last_with_joints(const ElementRule& rule, const TangentSlopes& slopes)
 {
+    if (!slopes.has_joints) return 0;
     return rule.points == Points::lobatto ? rule.degree - 1 : rule.degree;
 }
 

@@ -81,19 +81,25 @@ void TreeTangent::add_loads(const WindowLayout& layout, const lanes::Values& nod
                         J[((a * p + A) * n + b) * p + l] += slope * in_time[A * p + l];
             }
     };
-    for (const SlopesOfPair& pair : slopes.find(layout, nodes)) {
+    const auto add = [&](const SlopesOfPair& pair) {
         add_by(pair, pair.by_X, slopes.in_time_by_X(), layout.h(0));
         add_by(pair, pair.by_V, slopes.in_time_by_V(), 1);
-    }
+    };
+    slopes.find(layout, nodes);
+    for (const SlopesOfPair& pair : slopes.pairs()) add(pair);
+    for (const SlopesOfCoordinate& along : slopes.coordinates())
+        for (std::size_t r = 0; r < 2; ++r)
+            for (std::size_t s = 0; s < 2; ++s)
+                if (along.bodies[r] != world && along.bodies[s] != world) add(along.of(r, s));
 }
 
 /// Node by node: multipliers are those of the last balance.
 void TreeTangent::add_forces_of_joints(const WindowLayout& layout, const lanes::Values& nodes,
-                                       JointSlopes& slopes)
+                                       TangentSlopes& slopes)
 {
     const int p = rule_.degree;
-    for (int node = 1; node <= last_of_rows(rule_); ++node)
-        for (const SlopesOfPair& pair : slopes.find(node, layout, *pattern_, nodes)) {
+    for (int node = 1; node <= last_with_joints(rule_, slopes); ++node)
+        for (const SlopesOfPair& pair : slopes.joints.find(node, layout, *pattern_, nodes)) {
             Numbers& J = blocks_.of(pair.i, pair.j);
             const int n = blocks_.size(pair.j), lane = node % p;
             for (int a = 0; a < blocks_.size(pair.i); ++a)
@@ -201,7 +207,7 @@ bool TreeTangent::factorise(const WindowLayout& layout, const lanes::Values& sta
     blocks_.clear();
     add_mass(layout.h(0));
     add_loads(layout, nodes, slopes.loads);
-    add_forces_of_joints(layout, nodes, slopes.joints);
+    add_forces_of_joints(layout, nodes, slopes);
     add_loops(gradients);
     for (const int b : plan_->order)
         if (!gradients.find(b, *plan_, motions_[static_cast<std::size_t>(b)]) || !eliminate(b)) return false;

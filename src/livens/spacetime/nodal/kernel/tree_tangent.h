@@ -54,7 +54,7 @@ private:
 
     void add_mass(double h);
     void add_loads(const WindowLayout& layout, const lanes::Values& nodes, LoadSlopes& slopes);
-    void add_forces_of_joints(const WindowLayout& layout, const lanes::Values& nodes, JointSlopes& slopes);
+    void add_forces_of_joints(const WindowLayout& layout, const lanes::Values& nodes, TangentSlopes& slopes);
     void add_loops(const NodeGradients& gradients);
     bool eliminate(int body);
     void pass_to_parent(int body);
