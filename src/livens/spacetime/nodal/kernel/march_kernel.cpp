@@ -22,7 +22,8 @@ constexpr double smallest_step = 1e-18;   // likewise: nothing moves
 // Of the motion: what steps that shrink no more may be; also by the smallest squared pivot, and at most.
 constexpr double least_rounding = 1e-14, rounding_by_pivot = 4e-16, most_rounding = 1e-13;
 constexpr double rounding_of_rows = 4e-16;   // of the largest terms: as Newton's iteration has it
-constexpr double spacing = 1e-15;   // lengths or radians: less is rounding where joints' forces are large
+constexpr double rounding_of_places =
+    1e-15;   // lengths or radians: less is rounding where joints' forces are large
 constexpr double fits_on_the_way = 1e-2;   // times the smallest pivot: motion at which a factor is still good
 constexpr double fits_at_end = 1e-4;       // for multipliers, whose last change it takes with this error
 constexpr double fits_for_next = 1e-8;     // NearFactor
@@ -74,9 +75,9 @@ struct Shrinking {
             has_slopes ? std::max({contraction, contraction_before, least_rate}) : contraction;
         // steps that were seen to shrink, and shrink no more, have met their rounding
         const bool is_noise = step <= std::max(allowed, rounding * motion) || sizes.rows <= rows_rounding ||
-                              (step <= spacing && sizes.rows <= joints_rounding);
-        is_done = is_slow ? has_contracted && is_noise
-                          : step * rate <= share_of_tolerance * allowed * (1 - rate);
+                              (step <= rounding_of_places && sizes.rows <= joints_rounding);
+        is_done =
+            is_slow ? has_contracted && is_noise : step * rate <= share_of_tolerance * allowed * (1 - rate);
         is_rounded = is_done && is_slow && step > allowed;
         has_contracted = has_contracted || !is_slow;
         n_slow += is_slow ? 1 : 0;
