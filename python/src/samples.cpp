@@ -182,7 +182,8 @@ nb::dict joints_at(const Result& r, const Times& times)
     const Model& model = r.scenario->model;
     const std::size_t n = model.joints().size();
     declare_joints(c, n);
-    at_all(times, [&](double t) { add_joints(c, sample_joints(model, r.run.motion, t), n); });
+    const JointSampler joints(model, r.run.motion);
+    at_all(times, [&](double t) { add_joints(c, joints.at(sample_state(r.run.motion, t)), n); });
     return c.take();
 }
 
@@ -289,11 +290,11 @@ nb::dict exact_at(const Result& r, const Times& times)
 /// Balances at element ends.
 nb::dict balance_at_ends(const Result& r)
 {
-    const Verdict& verdict = r.run.verdict;
-    std::shared_ptr<const Balance> b = verdict.balances;
-    if (b == nullptr) {
+    Balance made;
+    const Balance* b = r.run.verdict.series ? &r.run.verdict.series->balance : &made;
+    if (b == &made) {
         const nb::gil_scoped_release unlock;
-        b = std::make_shared<const Balance>(balance(r.scenario->model, r.run.motion));
+        made = balance(r.scenario->model, r.run.motion);
     }
     const std::size_t n = b->t.size();
     nb::dict all;

@@ -59,7 +59,7 @@ TIES = [
     ("So a factor is kept up to $\\varepsilon = «10^{-2}»$ while steps shrink (by less than that, they would not be steps of the method), up to $«10^{-7}»$ for the evaluation that ends the element and "
      "gives its multipliers (whose last change is of the size of the last step), and up to $«10^{-8}»$ its part", f"{KERNEL}/march_kernel.cpp",
      r"fits_on_the_way = ([^;]+);.*?fits_at_end = ([^;]+);.*?fits_for_next = ([^;]+);"),
-    ("by a pivot below $«10^{-4}»$; those joints", "src/livens/diagnostics/sample.cpp", r"double lost = ([^;]+);"),
+    ("by a pivot below $«10^{-4}»$; those joints", "src/livens/diagnostics/joint_samples.cpp", r"double lost = ([^;]+);"),
     ("For $\\varepsilon < «10^{-8}»$ the tolerance is $«10^{-15}»$ (degree «7»)", f"{TIME}/accuracy/accuracy.cpp",
      r"(?=.*?fine_accuracy = ([^;]+);)(?=.*?all_digits = ([^;]+);).*?preferred_degree = (\d+),"),
     ("So for accuracies below $«10^{-8}»$, where a try with a third of $\\tau$ was not twice as good as the best before, and the degree is not stated, the next one takes degree «9»",

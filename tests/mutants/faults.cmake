@@ -354,6 +354,42 @@ livens_mutant(NAME balance_of_a_piece
               TESTS_OF unit_diagnostics
               MUST_FAIL Balance.InPiecesIsThatOfTheWhole)
 
+# Rows that are linear pull twice as much and are off by another amount.
+livens_mutant(NAME linear_rows_in_lanes
+              FILE diagnostics/detail/point_tables.cpp
+              OLD [[entries_.push_back({number + i, B[i]});]]
+              NEW [[entries_.push_back({number + i, 2 * B[i]});]]
+              TESTS_OF unit_diagnostics
+              MUST_FAIL Pass.SuppliesWhatLoadsAndRowsDo Pass.FindsViolationsOfEveryNode)
+# What was asked of one point alone taken for all that stand beside it.
+livens_mutant(NAME one_lane_for_all
+              FILE diagnostics/detail/motion_pass.cpp
+              OLD [[supply_at(of_rows, lane, batch.others(lane))]]
+              NEW [[supply_at(of_rows, lane, batch.others(0))]]
+              TESTS_OF unit_diagnostics
+              MUST_FAIL Pass.SuppliesWhatLoadsAndRowsDo)
+# Integrals by rules that are not exact.
+livens_mutant(NAME integrals_of_few_points
+              FILE diagnostics/detail/motion_pass.cpp
+              OLD [[motion.gauss_points >= motion.X.degree ||]]
+              NEW [[motion.gauss_points > 0 ||]]
+              TESTS_OF unit_diagnostics
+              MUST_FAIL Pass.IntegratesAsGaussRulesDo)
+# Spins about one axis alone.
+livens_mutant(NAME spins_of_one_axis
+              FILE diagnostics/detail/alternation.cpp
+              OLD [[if (!(m(k, k) > level)) break;]]
+              NEW [[if (rank == 1 || !(m(k, k) > level)) break;]]
+              TESTS_OF unit_diagnostics
+              MUST_FAIL Pass.AlternatesAsItsIncrementsDo)
+# Least reactions of the instant that was first asked for.
+livens_mutant(NAME least_reactions_of_another_end
+              FILE diagnostics/joint_samples.cpp
+              OLD [[if (parts_->least_end == end)]]
+              NEW [[if (parts_->least_end >= 0)]]
+              TESTS_OF unit_diagnostics
+              MUST_FAIL JointSampler.IsSampleJointsAtOneInstantAfterTheOther)
+
 # --- stepping
 
 # Not quite the middle: order 1.

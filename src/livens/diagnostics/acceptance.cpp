@@ -10,6 +10,7 @@
 #include "livens/base/text.h"
 #include "livens/diagnostics/acceptance_bounds.h"
 #include "livens/diagnostics/coordinates.h"
+#include "livens/diagnostics/detail/passed_balance.h"
 #include "livens/diagnostics/largest.h"
 
 namespace livens {
@@ -109,17 +110,29 @@ private:
 
 void measure(Verdict& v, const Model& model, const Motion& motion, bool holds_weakly)
 {
-    v.violations = violations(model, motion, 0, holds_weakly);
+    constexpr int some = 4096;   // of longer motions they are made again where they are needed
+    const bool is_short = motion.n_elements() < some;
+    const auto series = std::make_shared<MotionSeries>();
+    MotionPass pass(model, motion, {true, true, is_short && has_own_integrals(model, motion), is_short});
+    v.balance = passed_balance(
+        model, motion, some,
+        [&](Balance& piece) {
+            if (is_short) series->balance = std::move(piece);
+        },
+        pass);
+    v.violations = pass.figures().violations;
+    if (holds_weakly) add_weak_violations(model, motion, v.violations);
     const ViolationReport& off = v.violations;
     v.max_constraint_violation = off.joints_at_nodes;
     raise_to(v.max_constraint_violation, off.rigidity_at_nodes);
     v.max_velocity_violation = off.velocity_level;
     v.max_weak_violation = off.joints_weakly;   // 0 where they were not asked for
     raise_to(v.max_weak_violation, off.rigidity_weakly);
-    constexpr int some = 4096;   // of longer motions they are made again where they are needed
-    v.balance = balance(model, motion, some, [&](Balance& piece) {
-        if (motion.n_elements() < some) v.balances = std::make_shared<const Balance>(std::move(piece));
-    });
+    if (is_short) {
+        series->integrals = std::move(pass.figures().integrals);
+        series->nodes = std::move(pass.figures().nodes);
+        v.series = series;
+    }
     // Radau loses energy by design; only a rise is held against it (theory.md, "What is diagnosed").
     v.energy_drift = motion.damps() ? v.balance.relative_energy_rise() : v.balance.relative_energy_drift();
     v.linear_momentum_drift = v.balance.relative_linear_momentum_drift();

@@ -56,7 +56,7 @@ struct ErrorFigures {
     double estimated_error_time = not_measured;   ///< where it is largest, s
     double good_digits = not_measured;            ///< see ErrorEstimate::good()
     double good_until = not_measured;             ///< likewise, s
-    double growth = not_measured;   ///< largest of a perturbation of the start, where it was measured
+    double growth = not_measured;    ///< largest of a perturbation of the start, where it was measured
     double horizon = not_measured;   ///< s, where 1e-13 has grown to 1e-2, if that is before the end
     /// Rounding at the start decides by then which of many motions is shown.
     bool is_beyond_horizon(double t) const { return t > horizon; }
@@ -70,7 +70,7 @@ struct Verdict : InvariantFigures, ResolutionFigures, ErrorFigures {
     std::vector<std::string> reasons;   ///< why the motion is suspect, a line each; empty: it is not
     std::vector<std::string> remarks;   ///< what is worth a look and refuses nothing
     BalanceFigures balance;
-    std::shared_ptr<const Balance> balances;   ///< their series, of motions of up to 4095 elements
+    std::shared_ptr<const MotionSeries> series;   ///< of motions of up to 4095 elements
     ViolationReport violations;   ///< means only where constraints hold weakly, nothing between nodes
 };
 

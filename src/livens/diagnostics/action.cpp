@@ -6,6 +6,7 @@
 #include <cassert>
 
 #include "livens/diagnostics/coordinates.h"
+#include "livens/diagnostics/detail/passed_balance.h"
 #include "livens/diagnostics/detail/sampler.h"
 #include "livens/diagnostics/diagnostics.h"
 #include "livens/time/quadrature.h"
@@ -26,7 +27,7 @@ class Integrands {
 public:
     Integrands(const Model& model, const Motion& motion, const Quadrature& rule)
         : model_(model), sampler_(motion, rule.points), X_(static_cast<std::size_t>(motion.n_bodies)),
-          V_(X_.size()), P_(X_.size()), turns_(model, motion)
+          V_(X_.size()), P_(X_.size()), turns_(model, motion), potential_(model)
     {
         if (!sampler_.has_momenta()) return;
         for (const Body& body : model.bodies()) inverse_.push_back(inverse_mass(body.mass, body.is_point));
@@ -47,7 +48,7 @@ public:
             legendre += product;
             kinetic += 0.5 * (sampler_.has_momenta() ? dot(P_[b], P_[b] * inverse_[b]) : product);
         }
-        const double potential = potential_energy(model_, sampler_.instant(element, k), X_, V_, angles_);
+        const double potential = potential_.at(sampler_.instant(element, k), X_, V_, angles_);
         hamiltonian = kinetic + potential;
         // L = tr(P X'^T) - T* - V: with P = X' m this is T - V, as usual.
         lagrangian = legendre - kinetic - potential;
@@ -64,6 +65,7 @@ private:
     std::vector<Matrix4> inverse_;
     std::vector<Matrix34> X_, V_, P_;
     LoadTurns turns_;
+    PotentialEnergy potential_;
     std::vector<double> angles_;
 };
 
@@ -80,6 +82,8 @@ ActionSeries action(const Model& model, const Motion& motion, int first, int las
     assert(first >= 0 && last <= motion.n_elements());
     ActionSeries series;
     if (last <= first) return series;
+    if (has_own_integrals(model, motion))
+        return MotionPass(model, motion, {.integrals = true, .first = first}).integrals(last);
     const Quadrature rule = action_rule(motion);
     Integrands at(model, motion, rule);
     for (int e = first; e < last; ++e) {

@@ -4,7 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "livens/diagnostics/detail/supply.h"
+#include "livens/diagnostics/detail/passed_balance.h"
+#include "livens/diagnostics/detail/sampler.h"
 #include "livens/diagnostics/diagnostics.h"
 #include "livens/diagnostics/largest.h"
 #include "livens/solvers/patience.h"
@@ -14,40 +15,6 @@ namespace {
 
 /// Of the references: sums of few terms are off by a few units in the last place.
 constexpr double rounding = 16 * std::numeric_limits<double>::epsilon();
-
-/// What loads and joints supply, integrated.
-class SupplyIntegral {
-public:
-    SupplyIntegral(const Model& model, const Motion& motion)
-        : motion_(motion), loads_(model, motion), joints_(model, motion)
-    {}
-
-    Supply over(int element)
-    {
-        Supply sum;
-        const double h = motion_.mesh.length(element);
-        const auto integrate = [&](auto& supply) {
-            for (int k = 0; k < supply.n_points(); ++k) {
-                const Supply now = supply.at(element, k);
-                sum.add(h * supply.weight_of(k), now);
-                raise_to(largest_gross_moment_, now.gross_moment);
-            }
-        };
-        integrate(loads_);
-        integrate(joints_);
-        sum.add(h, loads_.stiffness(element, h));
-        return sum;
-    }
-    const LoadSupply& loads() const { return loads_; }
-    /// Of all instants so far.
-    double largest_gross_moment() const { return largest_gross_moment_; }
-
-private:
-    const Motion& motion_;
-    LoadSupply loads_;
-    JointSupply joints_;
-    double largest_gross_moment_ = 0;
-};
 
 double moment_of_momentum(std::span<const Matrix34> X, std::span<const Matrix34> P)
 {
@@ -67,8 +34,8 @@ double relative(double drift, double moving, double level)
 /// Goes from element end to element end.
 class Balancing {
 public:
-    Balancing(const Model& model, const Motion& motion)
-        : model_(model), motion_(motion), supply_(model, motion),
+    Balancing(const Model& model, const Motion& motion, MotionPass& pass)
+        : model_(model), motion_(motion), pass_(pass), potential_(model),
           X_(static_cast<std::size_t>(motion.n_bodies))
     {}
 
@@ -80,7 +47,7 @@ public:
         reserve(static_cast<std::size_t>(last - end_), piece);
         for (; end_ < last; ++end_) {
             Patience::ask();
-            if (end_ > 0) total_.add(1, supply_.over(end_ - 1));
+            if (end_ > 0) total_.add(1, pass_.supply(end_ - 1));
             append_state(piece);
             append_supply(piece);
         }
@@ -90,8 +57,8 @@ public:
     BalanceFigures figures() const
     {
         BalanceFigures figures = figures_;
-        figures.reference_energy += supply_.largest_gross_moment();
-        raise_to(figures.largest_kinetic, supply_.loads().largest_kinetic());   // where all ends are at rest
+        figures.reference_energy += pass_.figures().largest_gross_moment;
+        raise_to(figures.largest_kinetic, pass_.figures().largest_kinetic);   // where all ends are at rest
         figures.reference_impulse = total_.gross;
         figures.reference_moment = total_.gross_moment;
         return figures;
@@ -117,7 +84,7 @@ private:
         positions_at_end(motion_, end_, X_);
         const Instant at{motion_.mesh.ends[end_], end_ == motion_.n_elements() ? Side::left : Side::right};
         const double kinetic = kinetic_energy(model_, X_, V),
-                     potential = potential_energy(model_, at, X_, V, supply_.loads().turns().at_end(end_));
+                     potential = potential_.at(at, X_, V, pass_.turns().at_end(end_));
         piece.t.push_back(at.t);
         piece.kinetic.push_back(kinetic);
         piece.potential.push_back(potential);
@@ -166,7 +133,8 @@ private:
 
     const Model& model_;
     const Motion& motion_;
-    SupplyIntegral supply_;
+    MotionPass& pass_;
+    PotentialEnergy potential_;
     Supply total_;
     std::vector<Matrix34> X_;
     BalanceFigures figures_;   // references without what is integrated
@@ -214,15 +182,23 @@ double BalanceFigures::relative_angular_momentum_drift() const
     return relative(largest_angular_momentum_drift, largest_moment, reference_moment + largest_moment);
 }
 
+BalanceFigures diagnostics_internal::passed_balance(const Model& model, const Motion& motion, int n_ends,
+                                                    const std::function<void(Balance&)>& take,
+                                                    MotionPass& pass)
+{
+    assert(motion.momenta.size() == motion.mesh.ends.size() * static_cast<std::size_t>(motion.n_bodies));
+    Balancing balancing(model, motion, pass);
+    Balance piece;
+    while (balancing.next(n_ends, piece)) take(piece);
+    pass.finish();
+    return balancing.figures();
+}
+
 BalanceFigures balance(const Model& model, const Motion& motion, int n_ends,
                        const std::function<void(Balance&)>& take)
 {
-    assert(model.n_bodies() == motion.n_bodies && model.n_rows() == motion.n_rows);
-    assert(motion.momenta.size() == motion.mesh.ends.size() * static_cast<std::size_t>(motion.n_bodies));
-    Balancing balancing(model, motion);
-    Balance piece;
-    while (balancing.next(n_ends, piece)) take(piece);
-    return balancing.figures();
+    MotionPass pass(model, motion, {.supplies = true});
+    return passed_balance(model, motion, n_ends, take, pass);
 }
 
 Balance balance(const Model& model, const Motion& motion)

@@ -9,6 +9,7 @@
 #include <numbers>
 #include <utility>
 
+#include "livens/diagnostics/detail/sparse_form.h"
 #include "livens/diagnostics/sample.h"
 #include "livens/solvers/patience.h"
 
@@ -31,31 +32,33 @@ FollowedCoordinates::FollowedCoordinates(const Model& model, const Motion& motio
     : motion_(motion), coordinates_(std::move(coordinates))
 {
     if (coordinates_.empty()) return;
-    for (const Body& body : model.bodies()) stated_.push_back(body.X);
+    std::vector<Matrix34> stated;
+    for (const Body& body : model.bodies()) stated.push_back(body.X);
+    std::vector<SparseCoordinate> sparse;
+    for (const NamedCoordinate& q : coordinates_) sparse.emplace_back(q.coordinate, stated.data()->data());
+    sparse_ = std::make_shared<const std::vector<SparseCoordinate>>(std::move(sparse));
     // The start may stand turns away from the stated bodies; the turn nearest to zero is taken there.
-    std::vector<double> now =
-        turned(sample_state(motion, motion.start()).X, std::vector<double>(coordinates_.size(), 0.0));
+    std::vector<double> now(coordinates_.size(), 0.0);
+    turn(sample_state(motion, motion.start()).X.data()->data(), now);
+    at_ends_.reserve(now.size() * motion.mesh.ends.size());
     at_ends_ = now;
     for (int e = 0; e < motion.n_elements(); ++e) {
         Patience::ask();
         for (int node = 1; node <= motion.X.degree; ++node)
             // Every node is visited once; element ends are kept, so that a sample looks at one element alone.
-            now = turned(configurations(motion, e, node), now);
+            turn(motion.X.coefficient(e, node).data(), now);
         at_ends_.insert(at_ends_.end(), now.begin(), now.end());
     }
 }
 
 /// Coordinates less those of the bodies as stated: turns are whole, so that rounding does not gather.
-std::vector<double> FollowedCoordinates::turned(std::span<const Matrix34> X,
-                                                std::span<const double> near) const
+void FollowedCoordinates::turn(const double* X, std::span<double> near) const
 {
-    std::vector<double> all;
-    for (std::size_t i = 0; i < coordinates_.size(); ++i) {
-        const JointCoordinate& q = coordinates_[i].coordinate;
-        const double value = coordinate_change(q, stated_, X);
-        all.push_back(q.is_angle() ? turned_to(value, near[i]) : value);
+    for (std::size_t i = 0; i < near.size(); ++i) {
+        const SparseCoordinate& q = (*sparse_)[i];
+        const double value = q.change(X);
+        near[i] = q.is_angle() ? turned_to(value, near[i]) : value;
     }
-    return all;
 }
 
 std::vector<CoordinateValue> FollowedCoordinates::at(const State& state) const
@@ -78,12 +81,12 @@ std::vector<CoordinateValue> FollowedCoordinates::at(const State& state) const
         // turn of the last one.
         values.assign(begin.begin(), begin.end());
         for (int node = 1; node <= motion_.X.degree && nodes[node] <= s; ++node)
-            values = turned(configurations(motion_, element, node), values);
-        values = turned(state.X, values);
+            turn(motion_.X.coefficient(element, node).data(), values);
+        turn(state.X.data()->data(), values);
     }
     for (std::size_t i = 0; i < n; ++i)
         all[i] = {coordinates_[i].at_stated + values[i],
-                  coordinate_rate(coordinates_[i].coordinate, state.X, state.V)};
+                  (*sparse_)[i].rate(state.X.data()->data(), state.V.data()->data())};
     return all;
 }
 

@@ -2,6 +2,7 @@
 // Coordinates of joints along a motion: angles with their turns, displacements, and their rates.
 #pragma once
 
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -10,6 +11,10 @@
 #include "livens/multibody/unwrapped_angles.h"
 
 namespace [[gnu::visibility("default")]] livens {
+
+inline namespace diagnostics_internal {
+class SparseCoordinate;
+}   // namespace diagnostics_internal
 
 struct CoordinateValue {
     double value = 0;   ///< rad or m
@@ -28,12 +33,12 @@ public:
     std::vector<CoordinateValue> at(const State& state) const;
 
 private:
-    std::vector<double> turned(std::span<const Matrix34> X, std::span<const double> near) const;
+    void turn(const double* X, std::span<double> near) const;
 
     const Motion& motion_;
     std::vector<NamedCoordinate> coordinates_;
-    std::vector<Matrix34> stated_;   ///< where the model has its bodies
-    std::vector<double> at_ends_;    ///< less the values there, end * coordinates + coordinate
+    std::shared_ptr<const std::vector<SparseCoordinate>> sparse_;   ///< the same
+    std::vector<double> at_ends_;   ///< less the values there, end * coordinates + coordinate
 };
 
 /// All NamedCoordinates of a model's joints.

@@ -89,10 +89,11 @@ Vector3 linear_momentum(std::span<const Matrix34> P);
 /// About the world's origin: sum over bodies of sum over columns x_c cross p_c.
 Vector3 angular_momentum(std::span<const Matrix34> X, std::span<const Matrix34> P);
 
-/// Integrals over each element by Gauss quadrature with degree + 2 points (twice as many for NURBS): of
-/// L = T - V, of H = T + V and of the angular momentum about the world's origin (P36), whose last term,
-/// d_i x lambda_ij d_j, is zero identically. The kinetic energy is that of the momentum where the motion has
-/// a field of it, H = T*(P) + V and L = tr(P X'^T) - H as in Livens' principle, else that of dX/dt.
+/// Integrals over each element by Gauss quadrature with degree + 2 points (twice as many for NURBS), or at
+/// the points of the method's loads where these are as exact: of L = T - V, of H = T + V and of the angular
+/// momentum about the world's origin (P36), whose last term, d_i x lambda_ij d_j, is zero identically. The
+/// kinetic energy is that of the momentum where the motion has a field of it, H = T*(P) + V and L = tr(P
+/// X'^T) - H as in Livens' principle, else that of dX/dt.
 struct ActionSeries {
     std::vector<double> lagrangian;          ///< J s per element
     std::vector<double> hamiltonian;         ///< J s per element
@@ -177,6 +178,13 @@ struct NodeViolations {
     std::vector<double> rigidity;
 };
 NodeViolations node_violations(const Model& model, const Motion& motion);
+
+/// What is told of every element end, element and node.
+struct MotionSeries {
+    Balance balance;
+    ActionSeries integrals;   ///< empty: not made; action() does
+    NodeViolations nodes;
+};
 
 /// The six rigidity multipliers of a body (11, 22, 33, 12, 13, 23) from X'', forces and joint multipliers at
 /// an instant: lambda_ab = (F - G^T lambda - X'' m)_a . d_b, N m; tension is positive. Zero for a point mass.

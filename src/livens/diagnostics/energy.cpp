@@ -3,8 +3,8 @@
 // theory.md, "Bodies without rotation parameters".
 #include <cassert>
 
+#include "livens/diagnostics/detail/passed_balance.h"
 #include "livens/diagnostics/diagnostics.h"
-#include "livens/multibody/unwrapped_angles.h"
 
 namespace livens {
 
@@ -22,14 +22,23 @@ double potential_energy(const Model& model, Instant at, std::span<const Matrix34
                         std::span<const Matrix34> V, std::span<const double> angles)
 {
     assert(X.size() == V.size() && static_cast<int>(X.size()) == model.n_bodies());
+    return PotentialEnergy(model).at(at, X, V, angles);
+}
+
+PotentialEnergy::PotentialEnergy(const Model& model) : model_(model), turns_(model)
+{
+    for (const Body& body : model.bodies()) weights_.push_back(weight(body, model.gravity()));
+}
+
+double PotentialEnergy::at(Instant at, std::span<const Matrix34> X, std::span<const Matrix34> V,
+                           std::span<const double> angles) const
+{
     double energy = 0;
     // The weight is constant, so its potential is -tr(F^T X) = -M g . x of the centre of mass.
-    for (int b = 0; b < model.n_bodies(); ++b)
-        energy -= dot(weight(model.bodies()[b], model.gravity()), X[b]);
-    const UnwrappedAngles turns(model);
-    for (int l = 0; l < static_cast<int>(model.loads().size()); ++l) {
-        const Load& load = model.loads()[l];
-        if (load.potential) energy += load.potential(load_arguments(load, at, X, V, turns.of(l, angles)));
+    for (std::size_t b = 0; b < X.size(); ++b) energy -= dot(weights_[b], X[b]);
+    for (int l = 0; l < static_cast<int>(model_.loads().size()); ++l) {
+        const Load& load = model_.loads()[l];
+        if (load.potential) energy += load.potential(load_arguments(load, at, X, V, turns_.of(l, angles)));
     }
     return energy;
 }

@@ -5,6 +5,7 @@
 #include "livens/diagnostics/rigidity.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 #include <limits>
@@ -15,6 +16,7 @@
 #include "livens/diagnostics/diagnostics.h"
 #include "livens/diagnostics/sample.h"
 #include "livens/dynamics/instant/reactions.h"
+#include "livens/dynamics/rows/row_tables.h"
 #include "livens/dynamics/rows/rows.h"
 #include "livens/multibody/unwrapped_angles.h"
 #include "livens/statics/small_motions.h"
@@ -23,15 +25,28 @@ namespace livens {
 
 namespace {
 
-/// F - G^T lambda - X'' m of all bodies, each load and row looked at once.
-std::vector<Matrix34> forces_less_inertia(const Model& model, Instant at, std::span<const Matrix34> X,
-                                          std::span<const Matrix34> V, std::span<const Matrix34> A,
-                                          std::span<const double> multipliers, std::span<const double> angles)
+/// rest -= G^T lambda.
+void take_off_rows(const RowTables& rows, Instant at, std::span<const Matrix34> X,
+                   std::span<const double> multipliers, std::vector<Matrix34>& rest)
 {
-    std::vector<Matrix34> rest;
-    rest.reserve(X.size());
-    for (std::size_t b = 0; b < X.size(); ++b)
-        rest.push_back(weight(model.bodies()[b], model.gravity()) - A[b] * model.bodies()[b].mass);
+    for (int r = 0; r < std::ssize(multipliers); ++r) {
+        if (multipliers[r] == 0) continue;
+        const RowTable& row = rows[static_cast<std::size_t>(r)];
+        double g[RowTables::gradient_size];
+        rows.gradient(r, at, X.data()->data(), g);
+        for (int side = 0; side < row.n_sides; ++side)
+            for (const int column : row.columns[side])
+                for (int i = column; i < column + 3; ++i)
+                    rest[static_cast<std::size_t>(row.bodies[side])].a[i] -=
+                        multipliers[r] * g[12 * side + i];
+    }
+}
+
+/// rest += F of loads.
+void add_loads(const Model& model, Instant at, std::span<const Matrix34> X, std::span<const Matrix34> V,
+               std::span<const double> angles, std::vector<Matrix34>& rest)
+{
+    if (model.loads().empty()) return;
     const UnwrappedAngles turns(model);
     for (int l = 0; l < static_cast<int>(model.loads().size()); ++l) {
         const Load& load = model.loads()[l];
@@ -40,17 +55,25 @@ std::vector<Matrix34> forces_less_inertia(const Model& model, Instant at, std::s
         for (int b = 0; b < 2; ++b)
             if (load.bodies[b] != world) rest[static_cast<std::size_t>(load.bodies[b])] += F[b];
     }
-    for (int r = 0; r < model.n_rows(); ++r) {
-        if (multipliers[r] == 0) continue;
-        const RowGradient gradient = constraint_gradient(model.row(r), at, X);
-        for (const int body : gradient.bodies)
-            rest[static_cast<std::size_t>(body)] -= multipliers[r] * gradient.of(body);
-    }
+}
+
+/// F - G^T lambda - X'' m of all bodies, each load and row looked at once.
+std::vector<Matrix34> forces_less_inertia(const Model& model, const RowTables& rows, Instant at,
+                                          std::span<const Matrix34> X, std::span<const Matrix34> V,
+                                          std::span<const Matrix34> A, std::span<const double> multipliers,
+                                          std::span<const double> angles)
+{
+    std::vector<Matrix34> rest;
+    rest.reserve(X.size());
+    for (std::size_t b = 0; b < X.size(); ++b)
+        rest.push_back(weight(model.bodies()[b], model.gravity()) - A[b] * model.bodies()[b].mass);
+    add_loads(model, at, X, V, angles, rest);
+    take_off_rows(rows, at, X, multipliers, rest);
     return rest;
 }
 
 /// Of what is left the parts along the directors.
-std::vector<double> along_directors(const Matrix34& rest, const Matrix34& X)
+std::array<double, 6> along_directors(const Matrix34& rest, const Matrix34& X)
 {
     const Matrix3 along = transpose(directors(rest)) * directors(X);   // (a, b): column a along d_b
     return {along(0, 0), along(1, 1), along(2, 2), along(0, 1), along(0, 2), along(1, 2)};
@@ -66,7 +89,10 @@ std::vector<double> rigidity_multipliers(const Model& model, int body, Instant a
     assert(body >= 0 && body < model.n_bodies());
     assert(static_cast<int>(multipliers.size()) == model.n_rows());
     if (model.bodies()[body].is_point) return std::vector<double>(6, 0.0);
-    return along_directors(forces_less_inertia(model, at, X, V, A, multipliers, angles)[body], X[body]);
+    const RowTables rows(model, false);
+    const std::array<double, 6> six =
+        along_directors(forces_less_inertia(model, rows, at, X, V, A, multipliers, angles)[body], X[body]);
+    return {six.begin(), six.end()};
 }
 
 namespace {
@@ -82,7 +108,7 @@ Matrix34 acceleration(const Matrix34& X, const double* twist, const double* rate
 }
 
 /// Along the directors as they are stated: tr(Lambda U^T Phi U) is tr(U Lambda U^T Phi).
-Matrix3 as_stated(const Body& body, const std::vector<double>& six)
+Matrix3 as_stated(const Body& body, const std::array<double, 6>& six)
 {
     const Matrix3 straight{six[0], six[3], six[4], six[3], six[1], six[5], six[4], six[5], six[2]};
     if (!is_skew(body)) return straight;
@@ -102,7 +128,7 @@ struct SideOfRigidity {
 /// All that the equations of motion say of an instant.
 struct Balanced {
     Instant at;
-    const std::vector<Matrix34>&X, &V, &A;
+    std::span<const Matrix34> X, V, A;
     std::span<const double> angles;
 };
 
@@ -119,8 +145,8 @@ UniqueReactions least_at(const Model& model, Instant at, const std::vector<Matri
     return least_reactions(frozen(model, at), X, multipliers, independent);
 }
 
-SideOfRigidity rigidity_of(const Model& model, const Balanced& b, std::span<const double> multipliers,
-                           const std::vector<bool>& joint_is_unique)
+SideOfRigidity rigidity_of(const Model& model, const RowTables& rows, const Balanced& b,
+                           std::span<const double> multipliers, const std::vector<bool>& joint_is_unique)
 {
     SideOfRigidity all(b.X.size());
     for (std::size_t j = 0; j < joint_is_unique.size(); ++j) {
@@ -129,7 +155,8 @@ SideOfRigidity rigidity_of(const Model& model, const Balanced& b, std::span<cons
         for (const ConstraintRow& row : model.joints()[j].rows)
             for (const int body : row_bodies(row)) all.is_unique[static_cast<std::size_t>(body)] = false;
     }
-    const std::vector<Matrix34> rest = forces_less_inertia(model, b.at, b.X, b.V, b.A, multipliers, b.angles);
+    const std::vector<Matrix34> rest =
+        forces_less_inertia(model, rows, b.at, b.X, b.V, b.A, multipliers, b.angles);
     for (std::size_t i = 0; i < b.X.size(); ++i)
         if (!model.bodies()[i].is_point)
             all.multipliers[i] = as_stated(model.bodies()[i], along_directors(rest[i], b.X[i]));
@@ -165,8 +192,8 @@ SideOfRigidity rigidity_on(const Model& model, const State& state, Side side)
         V[b] = rate(X[b], {rates[0], rates[1], rates[2]}, {rates[3], rates[4], rates[5]});
     }
     const UniqueReactions least = least_at(model, {state.t, side}, X, at.multipliers[s], at.held.rows);
-    return rigidity_of(model, {{state.t, side}, X, V, A, at.angles}, least.multipliers,
-                       least.joint_is_unique);
+    return rigidity_of(model, RowTables(model, false), {{state.t, side}, X, V, A, at.angles},
+                       least.multipliers, least.joint_is_unique);
 }
 
 std::vector<RigiditySample> of_both_sides(const SideOfRigidity& left, const SideOfRigidity& right)
@@ -189,16 +216,22 @@ std::vector<RigiditySample> of_both_sides(const SideOfRigidity& left, const Side
 }   // namespace
 
 Rigidity::Rigidity(const Model& model, const Motion& motion)
-    : model_(model), motion_(motion), turns_(model, motion)
-{}
-
-std::vector<RigiditySample> Rigidity::at(double t) const
+    : model_(model), motion_(motion), turns_(model, motion), independent_(all_rows(model)),
+      rows_(std::make_shared<const RowTables>(model, false))
 {
-    const State state = sample_state(motion_, t);
+    std::erase_if(independent_, [&](int row) {
+        return std::ranges::find(motion.redundant_rows, row) != motion.redundant_rows.end();
+    });
+}
+
+std::vector<RigiditySample> Rigidity::at(double t) const { return at_sample(sample_state(motion_, t)); }
+
+std::vector<RigiditySample> Rigidity::at_sample(const State& state, const JointSampler* joints) const
+{
     const int end = element_end_at(motion_.mesh, state.t);
     const bool is_held =
         !motion_.accelerations.empty() && (motion_.n_rows == 0 || !motion_.end_multipliers.empty());
-    return end >= 0 && is_held && !model_.has_events() ? at_end(state, end) : at(state);
+    return end >= 0 && is_held && !model_.has_events() ? at_end(state, end, joints) : at(state);
 }
 
 std::vector<RigiditySample> Rigidity::at(const State& given) const
@@ -214,36 +247,46 @@ std::vector<RigiditySample> Rigidity::at(const State& given) const
     return of_both_sides(rigidity_on(before, state, Side::left), rigidity_on(after, state, Side::right));
 }
 
-std::vector<RigiditySample> Rigidity::at_end(const State& state, int end) const
+std::vector<RigiditySample> Rigidity::at_end(const State& state, int end, const JointSampler* joints) const
 {
     const std::vector<double> angles = turns_.at_end(end);
-    std::vector<int> independent = all_rows(model_);
-    std::erase_if(independent, [&](int row) {
-        return std::ranges::find(motion_.redundant_rows, row) != motion_.redundant_rows.end();
-    });
     const std::size_t n = static_cast<std::size_t>(motion_.n_bodies),
                       n_rows = static_cast<std::size_t>(motion_.n_rows);
     const std::span<const double> both =
         std::span(motion_.end_multipliers).subspan(2 * static_cast<std::size_t>(end) * n_rows, 2 * n_rows);
     // Both sides of an instant have the same rows, so one decomposition serves both sets of multipliers.
-    const bool is_shared = !model_.has_drives() && are_numbers(both);   // rows that do not move
-    UniqueReactions least;
-    if (is_shared) least = least_at(model_, {state.t}, state.X, both, independent);
-    const auto side = [&](Side of) {
-        const std::size_t s = of == Side::left ? 0 : 1;
-        const auto first = motion_.accelerations.begin() +
-                           static_cast<std::ptrdiff_t>((2 * static_cast<std::size_t>(end) + s) * n);
-        const std::vector<Matrix34> A(first, first + motion_.n_bodies);
-        const Balanced b{{state.t, of}, state.X, state.V, A, angles};
+    const bool is_redundant = static_cast<int>(independent_.size()) < model_.n_rows(),
+               is_shared = !model_.has_drives() && are_numbers(both);   // rows that do not move
+    UniqueReactions own;
+    const UniqueReactions* least = nullptr;
+    if (is_redundant && is_shared && joints != nullptr) least = joints->least_at(state, end);
+    if (is_redundant && is_shared && least == nullptr) {
+        own = least_at(model_, {state.t}, state.X, both, independent_);
+        least = &own;
+    }
+    const std::span<const Matrix34> A[] = {accelerations_at(end, 0, n), accelerations_at(end, 1, n)};
+    const auto side = [&](std::size_t s) {
+        const Balanced b{{state.t, s == 0 ? Side::left : Side::right}, state.X, state.V, A[s], angles};
         const std::span<const double> multipliers = both.subspan(s * n_rows, n_rows);
         if (!are_numbers(multipliers)) return unbounded(n);
+        if (!is_redundant) return rigidity_of(model_, *rows_, b, multipliers, {});
         if (is_shared)
-            return rigidity_of(model_, b, std::span(least.multipliers).subspan(s * n_rows, n_rows),
-                               least.joint_is_unique);
-        const UniqueReactions own = least_at(model_, b.at, state.X, multipliers, independent);
-        return rigidity_of(model_, b, own.multipliers, own.joint_is_unique);
+            return rigidity_of(model_, *rows_, b, std::span(least->multipliers).subspan(s * n_rows, n_rows),
+                               least->joint_is_unique);
+        const UniqueReactions of_side = least_at(model_, b.at, state.X, multipliers, independent_);
+        return rigidity_of(model_, *rows_, b, of_side.multipliers, of_side.joint_is_unique);
     };
-    return of_both_sides(side(Side::left), side(Side::right));
+    const SideOfRigidity left = side(0);
+    // Without loads and drives what is the same on both sides has one stress.
+    const bool is_same = is_shared && model_.loads().empty() && std::ranges::equal(A[0], A[1]) &&
+                         std::ranges::equal(both.first(n_rows), both.last(n_rows));
+    return of_both_sides(left, is_same ? left : side(1));
+}
+
+/// X'' of all bodies on a side of an element end.
+std::span<const Matrix34> Rigidity::accelerations_at(int end, std::size_t side, std::size_t n) const
+{
+    return std::span(motion_.accelerations).subspan((2 * static_cast<std::size_t>(end) + side) * n, n);
 }
 
 }   // namespace livens

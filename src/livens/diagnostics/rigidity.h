@@ -2,11 +2,17 @@
 // What keeps bodies rigid along a motion: the multipliers of (P4), and the stress they are.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "livens/diagnostics/coordinates.h"
+#include "livens/diagnostics/sample.h"
 
 namespace [[gnu::visibility("default")]] livens {
+
+inline namespace dynamics_internal {
+class RowTables;
+}   // namespace dynamics_internal
 
 /// What keeps a body rigid at an instant, from both sides of it: the multipliers Lambda_ab of (P4), N m, in
 /// components along the body's directors as they are stated; tension is positive. They are the second
@@ -26,15 +32,21 @@ public:
 
     /// At t, after snap_to_element_end(); at element ends of what the motion holds there.
     std::vector<RigiditySample> at(double t) const;
+    /// The same in a state that sample_state() gave; `joints` may know reactions there.
+    std::vector<RigiditySample> at_sample(const State& state, const JointSampler* joints = nullptr) const;
     /// The same in a state at an instant of the motion, as sample_exactly() has it.
     std::vector<RigiditySample> at(const State& state) const;
 
 private:
-    std::vector<RigiditySample> at_end(const State& state, int end) const;
+    std::vector<RigiditySample> at_end(const State& state, int end, const JointSampler* joints) const;
+
+    std::span<const Matrix34> accelerations_at(int end, std::size_t side, std::size_t n) const;
 
     const Model& model_;
     const Motion& motion_;
     LoadTurns turns_;
+    std::vector<int> independent_;   ///< rows
+    std::shared_ptr<const RowTables> rows_;
 };
 
 }   // namespace livens

@@ -2,6 +2,7 @@
 // A motion at single instants: poses, velocities, momenta and reactions as users want them.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "livens/dynamics/instant/reactions.h"
@@ -54,8 +55,9 @@ State sample_state(const Motion& motion, double t);
 /// From state and momentum P = X' m of the body.
 BodySample sample_body(const Body& body, const Matrix34& X, const Matrix34& V, const Matrix34& P);
 
-/// All bodies at t, after snap_to_element_end().
+/// All bodies at t, after snap_to_element_end(); or in a state that sample_state() gave.
 std::vector<BodySample> sample_bodies(const Model& model, const Motion& motion, double t);
+std::vector<BodySample> sample_bodies(const Model& model, const Motion& motion, const State& state);
 
 /// q and -q are one orientation: the one nearer to the last, as only these can be interpolated.
 inline Vector4 continued(const Vector4& last, const Vector4& q) { return dot(last, q) < 0 ? -1.0 * q : q; }
@@ -65,5 +67,24 @@ std::vector<double> node_times(const Field& field, const TimeMesh& mesh);
 
 /// All joints at t, after snap_to_element_end(). Without any multipliers in the motion the list is empty.
 std::vector<JointSample> sample_joints(const Model& model, const Motion& motion, double t);
+
+/// sample_joints() at many instants: what follows from the model alone is made once.
+class JointSampler {
+public:
+    JointSampler(const Model& model, const Motion& motion);
+
+    /// In a state that sample_state() gave.
+    std::vector<JointSample> at(const State& state) const;
+    /// Where joints are redundant: the least reactions at an element end, of the multipliers on both sides,
+    /// found once for those who ask one after the other. Null: there are none, or not for both sides.
+    const UniqueReactions* least_at(const State& state, int end) const;
+
+private:
+    struct Parts;
+
+    const Model& model_;
+    const Motion& motion_;
+    std::shared_ptr<Parts> parts_;
+};
 
 }   // namespace livens

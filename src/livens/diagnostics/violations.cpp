@@ -7,12 +7,13 @@
 #include <cassert>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "livens/base/error.h"
+#include "livens/diagnostics/detail/motion_pass.h"
 #include "livens/diagnostics/detail/sampler.h"
 #include "livens/diagnostics/diagnostics.h"
 #include "livens/diagnostics/largest.h"
-#include "livens/diagnostics/sample.h"
 #include "livens/dynamics/rows/rows.h"
 #include "livens/dynamics/rows/tables.h"
 #include "livens/solvers/patience.h"
@@ -51,20 +52,6 @@ double rigidity_violation(const Model& model, std::span<const Matrix34> X)
     return largest;
 }
 
-/// |dPhi/dt| / scale.
-double velocity_violation(const ModelTables& tables, int row, double t, std::span<const Matrix34> X,
-                          std::span<const Matrix34> V)
-{
-    const RowTable& table = tables.rows[row];
-    double g[RowTables::gradient_size];
-    tables.rows.gradient(row, {t}, X.data()->data(), g);
-    double rate = table.is_quadratic ? 0 : constraint_rate(*table.row, {t}, X);
-    for (int side = 0; side < table.n_sides; ++side)
-        for (const int column : table.columns[side])
-            for (int i = column; i < column + 3; ++i) rate += g[12 * side + i] * V[table.bodies[side]].a[i];
-    return std::abs(rate) / table.row->scale;
-}
-
 /// Also at the ends of its time.
 bool is_held(const ModelTables& tables, int row, double t)
 {
@@ -81,33 +68,6 @@ double worst_joint(const ModelTables& tables, double t, std::span<const Matrix34
     return largest;
 }
 
-/// visit(time, largest of the joints, its row, largest of rigidity), node after node.
-template <class Visit>
-void visit_nodes(const ModelTables& tables, const Motion& motion, const Visit& visit)
-{
-    std::vector<Matrix34> X(static_cast<std::size_t>(motion.n_bodies));
-    auto x = motion.X.values.begin();
-    for (const double t : node_times(motion.X, motion.mesh)) {
-        for (Matrix34& body : X) {
-            std::copy_n(x, 12, body.data());
-            x += 12;
-        }
-        int row = -1;
-        const double joints = worst_joint(tables, t, X, row);
-        visit(t, joints, row, rigidity_violation(*tables.model, X));
-    }
-}
-
-void at_nodes(const ModelTables& tables, const Motion& motion, ViolationReport& report)
-{
-    visit_nodes(tables, motion, [&](double t, double joints, int row, double rigidity) {
-        raise_to(report.rigidity_at_nodes, rigidity);
-        if (!raise_to(report.joints_at_nodes, joints)) return;
-        report.worst_row = row;
-        report.worst_time = t;
-    });
-}
-
 std::vector<double> points_between(const std::vector<double>& nodes, int samples)
 {
     std::vector<double> points;
@@ -117,19 +77,6 @@ std::vector<double> points_between(const std::vector<double>& nodes, int samples
         }
     }
     return points;
-}
-
-void at_velocity_level(const ModelTables& tables, const Motion& motion, std::span<Matrix34> X,
-                       ViolationReport& report)
-{
-    for (int end = 0; end <= motion.n_elements(); ++end) {
-        Patience::ask();
-        positions_at_end(motion, end, X);
-        const std::span<const Matrix34> V = velocities_at_end(motion, end);
-        for (int r = 0; r < tables.n_rows(); ++r)
-            if (is_held(tables, r, motion.mesh.ends[end]))
-                raise_to(report.velocity_level, velocity_violation(tables, r, motion.mesh.ends[end], X, V));
-    }
 }
 
 void between_nodes(const ModelTables& tables, const Motion& motion, int samples, std::span<Matrix34> X,
@@ -187,27 +134,31 @@ ViolationReport violations(const Model& model, const Motion& motion, int samples
         throw InputError({"samples", "samples", "the number of samples between nodes must not be negative",
                           std::to_string(samples), ">= 0", "", ""});
     }
-    ViolationReport report;
-    if (motion.mesh.ends.empty()) return report;
+    if (motion.mesh.ends.empty()) return {};
+    MotionPass pass(model, motion, {.violations = true});
+    pass.finish();
+    ViolationReport report = pass.figures().violations;
+    if (samples == 0 && !means) return report;
     std::vector<Matrix34> X(static_cast<std::size_t>(motion.n_bodies));
     const ModelTables tables(model, all_rows(model));
-    at_nodes(tables, motion, report);
-    at_velocity_level(tables, motion, X, report);
     if (samples > 0) between_nodes(tables, motion, samples, X, report);
     if (means) as_integrals(tables, motion, X, report);
     return report;
 }
 
+void diagnostics_internal::add_weak_violations(const Model& model, const Motion& motion,
+                                               ViolationReport& report)
+{
+    std::vector<Matrix34> X(static_cast<std::size_t>(motion.n_bodies));
+    as_integrals(ModelTables(model, all_rows(model)), motion, X, report);
+}
+
 NodeViolations node_violations(const Model& model, const Motion& motion)
 {
-    NodeViolations series;
-    if (motion.X.empty()) return series;
-    visit_nodes(ModelTables(model, all_rows(model)), motion,
-                [&](double, double joints, int, double rigidity) {
-                    series.joints.push_back(joints);
-                    series.rigidity.push_back(rigidity);
-                });
-    return series;
+    if (motion.X.empty()) return {};
+    MotionPass pass(model, motion, {.violations = true, .series = true});
+    pass.finish();
+    return std::move(pass.figures().nodes);
 }
 
 }   // namespace livens

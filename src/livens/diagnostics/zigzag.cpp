@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Alternation from node to node, sin^2 of half the angle per step: solutions of the paper's elements that are
-// none (theory.md, "The elements of the paper", Acceptance). Second differences of an alternating function
-// are four times it, those of a smooth one are small.
+// none (theory.md, "The elements of the paper", Acceptance).
 #include <algorithm>
-#include <array>
 #include <cassert>
 #include <cmath>
-#include <limits>
 #include <string>
+#include <utility>
 
 #include "livens/base/error.h"
+#include "livens/diagnostics/detail/alternation.h"
 #include "livens/diagnostics/detail/sampler.h"
 #include "livens/diagnostics/diagnostics.h"
 #include "livens/diagnostics/largest.h"
@@ -22,177 +21,6 @@ namespace {
 constexpr double noise_level = 1e-11;
 /// Relative to the model's length, which places bodies that are near the origin.
 constexpr double noise_of_lengths = 1e-13;
-/// A body's spin is judged by itself down to this fraction of the speed of all that moves.
-constexpr double smallest_part = 1e-3;
-/// With fewer samples a smooth oscillation may look like any other.
-constexpr int fewest_samples = 6;
-
-using Bodies = std::vector<Matrix34>;
-
-/// Of symmetric metrics, of whose entries many are zero.
-double square(const std::vector<Matrix4>& metric, const Bodies& g)
-{
-    double sum = 0;
-    for (std::size_t b = 0; b < g.size(); ++b)
-        for (int p = 0; p < 4; ++p)
-            for (int q = 0; q <= p; ++q) {
-                const double m = metric[b](p, q);
-                if (m != 0) sum += (p == q ? m : 2 * m) * dot(g[b].column(p), g[b].column(q));
-            }
-    return sum;
-}
-
-/// Twice the kinetic energy of velocities is their square in the mass matrices, which are the sum of two:
-/// what the centres of mass have, and what the spins have about them. The same for momenta, with inverses.
-struct Metric {
-    std::vector<Matrix4> centres, spins;
-
-    static Metric of_velocities(const Model& model)
-    {
-        Metric metric;
-        for (const Body& body : model.bodies()) {
-            Vector4 centre{};   // (1, theta): m (1, 0) = M (1, theta)
-            for (int i = 0; i < 4; ++i) centre[i] = body.mass(i, 0) / body.mass(0, 0);
-            // Centres and spins apart: an alternating spin would be lost beside a large velocity of the
-            // centre.
-            metric.add(body.mass, body.mass(0, 0) * outer(centre, centre));
-        }
-        return metric;
-    }
-    static Metric of_momenta(const Model& model)
-    {
-        Metric metric;
-        for (const Body& body : model.bodies()) {
-            Matrix4 linear{};
-            linear(0, 0) = 1 / body.mass(0, 0);
-            metric.add(inverse_mass(body.mass, body.is_point), linear);
-        }
-        return metric;
-    }
-
-private:
-    void add(const Matrix4& all, const Matrix4& centre)
-    {
-        centres.push_back(centre);
-        spins.push_back(all - centre);
-    }
-};
-
-struct Worst {
-    double value = 0;
-    double time = 0;
-};
-
-/// Squares of a function of time and of its second differences, sample after sample.
-class Squares {
-public:
-    Squares(std::vector<Matrix4> metric, std::size_t n) : metric_(std::move(metric))
-    {
-        samples_.reserve(n);
-        differences_.reserve(n);
-    }
-
-    /// The next sample, and the second difference about the last one if there is any.
-    void append(const Bodies& g, const Bodies* second_difference)
-    {
-        // E about the centre is what m leaves, and may be negative by rounding where it is zero.
-        samples_.push_back(positive(square(metric_, g)));
-        if (second_difference) differences_.back() = positive(square(metric_, *second_difference));
-        differences_.push_back(0);
-    }
-
-    double operator[](std::size_t i) const { return samples_[i]; }
-    std::size_t size() const { return samples_.size(); }
-
-    /// Alternating part of `count` samples against all of them, or against `floor` if that is more. An
-    /// alternating g has second differences 4 g.
-    double alternation(std::size_t first, std::size_t count, double floor) const
-    {
-        double sum = 0, second = 0;
-        for (std::size_t i = first; i < first + count; ++i) sum += samples_[i];
-        for (std::size_t i = first + 1; i + 1 < first + count; ++i) second += differences_[i];
-        const double n = static_cast<double>(count);
-        const double reference = std::max(sum / n, floor);
-        return reference > 0 ? std::min(1.0, std::sqrt(second / (16 * (n - 2)) / reference)) : 0;
-    }
-
-private:
-    static double positive(double x) { return x < 0 ? 0 : x; }
-
-    std::vector<Matrix4> metric_;
-    std::vector<double> samples_, differences_;   // the second difference at the sample in its middle
-};
-
-/// A velocity or a momentum, one sample after the other.
-class Series {
-public:
-    /// `noise` times 1 / step is what rounding may make of a sample; `n` samples will come.
-    Series(Metric metric, double noise, int n)
-        : parts_{Squares(std::move(metric.centres), static_cast<std::size_t>(n)),
-                 Squares(std::move(metric.spins), static_cast<std::size_t>(n))},
-          noise_(noise)
-    {
-        times_.reserve(static_cast<std::size_t>(n));
-        steps_.reserve(static_cast<std::size_t>(n));
-    }
-
-    void append(double t, double step, const Bodies& g)
-    {
-        times_.push_back(t);
-        steps_.push_back(step);
-        const bool has_two = times_.size() > 2;
-        for (std::size_t b = 0; has_two && b < g.size(); ++b) before_[b] += g[b] - 2.0 * last_[b];
-        for (Squares& part : parts_) part.append(g, has_two ? &before_ : nullptr);
-        before_ = std::move(last_);
-        last_ = g;
-    }
-
-    Worst worst(int window) const
-    {
-        for (std::size_t i = 0; i < times_.size(); ++i) {
-            if (!std::isfinite(parts_[0][i] + parts_[1][i]))
-                return {std::numeric_limits<double>::quiet_NaN(), times_[i]};
-        }
-        Worst result;
-        const std::size_t n = std::min(static_cast<std::size_t>(window), times_.size());
-        if (n < fewest_samples) return result;
-        const std::array<double, 2> means{mean(parts_[0]), mean(parts_[1])};
-        for (std::size_t p = 0; p < 2; ++p) {
-            // Against the mean over all time: where a motion rests for a while, noise would alternate by its
-            // own size.
-            const double floor = std::max(means[p], smallest_part * smallest_part * (means[0] + means[1]));
-            for (std::size_t first = 0; first + n <= times_.size(); ++first) {
-                const double value = parts_[p].alternation(first, n, std::max(floor, noise_square(first, n)));
-                if (raise_to(result.value, value))
-                    result.time = 0.5 * (times_[first] + times_[first + n - 1]);
-            }
-        }
-        return result;
-    }
-
-private:
-    /// Mean over time.
-    double mean(const Squares& part) const
-    {
-        double sum = 0, length = 0;
-        for (std::size_t i = 0; i < times_.size(); ++i) {
-            sum += steps_[i] * part[i];
-            length += steps_[i];
-        }
-        return sum / length;
-    }
-    double noise_square(std::size_t first, std::size_t count) const
-    {
-        const double step = *std::min_element(steps_.begin() + static_cast<std::ptrdiff_t>(first),
-                                              steps_.begin() + static_cast<std::ptrdiff_t>(first + count));
-        return (noise_ / step) * (noise_ / step);
-    }
-
-    std::array<Squares, 2> parts_;
-    double noise_;
-    std::vector<double> times_, steps_;
-    Bodies before_, last_;   // the last two samples
-};
 
 std::vector<double> equal_steps(int n)
 {
@@ -202,72 +30,120 @@ std::vector<double> equal_steps(int n)
 }
 
 /// Noise of positions in the metric of the masses, from the largest at element ends; kg^(1/2) m.
-double position_noise(const Model& model, const Motion& motion)
+double position_noise(const Model& model, const Motion& motion, const PartMetric& metric)
 {
-    std::vector<Matrix4> masses;
     double mass = 0, largest = 0;
-    for (const Body& body : model.bodies()) {
-        masses.push_back(body.mass);
-        mass += body.mass(0, 0);
-    }
-    Bodies X(masses.size());
+    for (const Body& body : model.bodies()) mass += body.mass(0, 0);
+    std::vector<double> numbers(static_cast<std::size_t>(metric.size()));
     for (int end = 0; end <= motion.n_elements(); ++end) {
         Patience::ask();
-        positions_at_end(motion, end, X);
-        raise_to(largest, std::sqrt(square(masses, X)));
+        const bool is_last = end == motion.n_elements();
+        metric.apply(motion.X.coefficient(is_last ? end - 1 : end, is_last ? motion.X.degree : 0).data(),
+                     numbers.data());
+        double square = 0;
+        for (const double x : numbers) square += x * x;
+        raise_to(largest, std::sqrt(square));
     }
     double noise = noise_level * largest;
     raise_to(noise, noise_of_lengths * model.length() * std::sqrt(mass));
     return noise;
 }
 
-/// Mean velocities of steps inside elements, so that jumps of X between blocks do not enter.
-Series step_velocities(const Model& model, const Motion& motion, double noise)
+/// Mean velocities over equal steps of an element, as numbers of a metric.
+class StepVelocities {
+public:
+    StepVelocities(const Motion& motion, const PartMetric& metric)
+        : motion_(motion), metric_(metric), n_(motion.X.degree), table_(motion.X, equal_steps(n_)),
+          reduced_(static_cast<std::size_t>(n_ * metric.size())), samples_(reduced_)
+    {
+        const LagrangeBasis basis = motion.X.basis();
+        std::vector<double> here(static_cast<std::size_t>(n_) + 1), next(here.size());
+        basis.values(0, here);
+        for (int k = 1; k <= n_; ++k) {
+            basis.values(static_cast<double>(k) / n_, next);
+            for (std::size_t A = 1; A < here.size(); ++A) matrix_.push_back(next[A] - here[A]);
+            std::swap(here, next);
+        }
+    }
+
+    /// Of n steps of a length, one after the other.
+    const double* of(int element, double step)
+    {
+        const bool is_polynomial = motion_.X.denominators.empty();
+        if (is_polynomial)
+            differences_of(motion_.X, element, 1 / step, values_);
+        else
+            find_increments(element, step);
+        for (int k = 0; k < n_; ++k)
+            metric_.apply(values_.data() + k * motion_.X.n_values, reduced_.data() + k * metric_.size());
+        if (!is_polynomial) return reduced_.data();
+        multiply({matrix_.data(), n_, n_, n_}, reduced_.data(), metric_.size(), samples_.data());
+        return samples_.data();
+    }
+
+private:
+    void find_increments(int element, double step)
+    {
+        const auto n = static_cast<std::size_t>(motion_.X.n_values);
+        places_.resize(n * static_cast<std::size_t>(n_ + 1));
+        values_.resize(places_.size() - n);
+        table_.all_values(element, places_);
+        for (std::size_t i = 0; i < values_.size(); ++i) values_[i] = (places_[i + n] - places_[i]) / step;
+    }
+
+    const Motion& motion_;
+    const PartMetric& metric_;
+    int n_;
+    FieldTable table_;             // of quotients of polynomials
+    std::vector<double> matrix_;   // increments of the basis, step by step, but for its first function
+    std::vector<double> places_, values_, reduced_, samples_;
+};
+
+/// Steps lie inside elements, so that jumps of X between blocks do not enter.
+SampleSeries step_velocities(const Motion& motion, double noise, const PartMetric& metric)
 {
     const int n = motion.X.degree;
-    Series series(Metric::of_velocities(model), noise, motion.n_elements() * n);
-    const ElementSampler sampler(motion, equal_steps(n));
-    Bodies here(static_cast<std::size_t>(motion.n_bodies)), next(here.size());
+    SampleSeries series(metric, noise, motion.n_elements() * n);
+    StepVelocities velocities(motion, metric);
     for (int e = 0; e < motion.n_elements(); ++e) {
         Patience::ask();
         const double step = motion.mesh.length(e) / n;
-        sampler.positions(e, 0, here);
-        for (int k = 0; k < n; ++k) {
-            sampler.positions(e, k + 1, next);
-            for (std::size_t b = 0; b < here.size(); ++b) here[b] = (1 / step) * (next[b] - here[b]);
-            series.append(motion.mesh.ends[e] + (k + 0.5) * step, step, here);
-            std::swap(here, next);
-        }
+        const double* const samples = velocities.of(e, step);
+        for (int k = 0; k < n; ++k)
+            series.append(motion.mesh.ends[e] + (k + 0.5) * step, step, samples + k * metric.size());
     }
     return series;
 }
 
 /// The field of momenta at the starts of its steps, and at the very end.
-Series momenta(const Model& model, const Motion& motion, double noise)
+SampleSeries momenta(const Model& model, const Motion& motion, double noise)
 {
     const int n = std::max(motion.P.degree, 1);
-    Series series(Metric::of_momenta(model), noise, motion.n_elements() * n + 1);
+    const PartMetric metric = PartMetric::of_momenta(model);
+    SampleSeries series(metric, noise, motion.n_elements() * n + 1);
     const ElementSampler sampler(motion, equal_steps(n));
-    Bodies P(static_cast<std::size_t>(motion.n_bodies));
+    std::vector<Matrix34> P(static_cast<std::size_t>(motion.n_bodies));
+    std::vector<double> numbers(static_cast<std::size_t>(metric.size()));
     for (int e = 0; e < motion.n_elements(); ++e) {
         Patience::ask();
         for (int k = 0; k < (e + 1 < motion.n_elements() ? n : n + 1); ++k) {
             sampler.momenta(e, k, P);
-            series.append(sampler.instant(e, k).t, motion.mesh.length(e) / n, P);
+            metric.apply(P.data()->data(), numbers.data());
+            series.append(sampler.instant(e, k).t, motion.mesh.length(e) / n, numbers.data());
         }
     }
     return series;
 }
 
 /// Velocities at element ends, which are momenta: V in the metric of m is P in that of m^-1.
-Series end_velocities(const Model& model, const Motion& motion, double noise)
+SampleSeries end_velocities(const Motion& motion, double noise, const PartMetric& metric)
 {
-    Series series(Metric::of_velocities(model), noise, motion.n_elements() + 1);
+    SampleSeries series(metric, noise, motion.n_elements() + 1);
+    std::vector<double> numbers(static_cast<std::size_t>(metric.size()));
     for (int end = 0; end <= motion.n_elements(); ++end) {
         Patience::ask();
-        const std::span<const Matrix34> V = velocities_at_end(motion, end);
-        const double step = motion.mesh.length(std::max(end - 1, 0));
-        series.append(motion.mesh.ends[end], step, Bodies(V.begin(), V.end()));
+        metric.apply(velocities_at_end(motion, end).data()->data(), numbers.data());
+        series.append(motion.mesh.ends[end], motion.mesh.length(std::max(end - 1, 0)), numbers.data());
     }
     return series;
 }
@@ -275,12 +151,13 @@ Series end_velocities(const Model& model, const Motion& motion, double noise)
 /// The momentum that belongs to the derivative of X is no more than X has said; velocities at element ends
 /// are data of their own, but a smooth motion may turn by radians between the ends of elements that are not
 /// linear.
-Worst worst_of_momenta(const Model& model, const Motion& motion, double noise, int window, const Worst& of_X)
+Alternation worst_of_momenta(const Model& model, const Motion& motion, double noise, int window,
+                             const PartMetric& metric, const Alternation& of_X)
 {
     const bool invertible = std::ranges::none_of(
         model.bodies(), [](const Body& body) { return is_singular(body.mass, body.is_point); });
     if (!motion.P.empty() && invertible) return momenta(model, motion, noise).worst(window);
-    return motion.X.degree == 1 ? end_velocities(model, motion, noise).worst(window) : of_X;
+    return motion.X.degree == 1 ? end_velocities(motion, noise, metric).worst(window) : of_X;
 }
 
 }   // namespace
@@ -288,14 +165,16 @@ Worst worst_of_momenta(const Model& model, const Motion& motion, double noise, i
 Zigzag zigzag(const Model& model, const Motion& motion, int window)
 {
     assert(model.n_bodies() == motion.n_bodies);
-    if (window < fewest_samples) {
+    constexpr int fewest = SampleSeries::fewest;
+    if (window < fewest) {
         throw InputError({"window", "window", "too few samples to tell an oscillation from a zig-zag",
-                          std::to_string(window), ">= " + std::to_string(fewest_samples), "", ""});
+                          std::to_string(window), ">= " + std::to_string(fewest), "", ""});
     }
-    if (motion.n_elements() < 1) return {};
-    const double noise = position_noise(model, motion);
-    const Worst positions = step_velocities(model, motion, noise).worst(window);
-    const Worst momenta = worst_of_momenta(model, motion, noise, window, positions);
+    if (motion.n_elements() < 1 || motion.n_bodies == 0) return {};
+    const PartMetric metric = PartMetric::of_velocities(model);
+    const double noise = position_noise(model, motion, metric);
+    const Alternation positions = step_velocities(motion, noise, metric).worst(window);
+    const Alternation momenta = worst_of_momenta(model, motion, noise, window, metric, positions);
     const bool in_positions = !(positions.value < momenta.value) && !std::isnan(momenta.value);
     return {positions.value, momenta.value, in_positions ? positions.time : momenta.time};
 }

@@ -22,6 +22,12 @@ void append_escaped(std::string& out, std::string_view text)
 {
     out += '"';
     while (!text.empty()) {
+        const auto is_plain = [](char c) { return c >= ' ' && c < 0x7f && c != '"' && c != '\\'; };
+        const std::size_t n_plain =
+            static_cast<std::size_t>(std::ranges::find_if_not(text, is_plain) - text.begin());
+        out.append(text.substr(0, n_plain));
+        text.remove_prefix(n_plain);
+        if (text.empty()) break;
         const int length = utf8_length(text);
         const unsigned char c = static_cast<unsigned char>(text.front());
         if (length == 0) {

@@ -144,6 +144,8 @@ State Motion::at(double t) const
     X.evaluate(element, s, 1, rates);
     State state;
     state.t = t;
+    state.X.reserve(static_cast<std::size_t>(n_bodies));
+    state.V.reserve(static_cast<std::size_t>(n_bodies));
     for (int b = 0; b < n_bodies; ++b) {
         state.X.push_back(body_of(x, b));
         state.V.push_back((1 / h) * body_of(rates, b));
@@ -158,6 +160,8 @@ State Motion::at_end(int end) const
     assert(static_cast<int>(velocities.size()) == (n_elements() + 1) * n_bodies);
     State state;
     state.t = mesh.ends[end];
+    state.X.reserve(static_cast<std::size_t>(n_bodies));
+    state.V.reserve(static_cast<std::size_t>(n_bodies));
     const std::span<const double> x =
         end < n_elements() ? X.coefficient(end, 0) : X.coefficient(end - 1, X.degree);
     for (int b = 0; b < n_bodies; ++b) {
@@ -178,13 +182,17 @@ Reaction joint_reaction(const Model& model, int joint, std::span<const Matrix34>
         // Multipliers enter the law as forces -G^T lambda; on the second body that is the joint's reaction.
         if (multiplier != 0) F -= multiplier * constraint_gradient(j.rows[k], X).of(j.second);
     }
-    const Matrix34& X_second = X[j.second];
+    return joint_reaction(j, X[j.second], F);
+}
+
+Reaction joint_reaction(const Joint& joint, const Matrix34& X_second, const Matrix34& F)
+{
     Reaction reaction;
     reaction.force = F.column(0);
     // Forces on directors do work under a turn like the moment sum d_i x F_i.
     for (int i = 1; i < 4; ++i) reaction.torque += cross(X_second.column(i), F.column(i));
     // The moment of F about the reference point, moved to the joint point.
-    const Vector3 arm = X_second * point(j.point_second) - X_second.column(0);
+    const Vector3 arm = X_second * point(joint.point_second) - X_second.column(0);
     reaction.torque -= cross(arm, reaction.force);
     return reaction;
 }

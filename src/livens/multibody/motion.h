@@ -112,5 +112,7 @@ struct Reaction {
 /// model; a model with drives wants to be frozen() first.
 Reaction joint_reaction(const Model& model, int joint, std::span<const Matrix34> X,
                         std::span<const double> multipliers);
+/// The same from what the joint does to X of its second body: F of -G^T lambda.
+Reaction joint_reaction(const Joint& joint, const Matrix34& X_second, const Matrix34& F);
 
 }   // namespace livens

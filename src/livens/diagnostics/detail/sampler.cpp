@@ -9,6 +9,9 @@
 #include <cassert>
 #include <cstring>
 
+#include "livens/diagnostics/detail/pairs.h"
+#include "livens/diagnostics/detail/point_kernels.h"
+
 namespace livens::inline diagnostics_internal {
 namespace {
 
@@ -17,9 +20,6 @@ void unstack(std::span<const double> stacked, std::span<Matrix34> bodies)
     assert(stacked.size() == 12 * bodies.size());
     for (std::size_t b = 0; b < bodies.size(); ++b) std::copy_n(stacked.data() + 12 * b, 12, bodies[b].a);
 }
-
-/// Two doubles in one register; the compiler does not find them by itself here.
-typedef double Pair __attribute__((vector_size(16)));
 
 /// out = factor x_0 + sum over A of row_A (x_A - x_0), for n `Number`s of coefficients that are `stride`
 /// doubles apart. In differences from the first node, as the basis adds up to one: rounding is that of the
@@ -53,6 +53,21 @@ void combine_bodies(const Field& field, int element, std::span<const double> row
 }
 
 }   // namespace
+
+void differences_of(const Field& field, int element, double factor, std::vector<double>& d)
+{
+    const auto n = static_cast<std::size_t>(field.n_values);
+    d.resize(n * static_cast<std::size_t>(field.degree));
+    const double* const first = field.coefficient(element, 0).data();
+    const double* x = first + n;
+    for (std::size_t A = 0; A < d.size(); A += n, x += n)
+        for (std::size_t i = 0; i < n; ++i) d[A + i] = factor * (x[i] - first[i]);
+}
+
+void multiply(const ConstantMatrix& M, const double* d, int n, double* out)
+{
+    point_kernels().multiply(M.entries, M.rows, M.columns, M.stride, d, n, out);
+}
 
 FieldTable::FieldTable(const Field& field, std::span<const double> points) : field_(&field)
 {
@@ -114,19 +129,83 @@ void FieldTable::derivatives(int element, int k, double factor, std::span<Matrix
     combine_bodies(*field_, element, std::span<const double>(scratch).first(D.size()), 0, bodies);
 }
 
+/// From differences of the coefficients; of quotients point by point.
+void FieldTable::sum_up(int element, int derivative, std::span<const double> d, std::span<double> out) const
+{
+    const auto n = static_cast<std::size_t>(field_->n_values);
+    const int n_points = static_cast<int>(nodes_.size()), size = field_->degree + 1;
+    assert(out.size() == n * nodes_.size());
+    if (field_->denominators.empty()) {
+        const double* const table = (derivative == 0 ? values_ : derivatives_).data();
+        multiply({table + 1, n_points, size - 1, size}, d.data(), static_cast<int>(n), out.data());
+        return;
+    }
+    Row scratch;
+    for (int k = 0; k < n_points; ++k)
+        multiply({row(element, k, derivative, scratch).data() + 1, 1, size - 1, size}, d.data(),
+                 static_cast<int>(n), out.data() + static_cast<std::size_t>(k) * n);
+}
+
+/// To sums of differences; at nodes the coefficients themselves.
+void FieldTable::add_first(int element, std::span<double> values) const
+{
+    const auto n = static_cast<std::size_t>(field_->n_values);
+    const double* const first = field_->coefficient(element, 0).data();
+    for (std::size_t k = 0; k < nodes_.size(); ++k) {
+        double* const at = values.data() + k * n;
+        if (nodes_[k] >= 0)
+            std::ranges::copy(field_->coefficient(element, nodes_[k]), at);
+        else
+            for (std::size_t i = 0; i < n; ++i) at[i] += first[i];
+    }
+}
+
+void FieldTable::all_values(int element, std::span<double> out) const
+{
+    std::vector<double> d;
+    differences_of(*field_, element, 1, d);
+    sum_up(element, 0, d, out);
+    add_first(element, out);
+}
+
+void FieldTable::all_derivatives(int element, double factor, std::span<double> out) const
+{
+    std::vector<double> d;
+    differences_of(*field_, element, factor, d);
+    sum_up(element, 1, d, out);
+}
+
+void FieldTable::all_of_both(int element, double factor, std::span<double> values,
+                             std::span<double> derivatives) const
+{
+    std::vector<double> d;
+    differences_of(*field_, element, 1, d);
+    sum_up(element, 0, d, values);
+    add_first(element, values);
+    for (double& x : d) x *= factor;
+    sum_up(element, 1, d, derivatives);
+}
+
 ElementSampler::ElementSampler(const Motion& motion, std::vector<double> points)
     : motion_(motion), points_(std::move(points)), X_(motion.X, points_)
 {
     if (!motion.P.empty()) P_.emplace(motion.P, points_);
 }
 
-Instant ElementSampler::instant(int element, int k) const
+std::vector<double> field_at(const Field& field, const TimeMesh& mesh, double t)
 {
-    const double s = points_[k];
+    const int element = mesh.element_at(t);
+    std::vector<double> values(static_cast<std::size_t>(field.n_values));
+    field.evaluate(element, (t - mesh.ends[element]) / mesh.length(element), 0, values);
+    return values;
+}
+
+Instant instant_at(const TimeMesh& mesh, int element, double s)
+{
     // Seen from inside the element: a load that jumps at its end has not jumped yet.
-    if (s == 0) return {motion_.mesh.ends[element], Side::right};
-    if (s == 1) return {motion_.mesh.ends[element + 1], Side::left};
-    return {motion_.mesh.ends[element] + s * motion_.mesh.length(element), Side::middle};
+    if (s == 0) return {mesh.ends[element], Side::right};
+    if (s == 1) return {mesh.ends[element + 1], Side::left};
+    return {mesh.ends[element] + s * mesh.length(element), Side::middle};
 }
 
 void ElementSampler::positions(int element, int k, std::span<Matrix34> X) const { X_.values(element, k, X); }

@@ -2,13 +2,10 @@
 // What flows into a mechanism through loads and joints.
 #pragma once
 
-#include <optional>
+#include <span>
 #include <vector>
 
 #include "livens/diagnostics/coordinates.h"
-#include "livens/diagnostics/detail/sampler.h"
-#include "livens/dynamics/rows/tables.h"
-#include "livens/time/quadrature.h"
 
 namespace livens::inline diagnostics_internal {
 
@@ -25,54 +22,32 @@ struct Supply {
     void add(double weight, const Supply& other);
 };
 
-/// What gravity and loads supply, at the points where the method takes loads.
+/// What loads supply, at the points where the method takes them.
 class LoadSupply {
 public:
-    LoadSupply(const Model& model, const Motion& motion);
+    LoadSupply(const Model& model, const Motion& motion) : model_(model), turns_(model, motion) {}
 
-    int n_points() const { return points_.size(); }
-    double weight_of(int k) const { return rule_.weights[k]; }
-    /// Rates at a point; the points of an element are asked for one after the other.
-    Supply at(int element, int k);
+    bool empty() const { return model_.loads().empty(); }
+    const LoadTurns& turns() const { return turns_; }
+
+    /// An element begins: turns are those at its start.
+    void begin(int element) { angles_ = turns_.at_end(element); }
     /// What loads make of positions off by their size, and of velocities off by that in h: as rounding is
     /// relative to the size, stiff loads amplify it. At one point of the element.
-    Supply stiffness(int element, double h);
-    const LoadTurns& turns() const { return turns_; }
-    /// Of all instants so far.
-    double largest_kinetic() const { return largest_kinetic_; }
+    Supply stiffness(Instant at, std::span<const Matrix34> X, std::span<const Matrix34> V, double h) const;
+    /// Rates at a point; the points of an element are asked for one after the other.
+    Supply at(Instant at, std::span<const Matrix34> X, std::span<const Matrix34> V);
 
 private:
-    void go_to(int element, int k);
-    LoadArguments arguments(int load, Instant at) const;
+    LoadArguments arguments(int load, Instant at, std::span<const Matrix34> X,
+                            std::span<const Matrix34> V) const
+    {
+        return load_arguments(model_.loads()[load], at, X, V, turns_.turns().of(load, angles_));
+    }
 
     const Model& model_;
     const LoadTurns turns_;
-    std::vector<Matrix34> weights_of_bodies_;
-    Quadrature rule_;
-    ElementSampler points_;
-    std::vector<Matrix34> X_, V_;
-    std::vector<double> angles_;   // where X_ is
-    double largest_kinetic_ = 0;
-};
-
-/// What joints supply, at the points where the method holds them.
-class JointSupply {
-public:
-    JointSupply(const Model& model, const Motion& motion);
-
-    int n_points() const { return multipliers_ ? points_.size() : 0; }
-    double weight_of(int k) const { return rule_.weights[k]; }
-    /// -G^T lambda on all bodies: between two bodies it adds up to nothing, so what stays is the world's. Its
-    /// power is that of drives, -lambda G X' = lambda dPhi/dt at fixed X.
-    Supply at(int element, int k);
-
-private:
-    const ModelTables tables_;
-    Quadrature rule_;
-    ElementSampler points_;
-    std::vector<Matrix34> X_;
-    std::optional<FieldTable> multipliers_;   // a field of its own degree
-    std::vector<double> lambda_;
+    std::vector<double> angles_;   // at the last point
 };
 
 }   // namespace livens::inline diagnostics_internal

@@ -106,15 +106,17 @@ void write_csv(const std::filesystem::path& file, const Model& model, const Run&
     };
     const JointCoordinates coordinates(model, run.motion);
     const SensorReadings sensors(model, run.motion);
+    const JointSampler joints(model, run.motion);
     const bool has_reactions = !sample_joints(model, run.motion, run.motion.start()).empty();
     std::string text = header(model, run, coordinates, has_reactions);
     const LoadTurns turns(model, run.motion);
     std::vector<Vector4> previous(run.body_names.size(), Vector4{1, 0, 0, 0});
     for (const double asked : run.output) {
         if (asked < run.motion.start() || asked > run.motion.end()) continue;
-        const double t = snap_to_element_end(run.motion.mesh, asked);
+        const State state = sample_state(run.motion, asked);
+        const double t = state.t;
         text += to_text(asked);
-        const std::vector<BodySample> bodies = sample_bodies(model, run.motion, t);
+        const std::vector<BodySample> bodies = sample_bodies(model, run.motion, state);
         for (std::size_t b = 0; b < bodies.size(); ++b) {
             const BodySample& s = bodies[b];
             // Of q and -q the one that is nearer to the row before: columns have no jumps of sign.
@@ -125,18 +127,18 @@ void write_csv(const std::filesystem::path& file, const Model& model, const Run&
             add_cells(text, s.angular_velocity);
         }
         add_energies(text, model, run.motion, turns, t);
-        for (const CoordinateValue& q : coordinates.at(t)) {
+        for (const CoordinateValue& q : coordinates.at(state)) {
             add_cell(text, q.value);
             add_cell(text, q.rate);
         }
         if (has_reactions)
-            for (const JointSample& joint : sample_joints(model, run.motion, t)) {
+            for (const JointSample& joint : joints.at(state)) {
                 // Where a reaction jumps, what follows is told, and at the very end what was.
                 const Reaction& r = t == run.motion.end() ? joint.left : joint.right;
                 add_cells(text, joint.is_bounded ? r.force : no_number);
                 add_cells(text, joint.is_bounded ? r.torque : no_number);
             }
-        for (const double reading : sensors.at(t)) add_cell(text, reading);
+        for (const double reading : sensors.at(state)) add_cell(text, reading);
         text += "\r\n";
         if (text.size() > largest_piece) write(text);
     }

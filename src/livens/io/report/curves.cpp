@@ -58,7 +58,8 @@ class Curves {
 public:
     Curves(const Scenario& scenario, const Run& run)
         : model_(scenario.model), motion_(run.motion), coordinates_(model_, motion_),
-          sensors_(model_, motion_), turns_(model_, motion_), lines_(lines_of_action(model_, motion_)),
+          sensors_(model_, motion_), joints_(model_, motion_), turns_(model_, motion_),
+          lines_(lines_of_action(model_, motion_)),
           has_reactions_(!sample_joints(model_, motion_, motion_.start()).empty())
     {
         for (const char* const name : {"kinetic", "potential"}) channels_.push_back({"energy", 0, name, "J"});
@@ -114,7 +115,7 @@ private:
     static bool is_told(const LineOfAction& line) { return line.points[0] || line.place; }
     void add_reactions(std::vector<double>& all, double t, bool is_before) const
     {
-        const std::vector<JointSample> joints = sample_joints(model_, motion_, t);
+        const std::vector<JointSample> joints = joints_.at(sample_state(motion_, t));
         for (std::size_t j = 0; j < model_.joints().size(); ++j) {
             const double nan = std::numeric_limits<double>::quiet_NaN();
             Reaction r{{nan, nan, nan}, {nan, nan, nan}};
@@ -127,6 +128,7 @@ private:
     const Motion& motion_;
     JointCoordinates coordinates_;
     SensorReadings sensors_;
+    JointSampler joints_;
     LoadTurns turns_;
     std::vector<LineOfAction> lines_;
     bool has_reactions_;

@@ -89,8 +89,8 @@ void write_balances(Series& series, const Model& model, const Run& run)
         join(all.linear_momentum_drift, piece.linear_momentum_drift);
         join(all.angular_momentum_drift, piece.angular_momentum_drift);
     };
-    if (run.verdict.balances)
-        append(*run.verdict.balances);
+    if (run.verdict.series)
+        append(run.verdict.series->balance);
     else
         balance(model, run.motion, 1 << 12, append);
     series.add("energy balance", all.energy_drift);

@@ -45,6 +45,9 @@ struct ClassicVariable {
 class Checksum {
 public:
     void add(std::string_view bytes);
+    /// Of numbers, which are put into `out` as the file has them.
+    void add(std::span<const double> numbers, char* out);
+    void add(std::span<const int> numbers, char* out);
     std::string text() const;   ///< 16 hexadecimal digits
 
 private:
@@ -85,6 +88,8 @@ private:
     };
 
     void write(int variable, std::string_view bytes);
+    template <class Put>
+    void write(int variable, std::size_t n_bytes, const Put& put);
     template <class Number>
     void append_swapped(int variable, std::span<const Number> values);
     void put_count(std::uint64_t n);

@@ -55,7 +55,7 @@ constexpr BalanceVariable balance_variables[] = {
 };
 
 /// A third of a motion of degree 1: what is not known is made while it is written.
-void write_balance(RunWriter& archive, const Model& model, const Motion& motion, const Balance* known)
+void write_balance(RunWriter& archive, const Model& model, const Motion& motion, const MotionSeries* known)
 {
     std::vector<int> variables;
     for (const BalanceVariable& v : balance_variables) {
@@ -72,14 +72,14 @@ void write_balance(RunWriter& archive, const Model& model, const Motion& motion,
                            balance_variables[i].part);
         };
         // Short motions have kept their balances from the verdict; long ones make them a second time.
-        if (known != nullptr) return append(*known);
+        if (known != nullptr) return append(known->balance);
         balance(model, motion, 1 << 12, append);
     });
 }
 
 /// Integrals over each element, as the paper shows them: of the Lagrangian the action, of the Hamiltonian and
 /// of the angular momentum what divided by the element's length is their mean.
-void write_integrals(RunWriter& archive, const Model& model, const Motion& motion)
+void write_integrals(RunWriter& archive, const Model& model, const Motion& motion, const MotionSeries* known)
 {
     const int n = motion.n_elements();
     if (n < 1) return;
@@ -89,21 +89,25 @@ void write_integrals(RunWriter& archive, const Model& model, const Motion& motio
     };
     const int lagrangian = declare("action_integral", "J s", "the Lagrangian T - V over each element");
     const int hamiltonian = declare("hamiltonian_integral", "J s", "the Hamiltonian over each element");
-    const VariableInfo info{"angular_momentum_integral", {"element", "xyz"}, "kg m2", "inertial",
+    const VariableInfo info{"angular_momentum_integral",
+                            {"element", "xyz"},
+                            "kg m2",
+                            "inertial",
                             "integral of the angular momentum about the origin over each element"};
     const int moment = archive.declare(info, NumberType::real, static_cast<std::size_t>(3 * n));
-    archive.later([&file = archive.file(), &model, &motion, n, lagrangian, hamiltonian, moment] {
-        constexpr int some = 1 << 12;
-        for (int e = 0; e < n; e += some) {
-            const ActionSeries series = action(model, motion, e, std::min(n, e + some));
+    archive.later([&file = archive.file(), &model, &motion, known, n, lagrangian, hamiltonian, moment] {
+        const auto append = [&](const ActionSeries& series) {
             file.append(lagrangian, std::span<const double>(series.lagrangian));
             file.append(hamiltonian, std::span<const double>(series.hamiltonian));
             file.append(moment, numbers(series.angular_momentum));
-        }
+        };
+        if (known != nullptr && !known->integrals.lagrangian.empty()) return append(known->integrals);
+        constexpr int some = 1 << 12;
+        for (int e = 0; e < n; e += some) append(action(model, motion, e, std::min(n, e + some)));
     });
 }
 
-void write_violations(RunWriter& archive, const Model& model, const Motion& motion)
+void write_violations(RunWriter& archive, const Model& model, const Motion& motion, const MotionSeries* known)
 {
     if (motion.X.empty()) return;
     ClassicWriter& file = archive.file();
@@ -116,8 +120,9 @@ void write_violations(RunWriter& archive, const Model& model, const Motion& moti
         declare(model.n_rows() > 0, "joint_violation", "largest |Phi| / scale of the joints' rows");
     const int rigidity = declare(!std::ranges::all_of(model.bodies(), &Body::is_point), "rigidity_violation",
                                  "largest |Phi| of the bodies' rigidity");
-    archive.later([&, joints, rigidity] {
-        const NodeViolations at = node_violations(model, motion);
+    archive.later([&file, &model, &motion, known, joints, rigidity] {
+        const NodeViolations made = known != nullptr ? NodeViolations{} : node_violations(model, motion);
+        const NodeViolations& at = known != nullptr ? known->nodes : made;
         if (joints >= 0) file.append(joints, std::span(at.joints));
         if (rigidity >= 0) file.append(rigidity, std::span(at.rigidity));
     });
@@ -133,7 +138,10 @@ void write_model(RunWriter& archive, const Model& model)
         second.push_back(joint.second);
     }
     for (int r = 0; r < model.n_rows(); ++r) joint_of_row.push_back(model.row_joint(r));
-    VariableInfo info{"body_mass_matrix", {"body", "mass_column", "column"}, "mixed", "body-fixed",
+    VariableInfo info{"body_mass_matrix",
+                      {"body", "mass_column", "column"},
+                      "mixed",
+                      "body-fixed",
                       "mass matrix m = [[M, S^T], [S, E]]"};
     info.attributes = {{"column_units", "M: kg, S: kg m, E: kg m2"}};
     archive.list(info, std::move(masses));
@@ -166,13 +174,14 @@ std::string manifest(const Run& run)
 void write_derived(RunWriter& archive, const Model& model, const Run& run)
 {
     const Motion& m = run.motion;
-    write_balance(archive, model, m, run.verdict.balances.get());
+    const MotionSeries* const known = run.verdict.series.get();
+    write_balance(archive, model, m, known);
     write_nodes(archive, "X_node", m.X, m.mesh);
     write_nodes(archive, "P_node", m.P, m.mesh);
     write_nodes(archive, "multiplier_node", m.multipliers, m.mesh);
     write_nodes(archive, "rigidity_node", m.rigidity, m.mesh);
-    write_integrals(archive, model, m);
-    write_violations(archive, model, m);
+    write_integrals(archive, model, m, known);
+    write_violations(archive, model, m, known);
     write_model(archive, model);
     write_samples(archive, model, run);
     archive.text("manifest", "versions, options, figures (JSON)", manifest(run));

@@ -9,7 +9,6 @@
 #include <memory>
 #include <string>
 #include <utility>
-#include <variant>
 
 #include "livens/diagnostics/coordinates.h"
 #include "livens/diagnostics/rigidity.h"
@@ -23,10 +22,16 @@ namespace {
 constexpr double unknown_number = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t chunk = 1u << 15;   // numbers of samples that are held at a time
 
+/// One by one: they are few, and there is room.
+void append(std::vector<double>& out, const double* numbers, std::size_t n)
+{
+    for (std::size_t i = 0; i < n; ++i) out.push_back(numbers[i]);
+}
+
 template <class Values>
 void append(std::vector<double>& out, const Values& values)
 {
-    out.insert(out.end(), values.data(), values.data() + Values::rows * Values::cols);
+    append(out, values.data(), static_cast<std::size_t>(Values::rows * Values::cols));
 }
 
 /// A variable that is filled piece by piece.
@@ -35,7 +40,14 @@ struct Column {
     std::vector<double> values{};
 };
 
-using BodyPart = std::variant<Vector3 BodySample::*, Vector4 BodySample::*, Matrix3 BodySample::*>;
+/// Numbers of a sample, one after the other.
+struct BodyPart {
+    const double* (*of)(const BodySample& sample);
+    std::size_t size;
+};
+template <auto part>
+constexpr BodyPart body_part{[](const BodySample& sample) { return (sample.*part).data(); },
+                             sizeof(std::declval<BodySample>().*part) / sizeof(double)};
 
 struct BodyVariable {
     const char* name;
@@ -46,29 +58,31 @@ struct BodyVariable {
 };
 
 constexpr BodyVariable body_variables[] = {
-    {"position", "m", "inertial", "position of the reference point", &BodySample::position},
-    {"center_of_mass", "m", "inertial", "position of the centre of mass", &BodySample::center_of_mass},
+    {"position", "m", "inertial", "position of the reference point", body_part<&BodySample::position>},
+    {"center_of_mass", "m", "inertial", "position of the centre of mass",
+     body_part<&BodySample::center_of_mass>},
     {"directors", "1", "inertial", "directors [d1, d2, d3], the rigid triad nearest to those of the motion",
-     &BodySample::directors},
+     body_part<&BodySample::directors>},
     {"directors_raw", "1", "inertial",
-     "directors [d1, d2, d3] of the motion, with their violation of rigidity", &BodySample::directors_raw},
+     "directors [d1, d2, d3] of the motion, with their violation of rigidity",
+     body_part<&BodySample::directors_raw>},
     {"quaternion", "1", "inertial", "orientation, body to world; sign continuous in time",
-     &BodySample::quaternion},
-    {"velocity", "m s-1", "inertial", "velocity of the reference point", &BodySample::velocity},
+     body_part<&BodySample::quaternion>},
+    {"velocity", "m s-1", "inertial", "velocity of the reference point", body_part<&BodySample::velocity>},
     {"angular_velocity", "rad s-1", "inertial", "angular velocity in inertial axes",
-     &BodySample::angular_velocity},
+     body_part<&BodySample::angular_velocity>},
     {"angular_velocity_body", "rad s-1", "body-fixed", "angular velocity in body axes",
-     &BodySample::angular_velocity_body},
-    {"linear_momentum", "kg m s-1", "inertial", "linear momentum", &BodySample::linear_momentum},
+     body_part<&BodySample::angular_velocity_body>},
+    {"linear_momentum", "kg m s-1", "inertial", "linear momentum", body_part<&BodySample::linear_momentum>},
     {"angular_momentum", "kg m2 s-1", "inertial", "angular momentum about the world's origin",
-     &BodySample::angular_momentum},
+     body_part<&BodySample::angular_momentum>},
 };
 
 VariableInfo info_of(const BodyVariable& v)
 {
     VariableInfo info{v.name, {"time", "body", "xyz"}, v.units, v.frame, v.long_name};
-    if (v.part.index() == 2) info.dimensions = {"time", "body", "director", "xyz"};
-    if (v.part.index() == 1) {
+    if (v.part.size == 9) info.dimensions = {"time", "body", "director", "xyz"};
+    if (v.part.size == 4) {
         info.dimensions = {"time", "body", "quaternion_part"};
         info.attributes = {{"order", "w, x, y, z"}};
     }
@@ -126,33 +140,33 @@ const std::array<CoordinateVariable, 2> coordinate_variables{
 /// Variables that are filled instant by instant. Without columns `add` is not called.
 struct Sampled {
     std::vector<Column> columns{};
-    std::function<void(std::vector<Column>& columns, double t)> add{};
+    std::function<void(std::vector<Column>& columns, const State& state)> add{};
 };
 
 Sampled sampled_bodies(RunWriter& archive, const Model& model, const Motion& motion, std::size_t n_times)
 {
     Sampled sampled;
     const std::size_t n = n_times * model.bodies().size();
-    const std::size_t sizes[] = {3, 4, 9};   // of the alternatives of BodyPart
     for (const BodyVariable& v : body_variables)
         if (n > 0)
-            sampled.columns.push_back(
-                {archive.declare(info_of(v), NumberType::real, n * sizes[v.part.index()])});
+            sampled.columns.push_back({archive.declare(info_of(v), NumberType::real, n * v.part.size)});
     std::vector<Vector4> before(model.bodies().size(), Vector4{1, 0, 0, 0});
-    sampled.add = [&model, &motion, before](std::vector<Column>& columns, double t) mutable {
-        std::vector<BodySample> samples = sample_bodies(model, motion, t);
+    sampled.add = [&model, &motion, before](std::vector<Column>& columns, const State& state) mutable {
+        std::vector<BodySample> samples = sample_bodies(model, motion, state);
         for (std::size_t b = 0; b < samples.size(); ++b) {
             before[b] = samples[b].quaternion = continued(before[b], samples[b].quaternion);
-            for (std::size_t i = 0; i < columns.size(); ++i)
-                std::visit([&](auto part) { append(columns[i].values, samples[b].*part); },
-                           body_variables[i].part);
+            for (std::size_t i = 0; i < columns.size(); ++i) {
+                const BodyPart& part = body_variables[i].part;
+                append(columns[i].values, part.of(samples[b]), part.size);
+            }
         }
     };
     return sampled;
 }
 
 /// What keeps bodies rigid, and their volumes, by which it becomes a stress.
-Sampled sampled_rigidity(RunWriter& archive, const Model& model, const Motion& motion, std::size_t n_times)
+Sampled sampled_rigidity(RunWriter& archive, const Model& model, const Motion& motion, std::size_t n_times,
+                         const JointSampler& joints)
 {
     std::vector<double> volumes;
     for (const Body& body : model.bodies()) volumes.push_back(body.volume > 0 ? body.volume : unknown_number);
@@ -165,8 +179,9 @@ Sampled sampled_rigidity(RunWriter& archive, const Model& model, const Motion& m
         "summed up over the volume; tension is positive";
     const VariableInfo info{
         "rigidity_stress", {"time", "body", "rigidity_row"}, "N m", "body-fixed", meaning};
-    const auto add = [rigidity = Rigidity(model, motion)](std::vector<Column>& columns, double t) {
-        for (const RigiditySample& s : rigidity.at(t)) {
+    const auto add = [rigidity = Rigidity(model, motion), joints](std::vector<Column>& columns,
+                                                                  const State& state) {
+        for (const RigiditySample& s : rigidity.at_sample(state, &joints)) {
             const Matrix3& m = s.right;
             append(columns[0].values, Matrix<6, 1>{m(0, 0), m(1, 1), m(2, 2), m(0, 1), m(0, 2), m(1, 2)});
         }
@@ -187,8 +202,9 @@ Sampled sampled_errors(RunWriter& archive, const Run& run, std::size_t n_times)
         sampled.columns.push_back({archive.declare(v.info, NumberType::real, n)});
         at_ends.push_back(&errors);
     }
-    sampled.add = [&run, &mesh, at_ends](std::vector<Column>& columns, double t) {
-        const int end = element_end_at(mesh, snap_to_element_end(mesh, t));
+    sampled.add = [&run, &mesh, at_ends](std::vector<Column>& columns, const State& state) {
+        const double t = state.t;
+        const int end = element_end_at(mesh, t);
         for (std::size_t i = 0; i < columns.size(); ++i) {
             const std::size_t n = at_ends[i]->size() / mesh.ends.size();
             const auto first = at_ends[i]->begin() + static_cast<std::ptrdiff_t>(n) * end;
@@ -230,8 +246,8 @@ Sampled sampled_coordinates(RunWriter& archive, const Model& model, const Motion
         }
         kinds.push_back(v.name);
     }
-    sampled.add = [of_joints, kinds](std::vector<Column>& columns, double t) {
-        const std::vector<CoordinateValue> values = of_joints.at(t);
+    sampled.add = [of_joints, kinds](std::vector<Column>& columns, const State& state) {
+        const std::vector<CoordinateValue> values = of_joints.at(state);
         for (std::size_t i = 0; i < values.size(); ++i) {
             const auto kind = std::ranges::find(kinds, of_joints.coordinate(static_cast<int>(i)).name);
             const std::size_t column = 2 * static_cast<std::size_t>(kind - kinds.begin());
@@ -256,14 +272,16 @@ Sampled sampled_sensors(RunWriter& archive, const Model& model, const Motion& mo
     archive.names("reading_unit", "its unit", units, "reading");
     const VariableInfo info{
         "sensor_value", {"time", "reading"}, "1", "none", "what sensors read, in units of reading_unit"};
-    const auto add = [sensors = SensorReadings(model, motion)](std::vector<Column>& columns, double t) {
-        const std::vector<double> read = sensors.at(t);
+    const auto add = [sensors = SensorReadings(model, motion)](std::vector<Column>& columns,
+                                                               const State& state) {
+        const std::vector<double> read = sensors.at(state);
         columns[0].values.insert(columns[0].values.end(), read.begin(), read.end());
     };
     return {{{archive.declare(info, NumberType::real, n_times * names.size())}}, add};
 }
 
-Sampled sampled_reactions(RunWriter& archive, const Model& model, const Motion& motion, std::size_t n_times)
+Sampled sampled_reactions(RunWriter& archive, const Model& model, const Motion& motion, std::size_t n_times,
+                          const JointSampler& joints)
 {
     const bool has_multipliers = !motion.end_multipliers.empty() || !motion.multipliers.empty();
     if (model.joints().empty() || !has_multipliers) return {};
@@ -272,8 +290,8 @@ Sampled sampled_reactions(RunWriter& archive, const Model& model, const Motion& 
         return Column{archive.declare({name, sides, units, "inertial", meaning}, NumberType::real,
                                       n_times * model.joints().size() * 6)};
     };
-    const auto add = [&model, &motion](std::vector<Column>& columns, double t) {
-        std::vector<JointSample> samples = sample_joints(model, motion, t);
+    const auto add = [&model, joints](std::vector<Column>& columns, const State& state) {
+        std::vector<JointSample> samples = joints.at(state);
         if (samples.empty()) {   // this instant has no multipliers, others have
             const Reaction none{{unknown_number, unknown_number, unknown_number},
                                 {unknown_number, unknown_number, unknown_number}};
@@ -295,7 +313,8 @@ Sampled sampled_reactions(RunWriter& archive, const Model& model, const Motion& 
 /// Samples at the output times that the motion has reached, some instants at a time.
 class Samples {
 public:
-    Samples(RunWriter& archive, const Model& model, const Run& run) : file_(archive.file())
+    Samples(RunWriter& archive, const Model& model, const Run& run)
+        : file_(archive.file()), motion_(run.motion)
     {
         const Motion& motion = run.motion;
         // A motion that ended early has samples as far as it goes, and none beyond.
@@ -315,12 +334,13 @@ public:
             archive.flags({"beyond_horizon", {"time"}, "1", "none", meaning}, beyond);
         }
         const std::size_t n = times_.size();
+        const JointSampler joints(model, motion);   // whose copies share what they find
         parts_.push_back(sampled_bodies(archive, model, motion, n));
-        parts_.push_back(sampled_rigidity(archive, model, motion, n));
+        parts_.push_back(sampled_rigidity(archive, model, motion, n, joints));
         parts_.push_back(sampled_errors(archive, run, n));
         parts_.push_back(sampled_coordinates(archive, model, motion, n));
         parts_.push_back(sampled_sensors(archive, model, motion, n));
-        parts_.push_back(sampled_reactions(archive, model, motion, n));
+        parts_.push_back(sampled_reactions(archive, model, motion, n, joints));
         at_an_instant_ = 68 * model.bodies().size() + 12 * model.joints().size() + 6 * model.sensors().size();
     }
 
@@ -328,8 +348,9 @@ public:
     {
         std::size_t held = 0;
         for (const double t : times_) {
+            const State state = sample_state(motion_, t);
             for (Sampled& part : parts_)
-                if (!part.columns.empty()) part.add(part.columns, t);
+                if (!part.columns.empty()) part.add(part.columns, state);
             held += at_an_instant_;
             if (held < chunk) continue;
             flush();
@@ -349,6 +370,7 @@ private:
     }
 
     ClassicWriter& file_;
+    const Motion& motion_;
     std::span<const double> times_;
     std::vector<Sampled> parts_;
     std::size_t at_an_instant_ = 0;   // numbers
