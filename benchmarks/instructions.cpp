@@ -4,7 +4,7 @@
 // `instructions chain KIND BODIES ELEMENTS` solves a chain and prints "KIND BODIES ELEMENTS steps", the most
 // of an element; fails if that needed a tangent.
 // `instructions scenario FILE [bare | again]` solves a scenario as it asks, without estimate and growth, or
-// without them on the mesh and with the method that it ended with, and prints "elements largest-estimate";
+// without them on the mesh and with the method that it ended with, and prints "elements largest-estimate tries";
 // what is counted is neither reading nor judging nor writing.
 #include <cstdio>
 #include <cstdlib>
@@ -74,7 +74,8 @@ int solve_file(const char* path, const std::string& how)
     } else {
         solution = count([&] { return solve_as(how == "bare" ? bare : scenario.options); });
     }
-    std::printf("%d %.2e\n", solution.motion.n_elements(), solution.estimate.largest);
+    std::printf("%d %.2e %d\n", solution.motion.n_elements(), solution.estimate.largest,
+                solution.report.tries);
     if (solution.report.converged()) return 0;
     std::fprintf(stderr, "%s\n", solution.report.message.c_str());
     return 1;

@@ -668,7 +668,7 @@ livens_mutant(NAME angle_apart_by_one_direction
 
 # Neighbours that part until they bend: what they bend by grows from turn to turn of a tumbling body.
 livens_mutant(NAME growth_bends
-              FILE spacetime/accuracy/growth.cpp
+              FILE spacetime/accuracy/neighbours.cpp
               OLD [[beside_two{1e-5, 3e-5, 1e-4}]]
               NEW [[beside_two{1e-5, 3e-2, 1e-1}]]
               TESTS_OF convergence
@@ -676,7 +676,7 @@ livens_mutant(NAME growth_bends
 
 # One-sided differences whatever they have grown to: of second order.
 livens_mutant(NAME growth_one_sided
-              FILE spacetime/accuracy/growth.cpp
+              FILE spacetime/accuracy/neighbours.cpp
               OLD [[constexpr double most_of_one = 100, share_of_one = 1e-2;]]
               NEW [[constexpr double most_of_one = 1e30, share_of_one = 1e60;]]
               TESTS_OF convergence
@@ -684,15 +684,15 @@ livens_mutant(NAME growth_one_sided
 
 # Both sides from the start on: right, and twice the work.
 livens_mutant(NAME growth_always_two_sided
-              FILE spacetime/accuracy/growth.cpp
+              FILE spacetime/accuracy/neighbours.cpp
               OLD [[has_two_(most_alone_ < 1)]]
               NEW [[has_two_(most_alone_ > 1)]]
               TESTS_OF convergence
-              MUST_FAIL Horizon.CalmMotionsHaveNeighboursOnOneSide)
+              MUST_FAIL Horizon.CalmMotionsHaveOneNeighbour)
 
 # What was made smaller on the way is forgotten.
 livens_mutant(NAME growth_forgets
-              FILE spacetime/accuracy/growth.cpp
+              FILE spacetime/accuracy/neighbours.cpp
               OLD [[one.so_far /= share;]]
               NEW [[one.so_far /= 1;]]
               TESTS_OF convergence
@@ -726,11 +726,44 @@ livens_mutant(NAME rounding_forgotten
 
 # Numbers are rounded at the start, and never again.
 livens_mutant(NAME rounded_once
-              FILE spacetime/accuracy/growth.cpp
+              FILE spacetime/accuracy/neighbours.cpp
               OLD [[std::sqrt(n) / one.so_far)]]
               NEW [[0 * std::sqrt(n) / one.so_far)]]
               TESTS_OF convergence
               MUST_FAIL Horizon.RoundingsOnTheWayAreTold)
+
+# Neighbours on one side, whatever shrinks and grows again: their errors grow from turn to turn.
+livens_mutant(NAME growth_never_careful
+              FILE spacetime/accuracy/neighbours.cpp
+              OLD [[constexpr double most_folded = 100;]]
+              NEW [[constexpr double most_folded = 1e30;]]
+              TESTS_OF convergence
+              MUST_FAIL Horizon.GrowthOfATumblingBodyIsThatOfTheMotionWhateverTheElements
+                        Horizon.WhatTurnsOverHasNeighboursOnBothSides)
+
+# The first perturbation alone, whatever it may have missed.
+livens_mutant(NAME growth_of_one_direction
+              FILE spacetime/accuracy/growth.cpp
+              OLD [[constexpr double missed = 30;]]
+              NEW [[constexpr double missed = 0;]]
+              TESTS_OF convergence
+              MUST_FAIL Horizon.WhatGrowsHasTwoNeighbours)
+
+# Neighbours' bodies are moved by what their centres of mass move by.
+livens_mutant(NAME neighbours_by_centres
+              FILE spacetime/accuracy/neighbour_elements.cpp
+              OLD [[for (int i = 0; i < 3; ++i) d[i] -=]]
+              NEW [[for (int i = 0; i < 0; ++i) d[i] -=]]
+              TESTS_OF convergence
+              MUST_FAIL Horizon.ElementsOfNeighboursTellWhatWindowsDo)
+
+# The first try believes that a motion stays as slow as it begins.
+livens_mutant(NAME first_try_from_rest
+              FILE spacetime/accuracy/accuracy.cpp
+              OLD [[constexpr double seen_by = 2;]]
+              NEW [[constexpr double seen_by = 1e9;]]
+              TESTS_OF convergence
+              MUST_FAIL Accuracy.TheFirstTryKnowsHowFastWeightMakesAMotionThatBeginsAtRest)
 
 # Nobody looks at the energy of stiff springs that turn: the march goes on until it dies.
 livens_mutant(NAME turning_springs_unwatched

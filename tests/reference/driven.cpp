@@ -118,7 +118,8 @@ TEST(EveryDrive, MayPassZeroWhereOperationsJumpElsewhereOnly)
                "[[body]]\nname = \"cart\"\nmass = 3\ninertia = [1, 1, 1]\n[[drive]]\ntype = \"joint\"\njoint "
                "= "
                "\"rail\"\nexpression = \"" +
-               law + "\"\n[start]\ninitial = \"project\"\n[time]\nend = 1\naccuracy = 1e-12\n";
+               law +
+               "\"\n[start]\ninitial = \"project\"\n[time]\nend = 1\noutput = [0.9]\naccuracy = 1e-12\n";
     };
     const double at = 0.9, before = at - 0.5;
     const auto atan = [](double t) { return std::asin(0.1 * std::sin(10 * t)); };

@@ -170,7 +170,8 @@ class Locking(ProgramTest):
     def test_one_that_runs_away_is_told(self):
         for time in ("end = 2", "end = 2\noutput = 0.01"):
             message = self.why(f"{YOKE}[time]\n{time}\n")
-            self.assertIn("the mechanism locks near t = 0.1309 s", message.replace("0.130899", "0.1309"))
+            # elements vanish before it, the sooner the less they may lose: 2e-5 s before, the pin is 400 m away
+            self.assertAlmostEqual(float(re.search(r"locks near t = ([0-9.]+) s", message)[1]), math.pi / 24, delta=2e-5)
             self.assertIn("'pin'", message)
 
     def test_one_that_turns_back_shortly_before_stays_on_its_branch(self):

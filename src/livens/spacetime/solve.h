@@ -48,9 +48,9 @@ void estimate(const Model& model, const Problem& problem, const Method& method, 
               Solution& solution);
 
 /// By how much a small perturbation of all positions and velocities at the start (velocities by the fastest
-/// rate there is) has grown at element ends: the larger of two, by neighbouring motions over the same
-/// elements that are brought near again where they part (docs/theory.md, "The horizon"). Empty where nothing
-/// can move, or without a state at the start.
+/// rate there is) has grown at element ends: the larger of two where the first one grows by much, by
+/// neighbouring motions over the same elements that are brought near again where they part (docs/theory.md,
+/// "The horizon"). Empty where nothing can move, or without a state at the start.
 struct Growth {
     std::vector<double> factors{};
     Growing part{};

@@ -24,9 +24,12 @@ namespace livens::inline spacetime_internal {
 namespace {
 
 // Measured on 436 cases of twelve problems (docs/theory.md, "To an accuracy").
-constexpr double first_share = 0.03;   // of the accuracy: what the elements of the first try lose
+constexpr double first_share = 2e-3;   // of the accuracy: what the elements of the first try lose
 constexpr double target = 0.2;         // of the accuracy: what the next try aims at
-constexpr double hopeless = 30;        // times the accuracy: where a try is broken off
+constexpr double hopeless = 30;        // times the accuracy: where a try is broken off, but for the first
+// Where that is broken off, as soon as it is in vain, its error would have grown to the end as this power of
+// time, by no more than so much.
+constexpr double growth_in_time = 4, most_growth_in_time = 1e3;
 constexpr int most_tries = 6;
 constexpr double well_helped = 0.5;    // error by the least before, whose elements lost three times more
 constexpr double finest = 1e-22;       // that an element can be asked to lose
@@ -40,8 +43,16 @@ constexpr double high_accuracy = 1e-9;   // below, the high degree
 constexpr double fine_accuracy = 1e-8;   // below, rounding counts
 constexpr double all_digits = 1e-15;     // of the iteration
 constexpr double fit = 1.5;              // times the time between stops: longer elements are of no use
-constexpr int looked_at = 8;             // elements that tell whether they fit between stops
-constexpr int least_piece = 16;          // elements that the second solution solves together
+// Of what elements may lose: what those of a fitting degree would lose. It costs little where they are as
+// long as stops are apart, and as much as another try where it is too low.
+constexpr double aimed_lower = 0.01;
+// Times the time of the motion: the longest element that would see something of what is to come, for the
+// first try, which may begin at rest.
+constexpr double seen_by = 2;
+constexpr int looked_at = 8;                              // elements that tell whether they fit between stops
+constexpr int least_first_piece = 16, least_piece = 32;   // elements that the second solution solves together
+
+constexpr double infinite = std::numeric_limits<double>::infinity();
 
 const int& degree_of(const Method& method)
 {
@@ -87,10 +98,11 @@ struct Try {
 
 /// What shorter elements brought.
 struct Tries {
-    double least = std::numeric_limits<double>::infinity();   // error
-    double in_vain = 0;                                       // largest error of those below
-    bool helps = true;                                        // that the last one had shorter elements
-    bool is_once_good = false;                                // the last one, perhaps by chance
+    double least = infinite;     // error
+    double in_vain = 0;          // largest error of those below
+    bool helps = true;           // that the last one had shorter elements
+    bool is_first = true;        // none was judged so far
+    bool is_once_good = false;   // the last one, perhaps by chance
 
     void count(double error, bool is_broken_off)
     {
@@ -153,7 +165,8 @@ public:
         if (!is_good) so_far_.count(error, last_.is_broken_off);
         if (!is_good && (tries >= most_tries || tolerance_ <= finest)) return give_up(solution);
         so_far_.is_once_good = is_good;
-        aim_at(error / span_.accuracy * (last_.is_broken_off ? 3 : 1), is_good);
+        aim_at(error / span_.accuracy * left_out(solution.motion), is_good);
+        so_far_.is_first = false;
         options_ = with_tolerance_for(span_.accuracy, tries + 1, std::move(options_));
         return AfterTry::again;
     }
@@ -169,6 +182,15 @@ public:
     }
 
 private:
+    /// What the error would have grown by from where the try was broken off.
+    double left_out(const Motion& motion) const
+    {
+        if (!last_.is_broken_off) return 1;
+        if (!so_far_.is_first) return 3;
+        const double times = (span_.end - span_.start) / (motion.end() - motion.start());
+        return std::min(most_growth_in_time, power(times, growth_in_time));
+    }
+
     /// What elements of the next try may lose, their degree and first length, by how many times this one was
     /// off more than it may be.
     void aim_at(double over, bool is_good)
@@ -207,7 +229,9 @@ private:
             if (n % 256 == 0 &&
                 static_cast<double>(window.monitor().so_far()->n_bytes()) > options_.most_bytes)
                 return say_too_long(mesh, report);
-            const bool is_piece = n - second.reached() >= std::max(least_piece, second.reached() / 4);
+            const int piece =
+                second.reached() == 0 ? least_first_piece : std::max(least_piece, second.reached() / 4);
+            const bool is_piece = n - second.reached() >= piece;
             if (!is_piece && n != looked_at) return true;
             window.describe(report);
             const MarchStatus look{*window.monitor().so_far(), controller.mean_length(),
@@ -267,7 +291,7 @@ private:
 
     bool is_hopeless(const ReferenceSolution& second) const
     {
-        return !(second.so_far().largest <= hopeless * span_.accuracy);
+        return !(second.so_far().largest <= (so_far_.is_first ? 1 : hopeless) * span_.accuracy);
     }
 
     bool is_fine() const { return span_.accuracy < fine_accuracy; }
@@ -287,9 +311,16 @@ private:
         int degree = search_.highest;
         if (!controller.tells_length() && !model_.load_breaks().empty())
             return degree;   // calm before what comes
-        while (degree > lowest_degree &&
-               controller.mean_length(degree, tolerance_) > fit * controller.mean_stop())
-            --degree;
+        const bool begins_unseen =
+            so_far_.is_first && tables_.freedoms() > 0;   // drives are told as they are
+        const double tolerance = aimed_lower * tolerance_,
+                     longest = begins_unseen ? seen_by * time_of_motion(model_, ends_.start) : infinite;
+        const auto length = [&](int p) {
+            const double share =
+                power(velocity_jump_of(rule_of(method_).points, p, tolerance), 1.0 / (p + 1));
+            return std::min(controller.mean_length(p, tolerance), longest * share);
+        };
+        while (degree > lowest_degree && length(degree) > fit * controller.mean_stop()) --degree;
         return degree;
     }
 

@@ -40,9 +40,10 @@ public:
         Solution solution = solve_to_accuracy(model_, problem_, ends_, span_, lobatto_, options_,
                                               [this](const MarchStatus& look) { return doubts(look); });
         if (!why_.empty()) return by_radau(std::move(solution));
-        if (solution.report.status == SolveStatus::cancelled || is_good(solution)) return solution;
         const Frequency& vibration = at_start_.fastest_vibration();
-        if (vibration.rate * length_ < fast_vibration) return solution;
+        if (solution.report.status == SolveStatus::cancelled || vibration.rate * length_ < fast_vibration ||
+            is_good(solution))
+            return solution;
         say(vibration, "vibrates at " + to_text(vibration.rate, 3) + " rad/s, which lobatto did not follow");
         Solution other = by_radau(solution);
         return other.report.converged() && is_good(other) ? other : solution;

@@ -7,6 +7,7 @@
 #include "livens/base/error.h"
 #include "livens/dynamics/start/prepared.h"
 #include "livens/multibody/body.h"
+#include "livens/solvers/patience.h"
 #include "livens/spacetime/march/windows.h"
 #include "livens/spacetime/nodal/window.h"
 #include "livens/spacetime/solve_mesh.h"
@@ -77,6 +78,7 @@ bool Neighbour::solve(const State& start, const Motion& near, int first, int las
     mesh_.ends.assign(beside_.mesh.ends.begin() + first, beside_.mesh.ends.begin() + last + 1);
     mesh_.required = mesh_.ends;
     mesh_.bends.clear();
+    states_.clear();
     if (has_bends_)
         for (const double t : beside_.mesh.bends)
             if (t > mesh_.start() && t <= mesh_.end()) mesh_.bends.push_back(t);
@@ -85,6 +87,43 @@ bool Neighbour::solve(const State& start, const Motion& near, int first, int las
     Solution one = solve_unjudged(model_, {{start}, {}, &near, prepared_}, mesh_, method_, options_);
     motion_ = std::move(one.motion);
     return one.report.converged();
+}
+
+bool Neighbour::begin(NeighbourElements& elements, const State& start, int first, double share)
+{
+    first_ = first;
+    states_.assign(1, rigid(model_, start));
+    return elements.begin(here_, states_.front(), share);
+}
+
+bool Neighbour::go_on(NeighbourElements& elements, const BesideLimits& limits, const Neighbour* mirror)
+{
+    try {
+        Patience::ask();
+    } catch (const Stopped&) {   // windows end likewise
+        return false;
+    }
+    if (!elements.solve(here_, limits, mirror != nullptr ? &mirror->here_ : nullptr)) return false;
+    states_.push_back(elements.state(here_));
+    const int done = first_ + static_cast<int>(states_.size()) - 1;
+    return !options_.progress ||
+           options_.progress({done, beside_.n_elements(), beside_.mesh.ends[done], 0, 0});
+}
+
+bool Neighbour::has_end(int end) const
+{
+    return !states_.empty() || std::ranges::binary_search(motion_.mesh.ends, beside_.mesh.ends[end]);
+}
+
+State Neighbour::at_end(int end) const
+{
+    return states_.empty() ? motion_.at(beside_.mesh.ends[end]) : states_[end - first_];
+}
+
+Difference Neighbour::apart_from(const State& other, int end, double share) const
+{
+    return states_.empty() ? Difference(at_end(end), other, share)
+                           : Difference(states_[end - first_], other, share);
 }
 
 }   // namespace livens

@@ -4,6 +4,8 @@
 
 #include <memory>
 
+#include "livens/spacetime/accuracy/neighbour_elements.h"
+#include "livens/spacetime/accuracy/perturbations.h"
 #include "livens/spacetime/march/ends.h"
 #include "livens/spacetime/solve.h"
 
@@ -23,7 +25,20 @@ public:
     /// looked for. Off its joints by no more than what bends, the state is taken as it is. `left`: what the
     /// iteration may leave, of the motion in an element. False: it does not go so far.
     bool solve(const State& start, const Motion& near, int first, int last, double left);
+    /// The nodes of what was solved by that; empty where elements were gone through.
     const Motion& motion() const { return motion_; }
+
+    /// The same element by element, all neighbours side by side. From a state at the start of element
+    /// `first`, where it is beside the motion by `share` of what it was.
+    bool begin(NeighbourElements& elements, const State& start, int first, double share);
+    /// Through the open element.
+    bool go_on(NeighbourElements& elements, const BesideLimits& limits, const Neighbour* mirror);
+
+    /// Whether it has an element end where the motion has this one, and its state there.
+    bool has_end(int end) const;
+    State at_end(int end) const;
+    /// A share of how far it is from a state there.
+    Difference apart_from(const State& other, int end, double share) const;
 
 private:
     struct March;
@@ -40,6 +55,9 @@ private:
     TimeMesh mesh_;
     std::unique_ptr<March> march_;   // of one element after the other, if closed
     Motion motion_;
+    BesideState here_;
+    std::vector<State> states_;   // at ends from first_ on, of elements that were gone through
+    int first_ = 0;
 };
 
 }   // namespace livens::inline spacetime_internal

@@ -15,7 +15,8 @@ namespace livens::inline spacetime_internal {
 namespace {
 
 /// Two perpendicular unit vectors at random. Together they miss one direction; it is as far from what turns a
-/// body as from what is across it, since either may be what grows.
+/// body as from what is across it, since either may be what grows, and each of them has as much along the
+/// spin as the other one.
 struct Across {
     Vector3 e[n_perturbations];
 
@@ -37,8 +38,14 @@ struct Across {
         Vector3 missed = any();
         if (norm(spin) > 0) missed = (1 / norm(spin)) * spin + std::sqrt(2.0) * across(spin);
         missed *= 1 / norm(missed);
-        e[0] = across(missed);
-        e[1] = cross(missed, e[0]);
+        const Vector3 along = spin - dot(spin, missed) * missed;
+        if (norm(along) > 0) {
+            const Vector3 beside = cross(missed, along);
+            e[0] = (std::sqrt(0.5) / norm(along)) * (along + beside);
+        } else {
+            e[0] = across(missed);
+        }
+        e[1] = cross(e[0], missed);
     }
 };
 
@@ -192,6 +199,8 @@ State beside(const Model& model, const State& state, const Kicks& kicks, double 
 
 Difference::Difference(const State& a, const State& b, double share)
 {
+    X.reserve(a.X.size());
+    V.reserve(a.X.size());
     for (std::size_t i = 0; i < a.X.size(); ++i) {
         X.push_back(share * (a.X[i] - b.X[i]));
         V.push_back(share * (a.V[i] - b.V[i]));

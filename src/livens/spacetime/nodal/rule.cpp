@@ -5,6 +5,7 @@
 #include "livens/spacetime/nodal/rule.h"
 
 #include <cmath>
+#include <map>
 #include <span>
 #include <string>
 #include <utility>
@@ -105,11 +106,8 @@ void fill_radau(ElementRule& rule)
     balance_row(rule, rule.D.data() + rule.degree * n, 1);
 }
 
-}   // namespace
-
-ElementRule element_rule(Points points, int degree)
+ElementRule make_rule(Points points, int degree)
 {
-    check_degree(points, degree, true);
     const LagrangeBasis basis = basis_on(points, degree);
     ElementRule rule;
     rule.points = points;
@@ -128,6 +126,18 @@ ElementRule element_rule(Points points, int degree)
         basis.derivatives(rule.loads.points[c], std::span(rule.dM).subspan(c * size, size));
     }
     return rule;
+}
+
+}   // namespace
+
+/// Made once, for a second solution asks for it with every piece.
+ElementRule element_rule(Points points, int degree)
+{
+    check_degree(points, degree, true);
+    thread_local std::map<std::pair<Points, int>, ElementRule> known;
+    const auto [place, is_new] = known.try_emplace({points, degree});
+    if (is_new || place->second.degree == 0) place->second = make_rule(points, degree);
+    return place->second;
 }
 
 void check_degree(const Method& method, bool is_second)

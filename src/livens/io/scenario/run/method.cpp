@@ -196,7 +196,8 @@ const std::vector<OptionKey>& option_keys()
          &SolveOptions::estimate},
         {Key{"growth", types::truth,
              "Whether neighbouring motions tell how perturbations of the start grow, and the horizon beyond "
-             "which double precision says nothing; one to three times as costly as the motion. "
+             "which double precision says nothing; half as costly as the motion, or up to three times "
+             "where bodies turn over. "
              "Default: true with `accuracy` of `[time]`, else false."},
          &SolveOptions::growth},
         {Key{"looks", types::truth,

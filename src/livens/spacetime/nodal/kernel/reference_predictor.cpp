@@ -114,11 +114,12 @@ bool ReferencePredictor::place(const WindowLayout& layout, double* place)
 {
     if (motion_ == nullptr) return false;
     const int n_bodies = tables_->n_bodies(), W = functions_->width;
-    if (motion_->X.points != Points::lobatto || !motion_->X.denominators.empty() ||
-        motion_->X.degree < lowest_known_degree || motion_->X.n_values != 12 * n_bodies)
+    if (!motion_->X.denominators.empty() || motion_->X.degree < lowest_known_degree ||
+        motion_->X.n_values != 12 * n_bodies)
         return false;
-    const bool is_alike = motion_->X.degree == rule_->degree;   // its nodes are those that are asked for
-    if (!is_alike && motion_->X.degree >= W) return false;
+    // its nodes are those that are asked for
+    const bool is_alike = motion_->X.degree == rule_->degree && motion_->X.points == rule_->points;
+    if (!is_alike && (motion_->X.points != Points::lobatto || motion_->X.degree >= W)) return false;
     const auto [start, end] = std::minmax(layout.times.front(), layout.times.back());
     const std::vector<double>& ends = motion_->mesh.ends;
     const auto found = std::ranges::lower_bound(ends, start);
