@@ -980,7 +980,7 @@ livens_mutant(NAME inaccurate_is_fine
 
 # Loads in lanes take places from the reference point, though lanes have centres of mass.
 livens_mutant(NAME arms_about_the_reference_point
-              FILE dynamics/lanes/load_program.cpp
+              FILE dynamics/lanes/load_program_arms.cpp
               OLD [[- arm.w[0] * tables.bodies]]
               NEW [[- 0 * tables.bodies]]
               TESTS_OF properties
@@ -992,7 +992,40 @@ livens_mutant(NAME loads_without_a_tape_unseen
               OLD [[if (program_->others().empty()) return;]]
               NEW [[return;]]
               TESTS_OF properties
-              MUST_FAIL LoadKit/EveryLoad.Passes/pressure_*)
+              MUST_FAIL LoadKit/EveryLoad.Passes/force_function)
+
+# Of products that sums take in, those that are taken off are added.
+livens_mutant(NAME products_added
+              FILE dynamics/lanes/load_program.cpp
+              OLD [[const double sign = step.kind == TapeKind::minus ? -1 : 1;]]
+              NEW [[const double sign = step.kind == TapeKind::minus ? 1 : 1;]]
+              TESTS_OF properties
+              MUST_FAIL LoadKit/EveryLoad.Passes/bushing_*)
+
+# The last node has no share of the loads.
+livens_mutant(NAME last_node_unloaded
+              FILE spacetime/nodal/kernel/kernel_wrenches.cpp
+              OLD [[    add(left);]]
+              NEW [[    add(F);]]
+              TESTS_OF unit_spacetime
+              MUST_FAIL MarchKernel.AgreesWithNewtonOnRandomMechanisms)
+
+# Nothing is ever near a bend.
+livens_mutant(NAME guards_always_calm
+              FILE spacetime/nodal/calm_laws.cpp
+              OLD [[constexpr double gaps_away = 2;]]
+              NEW [[constexpr double gaps_away = -1e9;]]
+              TESTS_OF reference
+              MUST_FAIL Bends.AnyAccuracyIsReached)
+
+# Looks in lanes do not tell the numbers between them, whose enclosures then are points.
+livens_mutant(NAME looks_without_numbers
+              FILE spacetime/nodal/looks_in_lanes.cpp
+              OLD [[sum += values[A * size + ]]
+              NEW [[sum += 0 * values[A * size + ]]
+              TESTS_OF reference
+              MUST_FAIL Inside.LayersOfAnyWidthAreInTheEstimate
+                        Inside.LawsAreFollowedToTheAccuracyThatIsTold)
 
 # The rate of a coordinate knows the motion of one body alone.
 livens_mutant(NAME rates_of_tapes_by_one_factor

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "livens/dynamics/lanes/aligned_doubles.h"
+#include "livens/dynamics/rows/tables.h"
 #include "livens/multibody/loads.h"
 #include "properties/kit.h"
 #include "unit/multibody/random_states.h"
@@ -25,6 +27,30 @@ const std::vector<LoadCase>& load_cases();
 
 /// Skew and moving bodies, some way apart so that no two points meet.
 LoadArguments random_arguments(Random& random, const Load& load, const LoadCase& load_case);
+
+/// Load 0 of a model at some points, one by one.
+class LoadAtPoints {
+public:
+    /// `at`: of the load's bodies; the model must outlive it.
+    LoadAtPoints(const Model& model, std::vector<LoadArguments> at);
+
+    /// From the same in lanes of the instructions in use: the largest, by the sum of the absolute terms that
+    /// a force is made of. `spoil` puts a fault into what the lanes have found.
+    double difference(const std::function<void(AlignedDoubles& F, int width)>& spoil = nullptr) const;
+
+private:
+    static double factor(std::size_t c);
+    std::vector<double> first_turns() const;
+    void add_alone(std::size_t c, std::vector<double>& turns);
+    double scale_of(const LoadArguments& here) const;
+    AlignedDoubles in_lanes(int W, PerBody<Matrix34> LoadArguments::*of) const;
+
+    const ModelTables tables_;
+    const Load& load_;
+    std::vector<LoadArguments> at_;
+    std::vector<std::vector<double>> alone_;   // of each point, about the centres of mass
+    std::vector<double> scales_;
+};
 
 /// dF/dX and dF/dV equal differences of order 8 (error about 1e-12) at 1000 states with skew directors; where
 /// a flag says that there is no dependence, there is none.

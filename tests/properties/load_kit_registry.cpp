@@ -182,6 +182,45 @@ Load any_formula(Random& random, const Joint& joint, const NamedCoordinate& coor
     return modulated("l", "actuator", parts, X);
 }
 
+/// The same, recorded: every operation that formulas have.
+Load recorded_formula(Random&, const Joint& joint, const NamedCoordinate& coordinate,
+                      const Configurations& X)
+{
+    const std::vector<Expression> of{Expression(
+        "sin(a)*b - v^2 + w*cos(a - t) + tan(a/3) + tanh(b) * exp(-b^2) + log(2 + b^2) * sqrt(1 + w^2) + "
+        "abs(a + 9) + min(a, b + 9) + max(w, v - 99) + atan2(a + 9, b + 9) / (2 + cos(t))",
+        {"a", "b", "w", "v"})};
+    LoadParts parts;
+    parts.units = {unit_along("l", coordinate.coordinate, X)};
+    for (const char* name : {"angle", "displacement"}) {
+        const NamedCoordinate& q = *find_coordinate(joint, name);
+        parts.coordinates.push_back({q.coordinate, q.at_stated});
+    }
+    parts.law = [of](const LawArguments& at, std::span<double> factors, std::span<double> slopes) {
+        const std::array<double, 4> x{at.values[0], at.values[1], at.rates[0], at.rates[1]};
+        std::array<double, 4> by{};
+        factors[0] = of[0](at.at.t, x, by);
+        std::copy_n(by.begin(), slopes.size(), slopes.begin());
+    };
+    parts.recorded_law = recorded_law(of, {{0, false}, {1, false}, {0, true}, {1, true}}, {}, 1.0);
+    parts.depends_on_rates = true;
+    return modulated("l", "actuator", parts, X);
+}
+
+/// A force that is nothing but a function.
+Load any_function(Random& random)
+{
+    Load load = point_force("l", 0, random.vector(), steady(random), Frame::inertial);
+    load.depends_on_X = load.depends_on_V = true;
+    load.forces = [](const LoadArguments& at, LoadForces& F) { F[0] = at.X[0] - 2. * at.V[0]; };
+    load.needs_directors[0] = true;
+    load.tangent = [](const LoadArguments&, LoadTangent& tangent) {
+        tangent.X[0][0] = identity<12>();
+        tangent.V[0][0] = -2. * identity<12>();
+    };
+    return load;
+}
+
 /// A force by how far a third body is.
 Load formula_of_a_third(Random& random)
 {
@@ -300,6 +339,7 @@ const std::vector<LoadCase>& load_cases()
         along_case("actuator", "motor on the world", world, "angle", any_actuator),
         along_case("actuator", "cylinder", 1, "displacement", any_actuator),
         along_case("actuator", "formula about an axis", 1, "angle", any_formula),
+        along_case("actuator", "formula on a tape", 1, "angle", recorded_formula),
         along_case("actuator", "formula along an axis of the world", world, "displacement", any_formula),
         along_case("joint_spring", "progressive or tabulated spring", 1, "angle", bent_joint_spring),
         spring_case("progressive spring and preload", 1,
@@ -316,6 +356,7 @@ const std::vector<LoadCase>& load_cases()
         bushing_case("bushing that hardly turns", 1, 0.02),
         {"drag", "drag", any_drag},
         {"force", "force by a third body", formula_of_a_third},
+        {"force", "function", any_function},
         attraction_case("attraction", false),
         attraction_case("attraction with a gradient", true),
         spring_case("nothing", 1, [](SpringDamper& law) { law = {}; }),

@@ -82,6 +82,8 @@ public:
     /// Of operations that jump or bend where symbols decide: abs at 0, min and max where both are alike,
     /// atan2 at half a turn.
     const std::vector<Guard>& guards() const { return guards_; }
+    /// These operations, places in steps().
+    const std::vector<int>& guarded_steps() const { return guarded_; }
     /// Their numbers.
     void guarded(double t, std::span<const double> symbols, std::span<double> numbers) const;
     /// Where time and symbols are within ranges, and their slopes by the share of a way: bounds of the value

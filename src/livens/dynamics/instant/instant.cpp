@@ -336,7 +336,7 @@ void InstantSystem::accelerate(InstantState& state, Side side)
     }
     tables_.bodies.times_mass(centripetal_.data(), -1.0, raw_.data());
     tables_.bodies.add_weight(1.0, raw_.data());
-    loads_.add({state.t, side}, X, V_.data(), raw_.data(), state.angles);
+    loads_.add({state.t, side}, X, V_.data(), raw_.data(), state.angles, tapes_are_trusted_);
     double* y = a_.data();
     double* forces = b_.data();
     tables_.bodies.twist_rows(X, state.maps.data(), raw_.data(), y);

@@ -53,6 +53,9 @@ public:
     /// else by orthogonal bases.
     explicit InstantSystem(const ModelTables& tables, bool sparse = false);
 
+    /// Whether no law of a load is near a bend, see LoadsAtInstant.
+    void trust_tapes(bool are_trusted) { tapes_are_trusted_ = are_trusted; }
+
     /// Prepares maps and what constraints hold at state.t and state.X, with the given independent rows as
     /// long as they are fit: the others hold to 1e-9 of their scale, and the smallest scaled pivot is above
     /// 1e-6 and a tenth of what it was when they were chosen; else rows are chosen again among all
@@ -99,7 +102,7 @@ private:
     Cholesky reduced_;        // Z^T M Z, used only where an inertia is singular
     std::vector<double> z_;   // null space, n x f; likewise
     std::vector<double> a_, b_, V_, centripetal_, raw_, row_rates_;
-    bool is_sparse_;
+    bool is_sparse_, tapes_are_trusted_ = false;
     std::shared_ptr<const RowPattern> pattern_;   // of the last rows
     double pivot_at_choice_ = 0;
 };

@@ -80,30 +80,49 @@ LIVENS_INLINE Lanes<B> lane_by_lane(const Lanes<B>& a, const Lanes<B>& b, const 
     return v;
 }
 
-/// Steps of numbers. False: it is none of these.
+/// Of a turn by the square of its sine and its cosine: itself over its sine, and twice the slope of that by
+/// the square. Closed forms cancel for small turns, and in lanes are slower than the series of atan(sqrt(x))
+/// / sqrt(x), of which ten terms leave 1e-20.
 template <int W, int B>
-LIVENS_INLINE bool step_number(const LoadProgram& p, const LoadStep& step, int first)
+void turn(const LoadProgram& p, const LoadStep& step, int first)
 {
-    double* const r = p.registers + first;
+    constexpr double small = 0.01;
+    const double *sigma = p.registers + step.a * W, *cosine = p.registers + step.b * W;
+    double *value = p.registers + step.to * W, *slope = value + W;
+    bool is_small = true;
+    for (int l = first; l < first + B; ++l)
+        is_small = is_small && cosine[l] > 0 && sigma[l] < small * cosine[l] * cosine[l];
+    if (!is_small) {
+        double both[2] = {};
+        for (int l = first; l < first + B; ++l) {
+            if (l < p.n_lanes) step.turn(sigma[l], cosine[l], both);
+            value[l] = l < p.n_lanes ? both[0] : value[p.n_lanes - 1];
+            slope[l] = l < p.n_lanes ? both[1] : slope[p.n_lanes - 1];
+        }
+        return;
+    }
+    const Lanes<B> by_c = 1.0 / load<B>(cosine + first), by_c2 = by_c * by_c,
+                   x = load<B>(sigma + first) * by_c2;
+    Lanes<B> sum = all<B>(1.0 / 19), of_slope = all<B>(20.0 / 21);
+    for (int k = 8; k >= 0; --k) {
+        sum = all<B>(1.0 / (2 * k + 1)) - x * sum;
+        of_slope = all<B>((2.0 * k + 2) / (2 * k + 3)) - x * of_slope;
+    }
+    store(value + first, by_c * sum);
+    store(slope + first, -1.0 * (by_c * by_c2 * of_slope));
+}
+
+/// Steps of which there are few.
+template <int W, int B>
+LIVENS_INLINE void run_rare_step(const LoadProgram& p, const LoadStep& step, int first)
+{
+    double *const r = p.registers + first, *const to = r + step.to * W;
     const auto a = [&]() LIVENS_LAMBDA { return load<B>(r + step.a * W); };
     const auto b = [&]() LIVENS_LAMBDA { return load<B>(r + step.b * W); };
-    const auto put = [&](const Lanes<B>& v) LIVENS_LAMBDA {
-        store(r + step.to * W, v);
-        return true;
-    };
+    const auto put = [&](const Lanes<B>& v) LIVENS_LAMBDA { store(to, v); };
     switch (step.kind) {
-    case LoadKind::plus:
-        return put(a() + b());
-    case LoadKind::minus:
-        return put(a() - b());
-    case LoadKind::times:
-        return put(a() * b());
     case LoadKind::divided:
         return put(a() / b());
-    case LoadKind::scaled:
-        return put(step.number * a());
-    case LoadKind::shifted:
-        return put(step.number + a());
     case LoadKind::root:
         return put(root(a()));
     case LoadKind::absolute:
@@ -116,76 +135,94 @@ LIVENS_INLINE bool step_number(const LoadProgram& p, const LoadStep& step, int f
         return put(lane_by_lane(a(), b(), [](double x, double y) { return y > x ? y : x; }));
     case LoadKind::chosen:
         return put(lane_by_lane(a(), b(), [](double x, double y) { return x != 0 ? y : 0; }));
-    default:
-        return false;
-    }
-}
-
-/// Steps of vectors, and what has to go lane by lane.
-template <int W, int B>
-LIVENS_INLINE void step_vector(const LoadProgram& p, const LoadStep& step, const double* X, const double* V,
-                               int first)
-{
-    double* const r = p.registers + first;
-    const auto a = [&]() LIVENS_LAMBDA { return three_of<W, B>(r + step.a * W); };
-    const auto b = [&]() LIVENS_LAMBDA { return three_of<W, B>(r + step.b * W); };
-    const auto factor = [&]() LIVENS_LAMBDA { return load<B>(r + step.a * W); };
-    Three<B> v;
-    switch (step.kind) {
-    case LoadKind::arm:
-        v = sum_of_terms<W, B>(p.terms + step.begin, p.terms + step.end, X + first);
-        break;
-    case LoadKind::arm_rate:
-        v = sum_of_terms<W, B>(p.terms + step.begin, p.terms + step.end, V + first);
-        break;
-    case LoadKind::sum:
-        for (int i = 0; i < 3; ++i) v.x[i] = a().x[i] + b().x[i];
-        break;
-    case LoadKind::difference:
-        for (int i = 0; i < 3; ++i) v.x[i] = a().x[i] - b().x[i];
-        break;
-    case LoadKind::stretched:
-        for (int i = 0; i < 3; ++i) v.x[i] = factor() * b().x[i];
-        break;
-    case LoadKind::cross: {
-        const Three<B> x = a(), y = b();
-        for (int i = 0; i < 3; ++i) {
-            const int j = (i + 1) % 3, k = (i + 2) % 3;
-            v.x[i] = x.x[j] * y.x[k] - x.x[k] * y.x[j];
-        }
-        break;
-    }
-    case LoadKind::dot:
-        return store(r + step.to * W, dot(a(), b()));
-    case LoadKind::first_pull:
-        for (int i = 0; i < 3; ++i) v.x[i] = factor() * b().x[i];
-        break;
-    case LoadKind::pull:
-        v = three_of<W, B>(r + step.to * W);
-        for (int i = 0; i < 3; ++i) v.x[i] += factor() * b().x[i];
-        break;
     case LoadKind::function: {
         const double *x = p.registers + step.a * W, *y = p.registers + step.b * W;
         return for_lanes<W, B>(p.n_lanes, first, p.registers + step.to * W,
                                [&](int l) LIVENS_LAMBDA { return step.function(x[l], y[l]); });
     }
+    case LoadKind::turn:
+        return turn<W, B>(p, step, first);
     case LoadKind::unwrapped:
         return unwrap<W, B>(p, step, first);
     default:
         return call_outer<W, B>(p, step, first);
     }
-    store_three<W>(r + step.to * W, v);
 }
 
-/// F of the columns at X and X', times `factors`; null: steps alone. Numbers of X, X' and F as those of a
-/// pattern.
+/// One step in B lanes from `first` on. To choose costs as much as most of them do.
+template <int W, int B>
+LIVENS_INLINE void run_step(const LoadProgram& p, const LoadStep& step, int first)
+{
+    double *const r = p.registers + first, *const to = r + step.to * W;
+    const auto number = [&](int of) LIVENS_LAMBDA { return load<B>(r + of * W); };
+    const auto vector = [&](int of) LIVENS_LAMBDA { return three_of<W, B>(r + of * W); };
+    const auto a = [&]() LIVENS_LAMBDA { return number(step.a); };
+    const auto b = [&]() LIVENS_LAMBDA { return number(step.b); };
+    const auto put = [&](const Lanes<B>& v) LIVENS_LAMBDA { store(to, v); };
+    const auto put_each = [&](const auto& part) LIVENS_LAMBDA {
+        Three<B> v;
+        for (int i = 0; i < 3; ++i) v.x[i] = part(i);
+        store_three<W>(to, v);
+    };
+    switch (step.kind) {
+    case LoadKind::arm:
+        return store_three<W>(to, sum_of_terms<W, B>(p.terms + step.begin, p.terms + step.end, r));
+    case LoadKind::plus:
+        return put(a() + b());
+    case LoadKind::minus:
+        return put(a() - b());
+    case LoadKind::times:
+        return put(a() * b());
+    case LoadKind::scaled:
+        return put(step.number * a());
+    case LoadKind::shifted:
+        return put(step.number + a());
+    case LoadKind::plus_scaled:
+        return put(a() + step.number * b());
+    case LoadKind::plus_product:
+        return put(step.number < 0 ? a() - b() * number(step.begin) : a() + b() * number(step.begin));
+    case LoadKind::plus_dot:
+        return put(a() + dot(vector(step.b), vector(step.begin)));
+    case LoadKind::dot:
+        return put(dot(vector(step.a), vector(step.b)));
+    case LoadKind::sum:
+        return put_each([&](int i) LIVENS_LAMBDA { return number(step.a + i) + number(step.b + i); });
+    case LoadKind::difference:
+        return put_each([&](int i) LIVENS_LAMBDA { return number(step.a + i) - number(step.b + i); });
+    case LoadKind::stretched:
+    case LoadKind::first_pull:
+        return put_each([&](int i) LIVENS_LAMBDA { return a() * number(step.b + i); });
+    case LoadKind::pull:
+        return put_each([&](int i) LIVENS_LAMBDA { return number(step.to + i) + a() * number(step.b + i); });
+    case LoadKind::pull_one:
+        return put(number(step.to) + step.number * a());
+    case LoadKind::cross: {
+        const Three<B> x = vector(step.a), y = vector(step.b);
+        return put_each([&](int i) LIVENS_LAMBDA {
+            const int j = (i + 1) % 3, k = (i + 2) % 3;
+            return x.x[j] * y.x[k] - x.x[k] * y.x[j];
+        });
+    }
+    default:
+        return run_rare_step<W, B>(p, step, first);
+    }
+}
+
+/// F of the columns, times `factors`; null: steps alone. X and X' at load points; null: arms are known.
+/// Numbers of X, X' and F as those of a pattern.
 template <int W>
 void run_loads(const LoadProgram& p, const double* X, const double* V, const double* factors, double* F)
 {
     constexpr int B = load_batch<W>;
     for (int first = 0; first < W; first += B) {
+        for (const LoadArm* arm = p.arms; X != nullptr && arm != p.arms + p.n_arms; ++arm) {
+            double* const r = p.registers + first;
+            const Term *begin = p.terms + arm->begin, *end = p.terms + arm->end;
+            if (arm->to >= 0) store_three<W>(r + arm->to * W, sum_of_terms<W, B>(begin, end, X + first));
+            if (arm->rate >= 0) store_three<W>(r + arm->rate * W, sum_of_terms<W, B>(begin, end, V + first));
+        }
         for (const LoadStep* step = p.steps; step != p.steps + p.n_steps; ++step)
-            if (!step_number<W, B>(p, *step, first)) step_vector<W, B>(p, *step, X, V, first);
+            run_step<W, B>(p, *step, first);
         for (int c = 0; F != nullptr && c < p.n_columns; ++c) {
             const LoadColumn& column = p.columns[c];
             const Three<B> f =
@@ -194,6 +231,61 @@ void run_loads(const LoadProgram& p, const double* X, const double* V, const dou
             for (int i = 0; i < 3; ++i) store(F + (column.number + i) * W + first, by * f.x[i]);
         }
     }
+}
+
+/// Arms at load points from what nodes have moved by: M and dM a row of lanes for each node.
+template <int W>
+void interpolate_arms(const LoadProgram& p, const double* start, const double* increments, const double* M,
+                      const double* dM)
+{
+    alignas(64) double moved[3 * W];
+    for (const LoadArm* arm = p.arms; arm != p.arms + p.n_arms; ++arm)
+        for (int i = 0; i < 3; ++i) {
+            double at_start = 0;
+            Lanes<W> sum = all<W>(0);
+            for (const Term* term = p.terms + arm->begin; term != p.terms + arm->end; ++term) {
+                at_start += term->factor * start[term->number + i];
+                sum += term->factor * load<W>(increments + (term->number + i) * W);
+            }
+            store(moved + i * W, sum);
+            double* const r = p.registers + i * W;
+            if (arm->to >= 0) store(r + arm->to * W, at_start + times<W>(moved + i * W, M));
+            if (arm->rate >= 0) store(r + arm->rate * W, times<W>(moved + i * W, dM));
+        }
+}
+
+/// Forces at load points, times `factors`, at the nodes of rows: `M_rows` one row for each point.
+template <int W>
+void share_out(const LoadProgram& p, const double* factors, const double* M_rows, double* loads)
+{
+    constexpr int B = load_batch<W>;
+    alignas(64) double at_points[3 * W];
+    for (int c = 0; c < p.n_columns; ++c)
+        for (int i = 0; i < 3; ++i) store(loads + (p.columns[c].number + i) * W, all<W>(0));
+    for (const LoadForce* force = p.forces; force != p.forces + p.n_forces; ++force) {
+        for (int first = 0; first < W; first += B) {
+            const Three<B> f =
+                sum_of_terms<W, B>(p.terms + force->begin, p.terms + force->end, p.registers + first);
+            const Lanes<B> by = load<B>(factors + first);
+            for (int i = 0; i < 3; ++i) store(at_points + i * W + first, by * f.x[i]);
+        }
+        for (int i = 0; i < 3; ++i) {
+            const Lanes<W> at_rows = times<W>(at_points + i * W, M_rows);
+            for (const Term* to = p.terms + force->first; to != p.terms + force->last; ++to) {
+                double* f = loads + (to->number + i) * W;
+                store(f, load<W>(f) + to->factor * at_rows);
+            }
+        }
+    }
+}
+
+/// The same of forces that are there by columns; `loads` has others.
+template <int W>
+void share_columns(const LoadProgram& p, const double* at_points, const double* M_rows, double* loads)
+{
+    for (int c = 0; c < p.n_columns; ++c)
+        for (int i = p.columns[c].number; i < p.columns[c].number + 3; ++i)
+            store(loads + i * W, load<W>(loads + i * W) + times<W>(at_points + i * W, M_rows));
 }
 
 }   // namespace

@@ -119,8 +119,7 @@ struct Pattern {
 
 /// What a step of loads does; the kinds of multibody/loads/load_tape.h that are evaluated in lanes.
 enum class LoadKind : std::int32_t {
-    arm,   ///< of X, sum of terms; arm_rate of V
-    arm_rate,
+    arm,   ///< sum of terms, of registers
     plus,
     minus,
     times,
@@ -134,6 +133,7 @@ enum class LoadKind : std::int32_t {
     greatest,
     chosen,
     function,
+    turn,
     unwrapped,
     outer,
     sum,
@@ -141,27 +141,46 @@ enum class LoadKind : std::int32_t {
     stretched,
     cross,
     dot,
-    pull,        ///< register `to` of an arm's force += a times b
-    first_pull   ///< likewise, =
+    pull,         ///< register `to` of an arm's force += a times b
+    first_pull,   ///< likewise, =
+    pull_one,     ///< of one of its numbers, += number times a
+    // a and what nobody else takes
+    plus_scaled,    ///< a + number b
+    plus_product,   ///< a + b c, or a - b c with number -1
+    plus_dot        ///< a + b . c
 };
 /// Registers of W lanes by their numbers; three in a row are a vector.
 struct LoadStep {
     LoadKind kind;
     std::int32_t to, a, b;
-    std::int32_t begin, end;   ///< terms of an arm; of a call its number, and how many results
+    std::int32_t begin, end;   ///< terms of an arm; of a call its number, and how many results; c
     double number;
     double (*function)(double, double);
+    void (*turn)(double, double, double*) = nullptr;   ///< one lane
 };
 /// Column of the forces on a body: a sum of arms' forces, of their first registers.
 struct LoadColumn {
     std::int32_t number;   ///< its first
     std::int32_t begin, end;
 };
+/// Three numbers of X that loads look at, or of X', from those of a body's columns: a material vector, or
+/// where there are more of these than columns a column itself.
+struct LoadArm {
+    std::int32_t begin, end;   ///< terms
+    std::int32_t to, rate;     ///< registers; -1: nobody looks at it
+};
+/// Forces on a material vector, or on a column, and the columns that they belong to.
+struct LoadForce {
+    std::int32_t begin, end;    ///< terms, of registers
+    std::int32_t first, last;   ///< terms, of numbers of F
+};
 /// Loads at their points: one lane a point, of which there are n; lanes behind them are as the last one.
 struct LoadProgram {
-    int n_lanes, n_steps, n_columns;
+    int n_lanes, n_steps, n_columns, n_arms, n_forces;
     const LoadStep* steps;
     const LoadColumn* columns;
+    const LoadArm* arms;
+    const LoadForce* forces;
     const Term* terms;
     double* registers;
     double* turns;   ///< of angles at the instant before; they go on
@@ -177,9 +196,11 @@ struct FormValues {
     double* by_rows;   ///< of each row that has forms: the part of its violation
 };
 
-/// 12 numbers a body, lane c: load point c; kernel columns.
+/// 12 numbers a body; kernel columns.
 struct LoadValues {
-    double *F, *X, *V;
+    double* F;   ///< at the nodes of rows
+    double* X;   ///< lane c: load point c
+    double* V;
 };
 
 /// Arrays of W lanes each; with W = 1 an instant.

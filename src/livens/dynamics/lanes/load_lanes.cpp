@@ -49,8 +49,12 @@ lanes::LoadProgram LoadLanes::view(const std::vector<lanes::LoadStep>& steps)
     return {n_,
             static_cast<int>(steps.size()),
             static_cast<int>(program_->columns().size()),
+            static_cast<int>(program_->arms().size()),
+            static_cast<int>(program_->forces().size()),
             steps.data(),
             program_->columns().data(),
+            program_->arms().data(),
+            program_->forces().data(),
             program_->terms().data(),
             registers_.data(),
             turns_.data(),
@@ -86,6 +90,50 @@ void LoadLanes::evaluate(const double* X, const double* V, const double* factors
     add_others(X, V, factors, F);
 }
 
+void LoadLanes::run_steps(std::span<const double> turns)
+{
+    turns_.assign(turns.begin(), turns.end());
+    run_(view(program_->steps()), nullptr, nullptr, nullptr, nullptr);
+}
+
+const std::vector<lanes::LoadStep>& LoadLanes::program_steps() const { return program_->steps(); }
+
+bool LoadLanes::has_others() const { return !program_->others().empty(); }
+
+void LoadLanes::evaluate_others(const double* X, const double* V, const double* factors,
+                                std::span<const double> turns, double* F)
+{
+    for (const lanes::LoadColumn& column : program_->columns())
+        std::fill_n(F + column.number * width_, 3 * width_, 0.0);
+    turns_.assign(turns.begin(), turns.end());
+    add_others(X, V, factors, F);
+}
+
+void LoadLanes::add_up(const double* factors, const double* others, double* F) const
+{
+    const auto sum = [&](std::size_t first, const double* by) {   // of lanes
+        double all = 0;
+        for (int c = 0; c < n_; ++c) all += by == nullptr ? others[first + c] : by[c] * registers_[first + c];
+        return all;
+    };
+    std::fill_n(F, 12 * tables_.bodies.size(), 0.0);
+    for (const lanes::LoadColumn& column : program_->columns())
+        for (int i = 0; i < 3; ++i) {
+            double& to = F[column.number + i];
+            if (others != nullptr) to = sum(static_cast<std::size_t>((column.number + i) * width_), nullptr);
+            for (std::int32_t t = column.begin; t < column.end; ++t) {
+                const lanes::Term& term = program_->terms()[static_cast<std::size_t>(t)];
+                to += term.factor * sum(static_cast<std::size_t>((term.number + i) * width_), factors);
+            }
+        }
+}
+
+void LoadLanes::go_on(std::span<double> turns)
+{
+    run_steps(turns);
+    std::ranges::copy(turns_, turns.begin());
+}
+
 void LoadLanes::add_others(const double* X, const double* V, const double* factors, double* F)
 {
     for (int c = 0; c < n_; ++c) {
@@ -107,11 +155,11 @@ void LoadLanes::add_others(const double* X, const double* V, const double* facto
 
 LoadsAtInstant::LoadsAtInstant(const ModelTables& tables)
     : tables_(tables), lanes_(tables, nullptr, 1, 1, RecordedLoads::without_bends),
-      X_(12 * tables.bodies.size()), V_(X_), F_(X_)
+      all_(tables, nullptr, 1, 1, RecordedLoads::all), X_(12 * tables.bodies.size()), V_(X_), F_(X_)
 {}
 
 void LoadsAtInstant::add(Instant at, const double* X, const double* V, double* raw,
-                         std::span<const double> turns)
+                         std::span<const double> turns, bool far_from_bends)
 {
     if (turns.empty() && !tables_.loads.turns.empty()) return tables_.loads.add(at, X, V, 1, raw, turns);
     const auto to_centres = [this](const double* of, std::vector<double>& x) {
@@ -124,8 +172,9 @@ void LoadsAtInstant::add(Instant at, const double* X, const double* V, double* r
     to_centres(X, X_);
     to_centres(V, V_);
     const double one = 1;
-    lanes_.begin({&at, 1});
-    lanes_.evaluate(X_.data(), V_.data(), &one, turns, F_.data());
+    LoadLanes& lanes = far_from_bends ? all_ : lanes_;
+    lanes.begin({&at, 1});
+    lanes.evaluate(X_.data(), V_.data(), &one, turns, F_.data());
     for (int b = 0; b < tables_.n_bodies(); ++b)
         for (int i = 0; i < 12; ++i) {
             const double centre = i < 3 ? 0 : tables_.bodies[b].center[i / 3 - 1];

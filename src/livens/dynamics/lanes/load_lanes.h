@@ -16,8 +16,9 @@ struct ModelTables;
 class LoadProgram;
 
 /// Which loads are recorded. Where elements end because the law of one bends or jumps there, its last digits
-/// tell the side, and they are those of Load::forces.
-enum class RecordedLoads { all, without_bends };
+/// tell the side, and they are those of Load::forces. No forces, but numbers and factors of laws, or guards
+/// and centres: for looks.
+enum class RecordedLoads { all, without_bends, laws, guards };
 
 /// The registers of a model's LoadProgram, for one element after the other. Loads that are in no program are
 /// asked point by point.
@@ -32,6 +33,22 @@ public:
     LoadLanes& operator=(const LoadLanes&) = delete;
 
     int width() const { return width_; }
+    const LoadProgram& program() const { return *program_; }
+    /// Steps alone, where arms are in their registers. `turns` as of evaluate().
+    void run_steps(std::span<const double> turns);
+    /// The program and its registers.
+    lanes::LoadProgram view() { return view(program_steps()); }
+    /// Loads that are in no program.
+    bool has_others() const;
+    /// F of these as evaluate() has it, alone.
+    void evaluate_others(const double* X, const double* V, const double* factors,
+                         std::span<const double> turns, double* F);
+    /// F <- its sum over all points, 12 numbers a body; `others`: what evaluate_others() found, or null.
+    void add_up(const double* factors, const double* others, double* F) const;
+    /// The same, and `turns` goes on from lane to lane.
+    void go_on(std::span<double> turns);
+    /// What was evaluated last, in lanes; `place`: of a number on the program's tape that is needed.
+    const double* number(int place) const { return registers_.data() + place * width_; }
     /// The instants of the element's load points.
     void begin(std::span<const Instant> points);
     /// F of all bodies with loads, 12 numbers each in lanes, times `factors`, which are 0 in lanes that are
@@ -42,6 +59,7 @@ public:
 
 private:
     lanes::LoadProgram view(const std::vector<lanes::LoadStep>& steps);
+    const std::vector<lanes::LoadStep>& program_steps() const;
     void add_others(const double* X, const double* V, const double* factors, double* F);
     static void call(void* self, const lanes::LoadStep& step, int lane);
 
@@ -61,12 +79,14 @@ public:
     /// The tables must outlive it.
     explicit LoadsAtInstant(const ModelTables& tables);
 
-    /// LoadTables::add() once.
-    void add(Instant at, const double* X, const double* V, double* raw, std::span<const double> turns);
+    /// LoadTables::add() once. `far_from_bends`: no law is near one, and all that are recorded are evaluated
+    /// so.
+    void add(Instant at, const double* X, const double* V, double* raw, std::span<const double> turns,
+             bool far_from_bends = false);
 
 private:
     const ModelTables& tables_;
-    LoadLanes lanes_;
+    LoadLanes lanes_, all_;
     std::vector<double> X_, V_, F_;
 };
 

@@ -12,6 +12,8 @@ namespace livens {
 
 namespace {
 
+bool is_bent(const Load& load) { return !load.guards.empty() || load.bends_at_centre; }
+
 /// What is the same wherever bodies are.
 bool is_given(TapeKind kind)
 {
@@ -23,7 +25,7 @@ lanes::LoadKind in_lanes(TapeKind kind)
     using enum TapeKind;
     using Lane = lanes::LoadKind;
     static const std::map<TapeKind, Lane> kinds{{arm, Lane::arm},
-                                                {arm_rate, Lane::arm_rate},
+                                                {arm_rate, Lane::arm},
                                                 {plus, Lane::plus},
                                                 {minus, Lane::minus},
                                                 {times, Lane::times},
@@ -37,6 +39,7 @@ lanes::LoadKind in_lanes(TapeKind kind)
                                                 {greatest, Lane::greatest},
                                                 {chosen, Lane::chosen},
                                                 {function, Lane::function},
+                                                {turn, Lane::turn},
                                                 {unwrapped, Lane::unwrapped},
                                                 {outer, Lane::outer},
                                                 {sum, Lane::sum},
@@ -46,12 +49,6 @@ lanes::LoadKind in_lanes(TapeKind kind)
                                                 {dot, Lane::dot},
                                                 {pull, Lane::pull}};
     return kinds.at(kind);
-}
-
-/// X w = x_c w_0 + sum d_a (w_a - w_0 c_a) with the centre of mass (1, c): the factor of column a.
-double centred(const ModelTables& tables, const TapeArm& arm, int a)
-{
-    return a == 0 ? arm.w[0] : arm.w[a] - arm.w[0] * tables.bodies[arm.body].center[a - 1];
 }
 
 /// act(place) for the numbers that a step takes.
@@ -72,41 +69,92 @@ void for_operands(const LoadTape& tape, const TapeStep& step, const Act& act)
 LoadProgram::LoadProgram(const ModelTables& tables, RecordedLoads which)
 {
     record(*tables.model, which);
-    const std::vector<char> needed = find_needed(), known = find_known();
+    const std::vector<char> needed = find_needed(which), known = find_known();
+    join(needed, known);
     n_registers_ = tape_.size();
     forces_.assign(tape_.arms().size(), -1);
+    add_arms(tables, needed);
     for (std::size_t i = 0; i < tape_.steps().size(); ++i) {
         const TapeStep& step = tape_.steps()[i];
-        if (needed[i] && !is_given(step.kind)) add_step(tables, step, known[i] ? known_steps_ : steps_);
+        const bool is_arm = step.kind == TapeKind::arm || step.kind == TapeKind::arm_rate;
+        if (is_arm && arm_at_[static_cast<std::size_t>(step.index)] >= 0) continue;   // in its register
+        if (needed[i] && !is_taken_[i] && !is_given(step.kind))
+            add_step(tables, i, known[i] ? known_steps_ : steps_);
     }
     add_columns(tables);
+    add_forces(tables);
 }
 
 void LoadProgram::record(const Model& model, RecordedLoads which)
 {
     int first_angle = 0;
+    if (which == RecordedLoads::laws) tape_.take_looks();
     for (std::size_t l = 0; l < model.loads().size(); ++l) {
         const Load& load = model.loads()[l];
         tape_.begin(load, first_angle);
         first_angle += static_cast<int>(load.angles.size());
-        const bool bends = !load.guards.empty() || load.bends_at_centre;
-        if (load.forces.record && !(bends && which == RecordedLoads::without_bends))
+        if (load.forces.record && !(is_bent(load) && which == RecordedLoads::without_bends))
             load.forces.record(tape_, TapeNumber{&tape_});
         else
             others_.push_back(static_cast<int>(l));
     }
 }
 
-/// Steps that forces hang on.
-std::vector<char> LoadProgram::find_needed() const
+/// Of each place the step whose number is there.
+std::vector<int> LoadProgram::find_steps() const
 {
     const std::vector<TapeStep>& steps = tape_.steps();
     std::vector<int> step_at(static_cast<std::size_t>(tape_.size()));
     for (std::size_t i = 0; i < steps.size(); ++i)
         for (int k = 0; k < steps[i].size(); ++k) step_at[steps[i].place + k] = static_cast<int>(i);
+    return step_at;
+}
+
+/// Products that one sum alone takes are formed there: steps cost more than what they do.
+void LoadProgram::join(const std::vector<char>& needed, const std::vector<char>& known)
+{
+    const std::vector<TapeStep>& steps = tape_.steps();
+    const std::vector<int> step_at = find_steps();
+    std::vector<int> n_uses(steps.size(), 0);
+    for (std::size_t i = 0; i < steps.size(); ++i)
+        if (needed[i]) for_operands(tape_, steps[i], [&](int place) { ++n_uses[step_at[place]]; });
+    for (const TapeWatch& watch : tape_.watched())
+        for (const auto* places : {&watch.guards, &watch.centre, &watch.numbers, &watch.factors})
+            for (const int place : *places) ++n_uses[step_at[place]];
+    takes_.assign(steps.size(), -1);
+    is_taken_.assign(steps.size(), 0);
+    for (std::size_t i = 0; i < steps.size(); ++i) {
+        const TapeStep& sum = steps[i];
+        if (!needed[i] || known[i] || (sum.kind != TapeKind::plus && sum.kind != TapeKind::minus)) continue;
+        const auto fits = [&](int place) {
+            const int j = step_at[place];
+            const TapeKind kind = steps[j].kind;
+            const bool is_product = kind == TapeKind::scaled || kind == TapeKind::times ||
+                                    (kind == TapeKind::dot && sum.kind == TapeKind::plus);
+            return is_product && n_uses[j] == 1 && !known[j];
+        };
+        if (fits(sum.b))
+            takes_[i] = step_at[sum.b];
+        else if (sum.kind == TapeKind::plus && fits(sum.a))
+            takes_[i] = step_at[sum.a];
+        if (takes_[i] >= 0) is_taken_[static_cast<std::size_t>(takes_[i])] = 1;
+    }
+}
+
+/// Steps that forces hang on, and those that are watched.
+std::vector<char> LoadProgram::find_needed(RecordedLoads which) const
+{
+    const std::vector<TapeStep>& steps = tape_.steps();
+    const std::vector<int> step_at = find_steps();
     std::vector<char> needed(steps.size(), 0);
+    const bool are_looks = which == RecordedLoads::laws || which == RecordedLoads::guards;
+    for (const TapeWatch& watch : tape_.watched()) {
+        if (which == RecordedLoads::without_bends) break;
+        for (const std::vector<int>* places : watched_of(watch, which))
+            for (const int place : *places) needed[step_at[place]] = 1;
+    }
     for (std::size_t i = steps.size(); i-- > 0;) {
-        needed[i] = needed[i] || steps[i].kind == TapeKind::pull;
+        needed[i] = needed[i] || (steps[i].kind == TapeKind::pull && !are_looks);
         if (needed[i]) for_operands(tape_, steps[i], [&](int place) { needed[step_at[place]] = 1; });
     }
     return needed;
@@ -127,68 +175,80 @@ std::vector<char> LoadProgram::find_known() const
     return known;
 }
 
-void LoadProgram::add_arm(const ModelTables& tables, const TapeArm& arm, std::int32_t& begin,
-                          std::int32_t& end)
+void LoadProgram::add_step(const ModelTables& tables, std::size_t i, std::vector<lanes::LoadStep>& to)
 {
-    begin = static_cast<std::int32_t>(terms_.size());
-    for (int a = 0; a < 4; ++a)
-        if (const double w = centred(tables, arm, a); w != 0) terms_.push_back({12 * arm.body + 3 * a, w});
-    end = static_cast<std::int32_t>(terms_.size());
-}
-
-void LoadProgram::add_step(const ModelTables& tables, const TapeStep& step, std::vector<lanes::LoadStep>& to)
-{
+    const TapeStep& step = tape_.steps()[i];
     lanes::LoadStep made{in_lanes(step.kind), step.place, step.a,      step.b,
                          step.index,          step.b,     step.number, nullptr};
     switch (step.kind) {
     case TapeKind::arm:
     case TapeKind::arm_rate:
-        add_arm(tables, tape_.arms()[static_cast<std::size_t>(step.index)], made.begin, made.end);
+        add_terms(tables, step, made);
+        break;
+    case TapeKind::turn:
+        made.turn = &turn_of_sine;
         break;
     case TapeKind::function:
         made.function = tape_.functions()[static_cast<std::size_t>(step.index)];
         break;
-    case TapeKind::pull: {
-        int& force = forces_[static_cast<std::size_t>(step.index)];
-        if (force < 0) {
-            made.kind = lanes::LoadKind::first_pull;
-            force = n_registers_;
-            n_registers_ += 3;
-        }
-        made.to = force;
+    case TapeKind::pull:
+        made = made_pull(step, made);
         break;
-    }
+    case TapeKind::plus:
+    case TapeKind::minus:
+        take_product(i, made);
+        break;
     default:
         break;
     }
     to.push_back(made);
 }
 
-/// Four columns for each body with loads, zero where no arm reaches.
-void LoadProgram::add_columns(const ModelTables& tables)
+/// A sum with the product that it takes in.
+void LoadProgram::take_product(std::size_t i, lanes::LoadStep& made) const
 {
-    std::vector<char> is_loaded(static_cast<std::size_t>(tables.n_bodies()), 0);
-    for (const Load& load : tables.model->loads())
-        for (const int body : load.bodies)
-            if (body != world) is_loaded[static_cast<std::size_t>(body)] = 1;
-    std::vector<std::vector<std::size_t>> arms_of(is_loaded.size());
-    for (std::size_t k = 0; k < forces_.size(); ++k)
-        if (forces_[k] >= 0) arms_of[static_cast<std::size_t>(tape_.arms()[k].body)].push_back(k);
-    for (int b = 0; b < tables.n_bodies(); ++b)
-        for (int a = 0; is_loaded[static_cast<std::size_t>(b)] && a < 4; ++a) {
-            const auto begin = static_cast<std::int32_t>(terms_.size());
-            for (const std::size_t k : arms_of[static_cast<std::size_t>(b)])
-                if (const double w = centred(tables, tape_.arms()[k], a); w != 0)
-                    terms_.push_back({forces_[k], w});
-            columns_.push_back({12 * b + 3 * a, begin, static_cast<std::int32_t>(terms_.size())});
-        }
+    if (takes_[i] < 0) return;
+    const TapeStep &step = tape_.steps()[i], &product = tape_.steps()[static_cast<std::size_t>(takes_[i])];
+    const double sign = step.kind == TapeKind::minus ? -1 : 1;
+    made.a = product.place == step.b ? step.a : step.b;
+    made.b = product.a;
+    made.begin = product.b;
+    made.number = sign;
+    if (product.kind == TapeKind::scaled) {
+        made.kind = lanes::LoadKind::plus_scaled;
+        made.number = sign * product.number;
+    } else {
+        made.kind =
+            product.kind == TapeKind::times ? lanes::LoadKind::plus_product : lanes::LoadKind::plus_dot;
+    }
+}
+
+/// Onto the force of an arm, which begins with the first pull.
+lanes::LoadStep LoadProgram::made_pull(const TapeStep& step, lanes::LoadStep made)
+{
+    int& force = forces_[static_cast<std::size_t>(step.index)];
+    const Vector3* of = tape_.constant({nullptr, step.b});
+    const int axis = of == nullptr ? -1 : only_component(*of);
+    if (force < 0) {
+        made.kind = lanes::LoadKind::first_pull;
+        force = n_registers_;
+        n_registers_ += 3;
+    } else if (axis >= 0) {
+        made.kind = lanes::LoadKind::pull_one;
+        made.number = (*of)[axis];
+        made.to = force + axis;
+        return made;
+    }
+    made.to = force;
+    return made;
 }
 
 std::shared_ptr<const LoadProgram> LoadProgram::of(const ModelTables& tables, RecordedLoads which)
 {
     KnownPattern& all = *tables.known_pattern;
-    std::shared_ptr<const LoadProgram>& known =
-        which == RecordedLoads::all ? all.loads : all.loads_without_bends;
+    if (which == RecordedLoads::without_bends && std::ranges::none_of(tables.model->loads(), &is_bent))
+        which = RecordedLoads::all;
+    std::shared_ptr<const LoadProgram>& known = all.loads[static_cast<std::size_t>(which)];
     if (known == nullptr) known = std::make_shared<LoadProgram>(tables, which);
     return known;
 }

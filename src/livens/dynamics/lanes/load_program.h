@@ -2,6 +2,7 @@
 // Loads of a model as steps of lanes (docs/theory.md, "Without a tangent", Loads in lanes).
 #pragma once
 
+#include <array>
 #include <memory>
 #include <vector>
 
@@ -10,6 +11,13 @@
 #include "livens/multibody/loads/load_tape.h"
 
 namespace livens::inline dynamics_internal {
+
+/// What a program for looks is about.
+inline std::array<const std::vector<int>*, 2> watched_of(const TapeWatch& watch, RecordedLoads which)
+{
+    if (which == RecordedLoads::laws) return {&watch.numbers, &watch.factors};
+    return {&watch.guards, &watch.centre};
+}
 
 /// What is known of a model's loads before the numbers. Forces and places are about centres of mass.
 class LoadProgram {
@@ -24,6 +32,8 @@ public:
     const std::vector<lanes::LoadStep>& known_steps() const { return known_steps_; }
     const std::vector<lanes::LoadStep>& steps() const { return steps_; }
     const std::vector<lanes::LoadColumn>& columns() const { return columns_; }
+    const std::vector<lanes::LoadArm>& arms() const { return arms_; }
+    const std::vector<lanes::LoadForce>& forces() const { return forces_of_; }
     const std::vector<lanes::Term>& terms() const { return terms_; }
     int n_registers() const { return n_registers_; }
     /// Loads that are not in it: nobody recorded them.
@@ -31,18 +41,37 @@ public:
 
 private:
     void record(const Model& model, RecordedLoads which);
-    std::vector<char> find_needed() const;
+    std::vector<char> find_needed(RecordedLoads which) const;
     std::vector<char> find_known() const;
-    void add_arm(const ModelTables& tables, const TapeArm& arm, std::int32_t& begin, std::int32_t& end);
-    void add_step(const ModelTables& tables, const TapeStep& step, std::vector<lanes::LoadStep>& to);
+    std::vector<int> find_steps() const;
+    void take_product(std::size_t i, lanes::LoadStep& made) const;
+    lanes::LoadStep made_pull(const TapeStep& step, lanes::LoadStep made);
+    void join(const std::vector<char>& needed, const std::vector<char>& known);
+    void add_arms(const ModelTables& tables, const std::vector<char>& needed);
+    void add_arm(const ModelTables& tables, const TapeStep& step);
+    int& register_of(int& at, bool is_rate, const std::vector<lanes::Term>& terms);
+    void add_forces(const ModelTables& tables);
+    bool are_few(const ModelTables& tables, const std::vector<int>& arms) const;
+    std::vector<std::vector<int>> by_body(const ModelTables& tables, const std::vector<char>& marked) const;
+    std::vector<char> find_pulled() const;
+    void add_terms(const ModelTables& tables, const TapeStep& step, lanes::LoadStep& made);
+    void add_step(const ModelTables& tables, std::size_t i, std::vector<lanes::LoadStep>& to);
     void add_columns(const ModelTables& tables);
 
     LoadTape tape_;
     std::vector<lanes::LoadStep> known_steps_, steps_;
     std::vector<lanes::LoadColumn> columns_;
+    std::vector<lanes::LoadArm> arms_;
+    std::vector<lanes::LoadForce> forces_of_;
+    /// Of each arm of the tape, and of each number where a column begins: 1 + its place in arms_, 0: it has
+    /// none so far, -1: no arm is known.
+    std::vector<int> arm_at_, column_at_;
     std::vector<lanes::Term> terms_;
     std::vector<int> forces_;   ///< first register of the force on each arm; -1: none
     std::vector<int> others_;
+    /// Of each step of the tape: a product that it takes in, -1: none; and whether another one takes it.
+    std::vector<int> takes_;
+    std::vector<char> is_taken_;
     int n_registers_ = 0;
 };
 

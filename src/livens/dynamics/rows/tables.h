@@ -2,6 +2,7 @@
 // The model as the engine reads it: flat tables, unknowns numbered.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <vector>
 
@@ -17,7 +18,7 @@ class RowPattern;
 /// The last pattern that was made of a model's rows, and its loads in lanes.
 struct KnownPattern {
     std::shared_ptr<const RowPattern> last;
-    std::shared_ptr<const LoadProgram> loads, loads_without_bends;
+    std::array<std::shared_ptr<const LoadProgram>, 4> loads;   ///< see RecordedLoads
 };
 
 /// Tables made once per solution.

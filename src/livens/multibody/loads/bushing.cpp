@@ -73,6 +73,26 @@ Psi psi(double sigma, double c)
     return p;
 }
 
+}   // namespace
+
+inline namespace multibody_internal {
+
+TapeVector turn_of_sine(TapeNumber sigma, TapeNumber c)
+{
+    return {c.tape, c.tape->add({TapeKind::turn, -1, sigma.place, c.place, -1, 0})};
+}
+
+void turn_of_sine(double sigma, double c, double* both)
+{
+    const Psi p = psi(sigma, c);
+    both[0] = p.value;
+    both[1] = 2 * p.by_sigma;
+}
+
+}   // namespace multibody_internal
+
+namespace {
+
 /// r, and the matrix of its derivatives by s and c.
 struct Turn {
     std::array<Dual, 3> r;
@@ -184,9 +204,8 @@ struct BushingLaw {
         };
         const TapeNumber s[3] = {at.value(3), at.value(4), at.value(5)}, c = at.value(6);
         const TapeNumber sigma = product(s, s), by_c = -(at.tape.number(1) / (sigma + c * c));
-        const TapeNumber factor = function_of([](double x, double y) { return psi(x, y).value; }, sigma, c);
-        const TapeNumber twice_by_sigma =
-            function_of([](double x, double y) { return 2 * psi(x, y).by_sigma; }, sigma, c);
+        const TapeVector turn = turn_of_sine(sigma, c);
+        const TapeNumber factor = turn[0], twice_by_sigma = turn[1];
         TapeNumber u[6], rate[6], f[6];
         for (std::size_t k = 0; k < 3; ++k) {
             u[k] = at.value(k);

@@ -1,13 +1,35 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Drag F = -(k1 + k2 |v|) v of a point against a medium: a law of three rates (theory.md, "Coordinates of
 // joints", Laws). With a quadratic part it bends where v is zero: that is its centre ("Laws that bend").
-#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "livens/multibody/loads/load_laws.h"
 #include "livens/multibody/loads/load_values.h"
 
 namespace livens {
+
+namespace {
+
+/// |d(|v| v_k)/ds| <= |v| |dv_k/ds| + |dv/ds| |v_k|
+void bound_slopes(const Drag& law, std::span<const EnclosedValue> numbers, std::span<double> bounds)
+{
+    double speed = 0, change = 0;
+    std::array<double, 3> along{};
+    for (int k = 0; k < 3; ++k) {
+        const EnclosedValue& v = numbers[3 + k];
+        const Enclosure against = v.value - Enclosure::of(law.medium[k]);
+        along[k] = against.size();
+        speed += square(against).high;
+        change += square(v.slope).high;
+    }
+    speed = std::sqrt(speed), change = std::sqrt(change);
+    for (int k = 0; k < 3; ++k)
+        bounds[k] = (law.linear + law.quadratic * speed) * numbers[3 + k].slope.size() +
+                    law.quadratic * change * along[k];
+}
+
+}   // namespace
 
 Load drag(const std::string& name, int body, const Vector3& point, const Drag& law, const Configurations& X)
 {
@@ -41,23 +63,14 @@ Load drag(const std::string& name, int body, const Vector3& point, const Drag& l
     parts.recorded_law = [law](const LawOnTape& at, std::span<TapeNumber> factors) {
         const TapeNumber v[3] = {at.rate(0) - law.medium[0], at.rate(1) - law.medium[1],
                                  at.rate(2) - law.medium[2]};
-        TapeNumber size = at.tape.number(law.linear);
-        if (law.quadratic > 0)
-            size = law.linear + law.quadratic * root(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-        for (std::size_t k = 0; k < 3; ++k) factors[k] = -(size * v[k]);
+        if (law.quadratic > 0) at.tape.watch_centre({v[0], v[1], v[2]});
+        const TapeNumber speed = root(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+        for (std::size_t k = 0; k < 3; ++k)
+            factors[k] =
+                law.quadratic > 0 ? (-law.linear + -law.quadratic * speed) * v[k] : -law.linear * v[k];
     };
-    // |d(|v| v)/ds| <= 2 |v| |dv/ds|
     parts.steepest = [law](const EnclosedValue&, std::span<const EnclosedValue> numbers,
-                           std::span<double> bounds) {
-        double speed = 0, change = 0;
-        for (int k = 0; k < 3; ++k) {
-            const EnclosedValue& v = numbers[3 + k];
-            speed += square(v.value - Enclosure::of(law.medium[k])).high;
-            change += square(v.slope).high;
-        }
-        const double steepest = (law.linear + 2 * law.quadratic * std::sqrt(speed)) * std::sqrt(change);
-        std::ranges::fill(bounds, steepest);
-    };
+                           std::span<double> bounds) { bound_slopes(law, numbers, bounds); };
     parts.is_smooth = law.quadratic == 0;
     parts.is_smooth_off_centre = true;
     if (law.quadratic > 0)

@@ -33,6 +33,7 @@ struct AlongJoint {
         if (spring.damping > 0) add(-spring.damping * along.rate(tape));
         if (is_elastic()) {
             const TapeNumber e = along.value(tape) - spring.rest;
+            if (spring.law && !spring.law.bends.empty()) tape.watch_guard(e);
             add(spring.law ? -recorded(spring.law, e) : -spring.stiffness * e);
         }
         if (Q.place < 0)

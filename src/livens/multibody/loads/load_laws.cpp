@@ -58,6 +58,12 @@ struct Modulated {
             parts.recorded_law(at, factors);
         else
             call_law(at, factors);
+        if (tape.takes_looks() && !parts.is_smooth) {
+            std::vector<TapeNumber> numbers;
+            for (std::size_t i = 0; i < coordinates.size(); ++i) numbers.push_back(at.value(i));
+            for (std::size_t i = 0; i < coordinates.size(); ++i) numbers.push_back(at.rate(i));
+            tape.watch_law(numbers, factors);
+        }
         for (std::size_t k = 0; k < factors.size(); ++k)
             parts.units[k].forces.record(tape, factor * factors[k]);
     }

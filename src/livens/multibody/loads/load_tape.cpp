@@ -24,6 +24,8 @@ int TapeStep::size() const
     case TapeKind::time:
     case TapeKind::outer:
         return b;
+    case TapeKind::turn:
+        return 2;
     case TapeKind::pull:
         return 0;
     default:
@@ -35,6 +37,20 @@ void LoadTape::begin(const Load& load, int first_angle)
 {
     bodies_ = load.bodies;
     first_angle_ = first_angle;
+    watched_.emplace_back();
+}
+
+void LoadTape::watch_guard(TapeNumber number) { watched_.back().guards.push_back(number.place); }
+
+void LoadTape::watch_centre(const std::array<TapeNumber, 3>& centre)
+{
+    for (const TapeNumber& number : centre) watched_.back().centre.push_back(number.place);
+}
+
+void LoadTape::watch_law(std::span<const TapeNumber> numbers, std::span<const TapeNumber> factors)
+{
+    for (const TapeNumber& number : numbers) watched_.back().numbers.push_back(number.place);
+    for (const TapeNumber& factor : factors) watched_.back().factors.push_back(factor.place);
 }
 
 int LoadTape::add(TapeStep step)
@@ -54,7 +70,15 @@ TapeVector LoadTape::vector(const Vector3& value)
     const auto found = std::ranges::find(vectors_, value);
     const int index = static_cast<int>(found - vectors_.begin());
     if (found == vectors_.end()) vectors_.push_back(value);
-    return {this, add({TapeKind::vector, -1, -1, -1, index, 0})};
+    const int place = add({TapeKind::vector, -1, -1, -1, index, 0});
+    vector_at_[place] = index;
+    return {this, place};
+}
+
+const Vector3* LoadTape::constant(TapeVector of) const
+{
+    const auto found = vector_at_.find(of.place);
+    return found == vector_at_.end() ? nullptr : &vectors_[static_cast<std::size_t>(found->second)];
 }
 
 TapeNumber LoadTape::of_time(const TimeFunction& value)
@@ -71,7 +95,12 @@ TapeVector LoadTape::of_time(const TimeVector& value)
     };
     if (std::ranges::all_of(value, [](const TimeFunction& f) { return f.is_constant(); }))
         return vector(all({}));
-    times_.push_back(all);
+    return at_instant(all);
+}
+
+TapeVector LoadTape::at_instant(OfTime value)
+{
+    times_.push_back(std::move(value));
     return {this, add({TapeKind::time, -1, -1, 3, static_cast<int>(times_.size()) - 1, 0})};
 }
 
@@ -146,6 +175,7 @@ TapeVector operator+(TapeVector a, TapeVector b)
 
 TapeVector operator-(TapeVector a, TapeVector b)
 {
+    if (const Vector3* v = a.tape->constant(b); v != nullptr && *v == Vector3{}) return a;
     return {a.tape, a.tape->add({TapeKind::difference, -1, a.place, b.place, -1, 0})};
 }
 
@@ -159,8 +189,21 @@ TapeVector cross(TapeVector a, TapeVector b)
     return {a.tape, a.tape->add({TapeKind::cross, -1, a.place, b.place, -1, 0})};
 }
 
+int only_component(const Vector3& v)
+{
+    int only = -1;
+    for (int i = 0; i < 3; ++i) {
+        if (v[i] == 0) continue;
+        if (only >= 0) return -1;
+        only = i;
+    }
+    return only;
+}
+
 TapeNumber dot(TapeVector a, TapeVector b)
 {
+    const Vector3* c = a.tape->constant(a);
+    if (const int axis = c == nullptr ? -1 : only_component(*c); axis >= 0) return (*c)[axis] * b[axis];
     return {a.tape, a.tape->add({TapeKind::dot, -1, a.place, b.place, -1, 0})};
 }
 
@@ -220,6 +263,22 @@ TapeNumber recorded(const Expression::Step& step, const std::vector<TapeNumber>&
     }
 }
 
+/// What Expression::guarded tells.
+void watch(LoadTape& tape, const Expression& expression, const std::vector<TapeNumber>& known)
+{
+    using Operation = Expression::Operation;
+    for (const int k : expression.guarded_steps()) {
+        const Expression::Step& step = expression.steps()[static_cast<std::size_t>(k)];
+        const TapeNumber first = known[static_cast<std::size_t>(step.first)];
+        if (step.operation == Operation::arc_tangent)
+            tape.watch_guard(known[static_cast<std::size_t>(k)]);
+        else if (step.operation == Operation::absolute)
+            tape.watch_guard(first);
+        else
+            tape.watch_guard(first - known[static_cast<std::size_t>(step.second)]);
+    }
+}
+
 }   // namespace
 
 RecordedLaw recorded_law(const std::vector<Expression>& expressions, const std::vector<LawRead>& reads,
@@ -241,6 +300,7 @@ RecordedLaw recorded_law(const std::vector<Expression>& expressions, const std::
                     known.push_back(recorded(step, known));
                 }
             }
+            watch(at.tape, expressions[i], known);
             factors[i] = acts.is_constant() ? known.back() : chosen(at.tape.of_time(acts), known.back());
         }
     };

@@ -52,6 +52,7 @@ enum class TapeKind : std::uint8_t {
     greatest,    ///< of a and b; b only if it is larger
     chosen,      ///< b where a is not 0, else 0
     function,    ///< functions[index] of a and b
+    turn,        ///< two numbers of a and b: see turn_of_sine()
     unwrapped,   ///< the angle a by whole turns next to what angle `index` is at the instant before
     outer,       ///< of the numbers inputs[index]: calls[index]; its results follow, b numbers
     // of vectors
@@ -81,6 +82,13 @@ struct TapeArm {
     Vector4 w;
 };
 
+/// What Load::guarded and Load::centre say, where a load has recorded it: places of their numbers. And, where
+/// the tape is for looks, what LawInside says.
+struct TapeWatch {
+    std::vector<int> guards, centre;
+    std::vector<int> numbers, factors;
+};
+
 /// What is recorded twice is evaluated once. Forces leave by pull(): F of a body is the sum of s v w^T over
 /// material vectors X w, its arms.
 class LoadTape {   // named in a public header: what it does is still no library's
@@ -98,12 +106,24 @@ public:
     /// Asked once for each instant, however often forces are.
     [[gnu::visibility("hidden")]] TapeNumber of_time(const TimeFunction& value);
     [[gnu::visibility("hidden")]] TapeVector of_time(const TimeVector& value);
+    [[gnu::visibility("hidden")]] TapeVector at_instant(OfTime value);
     [[gnu::visibility("hidden")]] TapeVector arm(int side, const Vector4& w, bool is_rate = false);
+    /// A vector that is the same whenever and wherever; null: it is none.
+    [[gnu::visibility("hidden")]] const Vector3* constant(TapeVector of) const;
     /// An angle with its turns; `angle`: its place in Load::angles.
     [[gnu::visibility("hidden")]] TapeNumber unwrapped(TapeNumber value, int angle);
     /// What no list of operations says. The place of the first of n results.
     [[gnu::visibility("hidden")]] TapeVector outer(Outer call, const std::vector<TapeNumber>& of, int n);
     [[gnu::visibility("hidden")]] void pull(int side, const Vector4& w, TapeNumber s, TapeVector v);
+    /// The next number of Load::guarded; and Load::centre.
+    [[gnu::visibility("hidden")]] void watch_guard(TapeNumber number);
+    [[gnu::visibility("hidden")]] void watch_centre(const std::array<TapeNumber, 3>& centre);
+    /// Numbers and factors of a law that need not be smooth.
+    [[gnu::visibility("hidden")]] void watch_law(std::span<const TapeNumber> numbers,
+                                                 std::span<const TapeNumber> factors);
+    /// It is for looks: only what is watched is evaluated, and laws say all that they look at.
+    void take_looks() { takes_looks_ = true; }
+    bool takes_looks() const { return takes_looks_; }
     /// Any other step: the place of its value.
     [[gnu::visibility("hidden")]] int add(TapeStep step);
 
@@ -114,6 +134,8 @@ public:
     const std::vector<Function>& functions() const { return functions_; }
     const std::vector<Outer>& calls() const { return calls_; }
     const std::vector<std::vector<int>>& inputs() const { return inputs_; }
+    /// Of all loads in the order of their begin().
+    const std::vector<TapeWatch>& watched() const { return watched_; }
     int size() const { return size_; }
     [[gnu::visibility("hidden")]] int index_of(Function function);
 
@@ -125,12 +147,15 @@ private:
     std::vector<TapeArm> arms_;
     std::map<std::array<double, 5>, int> arm_at_;   ///< by body and w
     std::vector<Vector3> vectors_;
+    std::map<int, int> vector_at_;   ///< by place
     std::vector<OfTime> times_;
     std::vector<Function> functions_;
     std::vector<Outer> calls_;
     std::vector<std::vector<int>> inputs_;
+    std::vector<TapeWatch> watched_;
     std::vector<int> bodies_;   ///< of the load at hand
     int first_angle_ = 0, size_ = 0;
+    bool takes_looks_ = false;
 };
 
 inline TapeNumber made(TapeKind kind, TapeNumber a, int b = -1, double number = 0)
@@ -151,11 +176,19 @@ inline TapeNumber inverse(TapeNumber a) { return made(TapeKind::inverse, a); }
 /// b where a is not 0, else 0, whatever b is.
 inline TapeNumber chosen(TapeNumber a, TapeNumber b) { return made(TapeKind::chosen, a, b.place); }
 TapeNumber function_of(LoadTape::Function function, TapeNumber a, TapeNumber b);
+/// Of a turn whose sine has the square sigma, and whose cosine is c: itself over its sine,
+/// atan2(sqrt(sigma), c) / sqrt(sigma), and twice the slope of that by sigma. In [0] and [1].
+TapeVector turn_of_sine(TapeNumber sigma, TapeNumber c);
+/// The same of one turn.
+void turn_of_sine(double sigma, double c, double* both);
 
 TapeVector operator+(TapeVector a, TapeVector b);
 TapeVector operator-(TapeVector a, TapeVector b);
 TapeVector operator*(TapeNumber a, TapeVector b);
 TapeVector cross(TapeVector a, TapeVector b);
 TapeNumber dot(TapeVector a, TapeVector b);
+
+/// The only component that is not zero; -1: there are none, or several.
+int only_component(const Vector3& v);
 
 }   // namespace livens::inline multibody_internal

@@ -64,22 +64,29 @@ struct Spring {
 
     void record(LoadTape& tape, TapeNumber factor) const
     {
-        const TapeVector r = tape.arm(1, points[1]) - tape.arm(0, points[0]);
-        const auto add = [&](TapeNumber s, TapeVector v) {
-            tape.pull(0, points[0], factor * s, v);
-            tape.pull(1, points[1], factor * -s, v);
+        // From the second point to the first, which is no place of the world.
+        const TapeVector r = tape.arm(0, points[0]) - tape.arm(1, points[1]);
+        const auto pull = [&](TapeNumber s) {
+            tape.pull(0, points[0], factor * -s, r);
+            tape.pull(1, points[1], factor * s, r);
         };
-        if (!law.law && law.stiffness != 0) add(tape.number(law.stiffness), r);
         const bool is_tight = law.law || law.preload != 0 || law.damping != 0 || law.free_length != 0;
-        if (!is_tight) return;
+        if (!is_tight) return pull(tape.number(law.stiffness));
         const TapeNumber l = root(dot(r, r)), by_l = inverse(l);
-        TapeNumber tension = tape.number(law.preload - (law.law ? 0 : law.stiffness * law.free_length));
-        if (law.law) tension = tension + recorded(law.law, l - law.free_length);
+        // By its elongation, which has fewer roundings; without free length it is smooth where the ends meet.
+        const bool is_free = law.law || law.free_length != 0;
+        TapeNumber tension = tape.number(law.preload);
+        if (is_free) {
+            const TapeNumber e = l - law.free_length;
+            tension = tension + (law.law ? recorded(law.law, e) : law.stiffness * e);
+            if (!law.law.bends.empty()) tape.watch_guard(e);
+        }
+        tape.watch_centre({r[0], r[1], r[2]});
         if (law.damping != 0) {
-            const TapeVector w = tape.arm(1, points[1], true) - tape.arm(0, points[0], true);
+            const TapeVector w = tape.arm(0, points[0], true) - tape.arm(1, points[1], true);
             tension = tension + law.damping * (by_l * dot(r, w));
         }
-        add(tension * by_l, r);
+        pull((is_free ? 0 : law.stiffness) + tension * by_l);
     }
 
     /// d pull / dr. At coinciding points: k I without tension, else none.
@@ -145,12 +152,13 @@ struct Spring {
             F[1] = -outer(one, points[1]);
         };
         inside.steepest = [*this](const EnclosedValue&, std::span<const EnclosedValue> numbers,
-                                  std::span<double> bounds) { std::ranges::fill(bounds, steepest(numbers)); };
+                                  std::span<double> bounds) { bound_slopes(numbers, bounds); };
         return inside;
     }
 
-    /// |d pull/ds| <= k |r'| + |tension| |r'| / |r| + |tension'|.
-    double steepest(std::span<const EnclosedValue> numbers) const
+    /// With the direction u of r, |d pull_k/ds| <= k |r_k'| + |tension| |u_k'| + |tension'| |u_k| and
+    /// |u_k'| <= (|r_k'| + |r'| |u_k|) / |r|.
+    void bound_slopes(std::span<const EnclosedValue> numbers, std::span<double> bounds) const
     {
         double least = 0, longest = 0, change = 0, speed = 0, speed_change = 0;
         for (std::size_t k = 0; k < 3; ++k) {
@@ -162,7 +170,7 @@ struct Spring {
         speed = std::sqrt(speed), speed_change = std::sqrt(speed_change);
         // |du/ds| <= |r'| / |r|; where the ends may meet this is infinite, and the piece is halved.
         const double turn = change / least;
-        double slope = law.stiffness;
+        double slope = 0;
         double tension = std::abs(law.preload) + law.damping * speed + law.stiffness * law.free_length;
         for (const double l : {least, 0.5 * (least + longest), longest}) {
             if (!law.law) break;
@@ -170,7 +178,13 @@ struct Spring {
             slope = std::max(slope, std::abs(at.stiffness));
             tension = std::max(tension, std::abs(law.preload) + law.damping * speed + std::abs(at.force));
         }
-        return slope * change + tension * turn + law.damping * (speed_change + speed * turn);
+        const double change_of_tension = slope * change + law.damping * (speed_change + speed * turn);
+        for (std::size_t k = 0; k < 3; ++k) {
+            const double r = numbers[k].value.size(), rate = numbers[k].slope.size();
+            const double along = least > 0 ? std::min(1.0, r / least) : 1;
+            bounds[k] =
+                law.stiffness * rate + tension * (rate / least + turn * along) + change_of_tension * along;
+        }
     }
 
     double potential(const LoadArguments& arguments) const

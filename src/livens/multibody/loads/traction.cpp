@@ -38,13 +38,23 @@ Load traction(const std::string& name, int body, const SurfaceMoments& surface, 
     load.needs_directors[0] = true;
     load.depends_on_X = frame == Frame::body_fixed;
     const auto G = [area, value, gradient](Instant at) { return integral(area, value, gradient, at); };
+    const auto record = [G, frame](LoadTape& tape, const TapeNumber& factor) {
+        for (int a = 0; a < 4; ++a) {
+            Vector4 w{};
+            w[a] = 1;
+            const TapeVector column = tape.at_instant([G, a](Instant at) { return G(at).column(a); });
+            tape.pull(0, w, factor, frame == Frame::body_fixed ? along_directors(column) : column);
+        }
+    };
     if (!load.depends_on_X) {
         load.forces = [G](const LoadArguments& arguments, LoadForces& F) { F[0] = G(arguments.at); };
+        load.forces.record = record;
         return load;
     }
     load.forces = [G](const LoadArguments& arguments, LoadForces& F) {
         F[0] = directors(arguments.X[0]) * G(arguments.at);
     };
+    load.forces.record = record;
     load.tangent = [G](const LoadArguments& arguments, LoadTangent& tangent) {
         const Matrix34 of = G(arguments.at);
         for (int a = 0; a < 4; ++a)

@@ -24,9 +24,10 @@ constexpr double least_for_reactions = 1e-4;
 }   // namespace
 
 ElementChecks::ElementChecks(const ModelTables& tables, const ElementRule& rule)
-    : tables_(tables), degree_(rule.degree), branches_(tables, rule), switching_points_(tables, rule)
+    : tables_(tables), degree_(rule.degree), branches_(tables, rule), calm_(tables, rule),
+      switching_points_(tables, rule, calm_)
 {
-    if (!std::ranges::all_of(tables.model->loads(), &Load::is_smooth)) inside_.emplace(tables, rule);
+    if (!std::ranges::all_of(tables.model->loads(), &Load::is_smooth)) inside_.emplace(tables, rule, calm_);
 }
 
 /// Less than 90 degrees, where |R_B - R_A|^2 = 4, from node to node.

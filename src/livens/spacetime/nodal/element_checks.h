@@ -8,6 +8,7 @@
 
 #include "livens/spacetime/march/window.h"
 #include "livens/spacetime/nodal/branches.h"
+#include "livens/spacetime/nodal/calm_laws.h"
 #include "livens/spacetime/nodal/inside.h"
 #include "livens/spacetime/nodal/switching_points.h"
 
@@ -22,6 +23,10 @@ public:
     /// References must outlive it.
     ElementChecks(const ModelTables& tables, const ElementRule& rule);
 
+    /// The lanes that evaluated the loads of the element solved last; null: nobody knows them.
+    void look_at(const LoadLanes* loads) { calm_.look(loads); }
+    /// No law of it is anywhere near a bend.
+    bool are_laws_calm() const { return calm_.are_all(); }
     /// Laws of loads are not inspected between load points.
     void ignore_laws() { inside_.reset(); }
     /// The velocity jump h |V - X_h'| at the end of an element (radau: at its start), as velocity_jump() of
@@ -52,6 +57,7 @@ private:
     const ModelTables& tables_;
     int degree_;
     Branches branches_;
+    CalmLaws calm_;
     SwitchingPoints switching_points_;
     std::optional<InsideLaws> inside_;   // where a law need not be smooth, and is not ignored
     std::vector<Unseen> unseen_;

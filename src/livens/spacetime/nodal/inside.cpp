@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "livens/diagnostics/largest.h"
 #include "livens/dynamics/instant/instant.h"
@@ -20,16 +21,19 @@ constexpr double rounding = 1e-15;
 
 }   // namespace
 
-InsideLaws::InsideLaws(const ModelTables& tables, const ElementRule& rule)
-    : tables_(tables), laws_(laws_to_inspect(tables)), path_(tables, rule), along_(tables, rule),
-      missed_(rule), V_(12 * tables.bodies.size())
-{}
+InsideLaws::InsideLaws(const ModelTables& tables, const ElementRule& rule, const CalmLaws& calm)
+    : tables_(tables), rule_(rule), calm_(calm), laws_(laws_to_inspect(tables)), path_(tables, rule),
+      along_(tables, rule), missed_(rule), V_(12 * tables.bodies.size())
+{
+    along_.use(missed_.shares());
+}
 
 /// A law that is smooth except where its centre is near.
 bool InsideLaws::is_calm(const InspectedLaw& law)
 {
     constexpr double far = 2;
     if (!law.inside.only_at_centre) return false;
+    if (calm_.has_calm_centre(law.load)) return true;
     const Load& load = tables_.model->loads()[law.load];
     double least = 0, change = 0;
     Vector3 before{};
@@ -87,16 +91,23 @@ Unseen InsideLaws::look(const WindowLayout& layout, const NodePositions& nodes, 
     Unseen found;
     double largest = 0;
     path_.begin(layout, nodes, e);
-    for (auto& forces : forces_) forces.assign(end.X.size(), 0.0);
+    bool has_looked = false;
     for (const InspectedLaw& law : laws_) {
         if (is_calm(law)) continue;
-        along_.follow(law, path_, angles);
-        const std::vector<double> moments = missed_.of(along_);
+        if (!looks_) looks_.emplace(tables_, rule_, RecordedLoads::laws, missed_.shares());
+        // what has no bounds is looked at elsewhere, nearer to the ends
+        const bool is_seen =
+            looks_->knows(law.load) && law.inside.steepest && angles.size() == tables_.loads.turns.size();
+        if (is_seen && !std::exchange(has_looked, true)) looks_->look(layout, nodes, e, angles);
+        along_.follow(law, path_, angles, is_seen ? &*looks_ : nullptr);
+        const std::vector<double> moments = missed_.of(along_, is_seen ? &*looks_ : nullptr);
         double own = 0;
         for (std::size_t i = 0; i < moments.size(); ++i)
             own = std::max(own, std::abs(moments[i]) * law.mobility[i % law.mobility.size()] * along_.h() *
                                     along_.h());
         if (own <= rounding) continue;
+        if (found.load < 0)
+            for (auto& forces : forces_) forces.assign(end.X.size(), 0.0);
         if (raise_to(largest, own)) found.load = law.load;
         add_forces(law, moments, end);
     }

@@ -2,10 +2,13 @@
 // What laws of loads do inside of an element that its load points do not see.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "livens/diagnostics/estimate.h"
+#include "livens/spacetime/nodal/calm_laws.h"
 #include "livens/spacetime/nodal/law_on_path.h"
+#include "livens/spacetime/nodal/looks_in_lanes.h"
 #include "livens/spacetime/nodal/missed_moments.h"
 
 namespace livens::inline dynamics_internal {
@@ -21,7 +24,7 @@ namespace livens::inline spacetime_internal {
 class InsideLaws {
 public:
     /// References must outlive it.
-    InsideLaws(const ModelTables& tables, const ElementRule& rule);
+    InsideLaws(const ModelTables& tables, const ElementRule& rule, const CalmLaws& calm);
 
     /// Of element e, whose end state is `end`, prepared by `instant`: how what was not seen would have kicked
     /// the bodies, and the load that kicks most. `angles`: at its first node, see Turns.
@@ -34,10 +37,13 @@ private:
     void kick(const double* twist, const InstantState& end, Unseen& found);
 
     const ModelTables& tables_;
+    const ElementRule& rule_;
+    const CalmLaws& calm_;
     std::vector<InspectedLaw> laws_;
     ElementPath path_;
     LawOnPath along_;
     MissedMoments missed_;
+    std::optional<LooksInLanes> looks_;   // at laws that are recorded, once they are asked for
     std::vector<double> forces_[MissedMoments::n_moments];   // generalised ones of all laws, 12 a body
     std::vector<double> V_;
 };

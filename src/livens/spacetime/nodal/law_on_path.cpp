@@ -9,6 +9,8 @@
 #include <cmath>
 #include <utility>
 
+#include "livens/spacetime/nodal/looks_in_lanes.h"
+
 namespace livens::inline spacetime_internal {
 
 namespace {
@@ -95,22 +97,37 @@ LawOnPath::LawOnPath(const ModelTables& tables, const ElementRule& rule)
     : tables_(tables), basis_(lobatto_basis(rule.degree + 2))
 {}
 
-void LawOnPath::follow(const InspectedLaw& law, ElementPath& path, const std::vector<double>& angles)
+void LawOnPath::use(const std::vector<double>& shares)
 {
-    constexpr double between = 2;   // nodes a derivative may be larger than at them
+    const LagrangeBasis looks(shares);
+    from_looks_.resize(basis_.nodes().size() * shares.size());
+    for (std::size_t A = 0; A < basis_.nodes().size(); ++A)
+        looks.values(basis_.nodes()[A], std::span(from_looks_).subspan(A * shares.size(), shares.size()));
+}
+
+void LawOnPath::follow(const InspectedLaw& law, ElementPath& path, const std::vector<double>& angles,
+                       const LooksInLanes* looks)
+{
     const std::size_t n = law.inside.n_numbers, size = static_cast<std::size_t>(basis_.size());
     law_ = &law;
     start_ = path.start();
     h_ = path.h();
     numbers_.resize(n * size);
     std::vector<double> turned = angles;
-    for (std::size_t A = 0; A < size; ++A) {
+    if (looks != nullptr) looks->numbers(law.load, from_looks_, numbers_);
+    for (std::size_t A = 0; looks == nullptr && A < size; ++A) {
         path.go(basis_.nodes()[A], law.bodies);
         tables_.loads.turns.follow_of(law.load, Configurations(path.X()), turned);
         law.inside.numbers(tables_.loads.arguments(law.load, path.at(), path.X(), path.V(), turned),
                            std::span(numbers_).subspan(n * A, n));
     }
-    if (!law.inside.steepest) return;
+    if (law.inside.steepest) bound_derivatives();
+}
+
+void LawOnPath::bound_derivatives()
+{
+    constexpr double between = 2;   // nodes a derivative may be larger than at them
+    const std::size_t n = law_->inside.n_numbers, size = static_cast<std::size_t>(basis_.size());
     const std::vector<double>& D = basis_.differentiation();
     const auto derive = [&](const std::vector<double>& of, std::vector<double>& derivative) {
         derivative.assign(of.size(), 0.0);

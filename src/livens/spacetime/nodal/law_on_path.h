@@ -18,6 +18,8 @@ struct InspectedLaw {
     std::vector<double> mobility;   ///< of each unit F_k: acceleration in lengths or rad
 };
 
+class LooksInLanes;
+
 /// Of all loads that are not smooth.
 std::vector<InspectedLaw> laws_to_inspect(const ModelTables& tables);
 
@@ -27,8 +29,12 @@ public:
     /// References must outlive it.
     LawOnPath(const ModelTables& tables, const ElementRule& rule);
 
-    /// Takes the numbers of a law along the path. `angles`: at the first node, see Turns.
-    void follow(const InspectedLaw& law, ElementPath& path, const std::vector<double>& angles);
+    /// Takes the numbers of a law along the path. `angles`: at the first node, see Turns. `looks`: they know
+    /// the law at the shares that they were made with; null: it is asked.
+    void follow(const InspectedLaw& law, ElementPath& path, const std::vector<double>& angles,
+                const LooksInLanes* looks);
+    /// What looks at these shares are multiplied with.
+    void use(const std::vector<double>& shares);
     const InspectedLaw& law() const { return *law_; }
     std::size_t n_factors() const { return law_->inside.n_factors; }
     double h() const { return h_; }
@@ -40,8 +46,11 @@ public:
 private:
     EnclosedValue range(std::size_t number, double width) const;
 
+    void bound_derivatives();
+
     const ModelTables& tables_;
     LagrangeBasis basis_;
+    std::vector<double> from_looks_;   // values at its nodes of the basis on the shares of looks
     const InspectedLaw* law_ = nullptr;
     double start_ = 0, h_ = 0;
     // At the nodes of basis_, and bounds of derivatives.

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "livens/spacetime/nodal/law_on_path.h"
+#include "livens/spacetime/nodal/looks_in_lanes.h"
 
 namespace livens {
 
@@ -80,7 +81,8 @@ double quadrature_doubt(const LawOnPath& path, const CheckedRule& rule, const Pa
     return doubt > negligible ? doubt : 0;
 }
 
-void integrate(LawOnPath& path, const CheckedRule& rule, Panel& panel)
+/// `looks`: those at the points of the rule were taken; null: they were not.
+void integrate(LawOnPath& path, const CheckedRule& rule, Panel& panel, const LooksInLanes* looks = nullptr)
 {
     const std::size_t m = path.n_factors(), n = rule.gauss.points.size();
     const double width = panel.last - panel.first;
@@ -89,7 +91,11 @@ void integrate(LawOnPath& path, const CheckedRule& rule, Panel& panel)
     std::vector<double> seen((n + 2) * (1 + m));
     const auto see = [&](std::size_t i, double share) {
         seen[i * (1 + m)] = share;
-        path.factors_at(share, seen.data() + i * (1 + m) + 1);
+        double* factors = seen.data() + i * (1 + m) + 1;
+        if (looks != nullptr)
+            looks->factors(path.law().load, i, factors);
+        else
+            path.factors_at(share, factors);
     };
     if (is_bounded) see(0, panel.first);
     for (std::size_t i = 0; i < n; ++i) {
@@ -150,13 +156,22 @@ MissedMoments::MissedMoments(const ElementRule& rule)
       few_(2)
 {}
 
-std::vector<double> MissedMoments::of(LawOnPath& path) const
+std::vector<double> MissedMoments::shares() const
+{
+    std::vector<double> shares{0};
+    shares.insert(shares.end(), fine_.gauss.points.begin(), fine_.gauss.points.end());
+    shares.push_back(1);
+    return shares;
+}
+
+std::vector<double> MissedMoments::of(LawOnPath& path, const LooksInLanes* looks) const
 {
     const std::size_t m = path.n_factors();
     std::vector<Panel> panels;
     if (path.law().inside.steepest) {
         panels.resize(1);
-        integrate(path, fine_, panels[0]);
+        integrate(path, fine_, panels[0], looks);
+        if (panels[0].doubt > 0) looks = nullptr;   // pieces are by the numbers between its looks
         divide(path, some_, panels);
     } else {
         const double ends[] = {
@@ -170,7 +185,10 @@ std::vector<double> MissedMoments::of(LawOnPath& path) const
     for (const Panel& panel : panels)
         for (std::size_t i = 0; i < moments.size(); ++i) moments[i] += panel.moments[i];
     for (std::size_t c = 0; c < rule_.loads.points.size(); ++c) {
-        path.factors_at(rule_.loads.points[c], factors.data());
+        if (looks != nullptr)
+            looks->factors_at_load_point(path.law().load, c, factors.data());
+        else
+            path.factors_at(rule_.loads.points[c], factors.data());
         const std::array<double, n_moments> P = legendre(rule_.loads.points[c]);
         for (std::size_t i = 0; i < moments.size(); ++i)
             moments[i] -= rule_.loads.weights[c] * P[i / m] * factors[i % m];

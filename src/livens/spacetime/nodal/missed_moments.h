@@ -9,6 +9,7 @@
 namespace livens::inline spacetime_internal {
 
 class LawOnPath;
+class LooksInLanes;
 
 /// Points of Gauss, and weights by which these, the middle one left out, and both ends tell whether their
 /// integral can be trusted: [end, points.., end].
@@ -29,8 +30,11 @@ public:
 
     explicit MissedMoments(const ElementRule& rule);
 
-    /// Of factor k with the polynomial n at [n * n_factors + k].
-    std::vector<double> of(LawOnPath& path) const;
+    /// Of factor k with the polynomial n at [n * n_factors + k]. `looks`: they know the law at shares() and
+    /// at load points; null: it is asked there.
+    std::vector<double> of(LawOnPath& path, const LooksInLanes* looks) const;
+    /// Where all of the way is looked at first.
+    std::vector<double> shares() const;
 
 private:
     const ElementRule& rule_;

@@ -2,9 +2,12 @@
 // Where on the way of an element a law of a load or row goes on to another of its smooth pieces.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "livens/spacetime/nodal/calm_laws.h"
+#include "livens/spacetime/nodal/looks_in_lanes.h"
 #include "livens/spacetime/nodal/watched_law.h"
 
 namespace livens::inline spacetime_internal {
@@ -15,7 +18,7 @@ namespace livens::inline spacetime_internal {
 class SwitchingPoints {
 public:
     /// References must outlive it.
-    SwitchingPoints(const ModelTables& tables, const ElementRule& rule);
+    SwitchingPoints(const ModelTables& tables, const ElementRule& rule, const CalmLaws& calm);
 
     /// No law of the model has pieces.
     bool empty() const { return laws_.empty(); }
@@ -26,10 +29,16 @@ public:
     std::string jumping_load() const { return jumping_ < 0 ? "" : tables_.model->loads()[jumping_].name; }
 
 private:
+    bool is_calm(const WatchedLaw& law) const;
+
     const ModelTables& tables_;
+    const ElementRule& rule_;
+    const CalmLaws& calm_;
     std::vector<WatchedLaw> laws_;
     ElementPath path_;
-    std::vector<double> shares_;   // of looks
+    std::vector<double> shares_, shares_beyond_;   // of looks, on the way and half of it beyond
+    int n_looks_ = 0;                              // of equal distance, on the way
+    std::optional<LooksInLanes> looks_, beyond_;   // there, once they are asked for
     int jumping_ = -1;
 };
 

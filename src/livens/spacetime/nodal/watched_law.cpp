@@ -45,6 +45,14 @@ LawState WatchedLaw::at(ElementPath& path, double share, const LawState& from) c
     return state;
 }
 
+std::vector<double> WatchedLaw::angles_at(ElementPath& path, double share, std::vector<double> from) const
+{
+    if (load_ < 0 || tables_.model->loads()[load_].angles.empty()) return from;
+    path.go(share, bodies_);
+    tables_.loads.turns.follow_of(load_, Configurations(path.X()), from);
+    return from;
+}
+
 LoadForces WatchedLaw::forces(ElementPath& path, const LawState& at) const
 {
     path.go(at.share, bodies_);

@@ -111,6 +111,8 @@ bool NodalWindow::solve(const NewtonOptions& options, bool soon, NewtonReport& r
     }
     system_.nodes().place_solved(kernel_.increments(), kernel_.width());
     system_.balances().loads().count_turns(layout_, system_.nodes());
+    checks_.look_at(kernel_.loads());
+    end_.instant().trust_tapes(checks_.are_laws_calm());
     return true;
 }
 
@@ -126,6 +128,8 @@ double NodalWindow::tangent_cost() const
 void NodalWindow::begin_newton()
 {
     kernel_.forget();
+    checks_.look_at(nullptr);
+    end_.instant().trust_tapes(false);
     if (layout_.X_first) end_.instant().add_basis(end_.here());
 }
 

@@ -8,16 +8,16 @@ namespace livens::lanes {
 
 /// The numbers of one element; lanes over rows, one for each node of a column, or as said.
 struct Rule {
-    const double* k;          ///< k_AB / h
-    const double* inverse;    ///< - h K^-1, lanes over columns
-    const double* weights;    ///< h w_A; one
-    const double* M;          ///< M_B(s_c), lanes over load points
-    const double* dM;         ///< M_B'(s_c) / h
-    const double* M_rows;     ///< M_A(s_c), one for each load point
+    const double* k;              ///< k_AB / h
+    const double* inverse;        ///< - h K^-1, lanes over columns
+    const double* weights;        ///< h w_A; one
+    const double* M;              ///< M_B(s_c), lanes over load points
+    const double* dM;             ///< M_B'(s_c) / h
+    const double* M_rows;         ///< M_A(s_c), one for each load point
     const double* load_weights;   ///< h times those of load points; 0 in lanes behind them
-    const double* momentum;   ///< at the start, n_twists scalars: of row 0
-    const double* share;      ///< c_A of all rows in start_rates, lanes; null: none has one
-    const double* start_rates;   ///< 12 a body, about its centre of mass
+    const double* momentum;       ///< at the start, n_twists scalars: of row 0
+    const double* share;          ///< c_A of all rows in start_rates, lanes; null: none has one
+    const double* start_rates;    ///< 12 a body, about its centre of mass
     double length;
     bool in_still_axes = false;   ///< turns, on the way from rows to a step
 };
@@ -40,10 +40,14 @@ struct Functions {
     void (*configure)(const Pattern&, const Values& start, const Values& nodes);
     /// The factor, from gradients.
     void (*factorise)(const Pattern&, const Values& nodes);
-    /// X and X' at the load points.
+    /// X and X' at the load points, and only what a program looks at, into its registers.
     void (*interpolate)(const Pattern&, const Values& start, const Values& nodes, const Rule&);
-    /// Loads there.
+    void (*interpolate_arms)(const LoadProgram&, const double* start, const double* increments,
+                             const double* M, const double* dM);
+    /// Loads there, and what they are at the nodes of rows.
     void (*loads)(const LoadProgram&, const double* X, const double* V, const double* factors, double* F);
+    void (*share_out)(const LoadProgram&, const double* factors, const double* M_rows, double* loads);
+    void (*share_columns)(const LoadProgram&, const double* at_points, const double* M_rows, double* loads);
     /// Balances, less what multipliers take.
     void (*balance)(const Pattern&, const Values& start, const Values& nodes, const Rule&, bool first,
                     Sizes&);

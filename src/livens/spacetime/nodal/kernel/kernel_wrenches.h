@@ -24,17 +24,25 @@ public:
 
     /// An element, whose load points are new.
     void begin(const WindowLayout& layout);
-    /// Of loads at their points, where X and X' were interpolated, into nodes.at_loads.F.
-    void evaluate_loads(const WindowLayout& layout, const lanes::Values& nodes, const lanes::Rule& rule);
+    /// Of loads at their points, into nodes.at_loads.F.
+    void evaluate_loads(const WindowLayout& layout, const lanes::Pattern& pattern, const lanes::Values& start,
+                        const lanes::Values& nodes, const lanes::Rule& rule);
+    /// Which evaluates them; null: there are none.
+    const LoadLanes* loads() const { return loads_ ? &*loads_ : nullptr; }
     /// Room for those that multipliers take.
     double* taken() { return taken_.data(); }
     /// p <- momentum and spin at the end, the balance of all rows, with the loads that were evaluated last.
     void momentum(const WindowLayout& layout, const InstantState& start, const lanes::Values& nodes,
-                  double* p) const;
+                  const lanes::Rule& rule, double* p);
 
 private:
+    void add_loads(int body, const InstantState& start, const lanes::Values& nodes, double* wrench) const;
+
     const ModelTables& tables_;
     const ElementRule& rule_;
+    const lanes::Functions* functions_;
+    AlignedDoubles others_;        // F of loads that are in no program
+    std::vector<double> totals_;   // of all load points, 12 a body
     std::optional<LoadLanes> loads_;
     std::vector<double> taken_;
 };

@@ -60,7 +60,7 @@ LIVENS_INLINE void form_columns(const Body& body, const double* dX, const double
             const double* e = body.euler + 3 * a;
             g[a].x[i] =
                 body.principal ? e[a] * S[a].x[i] : e[0] * S[0].x[i] + e[1] * S[1].x[i] + e[2] * S[2].x[i];
-            if (body.loaded) g[a].x[i] += times<W>(loads + (3 * a + i) * W, rule.M_rows);
+            if (body.loaded) g[a].x[i] += load<W>(loads + (3 * a + i) * W);
         }
 }
 
@@ -88,7 +88,7 @@ void form_rows(const Pattern& p, const Values& start, const Values& v, const Rul
         Lanes<W> y[6];
         for (int i = 0; i < 3; ++i) {
             y[i] = body.root_mass * times<W>(dX + i * W, rule.k) + body.weight[i] * weights;
-            if (body.loaded) y[i] += body.inverse_root_mass * times<W>(loads + i * W, rule.M_rows);
+            if (body.loaded) y[i] += body.inverse_root_mass * load<W>(loads + i * W);
             if (rule.share != nullptr)
                 y[i] += body.root_mass * rule.start_rates[12 * b + i] * load<W>(rule.share);
         }
@@ -249,7 +249,10 @@ constexpr Functions functions_of{W,
                                  configure<W>,
                                  factorise<W>,
                                  interpolate<W>,
+                                 interpolate_arms<W>,
                                  run_loads<W>,
+                                 share_out<W>,
+                                 share_columns<W>,
                                  balance<W>,
                                  propose<W>,
                                  project<W>,
@@ -261,7 +264,8 @@ template <int W = LIVENS_REGISTER>
 const Functions* functions_for(int n)
 {
     if (n <= W) return &functions_of<W>;
-    // Of registers of two every other width above eight: they are for old processors, and most of the code.
+        // Of registers of two every other width above eight: they are for old processors, and most of the
+        // code.
 #ifdef LIVENS_FEW_WIDTHS   // where size counts: (2,) 4, 8, 12, 20
     constexpr int step = W == 12 ? 8 : W >= 4 && LIVENS_REGISTER == 2 ? 4 : LIVENS_REGISTER;
 #else

@@ -129,8 +129,8 @@ void MarchKernel::use(const InstantState& start)
 void MarchKernel::evaluate_loads(const WindowLayout& layout)
 {
     if (tables_.model->loads().empty()) return;
-    functions_->interpolate(pattern_->view(), start_->values(), nodes_.values(), lane_rule_.in_lanes());
-    wrenches_.evaluate_loads(layout, nodes_.values(), lane_rule_.in_lanes());
+    wrenches_.evaluate_loads(layout, pattern_->view(), start_->values(), nodes_.values(),
+                             lane_rule_.in_lanes());
 }
 
 /// In lengths and radians.
@@ -172,6 +172,7 @@ bool MarchKernel::propose(const WindowLayout& layout, Steps kind)
     const lanes::Pattern& pattern = pattern_->view();
     if (kind == Steps::by_tangent) {
         if (!choice_.is_kept()) {
+            functions_->interpolate(pattern, start_->values(), nodes_.values(), lane_rule_.in_lanes());
             const bool is_good = choice_.tangent().factorise(layout, *start_, nodes_.values());
             choice_.factorised(is_good, layout.h(0));
             if (!is_good) return false;
@@ -290,7 +291,7 @@ double MarchKernel::pivot(int A) const
 void MarchKernel::momentum(const WindowLayout& layout, const InstantState& start, double* p)
 {
     functions_->sum_impulses(pattern_->view(), first_row(), nodes_.values(), wrenches_.taken());
-    wrenches_.momentum(layout, start, nodes_.values(), p);
+    wrenches_.momentum(layout, start, nodes_.values(), lane_rule_.in_lanes(), p);
 }
 
 }   // namespace livens

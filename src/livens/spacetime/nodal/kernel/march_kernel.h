@@ -65,6 +65,8 @@ public:
     void impulses(int A, double* out) const;
     /// Smallest scaled pivot of the constraints at a node.
     double pivot(int A) const;
+    /// The lanes that evaluated its loads; null: there are none.
+    const LoadLanes* loads() const { return wrenches_.loads(); }
     /// Momentum and spin at the end, about the centres of mass.
     void momentum(const WindowLayout& layout, const InstantState& start, double* p);
 

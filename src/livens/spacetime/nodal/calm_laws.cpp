@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Guards and centres at the load points of an element, as the lanes have them that evaluated the loads
+// (docs/theory.md, "Laws that bend").
+#include "livens/spacetime/nodal/calm_laws.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "livens/dynamics/lanes/load_program.h"
+#include "livens/multibody/model.h"
+
+namespace livens {
+
+namespace {
+
+/// Widest gaps between load points: a guard is farther from its places than it moves there. A centre is
+/// farther from zero than it would move on the whole way.
+constexpr double gaps_away = 2;
+constexpr std::size_t fewest_points = 3;
+
+}   // namespace
+
+CalmLaws::CalmLaws(const ModelTables& tables, const ElementRule& rule)
+    : tables_(tables), shares_(rule.loads.points), guards_(tables.model->loads().size(), 0), centres_(guards_)
+{
+    double before = 0;
+    for (const double s : shares_) {
+        widest_ = std::max(widest_, s - before);
+        before = s;
+    }
+    widest_ = std::max(widest_, 1 - before);
+    for (std::size_t l = 0; l < guards_.size(); ++l) {
+        const Load& load = tables.model->loads()[l];
+        if (!load.guards.empty() || load.centre) watched_.push_back(static_cast<int>(l));
+    }
+}
+
+void CalmLaws::look(const LoadLanes* loads)
+{
+    const bool is_known = loads != nullptr && shares_.size() >= fewest_points;
+    are_all_ = is_known || watched_.empty();
+    for (const int l : watched_) {
+        guards_[l] = is_known && are_guards_calm(*loads, l);
+        centres_[l] = is_known && is_centre_calm(*loads, l);
+        const bool bends = tables_.model->loads()[l].bends_at_centre;
+        are_all_ = are_all_ && guards_[l] != 0 && (!bends || centres_[l] != 0);
+    }
+}
+
+bool CalmLaws::are_guards_calm(const LoadLanes& loads, int load) const
+{
+    const std::vector<Guard>& guards = tables_.model->loads()[load].guards;
+    const std::vector<int>& places = loads.program().tape().watched()[load].guards;
+    if (places.size() != guards.size()) return false;
+    for (std::size_t k = 0; k < guards.size(); ++k) {
+        const double* number = loads.number(places[k]);
+        const Guard::Piece piece = guards[k].piece_at(number[0]);
+        double before = number[0], nearest = piece.margin(before), speed = 0;
+        for (std::size_t c = 1; c < shares_.size(); ++c) {
+            const double now = guards[k].following(number[c], before);
+            nearest = std::min(nearest, piece.margin(now));
+            speed = std::max(speed, std::abs(now - before) / (shares_[c] - shares_[c - 1]));
+            if (std::isnan(now)) return false;
+            before = now;
+        }
+        if (!(nearest > gaps_away * widest_ * speed)) return false;
+    }
+    return true;
+}
+
+bool CalmLaws::is_centre_calm(const LoadLanes& loads, int load) const
+{
+    const std::vector<int>& places = loads.program().tape().watched()[load].centre;
+    if (places.empty()) return false;
+    const auto at = [&](std::size_t c) {
+        Vector3 centre{};
+        for (int i = 0; i < 3; ++i) centre[i] = loads.number(places[static_cast<std::size_t>(i)])[c];
+        return centre;
+    };
+    Vector3 before = at(0);
+    double nearest = norm(before), speed = 0;
+    for (std::size_t c = 1; c < shares_.size(); ++c) {
+        const Vector3 now = at(c);
+        const double distance = norm(now);
+        if (std::isnan(distance)) return false;
+        nearest = std::min(nearest, distance);
+        speed = std::max(speed, norm(now - before) / (shares_[c] - shares_[c - 1]));
+        before = now;
+    }
+    return nearest > speed;
+}
+
+}   // namespace livens
