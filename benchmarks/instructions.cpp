@@ -3,9 +3,10 @@
 // every one. Prints a line "name elements error" each; fails if a motion is not the right one.
 // `instructions chain KIND BODIES ELEMENTS` solves a chain and prints "KIND BODIES ELEMENTS steps", the most
 // of an element; fails if that needed a tangent.
-// `instructions scenario FILE [bare | again]` solves a scenario as it asks, without estimate and growth, or
-// without them on the mesh and with the method that it ended with, and prints "elements largest-estimate tries";
-// what is counted is neither reading nor judging nor writing.
+// `instructions scenario FILE [bare | again | all RESULT]` solves a scenario as it asks, without estimate and
+// growth, without them on the mesh and with the method that it ended with, or judges it and writes it to
+// RESULT, too, and prints "elements largest-estimate tries"; what is counted is not reading, and neither judging
+// nor writing but in the last case.
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -14,6 +15,7 @@
 #include <utility>
 
 #include "kernels.h"
+#include "livens/io/results.h"
 #include "livens/io/scenario.h"
 #include "livens/io/solve_scenario.h"
 
@@ -51,7 +53,20 @@ livens::Solution solve_counted(const Kernel& kernel)
     return count([&] { return livens::benchmarks::run(kernel); });
 }
 
-int solve_file(const char* path, const std::string& how)
+livens::Solution solve_and_write(const livens::Scenario& scenario, const char* path)
+{
+    livens::Run run = livens::judged_run(
+        scenario, livens::solve_scenario(scenario, scenario.options, std::make_shared<livens::Prepared>()),
+        {});
+    livens::write_run(path, scenario.model, run);
+    livens::Solution solution;
+    solution.motion = std::move(run.motion);
+    solution.report = std::move(run.report);
+    solution.estimate = std::move(run.estimate);
+    return solution;
+}
+
+int solve_file(const char* path, const std::string& how, const char* result)
 {
     const livens::ScenarioResult read = livens::read_scenario(path);
     if (!read.scenario) {
@@ -69,8 +84,11 @@ int solve_file(const char* path, const std::string& how)
     if (how == "again") {
         const livens::Solution first = solve_as(scenario.options);
         solution = count([&] {
-            return livens::solve(scenario.model, {scenario.model.start()}, first.motion.mesh, first.method, bare);
+            return livens::solve(scenario.model, {scenario.model.start()}, first.motion.mesh, first.method,
+                                 bare);
         });
+    } else if (how == "all") {
+        solution = count([&] { return solve_and_write(scenario, result); });
     } else {
         solution = count([&] { return solve_as(how == "bare" ? bare : scenario.options); });
     }
@@ -100,10 +118,11 @@ int main(int argc, char** argv)
 {
     if (argc == 5 && std::strcmp(argv[1], "chain") == 0)
         return solve_chain(std::atoi(argv[3]), argv[2], std::atoi(argv[4]));
-    if (argc >= 3 && std::strcmp(argv[1], "scenario") == 0) return solve_file(argv[2], argc > 3 ? argv[3] : "");
+    if (argc >= 3 && std::strcmp(argv[1], "scenario") == 0)
+        return solve_file(argv[2], argc > 3 ? argv[3] : "", argc > 4 ? argv[4] : "instructions.nc");
     if (argc != 2) {
         std::fprintf(stderr, "usage: instructions NAME | --all | chain KIND BODIES ELEMENTS\n"
-                             "       instructions scenario FILE [bare | again]\n");
+                             "       instructions scenario FILE [bare | again | all RESULT]\n");
         return 2;
     }
     bool found = false, good = true;

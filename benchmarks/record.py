@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Measures the times that documents state, and takes over what the scans have counted: record.py PROGRAM [SCANS [PAPER]]
        record.py --paper PAPER | --accuracies SCANS | --laws SCANS | --reported SCANS | --instructions OUTPUT | --run_time OUTPUT
+                 | --work OUTPUT
 
 Writes benchmarks/recorded.json, with machine and date; tests/docs/figures.py holds README.md, docs/validation.md and docs/trust.md
 against it. SCANS: the folder in which scripts/scan left its data (build/scan), PAPER: that of scripts/paper (build/paper); without them what
 was recorded of them stays. With an option nothing else is taken over: --instructions reads what `scripts/instructions` and
-`scripts/instructions chains` have printed to one file, --run_time what benchmarks/paper has: elements and errors, which no other work changes.
+`scripts/instructions chains` have printed to one file, --work what benchmarks/accuracies.py has, whose
+table in docs/trust.md is made anew, --run_time what benchmarks/paper has: elements and errors, which no other work changes.
 Times are the least of several runs of solve() alone, each on one core; of long ones, which other work on the machine interrupts, the
 processor's share. Of scans of laws and of reported cases the rows of tables are printed, as docs/trust.md has them. Standard library only.
 """
@@ -200,6 +202,31 @@ def instructions(output):
     return record if len(chains) > 10 and len(record) > len(chains) else sys.exit(f"{output}: kernels or chains are missing, or over")
 
 
+TRUST, WORK = ROOT / "docs/trust.md", ("<!-- work -->", "<!-- end of work -->")
+
+
+def work(output):
+    """Motion -> millions of instructions: bare, with the accuracy, with all that follows. Writes the table of docs/trust.md."""
+    rows = re.findall(r"(?m)^(\w+) +([\d.]+) +([\d.]+) +([\d.]+) +[\d.]+ +[\d.]+ {3}", pathlib.Path(output).read_text(encoding="utf-8"))
+    record = {name: [float(f"{float(n):.3g}") for n in numbers] for name, *numbers in rows}
+    if len(record) < 8:
+        sys.exit(f"{output}: not what benchmarks/accuracies.py prints")
+    text = TRUST.read_text(encoding="utf-8")
+    before, after = text.partition(WORK[0])[0], text.partition(WORK[1])[2]
+    TRUST.write_text(f"{before}{WORK[0]}\n" + "\n".join(work_rows(record)) + f"\n{WORK[1]}{after}", encoding="utf-8")
+    return record
+
+
+def work_rows(record):
+    """Of docs/trust.md."""
+    yield "| motion | bare, millions | to an accuracy, over bare | with all, over bare |"
+    yield "| --- | --- | --- | --- |"
+    for name, (bare, accuracy, everything) in record.items():
+        yield f"| {name.replace('_', ' ')} | {bare:g} | {accuracy / bare:.1f} | {everything / bare:.1f} |"
+    over = [[row[k] / row[0] for row in record.values()] for k in (1, 2)]
+    yield f"| median, largest | | {' | '.join(f'{statistics.median(x):.1f}, {max(x):.1f}' for x in over)} |"
+
+
 def run_time(output):
     """Method -> elements or steps, error (P26)."""
     rows = re.findall(r"(?m)^(\S.*?) {2,}(\d+) +(\S+e-\d+) +\S+e-\d+ +[\d.]+ +\d+$", pathlib.Path(output).read_text(encoding="utf-8"))
@@ -232,7 +259,7 @@ def main():
             record["scans"]["reported"] = reported(source)
             print("\n".join(reported_rows(record["scans"])))
         else:
-            record[sys.argv[1][2:]] = {"--paper": paper, "--instructions": instructions, "--run_time": run_time}[sys.argv[1]](source)
+            record[sys.argv[1][2:]] = {"--paper": paper, "--instructions": instructions, "--run_time": run_time, "--work": work}[sys.argv[1]](source)
         return write(record)
     program = str(pathlib.Path(sys.argv[1]).resolve())
     record = json.loads(RECORD.read_text(encoding="utf-8")) if RECORD.exists() else {}

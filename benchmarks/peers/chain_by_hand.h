@@ -46,6 +46,31 @@ struct Turn {   // by its columns
     static Turn of(const Mat& m) { return {{{m[0], m[3], m[6]}, {m[1], m[4], m[7]}, {m[2], m[5], m[8]}}}; }
 };
 
+/// M x = r by Cholesky's factors, in the lower triangle of M; x takes the place of r.
+template <class T>
+inline void solve_positive(T* M, T* r, int n)
+{
+    using std::sqrt;
+    for (int j = 0; j < n; ++j) {
+        T* row = M + j * n;
+        for (int k = 0; k < j; ++k) {
+            T sum = row[k];
+            const T* other = M + k * n;
+            for (int s = 0; s < k; ++s) sum -= row[s] * other[s];
+            row[k] = sum * other[k];   // its diagonal is kept inverted
+            r[j] -= row[k] * r[k];
+        }
+        T pivot = row[j];
+        for (int s = 0; s < j; ++s) pivot -= row[s] * row[s];
+        row[j] = 1 / sqrt(pivot);
+        r[j] *= row[j];
+    }
+    for (int j = n; j-- > 0;) {
+        r[j] *= M[j * n + j];
+        for (int k = 0; k < j; ++k) r[k] -= M[j * n + k] * r[j];
+    }
+}
+
 /// N bodies known to the compiler, or 0. Unknowns of balls: quaternions of what has turned since the start,
 /// then w; of hinges: angles since the start, then their rates.
 template <class T, int N>
@@ -103,7 +128,7 @@ public:
             ball_equations();
             for (int i = 0; i < count(); ++i) turn_rates(y + 4 * i, w_[i], dy + 4 * i);
         }
-        solve();
+        solve_positive(M_.data(), r_.data(), free());
         T* rates = dy + (hinges_ ? 1 : 4) * count();
         for (int i = 0; i < free(); ++i) rates[i] = r_[i];
     }
@@ -242,31 +267,6 @@ private:
         d[1] = (q[0] * w.x + w.y * q[3] - w.z * q[2]) / 2;
         d[2] = (q[0] * w.y + w.z * q[1] - w.x * q[3]) / 2;
         d[3] = (q[0] * w.z + w.x * q[2] - w.y * q[1]) / 2;
-    }
-
-    /// Cholesky's factors, in the lower triangle.
-    void solve()
-    {
-        const int f = free();
-        using std::sqrt;
-        for (int j = 0; j < f; ++j) {
-            T* row = &M_[j * f];
-            for (int k = 0; k < j; ++k) {
-                T sum = row[k];
-                const T* other = &M_[k * f];
-                for (int s = 0; s < k; ++s) sum -= row[s] * other[s];
-                row[k] = sum * other[k];   // its diagonal is kept inverted
-                r_[j] -= row[k] * r_[k];
-            }
-            T pivot = row[j];
-            for (int s = 0; s < j; ++s) pivot -= row[s] * row[s];
-            row[j] = 1 / sqrt(pivot);
-            r_[j] *= row[j];
-        }
-        for (int j = f; j-- > 0;) {
-            r_[j] *= M_[j * f + j];
-            for (int k = 0; k < j; ++k) r_[k] -= M_[j * f + k] * r_[j];
-        }
     }
 
     int n_;

@@ -30,6 +30,9 @@ class Engine:
     needs: str = ""                # of the processor, as /proc/cpuinfo has it
     by_name: bool = False          # knows a problem by its name: the ways to put it are one
     modules: tuple = ()            # of Python, whose versions are told
+    patience: int = 60             # s for one answer; then it is ended
+    asked: str = ""                # the word of settings that are accuracies: "accuracy" of "accuracy:1e-6"
+    for_loaded: bool = True        # has a place beside problems with loads
 
     def command(self):
         """None: it is not to be had."""
@@ -69,21 +72,29 @@ def stopped_early(setting):
     return [f"{setting}:{tolerance}" for tolerance in ("1e-11", "1e-8", "1e-5", "1e-4")]
 
 
-def livens(title, word, needs="", like=""):
+def livens(title, word, needs="", like="", for_loaded=False):
     return Engine(f"livens, {title}", "peer_livens", lobatto, "lobatto: degree, elements, tolerance",
-                  {"LIVENS_SIMD": word}, stopped_early, like, needs)
+                  {"LIVENS_SIMD": word}, stopped_early, like, needs, for_loaded=for_loaded)
+
+
+def livens_asked(title, word, note):
+    return Engine(f"livens, {title}", "peer_livens", lambda n: prefixed([word], tolerances(2, 12, COARSE)), note, asked=word)
 
 
 COARSE = (3.2, 1)
 ENGINES = {
+    "livens_accuracy": livens_asked("asked for an accuracy", "accuracy",
+                                    "family, degree and elements left open; includes a second solution for the estimate"),
+    "livens_all": livens_asked("asked and judged", "all",
+                               "the same with the growth of errors and the checks of its program: all but reading and writing"),
     "livens_avx512": livens("AVX-512", "avx512", "avx512f"),
-    "livens_avx2": livens("AVX2", "avx2", "avx2"),
+    "livens_avx2": livens("AVX2", "avx2", "avx2", for_loaded=True),
     "livens_sse2": livens("SSE2", "sse2", like="livens_avx2"),
-    "livens_accuracy": Engine("livens, asked for an accuracy", "peer_livens",
-                              lambda n: prefixed(["accuracy"], tolerances(2, 12, COARSE)),
-                              "degree and elements left open; includes a second solution for the estimate"),
     "hand": Engine("by hand, C++", "peer_hand", lambda n: [tolerances(2, 14)],
                    "minimal coordinates derived on paper, DOP853 (tolerance)", by_name=True),
+    "heyoka": Engine("heyoka", "peer_heyoka.py", lambda n: [[f"1e-{k}" for k in range(2, 17, 1 if n < 10 else 3)]],
+                     "the same coordinates, Taylor series compiled for the problem (tolerance); compiling is not timed",
+                     modules=("heyoka",), patience=300),
     "pinocchio": Engine("Pinocchio", "peer_pinocchio", lambda n: prefixed(["local", "world"], tolerances(2, 14)),
                         "articulated bodies, or constrained dynamics where loops close; DOP853 (frames, tolerance)",
                         modules=("pin",)),
@@ -105,13 +116,17 @@ ENGINES = {
                      "solver, steps or tolerance", modules=("exudyn",)),
     "scipy": Engine("by hand, SciPy", "peer_scipy.py",
                     lambda n: prefixed(["DOP853", "LSODA"], tolerances(2, 14, COARSE)),
-                    "the same coordinates in Python (solver, tolerance)", modules=("scipy",), by_name=True),
+                    "the same coordinates in Python (solver, tolerance)", modules=("scipy",), by_name=True, for_loaded=False),
 }
 
 LEVELS = (1e-3, 1e-6, 1e-9, 1e-12)   # m
 
 
 ANY = ("livens_avx512", "livens_avx2", "livens_sse2")
+ASKED_LEVELS = (1e-6, 1e-9)   # that are compared first: accuracies that livens is asked for
+# What was asked of livens for these: at most so many times the time of each, in its best settings, at the same true error.
+ASKED = {"pinocchio": 1.0, "simbody": 1 / 3, "drake": 1 / 3, "mujoco": 1 / 3, "exudyn": 1 / 3}
+LIMITS = ("heyoka", "hand")   # beside which no general engine comes
 
 
 @dataclasses.dataclass

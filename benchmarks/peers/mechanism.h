@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <istream>
 #include <sstream>
 #include <stdexcept>
@@ -36,13 +37,43 @@ inline Mat operator*(const Mat& a, const Mat& b)
 constexpr Mat unturned{1, 0, 0, 0, 1, 0, 0, 0, 1};
 constexpr int ground = -1, nothing = -2;
 
-/// What two bodies share: a point (ball), a point and an axis (hinge), or the distance of two points (rod).
+/// What two bodies share: a point (ball), a point and an axis (hinge), all but the way along an axis (slide),
+/// or the distance of two points (rod).
 struct Joint {
     std::string kind;
     int first = ground, second = 0;
     Vec point_first{}, point_second{};                       ///< body coordinates
     Vec axis{}, axis_first{0, 0, 1}, axis_second{0, 0, 1};   ///< at the start in space, then in each body
     double length = 0;
+    /// Of a hinge or slide: push - stiffness q - damping q' along its coordinate q, zero at the start.
+    double stiffness = 0, damping = 0, push = 0;
+
+    bool has_coordinate() const { return kind == "hinge" || kind == "slide"; }
+};
+
+/// Pulls by stiffness (length - free_length) + damping length'. The first point, if it is of the ground, goes
+/// up by amplitude sin(omega t).
+struct Spring {
+    int first = ground, second = 0;
+    Vec point_first{}, point_second{};
+    double stiffness = 0, damping = 0, free_length = 0, amplitude = 0, omega = 0;
+
+    Vec lift(double t) const { return {0, 0, amplitude * std::sin(omega * t)}; }
+    Vec lift_rate(double t) const { return {0, 0, amplitude * omega * std::cos(omega * t)}; }
+};
+
+/// Against three displacements, of the second body's point in axes that stand in the first as the world's do
+/// at the start, and the rotation vector in these.
+struct Bushing {
+    int first = ground, second = 0;
+    Vec at{};   ///< in space, at the start
+    std::array<double, 6> stiffness{}, damping{};
+};
+
+/// The coordinate of joint `second` is ratio times that of `first`.
+struct Gear {
+    int first, second;
+    double ratio;
 };
 
 struct Body {
@@ -67,7 +98,11 @@ struct Mechanism {
     Vec gravity{};
     std::vector<Body> bodies;
     std::vector<Joint> joints;
+    std::vector<Spring> springs;
+    std::vector<Bushing> bushings;
+    std::vector<Gear> gears;
     std::vector<Point> points;   ///< that are compared at the end
+    std::string scenario;        ///< a file of the same, where there are loads
 
     Vec place(int body) const { return body == ground ? Vec{} : bodies[body].x; }
     Mat turn(int body) const { return body == ground ? unturned : bodies[body].R; }
@@ -76,6 +111,13 @@ struct Mechanism {
     Vec rate_in_parent(const Body& b) const
     {
         return transpose(b.R) * (b.parent == ground ? b.w : b.w - bodies[b.parent].w);
+    }
+    /// There is more than weight, balls, hinges and rods.
+    bool is_loaded() const
+    {
+        for (const Joint& j : joints)
+            if (j.kind == "slide" || j.stiffness != 0 || j.damping != 0) return true;
+        return !springs.empty() || !bushings.empty() || !gears.empty();
     }
     bool closes_loop(int joint) const { return bodies[joints[joint].second].hung != joint; }
 };
@@ -89,7 +131,8 @@ inline Mat matrix_of(double w, double x, double y, double z)
             2 * (x * z - w * y),     2 * (y * z + w * x),     1 - 2 * (x * x + y * y)};
 }
 
-/// Joints are given at the start in space; the first ball or hinge of a body hangs it on the one before.
+/// Joints are given at the start in space; the first ball, hinge or slide of a body hangs it on the one
+/// before.
 inline void add_joint(Mechanism& m, const std::string& kind, std::istream& in)
 {
     Joint j;
@@ -105,7 +148,7 @@ inline void add_joint(Mechanism& m, const std::string& kind, std::istream& in)
         in >> at;
         j.point_first = inside(j.first, at);
         j.point_second = inside(j.second, at);
-        if (kind == "hinge") {
+        if (j.has_coordinate()) {
             in >> j.axis;
             j.axis_first = transpose(m.turn(j.first)) * j.axis;
             j.axis_second = transpose(m.turn(j.second)) * j.axis;
@@ -119,6 +162,33 @@ inline void add_joint(Mechanism& m, const std::string& kind, std::istream& in)
     m.joints.push_back(j);
 }
 
+/// False where `kind` is no load.
+inline bool add_load(Mechanism& m, const std::string& kind, std::istream& in)
+{
+    if (kind == "torsion" || kind == "control") {
+        std::size_t joint = 0;
+        double stiffness = 0, damping = 0, rest = 0;
+        in >> joint >> stiffness >> damping >> rest;
+        Joint& j = m.joints.at(joint);
+        j.stiffness += stiffness, j.damping += damping, j.push += stiffness * rest;
+    } else if (kind == "spring") {
+        Spring& s = m.springs.emplace_back();
+        in >> s.first >> s.second >> s.point_first >> s.point_second;
+        in >> s.stiffness >> s.damping >> s.free_length >> s.amplitude >> s.omega;
+    } else if (kind == "bushing") {
+        Bushing& b = m.bushings.emplace_back();
+        in >> b.first >> b.second >> b.at;
+        for (std::array<double, 6>* six : {&b.stiffness, &b.damping})
+            for (double& number : *six) in >> number;
+    } else if (kind == "gear") {
+        Gear& g = m.gears.emplace_back();
+        in >> g.first >> g.second >> g.ratio;
+    } else {
+        return false;
+    }
+    return true;
+}
+
 /// Reads up to a line "done".
 inline Mechanism read_mechanism(std::istream& in)
 {
@@ -129,6 +199,8 @@ inline Mechanism read_mechanism(std::istream& in)
         words >> key;
         if (key == "name") {
             words >> m.name;
+        } else if (key == "scenario") {
+            words >> m.scenario;
         } else if (key == "end") {
             words >> m.end;
         } else if (key == "gravity") {
@@ -143,7 +215,7 @@ inline Mechanism read_mechanism(std::istream& in)
             Point p{};
             words >> p.body >> p.at;
             m.points.push_back(p);
-        } else {
+        } else if (!add_load(m, key, words)) {
             add_joint(m, key, words);
         }
         if (!words) throw std::runtime_error("not understood: " + line);

@@ -3,28 +3,40 @@
 import numpy as np
 from pydrake.math import RigidTransform, RotationMatrix
 from pydrake.multibody.plant import MultibodyPlant
-from pydrake.multibody.tree import (BallRpyJoint, FixedOffsetFrame, RevoluteJoint, RotationalInertia,
-                                    SpatialInertia)
+from pydrake.multibody.tree import (BallRpyJoint, FixedOffsetFrame, PrismaticJoint, PrismaticSpring, RevoluteJoint,
+                                    RevoluteSpring, RotationalInertia, SpatialInertia)
 from pydrake.systems.analysis import ApplySimulatorConfig, Simulator, SimulatorConfig
 
-from serve import serve, tree
+from serve import of_kind, serve, tree
+
+
+def add_joint(plant, name, b, frame, body):
+    if b.kind == "ball":
+        return plant.AddJoint(BallRpyJoint(name, frame, body))
+    kind, spring = (RevoluteJoint, RevoluteSpring) if b.kind == "hinge" else (PrismaticJoint, PrismaticSpring)
+    joint = plant.AddJoint(kind(name, frame, body, b.axis, damping=b.load.damping))
+    if b.load.stiffness:
+        plant.AddForceElement(spring(joint, b.load.push / b.load.stiffness, b.load.stiffness))
+    return joint
 
 
 def plant_of(m):
     branches, rest = tree(m)
     if rest:
         raise ValueError("its continuous plants have neither closed loops nor rods")
+    if of_kind(m, "gear"):
+        raise ValueError("its continuous plants have no gears")
+    if of_kind(m, "bushing"):
+        raise ValueError("its bushing has another law")
     plant, bodies, joints = MultibodyPlant(0.0), [], []
     for i, b in enumerate(branches):
         J = np.maximum(b.body.inertia, 1e-12)   # zero is refused
         body = plant.AddRigidBody(f"b{i}", SpatialInertia.MakeFromCentralInertia(
-            b.body.mass, b.body.center, RotationalInertia(*J)))
+            b.body.mass, b.body.center, RotationalInertia(*J)) if b.body.mass else SpatialInertia.Zero())
         parent = plant.world_frame() if b.parent == -1 else bodies[b.parent].body_frame()
         at = RigidTransform(RotationMatrix.ProjectToRotationMatrix(b.R), b.place)
         frame = plant.AddFrame(FixedOffsetFrame(f"f{i}", parent, at))
-        joints.append(plant.AddJoint(
-            BallRpyJoint(f"j{i}", frame, body.body_frame()) if b.kind == "ball" else
-            RevoluteJoint(f"j{i}", frame, body.body_frame(), b.axis, damping=0)))
+        joints.append(add_joint(plant, f"j{i}", b, frame, body.body_frame()))
         bodies.append(body)
     plant.mutable_gravity_field().set_gravity_vector(m.gravity)
     plant.Finalize()

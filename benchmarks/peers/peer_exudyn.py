@@ -1,16 +1,21 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Exudyn. Settings: "alpha:STEPS" and "trapezoid:STEPS" on bodies and joints (in the plane, where all hinges are
-parallel: loops have no redundant conditions there), "RK44:STEPS", "RK67:STEPS" and "DOPRI5:TOLERANCE" on a tree of
-minimal coordinates, whose balls are three hinges."""
+parallel: loops have no redundant conditions there; with loads and without loops on the tree, too), "RK44:STEPS",
+"RK67:STEPS" and "DOPRI5:TOLERANCE" on a tree of minimal coordinates, whose balls are three hinges. Springs and dampers of
+joints are what its tree has for controllers; gears are conditions on coordinates, for the first two."""
+import math
+
 import exudyn as exu
 import numpy as np
-from exudyn.itemInterface import (Force, MarkerBodyPosition, NodeGenericODE2, ObjectKinematicTree, RevoluteJoint2D,
-                                  Rigid2D, RigidBody2D)
+from exudyn.itemInterface import (CoordinateConstraint, Force, MarkerBodyPosition, MarkerBodyRigid, MarkerNodeCoordinate,
+                                  MassPoint2D, NodeGenericODE2, NodePoint2D, NodePointGround, ObjectKinematicTree,
+                                  PrismaticJoint2D, RevoluteJoint2D, Rigid2D, RigidBody2D, SpringDamper)
 from exudyn.utilities import RigidBodyInertia
 
-from serve import inside, place_of, serve, tree, turn_of
+from serve import JointLoad, inside, of_kind, place_of, serve, tree, turn_of
 
-KINDS = [exu.JointType.RevoluteX, exu.JointType.RevoluteY, exu.JointType.RevoluteZ]
+HINGES = [exu.JointType.RevoluteX, exu.JointType.RevoluteY, exu.JointType.RevoluteZ]
+SLIDES = [exu.JointType.PrismaticX, exu.JointType.PrismaticY, exu.JointType.PrismaticZ]
 
 
 def about(axis, angle):
@@ -22,48 +27,69 @@ def about(axis, angle):
     return R
 
 
-def hinges_of(branches):
-    """(axis, parent hinge, orientation, place, body or None, rate): one for a hinge, three for a ball."""
-    hinges, last = [], {-1: -1}
+def coordinates_of(branches):
+    """(kind, axis, parent coordinate, orientation, place, body or None, rate, load): one for a hinge or slide, three for
+    a ball."""
+    found, last = [], {-1: -1}
     for i, b in enumerate(branches):
         if b.parent is None:
             raise ValueError("a tree has no free bodies")
         axes = [2, 1, 0] if b.kind == "ball" else [int(np.argmax(np.abs(b.axis)))]
-        rates = [b.rate[a] for a in axes]
+        if b.kind != "ball" and not b.axis[axes[0]] > 1 - 1e-12:
+            raise ValueError("axes of a tree are those of bodies")
+        rates = [0 if b.kind == "slide" else b.rate[a] for a in axes]
         for k, axis in enumerate(axes):
             first, end = k == 0, k == len(axes) - 1
-            hinges.append((axis, last[b.parent] if first else len(hinges) - 1, b.R if first else np.eye(3),
-                           b.place if first else np.zeros(3), b.body if end else None, rates[k]))
-        last[i] = len(hinges) - 1
-    return hinges, last
+            found.append(((SLIDES if b.kind == "slide" else HINGES)[axis], axis, last[b.parent] if first else len(found) - 1,
+                          b.R if first else np.eye(3), b.place if first else np.zeros(3), b.body if end else None,
+                          rates[k], JointLoad() if b.kind == "ball" else b.load))
+        last[i] = len(found) - 1
+    return found, last
+
+
+def moved(frames, coordinate, q):
+    """Place and orientation of what hangs on a coordinate."""
+    kind, axis, parent, R, place, *_ = coordinate
+    x, A = frames[parent]
+    x, A = x + A @ place, A @ R
+    return (x + A[:, axis] * q, A) if kind in SLIDES else (x, A @ about(axis, q))
 
 
 def add_tree(mbs, m):
     branches, rest = tree(m)
     if rest:
         raise ValueError("a tree has neither closed loops nor rods")
-    hinges, last = hinges_of(branches)
-    n = len(hinges)
+    if of_kind(m, "bushing") or of_kind(m, "spring"):
+        raise ValueError("a tree has no springs between points")
+    coordinates, last = coordinates_of(branches)
+    n = len(coordinates)
     node = mbs.AddNode(NodeGenericODE2(referenceCoordinates=[0.0] * n, initialCoordinates=[0.0] * n,
-                                       initialCoordinates_t=[float(h[5]) for h in hinges],
+                                       initialCoordinates_t=[float(c[6]) for c in coordinates],
                                        numberOfODE2Coordinates=n))
     turns, inertias = exu.Matrix3DList(), exu.Matrix3DList()
     places, centers = exu.Vector3DList(), exu.Vector3DList()
-    for _, _, R, place, body, _ in hinges:
+    for _, _, _, R, place, body, *_ in coordinates:
         turns.Append(np.array(R))
         places.Append(np.array(place))
         inertias.Append(np.diag(body.inertia) if body else np.zeros((3, 3)))
         centers.Append(np.array(body.center) if body else np.zeros(3))
+    loads = [c[7] for c in coordinates]
     mbs.AddObject(ObjectKinematicTree(
-        nodeNumber=node, jointTypes=[KINDS[h[0]] for h in hinges], linkParents=np.array([h[1] for h in hinges]),
+        nodeNumber=node, jointTypes=[c[0] for c in coordinates], linkParents=np.array([c[2] for c in coordinates]),
         jointTransformations=turns, jointOffsets=places, linkInertiasCOM=inertias, linkCOMs=centers,
-        linkMasses=np.array([h[4].mass if h[4] else 0.0 for h in hinges]), gravity=list(m.gravity)))
+        linkMasses=np.array([c[5].mass if c[5] else 0.0 for c in coordinates]), gravity=list(m.gravity),
+        **({"jointPControlVector": [load.stiffness for load in loads], "jointDControlVector": [load.damping for load in loads],
+            "jointPositionOffsetVector": [0.0] * n, "jointVelocityOffsetVector": [0.0] * n,
+            "jointForceVector": [load.push for load in loads]} if m.loads else {})))
+    for first, second, ratio in of_kind(m, "gear"):
+        markers = [mbs.AddMarker(MarkerNodeCoordinate(nodeNumber=node, coordinate=last[m.joints[int(j)][2]]))
+                   for j in (second, first)]
+        mbs.AddObject(CoordinateConstraint(markerNumbers=markers, factorValue1=ratio))
 
     def points():
         q, frames = mbs.systemData.GetODE2Coordinates(), {-1: (np.zeros(3), np.eye(3))}
-        for i, (axis, parent, R, place, _, _) in enumerate(hinges):
-            x, A = frames[parent]
-            frames[i] = x + A @ place, A @ R @ about(axis, q[i])
+        for i, coordinate in enumerate(coordinates):
+            frames[i] = moved(frames, coordinate, q[i])
         return [frames[last[body]][0] + frames[last[body]][1] @ at for body, at in m.points]
     return points
 
@@ -95,49 +121,87 @@ def add_in_space(mbs, m):
 def plane_of(m):
     """Two axes of the plane that all hinges are upright on, or None."""
     axes = [numbers[3:6] for kind, _, _, numbers in m.joints if kind == "hinge"]
-    if len(axes) < len(m.joints) or any(abs(a @ axes[0]) < 1 - 1e-12 for a in axes):
+    across = [numbers[3:6] for kind, _, _, numbers in m.joints if kind == "slide"]
+    if not axes or any(abs(a @ axes[0]) < 1 - 1e-12 for a in axes) or any(abs(a @ axes[0]) > 1e-12 for a in across):
+        return None
+    if any(kind == "rod" for kind, *_ in m.joints) or m.joints[0][0] == "ball":
         return None
     k = int(np.argmax(axes[0]))
     return np.array([np.eye(3)[(k + 1) % 3], np.eye(3)[(k + 2) % 3]])
 
 
-def add_in_plane(mbs, m, plane):
-    normal = np.cross(*plane)
-    ground, bodies = mbs.CreateGround(), []
-    for i, b in enumerate(m.bodies):
-        d = plane @ turn_of(m, i) @ [1, 0, 0]
-        x = plane @ (np.array(b.x) + turn_of(m, i) @ b.center)
-        v = plane @ (np.array(b.v) + np.cross(b.w, turn_of(m, i) @ b.center))
-        node = mbs.AddNode(Rigid2D(referenceCoordinates=[*x, np.arctan2(d[1], d[0])],
-                                   initialVelocities=[*v, float(normal @ b.w)]))
-        inertia = float(np.abs(turn_of(m, i).T @ normal) @ b.inertia)
-        bodies.append(mbs.AddObject(RigidBody2D(mass=b.mass, inertia=inertia, nodeNumber=node)))
-        marker = mbs.AddMarker(MarkerBodyPosition(bodyNumber=bodies[i], localPosition=[0, 0, 0]))
-        mbs.AddLoad(Force(markerNumber=marker, loadVector=[*(b.mass * (plane @ m.gravity)), 0]))
+class Plane:
+    """Bodies that move in a plane, their coordinates in it from their centres of mass, along axes that are those of the
+    plane at the start."""
 
-    def in_body(i, at):   # along the body's x axis and across it, from its centre of mass
-        if i < 0:
-            return [*(plane @ at), 0]
-        from_center = turn_of(m, i) @ (np.array(at) - m.bodies[i].center)
-        d = plane @ turn_of(m, i) @ [1, 0, 0]
-        p = plane @ from_center
-        return [d @ p, d[0] * p[1] - d[1] * p[0], 0]
+    def __init__(self, mbs, m, axes):
+        self.mbs, self.m, self.axes, self.normal = mbs, m, axes, np.cross(*axes)
+        self.ground, self.bodies = mbs.CreateGround(), [self.add_body(i) for i in range(len(m.bodies))]
+        for joint in m.joints:
+            self.add_joint(*joint)
+        for spring in of_kind(m, "spring"):
+            self.add_spring(*spring)
 
-    def marker(i, at):
-        return mbs.AddMarker(MarkerBodyPosition(bodyNumber=ground if i < 0 else bodies[i],
-                                                localPosition=in_body(i, at)))
-    for _, first, second, numbers in m.joints:
-        mbs.AddObject(RevoluteJoint2D(markerNumbers=[marker(i, inside(m, i, numbers[:3])) for i in (first, second)]))
+    def center(self, i):
+        return self.axes @ (place_of(self.m, i) + turn_of(self.m, i) @ self.m.bodies[i].center)
 
-    def points():
+    def add_body(self, i):
+        b, mbs = self.m.bodies[i], self.mbs
+        v = self.axes @ (np.array(b.v) + np.cross(b.w, turn_of(self.m, i) @ b.center))
+        node = mbs.AddNode(Rigid2D(referenceCoordinates=[*self.center(i), 0],
+                                   initialVelocities=[*v, float(self.normal @ b.w)]))
+        inertia = float(np.abs(turn_of(self.m, i).T @ self.normal) @ b.inertia)
+        body = mbs.AddObject(RigidBody2D(mass=b.mass, inertia=inertia, nodeNumber=node))
+        marker = mbs.AddMarker(MarkerBodyPosition(bodyNumber=body, localPosition=[0, 0, 0]))
+        mbs.AddLoad(Force(markerNumber=marker, loadVector=[*(b.mass * (self.axes @ self.m.gravity)), 0]))
+        return body
+
+    def inside(self, i, at):
+        """Of a point in coordinates of a body."""
+        return [*(self.axes @ at), 0] if i < 0 else [*(self.axes @ (turn_of(self.m, i) @ (at - self.m.bodies[i].center))), 0]
+
+    def marker(self, i, at, kind=MarkerBodyPosition):
+        return self.mbs.AddMarker(kind(bodyNumber=self.ground if i < 0 else self.bodies[i],
+                                       localPosition=self.inside(i, np.array(at))))
+
+    def add_joint(self, kind, first, second, numbers):
+        places = [(i, inside(self.m, i, numbers[:3])) for i in (first, second)]
+        if kind == "slide":
+            axis = self.axes @ numbers[3:6]
+            self.mbs.AddObject(PrismaticJoint2D(markerNumbers=[self.marker(*p, MarkerBodyRigid) for p in places],
+                                                axisMarker0=[*axis, 0], normalMarker1=[-axis[1], axis[0], 0],
+                                                constrainRotation=True))
+        else:
+            self.mbs.AddObject(RevoluteJoint2D(markerNumbers=[self.marker(*p) for p in places]))
+
+    def add_spring(self, first, second, *numbers):
+        p, q, (stiffness, damping, length, amplitude, omega) = numbers[:3], numbers[3:6], numbers[6:]
+        from_marker = self.road(p, amplitude, omega) if amplitude else self.marker(int(first), p)
+        self.mbs.AddObject(SpringDamper(markerNumbers=[from_marker, self.marker(int(second), q)], stiffness=stiffness,
+                                        damping=damping, referenceLength=length))
+
+    def road(self, p, amplitude, omega):
+        """A point that is led along z."""
+        mbs, up = self.mbs, self.axes @ [0, 0, 1]
+        node = mbs.AddNode(NodePoint2D(referenceCoordinates=list(self.axes @ p), initialVelocities=list(amplitude * omega * up)))
+        body = mbs.AddObject(MassPoint2D(physicsMass=1, nodeNumber=node))
+        still = mbs.AddMarker(MarkerNodeCoordinate(nodeNumber=mbs.AddNode(NodePointGround()), coordinate=0))
+        for k in range(2):
+            led = mbs.AddMarker(MarkerNodeCoordinate(nodeNumber=node, coordinate=k))
+            share = amplitude * up[k]
+            mbs.AddObject(CoordinateConstraint(markerNumbers=[still, led], **(
+                {"offsetUserFunction": lambda mbs, t, item, offset: share * math.sin(omega * t)} if share else {})))
+        return mbs.AddMarker(MarkerBodyPosition(bodyNumber=body, localPosition=[0, 0, 0]))
+
+    def points(self):
         found = []
-        for body, at in m.points:
-            p = mbs.GetObjectOutputBody(bodies[body], exu.OutputVariableType.Position,
-                                        localPosition=in_body(body, at),
-                                        configuration=exu.ConfigurationType.Current)
-            found.append(p[:2] @ plane + normal * (normal @ (place_of(m, body) + turn_of(m, body) @ at)))
+        for body, at in self.m.points:
+            p = self.mbs.GetObjectOutputBody(self.bodies[body], exu.OutputVariableType.Position,
+                                             localPosition=self.inside(body, at),
+                                             configuration=exu.ConfigurationType.Current)
+            start = place_of(self.m, body) + turn_of(self.m, body) @ at
+            found.append(p[:2] @ self.axes + self.normal * (self.normal @ start))
         return found
-    return points
 
 
 SOLVERS = {"alpha": exu.DynamicSolverType.GeneralizedAlpha, "trapezoid": exu.DynamicSolverType.TrapezoidalIndex2,
@@ -171,10 +235,12 @@ def settings_of(m, kind, value):
 def prepare(m, setting):
     kind, value = setting
     mbs = exu.SystemContainer().AddSystem()
-    if kind in ("alpha", "trapezoid"):
+    if kind in ("alpha", "trapezoid") and not (m.loads and not tree(m)[1]):
         plane = plane_of(m)
-        points = add_in_space(mbs, m) if plane is None else add_in_plane(mbs, m, plane)
+        points = add_in_space(mbs, m) if plane is None else Plane(mbs, m, plane).points
     else:
+        if of_kind(m, "gear") and kind not in ("alpha", "trapezoid"):
+            raise ValueError("explicit solvers have no conditions")
         points = add_tree(mbs, m)
     mbs.Assemble()
     settings = settings_of(m, kind, value)

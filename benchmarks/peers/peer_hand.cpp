@@ -5,6 +5,7 @@
 
 #include "chain_by_hand.h"
 #include "dop853.h"
+#include "equations_by_hand.h"
 #include "extrapolate.h"
 #include "serve.h"
 
@@ -144,8 +145,18 @@ Points solve_chain(const Mechanism& m, const Setting& setting)
 }
 
 template <class T>
+Points solve_tree(const Mechanism& m, const Setting& setting)
+{
+    Equations<T> equations(m);
+    const auto f = [&equations](const T* y, T* dy) { equations(y, dy); };
+    const std::vector<T> y = solved<T>(f, equations.start(), m.end, setting);
+    return equations.where(y.data(), m.points);
+}
+
+template <class T>
 Points solve(const Mechanism& m, const Setting& setting)
 {
+    if (m.is_loaded()) return solve_tree<T>(m, setting);
     if (m.name == "rods" || m.name == "links") return solve_links<T>(m.name == "rods", m.end, setting);
     if (m.name == "parallelograms") return solve_parallelograms<T>(m.end, setting);
     if (m.name == "four_bar") return solve_four_bar<T>(m.end, setting);

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// livens. Settings: "DEGREE:ELEMENTS[:TOLERANCE]" is lobatto; "accuracy:A" leaves degree and elements open.
+// livens. Settings: "DEGREE:ELEMENTS[:TOLERANCE]" is lobatto; "accuracy:A" leaves all to livens and includes
+// the estimate, "all:A" also growth and judgement, as its program and its Python package have them.
+// Mechanisms with loads are scenarios: what a user would write.
 #include "livens/dynamics/start/prepared.h"
+#include "livens/io/scenario.h"
 #include "livens/spacetime/solve.h"
 
 #include "serve.h"
@@ -45,17 +48,36 @@ Model model_of(const Mechanism& m)
 }
 
 struct Run {
-    Method method = Lobatto{0};
-    Time time;
-    SolveOptions options;
+    Model model;
+    Problem problem{};
+    Method method = AutomaticFamily{};
+    Time time{};
+    SolveOptions options{};
 };
+
+Run read(const Mechanism& m)
+{
+    if (!m.is_loaded()) {
+        Run run{.model = model_of(m)};
+        run.problem.conditions.start = run.model.start();
+        return run;
+    }
+    if (m.scenario.empty()) throw std::runtime_error("bodies without mass");
+    ScenarioResult read = read_scenario(m.scenario);
+    if (!read.scenario) throw std::runtime_error("scenario: " + read.diagnostics.at(0).message);
+    Run run{.model = std::move(read.scenario->model)};
+    run.problem.conditions = read.scenario->conditions;
+    run.options.initial = read.scenario->options.initial;
+    return run;
+}
 
 /// As others are timed, the solution alone: nobody else estimates its error, either.
 Run run_of(const Mechanism& m, const std::vector<std::string>& setting)
 {
-    Run run;
-    run.options.judge = false;
-    if (setting.at(0) == "accuracy") {
+    Run run = read(m);
+    run.problem.prepared = std::make_shared<Prepared>();
+    run.options.judge = run.options.growth = setting.at(0) == "all";
+    if (setting.at(0) == "accuracy" || setting.at(0) == "all") {
         run.time = Span{.start = 0, .end = m.end, .accuracy = std::stod(setting.at(1))};
         return run;
     }
@@ -83,9 +105,8 @@ peers::Points ends(const Mechanism& m, const Solution& solution)
 int main()
 {
     return peers::serve([](const Mechanism& m, const std::vector<std::string>& setting) {
-        return [&m, run = run_of(m, setting), model = model_of(m), known = std::make_shared<Prepared>()] {
-            const Problem problem{{model.start()}, {}, nullptr, known};
-            return ends(m, solve(model, problem, run.time, run.method, run.options));
+        return [&m, run = run_of(m, setting)] {
+            return ends(m, solve(run.model, run.problem, run.time, run.method, run.options));
         };
     });
 }

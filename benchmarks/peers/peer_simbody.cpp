@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Simbody. Settings: "INTEGRATOR:ACCURACY" with merson, feldberg, cpodes (implicit) or verlet. Bodies on
-// balls and hinges are mobilised bodies of a tree; loops close by constraints, rods are constraints between
-// free bodies.
+// balls, hinges and slides are mobilised bodies of a tree; loops close by constraints, rods are constraints
+// between free bodies, gears couple coordinates. Loads are its own.
 #include <Simbody.h>
 
 #include "serve.h"
@@ -25,6 +25,9 @@ public:
         for (const peers::Body& b : m.bodies) add(b);
         for (int j = 0; j < static_cast<int>(m.joints.size()); ++j)
             if (m.closes_loop(j)) add(m.joints[j]);
+        for (const peers::Spring& spring : m.springs) add(spring);
+        for (const peers::Bushing& bushing : m.bushings) add(bushing);
+        for (const peers::Gear& gear : m.gears) add(gear);
         start_ = system_.realizeTopology();
         for (std::size_t i = 0; i < m.bodies.size(); ++i) put(m.bodies[i], bodies_[i]);
     }
@@ -64,28 +67,81 @@ private:
             return;
         }
         const peers::Joint& j = mechanism_.joints[b.hung];
-        const bool ball = j.kind == "ball";
-        const Rotation frame = ball ? Rotation() : Rotation(UnitVec3(vec(j.axis_second)), ZAxis);
+        const bool ball = j.kind == "ball", slide = j.kind == "slide";
+        const CoordinateAxis axis = slide ? CoordinateAxis(XAxis) : CoordinateAxis(ZAxis);
+        const Rotation frame = ball ? Rotation() : Rotation(UnitVec3(vec(j.axis_second)), axis);
         const Transform inboard(turn(mechanism_.turn_in_parent(b)) * frame, vec(j.point_first));
         MobilizedBody parent = body(b.parent);
         if (ball)
             bodies_.push_back(MobilizedBody::Ball(parent, inboard, rigid, Transform(frame)));
+        else if (slide)
+            bodies_.push_back(MobilizedBody::Slider(parent, inboard, rigid, Transform(frame)));
         else
             bodies_.push_back(MobilizedBody::Pin(parent, inboard, rigid, Transform(frame)));
+        if (!ball) load(j, bodies_.back());
     }
 
-    /// A hinge that closes a plane loop holds in that plane: the rest would be redundant.
+    /// What closes a plane loop holds in that plane: the rest would be redundant.
     void add(const peers::Joint& j)
     {
         MobilizedBody first = body(j.first), second = body(j.second);
         if (j.kind == "rod") {
             Constraint::Rod(first, vec(j.point_first), second, vec(j.point_second), j.length);
         } else {
-            const Rotation across(UnitVec3(vec(j.axis_first)), ZAxis);
+            const peers::Joint& hinge = mechanism_.joints[mechanism_.bodies[j.second].hung];
+            const Rotation across(UnitVec3(vec(j.kind == "ball" ? hinge.axis_first : j.axis_first)), ZAxis);
             for (const UnitVec3& normal : {across.x(), across.y()})
                 Constraint::PointInPlane(first, normal, dot(normal, vec(j.point_first)), second,
                                          vec(j.point_second));
         }
+    }
+
+    void load(const peers::Joint& j, const MobilizedBody& body)
+    {
+        if (j.stiffness != 0)
+            Force::MobilityLinearSpring(forces_, body, MobilizerQIndex(0), j.stiffness, j.push / j.stiffness);
+        if (j.damping != 0) Force::MobilityLinearDamper(forces_, body, MobilizerUIndex(0), j.damping);
+    }
+
+    /// A road is a slide that is led.
+    void add(const peers::Spring& spring)
+    {
+        MobilizedBody first = body(spring.first), second = body(spring.second);
+        Vec3 from = vec(spring.point_first);
+        if (spring.amplitude != 0) {
+            const Rotation up(UnitVec3(0, 0, 1), XAxis);
+            first = MobilizedBody::Slider(matter_.Ground(), Transform(up, from),
+                                          Body::Rigid(MassProperties(1, Vec3(0), Inertia(1))), Transform(up));
+            Motion::Sinusoid(first, Motion::Position, spring.amplitude, spring.omega, 0);
+            from = Vec3(0);
+        }
+        const Vec3 to = vec(spring.point_second);
+        Force::TwoPointLinearSpring(forces_, first, from, second, to, spring.stiffness, spring.free_length);
+        Force::TwoPointLinearDamper(forces_, first, from, second, to, spring.damping);
+    }
+
+    /// By body-fixed angles: in a plane its law is that of a rotation vector.
+    void add(const peers::Bushing& bushing)
+    {
+        const auto frame = [&](int i) {
+            const Rotation turned = ~turn(mechanism_.turn(i));
+            return Transform(turned, turned * (vec(bushing.at) - vec(mechanism_.place(i))));
+        };
+        const auto six = [](const std::array<double, 6>& a) {   // turns first
+            return Vec6(a[3], a[4], a[5], a[0], a[1], a[2]);
+        };
+        Force::LinearBushing(forces_, body(bushing.first), frame(bushing.first), body(bushing.second),
+                             frame(bushing.second), six(bushing.stiffness), six(bushing.damping));
+    }
+
+    void add(const peers::Gear& gear)
+    {
+        const auto hung = [&](int joint) {
+            return bodies_[mechanism_.joints[joint].second].getMobilizedBodyIndex();
+        };
+        Constraint::CoordinateCoupler(matter_, new Function::Linear(Vector(Vec3(gear.ratio, -1, 0))),
+                                      Array_<MobilizedBodyIndex>{hung(gear.first), hung(gear.second)},
+                                      Array_<MobilizerQIndex>{MobilizerQIndex(0), MobilizerQIndex(0)});
     }
 
     void put(const peers::Body& b, const MobilizedBody& body)

@@ -3,8 +3,16 @@
 
 A problem may be put in several ways that have the same motion (cubes on rods never turn: they are point masses);
 every engine takes the way that suits it best. `text` is what engines in C++ read (mechanism.h), Python's take the
-object. Joints are given at the start in space; the first ball or hinge of a body hangs it, by its origin, on the
-body before, others close loops.
+object. Joints are given at the start in space; the first ball, hinge or slide of a body hangs it, by its origin, on
+the body before, others close loops. Coordinates of hinges and slides are zero at the start. Loads:
+
+    torsion j k c r         k (q - r) + c q' against the coordinate q of joint j
+    control j k c r         the same, but a controller, which livens is told as an expression
+    spring a b p q k c l A w   between points of two bodies, k (length - l) + c length'; the first, if it is of the ground,
+                            is led along z by A sin(w t)
+    bushing a b x k c       of two frames at x with axes of the world at the start: six stiffnesses and dampings, by
+                            displacements in axes of the first and the rotation vector
+    gear i j ratio          the coordinate of joint j is ratio times that of joint i
 """
 from __future__ import annotations
 
@@ -34,16 +42,18 @@ class Mechanism:
     name: str = ""
     bodies: list = dataclasses.field(default_factory=list)
     joints: list = dataclasses.field(default_factory=list)   # (kind, first, second, numbers)
+    loads: list = dataclasses.field(default_factory=list)    # (kind, numbers)
+    scenario: str = ""                                       # file of the same for livens, where it has loads
     points: list = dataclasses.field(default_factory=list)   # (body, its coordinates)
 
     def text(self):
         def words(*parts):
             flat = [w for p in parts for w in (p if isinstance(p, (tuple, list)) else (p,))]
             return " ".join(w if isinstance(w, str) else repr(w) for w in flat)
-        lines = ["mechanism", *([words("name", self.name)] if self.name else []), words("end", self.end),
-                 words("gravity", self.gravity)]
+        lines = ["mechanism", *(words(key, value) for key, value in (("name", self.name), ("scenario", self.scenario))
+                                if value), words("end", self.end), words("gravity", self.gravity)]
         lines += [words("body", *dataclasses.astuple(body)) for body in self.bodies]
-        lines += [words(*joint) for joint in self.joints]
+        lines += [words(*entry) for entry in (*self.joints, *self.loads)]
         lines += [words("point", *point) for point in self.points]
         return "\n".join(lines + ["done", ""])
 
@@ -141,9 +151,12 @@ class Problem:
     digits: tuple = ()         # published: where the last of the points is at the end
     quick: bool = False        # part of --quick
     chain: tuple = ()          # kind of joint, bodies
+    loaded: bool = False       # what people have: part of --loaded
+    asked: bool = False        # to be quicker, asked for an accuracy, than others in their best settings
 
 
 def table():
+    import loaded   # which is made of what stands above
     lengths = (2, 10, 20, 50, 100)
     problems = {
         "bricks": Problem("P16: two bricks on ball joints, to 2 s", {"": chain(2, "ball", 2)}, quick=True,
@@ -159,6 +172,9 @@ def table():
         for n in lengths:
             problems[f"{kind}s{n}"] = Problem(f"Chain of {n} bricks on {word}, to 1 s", {"": chain(n, kind, 1)}, 60,
                                               quick=n == 10 and kind == "ball", chain=(kind, n))
+    problems |= loaded.loaded(lambda *a: Problem(*a, loaded=True, asked=True))
+    for name in ("bricks", "rods", "four_bar"):
+        problems[name].asked = True
     for name, problem in problems.items():
         for mechanism in problem.ways.values():
             mechanism.name = name

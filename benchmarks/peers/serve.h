@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // An engine is a process: it reads a mechanism, then lines "solve SETTING REPEATS", and answers each by a
-// line of JSON with the least processor time of the repeats and where the compared points end.
+// line of JSON with the median of the processor times of the repeats and where the compared points end.
 #pragma once
 
 #include <time.h>
@@ -10,7 +10,6 @@
 #include <cstdio>
 #include <exception>
 #include <iostream>
-#include <limits>
 #include <memory>
 #include <utility>
 
@@ -35,9 +34,9 @@ inline std::vector<std::string> parts_of(const std::string& setting)
     return parts;
 }
 
-inline void answer(double least, const Points& points)
+inline void answer(double seconds, const Points& points)
 {
-    std::printf("{\"seconds\": %.9g, \"points\": [", least);
+    std::printf("{\"seconds\": %.9g, \"points\": [", seconds);
     const char* comma = "";
     for (const Vec& p : points) {
         std::printf("%s[%.17g, %.17g, %.17g]", comma, p[0], p[1], p[2]);
@@ -54,19 +53,19 @@ inline void answer(const std::exception& failure)
     std::printf("{\"failed\": \"%s\"}\n", what.c_str());
 }
 
-/// The least of the repeats, at least one, as long as they take under ten seconds: other load only adds.
+/// The median of the repeats, at least one, as long as they take under ten seconds.
 template <class Solve>
-double least_of(int repeats, const Solve& solve, Points& points)
+double median_of(int repeats, const Solve& solve, Points& points)
 {
-    double least = std::numeric_limits<double>::infinity(), total = 0;
-    for (int r = 0; r == 0 || (r < repeats && total < 10); ++r) {
+    std::vector<double> taken;
+    for (double total = 0; taken.empty() || (static_cast<int>(taken.size()) < repeats && total < 10);
+         total += taken.back()) {
         const double start = processor_seconds();
         points = solve();
-        const double taken = processor_seconds() - start;
-        least = std::min(least, taken);
-        total += taken;
+        taken.push_back(processor_seconds() - start);
     }
-    return least;
+    std::sort(taken.begin(), taken.end());
+    return (taken[taken.size() / 2] + taken[(taken.size() - 1) / 2]) / 2;
 }
 
 /// prepare(mechanism, setting) returns a callable that solves once and returns the points: it alone is timed.
@@ -87,10 +86,10 @@ int serve(const Prepare& prepare)
             }
             Points points;
             const auto solve = prepare(std::as_const(*mechanism), parts_of(setting));
-            const double least = least_of(repeats, solve, points);
+            const double median = median_of(repeats, solve, points);
             for (const Vec& p : points)
                 if (!std::isfinite(dot(p, p))) throw std::runtime_error("not finite");
-            answer(least, points);
+            answer(median, points);
         } catch (const std::exception& failure) {
             answer(failure);
         }

@@ -3,12 +3,23 @@
 import dataclasses
 import json
 import os
+import statistics
 import sys
 import time
 
 import numpy as np
 
 from problems import GROUND, Body, Mechanism
+
+LOADS = ("torsion", "control", "spring", "bushing", "gear")
+
+
+@dataclasses.dataclass
+class JointLoad:
+    """push - stiffness q - damping q' along the coordinate q of a joint."""
+    stiffness: float = 0
+    damping: float = 0
+    push: float = 0
 
 
 def read_mechanism(lines):
@@ -17,8 +28,8 @@ def read_mechanism(lines):
         key, *words = line.split()
         if key == "done":
             return m
-        if key == "name":
-            m.name = words[0]
+        if key in ("name", "scenario"):
+            setattr(m, key, words[0])
             continue
         v = [float(w) for w in words]
         if key == "end":
@@ -29,9 +40,26 @@ def read_mechanism(lines):
             m.bodies.append(Body(v[0], v[1:4], v[4:7], v[7:10], v[10:14], v[14:17], v[17:20]))
         elif key == "point":
             m.points.append((int(v[0]), np.array(v[1:])))
+        elif key in LOADS:
+            m.loads.append((key, v))
         else:
             m.joints.append((key, int(v[0]), int(v[1]), np.array(v[2:])))
     return m
+
+
+def joint_loads(m):
+    """Of every joint, all that acts along its coordinate."""
+    found = [JointLoad() for _ in m.joints]
+    for kind, (joint, *numbers) in m.loads:
+        if kind in ("torsion", "control"):
+            stiffness, damping, rest = numbers
+            at = found[int(joint)]
+            at.stiffness, at.damping, at.push = at.stiffness + stiffness, at.damping + damping, at.push + stiffness * rest
+    return found
+
+
+def of_kind(m, kind):
+    return [numbers for name, numbers in m.loads if name == kind]
 
 
 def turn(q):
@@ -52,6 +80,8 @@ class Branch:
     R: np.ndarray = None
     axis: np.ndarray = None
     rate: np.ndarray = None
+    load: JointLoad = None   # of a hinge or slide
+    joint: int = None        # which of the mechanism's it hangs on
 
 
 def place_of(m, body):
@@ -69,8 +99,8 @@ def inside(m, body, x):
 
 def tree(m):
     """The branches, and the joints that are left: those that close loops, and rods."""
-    branches, rest = [Branch(body) for body in m.bodies], []
-    for joint in m.joints:
+    branches, rest, loads = [Branch(body) for body in m.bodies], [], joint_loads(m)
+    for k, joint in enumerate(m.joints):
         kind, first, second, numbers = joint
         b = branches[second]
         if kind == "rod" or b.parent is not None:
@@ -78,7 +108,8 @@ def tree(m):
             continue
         R, w = turn_of(m, second), np.array(b.body.w)
         b.parent, b.kind, b.place = first, kind, inside(m, first, numbers[:3])
-        b.R, b.axis = turn_of(m, first).T @ R, R.T @ numbers[3:6] if kind == "hinge" else None
+        b.R, b.axis = turn_of(m, first).T @ R, R.T @ numbers[3:6] if kind != "ball" else None
+        b.load, b.joint = loads[k], k
         b.rate = R.T @ (w if first == GROUND else w - np.array(m.bodies[first].w))
     return branches, rest
 
@@ -95,14 +126,13 @@ def serve(prepare):
             mechanism = read_mechanism(sys.stdin)
             continue
         try:
-            least, total, done = float("inf"), 0.0, 0
-            while done == 0 or (done < int(repeats) and total < 10):
+            taken = []
+            while not taken or (len(taken) < int(repeats) and sum(taken) < 10):
                 solve = prepare(mechanism, setting.split(":"))
                 start = time.process_time()
                 points = solve()
-                taken = time.process_time() - start
-                least, total, done = min(least, taken), total + taken, done + 1
+                taken.append(time.process_time() - start)
             found = [[float(c) for c in p] for p in points()]
-            answers.write(json.dumps({"seconds": least, "points": found}) + "\n")
+            answers.write(json.dumps({"seconds": statistics.median(taken), "points": found}) + "\n")
         except Exception as failure:   # whatever an engine throws is its answer
             answers.write(json.dumps({"failed": str(failure)[:200]}) + "\n")

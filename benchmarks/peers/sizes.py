@@ -11,6 +11,7 @@ import time
 
 import engines
 import problems
+import scenarios
 
 
 @dataclasses.dataclass
@@ -34,21 +35,9 @@ SIZES = [
 ]
 
 
-def scenario(m, degree, elements):
-    def values(v):
-        return "[" + ", ".join(repr(float(c)) for c in v) + "]"
-    lines = ["format = 1", f"gravity = {values(m.gravity)}"]
-    for i, b in enumerate(m.bodies):
-        lines += ["[[body]]", f'name = "b{i}"', f"mass = {b.mass}", f"center_of_mass = {values(b.center)}",
-                  f"inertia = {values(b.inertia)}", f"position = {values(b.x)}", f"quaternion = {values(b.q)}",
-                  f"velocity = {values(b.v)}", f"angular_velocity = {values(b.w)}"]
-    for j, (kind, first, second, at) in enumerate((*joint[:3], joint[3]) for joint in m.joints):
-        ends = ", ".join('"world"' if i < 0 else f'"b{i}"' for i in (first, second))
-        lines += ["[[joint]]", f'name = "j{j}"', f'type = "{"spherical" if kind == "ball" else "revolute"}"',
-                  f"between = [{ends}]", f"at = {values(at)}"]
-    lines += ["[time]", f"end = {m.end}", f"elements = {elements}", "[method]", 'family = "lobatto"',
-              f"degree = {degree}", ""]
-    return "\n".join(lines)
+# Scenarios beside this file, with the default accuracy.
+CORNERS = [("hoop", "bead on a hoop that turns, through four points, 5 s", 0.1),
+           ("hoop48", "the same through 48 points", 0.3)]
 
 
 def peak(pid):
@@ -89,10 +78,21 @@ def program(size, n):
     livens = engines.ROOT / "build" / "release" / "livens"
     with tempfile.TemporaryDirectory() as folder:
         file = pathlib.Path(folder) / "size.toml"
-        file.write_text(scenario(size.make(n), *size.setting(n)))
+        degree, elements = size.setting(n)
+        file.write_text(scenarios.text(size.make(n), f"elements = {elements}", f'family = "lobatto"\ndegree = {degree}'))
         runs = [process([livens, "solve", file, "-o", file.with_suffix(".nc"), "--json"]) for _ in range(2)]
         status = json.loads(runs[0][2]).get("status", "failed")
     return min(r[0] for r in runs), runs[0][1], status
+
+
+def corners():
+    """Processor seconds of the program for what was slow once, from its start to its end, and what was asked."""
+    livens, found = engines.ROOT / "build" / "release" / "livens", []
+    for name, title, allowed in CORNERS:
+        with tempfile.TemporaryDirectory() as folder:
+            command = [livens, "solve", engines.HERE / f"{name}.toml", "-o", f"{folder}/run.nc", "-q"]
+            found.append({"title": title, "seconds": min(process(command)[0] for _ in range(3)), "allowed": allowed})
+    return found
 
 
 def measured():

@@ -9,7 +9,7 @@
 
 #include "livens/dynamics/start/prepared.h"
 #include "livens/multibody/body.h"
-#include "livens/spacetime/nodal/kernel/tree_tangent.h"
+#include "livens/spacetime/nodal/kernel/kernel_tangent.h"
 
 namespace livens {
 
@@ -168,6 +168,8 @@ void NeighbourElements::use(BesideState& one)
     here.acceleration[1] = known_.change();
     lane_rule_.use(known_.layout(), here, known_.turns_in_space() ? many_beside_steps : 0);
     choice_.begin(pattern_, known_.layout());
+    pattern_->forms().weigh_nodes(lane_rule_.times(), here.held.joints.values(), nodes_.values(),
+                                  functions_->width);
 }
 
 bool NeighbourElements::solve(BesideState& one, const BesideLimits& limits, const BesideState* mirror)
@@ -179,12 +181,12 @@ bool NeighbourElements::solve(BesideState& one, const BesideLimits& limits, cons
         return iterate(one, limits, by_tangent);
     };
     const bool is_stiff = choice_.by_tangent();
-    if (!tries(is_stiff) && !((is_stiff || choice_.has_tangent()) && tries(true))) return false;
+    if (!tries(is_stiff) && !tries(true)) return false;
     const lanes::Values& nodes = nodes_.values();
     for (std::size_t i = 0; i < one.apart.size(); ++i) one.apart[i] = nodes.place[i] - known_.places()[i];
     one.has_past = true;
     functions_->sum_impulses(pattern_->view(), first_row(one), nodes, wrenches_.taken());
-    wrenches_.momentum(known_.layout(), one.here(), nodes, ends_.momentum());
+    wrenches_.momentum(known_.layout(), one.here(), nodes, lane_rule_.in_lanes(), ends_.momentum());
     return ends_.reach(one, known_.layout(), nodes, functions_->width, factor_at_end(limits.apart));
 }
 
@@ -227,10 +229,8 @@ void NeighbourElements::evaluate(const BesideState& one, bool has_factor, lanes:
         functions_->factorise(pattern, nodes);
         pivot_ = *std::min_element(nodes.pivots, nodes.pivots + rule_.degree);
     }
-    if (!tables_.model->loads().empty()) {
-        functions_->interpolate(pattern, from, nodes, lane_rule_.in_lanes());
-        wrenches_.evaluate_loads(known_.layout(), nodes, lane_rule_.in_lanes());
-    }
+    if (!tables_.model->loads().empty())
+        wrenches_.evaluate_loads(known_.layout(), pattern, from, nodes, lane_rule_.in_lanes());
     functions_->balance(pattern, first_row(one), nodes, lane_rule_.in_lanes(), is_new_, sizes);
     is_new_ = false;
 }
@@ -241,7 +241,8 @@ bool NeighbourElements::take_step(const BesideState& one, bool by_tangent, lanes
     const lanes::Pattern& pattern = pattern_->view();
     const lanes::Values &nodes = nodes_.values(), &from = one.here().held.joints.values();
     if (by_tangent && !choice_.is_kept()) {
-        const bool is_good = choice_.tangent().factorise(known_.layout(), from, nodes);
+        functions_->interpolate(pattern, from, nodes, lane_rule_.in_lanes());
+        const bool is_good = choice_.tangent().factorise(known_.layout(), one.here().held.joints, nodes);
         choice_.factorised(is_good, known_.layout().h(0));
         if (!is_good) return false;
     }

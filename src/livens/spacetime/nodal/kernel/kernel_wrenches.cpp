@@ -37,7 +37,8 @@ void KernelWrenches::evaluate_loads(const WindowLayout& layout, const lanes::Pat
     functions_->share_out(program, rule.load_weights, rule.M_rows, nodes.at_loads.F);
     if (!loads_->has_others()) return;
     functions_->interpolate(pattern, start, nodes, rule);
-    loads_->evaluate_others(nodes.at_loads.X, nodes.at_loads.V, rule.load_weights, layout.angles, others_.data());
+    loads_->evaluate_others(nodes.at_loads.X, nodes.at_loads.V, rule.load_weights, layout.angles,
+                            others_.data());
     functions_->share_columns(program, others_.data(), rule.M_rows, nodes.at_loads.F);
 }
 
