@@ -194,14 +194,14 @@ TEST(Radau, SwingsALightHookUnderAHeavyLoad)
     EXPECT_NEAR(last_rate(s, &Distance::X, 0), 5, 0.3);
     EXPECT_LE(distance(at(Radau{3}, 40), reference).X, 1e-7);    // what it does not resolve stays below that
     EXPECT_LE(distance(at(Radau{3}, 640), reference).X, 1e-9);   // what it does, it follows
-    // With six elements there is a root of the equations that is none: it is refused, and divided.
-    EXPECT_GT(distance(at(Radau{3}, 6), reference).X, 1e-2);
-    const Solution divided = solve_radau(model, 1, 6, 3);
+    // With two elements there is a root of the equations that is none: it is refused, and divided.
+    EXPECT_GT(distance(at(Radau{3}, 2), reference).X, 1e-2);
+    const Solution divided = solve_radau(model, 1, 2, 3);
     EXPECT_GT(divided.report.divided, 0);
     tell("hook, 40 elements, m", distance(at(Radau{3}, 40), reference).X);
-    tell("hook, 6 elements, some divided, m", distance(last(divided), reference).X);
+    tell("hook, 2 elements, some divided, m", distance(last(divided), reference).X);
     tell("of which it says, m", model.length() * divided.estimate.largest);
-    EXPECT_LE(distance(last(divided), reference).X, 1e-5);
+    EXPECT_LE(distance(last(divided), reference).X, 2e-4);
     EXPECT_LE(distance(last(divided), reference).X, 3 * model.length() * divided.estimate.largest);
 }
 

@@ -37,12 +37,12 @@ APART = {("diagnostics", "stepping")}
 PARTS = {
     "multibody": ["joints", "loads"],
     "dynamics": ["rows", "lanes", "instant", "start"],
-    "spacetime": ["march", "nodal", "mixed", "accuracy"],
+    "spacetime": ["march", "elements", "nodal", "mixed", "accuracy"],
     "io": ["results", "exports", "report", "scenario"],
     "io/scenario": ["text", "schema", "bodies", "joints", "loads", "run"],
 }
 # Folders that other rooms do not see into, but for what is named.
-INSIDES = {"detail", "scenario", "march", "nodal", "mixed", "accuracy"}
+INSIDES = {"detail", "scenario", "march", "elements", "nodal", "mixed", "accuracy"}
 SEEN_INSIDE = {"livens/spacetime/mixed/bases.h"}   # words of a table, for the reader of scenarios
 
 FLOOR = {room: number for number, rooms in enumerate(FLOORS) for room in rooms}

@@ -54,7 +54,7 @@ livens_mutant(NAME velocity_without_drives
 
 # The last weight off by one part in a thousand: the order is gone.
 livens_mutant(NAME one_weight
-              FILE spacetime/nodal/rule.cpp
+              FILE spacetime/elements/rule.cpp
               OLD [[rule.weights = gauss_lobatto(n).weights;]]
               NEW [[rule.weights = gauss_lobatto(n).weights; rule.weights[rule.degree] *= 1.001;]]
               TESTS_OF convergence
@@ -94,8 +94,8 @@ livens_mutant(NAME loads_at_the_start
               TESTS_OF unit_spacetime
               MUST_FAIL MarchKernel.AgreesWithNewtonOnRandomMechanisms)
 livens_mutant(NAME loads_at_the_start_in_lanes
-              FILE spacetime/nodal/kernel/lane_kernel.h
-              RECOMPILE spacetime/nodal/kernel/lanes_sse2.cpp
+              FILE spacetime/elements/lane_kernel.h
+              RECOMPILE spacetime/elements/lanes_sse2.cpp
               OLD [[start.numbers[i] + times<W>(v.increments + i * W, rule.M)]]
               NEW [[all<W>(start.numbers[i])]]
               TESTS_OF conservation
@@ -103,7 +103,7 @@ livens_mutant(NAME loads_at_the_start_in_lanes
 
 # Loads at as many Gauss-Lobatto points: springs are no Gauss collocation then, and stable no longer.
 livens_mutant(NAME loads_at_lobatto_points
-              FILE spacetime/nodal/rule.cpp
+              FILE spacetime/elements/rule.cpp
               OLD [[rule.loads = gauss(rule.degree);]]
               NEW [[rule.loads = rule.degree > 1 ? gauss_lobatto(rule.degree) : gauss(1);]]
               TESTS_OF properties
@@ -121,7 +121,7 @@ livens_mutant(NAME loads_given_to_one_node
 
 # The instant of a node for what is taken at a Gauss point: right for constant loads only.
 livens_mutant(NAME loads_at_the_instants_of_nodes
-              FILE spacetime/nodal/window_layout.h
+              FILE spacetime/elements/window_layout.h
               RECOMPILE spacetime/nodal/element_loads.cpp spacetime/nodal/kernel/kernel_wrenches.cpp
               OLD [[rule.loads.points[c] * h(e), Side::middle}]]
               NEW [[rule.nodes[c] * h(e), Side::middle}]]
@@ -137,8 +137,8 @@ livens_mutant(NAME constraint_without_mean_gradient
               TESTS_OF unit_spacetime
               MUST_FAIL MarchKernel.AgreesWithNewtonOnRandomMechanisms)
 livens_mutant(NAME violations_not_projected_in_lanes
-              FILE spacetime/nodal/kernel/lane_kernel.h
-              RECOMPILE spacetime/nodal/kernel/lanes_sse2.cpp
+              FILE spacetime/elements/lane_kernel.h
+              RECOMPILE spacetime/elements/lanes_sse2.cpp
               OLD [[multiply(p, G, v.step, v.violations, v.work);]]
               NEW [[multiply(p, G, v.step, nullptr, v.work);]]
               TESTS_OF conservation
@@ -213,7 +213,7 @@ livens_mutant(NAME cholesky_of_any_matrix
 
 # The momentum at the start shared out by the weights: right for degree 1 only.
 livens_mutant(NAME radau_momentum_by_weights
-              FILE spacetime/nodal/rule.cpp
+              FILE spacetime/elements/rule.cpp
               OLD [[rule.c[a] = static_cast<double>(-w * rule.D[a * n]);]]
               NEW [[rule.c[a] = static_cast<double>(w);]]
               TESTS_OF convergence

@@ -6,8 +6,8 @@
 
 #include "livens/dynamics/lanes/load_lanes.h"
 #include "livens/multibody/model.h"
+#include "livens/spacetime/elements/kernel_functions.h"
 #include "livens/spacetime/instructions.h"
-#include "livens/spacetime/nodal/kernel/kernel_functions.h"
 #include "properties/load_kit.h"
 
 namespace livens {

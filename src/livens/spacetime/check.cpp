@@ -7,9 +7,9 @@
 
 #include "livens/base/error.h"
 #include "livens/base/text.h"
+#include "livens/spacetime/elements/rule.h"
 #include "livens/spacetime/mixed/bases.h"
 #include "livens/spacetime/mixed/window.h"
-#include "livens/spacetime/nodal/rule.h"
 #include "livens/spacetime/phases.h"
 #include "livens/spacetime/solve.h"
 #include "livens/stepping/stepping.h"

@@ -24,7 +24,7 @@ constexpr double least_pivot_beside = 1e-5;   // of the rows' own size
 // By how much of what a projection takes off it errs with the factor of another neighbour.
 constexpr double error_of_factor = 1e-2, error_at_end = 1e-4;
 // Of the motion in the element, and of the largest terms of rows: what is rounding.
-constexpr double rounding_of_steps = 1e-14, rounding_of_rows = 4e-16;
+constexpr double rounding_of_steps = 1e-14, rounding_beside = 4e-16;
 constexpr int many_beside_steps = 4;   // for which still axes are of use
 
 const lanes::Functions* functions_beside(const ModelTables& tables, const ElementRule& rule)
@@ -205,7 +205,7 @@ bool NeighbourElements::iterate(BesideState& one, const BesideLimits& limits, bo
         const double shrinks = steps > 0 && rows > 0 ? sizes.rows / rows : 0;
         const bool is_slow = !(shrinks <= slow_beside);
         const bool is_rounding = sizes.step <= rounding_of_steps * std::min(sizes.motion, 1.0) ||
-                                 sizes.rows <= rounding_of_rows * sizes.terms;
+                                 sizes.rows <= rounding_beside * sizes.terms;
         const bool is_small = !is_slow && sizes.step * shrinks <= (1 - shrinks) * limits.left;
         if (steps > 0 && (is_rounding || is_small)) {
             const double pivot = std::min(pivot_, one.here().held.joints.values().pivots[0]);

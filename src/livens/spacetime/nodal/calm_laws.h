@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "livens/dynamics/lanes/load_lanes.h"
-#include "livens/spacetime/nodal/rule.h"
+#include "livens/spacetime/elements/rule.h"
 
 namespace livens::inline spacetime_internal {
 

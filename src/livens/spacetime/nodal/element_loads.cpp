@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-#include "livens/spacetime/nodal/kernel/kernel_functions.h"
+#include "livens/spacetime/elements/kernel_functions.h"
 #include "livens/spacetime/nodal/nodes.h"
 
 namespace livens {

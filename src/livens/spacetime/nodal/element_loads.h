@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "livens/dynamics/lanes/load_lanes.h"
-#include "livens/spacetime/nodal/window_layout.h"
+#include "livens/spacetime/elements/window_layout.h"
 
 namespace livens::inline spacetime_internal {
 
@@ -41,10 +41,10 @@ private:
     const ElementRule& rule_;
     std::ptrdiff_t n_;   // numbers of all bodies
     std::optional<LoadLanes> lanes_;
-    AlignedDoubles M_, dM_;             // M_B(s_c) and its slope, a row of lanes over c for each B
+    AlignedDoubles M_, dM_;                // M_B(s_c) and its slope, a row of lanes over c for each B
     AlignedDoubles X_, V_, F_, factors_;   // in lanes, about the centres of mass
-    std::vector<double> forces_;        // F_A, element after element
-    std::vector<double> angles_;        // node after node
+    std::vector<double> forces_;           // F_A, element after element
+    std::vector<double> angles_;           // node after node
 };
 
 /// sum += factor * x, 12 numbers a body, for arrays that do not overlap.

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "livens/dynamics/rows/tables.h"
-#include "livens/spacetime/nodal/window_layout.h"
+#include "livens/spacetime/elements/window_layout.h"
 #include "livens/time/basis.h"
 
 namespace livens::inline spacetime_internal {

@@ -9,7 +9,7 @@
 
 #include "livens/dynamics/lanes/load_program.h"
 #include "livens/multibody/model.h"
-#include "livens/spacetime/nodal/kernel/kernel_functions.h"
+#include "livens/spacetime/elements/kernel_functions.h"
 #include "livens/spacetime/nodal/nodes.h"
 
 namespace livens {

@@ -8,9 +8,9 @@
 
 #include "livens/dynamics/lanes/load_lanes.h"
 #include "livens/multibody/loads/load_tape.h"
-#include "livens/spacetime/nodal/kernel/kernel_functions.h"
-#include "livens/spacetime/nodal/rule.h"
-#include "livens/spacetime/nodal/window_layout.h"
+#include "livens/spacetime/elements/kernel_functions.h"
+#include "livens/spacetime/elements/rule.h"
+#include "livens/spacetime/elements/window_layout.h"
 
 namespace livens::inline spacetime_internal {
 

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "livens/spacetime/nodal/rule.h"
+#include "livens/spacetime/elements/rule.h"
 
 namespace livens::inline spacetime_internal {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "livens/dynamics/rows/constraint_basis.h"
-#include "livens/spacetime/nodal/window_layout.h"
+#include "livens/spacetime/elements/window_layout.h"
 
 namespace livens::inline dynamics_internal {
 struct InstantState;

@@ -7,7 +7,7 @@
 
 #include "livens/dynamics/rows/tables.h"
 #include "livens/multibody/motion.h"
-#include "livens/spacetime/nodal/rule.h"
+#include "livens/spacetime/elements/rule.h"
 
 namespace livens::inline dynamics_internal {
 class InstantSystem;

@@ -7,7 +7,7 @@
 
 #include "livens/dynamics/rows/tables.h"
 #include "livens/solvers/newton.h"
-#include "livens/spacetime/nodal/window_layout.h"
+#include "livens/spacetime/elements/window_layout.h"
 
 namespace livens::inline dynamics_internal {
 struct InstantState;

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "livens/dynamics/lanes/aligned_doubles.h"
-#include "livens/spacetime/nodal/kernel/kernel_functions.h"
-#include "livens/spacetime/nodal/rule.h"
+#include "livens/spacetime/elements/kernel_functions.h"
+#include "livens/spacetime/elements/rule.h"
 #include "livens/time/basis.h"
 
 namespace livens::inline spacetime_internal {

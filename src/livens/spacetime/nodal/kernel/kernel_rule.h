@@ -6,8 +6,8 @@
 
 #include "livens/dynamics/lanes/aligned_doubles.h"
 #include "livens/dynamics/rows/tables.h"
-#include "livens/spacetime/nodal/kernel/kernel_functions.h"
-#include "livens/spacetime/nodal/window_layout.h"
+#include "livens/spacetime/elements/kernel_functions.h"
+#include "livens/spacetime/elements/window_layout.h"
 
 namespace livens::inline dynamics_internal {
 struct InstantState;

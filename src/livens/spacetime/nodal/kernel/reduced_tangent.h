@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "livens/dynamics/lanes/joint_factor.h"
-#include "livens/spacetime/nodal/kernel/kernel_functions.h"
+#include "livens/spacetime/elements/kernel_functions.h"
 #include "livens/spacetime/nodal/kernel/tangent_slopes.h"
 
 namespace livens::inline spacetime_internal {

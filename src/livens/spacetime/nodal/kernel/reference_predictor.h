@@ -7,9 +7,9 @@
 #include "livens/dynamics/lanes/aligned_doubles.h"
 #include "livens/dynamics/rows/tables.h"
 #include "livens/multibody/motion.h"
-#include "livens/spacetime/nodal/kernel/kernel_functions.h"
-#include "livens/spacetime/nodal/rule.h"
-#include "livens/spacetime/nodal/window_layout.h"
+#include "livens/spacetime/elements/kernel_functions.h"
+#include "livens/spacetime/elements/rule.h"
+#include "livens/spacetime/elements/window_layout.h"
 
 namespace livens::inline spacetime_internal {
 

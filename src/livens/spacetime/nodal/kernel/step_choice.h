@@ -5,8 +5,8 @@
 #include <memory>
 
 #include "livens/dynamics/lanes/row_pattern.h"
-#include "livens/spacetime/nodal/kernel/kernel_functions.h"
-#include "livens/spacetime/nodal/window_layout.h"
+#include "livens/spacetime/elements/kernel_functions.h"
+#include "livens/spacetime/elements/window_layout.h"
 
 namespace livens::inline spacetime_internal {
 

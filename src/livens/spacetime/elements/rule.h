@@ -18,11 +18,11 @@ struct ElementRule {
     std::vector<double> nodes;     ///< s_A in [0, 1]
     std::vector<double> weights;   ///< w_A, sum 1
     std::vector<double> D;         ///< D_CA = M_A'(s_C), row by row
-    std::vector<double> k;   ///< k_AB, row by row: sum_C w_C D_CA D_CB, with radau - w_A sum_C>0 D_AC D_CB
-    std::vector<double> c;   ///< share c_A of row A in the momentum at the start; empty: row 0 has it all
-    Quadrature loads;        ///< the p points s_c
-    std::vector<double> M;         ///< M_A(s_c) at [c * n + A]
-    std::vector<double> dM;        ///< M_A'(s_c) likewise
+    std::vector<double> k;    ///< k_AB, row by row: sum_C w_C D_CA D_CB, with radau - w_A sum_C>0 D_AC D_CB
+    std::vector<double> c;    ///< share c_A of row A in the momentum at the start; empty: row 0 has it all
+    Quadrature loads;         ///< the p points s_c
+    std::vector<double> M;    ///< M_A(s_c) at [c * n + A]
+    std::vector<double> dM;   ///< M_A'(s_c) likewise
 
     int size() const { return degree + 1; }
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "livens/spacetime/nodal/kernel/kernel_functions.h"
+#include "livens/spacetime/elements/kernel_functions.h"
 
 #include "livens/spacetime/instructions.h"
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "livens/dynamics/lanes/lane_arithmetic.h"
-#include "livens/spacetime/nodal/kernel/kernel_functions.h"
+#include "livens/spacetime/elements/kernel_functions.h"
 
 namespace livens::lanes {
 namespace {

@@ -2,7 +2,7 @@
 // k_AB = sum_C w_C D_CA D_CB of lobatto(p), k_AB = - w_A sum_C>0 D_AC D_CB and c_A = - w_A D_A0 of radau(p),
 // and the Lagrange polynomials at the load points (docs/theory.md, "The element", "Radau points"). Sums that
 // are zero or one are made exact for the rounded numbers, too.
-#include "livens/spacetime/nodal/rule.h"
+#include "livens/spacetime/elements/rule.h"
 
 #include <cmath>
 #include <map>

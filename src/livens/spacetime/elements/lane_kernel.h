@@ -5,7 +5,7 @@
 
 #include "livens/dynamics/lanes/lane_loads.h"
 #include "livens/dynamics/lanes/lane_rows.h"
-#include "livens/spacetime/nodal/kernel/lane_places.h"
+#include "livens/spacetime/elements/lane_places.h"
 
 namespace livens::lanes {
 namespace {

@@ -3,7 +3,7 @@
 // "Without a tangent", Registers).
 #ifdef LIVENS_X86_SETS
 #define LIVENS_REGISTER 4
-#include "livens/spacetime/nodal/kernel/lane_kernel.h"
+#include "livens/spacetime/elements/lane_kernel.h"
 
 namespace livens::lanes {
 
@@ -11,7 +11,7 @@ const Functions* avx2(int n) { return functions_for(n); }
 
 }   // namespace livens::lanes
 #else
-#include "livens/spacetime/nodal/kernel/kernel_functions.h"
+#include "livens/spacetime/elements/kernel_functions.h"
 
 namespace livens::lanes {
 

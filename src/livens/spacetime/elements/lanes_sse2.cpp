@@ -3,7 +3,7 @@
 // "Without a tangent", Registers).
 #define LIVENS_REGISTER 2
 #define LIVENS_UNROLLED 0   // processors without more are old: not worth the code
-#include "livens/spacetime/nodal/kernel/lane_kernel.h"
+#include "livens/spacetime/elements/lane_kernel.h"
 
 namespace livens::lanes {
 

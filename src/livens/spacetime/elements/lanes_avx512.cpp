@@ -4,7 +4,7 @@
 #ifdef LIVENS_X86_SETS
 #define LIVENS_REGISTER 8
 #define LIVENS_UNROLLED 0   // nobody is given it unasked: not worth the code
-#include "livens/spacetime/nodal/kernel/lane_kernel.h"
+#include "livens/spacetime/elements/lane_kernel.h"
 
 namespace livens::lanes {
 
@@ -12,7 +12,7 @@ const Functions* avx512(int n) { return functions_for(n); }
 
 }   // namespace livens::lanes
 #else
-#include "livens/spacetime/nodal/kernel/kernel_functions.h"
+#include "livens/spacetime/elements/kernel_functions.h"
 
 namespace livens::lanes {
 

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "livens/spacetime/nodal/rule.h"
+#include "livens/spacetime/elements/rule.h"
 #include "livens/time/time_mesh.h"
 
 namespace livens::inline spacetime_internal {
