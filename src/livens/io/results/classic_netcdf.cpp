@@ -88,7 +88,7 @@ const AttributeValue* find_attribute(const std::vector<Attribute>& attributes, s
     return found == nullptr ? nullptr : &found->value;
 }
 
-std::uint64_t ClassicWriter::dimension(const std::string& name) const { return length_of(dimensions_, name); }
+std::uint64_t ClassicWriter::dimension(const std::string& name) const { return size_in(dimensions_, name); }
 
 void ClassicWriter::dimension(const std::string& name, std::uint64_t length)
 {

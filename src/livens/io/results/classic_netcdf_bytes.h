@@ -52,7 +52,7 @@ const Entry* named(const std::vector<Entry>& entries, std::string_view name)
     return found == entries.end() ? nullptr : &*found;
 }
 
-inline std::uint64_t length_of(const std::vector<ClassicDimension>& dimensions, std::string_view name)
+inline std::uint64_t size_in(const std::vector<ClassicDimension>& dimensions, std::string_view name)
 {
     const ClassicDimension* found = named(dimensions, name);
     return found == nullptr ? 0 : found->length;

@@ -227,7 +227,7 @@ void ClassicReader::verify_header() const
     if (checksum.text() != *text) damaged("its header does not fit the checksum in it");
 }
 
-std::uint64_t ClassicReader::dimension(std::string_view name) const { return length_of(dimensions_, name); }
+std::uint64_t ClassicReader::dimension(std::string_view name) const { return size_in(dimensions_, name); }
 
 const AttributeValue* ClassicReader::attribute(std::string_view name) const
 {
