@@ -63,7 +63,9 @@ Load along(Random& random, const NamedCoordinate& q, const Configurations& X, in
     LoadParts parts;
     parts.units = {unit_along("l", q.coordinate, X)};
     parts.coordinates = {{q.coordinate, q.at_stated}};
-    const std::vector<Expression> of{Expression("sin(q)*w - q^2*cos(t) + abs(q)*max(w, q)", {"q", "w"})};
+    // terms of one sign: where they cancel, the force is smaller than what it is made of
+    const std::vector<Expression> of{
+        Expression("sin(q)^2*abs(w) + q^2*cos(t)^2 + abs(q)*max(w, q)^2 + 1", {"q", "w"})};
     parts.law = [of](const LawArguments& at, std::span<double> factors, std::span<double> slopes) {
         const std::array<double, 2> x{at.values[0], at.rates[0]};
         std::array<double, 2> by{};
