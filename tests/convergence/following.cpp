@@ -61,7 +61,8 @@ TEST(ReferencePredictor, FindsTheSameSooner)
                            follows = solved(models[m], 0.5, n, degree + more, &first.motion);
             const Distance parted = largest_gap(first.motion, alone.motion),
                            left = largest_gap(follows.motion, alone.motion);
-            EXPECT_LE(left.X, 1e-13);
+            // rounding: the slab's 25 rad end up to 3e-13 from the true ones, by steps of whatever kind
+            EXPECT_LE(left.X, tumbles ? 3e-13 : 1e-13);
             EXPECT_LE(left.V, 1e-11);   // one turns by 50 rad/s
             apart = std::max(apart, parted.X);
             most = std::max(most, left.X);

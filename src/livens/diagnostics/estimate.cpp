@@ -68,6 +68,7 @@ void ErrorMeter::compare(const Motion& finer, int first, int last)
     estimate_.n_joints = motion_.end_multipliers.empty() ? 0 : static_cast<int>(model_.joints().size());
     reach(last);
     std::vector<int> missing;
+    const JointSampler joints(model_, motion_), finer_joints(model_, finer);
     for (int end = first; end <= last; ++end) {
         Patience::ask();
         // Compared at ends that both have; where laws bend each has its own instant, and the error there is
@@ -77,11 +78,15 @@ void ErrorMeter::compare(const Motion& finer, int first, int last)
             missing.push_back(end);
             continue;
         }
-        compare_states(end, motion_.at_end(end), finer.at_end(there));
+        const State a = motion_.at_end(end), b = finer.at_end(there);
+        compare_states(end, a, b);
         if (estimate_.n_joints == 0 || finer.end_multipliers.empty()) continue;
         // where a piece begins or ends, the other side is that of another one
         const bool begins = end == first && first > 0, ends = end == last && last < motion_.n_elements();
-        compare_reactions(end, finer, begins ? Side::right : ends ? Side::left : Side::middle);
+        compare_reactions(end, joints.at(a), finer_joints.at(b),
+                          begins ? Side::right
+                          : ends ? Side::left
+                                 : Side::middle);
     }
     for (auto end = missing.rbegin(); end != missing.rend(); ++end) fill(*end);   // the one behind is known
     estimate_.find_largest(motion_.mesh);
@@ -113,10 +118,8 @@ void ErrorMeter::compare_states(int end, const State& a, const State& b)
     }
 }
 
-void ErrorMeter::compare_reactions(int end, const Motion& finer, Side side)
+void ErrorMeter::compare_reactions(int end, std::vector<JointSample> a, std::vector<JointSample> b, Side side)
 {
-    const double t = motion_.mesh.ends[end];
-    std::vector<JointSample> a = sample_joints(model_, motion_, t), b = sample_joints(model_, finer, t);
     for (std::size_t j = 0; j < a.size(); ++j) {
         if (!a[j].is_bounded || !b[j].is_bounded) continue;   // no number stands for it
         for (JointSample* one : {&a[j], &b[j]}) {

@@ -38,7 +38,9 @@ public:
 
 private:
     struct Matrices;
-    std::unique_ptr<Matrices> matrices_;
+    struct FewRows;
+    std::unique_ptr<Matrices> matrices_;   // or
+    std::unique_ptr<FewRows> few_;
     double smallest_pivot_ = 0;
 };
 

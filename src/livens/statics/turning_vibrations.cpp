@@ -158,11 +158,12 @@ std::vector<TurningVibration> turning_vibrations(const Model& model, const State
     if (springs.is_empty()) return {};
     const Values& squares = springs.squares();
     const int n_slow = n_below(squares, slowest * slowest), n = static_cast<int>(squares.size());
+    if (n_slow == n) return {};
     // Only the slow part of the velocity turns springs; the vibrations themselves stretch them to and fro.
     const Values V = springs.moved(springs.slow_part(springs.velocity(), n_slow));
     const auto [then, time] = moved(model, state, V);
     const PreparedState soon(model, then, Side::right, true);
-    if (n_slow == n || !(time > 0) || !soon.is_fit) return {};
+    if (!(time > 0) || !soon.is_fit) return {};
     const Springs later(soon);
     std::vector<TurningVibration> found;
     for (int i = n_slow; i < n; ++i) {

@@ -229,7 +229,7 @@ TEST(LeastReactions, TwoEqualJointsCarryHalfEachAndLeaveTheOthersAlone)
     EXPECT_EQ(least.joint_is_unique, (std::vector{true, false, false}));
     EXPECT_EQ(in_words(least.shared[0]), "");
     EXPECT_EQ(in_words(least.shared[1]), "force x, force y, force z");
-    EXPECT_NEAR(least.largest_null, std::sqrt(0.5), 1e-9);
+    EXPECT_NEAR(least.largest_null, std::sqrt(3 * 0.5), 1e-9);   // of three null vectors
     for (int r = 0; r < 3; ++r) {
         EXPECT_EQ(least.multipliers[r], given[r]);
         EXPECT_NEAR(least.multipliers[3 + r], 0.5 * given[3 + r], 1e-13);

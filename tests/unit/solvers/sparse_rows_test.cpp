@@ -31,7 +31,7 @@ DenseMatrix chain(int n_rows)
 
 TEST(SparseRows, ProjectOntoWhatTheyWant)
 {
-    for (const int n : {1, 2, 30}) {
+    for (const int n : {1, 2, 30, 48, 49, 200}) {   // many have a sparse factor
         const DenseMatrix G = chain(n);
         const SparseRows rows(n, n + 2, entries_of(G));
         EXPECT_GT(rows.smallest_pivot(), 0.1);
@@ -42,6 +42,26 @@ TEST(SparseRows, ProjectOntoWhatTheyWant)
         add_scaled(y, 1, transposed_product(G, mu));   // the way there is along the rows: the shortest
         EXPECT_LT(difference(y, before), 1e-14);
     }
+}
+
+/// The factor of few rows and the sparse one, by rows that touch nothing of the others.
+TEST(SparseRows, OfFewAndOfManyAreTheSame)
+{
+    const int n = 20, others = 80;
+    const DenseMatrix G = chain(n);
+    std::vector<SparseEntry> entries = entries_of(G);
+    const SparseRows few(n, n + 2, entries);
+    for (int k = 0; k < others; ++k) entries.push_back({n + k, n + 2 + k, 1});
+    const SparseRows many(n + others, n + 2 + others, entries);
+    EXPECT_GT(many.smallest_pivot(), 0.1);
+    Values y = Random(73).values(n + 2), wanted = Random(74).values(n), longer = y, more = wanted;
+    longer.resize(longer.size() + others, 0.0);
+    more.resize(more.size() + others, 0.0);
+    Values mu = few.project(y, wanted), mu_of_many = many.project(longer, more);
+    mu_of_many.resize(n);
+    longer.resize(n + 2);
+    EXPECT_LT(difference(mu, mu_of_many), 1e-14);
+    EXPECT_LT(difference(y, longer), 1e-14);
 }
 
 TEST(SparseRows, WithoutRowsNothingMoves)

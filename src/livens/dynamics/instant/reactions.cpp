@@ -5,43 +5,45 @@
 
 #include "livens/dynamics/rows/rank.h"
 #include "livens/dynamics/rows/rows.h"
-#include "livens/multibody/motion.h"
 #include "livens/solvers/factors.h"
-#include "livens/solvers/spectral.h"
 
 namespace livens {
 
 namespace {
 
-/// [f; t / L] of a joint for a multiplier of one in each of its rows. `zeros`: of all rows.
-DenseMatrix unit_reactions(const Model& model, int joint, std::span<const Matrix34> X, double length,
-                           std::vector<double>& zeros)
-{
-    const int n = static_cast<int>(model.joints()[joint].rows.size());
-    DenseMatrix A(6, n);
-    for (int k = 0; k < n; ++k) {
-        double& unit = zeros[model.first_row(joint) + k];
-        unit = 1;
-        const Reaction reaction = joint_reaction(model, joint, X, zeros);
-        unit = 0;
-        for (int i = 0; i < 3; ++i) {
-            A(i, k) = reaction.force[i];
-            A(3 + i, k) = reaction.torque[i] / length;
+constexpr double least_part = 1e-9;      // of a null vector
+constexpr double share_of_rows = 1e-8;   // in the sum of squares
+
+/// What the sum of squares is made of, by multipliers: of each joint [f; t / L] on its second body, at its
+/// point, and behind them 1e-8 of the rows, which decide where some of them say the same.
+class Terms {
+public:
+    Terms(const Model& model, const RowWrenches& wrenches, std::span<const double> sizes)
+        : model_(model), wrenches_(wrenches), sizes_(sizes),
+          n_joints_(static_cast<int>(model.joints().size()))
+    {}
+
+    int n() const { return 6 * n_joints_ + model_.n_rows(); }
+    void add(const double* multipliers, double* terms) const
+    {
+        const double length = model_.length();
+        for (int r = 0; r < model_.n_rows(); ++r) {
+            const int joint = model_.row_joint(r);
+            for (const Wrench& wrench : wrenches_[r])
+                for (int i = 0; wrench.body == model_.joints()[joint].second && i < 3; ++i) {
+                    terms[6 * joint + i] -= multipliers[r] * wrench.force[i];
+                    terms[6 * joint + 3 + i] -= multipliers[r] * wrench.moment[i] / length;
+                }
+            terms[6 * n_joints_ + r] += share_of_rows * sizes_[r] * multipliers[r];
         }
     }
-    return A;
-}
 
-/// R with |R lambda| = |A lambda|, kept regular by 1e-8 of the rows where some of them say the same.
-DenseMatrix root_metric(const DenseMatrix& A, std::span<const double> sizes)
-{
-    DenseMatrix tall(A.rows + A.cols, A.cols);
-    tall.set_rows(0, A);
-    for (int k = 0; k < A.cols; ++k) tall(A.rows + k, k) = 1e-8 * sizes[k];
-    return upper_factor(tall);
-}
-
-constexpr double least_part = 1e-9;   // of a null vector
+private:
+    const Model& model_;
+    const RowWrenches& wrenches_;
+    std::span<const double> sizes_;
+    int n_joints_;
+};
 
 }   // namespace
 
@@ -55,7 +57,9 @@ std::string in_words(const SharedComponents& shared)
     return text;
 }
 
-/// In the coordinates rho = R lambda, joint by joint, least is what is perpendicular to all null vectors.
+/// lambda + N c with the least |terms(lambda + N c)|: with terms(N) = Q R, N a basis of null vectors, the
+/// part of terms(lambda) along Q is taken off. In each joint Q has the parts of null vectors that are
+/// orthonormal there.
 UniqueReactions least_reactions(const Model& model, std::span<const Matrix34> X,
                                 std::span<const double> multipliers, std::span<const int> independent)
 {
@@ -67,39 +71,31 @@ UniqueReactions least_reactions(const Model& model, std::span<const Matrix34> X,
                            0};
     if (n_null <= 0) return result;
 
-    const Dependencies known = dependencies(model, X, independent);
-    DenseMatrix null(n, n_null);
+    const RowWrenches wrenches = row_wrenches(model, X);
+    const Dependencies known = dependencies(model, X, independent, wrenches);
+    const Terms terms(model, wrenches, known.sizes);
+    const int n_sets = static_cast<int>(multipliers.size()) / n;
+    DenseMatrix null(n, n_null), of_null(terms.n(), n_null), of_sets(terms.n(), n_sets);
     for (int k = 0; k < n_null; ++k) {
         null(known.dependent[k], k) = 1;
         for (std::size_t i = 0; i < known.independent.size(); ++i)
             null(known.independent[i], k) = -known.factors[k][i];
+        terms.add(null.column(k).data(), &of_null(0, k));
     }
-    DenseMatrix rho({n, static_cast<int>(multipliers.size()) / n, multipliers.data()});
-    std::vector<DenseMatrix> A, R;
-    std::vector<double> zeros(static_cast<std::size_t>(n), 0.0);
-    const double length = model.length();
+    for (int set = 0; set < n_sets; ++set) terms.add(multipliers.data() + set * n, &of_sets(0, set));
+    const DenseMatrix Q = orthonormal_columns(of_null);
+    const DenseMatrix along =
+        product(null, upper_solution(transposed_product(Q, of_null), transposed_product(Q, of_sets)));
     for (int j = 0; j < n_joints; ++j) {
-        A.push_back(unit_reactions(model, j, X, length, zeros));
-        const int at = model.first_row(j), m = A[j].cols;
-        R.push_back(root_metric(A[j], std::span(known.sizes).subspan(at, m)));
-        null.set_rows(at, product(R[j], null.middle_rows(at, m)));
-        rho.set_rows(at, product(R[j], rho.middle_rows(at, m)));
-    }
-    null = orthonormal_columns(null);
-    add_scaled(rho.a, -1, product(null, transposed_product(null, rho)).a);
-    for (int j = 0; j < n_joints; ++j) {
-        const int at = model.first_row(j), m = A[j].cols;
-        const DenseMatrix parts = product(A[j], upper_solution(R[j], null.middle_rows(at, m)));
-        const double part = singular_values(parts)[0];
+        const std::vector<double> in_rows = row_norms(Q.middle_rows(6 * j, 6));
+        const double part = norm(in_rows);
         result.largest_null = std::max(result.largest_null, part);
         if (part <= least_part) continue;
         result.joint_is_unique[j] = false;
-        const std::vector<double> in_rows = row_norms(parts);
         for (int i = 0; i < 6; ++i) result.shared[j][i] = in_rows[i] > least_part / 3;   // one is
-        for (int set = 0; set < rho.cols; ++set) {
-            const std::vector<double> lambda = upper_solution(R[j], rho.column(set).subspan(at, m));
-            std::ranges::copy(lambda, result.multipliers.begin() + set * n + at);
-        }
+        for (int set = 0; set < n_sets; ++set)
+            for (int r = model.first_row(j); r < n && model.row_joint(r) == j; ++r)
+                result.multipliers[set * n + r] -= along(r, set);
     }
     return result;
 }

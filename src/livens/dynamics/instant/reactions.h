@@ -20,7 +20,7 @@ std::string in_words(const SharedComponents& shared);
 
 struct UniqueReactions {
     std::vector<double> multipliers;        ///< of all rows of the model, as many sets as were given
-    std::vector<bool> joint_is_unique;      ///< no null vector has a part above 1e-9 in it
+    std::vector<bool> joint_is_unique;      ///< the part of null vectors in it is at most 1e-9
     std::vector<SharedComponents> shared;   ///< of each joint: in which of them null vectors have such a part
     double largest_null = 0;                ///< largest of these parts in any joint; 0 if no row is redundant
 };
@@ -31,9 +31,10 @@ struct UniqueReactions {
 /// `multipliers`: one set or several, one after the other. A model with drives wants to be frozen() first.
 /// Which rows were chosen as `independent` does not matter, only how many they are. Turning the model in
 /// space turns the reactions and does nothing else; masses do not enter. Null vectors of G^T and their parts
-/// are measured by the root of the same sum, which is one for all joints together. Multipliers of unique
+/// are measured by the root of the same sum, which is one for all joints together; of several, orthonormal in
+/// it, the squares are added. Multipliers of unique
 /// joints, and all if no row is redundant, are returned to the bit.
 UniqueReactions least_reactions(const Model& model, std::span<const Matrix34> X,
                                 std::span<const double> multipliers, std::span<const int> independent);
 
-}   // namespace livens
+}   // namespace gnu::visibility("default")]]livens

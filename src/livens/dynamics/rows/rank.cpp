@@ -288,10 +288,11 @@ void choose_again(const TwistRows& twists, int n_bodies, Dependencies& result)
 
 }   // namespace
 
-Dependencies dependencies(const Model& model, std::span<const Matrix34> X, std::span<const int> independent)
+Dependencies dependencies(const Model& model, std::span<const Matrix34> X, std::span<const int> independent,
+                          const RowWrenches& wrenches)
 {
     const int n_columns = 6 * model.n_bodies(), n_independent = static_cast<int>(independent.size());
-    const TwistRows twists = twist_rows(model, X, all_rows(model));
+    const TwistRows twists = twist_rows(model, X, all_rows(model), wrenches);
     Dependencies result{{independent.begin(), independent.end()}, {}, {}, {}};
     for (const BodyRow& row : twists.rows) result.sizes.push_back(row.size);
     std::ranges::sort(result.independent);

@@ -52,7 +52,8 @@ struct Dependencies {
 };
 /// `independent`: as many as there are, and these where elimination holds them well (pivots above 1e-3); else
 /// others are chosen.
-Dependencies dependencies(const Model& model, std::span<const Matrix34> X, std::span<const int> independent);
+Dependencies dependencies(const Model& model, std::span<const Matrix34> X, std::span<const int> independent,
+                          const RowWrenches& wrenches);
 
 /// A spin about an axis through the centre of mass, alone or together with such spins of other bodies, that
 /// no row holds and that carries no inertia.

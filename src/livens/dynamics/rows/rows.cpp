@@ -39,6 +39,26 @@ void for_each_positive_form(const ConstraintRow& row, std::span<const Matrix34> 
     });
 }
 
+/// The gradients of the forms of a row with absolute terms, at absolute X.
+RowGradient gradient_terms(const ConstraintRow& row, const RowBodies& bodies, std::span<const Matrix34> X,
+                           const std::vector<Matrix34>& positive)
+{
+    RowGradient terms{bodies};
+    for_each_form(row, {}, X, [&](const QuadraticForm& form, int i, int j, double weight) {
+        const auto of = [&](int body) {
+            return body == world ? absolute(world_configuration) : positive[body];
+        };
+        const auto add = [&](int body, const Matrix34& g) {
+            terms.by[bodies.find(body)] += std::abs(weight) * g;
+        };
+        add(j, of(j) * absolute(form.c_jj) + absolute(form.b_j));
+        if (i == world) return;
+        add(j, of(i) * absolute(form.c_ij));
+        add(i, of(i) * absolute(form.c_ii) + of(j) * absolute(transpose(form.c_ij)) + absolute(form.b_i));
+    });
+    return terms;
+}
+
 std::vector<Matrix34> absolute(std::span<const Matrix34> X)
 {
     std::vector<Matrix34> positive;
@@ -125,11 +145,7 @@ RowWrenches row_wrenches(const Model& model, std::span<const Matrix34> X)
     for (int r = 0; r < model.n_rows(); ++r) {
         const Joint& joint = model.joints()[model.row_joint(r)];
         const RowGradient g = constraint_gradient(model.row(r), X);
-        RowGradient terms{g.bodies};
-        for_each_positive_form(model.row(r), X, [&](const ConstraintRow& form) {
-            const RowGradient of_form = constraint_gradient(form, positive);
-            for (const int body : of_form.bodies) terms.by[g.bodies.find(body)] += of_form.of(body);
-        });
+        const RowGradient terms = gradient_terms(model.row(r), g.bodies, X, positive);
         for (const int body : g.bodies) {
             const Vector3 at = body == joint.second  ? joint.point_second
                                : body == joint.first ? joint.point_first

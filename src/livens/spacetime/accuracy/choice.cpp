@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The family that suits a mechanism: lobatto, or radau where it is stiff.  (docs/theory.md, "Stiffness")
 #include <algorithm>
+#include <cmath>
+#include <optional>
 #include <utility>
 
 #include "livens/base/text.h"
@@ -8,6 +10,7 @@
 #include "livens/spacetime/accuracy/accuracy.h"
 #include "livens/spacetime/march/ends.h"
 #include "livens/statics/frequencies.h"
+#include "livens/statics/rate_bounds.h"
 
 namespace livens::inline spacetime_internal {
 
@@ -16,6 +19,9 @@ namespace {
 /// Times the time of the motion, or the length of an element: a decay so fast is over before anything moves,
 /// while lobatto rings.
 constexpr double fast_decay = 20;
+/// Elements between two looks, as a share of those before; and how much larger than at the last one a decay
+/// may be by its bound.
+constexpr double between_looks = 0.25, unlike = 2;
 constexpr int tried_after = 32;   // elements of lobatto
 constexpr double gain = 0.5;      // of lobatto's work, to be worth the change
 constexpr int highest_radau = 8;
@@ -55,7 +61,7 @@ private:
     {
         const int n = look.motion.n_elements();
         const double length = std::min(look.mean_length, span_.end - span_.start);
-        if (has_dampers() && decays(highest_frequencies(model_, look.motion.at_end(n)), length)) return true;
+        if (n >= looks_.next && decays_at(look.motion.at_end(n), length)) return true;
         const Frequency& vibration = at_start_.fastest_vibration();
         if (is_tried_ || n < tried_after || vibration.rate * length_ < fast_vibration) return false;
         is_tried_ = true;
@@ -73,9 +79,22 @@ private:
         return true;
     }
 
-    bool has_dampers() const
+    /// A bound, which costs far less, tells how much faster than at the last look it may be.
+    bool decays_at(const State& state, double length)
     {
-        return std::ranges::any_of(model_.loads(), [](const Load& load) { return load.depends_on_V; });
+        const auto is_damper = [](const Load& load) { return load.depends_on_V; };
+        looks_.next += static_cast<int>(std::ceil(between_looks * looks_.next));
+        if (!std::ranges::any_of(model_.loads(), is_damper)) return false;
+        if (!looks_.bounds) {
+            looks_.bounds.emplace(model_);
+            looks_.share_of_bound = at_start_.dampers.rate / looks_.bounds->dampers(start_);
+        }
+        const double bound = looks_.bounds->dampers(state),
+                     share = std::min(unlike * looks_.share_of_bound, 1.0);
+        if (!(share * bound * length > fast_decay)) return false;
+        const HighestFrequencies found = highest_frequencies(model_, state);
+        looks_.share_of_bound = found.dampers.rate / bound;
+        return decays(found, length);
     }
 
     bool decays(const HighestFrequencies& at, double length)
@@ -120,6 +139,11 @@ private:
     const State& start_;
     double freedoms_;
     HighestFrequencies at_start_;
+    struct Looks {
+        std::optional<RateBounds> bounds{};
+        double share_of_bound = 1;   // that the fastest decay had at the last one
+        int next = 1;                // element end
+    } looks_;
     double length_;   // of time in which the motion goes half a length
     std::string why_;
     bool is_tried_ = false;

@@ -42,11 +42,15 @@ struct GrowingTurn {
     double longest = std::numeric_limits<double>::infinity();   // element without growth, of all vibrations
 };
 
+/// The rate (rad/s) of a vibration that might grow in elements of this length.
+double slowest_that_grows(double h, int degree) { return bound_of_product(degree) / (largest_turn * h); }
+
 GrowingTurn fastest_growing(const Model& model, const Motion& motion, int end, double h, int degree)
 {
     GrowingTurn found;
-    const double slowest = bound_of_product(degree) / (largest_turn * h);
-    for (const TurningVibration& one : turning_vibrations(model, motion.at_end(end), slowest)) {
+    const std::vector<TurningVibration> vibrations =
+        turning_vibrations(model, motion.at_end(end), slowest_that_grows(h, degree));
+    for (const TurningVibration& one : vibrations) {
         const double growth = growth_of_turning(degree, h * one.spring.rate, h * one.turn);
         if (!(growth > 0)) continue;
         found.longest = std::min(found.longest, longest_element(degree, one.spring.rate, one.turn));
@@ -176,8 +180,10 @@ std::string EnergyWatch::look(const Motion& so_far, double until)
     if (n < next_ || !(std::abs(energy - last_) > noticeable * moving_)) return "";
     last_ = energy;
     next_ = n + static_cast<int>(std::ceil(patience * n));
-    // what could grow costs less than the balance of all elements so far
+    // what could grow costs less than the balance of all elements so far, and the bound less than that
     const double h = length_before(so_far.mesh, n);
+    if (!bounds_) bounds_ = std::make_shared<RateBounds>(model_);
+    if (bounds_->springs(so_far.at_end(n)) < slowest_that_grows(h, degree_)) return "";
     if (!(fastest_growing(model_, so_far, n, h, degree_).growth > slowest_growth)) return "";
     return of_turning_springs(model_, so_far, degree_, n, until);
 }

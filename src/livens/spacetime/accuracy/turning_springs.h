@@ -4,10 +4,12 @@
 #pragma once
 
 #include <limits>
+#include <memory>
 #include <string>
 
 #include "livens/multibody/model.h"
 #include "livens/multibody/motion.h"
+#include "livens/statics/rate_bounds.h"
 
 namespace livens::inline spacetime_internal {
 
@@ -48,6 +50,7 @@ private:
     double moving_ = 0;      // the largest kinetic energy or change of the potential one
     int next_ = 1;           // element end at which it may be asked
     bool is_started_ = false;
+    std::shared_ptr<RateBounds> bounds_;   // made where energy asks first
 };
 
 }   // namespace livens::inline spacetime_internal

@@ -6,6 +6,7 @@ namespace livens {
 namespace {
 
 constexpr int most_reduced = 48;   // freedoms of all nodes: beyond, a tree costs less
+constexpr double least_factor = 10, factor_of_freedom = 0.65, step_of_freedom = 0.02;   // of all nodes
 
 }   // namespace
 
@@ -19,10 +20,17 @@ KernelTangent::KernelTangent(const ModelTables& tables, const ElementRule& rule,
 
 void KernelTangent::use(const std::shared_ptr<const RowPattern>& pattern)
 {
-    is_reduced_ = degree_ * (n_twists_ - pattern->view().n_rows) <= most_reduced;
+    n_reduced_ = degree_ * (n_twists_ - pattern->view().n_rows);
+    is_reduced_ = n_reduced_ <= most_reduced;
     if (!is_reduced_) return tree_.use(pattern);
     reduced_.use(pattern);
     ask_joints();   // of few bodies they cost little
+}
+
+KernelTangent::Cost KernelTangent::cost() const
+{
+    if (!is_reduced_) return {50, 2.7};
+    return {least_factor + factor_of_freedom * n_reduced_, 1 + step_of_freedom * n_reduced_};
 }
 
 bool KernelTangent::factorise(const WindowLayout& layout, const JointFactor& start,

@@ -22,11 +22,17 @@ public:
     void propose(const lanes::Values& nodes);
     /// Steps by loads alone, which cost less, shrank too little: joints' forces count from now on.
     void ask_joints() { slopes_.has_joints = true; }
+    /// In steps of free bodies of the same element: of a factor, and of a step with it.
+    struct Cost {
+        double factor, step;
+    };
+    /// As measured with AVX2 on chains, figures, arms and wheels of 1 to 30 freedoms.
+    Cost cost() const;
     /// Of the last factor.
     const TangentSlopes& slopes() const { return slopes_; }
 
 private:
-    int degree_, n_twists_;
+    int degree_, n_twists_, n_reduced_ = 0;
     TangentSlopes slopes_;
     ReducedTangent reduced_;
     TreeTangent tree_;

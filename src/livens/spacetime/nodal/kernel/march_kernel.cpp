@@ -14,8 +14,12 @@ namespace livens {
 
 namespace {
 
-constexpr double slow_contraction = 0.3;
-constexpr int most_slow_steps = 2, most_slow_factors = 5, most_kernel_steps = 14;
+constexpr double slow_contraction = 0.3;   // of steps by slopes, and of what is about to meet rounding
+constexpr double worse = 1.3;              // than the step before
+constexpr double free_contraction = 0.6;   // of free bodies, whose steps cost a small part of a factor
+constexpr int most_slow_steps = 2,
+              most_slow_factors = 5,   // each of these steps is followed by a new factor
+    most_kernel_steps = 14;
 constexpr int most_combinations = 150, most_slow_combinations = 20;
 constexpr double hopeless_step = 10;      // lengths or radians
 constexpr double smallest_step = 1e-18;   // likewise: nothing moves
@@ -45,11 +49,10 @@ const lanes::Functions* functions_of(const ModelTables& tables, const ElementRul
 struct Shrinking {
     double tolerance;
     bool has_contracted;   // at first: the guess may be right to rounding
-    int most_slow = most_slow_steps;
     bool has_slopes = false;
     // Known of steps by slopes: of loads, and with joints' forces.
     double rows_rounding = 0, joints_rounding = 0;
-    int n_steps = 0, n_slow = 0;
+    int n_steps = 0, n_slow = 0, n_hopeless = 0;
     double step = 0, contraction = 0;
     bool is_done = false, is_rounded = false;
 
@@ -70,18 +73,23 @@ struct Shrinking {
         is_done = step <= smallest_step;
         if (n_steps == 1 || is_done) return step < hopeless_step;
         const bool is_slow = !(contraction <= slow_contraction);
+        const bool is_hopeless = !(contraction <= (has_slopes ? slow_contraction : free_contraction));
         // what slopes lack is not the same at each step: one that was good by chance foretells nothing
         const double rate =
             has_slopes ? std::max({contraction, contraction_before, least_rate}) : contraction;
         // steps that were seen to shrink, and shrink no more, have met their rounding
         const bool is_noise = step <= std::max(allowed, rounding * motion) || sizes.rows <= rows_rounding ||
                               (step <= rounding_of_places && sizes.rows <= joints_rounding);
-        is_done =
-            is_slow ? has_contracted && is_noise : step * rate <= share_of_tolerance * allowed * (1 - rate);
+        const bool is_met = rate < 1 && step * rate <= share_of_tolerance * allowed * (1 - rate);
+        // what shrinks slowly, but as it did, has not met it yet
+        const bool is_stuck =
+            is_slow && (has_slopes || is_hopeless || contraction > worse * contraction_before);
+        is_done = (is_stuck && has_contracted && is_noise) || (is_met && !(is_slow && has_slopes));
         is_rounded = is_done && is_slow && step > allowed;
         has_contracted = has_contracted || !is_slow;
         n_slow += is_slow ? 1 : 0;
-        return is_done || n_slow < most_slow;
+        n_hopeless += is_hopeless ? 1 : 0;
+        return is_done || n_hopeless < (has_slopes ? most_slow_factors : most_slow_steps);
     }
     /// The same of combined steps, which do not shrink one by one; `left` is what is proposed.
     bool approach(double left, const lanes::Sizes& sizes)
@@ -193,11 +201,10 @@ bool MarchKernel::iterate(const WindowLayout& layout, const InstantState& start,
     const bool follows = guess_.was_followed();
     const lanes::Pattern& pattern = pattern_->view();
     const lanes::Values &nodes = nodes_.values(), &from = start_->values();
-    const int most = is_accelerated ? most_combinations : std::min(most_kernel_steps, options.max_iterations);
+    const int few = kind == Steps::free ? choice_.most_free_steps() : most_kernel_steps;
+    const int most = is_accelerated ? most_combinations : std::min(few, options.max_iterations);
     lanes::Sizes sizes;
     Shrinking progress{std::min(options.tolerance, widest_tolerance), follows};
-    // each is followed by a new factor
-    if (kind == Steps::by_tangent) progress.most_slow = most_slow_factors;
     progress.has_slopes = kind == Steps::by_tangent;
     if (is_accelerated) acceleration_.begin(static_cast<std::size_t>(pattern.n_twists * functions_->width));
     double moved = 0, pivot = 0;   // since the factor was made, lengths and radians; its own, squared

@@ -12,7 +12,9 @@ namespace livens {
 
 namespace {
 
-constexpr int many_steps = 8;                      // of free bodies: a factor costs about as much
+constexpr int always_allowed = 14;                 // of free bodies, which are always allowed
+constexpr double usual_steps = 8;                  // of an element by slopes, before one was seen
+constexpr double usual_share = 0.25;               // of a factor that an element makes, likewise
 constexpr int more_than_fresh = 2;                 // steps with a factor of an element before
 constexpr int first_trial = 8, last_trial = 512;   // elements until steps of free bodies are tried again
 constexpr double same_length = 0.03;   // of the motion of stiff loads a factor then leaves about twice that
@@ -35,7 +37,16 @@ KernelTangent& StepChoice::tangent()
 void StepChoice::begin(const std::shared_ptr<const RowPattern>& pattern, const WindowLayout& layout)
 {
     is_kept_ = is_kept_ && pattern == pattern_ && std::abs(layout.h(0) - h_) <= same_length * std::abs(h_);
+    n_factors_ = 0;
+    if (pattern == pattern_ || !tangent_) return;
     pattern_ = pattern;
+    const KernelTangent::Cost cost = tangent().cost();
+    cost_by_tangent_ = usual_share * cost.factor + usual_steps * cost.step;
+}
+
+int StepChoice::most_free_steps() const
+{
+    return std::max(always_allowed, static_cast<int>(cost_by_tangent_));
 }
 
 void StepChoice::factorised(bool is_good, double h)
@@ -43,6 +54,7 @@ void StepChoice::factorised(bool is_good, double h)
     is_kept_ = is_good;
     h_ = h;
     fresh_steps_ = 0;
+    ++n_factors_;
 }
 
 void StepChoice::forget_factor()
@@ -56,11 +68,14 @@ void StepChoice::took(int steps, bool is_solved, bool was_by_tangent)
     last_steps_ = steps;
     if (!was_by_tangent) {
         const bool was_stiff = is_stiff_;
-        is_stiff_ = !is_solved || steps > many_steps;
+        is_stiff_ = !is_solved || steps > cost_by_tangent_;
         if (is_stiff_) trial_after_ = was_stiff ? std::min(2 * trial_after_, last_trial) : first_trial;
         n_until_trial_ = trial_after_;
         return;
     }
+    const KernelTangent::Cost cost = tangent_->cost();
+    cost_by_tangent_ += 0.5 * (n_factors_ * cost.factor + steps * cost.step - cost_by_tangent_);
+    n_factors_ = 0;
     --n_until_trial_;
     if (fresh_steps_ == 0) fresh_steps_ = steps;
     if (!is_solved || steps > fresh_steps_ + more_than_fresh) is_kept_ = false;

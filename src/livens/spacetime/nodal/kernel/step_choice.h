@@ -22,6 +22,8 @@ public:
     void begin(const std::shared_ptr<const RowPattern>& pattern, const WindowLayout& layout);
     /// Such steps first: those of free bodies were many, or did not shrink.
     bool by_tangent() const { return is_stiff_ && n_until_trial_ > 0; }
+    /// Beyond, an element costs less by slopes.
+    int most_free_steps() const;
     /// The factor at hand fits the element, as far as is known.
     bool is_kept() const { return is_kept_; }
     /// Of the rows at hand.
@@ -38,7 +40,8 @@ private:
     std::shared_ptr<const RowPattern> pattern_;
     bool is_stiff_ = false, is_kept_ = false;
     double h_ = 0;
-    int last_steps_ = 0, n_until_trial_ = 0, trial_after_ = 0, fresh_steps_ = 0;
+    double cost_by_tangent_ = 0;   // of an element, in steps of free bodies, as the last ones had it
+    int last_steps_ = 0, n_until_trial_ = 0, trial_after_ = 0, fresh_steps_ = 0, n_factors_ = 0;
 };
 
 }   // namespace livens::inline spacetime_internal
