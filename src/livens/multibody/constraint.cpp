@@ -11,14 +11,6 @@
 
 namespace livens {
 
-namespace {
-
-// Forms of the bodies i and j. Without body i, which is the world then, there are no terms in it.
-
-struct FormGradient {
-    Matrix34 i{}, j{};
-};
-
 FormGradient form_gradient(const QuadraticForm& f, int i, int j, const Configurations& X)
 {
     const Matrix34 X_j = X[j];
@@ -30,6 +22,10 @@ FormGradient form_gradient(const QuadraticForm& f, int i, int j, const Configura
     g.i = X_i * f.c_ii + X_j * transpose(f.c_ij) + f.b_i;
     return g;
 }
+
+namespace {
+
+// Forms of the bodies i and j. Without body i, which is the world then, there are no terms in it.
 
 /// <gradient, V>.
 double form_rate(const QuadraticForm& f, int i, int j, const Configurations& X, const Configurations& V)

@@ -164,6 +164,11 @@ RowGradient constraint_gradient(const ConstraintRow& row, const Configurations& 
 
 /// The numbers q_k of a row's function.
 SmoothFunction::Point function_point(const ConstraintRow& row, const Configurations& X);
+/// The gradient of a form by X of its bodies, zero by that of the world.
+struct FormGradient {
+    Matrix34 i{}, j{};
+};
+FormGradient form_gradient(const QuadraticForm& form, int body_i, int body_j, const Configurations& X);
 /// The value of a form.
 double form_value(const QuadraticForm& form, int body_i, int body_j, const Configurations& X);
 

@@ -146,10 +146,13 @@ struct LoadFunction {
     std::function<void(LoadTape&, const TapeNumber& factor)> record = nullptr;
 };
 
-/// Of a force along one coordinate, F_b = Q(q, q') dq/dX_b, at an instant.
-struct CoordinateSlopes {
-    PerBody<Matrix34> direction;   ///< dq/dX of all bodies of the load
-    double by_value = 0, by_rate = 0;
+/// Of a force F_b = f u_b, at an instant: u of the bodies that it acts on, and the slopes of f by X and X' of
+/// all bodies of the load.
+struct ProductSlopes {
+    explicit ProductSlopes(std::size_t n_bodies) : by_X(n_bodies), by_V(n_bodies) {}
+
+    LoadForces direction{};
+    PerBody<Matrix34> by_X, by_V;
 };
 
 /// A load is data and functions; a new one is a new maker.
@@ -171,8 +174,9 @@ struct Load : LoadSmoothness, LoadEnergy {
     LoadFunction forces;   ///< F; required
     /// dF/dX and dF/dV; required if one of the flags is set. The tangent arrives as zero.
     std::function<void(const LoadArguments&, LoadTangent&)> tangent;
-    /// The same of a force along one coordinate, but for what turning of dq/dX adds; empty: it is none.
-    std::function<CoordinateSlopes(const LoadArguments&)> along = nullptr;
+    /// The same of a force along coordinates, F = sum f_k u_k, but for what turning of u_k adds; empty: it is
+    /// none.
+    std::function<std::vector<ProductSlopes>(const LoadArguments&)> products = nullptr;
     /// For sensors and people.
     std::vector<LoadReading> readings;
     /// For people: where it acts on its two bodies, in their coordinates; empty: not along a line.

@@ -133,8 +133,20 @@ Eigen::Map<Eigen::Matrix<double, 6, 6>> seen(Matrix<6, 6>& A)
 Matrix<6, 6> congruence(double factor, const Matrix<12, 6>& A, const Matrix<12, 12>& K,
                         const Matrix<12, 6>& B)
 {
-    Matrix<6, 6> C;
-    seen(C) = factor * seen(A).transpose() * seen(K) * seen(B);
+    double KB[12][6] = {};   // of forms of joints nine tenths of K are zero
+    for (int c = 0; c < 12; ++c)
+        for (int r = 0; r < 12; ++r) {
+            const double k = factor * K(r, c);
+            if (k == 0) continue;
+            for (int j = 0; j < 6; ++j) KB[r][j] += k * B(c, j);
+        }
+    Matrix<6, 6> C{};
+    for (int i = 0; i < 6; ++i)
+        for (int r = 0; r < 12; ++r) {
+            const double a = A(r, i);
+            if (a == 0) continue;
+            for (int j = 0; j < 6; ++j) C(i, j) += a * KB[r][j];
+        }
     return C;
 }
 

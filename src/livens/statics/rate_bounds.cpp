@@ -37,8 +37,13 @@ void RateBounds::add(int l, const State& state, Slopes slopes)
 {
     const Load& load = tables_.model->loads()[l];
     const double *X = state.X.data()->a, *V = state.V.data()->a;
+    const LoadArguments arguments = tables_.loads.arguments(l, {state.t, Side::right}, X, V, angles_);
+    if (slopes == Slopes::by_V && load.products) {   // which have all of it, for a tenth
+        for (const ProductSlopes& one : load.products(arguments)) add_damper(load, one, X);
+        return;
+    }
     LoadTangent tangent(load.bodies.size());
-    load.tangent(tables_.loads.arguments(l, {state.t, Side::right}, X, V, angles_), tangent);
+    load.tangent(arguments, tangent);
     for (std::size_t r = 0; r < 2; ++r)
         for (std::size_t s = 0; s < load.bodies.size(); ++s) {
             const int i = load.bodies[r], j = load.bodies[s];
@@ -48,9 +53,29 @@ void RateBounds::add(int l, const State& state, Slopes slopes)
             add_reduced(K, X + 12 * i, X + 12 * j, tables_.bodies[j].dofs, raw);
             scale_block(tables_, maps_.data(), i, maps_.data(), j, raw, scaled);
             const double size = std::sqrt(squared_norm(std::span(scaled)));
-            sums_[i] += 0.5 * size;
-            sums_[j] += 0.5 * size;
+            add_size(i, j, size);
         }
+}
+
+void RateBounds::add_damper(const Load& load, const ProductSlopes& slopes, const double* X)
+{
+    const auto size = [&](int b, const Matrix34& g) {
+        double y[6] = {};
+        tables_.bodies.scaled_row(b, X + 12 * b, maps_.data() + 12 * b, g.a, y);
+        return std::sqrt(squared_norm(std::span(y)));
+    };
+    for (std::size_t r = 0; r < 2; ++r)
+        for (std::size_t s = 0; s < load.bodies.size(); ++s) {
+            const int i = load.bodies[r], j = load.bodies[s];
+            if (i != world && j != world)
+                add_size(i, j, size(i, slopes.direction[r]) * size(j, slopes.by_V[s]));
+        }
+}
+
+void RateBounds::add_size(int i, int j, double size)
+{
+    sums_[i] += 0.5 * size;
+    sums_[j] += 0.5 * size;
 }
 
 }   // namespace livens::inline statics_internal

@@ -24,6 +24,8 @@ private:
     enum class Slopes { by_X, by_V };
     double largest(const State& state, Slopes slopes);
     void add(int load, const State& state, Slopes slopes);
+    void add_damper(const Load& load, const ProductSlopes& slopes, const double* X);
+    void add_size(int i, int j, double size);
 
     ModelTables tables_;
     std::vector<double> maps_, angles_;

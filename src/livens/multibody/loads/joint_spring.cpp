@@ -77,8 +77,12 @@ Load joint_spring(const std::string& name, const NamedCoordinate& coordinate, co
     load.tangent = [of](const LoadArguments& arguments, LoadTangent& tangent) {
         of.along.add_tangent(arguments, of.force(of.along.look(arguments)), tangent);
     };
-    load.along = [of](const LoadArguments& arguments) {
-        return of.along.slopes(arguments, of.force(of.along.look(arguments)));
+    load.products = [of](const LoadArguments& arguments) {
+        const LawValue Q = of.force(of.along.look(arguments));
+        ProductSlopes found(arguments.X.size());
+        of.along.add_forces(arguments, 1, found.direction);
+        of.along.add_products(arguments, Q.by_value, Q.by_rate, found);
+        return std::vector{std::move(found)};
     };
     if (!spring.law.bends.empty()) {
         load.guards = {{spring.law.bends}};

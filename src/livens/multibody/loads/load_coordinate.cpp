@@ -110,13 +110,16 @@ CoordinateState LoadCoordinate::look(const LoadArguments& arguments) const
     return seen;
 }
 
-CoordinateSlopes LoadCoordinate::slopes(const LoadArguments& arguments, const LawValue& Q) const
+void LoadCoordinate::add_products(const LoadArguments& arguments, double by_value, double by_rate,
+                                  ProductSlopes& slopes) const
 {
+    if (by_value == 0 && by_rate == 0) return;
     const RowGradient gradient = constraint_gradient(row_, Configurations(arguments.X.data()->data()));
-    CoordinateSlopes found{PerBody<Matrix34>(arguments.X.size()), Q.by_value, Q.by_rate};
-    for (std::size_t b = 0; b < n_; ++b)
-        found.direction[static_cast<std::size_t>(places_[b])] = gradient.of(places_[b]);
-    return found;
+    for (std::size_t b = 0; b < n_; ++b) {
+        const Matrix34 g = gradient.of(places_[b]);
+        slopes.by_X[static_cast<std::size_t>(places_[b])] += by_value * g;
+        slopes.by_V[static_cast<std::size_t>(places_[b])] += by_rate * g;
+    }
 }
 
 void LoadCoordinate::add_forces(const LoadArguments& arguments, double Q, LoadForces& F) const

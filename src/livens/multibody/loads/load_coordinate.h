@@ -44,7 +44,9 @@ public:
     void place(Load& load, bool counts_turns = true);
     CoordinateState look(const LoadArguments& arguments) const;
 
-    CoordinateSlopes slopes(const LoadArguments& arguments, const LawValue& Q) const;
+    /// by_X and by_V of a size += by_value dq/dX and by_rate dq/dX: dq'/dX is left out.
+    void add_products(const LoadArguments& arguments, double by_value, double by_rate,
+                      ProductSlopes& slopes) const;
     void add_forces(const LoadArguments& arguments, double Q, LoadForces& F) const;
     /// Of Q(q, q').
     void add_tangent(const LoadArguments& arguments, const LawValue& Q, LoadTangent& tangent) const;

@@ -15,6 +15,9 @@ namespace livens {
 
 namespace {
 
+/// The type of a unit that is a generalised force.
+constexpr const char* of_coordinate = "unit";
+
 /// What a load is made of, and how it is evaluated.
 struct Modulated {
     LoadParts parts;
@@ -107,6 +110,23 @@ struct Modulated {
         return law;
     }
 
+    /// The slopes of factors alone, and of coordinates as they stand.
+    std::vector<ProductSlopes> products(const LoadArguments& arguments) const
+    {
+        const std::size_t m = coordinates.size();
+        const Seen seen = look(arguments);
+        std::vector<double> factors(parts.units.size()), slopes(factors.size() * 2 * m);
+        parts.law(seen.arguments(arguments.at), factors, slopes);
+        std::vector<ProductSlopes> found(factors.size(), ProductSlopes(arguments.X.size()));
+        for (std::size_t k = 0; k < factors.size(); ++k) {
+            parts.units[k].forces(arguments, found[k].direction);
+            const double* slope = slopes.data() + 2 * m * k;
+            for (std::size_t i = 0; i < m; ++i)
+                coordinates[i].add_products(arguments, slope[i], slope[m + i], found[k]);
+        }
+        return found;
+    }
+
     /// dF_b/dX_c = sum_k f_k dF_bk/dX_c + F_bk df_k/dX_c, and dF_b/dV_c likewise.
     void tangent(const LoadArguments& arguments, LoadTangent& tangent) const
     {
@@ -141,6 +161,25 @@ void collect_bodies(Load& load, const std::vector<LoadCoordinate>& coordinates)
         for (const int body : coordinate.bodies())
             if (body != world && std::ranges::find(load.bodies, body) == load.bodies.end())
                 load.bodies.push_back(body);
+}
+
+/// Where the law bends, and what is to be looked at.
+void add_smoothness(Load& load, const Modulated& all)
+{
+    const LoadParts& parts = all.parts;
+    load.is_smooth = parts.is_smooth;
+    // Smooth laws need no looks between the load points (theory.md, "Looks at laws").
+    if (!load.is_smooth) load.inside = all.inside();
+    load.guards = parts.guards.guards;
+    if (parts.guards.values)
+        load.guarded = [all](const LoadArguments& arguments, std::span<double> numbers) {
+            all.parts.guards.values(all.look(arguments).arguments(arguments.at), numbers);
+        };
+    load.bends_at_centre = static_cast<bool>(parts.guards.centre);
+    if (parts.guards.centre)
+        load.centre = [all](const LoadArguments& arguments) {
+            return all.parts.guards.centre(all.look(arguments).arguments(arguments.at));
+        };
 }
 
 }   // namespace
@@ -178,6 +217,8 @@ Load modulated(const std::string& name, const std::string& type, const LoadParts
     load.tangent = [all](const LoadArguments& arguments, LoadTangent& tangent) {
         all.tangent(arguments, tangent);
     };
+    if (std::ranges::all_of(parts.units, [](const Load& unit) { return unit.type == of_coordinate; }))
+        load.products = [all](const LoadArguments& arguments) { return all.products(arguments); };
     if (std::ranges::all_of(parts.units, [](const Load& unit) { return unit.forces.record != nullptr; }))
         load.forces.record = [all](LoadTape& tape, const TapeNumber& factor) { all.record(tape, factor); };
     const auto energy = [&](const LawEnergy& of) -> std::function<double(const LoadArguments&)> {
@@ -188,19 +229,7 @@ Load modulated(const std::string& name, const std::string& type, const LoadParts
     };
     for (const LawReading& reading : parts.readings)
         load.readings.push_back({reading.name, reading.unit, energy(reading.value)});
-    load.is_smooth = parts.is_smooth;
-    // Smooth laws need no looks between the load points (theory.md, "Looks at laws").
-    if (!load.is_smooth) load.inside = all.inside();
-    load.guards = parts.guards.guards;
-    if (parts.guards.values)
-        load.guarded = [all](const LoadArguments& arguments, std::span<double> numbers) {
-            all.parts.guards.values(all.look(arguments).arguments(arguments.at), numbers);
-        };
-    load.bends_at_centre = static_cast<bool>(parts.guards.centre);
-    if (parts.guards.centre)
-        load.centre = [all](const LoadArguments& arguments) {
-            return all.parts.guards.centre(all.look(arguments).arguments(arguments.at));
-        };
+    add_smoothness(load, all);
     load.potential = energy(parts.potential);
     load.power = energy(parts.power);
     return load;
@@ -219,7 +248,7 @@ LawReading factor_reading(const std::string& name, const std::string& unit, cons
 Load unit_along(const std::string& name, const JointCoordinate& coordinate, const Configurations& X)
 {
     LoadCoordinate along(coordinate, 0, X);
-    Load load = start_load(name, "unit", along.bodies());
+    Load load = start_load(name, of_coordinate, along.bodies());
     along.place(load, false);   // its direction is the same in every turn
     load.depends_on_X = true;
     load.needs_directors = along.needs_directors();

@@ -5,6 +5,7 @@
 #include "livens/spacetime/nodal/kernel/joint_slopes.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "livens/dynamics/rows/twist_blocks.h"
@@ -64,14 +65,57 @@ void JointSlopes::add_row(int r, double mu, Instant at)
     }
 }
 
+/// Of a form d2/dX dX, by rows and columns of its bodies: gradients are X K, so that C_ij^T stands where X_j
+/// makes the gradient by X_i.
+void JointSlopes::add_form(const QuadraticForm& form, int i, int j, double factor)
+{
+    const auto add = [&](int body, int other, const Matrix4& C, bool is_transposed) {
+        Matrix<12, 12>& K = of(body, other);
+        for (int to = 0; to < 4; ++to)
+            for (int from = 0; from < 4; ++from) {
+                const double k = factor * (is_transposed ? C(to, from) : C(from, to));
+                for (int d = 0; k != 0 && d < 3; ++d) K(3 * to + d, 3 * from + d) += k;
+            }
+    };
+    add(j, j, form.c_jj, false);
+    if (i == world) return;
+    add(i, i, form.c_ii, false);
+    add(i, j, form.c_ij, true);
+    add(j, i, form.c_ij, false);
+}
+
+/// Its forms by their weights, and of its function sum_kl F_kl dq_k/dX (dq_l/dX)^T, at once by scaled twists.
 void JointSlopes::add_hessian(int r, double mu, Instant at)
 {
     const RowTable& table = tables_.rows[r];
+    const ConstraintRow& row = *table.row;
+    const Configurations X(X_.data());
+    for_each_form(row, at, X, [&](const QuadraticForm& form, int i, int j, double weight) {
+        add_form(form, i, j, -mu * weight);
+    });
+    if (!row.function) return;
+    const SmoothFunction::Value F = row.function->at(function_point(row, X));
+    const std::size_t n = row.coordinates.size();
+    std::array<std::array<std::array<double, 6>, RowBodies::most>, SmoothFunction::most> y{};   // of q_k
+    for (std::size_t k = 0; k < n; ++k) {
+        const PairForm& q = row.coordinates[k];
+        const FormGradient g = form_gradient(q, q.body_i, q.body_j, X);
+        for (int side = 0; side < table.n_sides; ++side) {
+            const int b = table.bodies[side];
+            if (b != q.body_j && b != q.body_i) continue;
+            tables_.bodies.scaled_row(b, X_.data() + 12 * b, maps_.data() + 12 * b,
+                                      b == q.body_j ? g.j.a : g.i.a, y[k][side].data());
+        }
+    }
     for (int i = 0; i < table.n_sides; ++i)
-        for (int j = 0; j < table.n_sides; ++j)
-            of(table.bodies[i], table.bodies[j]) +=
-                -mu * constraint_hessian(*table.row, at, Configurations(X_.data()), table.bodies[i],
-                                         table.bodies[j]);
+        for (int j = 0; j < table.n_sides; ++j) {
+            SlopesOfPair& slopes =
+                slopes_.emplace_back(SlopesOfPair{table.bodies[i], table.bodies[j], {}, {}});
+            for (std::size_t k = 0; k < n; ++k)
+                for (std::size_t l = 0; l < n; ++l)
+                    for (std::size_t a = 0; F.hessian[k][l] != 0 && a < 36; ++a)
+                        slopes.by_X[a] -= mu * F.hessian[k][l] * y[k][i][a / 6] * y[l][j][a % 6];
+        }
 }
 
 void JointSlopes::add_turning(int b)

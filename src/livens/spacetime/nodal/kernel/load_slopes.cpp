@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "livens/dynamics/rows/twist_blocks.h"
 #include "livens/multibody/model.h"
@@ -52,7 +53,10 @@ void LoadSlopes::add(int l, const WindowLayout& layout)
     const Load& load = tables_.model->loads()[l];
     const Instant at = layout.load_point(rule_, 0, middle_);
     const LoadArguments arguments = tables_.loads.arguments(l, at, X_.data(), V_.data(), angles_);
-    if (load.along) return add_coordinate(load, load.along(arguments), layout.h(0));
+    if (load.products) {
+        for (const ProductSlopes& one : load.products(arguments)) add_product(load, one, layout.h(0));
+        return;
+    }
     LoadTangent slopes(load.bodies.size());
     load.tangent(arguments, slopes);
     terms_ = std::max(terms_, std::abs(layout.h(0)) * load_terms(tables_, load, arguments, slopes));
@@ -71,30 +75,38 @@ void LoadSlopes::add(int l, const WindowLayout& layout)
         }
 }
 
-void LoadSlopes::add_coordinate(const Load& load, const CoordinateSlopes& slopes, double h)
+void LoadSlopes::add_product(const Load& load, const ProductSlopes& slopes, double h)
 {
-    SlopesOfCoordinate found{{load.bodies[0], load.bodies[1]}, {}, slopes.by_value, slopes.by_rate};
-    double of_value = 0, of_rate = 0, largest = 0;   // what q and q' are sums of
+    SlopesOfProduct found{{load.bodies[0], load.bodies[1]}};
+    const auto scaled = [&](int b, const Matrix34& g) {
+        SlopesOfProduct::Twist y{};
+        tables_.bodies.scaled_row(b, X_.data() + 12 * b, maps_.data() + 12 * b, g.a, y.data());
+        return y;
+    };
+    double largest = 0, force = 0;   // what the slopes make of the terms of X and X'
     for (std::size_t side = 0; side < 2; ++side) {
-        const int b = load.bodies[side];
-        if (b == world) continue;
-        const double *g = slopes.direction[side].a, *X = X_.data() + 12 * b, *V = V_.data() + 12 * b;
-        tables_.bodies.scaled_row(b, X, maps_.data() + 12 * b, g, found.direction[side]);
-        for (int i = 0; i < 12; ++i) {
-            of_value += std::abs(g[i] * X[i]);
-            of_rate += std::abs(g[i] * V[i]);
-        }
+        if (found.to[side] == world) continue;
+        found.direction[side] = scaled(found.to[side], slopes.direction[side]);
         for (const double share : found.direction[side]) largest = std::max(largest, std::abs(share));
     }
-    const double force = std::abs(found.by_value) * of_value + std::abs(found.by_rate) * of_rate;
+    for (std::size_t k = 0; k < load.bodies.size(); ++k) {
+        const int b = load.bodies[k];
+        if (b == world) continue;
+        found.from.push_back(b);
+        found.by_X.push_back(scaled(b, slopes.by_X[k]));
+        found.by_V.push_back(scaled(b, slopes.by_V[k]));
+        for (int i = 0; i < 12; ++i)
+            force += std::abs(slopes.by_X[k].a[i] * X_[12 * b + i]) +
+                     std::abs(slopes.by_V[k].a[i] * V_[12 * b + i]);
+    }
     terms_ = std::max(terms_, std::abs(h) * largest * force);
-    coordinates_.push_back(found);
+    products_.push_back(std::move(found));
 }
 
 void LoadSlopes::find(const WindowLayout& layout, const lanes::Values& nodes)
 {
     pairs_.clear();
-    coordinates_.clear();
+    products_.clear();
     terms_ = 0;
     place(nodes);
     angles_ = layout.angles;

@@ -17,19 +17,22 @@ struct SlopesOfPair {
     double by_X[36], by_V[36];
 };
 
-/// Q by q and q' and dq/dX by scaled twists of two bodies, of a force Q dq/dX.
-struct SlopesOfCoordinate {
-    std::array<int, 2> bodies;   ///< the second may be the world
-    double direction[2][6] = {};
-    double by_value = 0, by_rate = 0;
+/// Of a force f u: u by scaled twists of the bodies that it acts on, the second may be the world, and slopes
+/// of f by those of all that it looks at.
+struct SlopesOfProduct {
+    using Twist = std::array<double, 6>;
+
+    std::array<int, 2> to;
+    std::array<Twist, 2> direction{};
+    std::vector<int> from{};   ///< not the world
+    std::vector<Twist> by_X{}, by_V{};
 
     SlopesOfPair of(std::size_t r, std::size_t s) const
     {
-        SlopesOfPair pair{bodies[r], bodies[s], {}, {}};
-        for (int a = 0; a < 36; ++a) {
-            const double product = direction[r][a / 6] * direction[s][a % 6];
-            pair.by_X[a] = by_value * product;
-            pair.by_V[a] = by_rate * product;
+        SlopesOfPair pair{to[r], from[s], {}, {}};
+        for (std::size_t a = 0; a < 36; ++a) {
+            pair.by_X[a] = direction[r][a / 6] * by_X[s][a % 6];
+            pair.by_V[a] = direction[r][a / 6] * by_V[s][a % 6];
         }
         return pair;
     }
@@ -41,11 +44,11 @@ class LoadSlopes {
 public:
     LoadSlopes(const ModelTables& tables, const ElementRule& rule, int width);
 
-    /// Where the kernel has its load points; then they stand in pairs() and coordinates().
+    /// Where the kernel has its load points; then they stand in pairs() and products().
     void find(const WindowLayout& layout, const lanes::Values& nodes);
     const std::vector<SlopesOfPair>& pairs() const { return pairs_; }
-    /// Of forces along one coordinate, but for what turning of their directions adds.
-    const std::vector<SlopesOfCoordinate>& coordinates() const { return coordinates_; }
+    /// Of forces along coordinates, but for what turning of their directions adds.
+    const std::vector<SlopesOfProduct>& products() const { return products_; }
     /// Row A by column l, p square; column 0 is the last node. To be multiplied by h: of X.
     const std::vector<double>& in_time_by_X() const { return S_; }
     const std::vector<double>& in_time_by_V() const { return C_; }
@@ -55,7 +58,7 @@ public:
 private:
     void place(const lanes::Values& nodes);
     void add(int load, const WindowLayout& layout);
-    void add_coordinate(const Load& load, const CoordinateSlopes& slopes, double h);
+    void add_product(const Load& load, const ProductSlopes& slopes, double h);
 
     const ModelTables& tables_;
     const ElementRule& rule_;
@@ -63,7 +66,7 @@ private:
     std::vector<double> S_, C_;
     std::vector<double> X_, V_, maps_, angles_;   // at the middle load point
     std::vector<SlopesOfPair> pairs_;
-    std::vector<SlopesOfCoordinate> coordinates_;
+    std::vector<SlopesOfProduct> products_;
     double terms_ = 0;
 };
 

@@ -130,27 +130,36 @@ void ReducedTangent::add_load(const SlopesOfPair& pair, const double* slopes, co
         }
 }
 
-void ReducedTangent::add_coordinate(const SlopesOfCoordinate& along, const LoadSlopes& slopes, double h)
+void ReducedTangent::add_product(const SlopesOfProduct& of, const LoadSlopes& slopes, double h)
 {
     const int p = rule_.degree;
+    const auto along = [&](int node, int k, int body, const SlopesOfProduct::Twist& y) {
+        const BodyTable& table = tables_.bodies[body];
+        return product(y.data(), z(node, k) + table.first, table.dofs);
+    };
+    const auto size = static_cast<std::size_t>((p + 1) * f_);
+    directions_.assign(size, 0.0);
+    by_X_.assign(size, 0.0);
+    by_V_.assign(size, 0.0);
     for (int node = 0; node <= p; ++node)
         for (int k = 0; k < f_; ++k) {
-            double& rate = theta_[static_cast<std::size_t>(node * f_ + k)] = 0;   // of q
-            for (std::size_t side = 0; side < 2; ++side) {
-                if (along.bodies[side] == world) continue;
-                const BodyTable& body = tables_.bodies[along.bodies[side]];
-                rate += product(along.direction[side], z(node, k) + body.first, body.dofs);
+            const auto at = static_cast<std::size_t>(node * f_ + k);
+            for (std::size_t r = 0; r < 2; ++r)
+                if (of.to[r] != world) directions_[at] += along(node, k, of.to[r], of.direction[r]);
+            for (std::size_t s = 0; s < of.from.size(); ++s) {
+                by_X_[at] += along(node, k, of.from[s], of.by_X[s]);
+                by_V_[at] += along(node, k, of.from[s], of.by_V[s]);
             }
         }
     for (int A = 0; A < p; ++A)
         for (int l = 0; l < p; ++l) {
-            const double *of_row = theta_.data() + row_in_lane(rule_, A) * f_,
-                         *of_column = theta_.data() + (l == 0 ? p : l) * f_;
+            const int row = row_in_lane(rule_, A) * f_, column = (l == 0 ? p : l) * f_;
             const auto at = static_cast<std::size_t>(A * p + l);
-            const double slope =
-                h * along.by_value * slopes.in_time_by_X()[at] + along.by_rate * slopes.in_time_by_V()[at];
+            const double S = h * slopes.in_time_by_X()[at], C = slopes.in_time_by_V()[at];
             for (int k = 0; k < f_; ++k)
-                for (int m = 0; m < f_; ++m) entry(A, k, l, m) += slope * of_row[k] * of_column[m];
+                for (int m = 0; m < f_; ++m)
+                    entry(A, k, l, m) +=
+                        directions_[row + k] * (S * by_X_[column + m] + C * by_V_[column + m]);
         }
 }
 
@@ -180,8 +189,7 @@ bool ReducedTangent::factorise(const WindowLayout& layout, const JointFactor& st
     factor_.A.assign(static_cast<std::size_t>(size * size), 0.0);
     add_mass(layout.h(0));
     slopes.loads.find(layout, nodes);
-    for (const SlopesOfCoordinate& along : slopes.loads.coordinates())
-        add_coordinate(along, slopes.loads, layout.h(0));
+    for (const SlopesOfProduct& one : slopes.loads.products()) add_product(one, slopes.loads, layout.h(0));
     for (const SlopesOfPair& pair : slopes.loads.pairs()) {
         add_load(pair, pair.by_X, slopes.loads.in_time_by_X(), layout.h(0));
         add_load(pair, pair.by_V, slopes.loads.in_time_by_V(), 1);

@@ -30,7 +30,7 @@ private:
     bool orthonormalise(int node);
     void add_mass(double h);
     void add_load(const SlopesOfPair& pair, const double* slopes, const Numbers& in_time, double factor);
-    void add_coordinate(const SlopesOfCoordinate& along, const LoadSlopes& slopes, double h);
+    void add_product(const SlopesOfProduct& of, const LoadSlopes& slopes, double h);
     void add_at_node(int node, const SlopesOfPair& pair);
     double* z(int node, int k) { return bases_.data() + static_cast<std::ptrdiff_t>((node * f_ + k) * n_); }
     double& entry(int A, int k, int l, int m)
@@ -48,6 +48,7 @@ private:
     AlignedDoubles work_;       // in lanes: a step, violations and multipliers
     SquareFactor factor_;
     Numbers theta_;
+    Numbers directions_, by_X_, by_V_;   // of a product, at all nodes
 };
 
 }   // namespace livens::inline spacetime_internal

@@ -87,10 +87,10 @@ void TreeTangent::add_loads(const WindowLayout& layout, const lanes::Values& nod
     };
     slopes.find(layout, nodes);
     for (const SlopesOfPair& pair : slopes.pairs()) add(pair);
-    for (const SlopesOfCoordinate& along : slopes.coordinates())
+    for (const SlopesOfProduct& product : slopes.products())
         for (std::size_t r = 0; r < 2; ++r)
-            for (std::size_t s = 0; s < 2; ++s)
-                if (along.bodies[r] != world && along.bodies[s] != world) add(along.of(r, s));
+            for (std::size_t s = 0; product.to[r] != world && s < product.from.size(); ++s)
+                add(product.of(r, s));
 }
 
 /// Node by node: multipliers are those of the last balance.
