@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "livens/solvers/dense_matrix.h"
+#include "livens/solvers/factors.h"
+
 namespace livens {
 
 namespace {
@@ -115,6 +118,67 @@ Failures check_load_tangent(const LoadCase& load_case)
     return failures;
 }
 
+namespace {
+
+/// f_k of F = sum f_k u_k; empty: F is no such sum.
+std::vector<double> sizes_of_products(const Load& load, const LoadArguments& at)
+{
+    const std::vector<ProductSlopes> products = load.products(at);
+    DenseMatrix U(24, static_cast<int>(products.size())), F(24, 1);
+    const Matrix<24, 1> all = stacked(forces(load, at));
+    std::copy_n(all.a, 24, F.a.begin());
+    for (int k = 0; k < U.cols; ++k) {
+        const Matrix<24, 1> u = stacked(products[static_cast<std::size_t>(k)].direction);
+        std::copy_n(u.a, 24, U.a.begin() + static_cast<std::ptrdiff_t>(24 * k));
+    }
+    std::vector<double> f = least_squares(U, F).a;
+    add_scaled(F.a, -1, product(U, f));
+    const bool is_sum = norm(F.a) <= 1e-11 * (1 + norm(std::span(all.a)));
+    return is_sum ? f : std::vector<double>{};
+}
+
+/// The slopes of all sizes by one variable of body c.
+void compare_products(const Load& load, const LoadArguments& at, bool of_V, std::size_t c, int variable,
+                      Failures& failures)
+{
+    const std::vector<ProductSlopes> products = load.products(at);
+    for (std::size_t k = 0; k < products.size(); ++k) {
+        const double expected = derivative(
+            [&](double h) {
+                LoadArguments moved = at;
+                (of_V ? moved.V : moved.X)[c][variable] += h;
+                return sizes_of_products(load, moved).at(k);
+            },
+            2e-3);
+        const double given = (of_V ? products[k].by_V : products[k].by_X)[c][variable];
+        if (!(std::abs(given - expected) < 1e-8 * std::max(1.0, std::abs(expected))))
+            failures.push_back(std::string("product ") + std::to_string(k) + " by " + (of_V ? "V" : "X") +
+                               " of body " + std::to_string(c) + " is off by " + decades(given - expected));
+    }
+}
+
+}   // namespace
+
+Failures check_load_products(const LoadCase& load_case)
+{
+    Random random(7);
+    Failures failures;
+    for (int n = 0; n < of_states(20) && failures.size() < 10; ++n) {
+        const Load load = load_case.make(random);
+        LoadArguments at = random_arguments(random, load, load_case);
+        if (!load.products) break;
+        if (sizes_of_products(load, at).empty()) failures.push_back("F is no sum of its products");
+        for (const bool of_V : {true, false}) {
+            // what coordinates' rates have by X is left out
+            if (!of_V) at.V = PerBody<Matrix34>(load.bodies.size());
+            for (std::size_t c = 0; failures.empty() && c < load.bodies.size(); ++c)
+                for (int variable = 0; load.bodies[c] != world && variable < 12; ++variable)
+                    compare_products(load, at, of_V, c, variable, failures);
+        }
+    }
+    return failures;
+}
+
 Failures check_load_energy(const LoadCase& load_case)
 {
     Random random(2);
@@ -213,8 +277,8 @@ Failures check_load_directors(const LoadCase& load_case)
 Failures check_load(const LoadCase& load)
 {
     Failures all;
-    for (const auto check : {check_load_tangent, check_load_energy, check_load_potential, check_load_breaks,
-                             check_load_directors, check_load_lanes})
+    for (const auto check : {check_load_tangent, check_load_products, check_load_energy, check_load_potential,
+                             check_load_breaks, check_load_directors, check_load_lanes})
         for (const std::string& failure : check(load)) all.push_back(load.what + ": " + failure);
     Random random(6);
     if (load.make(random).type != load.type)

@@ -57,6 +57,9 @@ private:
 Failures check_load_tangent(const LoadCase& load);
 /// tr(F^T V) = - d(potential)/dt + power without potential, at any X and V.
 Failures check_load_energy(const LoadCase& load);
+/// Load::products: F is what their directions make of some sizes, whose slopes are by_X, where nothing moves,
+/// and by_V, by differences. Nothing of loads without them.
+Failures check_load_products(const LoadCase& load);
 /// F = - d(potential)/dX at rest.
 Failures check_load_potential(const LoadCase& load);
 /// F is smooth in time between its breaks, and at a break each side is the limit from there.

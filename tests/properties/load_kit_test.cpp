@@ -21,7 +21,8 @@ INSTANTIATE_TEST_SUITE_P(LoadKit, EveryLoad, testing::ValuesIn(load_cases()),
 
 TEST(LoadKit, EveryFileOfALoadIsInTheRegistry)
 {
-    expect_sources_in(load_cases(), "src/livens/multibody/loads", {"spring_laws", "load_coordinate_on_tape"}, 10);
+    expect_sources_in(load_cases(), "src/livens/multibody/loads", {"spring_laws", "load_coordinate_on_tape"},
+                      10);
 }
 
 const LoadCase& find_case(const std::string& what)
@@ -51,6 +52,27 @@ TEST(LoadKit, OneWrongSignFailsTheTangent)
         };
     });
     EXPECT_FALSE(check_load_tangent(load).empty());
+}
+
+TEST(LoadKit, OneWrongSlopeFailsTheProducts)
+{
+    int n = 0;
+    for (const LoadCase& each : load_cases()) {
+        Random random(1);
+        if (!each.make(random).products) continue;
+        ++n;
+        for (const bool of_V : {false, true}) {
+            const LoadCase load = broken(each.what, [of_V](Load& l) {
+                l.products = [products = l.products, of_V](const LoadArguments& at) {
+                    std::vector<ProductSlopes> found = products(at);
+                    (of_V ? found[0].by_V : found[0].by_X)[0][4] += 1e-6;
+                    return found;
+                };
+            });
+            EXPECT_FALSE(check_load_products(load).empty()) << each.what;
+        }
+    }
+    EXPECT_GT(n, 3);
 }
 
 TEST(LoadKit, AFaultOnTheTapeFailsTheLanes)
