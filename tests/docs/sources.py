@@ -201,7 +201,7 @@ FORMULAS = [
     "narrower than 0.01, in which they grow by less than 0.003 an element",   # stability.py
     "= 4.0$, 12.0, 21.9, 33.5, 46.5, 60.8, 76.3, 93.0 $(p", "by more than 0.001 an element for spins up to $h$ spin $= 0.3$ from",   # stability.py
     "to 40 percent up to $\\alpha = 0.3$", "2.5 m apart on springs of $10^7$ N/m", "with $h = 0.1$ s", "begin with $10^{-7}$ of",
-    "[scan of accuracies](trust.md) 0.9 percent of all elements are refused, of one motion at most 15 percent",   # figures.py
+    "[scan of accuracies](trust.md) 0.8 percent of all elements are refused, of one motion at most 15 percent",   # figures.py
     "is not foretold by what was, 4 percent",   # figures.py
     "($h \\omega = 10^4$: 1e-4 for $p = 1$, 8e-4 for $p = 8$)",   # p / |z|
     "[Deuflhard2011, section 3.3]", "Remark 3.1",
