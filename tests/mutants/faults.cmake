@@ -1043,6 +1043,14 @@ livens_mutant(NAME what_a_child_bears_is_not_its_parents
               TESTS_OF unit_spacetime
               MUST_FAIL MarchKernel.StiffLoadsAreSolvedWithTheirSlopes)
 
+# Moments of what loads supply, about the wrong arm.
+livens_mutant(NAME supplies_turn_the_other_way
+              FILE dynamics/lanes/load_program.cpp
+              OLD [[add(moment_, cross(x, f));]]
+              NEW [[add(moment_, cross(f, x));]]
+              TESTS_OF properties
+              MUST_FAIL */EveryLoad.Passes/*)
+
 # Joints that close loops take no forces in the tangent.
 livens_mutant(NAME loops_are_open_in_the_tangent
               FILE spacetime/nodal/kernel/tree_tangent.cpp

@@ -278,7 +278,7 @@ Failures check_load(const LoadCase& load)
 {
     Failures all;
     for (const auto check : {check_load_tangent, check_load_products, check_load_energy, check_load_potential,
-                             check_load_breaks, check_load_directors, check_load_lanes})
+                             check_load_breaks, check_load_directors, check_load_lanes, check_load_supply})
         for (const std::string& failure : check(load)) all.push_back(load.what + ": " + failure);
     Random random(6);
     if (load.make(random).type != load.type)

@@ -67,6 +67,9 @@ Failures check_load_breaks(const LoadCase& load);
 /// In lanes of every set of instructions that is here F is what it is alone, to 1e-14 of its scale, also
 /// turn after turn.
 Failures check_load_lanes(const LoadCase& load);
+/// What it supplies, on a tape: F, its moment and its power without potential, to 1e-13 of what they are made
+/// of; and sizes that are at least those of F.
+Failures check_load_supply(const LoadCase& load);
 /// No force outside the first column unless needs_directors says so.
 Failures check_load_directors(const LoadCase& load);
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "livens/dynamics/lanes/load_lanes.h"
+#include "livens/dynamics/lanes/load_program.h"
 #include "livens/multibody/model.h"
 #include "livens/spacetime/elements/kernel_functions.h"
 #include "livens/spacetime/instructions.h"
@@ -125,6 +126,90 @@ double LoadAtPoints::difference(const std::function<void(AlignedDoubles& F, int 
             if (!(relative <= worst)) worst = relative;   // nan, too
         }
     return worst;
+}
+
+namespace {
+
+/// F, moment and power of a load at an instant, and sums of the absolute terms that these are made of.
+struct SupplyAlone {
+    Vector3 force{}, moment{};
+    double power, of_force = 0, of_moment = 0, of_power = 0;
+
+    SupplyAlone(const Load& load, const LoadArguments& at) : power(power_without_potential(load, at))
+    {
+        LoadForces F{};
+        load.forces(at, F);
+        for (std::size_t b = 0; b < 2; ++b) {
+            if (load.bodies[b] == world) continue;
+            force += F[b].column(0);
+            of_force += norm(F[b].column(0));
+            for (int c = 0; c < 4; ++c) {
+                moment += cross(at.X[b].column(c), F[b].column(c));
+                of_moment += norm(at.X[b].column(c)) * norm(F[b].column(c));
+                of_power += norm(at.V[b].column(c)) * norm(F[b].column(c));
+            }
+        }
+    }
+};
+
+/// The largest gap of what the tape says of load 0 at an instant, by the larger of both sizes; -1 where it is
+/// not recorded.
+double supply_gap(const Model& model, const LoadArguments& here)
+{
+    const ModelTables tables(model, {});
+    LoadLanes lanes(tables, nullptr, 1, 1, RecordedLoads::supplies);
+    const Load& load = model.loads()[0];
+    if (!lanes.program().others().empty()) return -1;
+    AlignedDoubles X(12 * tables.bodies.size()), V(X.size());
+    for (std::size_t side = 0; side < load.bodies.size(); ++side) {
+        if (load.bodies[side] == world) continue;
+        const double* c = tables.bodies[load.bodies[side]].center;
+        const auto put = [&](Matrix34 of, AlignedDoubles& to) {
+            of.set_column(0, of * Vector4{1, c[0], c[1], c[2]});
+            std::copy_n(of.a, 12, to.begin() + 12 * load.bodies[side]);
+        };
+        put(here.X[side], X);
+        put(here.V[side], V);
+    }
+    std::vector<double> turns(load.angles.size(), 44), alone_turns = turns;
+    lanes.begin({&here.at, 1});
+    lanes.go_on(turns, X.data(), V.data());
+    LoadArguments at = here;
+    at.angles = turns;
+    const SupplyAlone alone(load, at);
+    const SupplyOnTape& places = lanes.program().supply();
+    const auto number = [&](int place) { return *lanes.number(place); };
+    // A load may be small beside the terms that it is made of: those of the tape are single pulls.
+    const double force = std::max(alone.of_force, number(places.gross));
+    const double moment = std::max(alone.of_moment, number(places.gross_moment));
+    double worst = 0;
+    const auto compare = [&](double found, double expected, double size) {
+        const double gap = std::abs(found - expected);
+        if (gap != 0 && !(gap <= worst * size)) worst = gap / size;
+    };
+    for (int i = 0; i < 3; ++i) {
+        compare(number(places.force + i), alone.force[i], force);
+        compare(number(places.moment + i), alone.moment[i], moment);
+    }
+    compare(number(places.power), alone.power,
+            std::max({std::abs(alone.power), alone.of_power, load.power ? 0 : moment}));
+    if (number(places.gross) < (1 - 1e-12) * alone.of_force) worst = 1;
+    return worst;
+}
+
+}   // namespace
+
+Failures check_load_supply(const LoadCase& load_case)
+{
+    Failures failures;
+    Random random(11);
+    for (int again = 0; again < 50; ++again) {
+        const Model model = model_of(random, load_case.make(random));
+        const double gap = supply_gap(model, random_arguments(random, model.loads()[0], load_case));
+        if (!(gap < 1e-13))
+            failures.push_back("supply differs by " + std::to_string(gap * 1e13) + " times 1e-13");
+    }
+    return failures;
 }
 
 Failures check_load_lanes(const LoadCase& load_case)

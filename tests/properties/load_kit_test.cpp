@@ -85,6 +85,21 @@ TEST(LoadKit, AFaultOnTheTapeFailsTheLanes)
     EXPECT_FALSE(check_load_lanes(load).empty());
 }
 
+TEST(LoadKit, AWrongPowerOnTheTapeFailsTheSupply)
+{
+    int n = 0;
+    for (const LoadCase& each : load_cases()) {
+        Random random(3);
+        if (!each.make(random).recorded_power) continue;
+        const LoadCase load = broken(each.what, [](Load& l) {
+            l.recorded_power = [power = l.recorded_power](LoadTape& tape) { return 1e-3 + power(tape); };
+        });
+        EXPECT_FALSE(check_load_supply(load).empty()) << each.what;
+        ++n;
+    }
+    EXPECT_GT(n, 4);
+}
+
 TEST(LoadKit, AMissingTermFailsTheTangent)
 {
     const LoadCase load = broken("spring and damper", [](Load& l) {

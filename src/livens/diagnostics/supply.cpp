@@ -3,9 +3,12 @@
 // diagnosed".
 #include "livens/diagnostics/detail/supply.h"
 
+#include <algorithm>
 #include <cmath>
 
+#include "livens/diagnostics/detail/point_kernels.h"
 #include "livens/diagnostics/diagnostics.h"
+#include "livens/dynamics/lanes/load_program.h"
 
 namespace livens {
 
@@ -34,30 +37,128 @@ void Supply::add(double weight, const Supply& other)
     gross_moment += weight * other.gross_moment;
 }
 
-Supply LoadSupply::at(Instant at, std::span<const Matrix34> X, std::span<const Matrix34> V)
+namespace {
+
+/// 12 numbers, `stride` apart.
+void put_about_centre(const BodyTable& body, const double* from, double* to, int stride)
 {
-    Supply now;
-    turns_.turns().follow(X, angles_);
-    for (int l = 0; l < static_cast<int>(model_.loads().size()); ++l) {
-        const Load& load = model_.loads()[l];
-        const LoadArguments now_at = arguments(l, at, X, V);
-        LoadForces F{};
-        load.forces(now_at, F);
-        for (int b = 0; b < 2; ++b)
-            if (load.bodies[b] != world) now.add_force(now_at.X[b], F[b], model_.length());
-        now.work += power_without_potential(load, now_at);
+    for (int i = 0; i < 12; ++i) to[i * stride] = from[i];
+    for (int a = 0; body.offset && a < 3; ++a)
+        for (int i = 0; i < 3; ++i) to[i * stride] += body.center[a] * from[3 + 3 * a + i];
+}
+
+}   // namespace
+
+SupplyInLanes::SupplyInLanes(const ModelTables& tables)
+    : tables_(tables),
+      lanes_(tables, point_kernels().loads, OfPoints::width, OfPoints::width, RecordedLoads::supplies),
+      X_(static_cast<std::size_t>(12 * tables.n_bodies() * OfPoints::width), 0.0), V_(X_)
+{
+    for (const TapeArm& arm : lanes_.program().tape().arms())
+        if (std::ranges::find(bodies_, arm.body) == bodies_.end()) bodies_.push_back(arm.body);
+}
+
+const std::vector<int>& SupplyInLanes::others() const { return lanes_.program().others(); }
+
+void SupplyInLanes::put(const MotionPoints& set, int k, int lane)
+{
+    constexpr int W = OfPoints::width;
+    for (const int b : bodies_) {
+        put_about_centre(tables_.bodies[b], set.X(k) + 12 * b, X_.data() + 12 * b * W + lane, W);
+        put_about_centre(tables_.bodies[b], set.V(k) + 12 * b, V_.data() + 12 * b * W + lane, W);
     }
+}
+
+Supply SupplyInLanes::taken(int lane) const
+{
+    const auto number = [&](int place) { return lanes_.number(place)[lane]; };
+    const SupplyOnTape& at = lanes_.program().supply();
+    Supply now;
+    for (int i = 0; i < 3; ++i) {
+        now.linear[i] = number(at.force + i);
+        now.angular[i] = number(at.moment + i);
+    }
+    now.gross = number(at.gross);
+    now.gross_moment = number(at.gross_moment);
+    now.work = number(at.power);
     return now;
 }
 
-Supply LoadSupply::stiffness(Instant at, std::span<const Matrix34> X, std::span<const Matrix34> V,
-                             double h) const
+void SupplyInLanes::find(const MotionPoints& set, const std::vector<double>& turns,
+                         std::vector<Supply>& points)
+{
+    constexpr int W = OfPoints::width;
+    turns_ = turns;
+    Instant instants[W];
+    for (int first = 0; first < set.size(); first += W) {
+        for (int lane = 0; lane < W; ++lane) {   // those behind the last point are as this one
+            const int k = std::min(first + lane, set.size() - 1);
+            instants[lane] = set.instant(k);
+            put(set, k, lane);
+        }
+        lanes_.begin(instants);
+        lanes_.go_on(turns_, X_.data(), V_.data());
+        for (int lane = 0; lane < W && first + lane < set.size(); ++lane)
+            points[static_cast<std::size_t>(first + lane)] = taken(lane);
+    }
+}
+
+LoadSupply::LoadSupply(const ModelTables& tables, const Motion& motion)
+    : model_(*tables.model), motion_(motion), turns_(model_, motion), recorded_(tables),
+      X_(tables.bodies.size()), V_(X_)
+{}
+
+void LoadSupply::go_to(const MotionPoints& set, int element)
+{
+    points_.assign(static_cast<std::size_t>(set.size()), {});
+    angles_ = turns_.at_end(element);
+    const std::vector<int>& others = recorded_.others();
+    if (others.size() < model_.loads().size()) recorded_.find(set, angles_, points_);
+    for (int k = 0; k < set.size() && !others.empty(); ++k) {
+        take_point(set, k);
+        for (const int load : others) add_load(load, set.instant(k), points_[static_cast<std::size_t>(k)]);
+    }
+    find_stiffness(set, element);
+}
+
+void LoadSupply::take_point(const MotionPoints& set, int k)
+{
+    std::copy_n(set.X(k), 12 * X_.size(), X_.data()->data());
+    std::copy_n(set.V(k), 12 * V_.size(), V_.data()->data());
+    turns_.turns().follow(X_, angles_);
+}
+
+void LoadSupply::add_load(int l, Instant at, Supply& now) const
+{
+    const Load& load = model_.loads()[l];
+    const LoadArguments now_at = arguments(l, at);
+    LoadForces F{};
+    load.forces(now_at, F);
+    for (int b = 0; b < 2; ++b)
+        if (load.bodies[b] != world) now.add_force(now_at.X[b], F[b], model_.length());
+    now.work += power_without_potential(load, now_at);
+}
+
+void LoadSupply::find_stiffness(const MotionPoints& set, int element)
+{
+    constexpr int elements = 8;
+    const double h = motion_.mesh.length(element);
+    const double gross = points_[0].gross;
+    const auto is_near = [](double a, double b) { return a <= 1.5 * b && b <= 1.5 * a; };
+    const bool is_known = is_near(h, known_.h) && is_near(gross, known_.gross);
+    if (is_known && ++known_.elements < elements) return;
+    angles_ = turns_.at_end(element);
+    take_point(set, 0);
+    known_ = {all_stiffness(set.instant(0), h), h, gross, 0};
+}
+
+Supply LoadSupply::all_stiffness(Instant at, double h) const
 {
     Supply all;
     for (int l = 0; l < static_cast<int>(model_.loads().size()); ++l) {
         const Load& load = model_.loads()[l];
         if (!load.depends_on_X && !load.depends_on_V) continue;
-        const LoadArguments now = arguments(l, at, X, V);
+        const LoadArguments now = arguments(l, at);
         LoadTangent tangent(load.bodies.size());
         load.tangent(now, tangent);
         for (int b = 0; b < 2; ++b) {

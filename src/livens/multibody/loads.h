@@ -126,6 +126,8 @@ struct LoadEnergy {
     std::function<double(const LoadArguments&)> potential;
     /// Power in W of the part without potential. If empty: tr(F^T V) for a load without potential, else 0.
     std::function<double(const LoadArguments&)> power;
+    /// The same number on a tape; empty where `power` is not: it is called at each instant.
+    std::function<TapeNumber(LoadTape&)> recorded_power = nullptr;
 };
 
 /// F of a load, added to forces that arrive as zero. Any function will do; one that replaces it forgets what

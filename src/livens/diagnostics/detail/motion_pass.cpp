@@ -46,7 +46,7 @@ class MotionPass::Stretch {
 public:
     Stretch(const Model& model, const Motion& motion, const PassWants& wants)
         : motion_(motion), wants_(wants), model_(model, all_rows(model)), tables_(model_),
-          loads_(model, motion),
+          loads_(model_, motion),
           sets_(points_of(motion, {wants.supplies || wants.integrals, wants.supplies, wants.violations})),
           first_(wants.first), end_(wants.first)
     {
@@ -73,7 +73,6 @@ private:
     void flush_joints(PointBatch& batch);
     void flush_nodes(PointBatch& batch);
     void add_integrals(PointBatch& batch, const OfPoints& kinetic);
-    Supply ask_loads(const MotionPoints& set, int k, int element);
     void raise_joints(PointBatch& batch, int lane, double largest);
     void flush_rates(PointBatch& batch);
 
@@ -85,8 +84,7 @@ private:
     std::vector<MotionPoints> sets_;
     std::vector<PointBatch> batches_;
     std::vector<Supply> supplies_;
-    int first_, end_;               // elements of the last advance
-    std::vector<Matrix34> X_, V_;   // of all bodies, where loads are asked
+    int first_, end_;   // elements of the last advance
 };
 
 void MotionPass::Stretch::advance()
@@ -115,30 +113,17 @@ void MotionPass::Stretch::advance()
 void MotionPass::Stretch::visit(const MotionPoints& set, PointBatch& batch, int element)
 {
     const PointRoles& roles = set.roles();
-    const bool has_loads = wants_.supplies && !loads_.empty();
-    Supply of_loads;
+    const bool has_loads = wants_.supplies && roles.loads && !loads_.empty();
+    if (has_loads) {
+        loads_.go_to(set, element);
+        supplies_[element - first_].add(motion_.mesh.length(element), loads_.stiffness());
+    }
     for (int k = 0; k < set.size(); ++k) {
         LanePoint point{element, -1, set.instant(k).t, set.weight(k)};
         if (roles.nodes) point.node = motion_.X.index(element, roles.first_node + k);
-        if (has_loads && roles.loads) of_loads = ask_loads(set, k, element);
-        batch.put(set, k, point, has_loads && roles.loads ? &of_loads : nullptr);
+        batch.put(set, k, point, has_loads ? &loads_.at(k) : nullptr);
         if (batch.is_full()) flush(roles, batch);
     }
-}
-
-Supply MotionPass::Stretch::ask_loads(const MotionPoints& set, int k, int element)
-{
-    X_.resize(static_cast<std::size_t>(motion_.n_bodies));
-    V_.resize(X_.size());
-    std::copy_n(set.X(k), 12 * X_.size(), X_.data()->data());
-    std::copy_n(set.V(k), 12 * X_.size(), V_.data()->data());
-    const Instant at = set.instant(k);
-    if (k == 0) {
-        const double h = motion_.mesh.length(element);
-        loads_.begin(element);
-        supplies_[element - first_].add(h, loads_.stiffness(at, X_, V_, h));
-    }
-    return loads_.at(at, X_, V_);
 }
 
 void MotionPass::Stretch::flush(const PointRoles& roles, PointBatch& batch)

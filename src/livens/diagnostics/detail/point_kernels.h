@@ -4,6 +4,10 @@
 // flags share.
 #pragma once
 
+namespace livens::lanes {
+struct LoadProgram;
+}
+
 namespace livens::inline diagnostics_internal {
 
 // Numbers are those of X and V, 12 a body, each of four points side by side. A column is named by its first
@@ -88,6 +92,9 @@ struct PointKernels {
     void (*rates)(const PointLists&, const PointArrays&);
     void (*largest_violation)(const PointLists&, const PointArrays&, LargestOfPoints&);
     void (*largest_of_rigidity)(const PointLists&, const PointArrays&, LargestOfPoints&);
+    /// LoadLanes::Run of as many lanes.
+    void (*loads)(const lanes::LoadProgram&, const double* X, const double* V, const double* factors,
+                  double* F);
     /// out_k = sum over A of M_kA d_A, of n numbers each, for rows k that are `stride` apart in M.
     void (*multiply)(const double* M, int n_rows, int n_columns, int stride, const double* d, int n,
                      double* out);

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The functions of PointKernels on registers of whatever instructions a source that includes this is compiled
-// with. Forces of all rows are summed up for each body before their moments are taken; sizes are those of
-// single rows, as rounding is.
+// The functions of PointKernels on the registers of a source's instructions. Forces of all rows are summed up
+// for each body before their moments are taken; sizes are those of single rows, as rounding is.
 #pragma once
 
 #include "livens/diagnostics/detail/point_kernels.h"
 #include "livens/dynamics/lanes/lane_arithmetic.h"
+#include "livens/dynamics/lanes/lane_loads.h"
 
 namespace livens::inline diagnostics_internal {
 namespace {
@@ -251,9 +251,8 @@ void largest_of_rigidity(const PointLists& lists, const PointArrays& at, Largest
 {
     LargestSize found;
     const Numbers one = lanes::all<W>(1);
-    for (int k = 0; k < lists.n_rigid; ++k) {
-        const Vector d[3] = {column(at.X, lists.rigid[k] + 3), column(at.X, lists.rigid[k] + 6),
-                             column(at.X, lists.rigid[k] + 9)};
+    for (const int* n = lists.rigid; n != lists.rigid + lists.n_rigid; ++n) {
+        const Vector d[3] = {column(at.X, *n + 3), column(at.X, *n + 6), column(at.X, *n + 9)};
         for (int a = 0; a < 3; ++a) {
             found.raise_to(0.5 * (lanes::dot(d[a], d[a]) - one));
             for (int b = a + 1; b < 3; ++b) found.raise_to(0.5 * lanes::dot(d[a], d[b]));
@@ -292,9 +291,10 @@ void multiply(const double* M, int n_rows, int n_columns, int stride, const doub
     for (; i < n; ++i) multiply_some<1>(M, n_rows, n_columns, stride, d + i, n, out + i);
 }
 
-const PointKernels functions{&sizes,   &weights,    &potential, &kinetic,           &moments,
-                             &joints,  &violations, &rates,     &largest_violation, &largest_of_rigidity,
-                             &multiply};
+constexpr auto loads = &lanes::run_loads<W>;
+const PointKernels functions{&sizes,  &weights,    &potential, &kinetic,           &moments,
+                             &joints, &violations, &rates,     &largest_violation, &largest_of_rigidity,
+                             loads,   &multiply};
 
 }   // namespace
 }   // namespace livens::inline diagnostics_internal

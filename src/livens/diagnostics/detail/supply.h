@@ -6,6 +6,9 @@
 #include <vector>
 
 #include "livens/diagnostics/coordinates.h"
+#include "livens/diagnostics/detail/motion_points.h"
+#include "livens/dynamics/lanes/load_lanes.h"
+#include "livens/dynamics/rows/tables.h"
 
 namespace livens::inline diagnostics_internal {
 
@@ -22,32 +25,69 @@ struct Supply {
     void add(double weight, const Supply& other);
 };
 
+/// What loads that are recorded supply, at the points of an element side by side.
+class SupplyInLanes {
+public:
+    /// The tables must outlive it.
+    explicit SupplyInLanes(const ModelTables& tables);
+
+    /// Loads that are not recorded.
+    const std::vector<int>& others() const;
+    /// At all points of the element that the set is at; `turns`: those at its start.
+    void find(const MotionPoints& set, const std::vector<double>& turns, std::vector<Supply>& points);
+
+private:
+    void put(const MotionPoints& set, int k, int lane);
+    Supply taken(int lane) const;
+
+    const ModelTables& tables_;
+    LoadLanes lanes_;
+    std::vector<int> bodies_;
+    AlignedDoubles X_, V_;
+    std::vector<double> turns_;
+};
+
 /// What loads supply, at the points where the method takes them.
 class LoadSupply {
 public:
-    LoadSupply(const Model& model, const Motion& motion) : model_(model), turns_(model, motion) {}
+    /// Both must outlive it.
+    LoadSupply(const ModelTables& tables, const Motion& motion);
 
     bool empty() const { return model_.loads().empty(); }
     const LoadTurns& turns() const { return turns_; }
 
-    /// An element begins: turns are those at its start.
-    void begin(int element) { angles_ = turns_.at_end(element); }
+    /// Looks at all points of the element that the set is at.
+    void go_to(const MotionPoints& set, int element);
+    /// Rates at a point of it.
+    const Supply& at(int k) const { return points_[static_cast<std::size_t>(k)]; }
     /// What loads make of positions off by their size, and of velocities off by that in h: as rounding is
-    /// relative to the size, stiff loads amplify it. At one point of the element.
-    Supply stiffness(Instant at, std::span<const Matrix34> X, std::span<const Matrix34> V, double h) const;
-    /// Rates at a point; the points of an element are asked for one after the other.
-    Supply at(Instant at, std::span<const Matrix34> X, std::span<const Matrix34> V);
+    /// relative to the size, stiff loads amplify it. At the first point of the element. A scale is all that
+    /// is asked for: it is what it was some elements before as long as elements and loads are about as large.
+    const Supply& stiffness() const { return known_.stiffness; }
 
 private:
-    LoadArguments arguments(int load, Instant at, std::span<const Matrix34> X,
-                            std::span<const Matrix34> V) const
+    void add_load(int load, Instant at, Supply& now) const;
+    void take_point(const MotionPoints& set, int k);
+    void find_stiffness(const MotionPoints& set, int element);
+    Supply all_stiffness(Instant at, double h) const;
+    LoadArguments arguments(int load, Instant at) const
     {
-        return load_arguments(model_.loads()[load], at, X, V, turns_.turns().of(load, angles_));
+        return load_arguments(model_.loads()[load], at, X_, V_, turns_.turns().of(load, angles_));
     }
 
     const Model& model_;
+    const Motion& motion_;
     const LoadTurns turns_;
-    std::vector<double> angles_;   // at the last point
+    SupplyInLanes recorded_;
+    std::vector<Matrix34> X_, V_;   // of all bodies, at a point that is asked alone
+    std::vector<double> angles_;    // there
+    std::vector<Supply> points_;
+    /// The last stiffness that was asked of loads, and how things were there.
+    struct {
+        Supply stiffness;
+        double h = 0, gross = 0;
+        int elements = 0;   // since then
+    } known_;
 };
 
 }   // namespace livens::inline diagnostics_internal

@@ -128,9 +128,10 @@ void LoadLanes::add_up(const double* factors, const double* others, double* F) c
         }
 }
 
-void LoadLanes::go_on(std::span<double> turns)
+void LoadLanes::go_on(std::span<double> turns, const double* X, const double* V)
 {
-    run_steps(turns);
+    turns_.assign(turns.begin(), turns.end());
+    run_(view(program_->steps()), X, V, nullptr, nullptr);
     std::ranges::copy(turns_, turns.begin());
 }
 

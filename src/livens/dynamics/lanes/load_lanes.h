@@ -17,8 +17,8 @@ class LoadProgram;
 
 /// Which loads are recorded. Where elements end because the law of one bends or jumps there, its last digits
 /// tell the side, and they are those of Load::forces. No forces, but numbers and factors of laws, or guards
-/// and centres: for looks.
-enum class RecordedLoads { all, without_bends, laws, guards };
+/// and centres: for looks; or what loads supply, see SupplyOnTape.
+enum class RecordedLoads { all, without_bends, laws, guards, supplies };
 
 /// The registers of a model's LoadProgram, for one element after the other. Loads that are in no program are
 /// asked point by point.
@@ -45,8 +45,8 @@ public:
                          std::span<const double> turns, double* F);
     /// F <- its sum over all points, 12 numbers a body; `others`: what evaluate_others() found, or null.
     void add_up(const double* factors, const double* others, double* F) const;
-    /// The same, and `turns` goes on from lane to lane.
-    void go_on(std::span<double> turns);
+    /// The same, and `turns` goes on from lane to lane; of X and V as of evaluate(), or where arms are known.
+    void go_on(std::span<double> turns, const double* X = nullptr, const double* V = nullptr);
     /// What was evaluated last, in lanes; `place`: of a number on the program's tape that is needed.
     const double* number(int place) const { return registers_.data() + place * width_; }
     /// The instants of the element's load points.

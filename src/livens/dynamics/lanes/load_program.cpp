@@ -4,6 +4,7 @@
 #include "livens/dynamics/lanes/load_program.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "livens/multibody/model.h"
@@ -13,6 +14,56 @@ namespace livens {
 namespace {
 
 bool is_bent(const Load& load) { return !load.guards.empty() || load.bends_at_centre; }
+
+bool is_recorded(const Load& load, RecordedLoads which)
+{
+    if (!load.forces.record || (is_bent(load) && which == RecordedLoads::without_bends)) return false;
+    return which != RecordedLoads::supplies || !load.power || load.recorded_power;
+}
+
+/// Sums of what pulls are.
+class SupplySums {
+public:
+    explicit SupplySums(LoadTape& tape) : tape_(tape) {}
+
+    void add_pull(const TapeStep& pull, double length, bool has_power)
+    {
+        const TapeVector f = TapeNumber{&tape_, pull.a} * TapeVector{&tape_, pull.b};
+        const double at_point = tape_.arms()[static_cast<std::size_t>(pull.index)].w[0];
+        const TapeVector x = tape_.arm_at(pull.index);
+        const TapeNumber size = root(dot(f, f));
+        if (at_point != 0) {   // others act on directors alone: moments
+            add(force_, at_point == 1 ? f : tape_.number(at_point) * f);
+            add(gross_, std::abs(at_point) * size);
+        }
+        add(moment_, cross(x, f));
+        add(gross_moment_, size * (std::abs(at_point) * length + root(dot(x, x))));
+        if (has_power) add_power(dot(tape_.arm_at(pull.index, true), f));
+    }
+    void add_power(TapeNumber power) { add(power_, power); }
+
+    SupplyOnTape ask()
+    {
+        for (TapeVector* v : {&force_, &moment_})
+            if (v->place < 0) *v = tape_.vector({});
+        for (TapeNumber* number : {&gross_, &gross_moment_, &power_})
+            if (number->place < 0) *number = tape_.number(0);
+        for (const int place : {force_.place, moment_.place, gross_.place, gross_moment_.place, power_.place})
+            tape_.ask({&tape_, place});
+        return {force_.place, moment_.place, gross_.place, gross_moment_.place, power_.place};
+    }
+
+private:
+    template <class Sum>
+    static void add(Sum& sum, Sum more)
+    {
+        sum = sum.place < 0 ? more : sum + more;
+    }
+
+    LoadTape& tape_;
+    TapeVector force_, moment_;
+    TapeNumber gross_, gross_moment_, power_;
+};
 
 /// What is the same wherever bodies are.
 bool is_given(TapeKind kind)
@@ -88,16 +139,26 @@ LoadProgram::LoadProgram(const ModelTables& tables, RecordedLoads which)
 void LoadProgram::record(const Model& model, RecordedLoads which)
 {
     int first_angle = 0;
+    SupplySums sums(tape_);
     if (which == RecordedLoads::laws) tape_.take_looks();
     for (std::size_t l = 0; l < model.loads().size(); ++l) {
         const Load& load = model.loads()[l];
         tape_.begin(load, first_angle);
         first_angle += static_cast<int>(load.angles.size());
-        if (load.forces.record && !(is_bent(load) && which == RecordedLoads::without_bends))
-            load.forces.record(tape_, TapeNumber{&tape_});
-        else
+        if (!is_recorded(load, which)) {
             others_.push_back(static_cast<int>(l));
+            continue;
+        }
+        const std::size_t first = tape_.steps().size();
+        load.forces.record(tape_, TapeNumber{&tape_});
+        if (which != RecordedLoads::supplies) continue;
+        const bool has_power = !load.power && !load.potential;
+        for (std::size_t i = first, end = tape_.steps().size(); i < end; ++i)
+            if (const TapeStep step = tape_.steps()[i]; step.kind == TapeKind::pull)
+                sums.add_pull(step, model.length(), has_power);
+        if (load.recorded_power) sums.add_power(load.recorded_power(tape_));
     }
+    if (which == RecordedLoads::supplies && !model.loads().empty()) supply_ = sums.ask();
 }
 
 /// Of each place the step whose number is there.
@@ -119,7 +180,8 @@ void LoadProgram::join(const std::vector<char>& needed, const std::vector<char>&
     for (std::size_t i = 0; i < steps.size(); ++i)
         if (needed[i]) for_operands(tape_, steps[i], [&](int place) { ++n_uses[step_at[place]]; });
     for (const TapeWatch& watch : tape_.watched())
-        for (const auto* places : {&watch.guards, &watch.centre, &watch.numbers, &watch.factors})
+        for (const auto* places :
+             {&watch.guards, &watch.centre, &watch.numbers, &watch.factors, &watch.asked})
             for (const int place : *places) ++n_uses[step_at[place]];
     takes_.assign(steps.size(), -1);
     is_taken_.assign(steps.size(), 0);
@@ -147,14 +209,12 @@ std::vector<char> LoadProgram::find_needed(RecordedLoads which) const
     const std::vector<TapeStep>& steps = tape_.steps();
     const std::vector<int> step_at = find_steps();
     std::vector<char> needed(steps.size(), 0);
-    const bool are_looks = which == RecordedLoads::laws || which == RecordedLoads::guards;
-    for (const TapeWatch& watch : tape_.watched()) {
-        if (which == RecordedLoads::without_bends) break;
+    const bool are_forces = which == RecordedLoads::all || which == RecordedLoads::without_bends;
+    for (const TapeWatch& watch : tape_.watched())
         for (const std::vector<int>* places : watched_of(watch, which))
             for (const int place : *places) needed[step_at[place]] = 1;
-    }
     for (std::size_t i = steps.size(); i-- > 0;) {
-        needed[i] = needed[i] || (steps[i].kind == TapeKind::pull && !are_looks);
+        needed[i] = needed[i] || (steps[i].kind == TapeKind::pull && are_forces);
         if (needed[i]) for_operands(tape_, steps[i], [&](int place) { needed[step_at[place]] = 1; });
     }
     return needed;

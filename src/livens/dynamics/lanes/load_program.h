@@ -12,12 +12,21 @@
 
 namespace livens::inline dynamics_internal {
 
-/// What a program for looks is about.
+/// What a program for looks is about; in others what is to be evaluated beside forces.
 inline std::array<const std::vector<int>*, 2> watched_of(const TapeWatch& watch, RecordedLoads which)
 {
     if (which == RecordedLoads::laws) return {&watch.numbers, &watch.factors};
+    if (which == RecordedLoads::supplies || which == RecordedLoads::without_bends)
+        return {&watch.asked, &watch.asked};
     return {&watch.guards, &watch.centre};
 }
+
+/// Places on a tape of what loads supply together: N, N m about the world's origin, W of what has no
+/// potential; and what rounding in the first two is relative to, sums of |F| and of |F| (|x| + length) over
+/// all pulls.
+struct SupplyOnTape {
+    int force, moment, gross, gross_moment, power;
+};
 
 /// What is known of a model's loads before the numbers. Forces and places are about centres of mass.
 class LoadProgram {
@@ -35,6 +44,8 @@ public:
     const std::vector<lanes::LoadArm>& arms() const { return arms_; }
     const std::vector<lanes::LoadForce>& forces() const { return forces_of_; }
     const std::vector<lanes::Term>& terms() const { return terms_; }
+    /// Of a program for supplies.
+    const SupplyOnTape& supply() const { return supply_; }
     int n_registers() const { return n_registers_; }
     /// Loads that are not in it: nobody recorded them.
     const std::vector<int>& others() const { return others_; }
@@ -69,6 +80,7 @@ private:
     std::vector<lanes::Term> terms_;
     std::vector<int> forces_;   ///< first register of the force on each arm; -1: none
     std::vector<int> others_;
+    SupplyOnTape supply_{};
     /// Of each step of the tape: a product that it takes in, -1: none; and whether another one takes it.
     std::vector<int> takes_;
     std::vector<char> is_taken_;

@@ -18,7 +18,7 @@ class RowPattern;
 /// The last pattern that was made of a model's rows, and its loads in lanes.
 struct KnownPattern {
     std::shared_ptr<const RowPattern> last;
-    std::array<std::shared_ptr<const LoadProgram>, 4> loads;   ///< see RecordedLoads
+    std::array<std::shared_ptr<const LoadProgram>, 5> loads;   ///< see RecordedLoads
 };
 
 /// Tables made once per solution.

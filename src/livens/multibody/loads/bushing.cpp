@@ -196,46 +196,68 @@ struct BushingLaw {
         }
     }
 
-    /// The same on a tape: J^T f with the few sums that J is made of.
+    /// u on a tape, and the few sums that J is made of.
+    struct MotionOnTape {
+        TapeNumber s[3], factor, twice_by_sigma, by_c;
+        TapeNumber u[6], rate[6];
+    };
+    static TapeNumber product(const TapeNumber* a, const TapeNumber* b)
+    {
+        return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    }
+    MotionOnTape motion(const LawOnTape& at) const
+    {
+        MotionOnTape m{{at.value(3), at.value(4), at.value(5)}, {}, {}, {}, {}, {}};
+        const TapeNumber c = at.value(6), sigma = product(m.s, m.s);
+        m.by_c = -(at.tape.number(1) / (sigma + c * c));
+        const TapeVector turn = turn_of_sine(sigma, c);
+        m.factor = turn[0];
+        m.twice_by_sigma = turn[1];
+        for (std::size_t k = 0; k < 3; ++k) {
+            m.u[k] = at.value(k);
+            m.u[3 + k] = m.factor * m.s[k];
+        }
+        if (!of_rates()) return m;
+        const TapeNumber s_rate[3] = {at.rate(3), at.rate(4), at.rate(5)};
+        const TapeNumber along = m.twice_by_sigma * product(m.s, s_rate) + m.by_c * at.rate(6);
+        for (std::size_t k = 0; k < 3; ++k) {
+            m.rate[k] = at.rate(k);
+            m.rate[3 + k] = m.factor * s_rate[k] + along * m.s[k];
+        }
+        return m;
+    }
+    /// The same on a tape: J^T f.
     void record(const LawOnTape& at, std::span<TapeNumber> factors) const
     {
-        const auto product = [](const TapeNumber* a, const TapeNumber* b) {
-            return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-        };
-        const TapeNumber s[3] = {at.value(3), at.value(4), at.value(5)}, c = at.value(6);
-        const TapeNumber sigma = product(s, s), by_c = -(at.tape.number(1) / (sigma + c * c));
-        const TapeVector turn = turn_of_sine(sigma, c);
-        const TapeNumber factor = turn[0], twice_by_sigma = turn[1];
-        TapeNumber u[6], rate[6], f[6];
-        for (std::size_t k = 0; k < 3; ++k) {
-            u[k] = at.value(k);
-            u[3 + k] = factor * s[k];
-        }
-        if (of_rates()) {
-            const TapeNumber s_rate[3] = {at.rate(3), at.rate(4), at.rate(5)};
-            const TapeNumber along = twice_by_sigma * product(s, s_rate) + by_c * at.rate(6);
-            for (std::size_t k = 0; k < 3; ++k) {
-                rate[k] = at.rate(k);
-                rate[3 + k] = factor * s_rate[k] + along * s[k];
-            }
-        }
-        for (int k = 0; k < 6; ++k) f[k] = recorded_force(at.tape, u, rate, k);
-        const TapeNumber along = product(s, f + 3);
+        const MotionOnTape m = motion(at);
+        TapeNumber f[6];
+        for (int k = 0; k < 6; ++k) f[k] = recorded_force(at.tape, m, k);
+        const TapeNumber along = product(m.s, f + 3);
         for (std::size_t k = 0; k < 3; ++k) {
             factors[k] = f[k];
-            factors[3 + k] = factor * f[3 + k] + twice_by_sigma * along * s[k];
+            factors[3 + k] = m.factor * f[3 + k] + m.twice_by_sigma * along * m.s[k];
         }
-        factors[6] = by_c * along;
+        factors[6] = m.by_c * along;
     }
     bool of_rates() const { return of.damping != Matrix<6, 6>{}; }
-    TapeNumber recorded_force(LoadTape& tape, const TapeNumber* u, const TapeNumber* rate, int k) const
+    TapeNumber recorded_force(LoadTape& tape, const MotionOnTape& m, int k) const
     {
         TapeNumber f = tape.number(-of.preload[k]);
         for (int l = 0; l < 6; ++l) {
-            if (of.stiffness(k, l) != 0) f = f - of.stiffness(k, l) * u[l];
-            if (of.damping(k, l) != 0) f = f - of.damping(k, l) * rate[l];
+            if (of.stiffness(k, l) != 0) f = f - of.stiffness(k, l) * m.u[l];
+            if (of.damping(k, l) != 0) f = f - of.damping(k, l) * m.rate[l];
         }
         return f;
+    }
+    TapeNumber recorded_power(const LawOnTape& at) const
+    {
+        TapeNumber sum = at.tape.number(0);
+        if (!of_rates()) return sum;
+        const MotionOnTape m = motion(at);
+        for (int k = 0; k < 6; ++k)
+            for (int l = 0; l < 6; ++l)
+                if (of.damping(k, l) != 0) sum = sum - of.damping(k, l) * (m.rate[k] * m.rate[l]);
+        return sum;
     }
 
     double potential(const LawArguments& at) const
@@ -258,6 +280,18 @@ struct BushingLaw {
         return sum;
     }
 };
+
+/// What acts on u, as the law has it, and u.
+void add_readings(const BushingLaw& at, LoadParts& parts)
+{
+    for (int k = 0; k < 6; ++k) {
+        const std::string letter(1, "xyz"[k % 3]);
+        parts.readings.push_back({(k < 3 ? "force_" : "torque_") + letter, k < 3 ? "N" : "N m",
+                                  [at, k](const LawArguments& q) { return at.force(at.motion(q), k); }});
+        parts.readings.push_back({(k < 3 ? "displacement_" : "rotation_") + letter, k < 3 ? "m" : "rad",
+                                  [at, k](const LawArguments& q) { return at.motion(q).u[k]; }});
+    }
+}
 
 /// Whether x . A x may be negative, by what is left of the diagonal in Cholesky's elimination.
 bool is_negative(Matrix<6, 6> A)
@@ -343,13 +377,8 @@ Load bushing(const std::string& name, int first, const BodyFrame& frame_first, i
     parts.depends_on_rates = at.of_rates();
     parts.potential = [at](const LawArguments& q) { return at.potential(q); };
     parts.power = [at](const LawArguments& q) { return at.power(q); };
-    for (int k = 0; k < 6; ++k) {   // on u, as the law has them, and u
-        const std::string letter(1, "xyz"[k % 3]);
-        parts.readings.push_back({(k < 3 ? "force_" : "torque_") + letter, k < 3 ? "N" : "N m",
-                                  [at, k](const LawArguments& q) { return at.force(at.motion(q), k); }});
-        parts.readings.push_back({(k < 3 ? "displacement_" : "rotation_") + letter, k < 3 ? "m" : "rad",
-                                  [at, k](const LawArguments& q) { return at.motion(q).u[k]; }});
-    }
+    parts.recorded_power = [at](const LawOnTape& on) { return at.recorded_power(on); };
+    add_readings(at, parts);
     return modulated(name, "bushing", parts, X);
 }
 

@@ -48,6 +48,12 @@ struct AlongJoint {
                (spring.preload == 0 ? 0 : spring.preload * (q.value - spring.rest));
     }
     double power(const CoordinateState& q) const { return -spring.damping * q.rate * q.rate; }
+    TapeNumber recorded_power(LoadTape& tape) const
+    {
+        if (spring.damping == 0) return tape.number(0);
+        const TapeNumber rate = along.rate(tape);
+        return -spring.damping * (rate * rate);
+    }
 };
 
 }   // namespace
@@ -92,6 +98,7 @@ Load joint_spring(const std::string& name, const NamedCoordinate& coordinate, co
     }
     load.potential = [of](const LoadArguments& arguments) { return of.potential(of.along.look(arguments)); };
     load.power = [of](const LoadArguments& arguments) { return of.power(of.along.look(arguments)); };
+    load.recorded_power = [of](LoadTape& tape) { return of.recorded_power(tape); };
     load.readings = {{"force", is_angle ? "N m" : "N", [of](const LoadArguments& arguments) {
                           return of.force(of.along.look(arguments)).force;
                       }}};

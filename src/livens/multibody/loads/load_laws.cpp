@@ -52,11 +52,16 @@ struct Modulated {
         }
     }
 
+    LawOnTape on(LoadTape& tape) const
+    {
+        return {tape, [&](std::size_t i) { return coordinates[i].value(tape); },
+                [&](std::size_t i) { return coordinates[i].rate(tape); }};
+    }
+
     void record(LoadTape& tape, TapeNumber factor) const
     {
         std::vector<TapeNumber> factors(parts.units.size(), TapeNumber{&tape});
-        const LawOnTape at{tape, [&](std::size_t i) { return coordinates[i].value(tape); },
-                           [&](std::size_t i) { return coordinates[i].rate(tape); }};
+        const LawOnTape at = on(tape);
         if (parts.recorded_law)
             parts.recorded_law(at, factors);
         else
@@ -232,6 +237,8 @@ Load modulated(const std::string& name, const std::string& type, const LoadParts
     add_smoothness(load, all);
     load.potential = energy(parts.potential);
     load.power = energy(parts.power);
+    if (parts.recorded_power)
+        load.recorded_power = [all](LoadTape& tape) { return all.parts.recorded_power(all.on(tape)); };
     return load;
 }
 

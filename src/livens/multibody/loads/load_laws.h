@@ -34,6 +34,7 @@ struct LawOnTape {
     LoadTape& tape;
     std::function<TapeNumber(std::size_t coordinate)> value, rate;
 };
+using RecordedEnergy = std::function<TapeNumber(const LawOnTape&)>;
 using RecordedLaw = std::function<void(const LawOnTape&, std::span<TapeNumber> factors)>;
 /// What symbol k of expressions reads: the value of a coordinate, or its rate.
 struct LawRead {
@@ -72,6 +73,7 @@ struct LoadParts {
     bool depends_on_rates = false;
     LawEnergy potential = nullptr;   ///< empty: it has none
     LawEnergy power = nullptr;       ///< of the rest; see Load::power
+    RecordedEnergy recorded_power = nullptr;
     LawGuards guards{};
     /// The law is linear, or as smooth as the motion for other reasons; see Load::is_smooth.
     bool is_smooth = false;

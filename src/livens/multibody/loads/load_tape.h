@@ -83,10 +83,11 @@ struct TapeArm {
 };
 
 /// What Load::guarded and Load::centre say, where a load has recorded it: places of their numbers. And, where
-/// the tape is for looks, what LawInside says.
+/// the tape is for looks, what LawInside says. And what is asked for by name.
 struct TapeWatch {
     std::vector<int> guards, centre;
     std::vector<int> numbers, factors;
+    std::vector<int> asked;
 };
 
 /// What is recorded twice is evaluated once. Forces leave by pull(): F of a body is the sum of s v w^T over
@@ -121,6 +122,13 @@ public:
     /// Numbers and factors of a law that need not be smooth.
     [[gnu::visibility("hidden")]] void watch_law(std::span<const TapeNumber> numbers,
                                                  std::span<const TapeNumber> factors);
+    /// It is needed though no force hangs on it.
+    void ask(TapeNumber number) { watched_.back().asked.push_back(number.place); }
+    /// The same of an arm by its index.
+    TapeVector arm_at(int index, bool is_rate = false)
+    {
+        return {this, add({is_rate ? TapeKind::arm_rate : TapeKind::arm, -1, -1, -1, index, 0})};
+    }
     /// It is for looks: only what is watched is evaluated, and laws say all that they look at.
     void take_looks() { takes_looks_ = true; }
     bool takes_looks() const { return takes_looks_; }

@@ -199,6 +199,14 @@ struct Spring {
         const double rate = line(arguments).rate;
         return -law.damping * rate * rate;
     }
+    TapeNumber recorded_power(LoadTape& tape) const
+    {
+        if (law.damping == 0) return tape.number(0);
+        const TapeVector r = tape.arm(0, points[0]) - tape.arm(1, points[1]);
+        const TapeVector w = tape.arm(0, points[0], true) - tape.arm(1, points[1], true);
+        const TapeNumber rate = inverse(root(dot(r, r))) * dot(r, w);
+        return -law.damping * (rate * rate);
+    }
 };
 
 }   // namespace
@@ -244,6 +252,7 @@ Load spring_damper(const std::string& name, int first, const Vector3& point_firs
     }
     load.potential = [law](const LoadArguments& arguments) { return law.potential(arguments); };
     load.power = [law](const LoadArguments& arguments) { return law.damper_power(arguments); };
+    load.recorded_power = [law](LoadTape& tape) { return law.recorded_power(tape); };
     load.readings = {
         {"force", "N",
          [law](const LoadArguments& arguments) {
