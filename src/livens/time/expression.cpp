@@ -129,6 +129,10 @@ TimeValue apply(Operation operation, const TimeValue& a, const TimeValue& b)
         return b.value < a.value ? b : a;
     case Operation::greatest:
         return b.value > a.value ? b : a;
+    case Operation::sign:   // nan stays nan
+        return {a.value > 0 ? 1.0 : a.value < 0 ? -1.0 : 0 * a.value, 0, 0};
+    case Operation::floor:
+        return {std::floor(a.value), 0, 0};
     default:
         return {};
     }

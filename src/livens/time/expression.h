@@ -16,9 +16,12 @@ namespace [[gnu::visibility("default")]] livens {
 
 /// `-3*phi - 0.2*w + sin(2*pi*t)`: numbers, `+ - * / ^`, parentheses, `pi`, `t` (s), symbols, and
 ///
-///     sin cos tan tanh exp log sqrt abs   of one argument
-///     atan2 min max                       of two
+///     sin cos tan asin acos atan sinh cosh tanh exp log sqrt abs sign floor   of one argument
+///     atan2 min max                                                           of two
+///     step(x, x0, h0, x1, h1)   from h0 before x0 to h1 behind x1, with a continuous slope
+///     step(x)                   0, 1/2 and 1 where x is negative, zero and positive
 ///
+/// A symbol with points may stand as it is, `shaft.angle`, with blanks in quotes: `'crank pin'.angle`.
 /// `^` binds closest and from the right, a sign before it less: -x^2 is -(x^2). Nothing is executed: a text
 /// becomes a list of operations whose size is bounded. Where an operation has no value (1/0, log(-1)) the
 /// value is no number; where it has no derivative (|x| at 0) it has one from one side.
@@ -48,7 +51,9 @@ public:
         absolute,
         arc_tangent,
         least,
-        greatest
+        greatest,
+        sign,
+        floor
     };
     /// Operands are earlier steps.
     struct Step {
@@ -76,11 +81,11 @@ public:
     std::string without_value(double t, std::span<const double> symbols) const;
 
     /// Instants in between at which an operation on time alone jumps or bends (abs, min, max, atan2, a
-    /// division by what passes zero), and around what comes and goes faster than a hundredth of the time: an
+    /// sign, floor, a division by what passes zero), and around what comes and goes faster than a hundredth of the time: an
     /// element that steps over these sees nothing of them. Pulses shorter than a 4096th may be overlooked.
     std::vector<double> events(double from, double until) const;
-    /// Of operations that jump or bend where symbols decide: abs at 0, min and max where both are alike,
-    /// atan2 at half a turn.
+    /// Of operations that jump or bend where symbols decide: abs and sign at 0, min and max where both are
+    /// alike, atan2 at half a turn, floor at whole numbers.
     const std::vector<Guard>& guards() const { return guards_; }
     /// These operations, places in steps().
     const std::vector<int>& guarded_steps() const { return guarded_; }
@@ -104,6 +109,9 @@ private:
     std::vector<int> guarded_;   ///< of these, which jump or bend where symbols decide
     std::vector<Guard> guards_;
 };
+
+/// Names with points that stand in a text, each once, without their quotes; they need not be known.
+std::vector<std::string> names_with_points(std::string_view text);
 
 /// A function of time alone; `breaks` are instants where it jumps or bends, on either side of which it has
 /// the value beside them.

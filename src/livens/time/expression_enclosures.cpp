@@ -181,6 +181,10 @@ EnclosedValue apply(Operation operation, const EnclosedValue& a, const EnclosedV
         return least_of(a, b);
     case Operation::greatest:
         return negative(least_of(negative(a), negative(b)));
+    case Operation::sign:   // slopes are those beside jumps, which are guards
+        return {rising(a.value, [](double x) { return x > 0 ? 1.0 : x < 0 ? -1.0 : 0.0; }), {}};
+    case Operation::floor:
+        return {rising(a.value, [](double x) { return std::floor(x); }), {}};
     default:
         return {Enclosure::all(), Enclosure::all()};
     }

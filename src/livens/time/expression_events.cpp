@@ -26,7 +26,13 @@ double switching(const Expression::Step& step, const std::vector<TimeValue>& val
 {
     switch (step.operation) {
     case Operation::absolute:
+    case Operation::sign:
         return values[step.first].value;
+    case Operation::floor: {
+        // Of the sign of the parity, and nowhere twice the same.
+        const double x = values[step.first].value;
+        return (std::remainder(std::floor(x), 2) == 0 ? 1 : -1) * (2 + x / (1 + std::abs(x)));
+    }
     case Operation::least:
     case Operation::greatest:
         return values[step.first].value - values[step.second].value;
@@ -50,6 +56,10 @@ const char* word_of(Operation operation)
         return "max";
     case Operation::arc_tangent:
         return "atan2";
+    case Operation::sign:
+        return "sign";
+    case Operation::floor:
+        return "floor";
     default:
         return "";
     }
@@ -217,7 +227,9 @@ void Expression::find_guards()
         if (!has_symbols[k] || *word_of(steps_[k].operation) == 0) continue;
         guarded_.push_back(static_cast<int>(k));
         const bool is_angle = steps_[k].operation == Operation::arc_tangent;
-        guards_.push_back(is_angle ? Guard{{std::numbers::pi}, 2 * std::numbers::pi} : Guard{});
+        guards_.push_back(is_angle ? Guard{{std::numbers::pi}, 2 * std::numbers::pi}
+                          : steps_[k].operation == Operation::floor ? Guard{{0}, 1}
+                                                                    : Guard{});
     }
 }
 
@@ -226,8 +238,10 @@ void Expression::guarded(double t, std::span<const double> symbols, std::span<do
     const std::vector<TimeValue> values = evaluate(t, symbols, -1);
     for (std::size_t k = 0; k < guarded_.size(); ++k) {
         const auto step = static_cast<std::size_t>(guarded_[k]);
-        const bool is_angle = steps_[step].operation == Operation::arc_tangent;
-        numbers[k] = is_angle ? values[step].value : switching(steps_[step], values);
+        const Operation operation = steps_[step].operation;
+        numbers[k] = operation == Operation::arc_tangent ? values[step].value
+                     : operation == Operation::floor     ? values[steps_[step].first].value
+                                                         : switching(steps_[step], values);
     }
 }
 

@@ -66,6 +66,59 @@ TEST(LawScenario, InputsAreReadFromJointsAndSensors)
     EXPECT_NEAR(load.readings[0].value(at), 0.25 + 20 + 300, 1e-12);
 }
 
+TEST(LawScenario, NamesStandInExpressionsThemselves)
+{
+    const ScenarioResult result =
+        test::read(actuator("expression = \"j.angle + 10*j.angle_rate + 100*'tip'.vy\""));
+    ASSERT_TRUE(result.scenario.has_value()) << test::shown(result);
+    LoadArguments at;
+    at.X[0] = configuration({}, directors_from_rotation_vector({0, 0, 0.25}));
+    at.V[0] = rate(at.X[0], {0, 3, 0}, {0, 0, 2});
+    EXPECT_NEAR(result.scenario->model.loads()[0].readings[0].value(at), 0.25 + 20 + 300, 1e-12);
+    test::expect_error(actuator("expression = \"k.angle\""), "input-unknown", "\"k.angle\"");
+    const std::string drive = "[[drive]]\nname = \"d\"\ntype = \"joint\"\njoint = \"j\"\n";
+    test::expect_error(with(drive + "expression = \"j.angle\""), "expression-name", "\"j.angle\"");
+}
+
+/// Factors of time in all rows of the last joint, at an instant.
+std::vector<double> factors_of_drive(const std::string& law, double t)
+{
+    const ScenarioResult result =
+        test::read(with("[[drive]]\nname = \"d\"\ntype = \"joint\"\njoint = \"j\"\n" + law +
+                        "\n[start]\ninitial = \"project\""));
+    EXPECT_TRUE(result.scenario.has_value()) << law << test::shown(result);
+    std::vector<double> factors;
+    if (!result.scenario) return factors;
+    for (const ConstraintRow& row : result.scenario->model.joints().back().rows)
+        for (const Drive& drive : row.drives) factors.push_back(drive.factor({t}).value);
+    return factors;
+}
+
+TEST(LawScenario, DrivesTakeUnitsOfTheirCoordinate)
+{
+    for (const auto& [law, plain] :
+         {std::pair("rate = \"60 rpm\"", "rate = 6.283185307179586"),
+          std::pair("value = \"0.1 rev\"", "value = 0.6283185307179586"),
+          std::pair(
+              "harmonic = { amplitude = \"30 deg\", frequency = \"60 1/min\", phase = \"90 deg\" }",
+              "harmonic = { amplitude = 0.5235987755982988, frequency = 1, phase = 1.5707963267948966 }"),
+          std::pair("step = { from = 0, until = \"500 ms\", rise = \"90 \u00b0\" }",
+                    "step = { from = 0, until = 0.5, rise = 1.5707963267948966 }"),
+          std::pair("table = { times = [0, \"500 ms\"], values = [0, \"45 deg\"] }",
+                    "table = { times = [0, 0.5], values = [0, 0.7853981633974483] }")}) {
+        const std::vector<double> found = factors_of_drive(law, 0.3), wanted = factors_of_drive(plain, 0.3);
+        ASSERT_EQ(found.size(), wanted.size());
+        ASSERT_GT(found.size(), 0u);
+        for (std::size_t i = 0; i < found.size(); ++i) EXPECT_NEAR(found[i], wanted[i], 1e-15) << law;
+        EXPECT_NE(factors_of_drive(law, 0.31), factors_of_drive("rate = 6.2831854", 0.31))
+            << "negative control";
+    }
+    const std::string drive = "[[drive]]\nname = \"d\"\ntype = \"joint\"\njoint = \"j\"\n";
+    for (const std::string law : {"rate = \"1 m/s\"", "value = \"3 mm\"", "rate = \"3 Hz\"",
+                                  "step = { from = 0, until = 1, rise = \"1 m\" }"})
+        EXPECT_NE(test::find(test::read(with(drive + law)), "unit"), nullptr) << law;
+}
+
 TEST(LawScenario, NamesOfInputsMayHaveBlanksAndPoints)
 {
     std::string text = actuator("expression = \"x\"\ninputs = { x = \"the tip. 2.x\" }");
@@ -84,8 +137,7 @@ std::vector<test::Case> cases_of_driven_laws()
          with("[[drive]]\nname = \"d\"\ntype = \"joint\"\njoint = \"j\"\nexpression = \"abs(t - 0.5137) - "
               "0.5137\"\n[start]\ninitial = \"project\""),
          "\"d\""},
-        {"wrong-type", with("[[drive]]\nname = \"d\"\ntype = \"joint\"\njoint = \"j\"\nrate = \"2*t\""),
-         "\"2*t\""},
+        {"unit", with("[[drive]]\nname = \"d\"\ntype = \"joint\"\njoint = \"j\"\nrate = \"2*t\""), "\"2*t\""},
     };
 }
 

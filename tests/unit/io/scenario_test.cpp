@@ -463,9 +463,12 @@ TEST(ScenarioCodes, WarningsLeaveTheScenarioAlone)
     const std::string hurried =
         replaced(replaced(valid_scenario, "name = \"shoulder\"", "name = \"shoulder\"\nrate = 1"),
                  "name = \"lower\"", "name = \"lower\"\nvelocity = [0, 0, 1]");
-    for (const auto& [code, text] : {std::pair("expression-kink", kinked), std::pair("load-never-acts", late),
-                                     std::pair("format-first", second), std::pair("joint-fitted", missed),
-                                     std::pair("start-changed", hurried)}) {
+    const std::string in_mm =
+        replaced(valid_scenario, "gravity = [0, 0, -9.81]", "gravity = [0, 0, -9806.65]");
+    for (const auto& [code, text] :
+         {std::pair("gravity-unit", in_mm), std::pair("expression-kink", kinked),
+          std::pair("load-never-acts", late), std::pair("format-first", second),
+          std::pair("joint-fitted", missed), std::pair("start-changed", hurried)}) {
         const ScenarioResult result = read(text);
         EXPECT_TRUE(result.scenario.has_value()) << shown(result);
         const Diagnostic* d = find(result, code);
@@ -531,10 +534,10 @@ TEST(ScenarioCodes, AllAreProvokedByTheseTests)
                                       "tolerance-out-of-range",
                                       "window",
                                       "window-out-of-range"};
-    others.insert({"format-first", "load-never-acts", "joint-fitted", "expression-kink", "start-changed",
-                   "drive-turns", "end-position", "end-velocity", "point-outside", "spring-kink",
-                   "directors-dependent", "directors-metric", "directors-nearly-orthonormal", "io-directory",
-                   "io-not-found", "io-unreadable"});   // here, of meshes, of hostile files
+    others.insert({"gravity-unit", "format-first", "load-never-acts", "joint-fitted", "expression-kink",
+                   "start-changed", "drive-turns", "end-position", "end-velocity", "point-outside",
+                   "spring-kink", "directors-dependent", "directors-metric", "directors-nearly-orthonormal",
+                   "io-directory", "io-not-found", "io-unreadable"});   // here, of meshes, of hostile files
     others.insert(codes_of_meshes.begin(), codes_of_meshes.end());
     for (const Case& c : cases()) {
         EXPECT_NE(explain(c.code), "") << c.code;

@@ -35,6 +35,33 @@ TEST(Units, AnglesAreInRadians)
     EXPECT_DOUBLE_EQ(si("360 deg/min", "rad/s"), std::numbers::pi / 30);
 }
 
+TEST(Units, OfInchesAndPoundsAreExact)
+{
+    EXPECT_EQ(si("1 in", "m"), 0.0254);
+    EXPECT_EQ(si("3 ft", "m"), 0.9144);
+    EXPECT_EQ(si("1 yd", "m"), 0.9144);
+    EXPECT_EQ(si("1 mi", "m"), 1609.344);
+    EXPECT_EQ(si("1 lb", "kg"), 0.45359237);
+    EXPECT_EQ(si("16 oz", "kg"), 0.45359237);
+    EXPECT_EQ(si("1 lbf", "N"), 4.4482216152605);
+    EXPECT_EQ(si("1 kip", "N"), 4448.2216152605);
+    EXPECT_EQ(si("16 ozf", "N"), 4.4482216152605);
+    EXPECT_EQ(si("1 kgf", "N"), 9.80665);
+    EXPECT_DOUBLE_EQ(si("1 psi", "Pa"), 6894.757293168361);   // NIST SP 811, B.8
+    EXPECT_DOUBLE_EQ(si("1 slug", "kg"), 14.593902937206364);
+    EXPECT_DOUBLE_EQ(si("1 lbf in", "N m"), 0.1129848290276167);
+    EXPECT_DOUBLE_EQ(si("1 lbf/in", "N/m"), 175.12683524647636);
+    EXPECT_EQ(si("1 mph", "m/s"), 0.44704);
+    EXPECT_DOUBLE_EQ(si("1 hp", "W"), 745.6998715822702);
+    EXPECT_EQ(si("2 bar", "Pa"), 2e5);
+    EXPECT_EQ(si("2 mbar", "Pa"), 200);
+    EXPECT_EQ(si("30\xc2\xb0", "rad"), si("30 deg", "rad"));
+    EXPECT_EQ(si("30 \xc2\xb0/s", "rad/s"), si("30 deg/s", "rad/s"));
+    EXPECT_EQ(si("7 Nm", "N m"), 7);
+    EXPECT_NE(parse_quantity("3 inches", "m").error.find("write in"), std::string::npos);
+    EXPECT_NE(parse_quantity("3 lb", "N").error, "") << "a mass is no force";
+}
+
 TEST(Units, ProductsQuotientsAndPowers)
 {
     EXPECT_EQ(si("7850 kg/m^3", "kg/m^3"), 7850);

@@ -55,7 +55,8 @@ TEST(Expression, HasExactDerivatives)
     for (const std::string text :
          {"sin(x*t)*y^3", "x^y", "exp(-z*t)/(1 + x^2)", "atan2(x + t, y)", "tanh(x*y - t)",
           "sqrt(x + z)*log(z)", "abs(y)*tan(x)", "min(x, z)^2*max(y, t)", "z^2.5 + x^0 + (y)^2",
-          "cos(x)^2 + t^3*x", "-x/(y*z)"}) {
+          "cos(x)^2 + t^3*x", "-x/(y*z)", "asin(x*t) + acos(x^2)*y", "atan(y*t)*sinh(x) - cosh(z*t)",
+          "step(x, 0.2, y, 1.4, z*t) + step(x)*y", "sign(x)*y + floor(3*x)*z"}) {
         const Expression of(text, {"x", "y", "z"});
         const std::array<double, 3> at{0.7, 1.3, 1.9};
         const double t = 0.4;
@@ -113,12 +114,49 @@ TEST(Expression, RefusesWhatIsNone)
     for (const char* text : {"log(-1)", "log(0)", "sqrt(-2)", "10^1000", "(-2)^0.5", "exp(1e6)"})
         EXPECT_EQ(code_of(text, {}), "expression-value") << text;
     EXPECT_EQ(code_of("1/x", {"x"}), "");   // not known yet
-    for (const char* symbol : {"", "t", "pi", "sin", "1a", "a b", "a.b"})
+    for (const char* symbol : {"", "t", "pi", "sin", "step", "1a", "a b"})
         EXPECT_EQ(code_of("1", {symbol}), "expression-name") << symbol;
     EXPECT_EQ(code_of(std::string(1001, '1'), {}), "expression-size");
     EXPECT_EQ(code_of(std::string(65, '(') + "1" + std::string(65, ')'), {}), "expression-size");
     EXPECT_EQ(code_of(std::string(62, '(') + "1" + std::string(62, ')'), {}), "");
     EXPECT_EQ(code_of("1", std::vector<std::string>(65, "a")), "expression-size");
+}
+
+TEST(Expression, HasFunctionsThatAreMadeOfOthers)
+{
+    for (const double x : {-1.0, -0.999999999, -0.3, 0.0, 1e-9, 0.7, 1.0}) {
+        EXPECT_DOUBLE_EQ(value("asin(x)", 0, {x, 0, 0}), std::asin(x)) << x;
+        EXPECT_DOUBLE_EQ(value("acos(x)", 0, {x, 0, 0}), std::acos(x)) << x;
+        EXPECT_DOUBLE_EQ(value("atan(7*x)", 0, {x, 0, 0}), std::atan(7 * x)) << x;
+        EXPECT_NEAR(value("sinh(x)", 0, {x, 0, 0}), std::sinh(x), 4e-16 * std::abs(x)) << x;
+        EXPECT_DOUBLE_EQ(value("cosh(x)", 0, {x, 0, 0}), std::cosh(x)) << x;
+        EXPECT_EQ(value("floor(10*x)", 0, {x, 0, 0}), std::floor(10 * x)) << x;
+        EXPECT_EQ(value("sign(x)", 0, {x, 0, 0}), (x > 0) - (x < 0)) << x;
+        EXPECT_EQ(value("step(x)", 0, {x, 0, 0}), 0.5 + 0.5 * ((x > 0) - (x < 0))) << x;
+    }
+    // As ADAMS has it: a cubic between two levels.
+    EXPECT_EQ(value("step(t, 1, 5, 3, -3)", 0.5), 5);
+    EXPECT_EQ(value("step(t, 1, 5, 3, -3)", 2), 1);
+    EXPECT_DOUBLE_EQ(value("step(t, 1, 5, 3, -3)", 1.5), 5 - 8 * 0.25 * 0.25 * 2.5);
+    EXPECT_EQ(value("step(t, 1, 5, 3, -3)", 4), -3);
+    EXPECT_EQ(code_of("step(t, 1)", {}), "expression-syntax");
+    EXPECT_EQ(code_of("asin(1.5)", {}), "expression-value");
+    EXPECT_TRUE(std::isnan(value("sign(x)", 0, {std::nan(""), 0, 0})));
+}
+
+TEST(Expression, TakesNamesWithPoints)
+{
+    const std::string text = "2*shaft.angle + 'crank pin'.angle_rate/2.5e1 - shaft.angle^2 + t.x_1";
+    const std::vector<std::string> names = names_with_points(text);
+    EXPECT_EQ(names, (std::vector<std::string>{"shaft.angle", "crank pin.angle_rate", "t.x_1"}));
+    const Expression of(text, names);
+    EXPECT_DOUBLE_EQ(of(0, std::array<double, 3>{3, 50, 7}), 6 + 2 - 9 + 7);
+    EXPECT_EQ(names_with_points("2.*x + 3.5/y.z1 - .5"), std::vector<std::string>{"y.z1"});
+    EXPECT_TRUE(names_with_points("sin(t) + x").empty());
+    std::string help;
+    EXPECT_EQ(code_of("1 + 'open", {}, &help), "expression-syntax");
+    EXPECT_EQ(code_of("1 + shaft.angle", {}, &help), "expression-name");
+    EXPECT_NE(help.find("'shaft.angle' at column 5"), std::string::npos) << help;
 }
 
 TEST(Expression, SaysWhereItHasNoValue)
@@ -155,6 +193,7 @@ TEST(Expression, KnowsWhereTimeAloneMakesItJumpOrBend)
         return std::ranges::count_if(found, [&](double t) { return std::abs(t - instant) < 1e-14; }) == 1;
     };
     EXPECT_TRUE(ends_at("x*atan2(sin(t), cos(t))", std::acos(-1.0)));
+    for (const double jump : {1.3, 1.9, 3.8}) EXPECT_TRUE(ends_at("x + sign(t - 1.3)*floor(t/1.9)", jump));
     for (const std::string x : {"-1", "t - 1", "1 - t", "0"})
         EXPECT_TRUE(ends_at("atan2(t - 1, " + x + ")", 1));
     expect("x*atan2(0.1*sin(10*t), sqrt(1 - 0.01*sin(10*t)^2))", {});
@@ -178,7 +217,8 @@ TEST(Expression, OverAWayEnclosesWhatItDoes)
     for (const char* text :
          {"-3*x - 0.2*v", "exp(-((x - 1)/0.1)^2)", "tanh(40*v)*x", "sin(7*x + t)/(2 + cos(3*v))", "abs(x)*v",
           "max(x, v) - min(x*x, t)", "atan2(x - 1, v - 1)", "sqrt(1.5 + x) + log(2 + v*v)", "(2 + x)^v",
-          "tan(0.3*x) + x^3 - v^-2", "x^2*v^4 - 2^x"}) {
+          "tan(0.3*x) + x^3 - v^-2", "x^2*v^4 - 2^x", "asin(0.3*x) + acos(0.2*v - 0.3)", "sinh(x)*cosh(v)",
+          "step(x, 0, v, 1, 2)", "sign(x + 2)*v + floor(0.1*v)"}) {
         const Expression f(text, {"x", "v"});
         for (int i = 0; i < 200; ++i) {
             const double t0 = 3 * any(random), dt = any(random), x0 = 2 * any(random) - 0.5, dx = any(random),
@@ -235,6 +275,12 @@ TEST(Expression, HasGuardsWhereTheMotionDecides)
     EXPECT_EQ(angle.piece_at(0.1).high, std::numbers::pi);
     EXPECT_EQ(angle.piece_at(0.1).low, -std::numbers::pi);
     EXPECT_NEAR(angle.following(-3, 3.2), 2 * std::numbers::pi - 3, 1e-15);
+    const Expression jumps("sign(2*x) + floor(v)", {"x", "v"});
+    ASSERT_EQ(jumps.guards().size(), 2u);
+    jumps.guarded(0, at, numbers);
+    EXPECT_EQ(numbers[0], -4);
+    EXPECT_EQ(numbers[1], 3);
+    EXPECT_EQ(jumps.guards()[1].piece_at(3.5).high, 4);
 }
 
 TEST(Guard, HasItsPiecesBetweenItsPlaces)
@@ -263,11 +309,13 @@ TEST(Expression, StandsAnyText)
 {
     std::mt19937 random(7);
     const std::string seeds[] = {"sin(x)*exp(-t)", "atan2(y, x)^2/(1 + abs(t))",
-                                 "-3*x - 0.2*y + min(x, max(y, 1))"};
+                                 "-3*x - 0.2*y + min(x, max(y, 1))",
+                                 "step(x, 0, 1, 2, y) + floor(asin('x'.y))"};
     const std::string letters = "0123456789.eE+-*/^(),xytpisncoaqrlgbmhd \t_#\"";
     int read = 0;
-    for (int n = 0; n < 100000; ++n) {
-        std::string text = seeds[random() % 3];
+    for (int n = 0; n < 110000; ++n) {
+        const auto which = random() % 10;
+        std::string text = seeds[which < 9 ? which % 3 : 3];
         for (unsigned changes = 1 + random() % 4; changes > 0; --changes) {
             const std::size_t at = random() % (text.size() + 1);
             const char letter = letters[random() % letters.size()];

@@ -5,9 +5,11 @@
 #include "livens/io/scenario.h"
 
 #include <cerrno>
+#include <cmath>
 #include <fstream>
 #include <new>
 
+#include "livens/base/text.h"
 #include "livens/dynamics/start/prepared.h"
 #include "livens/io/scenario/bodies/bodies.h"
 #include "livens/io/scenario/joints/joints.h"
@@ -50,12 +52,40 @@ bool check_format(const Node& root, Findings& findings)
     return true;
 }
 
+/// Weight in other units than SI: it is the Earth's, and yet a thousand times as large.
+void warn_of_gravity(const Section& top, Findings& findings)
+{
+    struct Habit {
+        double weight;
+        std::string_view unit, doubt;
+    };
+    static constexpr Habit habits[] = {{9806.65, "mm/s^2", "lengths in mm, too?"},
+                                       {980.665, "cm/s^2", "lengths in cm, too?"},
+                                       {386.0886, "in/s^2", "lengths in inches, too?"},
+                                       {32.17405, "ft/s^2", "lengths in feet, too?"}};
+    const Value* gravity = top.find("gravity");
+    if (gravity == nullptr || gravity->has_unit) return;
+    const double size = norm(top.vector("gravity"));
+    for (const Habit& habit : habits) {
+        if (std::abs(size - habit.weight) > 2e-3 * habit.weight) continue;
+        const std::string unit(habit.unit);
+        findings.warning(gravity->node->place, "gravity-unit",
+                         "'gravity' is " + to_text(size) + " m/s^2, the Earth's in " + unit + ": are " +
+                             std::string(habit.doubt),
+                         {"plain numbers are in SI units: m, kg, s, N",
+                          "write 9.81, or strings with units here and for lengths: \"" + to_text(size) + " " +
+                              unit + "\", \"120 mm\""});
+        return;
+    }
+}
+
 /// Everything behind the parser. The scenario counts if there is no error.
 void build(const Node& root, TreePart part, const MeshSource& meshes, Scenario& scenario, Findings& findings)
 {
     if (!check_format(root, findings)) return;
     const Section top(root, root_table(), "the scenario", findings);
     if (!check_counts(top, findings)) return;
+    warn_of_gravity(top, findings);
     // The order is that of references: joints name bodies, the start moves them along joints, drives begin
     // where the joints stand then, and loads read sensors, except for sensors that read loads.
     Builder builder(top, meshes, findings);

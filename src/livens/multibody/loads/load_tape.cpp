@@ -3,6 +3,7 @@
 #include "livens/multibody/loads/load_tape.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "livens/base/elementary.h"
@@ -258,6 +259,10 @@ TapeNumber recorded(const Expression::Step& step, const std::vector<TapeNumber>&
         return made(TapeKind::least, a, b.place);
     case Operation::greatest:
         return made(TapeKind::greatest, a, b.place);
+    case Operation::sign:
+        return applied([](double x, double) { return x > 0 ? 1.0 : x < 0 ? -1.0 : 0 * x; });
+    case Operation::floor:
+        return applied([](double x, double) { return std::floor(x); });
     default:
         return {};
     }
@@ -272,7 +277,7 @@ void watch(LoadTape& tape, const Expression& expression, const std::vector<TapeN
         const TapeNumber first = known[static_cast<std::size_t>(step.first)];
         if (step.operation == Operation::arc_tangent)
             tape.watch_guard(known[static_cast<std::size_t>(k)]);
-        else if (step.operation == Operation::absolute)
+        else if (step.second < 0)
             tape.watch_guard(first);
         else
             tape.watch_guard(first - known[static_cast<std::size_t>(step.second)]);

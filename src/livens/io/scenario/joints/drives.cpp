@@ -132,6 +132,18 @@ TimeFunction by_formula(const Expression& expression, const Duration& during)
     return expression_of_time(expression, events);
 }
 
+/// A drive holds what it drives, so that it cannot follow the motion.
+void check_names_of_time(const Section& drive)
+{
+    const Value& given = *drive.find("expression");
+    for (const std::string& text : given.texts.empty() ? std::vector{given.text} : given.texts)
+        for (const std::string& name : names_with_points(text))
+            throw InputError({"expression-name", "drive[" + drive_name(drive) + "].expression",
+                              "a drive follows time alone, not the motion", "'" + name + "'",
+                              "t, pi, functions", "",
+                              "a force that follows the motion is a [[load]] of type \"actuator\""});
+}
+
 /// Component c of the law; `now` is the value at the start, where a rate begins.
 TimeFunction read_law(const Section& drive, std::size_t c, std::size_t n, double now, const Duration& during)
 {
@@ -139,6 +151,7 @@ TimeFunction read_law(const Section& drive, std::size_t c, std::size_t n, double
     if (drive.has("rate")) return ramp(now, component(drive, "rate", c), during.begins);
     if (const Section* one = only_section(drive, "harmonic"))
         return harmonic(component(*one, "amplitude", c), one->number("frequency"), one->number("phase"));
+    if (drive.has("expression")) check_names_of_time(drive);
     if (drive.has("expression"))
         return by_formula(read_expressions(drive, {}, "drive[" + drive_name(drive) + "]")[c], during);
     if (const Section* one = only_section(drive, "step")) {
@@ -189,6 +202,7 @@ Joint make_on_joint(Builder& builder, const Section& drive, const std::string& n
                     const Configurations& X)
 {
     const JointReference of = find_coordinate(builder, drive, "drive[" + name + "]");
+    check_units(drive, of.coordinate->coordinate.is_angle(), "drive[" + name + "]");
     const TimeFunction law = read_law(drive, 0, 1, of.coordinate->at_stated, during);
     warn_of_turns(builder, drive, name, *of.coordinate, law, during);
     return driven_coordinate(name, *of.joint, *of.coordinate, law, X);
@@ -206,6 +220,7 @@ Joint make_drive(Builder& builder, const Section& drive, const std::string& name
     const Configurations X(all);
     const std::string type = drive.text("type");
     if (type == "joint") return make_on_joint(builder, drive, name, during, X);
+    check_units(drive, false, "drive[" + name + "]");
     if (type == "distance") {
         const Vector3 a = builder.in_axes(first.index, drive.row("points", 0)),
                       b = builder.in_axes(second.index, drive.row("points", 1));
@@ -260,6 +275,20 @@ void read_drive(Builder& builder, const Section& drive, std::unordered_set<std::
 
 }   // namespace
 
+void check_units(const Section& section, bool is_angle, const std::string& path)
+{
+    for (const Value& v : section.values()) {
+        for (const Section& inner : v.sections)
+            check_units(inner, is_angle, path + "." + std::string(v.key->name));
+        if (v.key->other_unit.empty() || !(is_angle ? v.has_unit : v.has_other_unit)) continue;
+        throw InputError({"unit", path + "." + std::string(v.key->name),
+                          "'" + std::string(v.key->name) + "' of " + section.label() + " is along " +
+                              (is_angle ? "an angle" : "a length"),
+                          "", "", "",
+                          "give it in " + std::string(is_angle ? v.key->other_unit : v.key->unit)});
+    }
+}
+
 void read_times(const Builder& builder, const Section& section, Joint& joint)
 {
     const Section* time = only_section(builder.top(), "time");
@@ -288,18 +317,20 @@ Table drive_table()
                       "Two continuous derivatives: a drive cannot jump or kink.",
                       {Key{"times", types::list, "Ascending, two or more.", "s"}.needed(),
                        Key{"values", types::list,
-                           "One for each time; for a path x, y, z of each, one after the other."}
+                           "One for each time; for a path x, y, z of each, one after the other.", "m"}
+                           .or_in("rad")
                            .needed()}});
     const Key wave = Key{"harmonic", types::table, "amplitude sin(2 pi frequency t + phase)."}.holding(
         {"harmonic of a drive",
          "A sine over time.",
-         {Key{"amplitude", numbers, "rad or m."}.needed(), Key{"frequency", types::number, "", "Hz"}.needed(),
-          Key{"phase", types::number, "", "rad", "0"}}});
+         {Key{"amplitude", numbers, "", "m"}.or_in("rad").needed(),
+          Key{"frequency", types::number, "", "Hz"}.needed(), Key{"phase", types::number, "", "rad", "0"}}});
     const Key step = Key{"step", types::table, "A smooth change, with two continuous derivatives."}.holding(
         {"step of a drive",
          "The rest of the time nothing changes.",
          {Key{"from", types::number, "Begins.", "s"}.needed(),
-          Key{"until", types::number, "Ends.", "s"}.needed(), Key{"rise", numbers, "rad or m."}.needed()}});
+          Key{"until", types::number, "Ends.", "s"}.needed(),
+          Key{"rise", numbers, "", "m"}.or_in("rad").needed()}});
     return Table{
         "[[drive]]",
         "What follows a function of time: angles in rad and displacements in m as joints count them, "
@@ -314,16 +345,22 @@ Table drive_table()
              "start.",
              "s"},
          Key{"until", types::number, "When it lets go: velocities go on. Default: never.", "s"},
-         Key{"value", numbers, "Constant."}.or_formulas(formulas_for_value),
+         Key{"value", numbers, "Constant.", "m"}.or_in("rad").or_formulas(formulas_for_value),
          Key{"rate", numbers,
              "Constant rate, from what the coordinate is at the start of the motion, beginning with the "
-             "drive; rad/s or m/s. A rate over time is an `expression` of its integral."}
+             "drive: `\"60 rpm\"`. A rate over time is an `expression` of its integral.",
+             "m/s"}
+             .or_in("rad/s")
              .or_formulas("a rate over time is said by 'expression', a formula of its integral: the angle or "
                           "displacement itself"),
          wave, step,
          Key{"expression", types::text_or_list,
              "A formula of t, in rad or m: `0.1*sin(2*pi*t)`; without kinks."},
-         Key{"polynomial", types::list, "Coefficients of 1, t, t^2, ..; of a path x, y, z of each."}, table}}
+         Key{"polynomial", types::list,
+             "Coefficients of 1, t, t^2, ..; of a path x, y, z of each; plain numbers, in rad or m and s."}
+             .or_formulas(
+                 "coefficients of powers of t have a unit each: give plain numbers, in rad or m and s"),
+         table}}
         .with_kinds("type", drive_kinds());
 }
 

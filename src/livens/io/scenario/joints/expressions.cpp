@@ -31,8 +31,11 @@ constexpr std::string_view rate_suffix = "_rate";
 [[noreturn]] void refuse_input(const std::string& code, const std::string& path, const std::string& symbol,
                                const std::string& text, const std::string& message, const std::string& help)
 {
-    throw InputError(
-        {code, path + ".inputs", "input '" + symbol + "': " + message, "'" + text + "'", "", "", help});
+    // Names that stand in the expression itself are their own symbols.
+    const bool is_own = symbol == text;
+    throw InputError({code, path + (is_own ? ".expression" : ".inputs"),
+                      (is_own ? "'" : "input '") + symbol + "': " + message, is_own ? "" : "'" + text + "'",
+                      "", "", help});
 }
 
 void add_input(const Builder& builder, Inputs& inputs, const std::string& symbol, const std::string& text,
@@ -95,6 +98,21 @@ void add_input(const Builder& builder, Inputs& inputs, const std::string& symbol
 
 }   // namespace
 
+namespace {
+
+std::vector<std::string> texts_of(const Value& given)
+{
+    return given.texts.empty() ? std::vector{given.text} : given.texts;
+}
+
+/// "np.sin": the reader of expressions says what it is called here.
+bool is_of_a_library(const std::string& name)
+{
+    return name.starts_with("np.") || name.starts_with("numpy.") || name.starts_with("math.");
+}
+
+}   // namespace
+
 std::vector<Key> expression_keys(bool is_vector)
 {
     static constexpr KeyType three{"three texts", Form::names, 3};
@@ -102,10 +120,10 @@ std::vector<Key> expression_keys(bool is_vector)
                 is_vector ? "Instead of `value`: a formula for each component ([how](joints.md#expressions))."
                           : "Instead of `value`: a formula ([how](joints.md#expressions))."},
             Key{"inputs", types::named_texts,
-                "What the symbols of `expression` stand for: coordinates of joints and their rates, and what "
+                "Short names for what `expression` reads: coordinates of joints and their rates, and what "
                 "sensors read, as in `{ phi = \"pivot.angle\", w = \"pivot.angle_rate\", x = \"tip.x\" }`, "
-                "in rad, m "
-                "and s."},
+                "in rad, m and s. They may stand there as they are, too: `-10*pivot.angle`, with blanks in "
+                "quotes: `-10*'crank pin'.angle`."},
             Key{"breaks", types::list, "Instants at which `expression` jumps or bends; elements end there.",
                 "s"}};
 }
@@ -113,22 +131,26 @@ std::vector<Key> expression_keys(bool is_vector)
 Inputs read_inputs(const Builder& builder, const Section& section, const std::string& path)
 {
     Inputs inputs;
-    const Value* given = section.find("inputs");
-    if (given == nullptr) return inputs;
-    const std::vector<Entry>& entries = given->node->entries();
-    for (std::size_t i = 0; i < entries.size(); ++i)
-        add_input(builder, inputs, entries[i].key, given->texts[i], path);
+    if (const Value* given = section.find("inputs")) {
+        const std::vector<Entry>& entries = given->node->entries();
+        for (std::size_t i = 0; i < entries.size(); ++i)
+            add_input(builder, inputs, entries[i].key, given->texts[i], path);
+    }
+    if (const Value* given = section.find("expression"))
+        for (const std::string& text : texts_of(*given))
+            for (const std::string& name : names_with_points(text)) {
+                const bool is_known =
+                    std::ranges::find(inputs.symbols, name) != inputs.symbols.end() || is_of_a_library(name);
+                if (!is_known) add_input(builder, inputs, name, name, path);
+            }
     return inputs;
 }
 
 std::vector<Expression> read_expressions(const Section& section, const Inputs& inputs,
                                          const std::string& path)
 {
-    const Value& given = *section.find("expression");
-    std::vector<std::string> texts = given.texts;
-    if (texts.empty()) texts = {given.text};
     std::vector<Expression> all;
-    for (const std::string& text : texts) {
+    for (const std::string& text : texts_of(*section.find("expression"))) {
         try {
             all.emplace_back(text, inputs.symbols);
         } catch (const InputError& error) {

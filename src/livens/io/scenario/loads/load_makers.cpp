@@ -158,22 +158,6 @@ Load on_body(const LoadSources& p, const Make& make)
     return by_formula(p, type, unit, std::move(units), inputs);
 }
 
-/// Texts with units must have those of the coordinate: of an angle the key's other one.
-void check_units(const Section& section, bool is_angle, const std::string& path)
-{
-    for (const Value& v : section.values()) {
-        if (v.key == nullptr || v.key->other_unit.empty() || !(is_angle ? v.has_unit : v.has_other_unit))
-            continue;
-        throw InputError({"unit", path + "." + std::string(v.key->name),
-                          "'" + std::string(v.key->name) + "' of " + section.label() + " is along " +
-                              (is_angle ? "an angle" : "a length"),
-                          "", "", "",
-                          "give it in " + std::string(is_angle ? v.key->other_unit : v.key->unit)});
-    }
-    if (const Section* table = section.takes("table") ? only_section(section, "table") : nullptr)
-        check_units(*table, is_angle, path + ".table");
-}
-
 /// Straight lines bend where they meet, which happens when the motion is there.
 void warn_of_kinks(const LoadSources& p, const std::vector<double>& bends)
 {

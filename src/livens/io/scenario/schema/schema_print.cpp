@@ -224,10 +224,13 @@ elements = 40
 
 A plain number is in SI units: m, kg, s, rad, N and products of them. Wherever the tables below name a unit,
 a text with a number and a unit may stand instead, and its dimension is checked: `"30 deg"`, `"5 mm"`,
-`"2 rpm"`, `"7850 kg/m^3"`, `"2 kN/m"`, `"3 N m"`.
+`"60 rpm"`, `"7850 kg/m^3"`, `"2 kN/m"`, `"3 N m"`, `"8 lbf in"`. Keys that follow a joint's coordinate take
+angles for angles and lengths for lengths: `rate = "60 rpm"`, `rise = "90 deg"`, `amplitude = "5 mm"`.
 
-- Units: m, g, s, N, J, W, Pa, Hz, rad with the prefixes n, u (or µ), m, c, d, k, M, G; and without
-  prefixes t, min, h, deg, rev, rpm.
+- With the prefixes n, u (or µ), m, c, d, k, M, G: m, g, s, N, J, W, Pa, bar, Hz, rad.
+- Without prefixes: t (1000 kg), min, h, deg (or °), rev, rpm; in, ft, yd, mi; lb, oz, slug (mass); lbf, ozf,
+  kip, kgf (force, with 9.80665 m/s^2); psi, ksi; mph, kn (knots); hp (550 ft lbf/s). Their definitions are
+  exact (NIST SP 811).
 - Products are written with a blank, `*` or `·`, powers with `^`. Behind a slash stands one factor or a
   parenthesis: `kg/(m s)`; `J/kg m` could mean two things and is refused.
 - Every number must be finite.

@@ -22,23 +22,35 @@ struct Symbol {
 };
 
 constexpr double pi = std::numbers::pi;
+constexpr double pound_force = 44482216152605;   // 1e-13 N
 constexpr std::array symbols{
-    Symbol{"1", {}, false},
-    Symbol{"m", {1, 1, 0, {1, 0, 0, 0}}},
-    Symbol{"g", {1, 1, -3, {0, 1, 0, 0}}},
-    Symbol{"s", {1, 1, 0, {0, 0, 1, 0}}},
-    Symbol{"N", {1, 1, 0, {1, 1, -2, 0}}},
-    Symbol{"J", {1, 1, 0, {2, 1, -2, 0}}},
-    Symbol{"W", {1, 1, 0, {2, 1, -3, 0}}},
-    Symbol{"Pa", {1, 1, 0, {-1, 1, -2, 0}}},
-    Symbol{"Hz", {1, 1, 0, {0, 0, -1, 0}}},
-    Symbol{"rad", {1, 1, 0, {0, 0, 0, 1}}},
-    Symbol{"t", {1, 1, 3, {0, 1, 0, 0}}, false},
-    Symbol{"min", {60, 1, 0, {0, 0, 1, 0}}, false},
-    Symbol{"h", {3600, 1, 0, {0, 0, 1, 0}}, false},
-    Symbol{"deg", {pi, 180, 0, {0, 0, 0, 1}}, false},
-    Symbol{"rev", {2 * pi, 1, 0, {0, 0, 0, 1}}, false},
-    Symbol{"rpm", {2 * pi, 60, 0, {0, 0, -1, 1}}, false},
+    Symbol{"1", {}, false}, Symbol{"m", {1, 1, 0, {1, 0, 0, 0}}}, Symbol{"g", {1, 1, -3, {0, 1, 0, 0}}},
+    Symbol{"s", {1, 1, 0, {0, 0, 1, 0}}}, Symbol{"N", {1, 1, 0, {1, 1, -2, 0}}},
+    Symbol{"J", {1, 1, 0, {2, 1, -2, 0}}}, Symbol{"W", {1, 1, 0, {2, 1, -3, 0}}},
+    Symbol{"Pa", {1, 1, 0, {-1, 1, -2, 0}}}, Symbol{"Hz", {1, 1, 0, {0, 0, -1, 0}}},
+    Symbol{"rad", {1, 1, 0, {0, 0, 0, 1}}}, Symbol{"bar", {1, 1, 5, {-1, 1, -2, 0}}},
+    Symbol{"Nm", {1, 1, 0, {2, 1, -2, 0}}}, Symbol{"t", {1, 1, 3, {0, 1, 0, 0}}, false},
+    Symbol{"min", {60, 1, 0, {0, 0, 1, 0}}, false}, Symbol{"h", {3600, 1, 0, {0, 0, 1, 0}}, false},
+    Symbol{"deg", {pi, 180, 0, {0, 0, 0, 1}}, false}, Symbol{"\xc2\xb0", {pi, 180, 0, {0, 0, 0, 1}}, false},
+    Symbol{"degree", {pi, 180, 0, {0, 0, 0, 1}}, false}, Symbol{"degrees", {pi, 180, 0, {0, 0, 0, 1}}, false},
+    Symbol{"rev", {2 * pi, 1, 0, {0, 0, 0, 1}}, false}, Symbol{"rpm", {2 * pi, 60, 0, {0, 0, -1, 1}}, false},
+    // Inch, foot, yard, mile, pound and ounce by the international agreement of 1959; forces with the
+    // standard gravity of 9.80665 m/s^2 (NIST SP 811, appendix B). All are exact.
+    Symbol{"in", {254, 1, -4, {1, 0, 0, 0}}, false}, Symbol{"inch", {254, 1, -4, {1, 0, 0, 0}}, false},
+    Symbol{"ft", {3048, 1, -4, {1, 0, 0, 0}}, false}, Symbol{"yd", {9144, 1, -4, {1, 0, 0, 0}}, false},
+    Symbol{"mi", {1609344, 1, -3, {1, 0, 0, 0}}, false}, Symbol{"lb", {45359237, 1, -8, {0, 1, 0, 0}}, false},
+    Symbol{"lbm", {45359237, 1, -8, {0, 1, 0, 0}}, false},
+    Symbol{"oz", {28349523125, 1, -12, {0, 1, 0, 0}}, false},
+    Symbol{"slug", {pound_force, 3048, -9, {0, 1, 0, 0}}, false},   // lbf s^2 / ft
+    Symbol{"lbf", {pound_force, 1, -13, {1, 1, -2, 0}}, false},
+    Symbol{"kip", {pound_force, 1, -10, {1, 1, -2, 0}}, false},
+    Symbol{"ozf", {pound_force, 16, -13, {1, 1, -2, 0}}, false},
+    Symbol{"kgf", {980665, 1, -5, {1, 1, -2, 0}}, false},
+    Symbol{"psi", {pound_force, 64516, -5, {-1, 1, -2, 0}}, false},   // lbf / in^2
+    Symbol{"ksi", {pound_force, 64516, -2, {-1, 1, -2, 0}}, false},
+    Symbol{"mph", {1609344, 3600, -3, {1, 0, -1, 0}}, false},
+    Symbol{"kn", {1852, 3600, 0, {1, 0, -1, 0}}, false},
+    Symbol{"hp", {550 * 3048 * pound_force, 1, -17, {2, 1, -3, 0}}, false},   // 550 ft lbf/s
 };
 
 struct Prefix {
@@ -50,8 +62,31 @@ constexpr std::array prefixes{
     Prefix{"c", -2}, Prefix{"d", -1}, Prefix{"k", 3},         Prefix{"M", 6},         Prefix{"G", 9}};
 constexpr int largest_exponent = 9;
 constexpr std::string_view known_units =
-    "units are m, g, s, N, J, W, Pa, Hz, rad with the prefixes n u m c d k M G, and t, "
-    "min, h, deg, rev, rpm";
+    "units are m, g, s, N, J, W, Pa, bar, Hz, rad with the prefixes n u m c d k M G; t, min, h, deg or "
+    "\xc2\xb0, rev, rpm; in, ft, yd, mi, lb, oz, slug, lbf, ozf, kip, kgf, psi, ksi, mph, kn, hp";
+
+/// A symbol that people write otherwise.
+std::string other_spelling(std::string_view name)
+{
+    static constexpr std::array spellings{
+        std::pair{"inches", "in"},   std::pair{"feet", "ft"},      std::pair{"foot", "ft"},
+        std::pair{"lbs", "lb"},      std::pair{"pounds", "lb"},    std::pair{"sec", "s"},
+        std::pair{"second", "s"},    std::pair{"seconds", "s"},    std::pair{"hour", "h"},
+        std::pair{"hours", "h"},     std::pair{"hr", "h"},         std::pair{"minutes", "min"},
+        std::pair{"meter", "m"},     std::pair{"meters", "m"},     std::pair{"metre", "m"},
+        std::pair{"metres", "m"},    std::pair{"Kg", "kg"},        std::pair{"KG", "kg"},
+        std::pair{"kgs", "kg"},      std::pair{"tonne", "t"},      std::pair{"newton", "N"},
+        std::pair{"hz", "Hz"},       std::pair{"HZ", "Hz"},        std::pair{"radian", "rad"},
+        std::pair{"radians", "rad"}, std::pair{"rads", "rad"},     std::pair{"RPM", "rpm"},
+        std::pair{"rps", "rev/s"},   std::pair{"MM", "mm"},        std::pair{"Nmm", "N mm"},
+        std::pair{"kNm", "kN m"},    std::pair{"lbfin", "lbf in"}, std::pair{"kph", "km/h"},
+        std::pair{"kmh", "km/h"},    std::pair{"kmph", "km/h"},    std::pair{"knots", "kn"},
+        std::pair{"kts", "kn"},      std::pair{"HP", "hp"},        std::pair{"PSI", "psi"},
+        std::pair{"turn", "rev"},    std::pair{"turns", "rev"},    std::pair{"watt", "W"}};
+    for (const auto& [other, ours] : spellings)
+        if (name == other) return std::string(": write ") + ours;
+    return {};
+}
 
 std::optional<Unit> find_symbol(std::string_view name)
 {
@@ -141,23 +176,23 @@ private:
     {
         skip_blanks();
         const std::size_t end = std::min(rest_.find_first_of(" \t*/^()\xc2"), rest_.size());
-        // The first byte of a micro sign is that of a middle dot.
-        const std::size_t length = rest_.substr(0, 2) == "\xc2\xb5"
-                                       ? 2 + std::min(rest_.substr(2).find_first_of(" \t*/^()\xc2"),
-                                                      rest_.size() - 2)
-                                       : end;
+        // The first byte of a micro sign, and of a degree sign, is that of a middle dot.
+        const bool is_sign = rest_.starts_with("\xc2\xb5") || rest_.starts_with("\xc2\xb0");
+        const std::size_t length =
+            is_sign ? 2 + std::min(rest_.substr(2).find_first_of(" \t*/^()\xc2"), rest_.size() - 2) : end;
         const std::string_view name = rest_.substr(0, length);
         const std::optional<Unit> found = find_symbol(name);
         if (!found) {
-            reason_ = name.empty() ? "a unit is missing"
-                                   : "'" + std::string(name) + "' is no unit known here";
+            reason_ = name.empty()
+                          ? "a unit is missing"
+                          : "'" + std::string(name) + "' is no unit known here" + other_spelling(name);
             return;
         }
         rest_.remove_prefix(length);
         int exponent = 1;
         if (!rest_.empty() && rest_.front() == '^') {
-            const std::from_chars_result r = std::from_chars(rest_.data() + 1, rest_.data() + rest_.size(),
-                                                             exponent);
+            const std::from_chars_result r =
+                std::from_chars(rest_.data() + 1, rest_.data() + rest_.size(), exponent);
             if (r.ec != std::errc() || exponent < -largest_exponent || exponent > largest_exponent) {
                 reason_ = "an exponent is a whole number from -9 to 9";
                 return;
@@ -201,9 +236,9 @@ Quantity parse_quantity(std::string_view text, std::string_view si_unit)
     rest.remove_prefix(static_cast<std::size_t>(r.ptr - rest.data()));
     rest.remove_prefix(std::min(rest.find_first_not_of(" \t"), rest.size()));
     if (rest.empty())
-        return {
-            0, "the unit is missing",
-            "leave out the quotes for " + wanted + ", or write \"" + to_text(number) + " " + wanted + "\""};
+        return {0, "the unit is missing",
+                "leave out the quotes for " + wanted + ", or write \"" + to_text(number) + " " + wanted +
+                    "\""};
     std::string reason;
     const std::optional<Unit> unit = parse_unit(rest, reason);
     if (!unit) return {0, reason, std::string(known_units)};
