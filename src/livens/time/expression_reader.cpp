@@ -36,6 +36,44 @@ constexpr std::array functions{
 constexpr std::array<std::pair<std::string_view, std::string_view>, 6> other_names{
     {{"time", "t"}, {"T", "t"}, {"Pi", "pi"}, {"PI", "pi"}, {"ln", "log"}, {"arctan2", "atan2"}}};
 
+/// What to write for names of other languages that are no function here.
+struct Instead {
+    std::string_view word, help;
+};
+constexpr std::string_view no_prefix = "functions have no prefix, as in sin(t)";
+constexpr std::string_view no_branch =
+    "there is no IF: max(x, 0), min and abs switch at zero; what changes over "
+    "time is a table";
+constexpr std::string_view no_power = "a power is written x^2";
+constexpr std::string_view in_radians = "angles are in rad: 30 deg is 30*pi/180";
+constexpr std::string_view an_input = "coordinates and their rates are inputs, under a symbol of your choice";
+constexpr std::array<Instead, 18> instead{{
+    {"np", no_prefix},
+    {"numpy", no_prefix},
+    {"math", no_prefix},
+    {"Math", no_prefix},
+    {"IF", no_branch},
+    {"if", no_branch},
+    {"where", no_branch},
+    {"pow", no_power},
+    {"power", no_power},
+    {"e", "exp(1) is e, exp(x) a power of it"},
+    {"deg", in_radians},
+    {"radians", in_radians},
+    {"AX", an_input},
+    {"AZ", an_input},
+    {"DZ", an_input},
+    {"WZ", an_input},
+    {"VARVAL", an_input},
+    {"q", an_input},
+}};
+
+/// Letters without their case.
+bool is_same_but_for_case(std::string_view a, std::string_view b)
+{
+    return std::ranges::equal(a, b, [](char x, char y) { return (x | 0x20) == (y | 0x20); });
+}
+
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 bool begins_name(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
 
@@ -210,6 +248,11 @@ private:
         std::string known;
         for (const auto& [other, own] : other_names)
             if (word == other) known = "did you mean '" + std::string(own) + "'? ";
+        for (const Function& f : functions)
+            if (known.empty() && is_same_but_for_case(word, f.name))
+                known = "did you mean '" + std::string(f.name) + "'? ";
+        for (const Instead& other : instead)
+            if (word == other.word) known += std::string(other.help) + "; ";
         known += "known are t, pi";
         for (const Function& f : functions) known += ", " + std::string(f.name);
         for (const std::string& symbol_name : symbols_) known += ", " + symbol_name;

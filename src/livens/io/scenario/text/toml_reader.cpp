@@ -154,6 +154,16 @@ std::string help_after_value(std::string_view line, const SourceLocation& place,
     return "a number with a unit stands in quotes: \"5 mm\"";
 }
 
+/// Of a value that is no TOML: a word without quotes, most likely.
+std::string help_before_value(std::string_view line, const SourceLocation& place)
+{
+    const std::size_t column = static_cast<std::size_t>(std::max(1, place.column)) - 1;
+    std::string_view word = line.substr(std::min(column, line.size()));
+    word = word.substr(0, word.find_first_of(" \t\r#,]}"));
+    const bool is_word = !word.empty() && std::isalpha(static_cast<unsigned char>(word.front())) != 0;
+    return is_word ? "strings are written in quotes: \"" + std::string(word) + "\"" : "";
+}
+
 void report(const toml::parse_error& error, std::string_view text, Findings& findings)
 {
     const std::string_view description = error.description();
@@ -181,6 +191,7 @@ void report(const toml::parse_error& error, std::string_view text, Findings& fin
             description.substr(description.substr(0, prefix.size()) == prefix ? prefix.size() : 0));
         std::string help;
         if (says("expected a comment or whitespace")) help = help_after_value(line, place, word);
+        if (says("could not determine value type")) help = help_before_value(line, place);
         if (help.empty() && !word.empty() && static_cast<unsigned char>(word.front()) >= 0x80)
             help = quotes_help;
         findings.error(place, "toml-syntax", std::move(message),
