@@ -7,6 +7,7 @@ import os
 from . import _core
 from ._errors import InputError, Place, fault, file_name, raised
 from ._model import Model
+from ._other_names import refused_model
 from ._places import some_time
 from ._tree import diagnostics_of_text, tables
 
@@ -43,6 +44,8 @@ def load(file: str | os.PathLike[str] | None = None, *, text: str | None = None,
     if text is not None and not isinstance(text, str):
         raise TypeError(f"text= of load() is the scenario itself, a str, not {type(text).__name__}")
     name = "" if file is None else file_name(file)
+    if instead := refused_model(name):
+        raise fault("unknown-choice", f"'{name}' is no scenario", "file", instead)
     if file is not None:
         with open(name, "rb") as stream:
             content = stream.read(1 + (16 << 20))

@@ -11,6 +11,7 @@ import numpy as np
 
 from . import _core
 from ._errors import fault, file_name, make_way
+from ._other_names import refused_ending
 from ._parts import Floats
 from ._series import Series
 from ._tree import plain
@@ -237,6 +238,8 @@ class Solution(Series):
         self._refuse_functions("saved")
         name = file_name(file)
         make_way(name, "run", self._result.inputs(), force)
+        if instead := refused_ending(name):
+            raise fault("unknown-choice", f"'{name}' does not end like a result", "file", instead)
         self._result.save(name)
 
     def report(self, file: str | os.PathLike[str], other: Solution | None = None, *, force: bool = False) -> None:
@@ -290,7 +293,8 @@ class Solution(Series):
         chosen = format or next((word for word, ending in known.items() if name.endswith(ending)), None)
         if chosen not in known:
             endings = ", ".join(f"{word} ({ending})" for word, ending in known.items())
-            raise fault("unknown-choice", f"no format fits '{chosen or name}'", "format", f"there are {endings}")
+            raise fault("unknown-choice", f"no format fits '{chosen or name}'", "format",
+                        f"there are {endings}; sol.save('run.nc') writes all, sol.report('run.html') shows the motion")
         make_way(name, str(chosen), self._result.inputs(), force)
         if chosen == "npz":
             import tempfile

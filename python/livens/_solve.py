@@ -15,6 +15,7 @@ from . import _core
 from ._entries import default_name
 from ._errors import InputError, SolveError, SolveWarning, fault, stack_level, user_place
 from ._model import Model
+from ._other_names import of_keyword
 from ._places import diagnostic_of
 from ._results import Solution
 from ._tree import Table, plain, schema, toml
@@ -297,7 +298,7 @@ def _method(model: Model, method: Method | str | None, options: Mapping[str, Any
             names = [n for n in known if n != "family"]
             of_solve = ["time", "accuracy", "elements", "output", "breaks", "method", "start", "end", "progress", "strict"]
             raise fault("unknown-key", f"solve() has no keyword '{name}'", name,
-                        _core.suggestion(name, names + of_solve)
+                        of_keyword(name) or _core.suggestion(name, names + of_solve)
                         if name not in ("degree", "window", "basis") else f"write method=lv.Lobatto({name}=..)")
         if value is None:
             table.pop(name, None)

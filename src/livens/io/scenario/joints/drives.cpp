@@ -318,8 +318,8 @@ Table drive_table()
          Key{"rate", numbers,
              "Constant rate, from what the coordinate is at the start of the motion, beginning with the "
              "drive; rad/s or m/s. A rate over time is an `expression` of its integral."}
-             .or_formulas("a rate over time is said by 'expression', a formula of its integral: the angle or "
-                          "displacement itself"),
+             .or_formulas("for a varying rate give the angle or displacement itself as 'expression', as in "
+                          "\"5*t^2\""),
          wave, step,
          Key{"expression", types::text_or_list,
              "A formula of t, in rad or m: `0.1*sin(2*pi*t)`; without kinks."},

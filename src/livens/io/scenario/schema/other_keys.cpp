@@ -291,15 +291,13 @@ bool holds_word(std::string_view words, std::string_view word)
 }
 
 /// The help with the part's name where it says `@`, and its coordinate where it says `%`.
-std::string about(std::string_view help, const Node& node, std::string_view kind)
+std::string about(std::string_view help, std::string_view name, std::string_view kind)
 {
     const bool slides = kind == "prismatic" || kind == "point_on_line";
-    const Node* title = node.find("name");
-    const bool is_named = title != nullptr && title->kind == Node::Kind::text && !title->text().empty();
     std::string text;
     for (const char c : help) {
         if (c == '@')
-            text += is_named ? title->text() : "NAME";
+            text += name.empty() ? "NAME" : name;
         else if (c == '%')
             text += slides ? "displacement" : "angle";
         else
@@ -319,7 +317,7 @@ std::string without_case(std::string_view word)
     return plain;
 }
 
-KeyAdvice instead_of_key(const Table& table, int kind, std::string_view key, const Node& node)
+KeyAdvice instead_of_key(const Table& table, int kind, std::string_view key, std::string_view name)
 {
     const std::string word = without_case(key);
     if (word.empty()) return {};
@@ -331,7 +329,7 @@ KeyAdvice instead_of_key(const Table& table, int kind, std::string_view key, con
         if (!holds_word(other.words, word)) continue;
         if (!other.meant.empty() && find_key(keys, other.meant) == nullptr) continue;
         if (other.help.empty()) return {other.meant, "livens calls it '" + std::string(other.meant) + "'"};
-        return {other.meant, about(other.help, node, own)};
+        return {other.meant, about(other.help, name, own)};
     }
     return {};
 }

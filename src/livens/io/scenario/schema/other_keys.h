@@ -6,7 +6,6 @@
 #include <string_view>
 
 #include "livens/io/scenario/schema/schema.h"
-#include "livens/io/scenario/text/document.h"
 
 namespace livens::inline io_internal {
 
@@ -15,8 +14,8 @@ struct KeyAdvice {
     std::string help;         ///< empty: nothing is known of it
 };
 
-/// Of a key that the table does not have for this kind (an index, or any_kind).
-KeyAdvice instead_of_key(const Table& table, int kind, std::string_view key, const Node& node);
+/// Of a key that the table does not have for this kind (an index, or any_kind); `name` is that of the part.
+KeyAdvice instead_of_key(const Table& table, int kind, std::string_view key, std::string_view name);
 
 /// "timeStep", "time_step" and "Time-Step" alike: "timestep".
 std::string without_case(std::string_view word);

@@ -15,6 +15,11 @@ struct OtherWord {
     std::string_view word, choice, with = {};
 };
 
+// Beside the nearest method; with a semicolon it is only that.
+constexpr std::string_view by_itself = "; leave [method] out and livens chooses";
+constexpr std::string_view for_stiff = ", for stiff models; leave [method] out and livens chooses";
+constexpr std::string_view reference = ", a reference of low order; leave [method] out and livens chooses";
+
 // Spelled as without_case() has them. A word of several kinds stands once for each.
 constexpr OtherWord other_words[] = {
     // joints
@@ -118,42 +123,42 @@ constexpr OtherWord other_words[] = {
     {"force", "load", "with 'load'; a joint's reactions are in the results anyway"},
     {"reaction", "load", "with 'load'; a joint's reactions are in the results anyway"},
     // methods
-    {"rk4", "lobatto", "or leave [method] out: livens chooses"},
-    {"rk45", "lobatto", "or leave [method] out: livens chooses"},
-    {"rungekutta", "lobatto", "or leave [method] out: livens chooses"},
-    {"rkf45", "lobatto", "or leave [method] out: livens chooses"},
-    {"dopri", "lobatto", "or leave [method] out: livens chooses"},
-    {"dopri5", "lobatto", "or leave [method] out: livens chooses"},
-    {"dop853", "lobatto", "or leave [method] out: livens chooses"},
-    {"ode45", "lobatto", "or leave [method] out: livens chooses"},
-    {"ode113", "lobatto", "or leave [method] out: livens chooses"},
-    {"adams", "lobatto", "or leave [method] out: livens chooses"},
+    {"rk4", "lobatto", by_itself},
+    {"rk45", "lobatto", by_itself},
+    {"rungekutta", "lobatto", by_itself},
+    {"rkf45", "lobatto", by_itself},
+    {"dopri", "lobatto", by_itself},
+    {"dopri5", "lobatto", by_itself},
+    {"dop853", "lobatto", by_itself},
+    {"ode45", "lobatto", by_itself},
+    {"ode113", "lobatto", by_itself},
+    {"adams", "lobatto", by_itself},
     {"lsoda", "auto", "which changes between the two by itself"},
     {"automatic", "auto"},
-    {"ode15s", "radau", "for stiff models; or leave [method] out: livens chooses"},
-    {"ode23t", "radau", "for stiff models; or leave [method] out: livens chooses"},
-    {"bdf", "radau", "for stiff models; or leave [method] out: livens chooses"},
-    {"ida", "radau", "for stiff models; or leave [method] out: livens chooses"},
-    {"dassl", "radau", "for stiff models; or leave [method] out: livens chooses"},
-    {"gstiff", "radau", "for stiff models; or leave [method] out: livens chooses"},
-    {"wstiff", "radau", "for stiff models; or leave [method] out: livens chooses"},
-    {"hht", "radau", "for stiff models; or leave [method] out: livens chooses"},
-    {"newmark", "radau", "for stiff models; or leave [method] out: livens chooses"},
-    {"generalizedalpha", "radau", "for stiff models; or leave [method] out: livens chooses"},
-    {"generalisedalpha", "radau", "for stiff models; or leave [method] out: livens chooses"},
-    {"stiff", "radau", "for stiff models; or leave [method] out: livens chooses"},
-    {"implicit", "radau", "for stiff models; or leave [method] out: livens chooses"},
+    {"ode15s", "radau", for_stiff},
+    {"ode23t", "radau", for_stiff},
+    {"bdf", "radau", for_stiff},
+    {"ida", "radau", for_stiff},
+    {"dassl", "radau", for_stiff},
+    {"gstiff", "radau", for_stiff},
+    {"wstiff", "radau", for_stiff},
+    {"hht", "radau", for_stiff},
+    {"newmark", "radau", for_stiff},
+    {"generalizedalpha", "radau", for_stiff},
+    {"generalisedalpha", "radau", for_stiff},
+    {"stiff", "radau", for_stiff},
+    {"implicit", "radau", for_stiff},
     {"radau5", "radau", "with degree = 3"},
     {"radauiia", "radau"},
     {"gauss", "lobatto"},
     {"collocation", "lobatto"},
-    {"euler", "endpoint", "of order 1, as a reference; or leave [method] out: livens chooses"},
-    {"impliciteuler", "endpoint", "of order 1, as a reference; or leave [method] out: livens chooses"},
-    {"eulerimplicit", "endpoint", "of order 1, as a reference; or leave [method] out: livens chooses"},
-    {"semiimpliciteuler", "midpoint", "of order 2, as a reference; or leave [method] out: livens chooses"},
-    {"trapezoidal", "midpoint", "of order 2, as a reference; or leave [method] out: livens chooses"},
-    {"rattle", "midpoint", "of order 2, as a reference; or leave [method] out: livens chooses"},
-    {"verlet", "midpoint", "of order 2, as a reference; or leave [method] out: livens chooses"},
+    {"euler", "endpoint", reference},
+    {"impliciteuler", "endpoint", reference},
+    {"eulerimplicit", "endpoint", reference},
+    {"semiimpliciteuler", "midpoint", reference},
+    {"trapezoidal", "midpoint", reference},
+    {"rattle", "midpoint", reference},
+    {"verlet", "midpoint", reference},
 };
 
 }   // namespace
@@ -178,7 +183,9 @@ std::string in_other_words(std::string_view word, const Words& choices)
     std::string_view with;
     const std::string_view choice = in_other_words(word, choices, with);
     if (choice.empty()) return {};
-    return "livens calls it \"" + std::string(choice) + "\"" + (with.empty() ? "" : " ") + std::string(with);
+    const bool is_nearest = with.starts_with(';') || with.starts_with(',');
+    return (is_nearest ? "nearest here is \"" : "livens calls it \"") + std::string(choice) + "\"" +
+           (with.empty() || is_nearest ? "" : " ") + std::string(with);
 }
 
 std::string type_told_by_keys(const Node& node, const Table& table)

@@ -7,7 +7,10 @@ namespace livens::inline io_internal {
 
 void Section::report_unknown(const Entry& entry, const std::vector<const Key*>& keys)
 {
-    const KeyAdvice other = instead_of_key(*table_, kind_, entry.key, *node_);
+    const Node* title = node_->find("name");
+    const bool is_named = title != nullptr && title->kind == Node::Kind::text;
+    const KeyAdvice other =
+        instead_of_key(*table_, kind_, entry.key, is_named ? title->text() : std::string());
     if (!other.meant.empty()) meant_.push_back(other.meant);
     Words owners;
     for (const Kind& kind : table_->kinds)

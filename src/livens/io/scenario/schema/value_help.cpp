@@ -94,11 +94,12 @@ std::string help_with_form(const Key& key, const Node& node)
     case Form::integer:
         if (is_list && node.items().size() == 1)
             return "without brackets: " + name + " = " + toml_of(node.items().front());
-        if (node.kind == NodeKind::text && key.unit.empty() && key.type.form == Form::number &&
-            key.formulas.empty())
-            return "a plain number, without a unit and quotes";
         return {};
     case Form::row:
+        // Two coordinates of what lies in a plane.
+        if (is_list && key.type.count == 3 && node.items().size() == 2)
+            return "the model is in space: " + name + " = [" + toml_of(node.items()[0]) + ", " +
+                   toml_of(node.items()[1]) + ", 0]";
         return is_list ? "" : help_with_row(key, node, key.type.count);
     case Form::names:
         if (key.name == "expression" && node.kind == NodeKind::text)
