@@ -74,8 +74,8 @@ void write_new(const std::filesystem::path& file, std::string_view text)
 
 constexpr const char* schema_name = "livens.schema.json";
 
-/// What editors check the file by, beside it: a new one, or in the place of an older one of livens. Whether it is
-/// there then: the scenario is worth as much without it.
+/// What editors check the file by, beside it: a new one, or in place of an older one of livens. Whether it
+/// is there then: the scenario is worth as much without it.
 bool write_schema(const std::filesystem::path& file)
 {
     const std::string text = schema_json();

@@ -437,7 +437,7 @@ TEST(Schema, JsonNamesEveryKeyAndClosesEveryBracket)
 TEST(Schema, JsonHasNothingThatHidesASlip)
 {
     const std::string json = schema_json();
-    for (const char* word : {"\"allOf\"", "\"oneOf\"", "\"additionalProperties\": false", ": false"})
+    for (const char* word : {"\"allOf\"", "\"oneOf\"", "\"additionalProperties\": false", "\": false"})
         EXPECT_EQ(json.find(word), std::string::npos) << word;
     // Alternatives are left where words stand beside numbers, two of each.
     int n_alternatives = 0;
