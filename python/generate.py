@@ -242,7 +242,7 @@ class Writer:
             ends = kind == "joint"
             front = "first: End | None = None, second: End | None = None, " if ends else ""
             self.line(f"\n    def add_{kind}(self, name: str | None, type: str, {front}**keys: Any) -> {kind.capitalize()}:")
-            self.line(f'        """Adds a {kind} whose type is a text: the same as the method of that type.')
+            self.line(f'        """Adds a {kind} whose type is a string: the same as the method of that type.')
             self.line("\n        Args:")
             self.line("            name: What everything else calls it.")
             words = ", ".join(k["word"] for k in table["kinds"])

@@ -83,7 +83,7 @@ class Tree(Adders):
         return root
 
     def _with_paths(self, found: list[Diagnostic]) -> list[Diagnostic]:
-        """Of a text: the path of what stands there."""
+        """Of a scenario that was read: the path of what stands there."""
         return [replace(d, path=path_at(self._root, d.place)) for d in found]
 
     def _refuse_functions(self, what: str) -> None:

@@ -26,7 +26,7 @@ def spelled(name: str) -> str:
 
 
 class Section:
-    """A table of a model. Its keys are attributes: reading gives SI units, assigning takes texts with units, too.
+    """A table of a model. Its keys are attributes: reading gives SI units, assigning takes strings with units, too.
 
     Keys that were not given read as their default, or ``None``; assigning ``None``, or ``del``, takes a key
     away. Where several keys say the same, the last one assigned counts: a body's ``mass`` takes its ``density``
@@ -67,7 +67,7 @@ class Section:
 
     @property
     def given(self) -> dict[str, Any]:
-        """A copy of what was given, as it was given: texts with their units."""
+        """A copy of what was given, as it was given: strings with their units."""
         return dict(self._table.copy())
 
     def __getattr__(self, name: str) -> Any:

@@ -13,7 +13,7 @@ from ._tree import diagnostics_of_text, tables
 
 
 def load(file: str | os.PathLike[str] | None = None, *, text: str | None = None, check: bool = True) -> Model:
-    """Reads a scenario, from a file or from a text.
+    """Reads a scenario, from a file or from a string.
 
     Args:
         file: Its name.
@@ -54,7 +54,7 @@ def load(file: str | os.PathLike[str] | None = None, *, text: str | None = None,
         try:
             content = text.encode()
         except UnicodeEncodeError:
-            raise fault("not-text", "this text holds surrogates, which are no characters") from None
+            raise fault("not-text", "this string holds surrogates, which are not characters") from None
     parsed, found = _core.parse(content)
     shown = content.decode("utf-8", "replace")
     if parsed is None:

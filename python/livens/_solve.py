@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from ._generated import MethodOptions
 
 Time: TypeAlias = Union[Number, tuple[Number, Number], Sequence[Number], None]
-"""An end (from the start of the model's own ``[time]``, or 0), or (start, end); s, texts with units are taken."""
+"""An end (from the start of the model's own ``[time]``, or 0), or (start, end); s, strings with units are taken."""
 End: TypeAlias = Union[Condition, Literal["nothing", "positions", "momenta", "state"], None]
 """What is known at an end of time."""
 ProgressArgument: TypeAlias = Union[bool, Callable[[int, int, float], Any]]
@@ -222,8 +222,8 @@ def _overrides(model: Model, time: Time, of_time: dict[str, Any], method: Method
     if time is not None or any(value is not None for value in of_time.values()):
         made["time"] = _time(model, time, of_time)
     elif "time" not in model._root:
-        raise fault("missing-key", "the model does not say until when", "time.end",
-                    "say it here: lv.solve(model, 10), or in the model: model.time.end = 10")
+        raise fault("missing-key", "the end of time is missing", "time.end",
+                    "give it here: lv.solve(model, 10), or in the model: model.time.end = 10")
     if method is not None or options:
         made["method"] = _method(model, method, options)
     if start is not None:

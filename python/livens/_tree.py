@@ -121,7 +121,7 @@ def plain(value: Any, key: dict[str, Any] | None, path: str) -> Any:
         return items if items and all(isinstance(item, Table) for item in items) else tuple(items)
     raise fault("wrong-type", f"{_article(type(value).__name__)} is no value of a model", path,
                 _of_function(path) if callable(value)
-                else "numbers, texts with units, lists and arrays are")
+                else "numbers, strings with units, lists and arrays are")
 
 
 def _of_function(path: str) -> str:
@@ -140,7 +140,7 @@ def _plain_table(value: Mapping[Any, Any], child: dict[str, Any] | None, path: s
     table = Table(place=user_place())
     for name, item in value.items():
         if not isinstance(name, str):
-            raise fault("wrong-type", f"keys are texts, not {type(name).__name__}", path)
+            raise fault("wrong-type", f"keys are strings, not {type(name).__name__}", path)
         key = None if child is None else schema().key(child, value, name)
         table[name] = plain(item, key, f"{path}.{name}")
         table.places[name] = table.place
@@ -218,7 +218,7 @@ def _text(value: str) -> str:
         elif code < 0x20 or code == 0x7F:
             out.append(f"\\u{code:04X}")
         elif 0xD800 <= code < 0xE000:
-            raise fault("not-text", "this text holds surrogates, which are no characters")
+            raise fault("not-text", "this string holds surrogates, which are not characters")
         else:
             out.append(c)
     return '"' + "".join(out) + '"'

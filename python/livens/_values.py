@@ -26,7 +26,7 @@ class Quantity(Protocol):
 
 
 Number: TypeAlias = Union[float, str, Quantity, "np.floating[Any]", "np.integer[Any]"]
-"""A number in SI units, a text with a unit (``"30 deg"``), or a quantity of pint."""
+"""A number in SI units, a string with a unit (``"30 deg"``), or a quantity of pint."""
 Vector: TypeAlias = Union[Sequence[Number], npt.NDArray[Any], Quantity]
 """Some numbers."""
 Matrix: TypeAlias = Union[Sequence[Vector], npt.NDArray[Any], Quantity]

@@ -35,7 +35,7 @@ std::string utf8(nb::handle text, const Location& at)
     const char* bytes = PyUnicode_AsUTF8AndSize(text.ptr(), &size);
     if (bytes != nullptr) return {bytes, static_cast<std::size_t>(size)};
     PyErr_Clear();
-    refuse(at, "not-text", "this text holds surrogates, which are no characters");
+    refuse(at, "not-text", "this string holds surrogates, which are not characters");
 }
 
 /// A value of a key: tuples and lists alike.

@@ -55,7 +55,7 @@ TEST(OtherWords, ShapesAndFormulasAreShown)
     const ScenarioResult formula =
         read(replaced(valid_scenario, "value = [0, 1, 0]", "value = [0, \"sin(t)\", 0]"));
     ASSERT_NE(find(formula, "unit"), nullptr);
-    EXPECT_EQ(find(formula, "unit")->note, "formulas stand in 'expression', instead of 'value'");
+    EXPECT_EQ(find(formula, "unit")->note, "a formula is given as 'expression', instead of 'value'");
     const auto expression = [](const std::string& y) {
         return replaced(valid_scenario, "value = [0, 1, 0]", "expression = [\"0\", \"" + y + "\", \"0\"]");
     };

@@ -75,7 +75,7 @@ void check_mass(const Section& body)
         if (by == DensityBy::shape)
             body.refuse({"density", "mass"}, "mass-conflict",
                         shape->has("densities") ? "the regions of the mesh have their own densities"
-                                                : "'density_field' of the shape says it already");
+                                                : "'density_field' of the shape gives it already");
         else if (by == DensityBy::both && body.has("mass"))
             body.refuse({"mass"}, "mass-conflict", "'density_field' says what parts weigh");
         else if (by == DensityBy::both && !body.has("density"))

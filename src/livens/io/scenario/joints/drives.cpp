@@ -95,8 +95,8 @@ bool check_sizes(const Section& drive)
         is_good =
             drive.error("expression", "drive-size",
                         "'expression' of " + drive.label() + " is " +
-                            (v->texts.empty() ? "one text" : std::to_string(v->texts.size()) + " texts"),
-                        {"", n == 3 ? "the path of a point has three components" : "give one text"});
+                            (v->texts.empty() ? "one string" : std::to_string(v->texts.size()) + " strings"),
+                        {"", n == 3 ? "the path of a point has three components" : "give one string"});
     if (const Section* one = only_section(drive, "table"))
         if (const Value* times = one->find("times"))
             is_good = is_multiple(*one, "values", times->numbers.size()) && is_good;

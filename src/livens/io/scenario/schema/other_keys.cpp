@@ -53,7 +53,7 @@ constexpr std::string_view no_contact =
     "expression = \"1e4*max(-z, 0)\" of a point sensor's z";
 constexpr std::string_view two_bodies =
     "the bodies are between = [\"world\", \"arm\"]: the first one carries the second";
-constexpr std::string_view of_body = "which forces act is said by [[load]] tables with body = \"@\"";
+constexpr std::string_view of_body = "forces are [[load]] tables with body = \"@\"";
 constexpr std::string_view vector_value =
     "'value' is the whole vector: value = [10, 0, 0] is 10 along x; frame = \"body\" turns it with the body";
 constexpr std::string_view of_time = "it belongs into [time]";

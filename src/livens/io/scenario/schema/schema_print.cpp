@@ -74,7 +74,7 @@ elements = 40
 ## Numbers and units
 
 A plain number is in SI units: m, kg, s, rad, N and products of them. Wherever the tables below name a unit,
-a text with a number and a unit may stand instead, and its dimension is checked: `"30 deg"`, `"5 mm"`,
+a string with a number and a unit may stand instead, and its dimension is checked: `"30 deg"`, `"5 mm"`,
 `"2 rpm"`, `"7850 kg/m^3"`, `"2 kN/m"`, `"3 N m"`.
 
 - Units: m, g, s, N, J, W, Pa, Hz, rad with the prefixes n, u (or µ), m, c, d, k, M, G; and without
@@ -85,7 +85,7 @@ a text with a number and a unit may stand instead, and its dimension is checked:
 
 Lists of rows are lists of lists: `directors = [[1, 0, 0], [0, 1, 0], [0, 0, 1]]` lists d1, d2, d3.
 
-What is wrong with a file is said with line and column, all of it in one run (a syntax error ends the run);
+What is wrong with a file is reported with line and column, all of it in one run (a syntax error ends it);
 codes are explained in [diagnostics.md](diagnostics.md). Nothing is ignored: unknown keys are errors.
 
 Limits: 16 MiB, 2 000 000 values, nesting of 64, 10 000 bodies, joints and loads each, 10 000 000 time

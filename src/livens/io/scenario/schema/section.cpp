@@ -178,7 +178,7 @@ private:
             if (entry.value.kind == NodeKind::text)
                 return read_text(entry.value, value_.texts.emplace_back());
             return findings_.error(entry.value.place, "wrong-type",
-                                   "'" + entry.key + "' in " + subject() + " must be a text, not " +
+                                   "'" + entry.key + "' in " + subject() + " must be a string, not " +
                                        std::string(describe(entry.value.kind)),
                                    {"", "strings are written in quotes"});
         });

@@ -42,7 +42,7 @@ namespace livens::inline io_internal {
 
 namespace {
 
-constexpr const char* quotes_help = "what is not ASCII stands in quotes: \"ä\" = 1";
+constexpr const char* quotes_help = "what is not ASCII is written in quotes: \"ä\" = 1";
 
 SourceLocation place_of(const toml::source_region& region)
 {
@@ -151,7 +151,7 @@ std::string help_after_value(std::string_view line, const SourceLocation& place,
     if (last == std::string_view::npos || std::isdigit(static_cast<unsigned char>(before[last])) == 0)
         return {};
     if (seen == ",") return "decimal numbers have a point, not a comma";
-    return "a number with a unit stands in quotes: \"5 mm\"";
+    return "a number with a unit is written in quotes: \"5 mm\"";
 }
 
 /// Of a value that is no TOML: a word without quotes, most likely.
