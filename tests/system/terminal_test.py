@@ -211,8 +211,8 @@ class Looks(ProgramTest):
     def test_last_lines(self):
         self.write("bad.toml", BAD)
         last = self.expect(SCENARIO, "check", "bad.toml").err.splitlines()[-1]
-        self.assertRegex(last, r"^bad\.toml: \d errors; livens explain [a-z-]+ says more$")
-        self.assertNotIn("says more", self.expect(SCENARIO, "check", "bad.toml", "--diagnostics", "gnu").err)
+        self.assertRegex(last, r"^bad\.toml: \d errors; for more: livens explain [a-z-]+$")
+        self.assertNotIn("for more", self.expect(SCENARIO, "check", "bad.toml", "--diagnostics", "gnu").err)
         self.write("one.toml", text_with("density =", "# density ="))
         self.assertIn("one.toml: 1 error; ", self.expect(SCENARIO, "check", "one.toml").err)
         self.write("a b.toml", SMALL)
@@ -233,7 +233,7 @@ class Meant(ProgramTest):
             (("solve", "--quite"), "did you mean '--quiet'?"),
             (("sample", "run.nc", "--boddy", "bob", "--at", "0"), "did you mean '--body'?"),
             (("--versoin",), "did you mean '--version'?"),
-            (("--json", "info", "run.nc"), "goes behind the command 'info'"),
+            (("--json", "info", "run.nc"), "follows the command 'info'"),
             (("frobnicate",), "no command 'frobnicate'; 'livens --help' lists them"),
             (("check", "a.toml", "b.toml"), "cannot use 'b.toml'"),
             (("explain", "unknown-kye"), "did you mean 'unknown-key'?"),
