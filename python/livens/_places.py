@@ -99,9 +99,10 @@ def of_table(d: dict[str, Any], kind: str, table: Table) -> Diagnostic:
     _, _, key, inner = d["location"]
     path = path_of(kind, table) + (f".{key}" if key else "")
     place = _place_inside(table, [key, *inner]) if key else table.place
-    if key and place.line and not place.column:   # of Python's code, where a call may have many lines
+    is_of_file = place.column > 0
+    if key and place.line and not is_of_file:   # of Python's code, where a call may have many lines
         place = written(place, key, table.get("name"), inner)
-    help = d["help"] if place.column and place.file.endswith(".toml") else in_python(d["help"])
+    help = d["help"] if is_of_file else in_python(d["help"])
     return Diagnostic(d["severity"], d["code"], d["message"], path, d["note"], help, place)
 
 

@@ -85,6 +85,12 @@ def test_calls_of_other_programs(pendulum: lv.Model, sol: lv.Solution) -> None:
     assert len(m.joints) == 1 and len(m.bodies) == 1 and len(m.drives) == 0
 
 
+def test_scenarios_are_answered_in_their_own_words(pendulum: lv.Model) -> None:
+    text = pendulum.to_toml() + "\n[[joint]]\nname = \"x\"\ntype = \"revolute\"\nbetween = [\"world\", \"rod\"]\ndamping = 1\n"
+    for text in (text, text + "[time]\nend = 1\n"):
+        assert "[[load]] with type = \"spring\", joint = \"x\"" in answer(lambda: lv.load(text=text))
+
+
 def test_files_of_results_may_have_any_other_name(sol: lv.Solution, tmp_path: Path) -> None:
     for name in ("run", "run.nc", "run.cdf", "run.v2", "a.b.nc"):
         sol.save(tmp_path / name)
