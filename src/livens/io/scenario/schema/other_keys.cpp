@@ -57,7 +57,6 @@ constexpr std::string_view of_body = "forces are [[load]] tables with body = \"@
 constexpr std::string_view vector_value =
     "'value' is the whole vector: value = [10, 0, 0] is 10 along x; frame = \"body\" turns it with the body";
 constexpr std::string_view of_time = "it belongs into [time]";
-constexpr std::string_view of_method = "it belongs into [method]";
 constexpr std::string_view newton = "the error of the motion is bounded by `accuracy` in [time]; `tolerance` "
                                     "here is that of Newton's iteration";
 
