@@ -17,7 +17,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Literal, TypedDict, Union
 
 from ._entries import Entry, Key
-from ._values import Matrix, Method, Number, Shape, Vector, open_keys
+from ._values import Matrix, Method, Number, Shape, Vector, open_keys, three
 
 if TYPE_CHECKING:
     import numpy as np
@@ -239,16 +239,23 @@ class Writer:
             table = self.children[kind]
             for k in table["kinds"]:
                 self.adder(kind, table, k["word"], k["doc"])
-            self.line(f"\n    def add_{kind}(self, name: str | None, type: str, **keys: Any) -> {kind.capitalize()}:")
-            self.line(f'        """Adds a {kind} whose type is a text: the same as the method of that type.')
+            ends = kind == "joint"
+            front = "first: End | None = None, second: End | None = None, " if ends else ""
+            self.line(f"\n    def add_{kind}(self, name: str | None, type: str, {front}**keys: Any) -> {kind.capitalize()}:")
+            self.line(f'        """Adds a {kind} whose type is a string: the same as the method of that type.')
             self.line("\n        Args:")
             self.line("            name: What everything else calls it.")
             words = ", ".join(k["word"] for k in table["kinds"])
             self.line(wrapped(f"type: {words}.", " " * 12, " " * 16))
-            self.line(f"            **keys: As ``[[{kind}]]`` has them; between= instead of first and second.")
+            if ends:
+                self.line("            first: A body or \"world\", or (body, point).")
+                self.line("            second: Likewise.")
+            self.line(f"            **keys: As ``[[{kind}]]`` has them"
+                      + ("." if ends else "; between= instead of first and second."))
             self.line('\n        Raises:\n            InputError: with a code for what is wrong; nothing is added then.')
             self.line('        """')
-            self.line(f'        added: {kind.capitalize()} = self._add("{kind}", type, {{"name": name, **keys}})')
+            pair = '"first": first, "second": second, ' if ends else ""
+            self.line(f'        added: {kind.capitalize()} = self._add("{kind}", type, {{"name": name, {pair}**keys}})')
             self.line("        return added")
 
     def shapes(self):
@@ -279,9 +286,9 @@ class Writer:
                 if child["keys"][0]["required"] and len(child["keys"]) == 1:
                     value = name_of(child["keys"][0])
             elif key["form"] == ROW and key["count"] == 3:
-                parameters = ["x: Number", "y: Number", "z: Number"]
-                docs = [(axis, f"Along d{i + 1}, m.") for i, axis in enumerate("xyz")]
-                value = "(x, y, z)"
+                parameters = ["x: Number | Vector", "y: Number | None = None", "z: Number | None = None"]
+                docs = [("x", "Along d1, m; or all three."), ("y", "Along d2, m."), ("z", "Along d3, m.")]
+                value = f'three("{name}", x, y, z)'
             elif key["form"] == FLAG:
                 value = "True"
             else:

@@ -50,7 +50,7 @@ void add_common(CLI::App& command, Arguments& a)
     command.add_flag("-q,--quiet", a.common.quiet, "no progress, no summary");
     command.add_flag("-v,--verbose", a.common.verbose, "more figures; what is done and how long it takes");
     add_choice(command, "--diagnostics", a.layout, {"human", "json", "gnu"},
-               "how errors are laid out on standard error");
+               "layout of errors on standard error");
 }
 
 /// `run` is called once all is parsed, if this is the command that was typed.
@@ -73,7 +73,7 @@ std::shared_ptr<Given> arguments_of()
 void add_scenario_commands(CLI::App& app, Arguments& a)
 {
     const auto name = arguments_of<std::string>(), file = arguments_of<std::string>();
-    CLI::App& init = add_command(app, a, "init", "Write a small scenario to begin with",
+    CLI::App& init = add_command(app, a, "init", "Write a small scenario to start from",
                                  [name](const Common& common) { return init_command(*name, common); });
     add_file(init, "NAME", *name, "of the scenario; default: pendulum")->type_name("NAME");
     add_common(init, a);
@@ -97,7 +97,7 @@ void add_solve_command(CLI::App& app, Arguments& a)
     add_file(solve, "--csv", given->csv, "write the samples as CSV too")->type_name("FILE.csv");
     add_force(solve, given->force);
     solve
-        .add_option("-j,--jobs", given->jobs, "scenarios that are solved at a time; default: one a processor")
+        .add_option("-j,--jobs", given->jobs, "scenarios solved at a time; default: one per processor")
         ->check(CLI::Range(1, 1024))
         ->type_name("N");
     add_choice(solve, "--simd", given->simd, {"sse2", "avx2", "avx512"},
@@ -116,7 +116,7 @@ void add_mass_command(CLI::App& app, Arguments& a)
         ->type_name("FILE");
     mass.add_option("--unit", given->unit, "of the mesh's numbers; default: m")->type_name("UNIT");
     mass.add_option("--density", given->density, "of the mesh, kg/m^3; default: 1")->type_name("D");
-    mass.add_flag("--turn", given->turn, "turn faces of the mesh that look inwards");
+    mass.add_flag("--turn", given->turn, "flip faces of the mesh that point inwards");
     add_common(mass, a);
 }
 
@@ -124,17 +124,17 @@ void add_rest_commands(CLI::App& app, Arguments& a)
 {
     const auto file = arguments_of<std::string>();
     CLI::App& equilibrium =
-        add_command(app, a, "equilibrium", "Find where a mechanism rests, and say whether it is stable",
+        add_command(app, a, "equilibrium", "Find the static equilibrium, and whether it is stable",
                     [file](const Common& common) { return equilibrium_command(*file, common); });
     equilibrium.add_option("FILE", *file, "scenario (TOML)")->required()->type_name("FILE.toml");
     add_common(equilibrium, a);
     const auto given = arguments_of<ModesArguments>();
     CLI::App& modes =
-        add_command(app, a, "modes", "Frequencies, damping and shapes of small motions about a rest",
+        add_command(app, a, "modes", "Natural frequencies, damping and mode shapes about an equilibrium",
                     [given](const Common& common) { return modes_command(*given, common); });
     modes.add_option("FILE", given->scenario, "scenario (TOML)")->required()->type_name("FILE.toml");
     add_choice(modes, "--at", given->at, {"equilibrium", "start"},
-               "where; default: the equilibrium that the start leads to");
+               "where; default: the equilibrium reached from the start");
     modes
         .add_option("--input", given->inputs,
                     "of the state matrices: a force on JOINT.angle, JOINT.displacement or BODY.x")
@@ -151,7 +151,7 @@ void add_rest_commands(CLI::App& app, Arguments& a)
 void add_run_commands(CLI::App& app, Arguments& a)
 {
     const auto run = arguments_of<std::string>();
-    CLI::App& info = add_command(app, a, "info", "Say what a result file holds",
+    CLI::App& info = add_command(app, a, "info", "Show what a result file contains",
                                  [run](const Common& common) { return info_command(*run, common); });
     info.add_option("RUN", *run, "result file")->required()->type_name("RUN.nc");
     add_common(info, a);
@@ -206,7 +206,7 @@ void add_report_commands(CLI::App& app, Arguments& a)
         app, a, "report", "Write a page for browsers: picture, plots, quality",
         [given](const Common& common) { return with_runs([&] { return report_command(*given, common); }); });
     CLI::App& view = add_command(
-        app, a, "view", "Show that page in the browser, served from here alone",
+        app, a, "view", "Show that page in the browser, from a local server",
         [given](const Common& common) { return with_runs([&] { return view_command(*given, common); }); });
     for (CLI::App* command : {&report, &view}) {
         command->add_option("RUN", given->run, "result file")->required()->type_name("RUN.nc");
@@ -243,7 +243,7 @@ void add_other_commands(CLI::App& app, Arguments& a)
         add_command(app, a, "completion", "Print a script that completes commands in a shell",
                     [given, &app](const Common&) { return completion_command(*given, command_table(app)); });
     const std::vector<std::string> shells{"bash", "zsh", "fish"};
-    add_choice(completion, "SHELL", given->shell, shells, "to be read by this shell");
+    add_choice(completion, "SHELL", given->shell, shells, "shell that the script is for");
     completion.add_option("--bodies", given->bodies)->group("");   // for the scripts
     completion.add_option("--joints", given->joints)->group("");
     completion.add_option("--sensors", given->sensors)->group("");

@@ -56,7 +56,7 @@ std::string division_of(const Scenario& scenario)
     if (const auto* mesh = std::get_if<TimeMesh>(&scenario.time))
         return fmt::format("in {} elements, {}", mesh->n_elements(), times);
     return fmt::format("to an accuracy of {:.6g}, {}", std::get<Span>(scenario.time).accuracy,
-                       scenario.output.empty() ? "element ends are output times" : times);
+                       scenario.output.empty() ? "output at element ends" : times);
 }
 
 constexpr int most_bodies_told = 300;   // beyond, finding what is independent takes seconds
@@ -71,7 +71,7 @@ std::string coordinates_of(const Model& model, const ConsistentStart& assembly)
     std::string text = "  independent coordinates: ";
     for (std::size_t i = 0; i < told; ++i) text += (i == 0 ? "" : ", ") + plain(found.names[i]);
     if (told < found.names.size()) text += fmt::format(" and {} more", found.names.size() - told);
-    if (found.left_free > 0) text += fmt::format("; {} freedoms beside them", found.left_free);
+    if (found.left_free > 0) text += fmt::format("; {} more degrees of freedom", found.left_free);
     return text + "\n";
 }
 
@@ -141,15 +141,15 @@ int check_command(const std::string& file, const Common& common)
     };
     std::string text = fmt::format(
         "{}: no errors\n  {}, {} with {}, {}, {} of freedom\n"
-        "  {:.6g} s to {:.6g} s {}\n  {} of memory at least{}\n",
+        "  {:.6g} s to {:.6g} s {}\n  at least {} of memory{}\n",
         plain(file), counted(scenario.model.bodies().size(), "body", "bodies"),
         counted(scenario.model.joints().size(), "joint", "joints"),
-        counted(static_cast<std::size_t>(scenario.model.n_rows()), "row", "rows"),
+        counted(static_cast<std::size_t>(scenario.model.n_rows()), "constraint", "constraints"),
         counted(scenario.model.loads().size(), "load", "loads"),
         counted(static_cast<std::size_t>(assembly.degrees_of_freedom), "degree", "degrees"),
         start_of(scenario.time), end_of(scenario.time), division_of(scenario),
         bytes_in_words(memory_needed(scenario).most()),
-        std::holds_alternative<Span>(scenario.time) ? ", and what the elements take that are found" : "");
+        std::holds_alternative<Span>(scenario.time) ? ", plus that of the elements" : "");
     text += coordinates_of(model, assembly);
     text += springs_of(model, assembly.start);
     for (const std::string& note : assembly.notes) text += "  note: " + plain(note) + "\n";

@@ -183,7 +183,7 @@ void show(const Comparison& c, const Run& a, const Run& b)
     if (c.is_same())
         summary.headline(Ink::good, "Same", "all differences are within the tolerance");
     else if (n_differing == 0)
-        summary.headline(Ink::bad, "Different", "the runs have not the same bodies");
+        summary.headline(Ink::bad, "Different", "the runs do not have the same bodies");
     else
         summary.headline(Ink::bad, "Different",
                          fmt::format("{} of {} bodies beyond the tolerance", n_differing, c.bodies.size()));
@@ -192,7 +192,7 @@ void show(const Comparison& c, const Run& a, const Run& b)
                                c.times.front(), c.times.back(), a.output.size(), b.output.size()));
     for (std::size_t i = 0; i < c.bodies.size(); ++i)
         summary.figure(plain(c.bodies[i]), words_of(c.largest[i]));
-    for (const std::string& name : c.alone) summary.figure(plain(name), "is in one of the runs alone");
+    for (const std::string& name : c.alone) summary.figure(plain(name), "is in only one of the runs");
     print(summary.text());
 }
 

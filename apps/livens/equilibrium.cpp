@@ -148,7 +148,7 @@ std::string text_of(const Found& found, const std::string& file)
         summary.figure(plain(found.model().joints()[j].name), words_of_joint(found, j));
     for (const std::string& note : at.notes) summary.figure("note", plain(note));
     if (at.is_found && at.stability.stability == Stability::unstable && at.iterations == 0)
-        summary.aside("the start is balanced itself: begin a little off it to find where it falls to");
+        summary.aside("the start itself is in equilibrium: start slightly off it to find where it falls");
     if (at.is_found && at.degrees_of_freedom > 0) summary.aside("next: livens modes " + quoted(file));
     return summary.text();
 }

@@ -19,7 +19,7 @@ int export_command(const ExportArguments& arguments, const Common& common)
         is_empty = false;
         check_export_place(arguments.files[i], formats[i], arguments.run, arguments.force);
     }
-    if (is_empty) throw failure(exit_usage, "export wants one or more of " + options + " with a file");
+    if (is_empty) throw failure(exit_usage, "export needs one or more of " + options + " with a file");
     const Run run = read_run(arguments.run);
     const Scenario scenario = scenario_of_run(run, arguments.run);
     JsonWriter json(2);

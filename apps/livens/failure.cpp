@@ -112,7 +112,7 @@ std::string last_line(const std::vector<Diagnostic>& diagnostics)
     if (n_warnings > 0) text += ", " + counted(n_warnings, "warning");
     const auto first = std::ranges::find_if(
         diagnostics, [](const Diagnostic& d) { return is_error(d) && !explain(d.code).empty(); });
-    return first == diagnostics.end() ? text : text + "; livens explain " + first->code + " says more";
+    return first == diagnostics.end() ? text : text + "; for more: livens explain " + first->code;
 }
 
 /// Findings about a file are laid out by render(); all else is a line with the program's name.

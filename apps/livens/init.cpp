@@ -2,6 +2,8 @@
 // livens init: a small scenario to begin with.
 #include <cerrno>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <system_error>
 
 #include <fcntl.h>
@@ -17,7 +19,8 @@ namespace livens::program {
 namespace {
 
 constexpr const char* pendulum =
-    R"(# A rod of steel swings from a hinge. Plain numbers are in m, kg, s, rad; "5 mm" and "30 deg" work too.
+    R"(#:schema ./livens.schema.json
+# A rod of steel swings from a hinge. Plain numbers are in m, kg, s, rad; "5 mm" and "30 deg" work too.
 # All keys: livens schema.   Check this file: livens check FILE.   Solve it: livens solve FILE.
 format = 1
 title = "a pendulum"
@@ -69,6 +72,26 @@ void write_new(const std::filesystem::path& file, std::string_view text)
     refuse(number);
 }
 
+constexpr const char* schema_name = "livens.schema.json";
+
+/// What editors check the file by, beside it: a new one, or in place of an older one of livens. Whether it
+/// is there then: the scenario is worth as much without it.
+bool write_schema(const std::filesystem::path& file)
+{
+    const std::string text = schema_json();
+    if (std::ifstream old{file, std::ios::binary}) {
+        const std::string there{std::istreambuf_iterator<char>(old), {}};
+        if (there.find("\"title\": \"livens scenario") == std::string::npos) return false;
+        if (there == text) return true;
+    }
+    try {
+        replace_file(file, text);
+    } catch (const std::exception&) {
+        return false;
+    }
+    return true;
+}
+
 }   // namespace
 
 int init_command(const std::string& name, const Common& common)
@@ -76,15 +99,20 @@ int init_command(const std::string& name, const Common& common)
     std::filesystem::path file = name.empty() ? "pendulum" : name;
     if (file.extension() != ".toml") file += ".toml";
     write_new(file, pendulum);
+    const std::filesystem::path schema = file.parent_path() / schema_name;
+    const bool has_schema = write_schema(schema);
     if (common.json) {
         JsonWriter json(2);
-        json.begin_object().member("scenario", file.string()).end_object();
+        json.begin_object().member("scenario", file.string());
+        if (has_schema) json.member("schema", schema.string());
+        json.end_object();
         print(json.text() + "\n");
         return exit_ok;
     }
     if (common.quiet) return exit_ok;
     Summary summary(terminal_of(STDOUT_FILENO));
     summary.headline(Ink::good, "Written", plain(file.string()) + ", a pendulum to be changed");
+    if (has_schema) summary.aside("for editors: " + plain(schema.string()));
     summary.aside("next: livens solve " + plain(quoted(file.string())));
     print(summary.text());
     return exit_ok;

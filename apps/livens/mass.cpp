@@ -213,9 +213,8 @@ int mass_of_mesh(const MassArguments& arguments, const Common& common)
     const MassProperties p = solid(density, r.moments);
     const Weighed w{arguments.file, p, mass_matrix(p)};
     if (!is_told(w) || !std::isfinite(r.moments.volume))
-        throw failure(exit_usage,
-                      "with this --density and --unit the mass of the mesh or its moments are beyond the "
-                      "numbers there are; lengths in m and densities in kg/m^3 are meant");
+        throw failure(exit_usage, "with this --density and --unit the mass of the mesh or its moments "
+                                  "overflow; are lengths in m and densities in kg/m^3?");
     if (common.json)
         print(json_of(arguments, r, w, density));
     else if (!common.quiet)

@@ -87,7 +87,7 @@ void check_memory(const std::vector<const Scenario*>& scenarios, int at_a_time)
                                    ? "fewer elements at once ('window' in [method]) need less"
                                    : "fewer elements need less; a higher degree makes up for it";
     throw failure(exit_resources,
-                  fmt::format("{} would take at least {} of memory, and {} can be had; {}",
+                  fmt::format("{} would take at least {} of memory, and {} is available; {}",
                               is_one ? "the run" : fmt::format("{} runs at a time", at_a_time),
                               bytes_in_words(is_one ? largest.most() : all), bytes_in_words(left), advice));
 }

@@ -153,7 +153,7 @@ std::string text_of(const Rest& rest, const std::string& file)
     summary.figure("about", rest.at == "start" ? "the start" : "the equilibrium");
     for (std::size_t i = 0; i < rest.modes.size(); ++i)
         summary.figure("mode " + std::to_string(i + 1), words_of(rest, rest.modes[i]));
-    if (rest.modes.empty()) summary.figure("modes", "none: the joints leave nothing free");
+    if (rest.modes.empty()) summary.figure("modes", "none: the joints leave no degree of freedom");
     if (rest.matrices)
         summary.figure("state matrices",
                        fmt::format("{} states, {} inputs, {} outputs", rest.matrices->n_states,
@@ -170,7 +170,7 @@ Linearisation linear_at_rest(const Scenario& scenario, bool is_start)
     const Equilibrium at = equilibrium_of(scenario);
     if (at.is_found) return linearise(frozen(scenario.model, {at.state.t}), at.state);
     if (const int signal = InterruptWatch::signal(); signal != 0)
-        throw failure(exit_signal + signal, "stopped while the equilibrium was searched");
+        throw failure(exit_signal + signal, "stopped during the search for the equilibrium");
     throw failure(exit_not_converged, "no equilibrium was found: " + at.message);
 }
 

@@ -70,7 +70,7 @@ std::string stray_word(const std::vector<CommandInfo>& commands, const std::stri
     if (is_option(word) && !command.empty()) {
         const std::vector<std::string> known = options_of(info_of(commands, command));
         if (std::ranges::find(known, name_in(word)) != known.end())
-            return "the option '" + name_in(word) + "' goes behind the command '" + command + "'";
+            return "the option '" + name_in(word) + "' follows the command '" + command + "'";
     }
     if (is_option(word)) return unknown_option(commands.front(), word);
     std::vector<std::string> names;
@@ -104,7 +104,7 @@ std::string objection(const CLI::App& app, const CLI::ParseError& error)
         const auto first = command.empty() ? strays.begin() : std::ranges::find_if(strays, is_option);
         return stray_word(commands, first == strays.end() ? strays.front() : *first, command);
     }
-    const std::string help = "; 'livens" + (command.empty() ? "" : " " + command) + " --help' tells more";
+    const std::string help = "; 'livens" + (command.empty() ? "" : " " + command) + " --help' explains more";
     if (command.empty()) return error.what() + help;
     const std::vector<std::string> unknown = parsed.front()->remaining();
     if (unknown.empty()) return error.what() + help;

@@ -37,7 +37,7 @@ bool is_record(const fs::path& file) { return begins_with(file, "{\n  \"converge
 void check_not_occupied(const fs::path& file, bool (*is_own)(std::string_view head))
 {
     if (is_occupied(file, is_own))
-        refuse(file, "what stands there is no older file of this kind that livens wrote; choose another "
+        refuse(file, "the file there was not written by livens as this kind; choose another "
                      "name, or add '--force' to replace it");
 }
 

@@ -22,7 +22,7 @@ Equilibrium equilibrium_of(const Scenario& scenario)
 void add_stability(Summary& summary, const StabilityReport& report, int degrees_of_freedom)
 {
     if (degrees_of_freedom == 0) {
-        summary.headline(Ink::good, "Held", "the joints leave nothing free");
+        summary.headline(Ink::good, "Held", "the joints leave no degree of freedom");
         return;
     }
     const auto directions = [](int n) { return fmt::format("{} direction{}", n, n == 1 ? "" : "s"); };

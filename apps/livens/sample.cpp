@@ -165,7 +165,7 @@ JointSample joint_at(const Query& q, double t)
                                                  ? exact_sample(q.run, q.scenario, t).joints
                                                  : sample_joints(q.scenario.model, q.run.motion, t);
     if (samples.empty())
-        throw failure(exit_input_output, "the run holds no multipliers, so it knows no reactions");
+        throw failure(exit_input_output, "the run has no multipliers, so reactions are not known");
     return samples[static_cast<std::size_t>(q.index)];
 }
 
@@ -370,7 +370,7 @@ int sample_command(const SampleArguments& arguments, const Common& common)
 {
     const bool is_of_sensor = !arguments.sensor.empty();
     if (is_of_sensor + !arguments.body.empty() + !arguments.joint.empty() != 1)
-        throw failure(exit_usage, "sample wants one of --body NAME, --joint NAME and --sensor NAME");
+        throw failure(exit_usage, "sample needs one of --body NAME, --joint NAME and --sensor NAME");
     if (arguments.exact) pin_instructions("");
     const Run run = read_run(arguments.run);
     const int index = is_of_sensor              ? 0

@@ -245,10 +245,11 @@ std::string summary_of(const Solved& solved, const Places& p, bool verbose)
     summary.figure(
         "iterations",
         fmt::format("{}{}, {}", report.newton_iterations,
-                    n_blocks > 0 ? fmt::format(" ({:.1f} {})", mean, is_blocked ? "a block" : "an element")
+                    n_blocks > 0 ? fmt::format(" ({:.1f} {})", mean, is_blocked ? "per block" : "per element")
                                  : "",
-                    report.factorisations > 0 ? fmt::format("{} factorisations", report.factorisations)
-                                              : "without a tangent"));
+                    report.factorisations > 0 ? fmt::format("{} factorisation{}", report.factorisations,
+                                                          report.factorisations == 1 ? "" : "s")
+                                              : "no factorisation"));
     add_figures(summary, run, verbose);
     add_notes(summary, run);
     summary.figure("written", plain(p.output.string()) + (p.csv.empty() ? "" : ", " + plain(p.csv.string())));

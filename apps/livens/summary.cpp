@@ -46,18 +46,19 @@ std::string kept_of(const Run& run, double end)
     return fmt::format("the file holds the motion up to {:.6g} s", end);
 }
 
-/// "7 digits until 31 s"
-std::string until(double digits, double t)
+/// "7 digits through 31 s"
+std::string through(double digits, double t)
 {
-    return fmt::format("{:.0f} digit{} until {:.6g} s", digits, digits == 1 ? "" : "s", t);
+    return fmt::format("{:.0f} digit{} through {:.6g} s", digits, digits == 1 ? "" : "s", t);
 }
 
-/// "7 digits until 31 s, to 2 digits until 60 s"; files before format 2.2 know the last of it alone.
+/// "7 digits through 31 s, then 2"; files before format 2.2 know the last of it alone.
 std::string good_of(const Verdict& s, double end)
 {
-    const std::string last = until(std::floor(s.estimated_digits), end);
-    if (!std::isfinite(s.good_digits)) return last;
-    return until(s.good_digits, s.good_until) + (s.good_until < end ? ", to " + last : "");
+    const double last = std::floor(s.estimated_digits);
+    if (!std::isfinite(s.good_digits)) return through(last, end);
+    return through(s.good_digits, s.good_until) +
+           (s.good_until < end ? fmt::format(", then {:.0f}", last) : "");
 }
 
 Headline headline_of(const Run& run, double end)
@@ -80,7 +81,7 @@ Headline headline_of(const Run& run, double end)
         return {Ink::good, "Converged",
                 fmt::format("good to {}, constraints hold{}", good_of(s, end), holds)};
     return {Ink::good, "Converged",
-            fmt::format("constraints hold{} and the balances are kept {}; the error is not known", holds,
+            fmt::format("constraints hold{} and the balances hold {}; the error is not known", holds,
                         grade(std::max(s.energy_drift, s.angular_momentum_drift)))};
 }
 
@@ -139,21 +140,21 @@ void add_figures(Summary& summary, const Run& run, bool verbose)
         summary.figure(
             "estimated error",
             fmt::format(
-                "{} at most at element ends (of the model's length, {:.3g} m, or rad), at "
-                "{:.6g} s; by {}{}",
+                "{} at most at element ends (rad, or relative to the model length, {:.3g} m), at {:.6g} s; "
+                "by {}{}",
                 number(s.estimated_error), run.estimate.length, s.estimated_error_time, witness_of(run),
-                report.converged() || !(s.good_digits > 0) ? "" : "; " + until(s.good_digits, s.good_until)));
-    summary.figure(
-        "constraints",
-        fmt::format("violated by {} at most{}, their rates by {} 1/s", number(s.max_constraint_violation),
-                    is_weak ? " (they hold in the mean, within " + number(s.max_weak_violation) + ")" : "",
-                    number(s.max_velocity_violation)));
+                report.converged() || !(s.good_digits > 0) ? ""
+                                                           : "; " + through(s.good_digits, s.good_until)));
+    summary.figure("constraints", fmt::format("error {} at most{} (velocity level {} 1/s)",
+                                              number(s.max_constraint_violation),
+                                              is_weak ? ", in the mean " + number(s.max_weak_violation) : "",
+                                              number(s.max_velocity_violation)));
     const auto balance = [&](const char* what, double drift, const char* of) {
-        summary.figure(what, drift == 0 ? std::string("balances to rounding")
-                                        : fmt::format("off its balance by {} of {}", number(drift), of));
+        summary.figure(what, drift == 0 ? std::string("balanced to rounding")
+                                        : fmt::format("error {} (relative to {})", number(drift), of));
     };
-    balance("energy", s.energy_drift, "the largest that moves or is stored");
-    balance("angular momentum", s.angular_momentum_drift, "its largest value");
+    balance("energy", s.energy_drift, "peak kinetic or stored energy");
+    balance("angular momentum", s.angular_momentum_drift, "its peak");
     if (verbose) {
         summary.figure("zig-zag",
                        fmt::format("{} in positions, {} in momenta (0: smooth, 1: from node to node)",

@@ -37,7 +37,7 @@ std::string secret()
 {
     std::array<unsigned char, 16> bytes{};
     if (::getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size()))
-        give_up("no random numbers are to be had");
+        give_up("no random numbers are available");
     std::string text;
     for (const unsigned char byte : bytes) text += fmt::format("{:02x}", byte);
     return text;

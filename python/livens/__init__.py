@@ -13,6 +13,8 @@ A model is made by name (:class:`Model`, :func:`load`), solved (:func:`solve`), 
 
 SI units and world axes unless said. ``docs/python.md`` is the guide, ``docs/scenario.md`` lists all keys.
 """
+from typing import TYPE_CHECKING
+
 from . import _generated
 from ._core import version as __version__
 from ._entries import Entry, Names, Section
@@ -42,3 +44,11 @@ __all__ = [
     "explain", "load", "load_solution", "momenta", "positions", "solve", "solve_many", "state", "table",
 ]
 __all__ += _generated.__all__
+
+if not TYPE_CHECKING:   # who checks types knows what there is
+
+    def __getattr__(name: str) -> object:
+        if name.startswith("_"):
+            raise AttributeError(f"module 'livens' has no attribute '{name}'", name=name)
+        from ._other_names import of_module
+        raise of_module(name, __all__)

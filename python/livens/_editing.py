@@ -14,6 +14,7 @@ from ._errors import Diagnostic, InputError, ModelWarning, fault, raised, stack_
 from ._functions import adapted
 from ._generated import Adders, Body, Drive, Joint, Load, Sensor
 from ._places import arranged, diagnostic_of, faults_in, key_below, of_table, path_at, path_of, store, words_in
+from ._rotations import oriented, with_rotation
 from ._tree import KINDS, Table, diagnostics_of_text, frozen, plain, schema, toml
 from ._values import Shape
 
@@ -82,7 +83,7 @@ class Tree(Adders):
         return root
 
     def _with_paths(self, found: list[Diagnostic]) -> list[Diagnostic]:
-        """Of a text: the path of what stands there."""
+        """Of a scenario that was read: the path of what stands there."""
         return [replace(d, path=path_at(self._root, d.place)) for d in found]
 
     def _refuse_functions(self, what: str) -> None:
@@ -140,6 +141,11 @@ class Tree(Adders):
             raise unknown_name(top._key, f"{top.name} (which was removed)", list(Names(self, top._key, Entry)))
         if isinstance(value, Shape):
             return self._reshape(section, value)
+        if name == "rotation" and key is None and value is not None:
+            name, value = oriented(value)
+            name = name or "rotation"
+            key = schema().key(section._schema, section._table, name)
+            path = f"{path_of(top._key, top._table)}.{name}"
         if name == "name" and isinstance(value, str) and top._key in KINDS and value != section._table.get("name"):
             if any(kind == top._key for kind, _ in self._named(value)):
                 raise fault("name-duplicate", f"a {top._key} called '{value}' exists already", path,
@@ -195,7 +201,8 @@ class Tree(Adders):
         name = content.get("name")
         path = f"{kind}[{name if isinstance(name, str) else len(self._root.get(kind, [])) + 1}]"
         table = Table(place=user_place())
-        given = {"name": name, "type": word or None, **arranged(content, word)}
+        given = {"name": name, "type": word or None, **with_rotation(arranged(content, word))}
+        self._refuse_part_as_type(kind, word, name)
         for key_name, value in given.items():
             if value is None:
                 continue
@@ -229,6 +236,17 @@ class Tree(Adders):
             raise raised(found)
         self._text, self._built, self._warned = None, {}, False
         return self._handle(kind, table)
+
+    def _refuse_part_as_type(self, kind: str, word: str, name: object) -> None:
+        """add_drive("motor", "pivot", rate=1): the joint stands where the type does."""
+        if kind not in ("drive", "sensor", "load") or word in [k["word"] for k in schema().children[kind]["kinds"]]:
+            return
+        part = next((found for found, _ in self._named(word) if found in ("joint", "body")), "")
+        if part:
+            method = {"drive": f"m.add_{part}_drive(", "sensor": f"m.add_{'joint' if part == 'joint' else 'point'}_sensor(",
+                      "load": "m.add_actuator(" if part == "joint" else "m.add_force("}[kind]
+            raise fault("unknown-choice", f"'{word}' is a {part}, and add_{kind}() takes a type there", f"{kind}[{name}].type",
+                        f"{method}{name!r}, {word!r}, ..)")
 
     def _faults_of(self, kind: str, table: Table) -> list[Diagnostic]:
         """Of a table at the end of its kind, by a model of what it refers to and no more."""

@@ -26,7 +26,7 @@ def spelled(name: str) -> str:
 
 
 class Section:
-    """A table of a model. Its keys are attributes: reading gives SI units, assigning takes texts with units, too.
+    """A table of a model. Its keys are attributes: reading gives SI units, assigning takes strings with units, too.
 
     Keys that were not given read as their default, or ``None``; assigning ``None``, or ``del``, takes a key
     away. Where several keys say the same, the last one assigned counts: a body's ``mass`` takes its ``density``
@@ -67,7 +67,7 @@ class Section:
 
     @property
     def given(self) -> dict[str, Any]:
-        """A copy of what was given, as it was given: texts with their units."""
+        """A copy of what was given, as it was given: strings with their units."""
         return dict(self._table.copy())
 
     def __getattr__(self, name: str) -> Any:
@@ -109,7 +109,10 @@ class Section:
         return f"[{self._key}]" if self._top is None else f"{self._key} of {self._top._label()}"
 
     def _suggestion(self, name: str) -> str:
-        return str(_core.suggestion(spelled(name), self.keys()))
+        kind = str(self._table.get(self._schema["chooser"]) or "")
+        called = str(self._table.get("name") or "")
+        other = _core.other_key(self._schema["heading"], kind, spelled(name), called)
+        return str(other or _core.suggestion(spelled(name), self.keys()))
 
 
 class RootSection(Section):
@@ -254,6 +257,7 @@ class UnknownName(KeyError):
 def unknown_name(kind: str, name: object, known: list[str]) -> KeyError:
     """For indexing by a name that nothing has."""
     if not isinstance(name, str):
-        raise TypeError(f"names are texts, not {type(name).__name__}")
+        raise TypeError(f"parts are found by name, a string, not by {type(name).__name__}"
+                        + (f": ['{known[0]}']; list() gives all names" if known else ""))
     suggestion = _core.suggestion(name, known) if known else f"there is no {kind} at all"
     return UnknownName(f"no {kind} is called '{name}'; {suggestion}")

@@ -270,10 +270,10 @@ def make_way(name: str, kind: str, inputs: list[str], force: bool) -> None:
 
 
 def file_name(file: str | os.PathLike[str]) -> str:
-    """A path as a text; what is none is refused by name."""
+    """A path as a string; anything else is refused by its type."""
     name = os.fspath(file)
     if not isinstance(name, str):
-        raise TypeError(f"a file name is a text or a path, not {type(file).__name__}")
+        raise TypeError(f"a file name is a string or a path, not {type(file).__name__}")
     if "\0" in name:
-        raise fault("io-not-found", "a file name holds no zero bytes")
+        raise fault("io-not-found", "a file name has no zero bytes")
     return name

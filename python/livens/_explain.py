@@ -18,7 +18,7 @@ def explain(code: str) -> str:
         True
     """
     if not isinstance(code, str):
-        raise TypeError(f"a code is a text, not {type(code).__name__}")
+        raise TypeError(f"a code is a string, not {type(code).__name__}")
     page: str = _core.explain(code)
     if not page:
         raise fault("unknown-choice", f"there is no code '{code}'", help=_core.suggestion(code, _core.diagnostic_codes()))

@@ -7,12 +7,13 @@ import os
 from . import _core
 from ._errors import InputError, Place, fault, file_name, raised
 from ._model import Model
+from ._other_names import refused_model
 from ._places import some_time
 from ._tree import diagnostics_of_text, tables
 
 
 def load(file: str | os.PathLike[str] | None = None, *, text: str | None = None, check: bool = True) -> Model:
-    """Reads a scenario, from a file or from a text.
+    """Reads a scenario, from a file or from a string.
 
     Args:
         file: Its name.
@@ -43,6 +44,8 @@ def load(file: str | os.PathLike[str] | None = None, *, text: str | None = None,
     if text is not None and not isinstance(text, str):
         raise TypeError(f"text= of load() is the scenario itself, a str, not {type(text).__name__}")
     name = "" if file is None else file_name(file)
+    if instead := refused_model(name):
+        raise fault("unknown-choice", f"'{name}' is no scenario", "file", instead)
     if file is not None:
         with open(name, "rb") as stream:
             content = stream.read(1 + (16 << 20))
@@ -51,7 +54,7 @@ def load(file: str | os.PathLike[str] | None = None, *, text: str | None = None,
         try:
             content = text.encode()
         except UnicodeEncodeError:
-            raise fault("not-text", "this text holds surrogates, which are no characters") from None
+            raise fault("not-text", "this string holds surrogates, which are not characters") from None
     parsed, found = _core.parse(content)
     shown = content.decode("utf-8", "replace")
     if parsed is None:

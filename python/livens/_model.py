@@ -14,6 +14,7 @@ from ._editing import Tree
 from ._entries import Entry, Names, Section, default_name, unknown_name
 from ._errors import Diagnostic, SlowWarning, SolveWarning, fault, file_name, make_way, stack_level, user_place
 from ._generated import Body, Drive, Joint, Load, Sensor
+from ._other_names import of_model
 from ._places import some_time
 from ._rest import Equilibrium, EquilibriumError, Linearisation, Modes
 from ._tree import KINDS, Table, frozen, toml
@@ -70,8 +71,16 @@ class Model(Tree):
         def __setattr__(self, name: str, value: Any) -> None:
             if not name.startswith("_") and not hasattr(type(self), name):
                 known = ["title", "gravity"]
-                raise AttributeError(f"a model has no '{name}' to set; {_core.suggestion(name, known)}", name=name, obj=self)
+                help = _core.other_key("top of the file", "", name) or _core.suggestion(name, known)
+                raise AttributeError(f"a model has no '{name}' to set; {help}", name=name, obj=self)
             super().__setattr__(name, value)
+
+        def __getattr__(self, name: str) -> Any:
+            if name.startswith("_"):
+                raise AttributeError(f"'Model' object has no attribute '{name}'", name=name, obj=self)
+            if hasattr(type(self), name):   # a property of ours that failed: its own error
+                return object.__getattribute__(self, name)
+            raise of_model(self, name)
 
     # What is there.
 

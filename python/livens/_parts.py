@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from . import _core
 from ._entries import Entry, unknown_name
+from ._other_names import BODY, JOINT, unknown
 
 if TYPE_CHECKING:
     from typing_extensions import TypeAlias
@@ -61,8 +62,10 @@ class Part:
         def __getattr__(self, name: str) -> Any:
             if name.startswith("_"):
                 raise AttributeError(name)
-            raise AttributeError(f"'{self._name}' has no '{name}'; {_core.suggestion(name, list(self.arrays()))}",
-                                 name=name, obj=self)
+            has = [key for key in dir(type(self)) if not key.startswith("_")]
+            if name in has:   # a property of ours that failed: its own error
+                return object.__getattribute__(self, name)
+            raise unknown(self, f"'{self._name}'", BODY, name, self._name, [*has, *self.arrays()])
 
     def __repr__(self) -> str:
         kind = type(self).__name__.replace("Series", "").lower()
@@ -187,8 +190,14 @@ class JointSeries(Part):
             if name in (known, known + "_rate"):
                 column = "coordinate" if name == known else "coordinate_rate"
                 return self._series._shaped(self._series._scalars()[column][:, self._first + i])
-        have = ", ".join(coordinates) or "none"
-        raise AttributeError(f"joint '{self._name}' has no '{name}'; its coordinates: {have}", name=name, obj=self)
+        if name.startswith("_"):
+            raise AttributeError(name)
+        has = [key for key in dir(type(self)) if not key.startswith("_")]
+        if name in has:   # a property of ours that failed: its own error
+            return object.__getattribute__(self, name)
+        raise unknown(self, f"joint '{self._name}'", JOINT, name, self._name,
+                      [*has, *(key + end for key in coordinates for end in ("", "_rate"))],
+                      f"its coordinates: {', '.join(coordinates) or 'none'}; beside them force and torque")
 
     def arrays(self) -> dict[str, Floats]:
         names = [name + end for name in self.coordinates for end in ("", "_rate")]
@@ -252,6 +261,8 @@ class ReadingSeries(Part):
     def __getattr__(self, name: str) -> Any:
         if name in self.__dict__.get("readings", {}):
             return self[name]
+        if name.startswith("_"):
+            raise AttributeError(name)
         known = ", ".join(self.__dict__.get("readings", {}))
         raise AttributeError(f"'{self.__dict__.get('_name')}' has no '{name}'; it tells {known}", name=name, obj=self)
 

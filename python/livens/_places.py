@@ -9,6 +9,7 @@ from . import _core
 from ._code import written
 from ._entries import Section, default_name
 from ._errors import Diagnostic, Place, fault, user_place
+from ._other_names import in_python
 from ._tree import KINDS, Table
 from ._values import Shape
 
@@ -54,7 +55,8 @@ def arranged(content: Mapping[str, Any], kind: str = "") -> dict[str, Any]:
         lacking = "second" if content["first"] is not None else "first"
         is_joint = "joints" in content and "between" not in content
         raise fault("missing-key", f"the {lacking} {'joint' if is_joint else 'body'} is None",
-                    help="" if is_joint else "the fixed world is called 'world'")
+                    help="" if is_joint else "its own name comes first, then two bodies: (\"pivot\", \"world\", rod, ..); "
+                    "the fixed frame is called \"world\"")
     pairs = [end if isinstance(end, (tuple, list)) and len(end) == 2 else (end, None) for end in both]
     points = [point for _, point in pairs if point is not None]
     if points and kind in ("rod", "spring"):   # whose ends are the reference points where nothing is said
@@ -97,9 +99,11 @@ def of_table(d: dict[str, Any], kind: str, table: Table) -> Diagnostic:
     _, _, key, inner = d["location"]
     path = path_of(kind, table) + (f".{key}" if key else "")
     place = _place_inside(table, [key, *inner]) if key else table.place
-    if key and place.line and not place.column:   # of Python's code, where a call may have many lines
+    is_of_file = place.column > 0
+    if key and place.line and not is_of_file:   # of Python's code, where a call may have many lines
         place = written(place, key, table.get("name"), inner)
-    return Diagnostic(d["severity"], d["code"], d["message"], path, d["note"], d["help"], place)
+    help = d["help"] if is_of_file else in_python(d["help"])
+    return Diagnostic(d["severity"], d["code"], d["message"], path, d["note"], help, place)
 
 
 def diagnostic_of(d: dict[str, Any], root: Mapping[str, Any]) -> Diagnostic:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Solutions: a solved motion, what is said of it, its files."""
+"""Solutions: a solved motion, its verdict, its files."""
 from __future__ import annotations
 
 import json
@@ -11,6 +11,7 @@ import numpy as np
 
 from . import _core
 from ._errors import fault, file_name, make_way
+from ._other_names import refused_ending
 from ._parts import Floats
 from ._series import Series
 from ._tree import plain
@@ -45,7 +46,7 @@ class Solution(Series):
         """The motion at other instants.
 
         Args:
-            t: An instant or several, s, any order, shape (n,); texts with units are taken.
+            t: An instant or several, s, any order, shape (n,); strings with units are taken.
             exact: False: the polynomials that were solved for, of the order ``dense_order_of_X`` of
                 :attr:`figures` between element ends. True: one shortened element is solved for each instant, in
                 the full order of the method (Lobatto and Radau).
@@ -237,6 +238,8 @@ class Solution(Series):
         self._refuse_functions("saved")
         name = file_name(file)
         make_way(name, "run", self._result.inputs(), force)
+        if instead := refused_ending(name):
+            raise fault("unknown-choice", f"'{name}' does not end like a result", "file", instead)
         self._result.save(name)
 
     def report(self, file: str | os.PathLike[str], other: Solution | None = None, *, force: bool = False) -> None:
@@ -290,7 +293,8 @@ class Solution(Series):
         chosen = format or next((word for word, ending in known.items() if name.endswith(ending)), None)
         if chosen not in known:
             endings = ", ".join(f"{word} ({ending})" for word, ending in known.items())
-            raise fault("unknown-choice", f"no format fits '{chosen or name}'", "format", f"there are {endings}")
+            raise fault("unknown-choice", f"no format fits '{chosen or name}'", "format",
+                        f"there are {endings}; sol.save('run.nc') writes all, sol.report('run.html') shows the motion")
         make_way(name, str(chosen), self._result.inputs(), force)
         if chosen == "npz":
             import tempfile
@@ -315,10 +319,10 @@ class Solution(Series):
         rows.append(("method", f"{self.method}, {self.n_elements} elements, {span}"
                      + (f", in {self.seconds:.3g} s" if self.seconds else "")))
         length = f["model_length"] or float("nan")
-        words = (("estimated_error", "estimated error", f"of the model's length, {length:.3g} m, or rad"),
-                 ("max_constraint_violation", "constraints", "violated at most, relative"),
-                 ("energy_drift", "energy", "off its balance, relative"),
-                 ("angular_momentum_drift", "angular momentum", "off its balance, relative"),
+        words = (("estimated_error", "estimated error", f"rad, or relative to the model length, {length:.3g} m"),
+                 ("max_constraint_violation", "constraints", "largest error, relative"),
+                 ("energy_drift", "energy", "relative error"),
+                 ("angular_momentum_drift", "angular momentum", "relative error"),
                  ("horizon", "horizon", "s: beyond it rounding decides"))
         rows += [(name, f"{f[key]:.1e} {meaning}" if key != "horizon" else f"{f[key]:.3g} {meaning}")
                  for key, name, meaning in words if f[key] is not None]

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from ._entries import Entry, unknown_name
+from ._entries import Entry, UnknownName, unknown_name
+from ._other_names import SOLUTION, unknown
 from ._parts import UNITS, BodySeries, Floats, JointSeries, LoadSeries, Part, Parts, SensorSeries
 
 if TYPE_CHECKING:
@@ -29,6 +30,18 @@ class Series:
         self._groups: dict[str, dict[str, Floats]] = {}
         if exact is not None:
             self._groups = {"bodies_at": exact, "joints_at": exact, "scalars_at": exact, "rigidity_at": exact}
+
+    if not TYPE_CHECKING:   # who checks types knows what there is
+
+        def __getattr__(self, name: str) -> Any:
+            if name.startswith("_"):
+                raise AttributeError(f"'{type(self).__name__}' object has no attribute '{name}'", name=name, obj=self)
+            if hasattr(type(self), name):   # a property of ours that failed: its own error
+                return object.__getattribute__(self, name)
+            if name in self:
+                raise AttributeError(f"a solution has no attribute '{name}'; its parts are items: sol['{name}']",
+                                     name=name, obj=self)
+            raise unknown(self, "a solution", SOLUTION, name)
 
     # What arrays are made of.
 
@@ -135,7 +148,11 @@ class Series:
             ways = [f".{kind}['{word}']" for kind, group in zip(("bodies", "joints", "loads", "sensors"), groups)
                     if word in group]
             raise KeyError(f"several parts are called '{word}'; write {' or '.join(ways)}")
-        raise unknown_name("part", word, [known for group in groups for known in group])
+        names = [known for group in groups for known in group]
+        front, _, attribute = word.rpartition(".") if isinstance(word, str) else ("", "", "")
+        if front in names:
+            raise UnknownName(f"no part is called '{word}'; write sol['{front}'].{attribute}")
+        raise unknown_name("part", word, names)
 
     @property
     def kinetic(self) -> Floats:

@@ -15,6 +15,7 @@ from . import _core
 from ._entries import default_name
 from ._errors import InputError, SolveError, SolveWarning, fault, stack_level, user_place
 from ._model import Model
+from ._other_names import of_keyword
 from ._places import diagnostic_of
 from ._results import Solution
 from ._tree import Table, plain, schema, toml
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
     from ._generated import MethodOptions
 
 Time: TypeAlias = Union[Number, tuple[Number, Number], Sequence[Number], None]
-"""An end (from the start of the model's own ``[time]``, or 0), or (start, end); s, texts with units are taken."""
+"""An end (from the start of the model's own ``[time]``, or 0), or (start, end); s, strings with units are taken."""
 End: TypeAlias = Union[Condition, Literal["nothing", "positions", "momenta", "state"], None]
 """What is known at an end of time."""
 ProgressArgument: TypeAlias = Union[bool, Callable[[int, int, float], Any]]
@@ -221,8 +222,8 @@ def _overrides(model: Model, time: Time, of_time: dict[str, Any], method: Method
     if time is not None or any(value is not None for value in of_time.values()):
         made["time"] = _time(model, time, of_time)
     elif "time" not in model._root:
-        raise fault("missing-key", "the model does not say until when", "time.end",
-                    "say it here: lv.solve(model, 10), or in the model: model.time.end = 10")
+        raise fault("missing-key", "the end of time is missing", "time.end",
+                    "give it here: lv.solve(model, 10), or in the model: model.time.end = 10")
     if method is not None or options:
         made["method"] = _method(model, method, options)
     if start is not None:
@@ -297,7 +298,7 @@ def _method(model: Model, method: Method | str | None, options: Mapping[str, Any
             names = [n for n in known if n != "family"]
             of_solve = ["time", "accuracy", "elements", "output", "breaks", "method", "start", "end", "progress", "strict"]
             raise fault("unknown-key", f"solve() has no keyword '{name}'", name,
-                        _core.suggestion(name, names + of_solve)
+                        of_keyword(name) or _core.suggestion(name, names + of_solve)
                         if name not in ("degree", "window", "basis") else f"write method=lv.Lobatto({name}=..)")
         if value is None:
             table.pop(name, None)

@@ -13,8 +13,9 @@ import numpy as np
 
 from . import _core
 from ._errors import Diagnostic, InputError, Place, fault, user_place
+from ._rotations import ORIENTATIONS, as_key, doubt, is_rotation
 
-TABLE, TABLES = 11, 12   # of Form in schema.h
+ROW, TABLE, TABLES = 9, 11, 12   # of Form in schema.h
 KINDS = ("body", "joint", "drive", "load", "sensor")   # arrays of tables in the root
 
 
@@ -97,9 +98,15 @@ def plain(value: Any, key: dict[str, Any] | None, path: str) -> Any:
         return plain(value.item(), key, path)
     if hasattr(value, "to_base_units"):
         return _magnitude(value, key, path)
+    if key is not None and key.get("name") in ORIENTATIONS and is_rotation(value):
+        return plain(as_key(value, key["name"]), key, path)
+    if key is not None and key.get("name") == "quaternion":
+        doubt(value)
     if isinstance(value, np.ndarray):
         if value.dtype.kind not in "fiub":
             raise fault("wrong-type", f"an array of {value.dtype} holds no numbers", path)
+        if value.ndim == 2 and 1 in value.shape and key is not None and (key.get("form"), key.get("other")) == (ROW, 0):
+            value = value.ravel()   # a column of three numbers
         return plain(value.tolist(), key, path)
     if isinstance(value, os.PathLike):
         return plain(os.fspath(value), key, path)
@@ -113,8 +120,16 @@ def plain(value: Any, key: dict[str, Any] | None, path: str) -> Any:
         items = [plain(item, key, path) for item in value]
         return items if items and all(isinstance(item, Table) for item in items) else tuple(items)
     raise fault("wrong-type", f"{_article(type(value).__name__)} is no value of a model", path,
-                "m.add_function(name, body, function) takes functions; expressions are texts" if callable(value)
-                else "numbers, texts with units, lists and arrays are")
+                _of_function(path) if callable(value)
+                else "numbers, strings with units, lists and arrays are")
+
+
+def _of_function(path: str) -> str:
+    """What to do with a Python function."""
+    expression = "an expression is a string, a formula of t: \"0.5*sin(2*t)\""
+    if path.startswith("drive["):
+        return expression + "; values over time: table=lv.table(times, values)"
+    return expression + "; m.add_function(name, body, function) takes a Python function"
 
 
 def _article(word: str) -> str:
@@ -125,7 +140,7 @@ def _plain_table(value: Mapping[Any, Any], child: dict[str, Any] | None, path: s
     table = Table(place=user_place())
     for name, item in value.items():
         if not isinstance(name, str):
-            raise fault("wrong-type", f"keys are texts, not {type(name).__name__}", path)
+            raise fault("wrong-type", f"keys are strings, not {type(name).__name__}", path)
         key = None if child is None else schema().key(child, value, name)
         table[name] = plain(item, key, f"{path}.{name}")
         table.places[name] = table.place
@@ -203,7 +218,7 @@ def _text(value: str) -> str:
         elif code < 0x20 or code == 0x7F:
             out.append(f"\\u{code:04X}")
         elif 0xD800 <= code < 0xE000:
-            raise fault("not-text", "this text holds surrogates, which are no characters")
+            raise fault("not-text", "this string holds surrogates, which are not characters")
         else:
             out.append(c)
     return '"' + "".join(out) + '"'

@@ -26,7 +26,7 @@ class Quantity(Protocol):
 
 
 Number: TypeAlias = Union[float, str, Quantity, "np.floating[Any]", "np.integer[Any]"]
-"""A number in SI units, a text with a unit (``"30 deg"``), or a quantity of pint."""
+"""A number in SI units, a string with a unit (``"30 deg"``), or a quantity of pint."""
 Vector: TypeAlias = Union[Sequence[Number], npt.NDArray[Any], Quantity]
 """Some numbers."""
 Matrix: TypeAlias = Union[Sequence[Vector], npt.NDArray[Any], Quantity]
@@ -138,14 +138,38 @@ def table(times: Vector, values: Vector | Matrix, interpolation: str | None = No
     return made
 
 
+_LIKELY = ("at", "axis", "axes", "pitch", "ratio", "points", "point", "value", "stiffness", "rate", "expression")
+
+
+def _of_positional(method: str, front: list[str], keywords: list[str], given: Sequence[Any]) -> str:
+    """What to write where more stands in front than a method takes."""
+    likely = [name for name in _LIKELY if name in keywords] or keywords
+    shown = ", ".join(f"{name}={value!r}" for name, value in zip(likely, given))
+    return f"{method}({', '.join(front)}, ..) takes all else by name" + (f": {shown}" if shown else "")
+
+
+def three(name: str, x: Any, y: Any, z: Any) -> tuple[Any, Any, Any]:
+    """Three numbers, or one sequence of three."""
+    if y is None and z is None and not isinstance(x, str) and hasattr(x, "__len__") and len(x) == 3:
+        return (x[0], x[1], x[2])
+    if y is None or z is None:
+        raise TypeError(f"{name}() takes three lengths: {name}(x, y, z)")
+    return (x, y, z)
+
+
 def open_keys(kind: str, word: str) -> Callable[[_F], _F]:
     """Lets a generated method hand keywords that it does not know to the reader, who knows what was meant."""
     def decorate(method: _F) -> _F:
         signature = inspect.signature(method)
         known = frozenset(signature.parameters)
+        front = [name for name, p in signature.parameters.items() if p.kind is p.POSITIONAL_OR_KEYWORD and name != "self"]
+        n_front = len(front)
+        keyword_only = [name for name, p in signature.parameters.items() if p.kind is p.KEYWORD_ONLY]
 
         @functools.wraps(method)
         def call(self: Any, *args: Any, **keywords: Any) -> Any:
+            if len(args) > n_front:
+                raise TypeError(_of_positional(method.__name__, front, keyword_only, args[n_front:]))
             unknown = {name: value for name, value in keywords.items() if name not in known}
             if not unknown:
                 return method(self, *args, **keywords)

@@ -181,7 +181,7 @@ std::string objection(const std::string& file, const std::string& kind,
     for (const ExportFormat& f : export_formats())
         if (f.word == kind) is_own = f.is_own;
     if (force || !is_occupied(file, is_own)) return "";
-    return "what stands there is no older file of this kind that livens wrote; choose another name, or say "
+    return "the file there was not written by livens as this kind; choose another name, or say "
            "force=True to replace it";
 }
 

@@ -5,6 +5,8 @@
 #include <nanobind/stl/string_view.h>
 
 #include "livens/base/error.h"
+#include "livens/io/scenario/schema/other_keys.h"
+#include "livens/io/scenario/schema/other_words.h"
 #include "livens/io/scenario/schema/schema.h"
 #include "livens/io/scenario/schema/section.h"
 #include "livens/io/scenario/text/units.h"
@@ -33,7 +35,7 @@ std::string utf8(nb::handle text, const Location& at)
     const char* bytes = PyUnicode_AsUTF8AndSize(text.ptr(), &size);
     if (bytes != nullptr) return {bytes, static_cast<std::size_t>(size)};
     PyErr_Clear();
-    refuse(at, "not-text", "this text holds surrogates, which are no characters");
+    refuse(at, "not-text", "this string holds surrogates, which are not characters");
 }
 
 /// A value of a key: tuples and lists alike.
@@ -196,6 +198,30 @@ std::string suggestion(std::string_view word, nb::list known)
     return suggest(word, views);
 }
 
+/// (the choice that a word of another program means, with what); empty where nothing is known.
+nb::tuple other_word(std::string_view word, nb::list choices)
+{
+    std::vector<std::string> words;
+    for (nb::handle w : choices) words.push_back(nb::cast<std::string>(w));
+    std::string_view with;
+    const std::string_view choice = in_other_words(word, {words.begin(), words.end()}, with);
+    return nb::make_tuple(std::string(choice), std::string(with));
+}
+
+/// What to type instead of a key, in a table by its heading and a kind by its word; empty: nothing is known.
+std::string other_key(std::string_view heading, std::string_view kind, std::string_view key,
+                      std::string_view name)
+{
+    for (const Table* table : schema_tables()) {
+        if (table->heading != heading) continue;
+        int index = any_kind;
+        for (std::size_t i = 0; i < table->kinds.size(); ++i)
+            if (table->kinds[i].word == kind) index = static_cast<int>(i);
+        return instead_of_key(*table, index, key, name).help;
+    }
+    return {};
+}
+
 }   // namespace
 
 nb::tuple tables_of(const Node& root)
@@ -345,6 +371,8 @@ void add_tree(nb::module_& m)
     m.def("check_table", &check_table, nb::arg("name"), nb::arg("table"));
     m.def("quantity", &quantity, nb::arg("text"), nb::arg("unit"), nb::arg("other_unit") = "");
     m.def("suggestion", &suggestion, nb::arg("word"), nb::arg("known"));
+    m.def("other_word", &other_word, nb::arg("word"), nb::arg("choices"));
+    m.def("other_key", &other_key, nb::arg("heading"), nb::arg("kind"), nb::arg("key"), nb::arg("name") = "");
     m.def(
         "explain", [](const std::string& code) { return std::string(explain(code)); }, nb::arg("code"));
     m.def("diagnostic_codes", [] {

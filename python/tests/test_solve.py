@@ -75,7 +75,7 @@ def test_time_and_methods(pendulum: lv.Model) -> None:
     assert lv.solve(pendulum).method == "radau(5)" and lv.solve(pendulum).n_elements == 10
     sol = lv.solve(pendulum, accuracy=1e-5, method=lv.Lobatto(), estimate="second")
     assert sol.method.startswith("lobatto") and sol.figures["accuracy"] == 1e-5
-    with pytest.raises(lv.InputError, match="until when"):
+    with pytest.raises(lv.InputError, match="end of time is missing"):
         lv.solve(free_fall())
 
 

@@ -259,8 +259,8 @@ TEST(LobattoEnds, MomentaThatJointsDoNotLetTheMotionHaveAreSuspect)
             }
             EXPECT_GT(off, 1e-3) << run.name;
             const std::string where = at_start ? "start" : "end", &words = s.report.message;
-            EXPECT_EQ(words.rfind("what is stated at the " + where + " is not met: body '", 0), 0u) << words;
-            EXPECT_NE(words.find("stated is "), std::string::npos) << words;
+            EXPECT_EQ(words.rfind("what is given at the " + where + " is not met: body '", 0), 0u) << words;
+            EXPECT_NE(words.find("given is "), std::string::npos) << words;
             EXPECT_NE(words.find("its joints hold this direction"), std::string::npos) << words;
         }
     }

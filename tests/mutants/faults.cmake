@@ -1079,3 +1079,11 @@ livens_mutant(NAME forces_of_joints_have_no_slopes
               NEW [[if (tables_.bodies[b].dofs == 7) add_turning(b);]]
               TESTS_OF unit_spacetime
               MUST_FAIL MarchKernel.LinksThatAHeavyMassDrawsNeedNoNewton)
+
+# A key that an unknown one stands for is said to be lacking as well: two errors for one mistake.
+livens_mutant(NAME meant_key_lacks
+              FILE io/scenario/schema/unknown_key.cpp
+              OLD [[if (!other.meant.empty()) meant_.push_back(other.meant);]]
+              NEW [[if (other.meant.empty()) meant_.push_back(other.meant);]]
+              TESTS_OF unit_io
+              MUST_FAIL Mistakes.OfKeysAreAnsweredWithTheKeyOrTheTable)

@@ -450,7 +450,7 @@ TEST(Mechanisms, TurnsThatNobodyCountsAreToldByName)
     const Solution over = stepped("[time]\nend = 1\nelements = 40\n");
     bool is_told = !over.report.converged();
     for (const std::string& reason : over.verdict.reasons)
-        is_told = is_told || reason.find("'coil' has lost its turns") != std::string::npos;
+        is_told = is_told || reason.find("'coil' has lost count of its turns") != std::string::npos;
     EXPECT_TRUE(is_told);
     EXPECT_EQ(stepped("[time]\nend = 0.05\nelements = 100\n").verdict.reasons.size(), 0u)
         << "2.5 rad are known";

@@ -64,7 +64,7 @@ class Equilibrium(ProgramTest):
     def test_upright_is_unstable_and_an_answer(self):
         found = self.equilibrium(UPRIGHT)
         self.assertEqual((found["status"], found["iterations"], found["unstable_directions"]), ("unstable", 0, 1))
-        self.assertIn("begin a little off it", self.expect(0, "equilibrium", "rest.toml").out)
+        self.assertIn("start slightly off it", self.expect(0, "equilibrium", "rest.toml").out)
 
     def test_what_falls_has_none(self):
         found = self.equilibrium(FALLING, NOT_CONVERGED)

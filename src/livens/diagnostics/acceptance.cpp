@@ -48,8 +48,8 @@ public:
         if (value <= acceptable_zigzag) return;
         reasons_.push_back(std::string(what) + " alternate from node to node near " + to_text(t, 6) +
                            " s (indicator " + to_text(value, 3) +
-                           "): the elements are too long to see the motion, or this is a solution of the "
-                           "equations that is none; " +
+                           "): the elements are too long to resolve the motion, or Newton's method converged "
+                           "to a spurious root; " +
                            (has_blocks ? "smaller blocks or more elements" : "more elements") + " may help");
     }
     void error(const ErrorEstimate& estimate, const Model& model, double bound)
@@ -63,7 +63,7 @@ public:
             to_text(estimate.time, 6) + " s, by " +
             (is_law ? "what the law of load '" +
                           model.loads()[static_cast<std::size_t>(estimate.unseen_load)].name +
-                          "' does inside of the element that ends at " + to_text(estimate.unseen_time, 6) +
+                          "' does inside the element that ends at " + to_text(estimate.unseen_time, 6) +
                           " s, between the points at which it is evaluated; shorter elements there, or an "
                           "accuracy instead of elements, may help"
                     : std::string("a second, finer solution; more elements or a higher degree may help")));
@@ -74,25 +74,25 @@ public:
         if (!reasons_.empty() || !(error > acceptable_unsure_error) || !(has_jump || drift > error)) return;
         reasons_.push_back(
             "its estimated error, " + to_text(error, 3) + ", may be too small: " +
-            (has_jump ? "velocities leave the polynomial of an element by " + to_text(jump, 3)
-                      : "the balance of energy is off by " + to_text(drift, 3)) +
-            ", so that the elements are too long for the second solution as well; more elements may help");
+            "the time elements are too long, for the second solution as well (" +
+            (has_jump ? "velocity jump " + to_text(jump, 3) : "energy error " + to_text(drift, 3)) +
+            "); use about twice as many, or an accuracy");
     }
     void jump(double value, double t)
     {
         if (value <= acceptable_velocity_jump) return;
         reasons_.push_back(
-            "the velocity from the momentum leaves the polynomial of the element that ends at " +
+            "the velocity of the momentum and that of the polynomial differ at the end of the element at " +
             to_text(t, 6) + " s (jump " + to_text(value, 3) +
-            "): the element is too long to see the motion, or this is a solution of the equations "
-            "that is none; more elements may help");
+            "): the element is too long to resolve the motion, or Newton's method converged to a spurious "
+            "root; more elements may help");
     }
     void distance(double value, double t)
     {
         if (value <= acceptable_distance) return;
         reasons_.push_back("the motion is " + to_text(value, 3) +
-                           " of the model's length away from a march of lobatto over the same elements, "
-                           "which it leaves near " +
+                           " of the model length away from a lobatto solution on the same elements, from "
+                           "which it departs near " +
                            to_text(t, 6) +
                            " s: one of the two is wrong; smaller blocks, more elements or a higher degree "
                            "may help");
@@ -100,8 +100,8 @@ public:
 
     void turn(const Load& load, double t)
     {
-        reasons_.push_back("the load '" + load.name + "' has lost its turns at t = " + to_text(t, 6) +
-                           " s: " + load.domain + ", so that its force is another one from there on");
+        reasons_.push_back("the load '" + load.name + "' has lost count of its turns at t = " +
+                           to_text(t, 6) + " s: " + load.domain + ", so its force is wrong from there on");
     }
 
 private:
@@ -178,16 +178,16 @@ void find_horizon(Verdict& v, const Model& model, const Motion& motion, std::spa
         if (std::isnan(v.horizon) && by_rounding >= acceptable_error) v.horizon = motion.mesh.ends[e];
     }
     if (std::isnan(v.horizon) && !std::isnan(first))
-        v.remarks.push_back("what moves " + in_words(part, model) +
-                            " by 1e-13 at the start grows to 0.01 by " + to_text(first, 4) +
-                            " s; numbers there stay zero, so that rounding does not reach it, but anything "
-                            "else does");
+        v.remarks.push_back("a disturbance of 1e-13 at the start that moves " + in_words(part, model) +
+                            " grows to 0.01 by " + to_text(first, 4) +
+                            " s; those numbers stay exactly zero in this run, so rounding does not excite "
+                            "it, but any other disturbance would");
     if (!std::isnan(v.horizon))
-        v.remarks.push_back("what rounding does to the start has grown to 0.01 by " + to_text(v.horizon, 4) +
-                            " s, most in " + in_words(rounding_in.body < 0 ? part : rounding_in, model) +
-                            ": the motion goes on to " + to_text(motion.end(), 6) +
-                            " s, but behind the horizon it is one of many that double precision cannot tell "
-                            "apart");
+        v.remarks.push_back(
+            "rounding errors at the start have grown to 0.01 by " + to_text(v.horizon, 4) + " s, most in " +
+            in_words(rounding_in.body < 0 ? part : rounding_in, model) + ": the motion continues to " +
+            to_text(motion.end(), 6) +
+            " s, but beyond this horizon it is one of many that double precision cannot distinguish");
 }
 
 }   // namespace
@@ -201,7 +201,7 @@ Verdict judge(const Model& model, const Motion& motion, const SolveReport& repor
     const bool holds_weakly = motion.constraints_hold == ConstraintsHold::weakly;
     measure(v, model, motion, holds_weakly);
     if (report.smallest_pivot < doubtful_pivot)
-        v.remarks.push_back("the constraints came close to losing rank (smallest pivot " +
+        v.remarks.push_back("the constraints nearly lost rank (smallest pivot " +
                             to_text(report.smallest_pivot, 3) +
                             "): the mechanism passes near a singular position; an output time, a jump or "
                             "the end of time that falls on it keeps an element end there. With accuracy "
@@ -209,8 +209,8 @@ Verdict judge(const Model& model, const Motion& motion, const SolveReport& repor
     const double lost = motion.damps() ? v.balance.relative_energy_loss() : 0;
     if (lost > acceptable_drift)
         v.remarks.push_back("the method has damped " + to_text(lost, 3) +
-                            " of the energy: motions that its elements do not resolve, or elements that are "
-                            "too long for the motion, which the estimated error would tell");
+                            " of the energy: either vibrations that its elements do not resolve, or the "
+                            "elements are too long for the motion, which the estimated error shows");
     if (!estimate.empty()) {
         v.estimated_error = estimate.largest;
         v.estimated_digits = estimate.digits();
@@ -230,7 +230,7 @@ Verdict judge(const Model& model, const Motion& motion, const SolveReport& repor
     if (report.accuracy == 0 && counts_turns)
         reasons.unsure(estimate.largest, v.velocity_jump, motion.damps() ? 0 : v.energy_drift);
     if (!report.estimate_failed.empty())
-        v.reasons.push_back("nothing tells the error, since " + report.estimate_failed);
+        v.reasons.push_back("the error is not known, since " + report.estimate_failed);
     const bool has_blocks = report.iterations.size() < static_cast<std::size_t>(motion.n_elements());
     reasons.distance(report.guess_distance, report.guess_distance_time);
     reasons.violation(v.max_constraint_violation,

@@ -212,7 +212,7 @@ private:
 
     void add_point(std::int64_t tag, const Vector3& p)
     {
-        if (!tags_.add(tag)) cursor_.fail("node " + std::to_string(tag) + " stands twice");
+        if (!tags_.add(tag)) cursor_.fail("node " + std::to_string(tag) + " is given twice");
         mesh_.points.push_back(p);
     }
 

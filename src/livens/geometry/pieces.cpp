@@ -215,7 +215,7 @@ void geometry_internal::check_pieces(const Facets& f, const Pieces& numbers, std
             faults.push_back(
                 {"mesh-self-contact", "",
                  name + ": " + which + " lies " +
-                     (is_in ? "in another one, whose mass would count twice" : "in a hollow that is none"),
+                     (is_in ? "in another one, whose mass would count twice" : "in an invalid hollow"),
                  "", "", "", "turn it inside out if it is a hollow, or leave it out"});
         return;
     }

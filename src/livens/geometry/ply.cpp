@@ -99,7 +99,7 @@ private:
     {
         const std::string_view name = cursor_.word();
         for (const Rows& rows : rows_)
-            if (rows.name == name) cursor_.fail("an element that stands twice in the header");
+            if (rows.name == name) cursor_.fail("an element that occurs twice in the header");
         rows_.push_back({name, cursor_.integer(0, INT32_MAX, "the number of elements")});
     }
 
@@ -238,7 +238,7 @@ private:
         if (corners < 0 || !rows.properties[corners].is_list)
             cursor_.fail("faces need a list vertex_indices");
         // Indices are checked as they are read, which needs the number of points.
-        if (mesh_.points.empty()) cursor_.fail("vertices must stand before the faces");
+        if (mesh_.points.empty()) cursor_.fail("vertices must come before the faces");
         ElementBlock& block = builder_.block(ElementKind::triangle);
         reserve(block.nodes, 3 * static_cast<std::size_t>(rows.count));
         reserve(block.regions, rows.count);

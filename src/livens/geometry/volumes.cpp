@@ -154,7 +154,7 @@ void geometry_internal::check_volumes(const Mesh& mesh, std::vector<Complaint>& 
              mesh.name + ": " + name(sides[i]) + " and " + name(sides[i + 1]) +
                  (end - i > 2 ? " and others share one face" : " lie on the same side of one face"),
              "", "", "a face belongs to one element, or to two on its two sides",
-             "leave out elements that stand there twice"});
+             "leave out elements that are given twice"});
         return;
     }
 }

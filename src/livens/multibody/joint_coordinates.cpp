@@ -298,11 +298,10 @@ ConstraintRow coupling_row(const std::vector<CoupledCoordinate>& coupled, double
     // The period of the sum exists only for ratios of whole numbers: each angle is known up to whole turns.
     const double measure = common_measure(terms);
     if (has_angles && measure == 0)
-        refuse(
-            "gear-ratio", "the angles of a coupling turn in no ratio of whole numbers up to 10000", "", "",
-            "after one turn of one wheel the other would stand where no tooth is, so positions do not tell "
-            "whether the row holds",
-            "give the ratio of two numbers of teeth");
+        refuse("gear-ratio", "the angles of a coupling turn in no ratio of whole numbers up to 10000", "", "",
+               "after one turn of one wheel the other would stand where no tooth is, so positions do not "
+               "tell whether the constraint holds",
+               "give the ratio of two numbers of teeth");
     const double period = 2 * std::numbers::pi * measure;
     return row_of(forms,
                   {[=](const Point& q) { return coupling_at(terms, constant, period, q); },

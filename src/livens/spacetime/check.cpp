@@ -54,11 +54,12 @@ void refuse_free_bodies(const Model& model)
         if (load.depends_on_X && load.potential) tie(load.bodies[0], load.bodies[1]);
     for (int b = 0; b < model.n_bodies(); ++b)
         if (!is_held[group[b]])
-            throw InputError({"boundary-conditions", "end.given",
-                              "momenta at both ends do not tell where body '" + model.body_name(b) + "' is",
-                              "", "positions at one end at least",
-                              "it could be displaced in any direction without any change of its momenta",
-                              "give positions at the start or at the end"});
+            throw InputError(
+                {"boundary-conditions", "end.given",
+                 "momenta at both ends do not determine where body '" + model.body_name(b) + "' is", "",
+                 "positions at one end at least",
+                 "it could be displaced in any direction without any change of its momenta",
+                 "give positions at the start or at the end"});
 }
 
 /// The other families take quadratic forms alone.
@@ -85,12 +86,12 @@ void refuse_laws_of_the_motion(const Model& model)
     for (const Load& load : model.loads())
         if (load.depends_on_X || load.depends_on_V)
             throw InputError({"estimate-method", "method.estimate",
-                              "the errors of elements do not tell that of the motion here", "local",
+                              "the errors of elements do not bound that of the motion here", "local",
                               "second or none",
                               "the force of load '" + load.name +
                                   "' depends on the motion: errors of its vibrations add up over elements, "
-                                  "whose velocity jumps tell nothing of it",
-                              "let a second solution tell it"});
+                                  "which velocity jumps do not show",
+                              "use the estimate by a second solution"});
 }
 
 /// What finds its elements itself can only march.
@@ -113,7 +114,7 @@ void check_accuracy(const Conditions& given, const Span& span, const Method& met
     if (lobatto != nullptr && lobatto->window != 1)
         refuse("method.window", "they are found one by one, in windows of one element");
     if (options.estimate != SolveOptions::Estimate::second)
-        refuse("method.estimate", "nothing tells the error without the second solution");
+        refuse("method.estimate", "the error is not known without the second solution");
     if (options.condition)
         refuse("method.condition", "condition numbers belong to a mesh that is known before");
     const int degree = lobatto != nullptr  ? lobatto->degree
@@ -186,11 +187,11 @@ void check_method(const Model& model, const Problem& problem, const Time& time, 
     if (options.estimate == SolveOptions::Estimate::local && mesh != nullptr &&
         (!is_nodal(method) || problem.conditions.at_start != Known::state))
         throw InputError({"estimate-method", "method.estimate",
-                          "the errors of elements do not tell that of the motion here", "local",
+                          "the errors of elements do not bound that of the motion here", "local",
                           "second or none",
-                          is_nodal(method) ? "how they grow is told by neighbours of a state at the start"
+                          is_nodal(method) ? "their growth is found from neighbours of a state at the start"
                                            : "those of " + name_of(method) + " are not known one by one",
-                          "let a second solution tell it"});
+                          "use the estimate by a second solution"});
     if (options.estimate == SolveOptions::Estimate::local) refuse_laws_of_the_motion(model);
     if (!is_elements(method)) check_stepping(model);
     if (mesh == nullptr) return check_accuracy(problem.conditions, std::get<Span>(time), method, options);

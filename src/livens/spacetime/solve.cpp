@@ -85,8 +85,8 @@ void refuse_rounding(const Model& model, Solution& solution)
     report.status = SolveStatus::inaccurate;
     report.failed_at = solution.estimate.time;
     report.message = "the accuracy " + to_text(report.accuracy, 6) +
-                     " cannot be told, the motion is whole up to " + to_text(end, 6) +
-                     " s; the rounding of numbers grows to " + to_text(found, 3) + ", most in " +
+                     " is not known, the motion is complete up to " + to_text(end, 6) +
+                     " s; rounding errors grow to " + to_text(found, 3) + ", most in " +
                      in_words(solution.rounding.empty() ? solution.growing : solution.rounding_in, model) +
                      "; try: an earlier end of time, or a larger error in accuracy";
 }
@@ -164,7 +164,7 @@ ExactSample sample_exactly(const Model& model, const Motion& motion, const Metho
         throw InputError(
             {"sample-exact-method", "at", "the elements of the family mixed cannot be solved one by one", "",
              "", "each depends on all others of its block",
-             "sample the polynomials, whose order is stated, or make the instant an output time"});
+             "sample the polynomials, whose order is given, or make the instant an output time"});
     SolveOptions quiet = options;
     quiet.progress = {};
     quiet.condition = false;   // one shortened element is not what was asked about

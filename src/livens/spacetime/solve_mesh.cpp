@@ -125,9 +125,8 @@ WindowOptions options_of_mesh(const Model& model, const Ends& ends, const Method
     if (!ends.has_state()) {
         w.length = 0;
         w.may_split = false;
-        w.advice =
-            "a shorter time, more elements, ends that are nearer, or a better guess (rates stated beside the "
-            "known positions)";
+        w.advice = "a shorter time, more elements, ends that are nearer, or a better guess (rates given "
+                   "beside the known positions)";
     }
     return w;
 }
@@ -189,7 +188,7 @@ void refuse_undetermined(Window& window, ConditionNumbersOfLast& last, SolveRepo
     report.message =
         "the conditions at the two ends of time do not determine the motion (condition number " +
         (measured.notes.empty() ? to_text(measured.condition_1, 6) : std::string("infinite")) +
-        "): a neighbouring motion fulfils them as well, as at conjugate and focal times; try: another "
+        "): a neighbouring motion satisfies them as well, as at conjugate and focal times; try: another "
         "duration, or the state at one end";
 }
 

@@ -107,7 +107,7 @@ public:
             result_.report.notes.push_back("the tolerance " + to_text(options_.tolerance, 6) +
                                            " is below rounding: " + std::to_string(rounded_) + " of " +
                                            std::to_string(result_.report.n_elements) +
-                                           " steps ended where rounding left nothing to gain");
+                                           " steps ended at rounding level");
         return std::move(result_);
     }
 

@@ -45,6 +45,13 @@ TimeValue inverse_of(const TimeValue& b)
     return chain(b, i, -i * i, 2 * i * i * i);
 }
 
+TimeValue quotient_of(const TimeValue& a, const TimeValue& b)
+{
+    TimeValue q = times(a, inverse_of(b));
+    q.value = a.value / b.value;
+    return q;
+}
+
 TimeValue log_of(const TimeValue& a)
 {
     return chain(a, logarithm(a.value), 1 / a.value, -1 / (a.value * a.value));
@@ -87,11 +94,8 @@ TimeValue apply(Operation operation, const TimeValue& a, const TimeValue& b)
         return {a.value - b.value, a.first - b.first, a.second - b.second};
     case Operation::times:
         return times(a, b);
-    case Operation::divided: {
-        TimeValue q = times(a, inverse_of(b));
-        q.value = a.value / b.value;
-        return q;
-    }
+    case Operation::divided:
+        return quotient_of(a, b);
     case Operation::power:
         return power_of(a, b);
     case Operation::sine: {

@@ -80,9 +80,10 @@ public:
     /// "division by 0 at column 5": the first operation that has no value there; empty if all have.
     std::string without_value(double t, std::span<const double> symbols) const;
 
-    /// Instants in between at which an operation on time alone jumps or bends (abs, min, max, atan2, a
-    /// sign, floor, a division by what passes zero), and around what comes and goes faster than a hundredth of the time: an
-    /// element that steps over these sees nothing of them. Pulses shorter than a 4096th may be overlooked.
+    /// Instants in between at which an operation on time alone jumps or bends (abs, min, max, atan2, sign,
+    /// floor, a division by what passes zero), and around what comes and goes faster than a hundredth of the
+    /// time: an element that steps over these sees nothing of them. Pulses shorter than a 4096th may be
+    /// overlooked.
     std::vector<double> events(double from, double until) const;
     /// Of operations that jump or bend where symbols decide: abs and sign at 0, min and max where both are
     /// alike, atan2 at half a turn, floor at whole numbers.

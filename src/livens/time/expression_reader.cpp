@@ -10,6 +10,7 @@
 
 #include "livens/base/error.h"
 #include "livens/base/text.h"
+#include "livens/time/detail/expression_names.h"
 #include "livens/time/detail/expression_reader.h"
 
 namespace livens::inline time_internal {
@@ -17,83 +18,6 @@ namespace livens::inline time_internal {
 namespace {
 
 using Operation = Expression::Operation;
-
-struct Function {
-    std::string_view name;
-    Operation operation;
-    int n_arguments;
-};
-
-constexpr std::array functions{
-    Function{"sin", Operation::sine, 1},          Function{"cos", Operation::cosine, 1},
-    Function{"tan", Operation::tangent, 1},       Function{"tanh", Operation::hyperbolic_tangent, 1},
-    Function{"exp", Operation::exponential, 1},   Function{"log", Operation::logarithm, 1},
-    Function{"sqrt", Operation::root, 1},         Function{"abs", Operation::absolute, 1},
-    Function{"sign", Operation::sign, 1},         Function{"floor", Operation::floor, 1},
-    Function{"atan2", Operation::arc_tangent, 2}, Function{"min", Operation::least, 2},
-    Function{"max", Operation::greatest, 2}};
-
-// Functions that are made of those above.
-constexpr std::array<std::string_view, 6> composed{"asin", "acos", "atan", "sinh", "cosh", "step"};
-
-// Names that other programs have for the same: a refusal proposes the one that is known here.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 21> other_names{
-    {{"time", "t"},
-     {"TIME", "t"},
-     {"T", "t"},
-     {"Pi", "pi"},
-     {"PI", "pi"},
-     {"ln", "log"},
-     {"arctan2", "atan2"},
-     {"arctan", "atan"},
-     {"arcsin", "asin"},
-     {"arccos", "acos"},
-     {"sgn", "sign"},
-     {"signum", "sign"},
-     {"fabs", "abs"},
-     {"pow", "x^y"},
-     {"clip", "min(max(x, a), b)"},
-     {"clamp", "min(max(x, a), b)"},
-     {"heaviside", "step"},
-     {"maximum", "max"},
-     {"minimum", "min"},
-     {"IF", "step(x)*a + (1 - step(x))*b"},
-     {"if", "step(x)*a + (1 - step(x))*b"}}};
-
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
-bool begins_name(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
-
-/// A name with all its points, and where it ends in the text.
-struct Name {
-    std::string word;
-    std::size_t end;
-    bool is_open = false;   ///< a quote is not closed
-};
-
-Name name_at(std::string_view text, std::size_t at)
-{
-    const auto end_of_word = [&](std::size_t i) {
-        while (i < text.size() && (begins_name(text[i]) || is_digit(text[i]))) ++i;
-        return i;
-    };
-    std::size_t end = 0;
-    std::string word;
-    if (text[at] == '\'') {
-        const std::size_t close = text.find('\'', at + 1);
-        if (close == std::string_view::npos) return {"", text.size(), true};
-        word = text.substr(at + 1, close - at - 1);
-        end = close + 1;
-    } else {
-        end = end_of_word(at);
-        word = text.substr(at, end - at);
-    }
-    while (end + 1 < text.size() && text[end] == '.' && begins_name(text[end + 1])) {
-        const std::size_t next = end_of_word(end + 1);
-        word += text.substr(end, next - end);
-        end = next;
-    }
-    return {word, end};
-}
 
 /// By descent: sum, product, sign, power, atom.
 class Reader {
@@ -147,8 +71,7 @@ private:
             !symbol.empty() && begins_name(symbol[0]) &&
             std::ranges::all_of(symbol, [](char c) { return begins_name(c) || is_digit(c); });
         const bool is_taken =
-            symbol == "t" || symbol == "pi" || std::ranges::find(composed, symbol) != composed.end() ||
-            std::ranges::any_of(functions, [&](const Function& f) { return f.name == symbol; });
+            symbol == "t" || symbol == "pi" || is_composed(symbol) || find_function(symbol) != nullptr;
         if ((is_name && !is_taken) || symbol.find('.') != std::string::npos) return;
         refuse("expression-name",
                is_taken ? "an input has the name of something else" : "an input is no name",
@@ -261,34 +184,13 @@ private:
         const std::string& word = read.word;
         if (word == "t") return add({Operation::time, -1, -1, place});
         if (word == "pi") return add({Operation::number, -1, -1, place, std::numbers::pi});
-        for (const Function& f : functions)
-            if (f.name == word) return call(f, place);
-        if (std::ranges::find(composed, word) != composed.end()) return call_composed(word, place);
+        if (const Function* f = find_function(word)) return call(*f, place);
+        if (is_composed(word)) return call_composed(word, place);
         const auto symbol = std::ranges::find(symbols_, word);
         if (symbol != symbols_.end())
             return add({Operation::symbol, static_cast<int>(symbol - symbols_.begin()), -1, place});
         refuse("expression-name", "an expression has an unknown name",
-               "'" + word + "' at column " + std::to_string(place), "", known_names(word));
-    }
-
-    std::string known_names(const std::string& word) const
-    {
-        std::string known;
-        const std::string last = word.substr(word.rfind('.') + 1);   // "np.sin"
-        std::string lower = last;
-        for (char& c : lower) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-        const auto is_function = [](std::string_view name) {
-            return std::ranges::find(composed, name) != composed.end() ||
-                   std::ranges::any_of(functions, [&](const Function& f) { return f.name == name; });
-        };
-        for (const auto& [other, own] : other_names)
-            if (last == other) known = "did you mean '" + std::string(own) + "'? ";
-        if (known.empty() && is_function(lower)) known = "did you mean '" + lower + "'? ";
-        known += "known are t, pi";
-        for (const Function& f : functions) known += ", " + std::string(f.name);
-        for (const std::string_view name : composed) known += ", " + std::string(name);
-        for (const std::string& symbol_name : symbols_) known += ", " + symbol_name;
-        return known;
+               "'" + word + "' at column " + std::to_string(place), "", known_names(word, symbols_));
     }
 
     int call(const Function& f, int place)
@@ -383,31 +285,3 @@ std::vector<Expression::Step> read_expression(std::string_view text, const std::
 }
 
 }   // namespace livens::inline time_internal
-
-namespace livens {
-
-std::vector<std::string> names_with_points(std::string_view text)
-{
-    std::vector<std::string> names;
-    for (std::size_t at = 0; at < text.size();) {
-        if (is_digit(text[at])) {   // "2.5e3" is no name
-            double value = 0;
-            const char* const first = text.data() + at;
-            const auto end = std::from_chars(first, text.data() + text.size(), value).ptr;
-            at += std::max<std::size_t>(1, static_cast<std::size_t>(end - first));
-            continue;
-        }
-        if (!begins_name(text[at]) && text[at] != '\'') {
-            ++at;
-            continue;
-        }
-        Name name = name_at(text, at);
-        at = name.end;
-        const bool has_point = name.word.find('.') != std::string::npos;
-        if (has_point && std::ranges::find(names, name.word) == names.end())
-            names.push_back(std::move(name.word));
-    }
-    return names;
-}
-
-}   // namespace livens

@@ -175,7 +175,7 @@ TEST(StartCoordinates, RefuseWhatCannotBeStated)
         return "";
     };
     EXPECT_EQ(code({{0, 0, 0.1, {}}}), "");
-    EXPECT_NE(code({{0, 0, 0.1, {}}, {3, 0, 0.1, {}}}).find("'rocker shaft.angle' cannot be stated"),
+    EXPECT_NE(code({{0, 0, 0.1, {}}, {3, 0, 0.1, {}}}).find("'rocker shaft.angle' cannot be given"),
               std::string::npos);
     EXPECT_NE(code({{0, 0, 0.1, {}}, {0, 0, {}, 1.0}}).find("twice"), std::string::npos);
     EXPECT_NE(code({{0, 0, 1e4, {}}}).find("too far"), std::string::npos);

@@ -20,16 +20,17 @@ TEST(OtherWords, AreAnsweredWithThoseOfScenarios)
         return help(replaced(valid_scenario, "type = \"spherical\"", "type = \"" + type + "\""),
                     "unknown-choice");
     };
-    EXPECT_EQ(joint("ball"), "here it is \"spherical\"");
-    EXPECT_EQ(joint("hinge"), "here it is \"revolute\"");
+    EXPECT_EQ(joint("ball"), "livens calls it \"spherical\"");
+    EXPECT_EQ(joint("hinge"), "livens calls it \"revolute\"");
     EXPECT_EQ(joint("sphericl"), "did you mean 'spherical'?");
     const auto load = [](const std::string& type) {
         return help(replaced(valid_scenario, "type = \"force\"", "type = \"" + type + "\""),
                     "unknown-choice");
     };
-    EXPECT_EQ(load("moment"), "here it is \"torque\"");
-    EXPECT_EQ(load("damper"), "here it is \"spring\" with 'damping' alone");
-    EXPECT_EQ(load("torsion_spring"), "here it is \"spring\" with 'joint', the hinge that it is wound about");
+    EXPECT_EQ(load("moment"), "livens calls it \"torque\"");
+    EXPECT_EQ(load("damper"), "livens calls it \"spring\" with 'damping' alone");
+    EXPECT_EQ(load("torsion_spring"),
+              "livens calls it \"spring\" with 'joint', the revolute joint that it is wound about");
     // no word of joints for a load
     EXPECT_EQ(load("ball").find("known here: force, torque"), 0u) << load("ball");
 }
@@ -47,14 +48,14 @@ TEST(OtherWords, ShapesAndFormulasAreShown)
 {
     const std::string shape = "shape = { box = [1, 0.2, 0.1] }";
     EXPECT_EQ(help(replaced(valid_scenario, shape, "shape = [1, 0.2, 0.1]"), "wrong-type"),
-              "a table stands in braces, as in shape = { box = ... }");
+              "tables are written in braces: shape = { box = [1, 0.2, 0.1] }");
     EXPECT_NE(help(replaced(valid_scenario, "inertia = [0.2, 0.3, 0.4]\n", ""), "mass-missing")
                   .find("shape = { point = true }"),
               std::string::npos);
     const ScenarioResult formula =
         read(replaced(valid_scenario, "value = [0, 1, 0]", "value = [0, \"sin(t)\", 0]"));
     ASSERT_NE(find(formula, "unit"), nullptr);
-    EXPECT_EQ(find(formula, "unit")->note, "formulas stand in 'expression', instead of 'value'");
+    EXPECT_EQ(find(formula, "unit")->note, "a formula is given as 'expression', instead of 'value'");
     const auto expression = [](const std::string& y) {
         return replaced(valid_scenario, "value = [0, 1, 0]", "expression = [\"0\", \"" + y + "\", \"0\"]");
     };

@@ -438,6 +438,21 @@ TEST(Schema, JsonNamesEveryKeyAndClosesEveryBracket)
     EXPECT_EQ(depth, 0);
 }
 
+/// What makes validators repeat a slip, or say only that nothing fitted.
+TEST(Schema, JsonHasNothingThatHidesASlip)
+{
+    const std::string json = schema_json();
+    for (const char* word : {"\"allOf\"", "\"oneOf\"", "\"additionalProperties\": false", "\": false"})
+        EXPECT_EQ(json.find(word), std::string::npos) << word;
+    // Alternatives are left where words stand beside numbers, two of each.
+    int n_alternatives = 0;
+    for (const auto& [table, key] : all_keys()) n_alternatives += key->type.other == Form::choice ? 1 : 0;
+    int n_found = 0;
+    for (std::size_t at = 0; (at = json.find("\"anyOf\"", at)) != std::string::npos; ++at) ++n_found;
+    EXPECT_LE(n_found, n_alternatives);
+    EXPECT_GT(n_alternatives, 0);
+}
+
 }   // namespace
 
 }   // namespace livens

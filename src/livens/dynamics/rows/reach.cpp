@@ -149,13 +149,13 @@ std::optional<Complaint> why_in_other_branch(const Model& model, std::span<const
             return Complaint{
                 "joint-branch", "joint[" + joint.name + "]." + row->label,
                  "the " + row->label + " of joint '" + joint.name + "' is off by half a turn at the start",
-                 "", "", "its rows would hold, but in another branch",
+                 "", "", "its constraints can hold, but on another branch",
                  drive_help(model, model.first_row(j), X) + "turn one of the bodies"};
         if (has_opposite_axes(joint, X))
             return Complaint{
                 "joint-branch", "joint[" + joint.name + "].axes",
                  "the axes of joint '" + joint.name + "' point in opposite directions at the start", "", "",
-                 "its rows would hold, but turned by half a turn",
+                 "its constraints can hold, but turned by half a turn",
                  "reverse one of the two axes, or turn one of the bodies"};
     }
     return {};
@@ -179,9 +179,9 @@ Reach reach(const Model& model, std::span<const Matrix34> X)
         if (!is_good(found)) continue;
         // A disturbed start closes anywhere on its branch; the nearest place to the stated one is meant.
         reached.closing = nearest_from(led, std::move(found), X, rows);
-        reached.how = "the joints did not close from the start as it is stated; from one that was disturbed "
-                      "by up to " +
-                      to_text(size, 1) + " rad and lengths of the model they did";
+        reached.how =
+            "the joints did not close from the start as given; from one that was disturbed by up to " +
+            to_text(size, 1) + " rad and lengths of the model they did";
         return reached;
     }
     reached.closing.closed = false;
@@ -190,7 +190,7 @@ Reach reach(const Model& model, std::span<const Matrix34> X)
 
 Complaint why_open(const Model& model, const Closing& open, std::span<const Matrix34> X, int n_tries)
 {
-    const std::string tried = "looked for from the start as it is stated and from " +
+    const std::string tried = "tried from the start as given and from " +
                               std::to_string(n_tries) + " that were disturbed";
     // If the independent rows close without the others, the others contradict them: that is a better reason
     // than a residual.
@@ -200,12 +200,12 @@ Complaint why_open(const Model& model, const Closing& open, std::span<const Matr
         const Gap worst = widest_gap(model, rest.X, rank.dependent);
         if (worst.violation > closed_to)
             return complaint(model, worst.row, "joint-contradiction",
-                     "no position was found in which " + model.row_name(worst.row) +
-                         " holds together with the other joints" + drive_words(model, worst.row, X),
-                     worst.violation, tried,
-                     drive_help(model, worst.row, X) +
-                         "make its points, axes and lengths fit the others, remove it, or state the bodies "
-                         "nearer to where the mechanism closes");
+                             "no position was found in which " + model.row_name(worst.row) +
+                                 " holds together with the other joints" + drive_words(model, worst.row, X),
+                             worst.violation, tried,
+                             drive_help(model, worst.row, X) +
+                                 "make its points, axes and lengths fit the others, remove it, or place the "
+                                 "bodies nearer to where the mechanism closes");
     }
     const Gap worst = widest_gap(model, open.X, all_rows(model));
     return complaint(model, worst.row, "start-position",
@@ -213,7 +213,7 @@ Complaint why_open(const Model& model, const Closing& open, std::span<const Matr
                  drive_words(model, worst.row, X),
              worst.violation, tried,
              drive_help(model, worst.row, X) +
-                 "check lengths and joint points, or state the bodies nearer to where the mechanism closes");
+                 "check lengths and joint points, or place the bodies nearer to where the mechanism closes");
 }
 
 std::string drive_words(const Model& model, int row, std::span<const Matrix34> X)

@@ -213,7 +213,7 @@ RateGap worst_rate(const Model& model, const State& state, const RowWrenches& wr
         fault.relative = relative;
         fault.complaint = {"start-velocity",
                            joint_path(model, r),
-                           "the velocities at the start break " + model.row_name(r),
+                           "the initial velocities violate " + model.row_name(r),
                            "dPhi/dt = " + number(rate),
                            "",
                            "",
@@ -246,9 +246,8 @@ Fault settle_velocities(const Model& model, const Model& the_model, StartPolicy 
     state.V = nearest_rates(model, state.X, state.V, independent, drives);
     if (fault.relative <= start_tolerance) return {};
     const std::string changes = rate_changes(model, state.X, before, state.V);
-    notes.push_back("the velocities at the start were projected: " + fault.complaint.message + " (" +
-                    fault.complaint.value + ")" +
-                    (changes.empty() ? "" : "; by the least that fits, rates became " + changes));
+    notes.push_back(fault.complaint.message + " (" + fault.complaint.value +
+                    "); they were projected onto the joints" + (changes.empty() ? "" : ": " + changes));
     return {};
 }
 
@@ -278,14 +277,17 @@ void note_redundancy(const Model& model, ConsistentStart& assembly)
 {
     for (std::size_t i = 0; i < assembly.redundant.size();) {
         const int joint = model.row_joint(assembly.redundant[i]);
+        const std::size_t n_rows = model.joints()[joint].rows.size();
         std::string rows;
-        int count = 0;
+        std::size_t count = 0;
         for (; i < assembly.redundant.size() && model.row_joint(assembly.redundant[i]) == joint; ++i, ++count)
             rows += (count == 0 ? "" : ", ") + model.row(assembly.redundant[i]).label;
-        assembly.notes.push_back(
-            "joint '" + model.joints()[joint].name + "': row" + (count == 1 ? " " : "s ") + rows +
-            (count == 1 ? " is" : " are") +
-            " implied by the other rows; reactions of the joints in this loop are not all unique");
+        assembly.notes.push_back("joint '" + model.joints()[joint].name + "' is " +
+                                 (count == n_rows ? "redundant (all of its " : "partly redundant (") +
+                                 (count == n_rows ? "" : std::to_string(count) + " of ") +
+                                 std::to_string(n_rows) + " constraint" + (n_rows == 1 ? "" : "s") + ": " +
+                                 rows +
+                                 "): reactions in this loop are not unique");
     }
 }
 

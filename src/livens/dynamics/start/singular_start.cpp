@@ -62,7 +62,7 @@ std::optional<Complaint> why_singular(const Model& model, const ConsistentStart&
     return Complaint{"start-singular", "joint[" + model.joints()[model.row_joint(m.row)].name + "]",
                       "the joints are in a singular position at the start" +
                           std::string(!m.are_possible   ? ", and velocities lead out of them in second order"
-                                      : m.choose_branch ? ", from which no method starts"
+                                      : m.choose_branch ? ", from which no method can start"
                                                         : ", and the velocities choose no motion"),
                       what, "", "the joints hold less there than beside it, and several motions may meet",
                       help};

@@ -75,13 +75,13 @@ std::vector<Led> all_coordinates(const Model& model, const std::vector<StartCoor
         const double now = model.joints()[w.joint].coordinates[w.coordinate].at_stated;
         const Led led{w.joint, w.coordinate,          w.value.has_value(), w.rate.has_value(),
                       now,     w.value.value_or(now), w.rate.value_or(0),  w.path};
-        if (find(w.joint, w.coordinate)) refuse(model, led, "is stated twice", "", "state it once");
+        if (find(w.joint, w.coordinate)) refuse(model, led, "is given twice", "", "give it once");
         if (!std::isfinite(led.to) || !std::isfinite(led.rate))
             refuse(model, led, "is not finite", "", "give a finite number");
         const double unit = named(model, led).coordinate.is_angle() ? 1 : model.length();
         if (std::abs(led.to - now) > farthest * unit)
-            refuse(model, led, "is too far from where the bodies are stated", to_text(led.to - now, 3),
-                   "state the bodies nearer to the start, or say by 'coordinate' of the joint what it is "
+            refuse(model, led, "is too far from where the bodies are placed", to_text(led.to - now, 3),
+                   "place the bodies nearer to the start, or give by 'coordinate' of the joint what it is "
                    "there");
         all.push_back(led);
     }
@@ -185,8 +185,8 @@ Chosen choose(const Model& model, const std::vector<Led>& all, std::span<const M
                 if (!wanted) chosen.kept.push_back(i);
             } else if (wanted)
                 refuse(model, all[i],
-                       "cannot be stated: joints, or the coordinates stated before it, hold it", "",
-                       "leave it out, or state the independent ones");
+                       "cannot be given: joints, or the coordinates given before it, determine it", "",
+                       "leave it out, or give the independent ones");
         }
     return chosen;
 }
@@ -259,7 +259,7 @@ Way lead(const Model& led, const std::vector<Led>& all, const Model& model, cons
            "cannot be brought to " + to_text(farthest_led->to, 6) + ": the mechanism stops at " +
                to_text(reached, 6) +
                (is_joint ? ", where " + model.row_name(way.opened) + " would open" : ""),
-           "", "state a value that the joints admit, or the bodies nearer to it");
+           "", "give a value that the joints admit, or place the bodies nearer to it");
 }
 
 /// The model with its bodies in another state; joints are data of the bodies, coordinates count on.
@@ -291,7 +291,7 @@ void settle_rates(const Model& model, const std::vector<Led>& all, State& state,
     for (std::size_t b = 0; b < V.size(); ++b) {
         const double change = norm(V[b] - state.V[b]);
         if (norm(state.V[b]) > 0 && change > noticed * fastest)
-            moved.changed.push_back("the velocities stated of body '" + model.bodies()[b].name +
+            moved.changed.push_back("the given velocities of body '" + model.bodies()[b].name +
                                     "' were changed by " +
                                     velocity_change(model.bodies()[b], state.X[b], state.V[b], V[b]) +
                                     " to fit the coordinates of the start");

@@ -115,7 +115,7 @@ void check_pieces(const fs::path& folder, const fs::path& name, std::size_t n_pi
     for (std::size_t i = 0; i < n_pieces; ++i)
         if (const fs::path piece = folder / piece_of(name, i); is_occupied(piece, is_own))
             throw IoError("cannot write '" + piece.string() +
-                          "': a file stands there that livens did not write; give the list another name, or "
+                          "': there is a file that livens did not write; give the list another name, or "
                           "say that it may be replaced (--force)");
 }
 

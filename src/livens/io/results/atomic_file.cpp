@@ -193,7 +193,7 @@ void AtomicFile::take_name()
         struct stat there {};
         if (is_occupied(target_, is_own_))
             throw OccupiedError("cannot write " + quoted(file_) +
-                                ": what stands there now came meanwhile, and is none that livens wrote");
+                                ": another program has just written a file there");
         if (::lstat(target_.c_str(), &there) == 0) break;
 #ifdef RENAME_NOREPLACE
         if (::renameat2(AT_FDCWD, temporary_.c_str(), AT_FDCWD, target_.c_str(), RENAME_NOREPLACE) == 0)

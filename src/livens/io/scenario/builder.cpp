@@ -6,6 +6,8 @@
 
 #include <algorithm>
 
+#include "livens/io/scenario/schema/other_keys.h"
+
 namespace livens::inline io_internal {
 
 namespace {
@@ -65,6 +67,17 @@ std::string spoken(const std::string& path)
     if (open == std::string::npos || close == std::string::npos || close < open) return path;
     const std::string name = path.substr(0, open) + " '" + path.substr(open + 1, close - open - 1) + "'";
     return close + 2 < path.size() ? "'" + path.substr(close + 2) + "' of " + name : name;
+}
+
+/// Names that other programs have for the frame that stands still.
+bool means_world(std::string_view name)
+{
+    const std::string plain = without_case(name);
+    for (const std::string_view word :
+         {"ground", "world", "base", "fixed", "frame", "inertial", "inertialframe", "worldbody", "global",
+          "origin", "earth", "environment", "static", "none", "null", "0", ""})
+        if (plain == word) return true;
+    return false;
 }
 
 }   // namespace
@@ -150,13 +163,15 @@ BodyReference Builder::find_body(const std::string& name, const SourceLocation& 
     if (name == "world") return {world, true};
     const auto found = bodies_.find(name);
     if (found != bodies_.end()) return found->second;
+    // Bodies under a wrong key are not known, which has been told of.
+    if (top_.find("body") == nullptr && findings_.n_errors() > 0 && top_.sections("body").empty()) return {};
     std::vector<std::string_view> known;
     for (const Section& body : top_.sections("body"))
         if (const Value* v = body.find("name")) known.push_back(v->text);
     known.push_back("world");
     findings_.error(place, "body-unknown",
                     section.label() + " refers to '" + name + "', but there is no such body",
-                    {"", suggest(name, known)});
+                    {"", means_world(name) ? "the fixed frame is called \"world\"" : suggest(name, known)});
     return {};
 }
 

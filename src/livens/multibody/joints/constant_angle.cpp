@@ -19,7 +19,7 @@ Joint constant_angle(const std::string& name, int first, int second, const Joint
     if (!(angle >= smallest && angle <= std::numbers::pi - smallest))
         throw InputError({"joint-angle", "joint[" + name + "].angle",
                           "the angle between two axes must be between 0 and 180 degrees", to_text(angle),
-                          "> 0 and < pi", "at its ends one row does not hold it",
+                          "> 0 and < pi", "at its ends one constraint does not hold it",
                           "axes that stay parallel are a joint of type parallel_axes"});
     JointFrame f = frame;
     Joint joint = start_joint(name, "constant_angle", first, second, f, scale);

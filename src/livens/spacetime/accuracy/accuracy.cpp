@@ -176,7 +176,7 @@ public:
         const SolveReport& report = solution.report;
         const std::string tries = "try " + std::to_string(report.tries);
         if (grown_.rounding() > span_.accuracy)
-            return tries + "; the rounding of numbers grows to " + to_text(grown_.rounding(), 3) +
+            return tries + "; rounding errors grow to " + to_text(grown_.rounding(), 3) +
                    ", most in " + grown_.in_words(model_);
         return tries + in_vain(report);
     }
@@ -346,7 +346,7 @@ private:
         const std::string left =
             vain + "rounding is left" + (is_smooth ? "" : ", or a law bends inside them");
         if (!grown_.is_asked()) return left;
-        return left + "; what is off at the start grows by " + to_text(grown_.largest(), 3) + ", most in " +
+        return left + "; errors of the start grow by " + to_text(grown_.largest(), 3) + ", most in " +
                grown_.in_words(model_);
     }
 

@@ -315,7 +315,8 @@ void estimate_all(const Model& model, const Problem& problem, const Method& meth
     if (is_local) {
         solution.estimate = grown_errors(model, solution);
         if (solution.estimate.empty())
-            solution.report.estimate_failed = "no neighbouring motion tells to the end how errors grow";
+            solution.report.estimate_failed =
+                "no neighbouring motion reaches the end, so the growth of errors is not known";
     }
     if (!solution.estimate.empty())
         count_rounding(model, grown_rounding(solution.growth, solution.rounding), solution.motion.mesh,

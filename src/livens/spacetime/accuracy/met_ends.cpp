@@ -68,15 +68,15 @@ public:
             if (knows_momenta(end_.known)) compare_momenta(b, take);
         }
         if (!worst) return "";
-        std::string text = std::string("what is stated at the ") + end_.word + " is not met: body '" +
+        std::string text = std::string("what is given at the ") + end_.word + " is not met: body '" +
                            model_.body_name(body) + "' has " + worst->what + " " + to_text(worst->found, 6) +
-                           worst->unit + ", stated is " + to_text(worst->stated, 6) + worst->unit;
+                           worst->unit + ", given is " + to_text(worst->stated, 6) + worst->unit;
         if (end_.known == Known::momenta && !model_.joints().empty())
-            text +=
-                std::string("; where the motion ") + (end_.index == 0 ? "begins" : "ends") +
-                " its joints hold this direction, so that of six momenta a body only as many can be chosen "
-                "as they leave free; state the positions at the " +
-                end_.word + ", or the state at one end, or momenta that a motion of these joints has there";
+            text += std::string("; where the motion ") + (end_.index == 0 ? "begins" : "ends") +
+                    " its joints hold this direction, so that of six momenta a body only as many can be "
+                    "chosen as they leave free; give the positions at the " +
+                    end_.word +
+                    ", or the state at one end, or momenta that a motion of these joints has there";
         else
             text += "; try: more elements, or the state at one end";
         return text;

@@ -20,13 +20,13 @@ void say_how_far(const Model& model, double accuracy, double until, const std::s
     report.failed_at = motion.mesh.ends[good];
     report.message =
         "the accuracy " + to_text(accuracy, 6) + " holds up to t = " + to_text(report.failed_at, 6) + " s";
-    if (motion.end() >= until) report.message += ", the motion is whole up to " + to_text(until, 6) + " s";
+    if (motion.end() >= until) report.message += ", the motion is complete up to " + to_text(until, 6) + " s";
     report.message += "; ";
     if (found.largest > accuracy)
         report.message += "the error of body '" + model.body_name(found.body) + "' is about " +
                           to_text(found.largest, 3) + " at " + to_text(found.time, 6) + " s";
     else
-        report.message += "behind, nothing tells the error, since " + report.estimate_failed;
+        report.message += "behind, the error is not known, since " + report.estimate_failed;
     report.message += " (" + why + "); try: an earlier end of time, or a larger error in accuracy";
 }
 

@@ -50,9 +50,9 @@ std::string of_failure(const NewtonReport& outcome, int max_iterations, const st
 {
     if (outcome.status == SolveStatus::cancelled)
         return "stopped as asked in " + window + "; the motion up to there is complete";
-    std::string what = "Newton's iteration found no way on after " + count(outcome.iterations, "iteration");
+    std::string what = "Newton's method stalled after " + count(outcome.iterations, "iteration");
     std::string fitting = "more and shorter elements, or a lower degree";
-    if (outcome.iterations == 0) what = "Newton's iteration found no way on from any guess";
+    if (outcome.iterations == 0) what = "Newton's method stalled from every initial guess";
     if (outcome.reached_limit)   // of one attempt; there may have been several
         what =
             "Newton's iteration did not converge in " + count(max_iterations, "iteration") + ", the limit,";
@@ -85,26 +85,27 @@ std::string of_vanishing(double t, const std::string& load)
 {
     if (!load.empty())
         return "the elements vanish near t = " + to_text(t, 6) + " s: the law of load '" + load +
-               "' changes there faster than the shortest of them, or jumps; try: a law that is less steep, a "
+               "' changes there within the shortest of them, or jumps; try: a less steep law, a "
                "larger error in accuracy, or an earlier end";
     return "the elements vanish near t = " + to_text(t, 6) +
-           " s: however short they are, each loses more than it may; try: a larger error in accuracy, an "
+           " s: the error is too large however short they are; try: a larger error in accuracy, an "
            "earlier end (none is shorter than a billionth of the whole time), or look for a load that jumps "
            "there";
 }
 
 std::string of_sticking(const std::string& load, double t)
 {
-    return "the motion rests near t = " + to_text(t, 6) + " s where the law of load '" + load +
-           "' jumps, or slides along that, as dry friction lets it, and no law says what the force is then; "
-           "try: a smooth law, such as tanh(w/0.001) for the sign of w";
+    return "sliding mode near t = " + to_text(t, 6) + " s at a discontinuity of load '" + load +
+           "', as in ideal dry friction: its force is undefined there; try: a smooth law, such as "
+           "tanh(w/0.001) for the sign of w";
 }
 
 std::string of_singular_end(double t)
 {
     return "the joints lose rank at t = " + to_text(t, 6) +
-           " s, where an element must end, for time does or a load jumps: velocities and reactions are not "
-           "determined there; try: that instant a little earlier or later";
+           " s, where an element has to end (the end of time, or a load that jumps): velocities and "
+           "reactions are not "
+           "determined there; try: moving that instant slightly";
 }
 
 std::string of_locking(const Model& model, const State& first, const State& last)
@@ -131,7 +132,7 @@ void add_notes(SolveReport& report, const WindowCounts& counts)
         report.notes.push_back("the tolerance " + to_text(counts.tolerance, 6) +
                                " is below rounding: " + count(counts.rounded, "window") + " of " +
                                std::to_string(report.iterations.size()) +
-                               " ended where rounding left nothing to gain");
+                               " ended at rounding level");
     if (counts.splits > 0)
         report.notes.push_back(count(counts.splits, "window") +
                                " failed as a whole and were solved in halves");
@@ -141,7 +142,7 @@ void add_notes(SolveReport& report, const WindowCounts& counts)
     if (report.divided > 0)
         report.notes.push_back(
             count(report.divided, "element") +
-            " were too long for the motion and were divided into two, the first near t = " +
+            " were too long for the motion and were bisected, the first near t = " +
             to_text(report.divided_at, 6) + " s");
     if (report.shifted > 0)
         report.notes.push_back(
@@ -150,9 +151,9 @@ void add_notes(SolveReport& report, const WindowCounts& counts)
             "first near t = " +
             to_text(report.shifted_at, 6) + " s");
     if (report.rescued > 0)
-        report.notes.push_back(count(report.rescued, "window") + " of " +
-                               std::to_string(report.iterations.size()) +
-                               " needed a guess from many small elements; more elements would be cheaper");
+        report.notes.push_back(
+            count(report.rescued, "window") + " of " + std::to_string(report.iterations.size()) +
+            " needed an initial guess from many small elements; more elements would be cheaper");
 }
 
 }   // namespace livens::inline spacetime_internal

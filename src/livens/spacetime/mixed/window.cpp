@@ -226,8 +226,9 @@ bool MixedWindow::hand_on(SolveReport& report)
     TriedStart tried = try_consistent_start(*tables_.model, end.state, StartPolicy::project);
     if (!tried.closed) {
         report.status = SolveStatus::not_converged;
-        report.message = "what the block before t = " + to_text(end.state.t, 6) +
-                         " s hands on is no state to go on from: " + InputError(tried.why).what();
+        report.message =
+            "what the block before t = " + to_text(end.state.t, 6) +
+            " s ends in is no admissible state to continue from: " + InputError(tried.why).what();
         return false;
     }
     end.state = std::move(tried.closed->start);

@@ -65,13 +65,17 @@ void check_mass(const Section& body)
     if (body.has("shape")) {
         body.at_most_one({"density", "mass"}, "mass-conflict");
         // Two statements of one quantity may contradict each other, and nothing says which is meant.
-        body.refuse({"inertia"}, "mass-conflict", "it follows from the shape");
+        if (body.has("inertia"))
+            body.error("inertia", "mass-conflict",
+                       "'inertia' of " + body.label() + " has no meaning: it follows from the shape",
+                       {"", "leave it out; or, where CAD gives mass and inertia, leave 'shape' out and give "
+                            "'mass', 'center_of_mass' and 'inertia'"});
         const Section* shape = only_section(body, "shape");
         const DensityBy by = shape != nullptr ? density_by(*shape) : DensityBy::body;
         if (by == DensityBy::shape)
             body.refuse({"density", "mass"}, "mass-conflict",
                         shape->has("densities") ? "the regions of the mesh have their own densities"
-                                                : "'density_field' of the shape says it already");
+                                                : "'density_field' of the shape gives it already");
         else if (by == DensityBy::both && body.has("mass"))
             body.refuse({"mass"}, "mass-conflict", "'density_field' says what parts weigh");
         else if (by == DensityBy::both && !body.has("density"))
@@ -79,7 +83,8 @@ void check_mass(const Section& body)
                        body.label() + " has no 'density', and parts of its shape have no 'density_field'");
         else if (!body.has("density") && !body.has("mass"))
             body.error("shape", "mass-missing",
-                       body.label() + " has a shape, but neither 'density' nor 'mass'");
+                       body.label() + " has a shape, but neither 'density' nor 'mass'",
+                       {"", "give one of them: density = 7850 (kg/m^3, steel) or mass = 3 (kg)"});
         return;
     }
     body.refuse({"density"}, "mass-conflict", "the body has no shape");

@@ -246,7 +246,7 @@ Mesh MeshStore::read(const std::string& path, bool is_turned)
         // Refused by its letters, before anything is asked of the file system.
         if (part == "..")
             refuse("mesh-path", path, "leaves the scenario's folder", "put the mesh beside the scenario");
-    if (!source_.folder) refuse("mesh-file", path, "cannot be read: this scenario stands in no folder");
+    if (!source_.folder) refuse("mesh-file", path, "cannot be read: this scenario has no folder");
     std::error_code error;
     const fs::path folder =
         fs::weakly_canonical(source_.folder->empty() ? fs::path(".") : *source_.folder, error);

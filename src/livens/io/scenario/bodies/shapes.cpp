@@ -39,7 +39,7 @@ std::vector<Key> mesh_keys(bool is_part)
     if (!is_part)
         keys.push_back(
             {"densities", types::named_texts,
-             "Of the mesh's regions of volume by their names in the file, each a text with a unit: "
+             "Of the mesh's regions of volume by their names in the file, each a string with a unit: "
              "`{ steel = \"7850 kg/m^3\" }`; all of them, instead of `density` and `mass`."});
     return keys;
 }

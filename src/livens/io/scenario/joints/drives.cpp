@@ -95,8 +95,8 @@ bool check_sizes(const Section& drive)
         is_good =
             drive.error("expression", "drive-size",
                         "'expression' of " + drive.label() + " is " +
-                            (v->texts.empty() ? "one text" : std::to_string(v->texts.size()) + " texts"),
-                        {"", n == 3 ? "the path of a point has three components" : "give one text"});
+                            (v->texts.empty() ? "one string" : std::to_string(v->texts.size()) + " strings"),
+                        {"", n == 3 ? "the path of a point has three components" : "give one string"});
     if (const Section* one = only_section(drive, "table"))
         if (const Value* times = one->find("times"))
             is_good = is_multiple(*one, "values", times->numbers.size()) && is_good;
@@ -351,8 +351,8 @@ Table drive_table()
              "drive: `\"60 rpm\"`. A rate over time is an `expression` of its integral.",
              "m/s"}
              .or_in("rad/s")
-             .or_formulas("a rate over time is said by 'expression', a formula of its integral: the angle or "
-                          "displacement itself"),
+             .or_formulas("for a varying rate give the angle or displacement itself as 'expression', as in "
+                          "\"5*t^2\""),
          wave, step,
          Key{"expression", types::text_or_list,
              "A formula of t, in rad or m: `0.1*sin(2*pi*t)`; without kinks."},

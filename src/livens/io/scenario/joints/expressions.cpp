@@ -115,7 +115,7 @@ bool is_of_a_library(const std::string& name)
 
 std::vector<Key> expression_keys(bool is_vector)
 {
-    static constexpr KeyType three{"three texts", Form::names, 3};
+    static constexpr KeyType three{"three strings", Form::names, 3};
     return {Key{"expression", is_vector ? three : types::text,
                 is_vector ? "Instead of `value`: a formula for each component ([how](joints.md#expressions))."
                           : "Instead of `value`: a formula ([how](joints.md#expressions))."},

@@ -55,8 +55,8 @@ InputError at_the_end(const Model& model, const InputError& error)
         if (complaint.path.starts_with("joint[" + joint.name + "]"))
             complaint.path = "body[" + model.body_name(joint.second) + "].end";
     complaint.help =
-        is_place ? "state places there that the joints allow, or let them be projected onto the joints"
-                 : "state velocities that fit, or let them be projected onto the joints";
+        is_place ? "give positions there that the joints allow, or let them be projected onto the joints"
+                 : "give velocities that fit, or let them be projected onto the joints";
     return InputError(std::move(complaint));
 }
 
@@ -69,7 +69,7 @@ Matrix3 straightened(const Matrix3& directors, const Matrix3& stretch, const std
         throw InputError(
             {"directors-metric", "body[" + name + "].directors",
              "skew directors must keep their lengths and angles",
-             "they differ by " + to_text(skewness(triad), 3) + ", relative to those stated first", "<= 1e-10",
+             "they differ by " + to_text(skewness(triad), 3) + ", relative to those given first", "<= 1e-10",
              "a rigid body turns, no more", "a quaternion says by how much"});
     return triad;
 }
@@ -133,9 +133,9 @@ Table start_table()
              "that fit, in the metric of the masses."),
          choice(
              "joints", {"fixed", "fit"},
-             "fixed: as stated; fit: points and axes on the second body of a joint are moved by the least "
-             "that closes it where the bodies stand, at most 1e-6 of the model's length, and that is said: "
-             "for drawings that are rounded."),
+             "fixed: as given; fit: points and axes on the second body of a joint are moved as little as "
+             "closes it where the bodies are placed, at most 1e-6 of the model length, which is reported: "
+             "for dimensions that are rounded."),
          Key{"coordinates", types::tables,
              "Where joints stand at the start, and how fast they move: the bodies are led there along the "
              "joints. Independent coordinates that are not listed stay as the bodies are stated; what no "
@@ -144,7 +144,7 @@ Table start_table()
                  {"[[start.coordinates]]",
                   "A coordinate of a joint at the start.",
                   {Key{"joint", types::text, "The joint."}.needed(), coordinate_key(),
-                   Key{"value", types::number, "As the joint counts it. Default: as it is stated.", "rad"}
+                   Key{"value", types::number, "As the joint counts it. Default: as given.", "rad"}
                        .or_in("m"),
                    Key{"rate", types::number, "Default: that of the bodies' velocities.", "rad/s"}.or_in(
                        "m/s")}})}};

@@ -108,7 +108,7 @@ void move_bodies(Builder& builder)
         for (const std::string& change : moved.changed)
             builder.findings().warning(start == nullptr ? SourceLocation{} : start->place(), "start-changed",
                                        change,
-                                       {"", "leave these velocities out, or state them so that they fit"});
+                                       {"", "leave these velocities out, or give ones that fit"});
     });
 }
 

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "livens/io/scenario/schema/other_keys.h"
+
 namespace livens::inline io_internal {
 
 namespace {
@@ -13,85 +15,177 @@ struct OtherWord {
     std::string_view word, choice, with = {};
 };
 
+// Beside the nearest method; with a semicolon it is only that.
+constexpr std::string_view by_itself = "; leave [method] out and livens chooses";
+constexpr std::string_view for_stiff = ", for stiff models; leave [method] out and livens chooses";
+constexpr std::string_view reference = ", a reference of low order; leave [method] out and livens chooses";
+
+// Spelled as without_case() has them. A word of several kinds stands once for each.
 constexpr OtherWord other_words[] = {
     // joints
     {"hinge", "revolute"},
+    {"hingejoint", "revolute"},
     {"pin", "revolute"},
+    {"pinjoint", "revolute"},
+    {"pivot", "revolute"},
+    {"bearing", "revolute"},
+    {"rotational", "revolute"},
+    {"rotary", "revolute"},
+    {"rotation", "revolute"},
+    {"revolutejoint", "revolute"},
+    {"continuous", "revolute"},
+    {"r", "revolute"},
     {"ball", "spherical"},
-    {"ball_joint", "spherical"},
+    {"balljoint", "spherical"},
+    {"socket", "spherical"},
+    {"ballandsocket", "spherical"},
+    {"sphericaljoint", "spherical"},
+    {"s", "spherical"},
+    {"gimbal", "spherical"},
     {"slider", "prismatic"},
+    {"slide", "prismatic"},
+    {"sliding", "prismatic"},
+    {"linear", "prismatic"},
+    {"translation", "prismatic"},
     {"translational", "prismatic"},
+    {"prismaticjoint", "prismatic"},
+    {"p", "prismatic"},
     {"fixed", "weld"},
+    {"fixedjoint", "weld"},
     {"rigid", "weld"},
+    {"lock", "weld"},
     {"cardan", "universal"},
     {"hooke", "universal"},
+    {"universaljoint", "universal"},
     {"helical", "screw"},
+    {"leadscrew", "screw"},
+    {"ballscrew", "screw"},
     {"plane", "planar"},
     {"distance", "rod"},
     {"link", "rod"},
+    {"bar", "rod"},
+    {"rope", "rod", "which pulls and pushes; a rope that may go slack is a spring with a law \"table\""},
+    {"cable", "rod", "which pulls and pushes; a rope that may go slack is a spring with a law \"table\""},
     {"homokinetic", "constant_velocity"},
+    {"cv", "constant_velocity"},
+    {"constantvelocityjoint", "constant_velocity"},
     {"rack", "rack_and_pinion"},
+    {"rackpinion", "rack_and_pinion"},
+    {"inline", "point_on_line"},
+    {"inplane", "point_in_plane"},
+    {"parallelaxis", "parallel_axes"},
+    {"perpendicular", "perpendicular_axes"},
+    {"belt", "gear"},
+    {"coupler", "gear"},
+    {"pulley", "gear"},
     // loads
     {"moment", "torque"},
-    {"point_force", "force"},
+    {"pointforce", "force"},
+    {"sforce", "actuator", "with 'joint'; at a point of a body, \"force\""},
     {"damper", "spring", "with 'damping' alone"},
     {"dashpot", "spring", "with 'damping' alone"},
-    {"spring_damper", "spring", "with 'damping'"},
-    {"torsion_spring", "spring", "with 'joint', the hinge that it is wound about"},
-    {"torsional_spring", "spring", "with 'joint', the hinge that it is wound about"},
-    {"rotational_spring", "spring", "with 'joint', the hinge that it is wound about"},
-    {"rotary_spring", "spring", "with 'joint', the hinge that it is wound about"},
+    {"viscousdamper", "spring", "with 'damping' alone"},
+    {"springdamper", "spring", "with 'damping'"},
+    {"tsda", "spring", "with 'damping'"},
+    {"linearspring", "spring"},
+    {"torsionspring", "spring", "with 'joint', the revolute joint that it is wound about"},
+    {"torsionalspring", "spring", "with 'joint', the revolute joint that it is wound about"},
+    {"rotationalspring", "spring", "with 'joint', the revolute joint that it is wound about"},
+    {"rotaryspring", "spring", "with 'joint', the revolute joint that it is wound about"},
+    {"rsda", "spring", "with 'joint', the revolute joint that it is wound about"},
     {"motor", "actuator", "with 'joint', if its torque is known; if its motion is, a [[drive]]"},
+    {"servo", "actuator", "with 'joint', 'inputs' and an 'expression' of the controller"},
+    {"controller", "actuator", "with 'joint', 'inputs' and an 'expression' of the controller"},
+    {"friction", "actuator", "with 'joint' and an expression such as \"-0.1*tanh(w/0.01)\""},
     {"wind", "drag"},
-};
-
-struct OtherKey {
-    std::string_view kind, key, help;
-};
-
-constexpr std::string_view straight_slot = "a straight slot along an axis is \"point_on_line\"; "
-                                           "\"point_in_plane\", where nothing has to hold the pin "
-                                           "sideways";
-constexpr std::string_view two_points =
-    "its ends are 'points', one on each body in that body's own coordinates (on the world: in the world)";
-constexpr std::string_view along_a_joint =
-    "along a joint, between its bodies, acts type = \"actuator\": one number of 'value', 'table' or "
-    "'expression'";
-constexpr OtherKey other_keys[] = {
-    {"rod", "at", two_points},
-    {"spring", "at", two_points},
-    {"torque", "joint", along_a_joint},
-    {"force", "joint", along_a_joint},
-    {"torque", "between", along_a_joint},
-    {"force", "between", along_a_joint},
-    {"force", "points", "one body, one 'point' in its coordinates"},
-    {"spring", "length", "its length without force is 'free_length'"},
-    {"spring", "rest_length", "its length without force is 'free_length'"},
-    {"spring", "natural_length", "its length without force is 'free_length'"},
-    {"spring", "k", "'stiffness'"},
-    {"spring", "c", "'damping'"},
-    {"slot", "at", straight_slot},
-    {"slot", "axis", straight_slot},
-    {"spherical", "axis", "a ball joint has no axis; what turns about one is \"revolute\""},
+    {"aerodynamic", "drag"},
+    {"airdrag", "drag"},
+    {"gravitation", "attraction", "of a point; the weight is `gravity` at the top of the file"},
+    {"gravity", "attraction", "of a point; the weight is `gravity` at the top of the file"},
+    {"field", "bushing"},
+    {"flexiblejoint", "bushing"},
+    // drives
+    {"motor", "joint", "with 'joint', the joint that it moves"},
+    {"motion", "joint", "with 'joint', the joint that it moves"},
+    {"revolute", "joint", "with 'joint', the joint that it moves"},
+    {"prismatic", "joint", "with 'joint', the joint that it moves"},
+    {"rotational", "joint", "with 'joint', the joint that it moves"},
+    {"translational", "joint", "with 'joint', the joint that it moves"},
+    {"angle", "joint", "with 'joint', the joint that it moves"},
+    {"path", "point", "with 'body'"},
+    // sensors
+    {"marker", "point"},
+    {"position", "point", "with 'body'"},
+    {"velocity", "point", "with 'body': it reads vx, vy, vz as well"},
+    {"angle", "joint", "with 'joint'"},
+    {"encoder", "joint", "with 'joint'"},
+    {"distance", "relative", "with 'between'"},
+    {"force", "load", "with 'load'; a joint's reactions are in the results anyway"},
+    {"reaction", "load", "with 'load'; a joint's reactions are in the results anyway"},
+    // methods
+    {"rk4", "lobatto", by_itself},
+    {"rk45", "lobatto", by_itself},
+    {"rungekutta", "lobatto", by_itself},
+    {"rkf45", "lobatto", by_itself},
+    {"dopri", "lobatto", by_itself},
+    {"dopri5", "lobatto", by_itself},
+    {"dop853", "lobatto", by_itself},
+    {"ode45", "lobatto", by_itself},
+    {"ode113", "lobatto", by_itself},
+    {"adams", "lobatto", by_itself},
+    {"lsoda", "auto", "which changes between the two by itself"},
+    {"automatic", "auto"},
+    {"ode15s", "radau", for_stiff},
+    {"ode23t", "radau", for_stiff},
+    {"bdf", "radau", for_stiff},
+    {"ida", "radau", for_stiff},
+    {"dassl", "radau", for_stiff},
+    {"gstiff", "radau", for_stiff},
+    {"wstiff", "radau", for_stiff},
+    {"hht", "radau", for_stiff},
+    {"newmark", "radau", for_stiff},
+    {"generalizedalpha", "radau", for_stiff},
+    {"generalisedalpha", "radau", for_stiff},
+    {"stiff", "radau", for_stiff},
+    {"implicit", "radau", for_stiff},
+    {"radau5", "radau", "with degree = 3"},
+    {"radauiia", "radau"},
+    {"gauss", "lobatto"},
+    {"collocation", "lobatto"},
+    {"euler", "endpoint", reference},
+    {"impliciteuler", "endpoint", reference},
+    {"eulerimplicit", "endpoint", reference},
+    {"semiimpliciteuler", "midpoint", reference},
+    {"trapezoidal", "midpoint", reference},
+    {"rattle", "midpoint", reference},
+    {"verlet", "midpoint", reference},
 };
 
 }   // namespace
 
-std::string in_other_words(std::string_view word, const Words& choices)
+std::string_view in_other_words(std::string_view word, const Words& choices, std::string_view& with)
 {
+    const std::string plain = without_case(word);
+    // A word that differs in case and underscores alone.
+    for (const std::string_view choice : choices)
+        if (without_case(choice) == plain) return choice;
     for (const OtherWord& other : other_words)
         // Only where the other word is a choice of this key: "fixed" means a weld among joints alone.
-        if (other.word == word && index_of(choices, other.choice) >= 0)
-            return "here it is \"" + std::string(other.choice) + "\"" + (other.with.empty() ? "" : " ") +
-                   std::string(other.with);
+        if (other.word == plain && index_of(choices, other.choice) >= 0) {
+            with = other.with;
+            return other.choice;
+        }
     return {};
 }
 
-std::string instead_of_key(std::string_view kind, std::string_view key)
+std::string in_other_words(std::string_view word, const Words& choices)
 {
-    for (const OtherKey& other : other_keys)
-        if (other.kind == kind && other.key == key) return std::string(other.help);
-    return {};
+    std::string_view with;
+    const std::string_view choice = in_other_words(word, choices, with);
+    if (choice.empty()) return {};
+    const bool is_nearest = with.starts_with(';') || with.starts_with(',');
+    return (is_nearest ? "nearest here is \"" : "livens calls it \"") + std::string(choice) + "\"" +
+           (with.empty() || is_nearest ? "" : " ") + std::string(with);
 }
 
 std::string type_told_by_keys(const Node& node, const Table& table)

@@ -10,10 +10,10 @@
 
 namespace livens::inline io_internal {
 
-/// Help for a word that is none of `choices`; empty: nothing is known of it.
+/// The choice that a word means which is none of `choices`, and with what; empty: nothing is known of it.
+std::string_view in_other_words(std::string_view word, const Words& choices, std::string_view& with);
+/// The same as help: livens calls it "revolute".
 std::string in_other_words(std::string_view word, const Words& choices);
-/// Help for a key that the kind does not have; empty, likewise.
-std::string instead_of_key(std::string_view kind, std::string_view key);
 
 /// The line to write for the kind that is not stated, if only one has all keys of the node; else empty.
 std::string type_told_by_keys(const Node& node, const Table& table);

@@ -44,7 +44,7 @@ inline constexpr KeyType truth{"true or false", Form::truth};
 inline constexpr KeyType integer{"a whole number", Form::integer};
 inline constexpr KeyType integer_or_choice{"a whole number", Form::integer, 0, Form::choice};
 inline constexpr KeyType number{"a number", Form::number};
-inline constexpr KeyType text{"a text", Form::text};
+inline constexpr KeyType text{"a string", Form::text};
 inline constexpr KeyType choice{"", Form::choice};
 inline constexpr KeyType vector3{"three numbers", Form::row, 3};
 inline constexpr KeyType vector4{"four numbers", Form::row, 4};
@@ -52,9 +52,9 @@ inline constexpr KeyType principal_or_full{"three numbers or three rows of three
                                            Form::rows};
 inline constexpr KeyType triple{"three rows of three numbers", Form::rows, 3};
 inline constexpr KeyType pair{"two rows of three numbers", Form::rows, 2};
-inline constexpr KeyType names{"two texts", Form::names, 2};
-inline constexpr KeyType text_or_list{"a text or a list of texts", Form::text, 0, Form::names};
-inline constexpr KeyType named_texts{"a table of texts", Form::named_texts};
+inline constexpr KeyType names{"two strings", Form::names, 2};
+inline constexpr KeyType text_or_list{"a string or a list of strings", Form::text, 0, Form::names};
+inline constexpr KeyType named_texts{"a table of strings", Form::named_texts};
 inline constexpr KeyType list{"a list of numbers", Form::row};
 inline constexpr KeyType rows{"rows of three numbers", Form::rows};
 inline constexpr KeyType number_or_list{"a number or a list of numbers", Form::number, 0, Form::row};
@@ -82,7 +82,7 @@ using Words = std::vector<std::string_view>;
 struct Table;
 
 inline constexpr std::string_view formulas_for_value =
-    "formulas stand in 'expression', instead of 'value'";
+    "a formula is given as 'expression', instead of 'value'";
 
 struct Key {
     std::string_view name;

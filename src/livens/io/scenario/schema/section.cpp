@@ -6,7 +6,9 @@
 #include <cmath>
 
 #include "livens/base/text.h"
+#include "livens/io/scenario/schema/other_keys.h"
 #include "livens/io/scenario/schema/other_words.h"
+#include "livens/io/scenario/schema/value_help.h"
 #include "livens/io/scenario/text/units.h"
 
 namespace livens::inline io_internal {
@@ -86,6 +88,7 @@ private:
 
     bool wrong_type(const Node& node, std::string help = {})
     {
+        if (help.empty()) help = help_with_form(key_, node);
         return findings_.error(
             node.place, "wrong-type", demand() + ", not " + std::string(describe(node.kind)),
             {node.kind == NodeKind::text ? std::string(key_.formulas) : "", std::move(help)});
@@ -141,7 +144,7 @@ private:
 
     bool read_text(const Node& node, std::string& text)
     {
-        if (node.kind != NodeKind::text) return wrong_type(node, "texts stand in quotes");
+        if (node.kind != NodeKind::text) return wrong_type(node, "strings are written in quotes");
         text = node.text();
         return true;
     }
@@ -163,7 +166,8 @@ private:
         const std::vector<Node>& items = node.items();
         if (count == 0 ? items.empty() : items.size() != static_cast<std::size_t>(count))
             return findings_.error(node.place, "wrong-type",
-                                   demand() + "; here are " + std::to_string(items.size()));
+                                   demand() + ", not " + std::to_string(items.size()),
+                                   {"", help_with_form(key_, node)});
         return std::all_of(items.begin(), items.end(), read_item);
     }
 
@@ -174,9 +178,9 @@ private:
             if (entry.value.kind == NodeKind::text)
                 return read_text(entry.value, value_.texts.emplace_back());
             return findings_.error(entry.value.place, "wrong-type",
-                                   "'" + entry.key + "' in " + subject() + " must be a text, not " +
+                                   "'" + entry.key + "' in " + subject() + " must be a string, not " +
                                        std::string(describe(entry.value.kind)),
-                                   {"", "texts stand in quotes"});
+                                   {"", "strings are written in quotes"});
         });
     }
 
@@ -190,8 +194,7 @@ private:
     {
         const std::string name(key_.name);
         if (node.kind != NodeKind::table)
-            return wrong_type(node, "a table stands in braces, as in " + name + " = { " +
-                                        std::string(key_.child->keys.front().name) + " = ... }");
+            return wrong_type(node);
         const bool is_top = find_key(root_table().keys_of(any_kind), name) == &key_;
         value_.sections.emplace_back(node, *key_.child, is_top ? "[" + name + "]" : name + " of " + label_,
                                      findings_);
@@ -230,7 +233,11 @@ int kind_of(const Node& node, const Table& table)
     const Key& key = *find_key(table.keys_of(any_kind), table.chooser);
     const Node* given = node.find(table.chooser);
     if (given != nullptr && given->kind != NodeKind::text) return any_kind;
-    return index_of(key.choices, given == nullptr ? key.fallback : given->text());
+    if (given == nullptr) return index_of(key.choices, key.fallback);
+    const int kind = index_of(key.choices, given->text());
+    std::string_view with;
+    // Of a word of another program the keys are judged as those of the kind that it means.
+    return kind >= 0 ? kind : index_of(key.choices, in_other_words(given->text(), key.choices, with));
 }
 
 }   // namespace
@@ -246,7 +253,7 @@ Section::Section(const Node& node, const Table& table, std::string label, Findin
     const std::size_t n_known = kind_ == any_kind ? table.keys.size() : keys.size();
     for (std::size_t i = 0; i < n_known; ++i) {
         const Key& key = *keys[i];
-        if (!key.required || node.find(key.name) != nullptr) continue;
+        if (!key.required || node.find(key.name) != nullptr || is_meant(key.name)) continue;
         const std::string name = "'" + std::string(key.name) + "'";
         findings.error(
             &table == &root_table() ? SourceLocation{1, 1, 1} : node.place, "missing-key",
@@ -273,29 +280,7 @@ void Section::read(const Entry& entry, const std::vector<const Key*>& keys)
     }
 }
 
-void Section::report_unknown(const Entry& entry, const std::vector<const Key*>& keys) const
-{
-    Words owners;
-    for (const Kind& kind : table_->kinds)
-        for (const Key& key : kind.keys)
-            if (key.name == entry.key) owners.push_back(kind.word);
-    if (!owners.empty()) {
-        const std::string_view own = table_->kinds[static_cast<std::size_t>(kind_)].word;
-        findings_->error(entry.place, "misplaced-key",
-                         "'" + entry.key + "' of " + label_ + " does not belong to " +
-                             std::string(table_->chooser) + " \"" + std::string(own) + "\"",
-                         {"it belongs to " + quoted_alternatives(owners), instead_of_key(own, entry.key)});
-        return;
-    }
-    Words names;
-    for (const Key* key : keys)
-        if (key->type != types::later) names.push_back(key->name);
-    const std::string other =
-        kind_ == any_kind ? ""
-                          : instead_of_key(table_->kinds[static_cast<std::size_t>(kind_)].word, entry.key);
-    findings_->error(entry.place, "unknown-key", "unknown key '" + entry.key + "' in " + label_,
-                     {"", other.empty() ? suggest(entry.key, names) : other});
-}
+bool Section::is_meant(std::string_view key) const { return index_of(meant_, key) >= 0; }
 
 const Value* Section::value(std::string_view key) const
 {

@@ -41,13 +41,14 @@ public:
     SourceLocation place() const { return node_->place; }
     /// Nothing was wrong with this table and those inside it.
     bool is_valid() const { return is_valid_; }
-    /// Index of its kind in the schema's table; any_kind if there is none or the file's word is none.
+    /// Index of its kind in the schema's table, or of the kind that a word of another program means; any_kind
+    /// if there is none.
     int kind() const { return kind_; }
     /// Whether its kind has the key, given or not.
     bool takes(std::string_view key) const { return schema_key(key) != nullptr; }
 
-    /// The key stands in the file, in order or not.
-    bool has(std::string_view key) const { return value(key) != nullptr; }
+    /// The key stands in the file, in order or not, or another word that means it.
+    bool has(std::string_view key) const { return value(key) != nullptr || is_meant(key); }
     /// The key's value; null if it is missing or not valid.
     const Value* find(std::string_view key) const;
     /// Of the value; of the table if the key is missing.
@@ -87,7 +88,8 @@ private:
     const Key* schema_key(std::string_view key) const { return find_key(table_->keys_of(kind_), key); }
     std::vector<double> numbers(std::string_view key) const;
     void read(const Entry& entry, const std::vector<const Key*>& keys);
-    void report_unknown(const Entry& entry, const std::vector<const Key*>& keys) const;
+    void report_unknown(const Entry& entry, const std::vector<const Key*>& keys);
+    bool is_meant(std::string_view key) const;
 
     const Table* table_;
     const Node* node_;
@@ -95,6 +97,7 @@ private:
     Findings* findings_;
     int kind_;
     std::vector<Value> values_;
+    Words meant_;   ///< keys that unknown ones stand for: what lacks them has been told of
     bool is_valid_ = true;
 };
 

@@ -58,7 +58,7 @@ bool scan_characters(std::string_view text, Findings& findings)
                                   {"TOML files are UTF-8 text", "save the file with that encoding"});
         if ((byte < 0x20 && byte != '\n' && byte != '\r' && byte != '\t') || byte == 0x7f)
             return findings.error(c.place(), "not-text", "control characters are not allowed in TOML",
-                                  {"", "in a text write it as \\u00.."});
+                                  {"", "in a string write it as \\u00.."});
     }
     return true;
 }
@@ -166,7 +166,7 @@ std::string_view describe(Node::Kind kind)
     case Node::Kind::number:
         return "a number";
     case Node::Kind::text:
-        return "a text";
+        return "a string";
     case Node::Kind::array:
         return "a list";
     case Node::Kind::table:

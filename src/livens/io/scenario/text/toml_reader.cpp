@@ -42,7 +42,7 @@ namespace livens::inline io_internal {
 
 namespace {
 
-constexpr const char* quotes_help = "what is not ASCII stands in quotes: \"ä\" = 1";
+constexpr const char* quotes_help = "what is not ASCII is written in quotes: \"ä\" = 1";
 
 SourceLocation place_of(const toml::source_region& region)
 {
@@ -151,7 +151,17 @@ std::string help_after_value(std::string_view line, const SourceLocation& place,
     if (last == std::string_view::npos || std::isdigit(static_cast<unsigned char>(before[last])) == 0)
         return {};
     if (seen == ",") return "decimal numbers have a point, not a comma";
-    return "a number with a unit stands in quotes: \"5 mm\"";
+    return "a number with a unit is written in quotes: \"5 mm\"";
+}
+
+/// Of a value that is no TOML: a word without quotes, most likely.
+std::string help_before_value(std::string_view line, const SourceLocation& place)
+{
+    const std::size_t column = static_cast<std::size_t>(std::max(1, place.column)) - 1;
+    std::string_view word = line.substr(std::min(column, line.size()));
+    word = word.substr(0, word.find_first_of(" \t\r#,]}"));
+    const bool is_word = !word.empty() && std::isalpha(static_cast<unsigned char>(word.front())) != 0;
+    return is_word ? "strings are written in quotes: \"" + std::string(word) + "\"" : "";
 }
 
 void report(const toml::parse_error& error, std::string_view text, Findings& findings)
@@ -181,6 +191,7 @@ void report(const toml::parse_error& error, std::string_view text, Findings& fin
             description.substr(description.substr(0, prefix.size()) == prefix ? prefix.size() : 0));
         std::string help;
         if (says("expected a comment or whitespace")) help = help_after_value(line, place, word);
+        if (says("could not determine value type")) help = help_before_value(line, place);
         if (help.empty() && !word.empty() && static_cast<unsigned char>(word.front()) >= 0x80)
             help = quotes_help;
         findings.error(place, "toml-syntax", std::move(message),

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A key that its table does not have: of another kind, of another program, or misspelt.
+#include "livens/io/scenario/schema/other_keys.h"
+#include "livens/io/scenario/schema/section.h"
+
+namespace livens::inline io_internal {
+
+void Section::report_unknown(const Entry& entry, const std::vector<const Key*>& keys)
+{
+    const Node* title = node_->find("name");
+    const bool is_named = title != nullptr && title->kind == Node::Kind::text;
+    const KeyAdvice other =
+        instead_of_key(*table_, kind_, entry.key, is_named ? title->text() : std::string());
+    if (!other.meant.empty()) meant_.push_back(other.meant);
+    Words owners;
+    for (const Kind& kind : table_->kinds)
+        for (const Key& key : kind.keys)
+            if (key.name == entry.key) owners.push_back(kind.word);
+    if (!owners.empty()) {
+        const std::string_view own = table_->kinds[static_cast<std::size_t>(kind_)].word;
+        const std::string belongs = "it belongs to " + quoted_alternatives(owners);
+        findings_->error(entry.place, "misplaced-key",
+                         "'" + entry.key + "' of " + label_ + " does not belong to " +
+                             std::string(table_->chooser) + " \"" + std::string(own) + "\"",
+                         {other.help.empty() ? belongs : "", other.help});
+        return;
+    }
+    Words names;
+    for (const Key* key : keys)
+        if (key->type != types::later && index_of(names, key->name) < 0) names.push_back(key->name);
+    if (other.help.empty()) {
+        const std::string_view misspelt = closest(entry.key, names);
+        if (!misspelt.empty()) meant_.push_back(misspelt);
+    }
+    findings_->error(entry.place, "unknown-key", "unknown key '" + entry.key + "' in " + label_,
+                     {"", other.help.empty() ? suggest(entry.key, names) : other.help});
+}
+
+}   // namespace livens::inline io_internal
