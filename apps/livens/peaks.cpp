@@ -45,11 +45,13 @@ std::string csv_of(const std::vector<Extremes>& all)
     for (const Extremes& one : all) {
         std::string name = one.name;
         if (name.find_first_of(",\";\n\r") != std::string::npos) {
-            for (std::size_t i = 0; (i = name.find('"', i)) != std::string::npos; i += 2) name.insert(i, "\"");
+            for (std::size_t i = 0; (i = name.find('"', i)) != std::string::npos; i += 2)
+                name.insert(i, "\"");
             name = '"' + name + '"';
         }
         out += name + "," + one.unit;
-        for (const Extreme& e : {one.peak(), one.least, one.largest}) out += "," + cell(e.value) + "," + cell(e.t);
+        for (const Extreme& e : {one.peak(), one.least, one.largest})
+            out += "," + cell(e.value) + "," + cell(e.t);
         out += "\r\n";
     }
     return out;

@@ -278,6 +278,8 @@ void add_results(nb::module_& m)
         .def_prop_ro("loads", &loads)
         .def_prop_ro("figures", &figures)
         .def_prop_ro("is_damping", [](const Result& r) { return r.run.motion.damps(); })
+        .def_prop_ro("lists_output", [](const Result& r) { return r.scenario->lists_output; })
+        .def_prop_ro("drive_columns", &drive_columns)
         .def_prop_ro("has_multipliers", [](const Result& r) {
             return !r.run.motion.end_multipliers.empty() || !r.run.motion.multipliers.empty();
         });

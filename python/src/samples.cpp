@@ -2,6 +2,7 @@
 // A motion at given instants, as arrays: one dict for bodies, joints, coordinates, sensors, loads, energies.
 #include <algorithm>
 #include <chrono>
+#include <functional>
 #include <limits>
 #include <map>
 #include <string>
@@ -357,11 +358,17 @@ nb::list peaks(const Result& r, const std::vector<std::string>& names)
     std::vector<Extremes> found;
     {
         const nb::gil_scoped_release unlock;
-        const Patience patience([] {
+        const std::function<bool()> goes_on = [] {
             const nb::gil_scoped_acquire lock;
             return PyErr_CheckSignals() == 0;
-        });
-        found = find_peaks(r.run, *r.scenario, r.method, names);
+        };
+        const Patience patience(goes_on);
+        try {
+            found = find_peaks(r.run, *r.scenario, r.method, names);
+        } catch (const Stopped&) {
+            const nb::gil_scoped_acquire lock;
+            throw nb::python_error();
+        }
     }
     nb::list all;
     for (const Extremes& e : found)
@@ -396,10 +403,11 @@ nb::dict exact_at(const Result& r, const Times& times)
             bodies.push_back(sample_body(model.bodies()[b], s.state.X[b], s.state.V[b],
                                          s.state.V[b] * model.bodies()[b].mass));
         add_bodies(all.c, std::move(bodies), previous);
-        of_equations.add(all.c, s.state, Side::right, s.joints);
+        const Side side = t == r.run.motion.end() ? Side::left : Side::right;
+        of_equations.add(all.c, s.state, side, s.joints);
         add_joints(all.c, std::move(s.joints), n_joints);
         add_rigidity(all.c, rigidity.at(s.state));
-        all.add(s.state, Side::right);
+        all.add(s.state, side);
     });
     return all.c.take();
 }
@@ -444,6 +452,22 @@ nb::object snapped(const Result& r, const Times& times)
 }
 
 }   // namespace
+
+std::vector<std::string> drive_columns(const Result& r)
+{
+    std::vector<std::string> names;
+    const Model& model = r.scenario->model;
+    if (r.run.motion.multipliers.empty() && r.run.motion.end_multipliers.empty()) return names;
+    for (std::size_t j = 0; j < model.joints().size(); ++j) {
+        const Joint& joint = model.joints()[j];
+        if (joint.type != "drive") continue;
+        if (const auto effort = drive_effort(joint))
+            names.push_back((effort->coordinate.is_angle() ? "drive_torque " : "drive_force ") +
+                            std::to_string(j));
+        names.push_back("power " + std::to_string(j));
+    }
+    return names;
+}
 
 void add_samples(nb::class_<Result>& result)
 {

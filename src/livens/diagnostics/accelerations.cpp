@@ -24,7 +24,7 @@ struct Accelerations::Phase {
     }
 
     void take(const State& given, std::vector<double> angles);
-    std::vector<Matrix34> accelerations(const State& given, std::vector<double> angles, Side side);
+    AcceleratedState accelerated(const State& given, std::vector<double> angles, Side side);
 
     Model model;
     ModelTables tables;
@@ -48,12 +48,11 @@ void Accelerations::Phase::take(const State& given, std::vector<double> angles)
     }
 }
 
-std::vector<Matrix34> Accelerations::Phase::accelerations(const State& given, std::vector<double> angles,
-                                                          Side side)
+AcceleratedState Accelerations::Phase::accelerated(const State& given, std::vector<double> angles, Side side)
 {
     constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-    std::vector<Matrix34> all(given.X.size());
-    for (Matrix34& A : all) std::fill_n(A.a, 12, nan);
+    AcceleratedState all{given.X, given.V, given.X};
+    for (Matrix34& A : all.A) std::fill_n(A.a, 12, nan);
     take(given, std::move(angles));
     if (!instant.prepare(state, std::vector<int>(state.held.rows))) return all;
     constexpr double lost = 1e-4;   // docs/theory.md, "Singular positions"
@@ -63,20 +62,14 @@ std::vector<Matrix34> Accelerations::Phase::accelerations(const State& given, st
     instant.from_momentum(state, std::vector<double>(state.p).data(), 1, unused.data());
     instant.accelerate(state, side);
     const std::vector<double>& twists = state.acceleration[side == Side::left ? 0 : 1];
-    for (int b = 0; b < tables.n_bodies(); ++b) {
-        const auto& body = tables.bodies[static_cast<std::size_t>(b)];
-        const double* const X = state.X.data() + 12 * b;
-        const double* const centripetal = instant.centripetal() + 12 * b;
-        const double* const twist = twists.data() + body.first;
-        Matrix34& A = all[b];
-        std::fill_n(A.a, 12, 0.0);
-        A.set_column(0, {twist[0], twist[1], twist[2]});
-        for (int i = 3; body.dofs == 6 && i < 12; i += 3) {
-            const Vector3 d{X[i], X[i + 1], X[i + 2]},
-                spun{centripetal[i], centripetal[i + 1], centripetal[i + 2]};
-            A.set_column(i / 3, cross({twist[3], twist[4], twist[5]}, d) + spun);
+    std::vector<double> A(state.X.size());
+    tables.bodies.rates_of(state.X.data(), twists.data(), A.data());
+    for (std::size_t b = 0; b < all.X.size(); ++b)
+        for (std::size_t i = 0; i < 12; ++i) {
+            all.X[b].a[i] = state.X[12 * b + i];
+            all.V[b].a[i] = instant.rates()[12 * b + i];
+            all.A[b].a[i] = A[12 * b + i] + instant.centripetal()[12 * b + i];
         }
-    }
     return all;
 }
 
@@ -93,19 +86,19 @@ Accelerations::Phase& Accelerations::phase_at(double t) const
     return *phase;
 }
 
-std::vector<Matrix34> Accelerations::at(const State& state, Side side) const
+AcceleratedState Accelerations::at(const State& state, Side side) const
 {
     const std::size_t n = static_cast<std::size_t>(motion_.n_bodies);
     const int end = element_end_at(motion_.mesh, state.t);
     if (end >= 0 && !motion_.accelerations.empty()) {
         const std::size_t place = 2 * static_cast<std::size_t>(end) + (side == Side::left ? 0 : 1);
         const auto first = motion_.accelerations.begin() + static_cast<std::ptrdiff_t>(place * n);
-        return {first, first + static_cast<std::ptrdiff_t>(n)};
+        return {state.X, state.V, {first, first + static_cast<std::ptrdiff_t>(n)}};
     }
     constexpr double infinity = std::numeric_limits<double>::infinity();
     const bool is_before = side == Side::left && state.t > motion_.start();
     const double t = is_before ? std::nextafter(state.t, -infinity) : state.t;
-    return phase_at(t).accelerations(state, turns_.at(state), side);
+    return phase_at(t).accelerated(state, turns_.at(state), side);
 }
 
 Vector3 angular_acceleration(const Matrix34& X, const Matrix34& A)

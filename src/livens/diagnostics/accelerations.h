@@ -23,7 +23,7 @@ public:
     Accelerations(const Model& model, const Motion& motion);
 
     /// In a state at an instant of the motion. Where a load jumps, `side` tells before from after.
-    std::vector<Matrix34> at(const State& state, Side side = Side::right) const;
+    AcceleratedState at(const State& state, Side side = Side::right) const;
 
 private:
     struct Phase;
@@ -40,4 +40,4 @@ private:
 /// (w' of D' = w x D) from X and X'': the part of w x (w x d_i) drops out.
 Vector3 angular_acceleration(const Matrix34& X, const Matrix34& A);
 
-}   // namespace livens
+}   // namespace gnu::visibility("default")]]livens

@@ -62,7 +62,8 @@ void FollowedCoordinates::turn(const double* X, std::span<double> near) const
     }
 }
 
-std::vector<CoordinateValue> FollowedCoordinates::at(const State& state, std::span<const Matrix34> A) const
+std::vector<CoordinateValue> FollowedCoordinates::at(const State& state,
+                                                     const AcceleratedState* accelerated) const
 {
     const std::size_t n = coordinates_.size();
     std::vector<CoordinateValue> all(n);
@@ -88,7 +89,10 @@ std::vector<CoordinateValue> FollowedCoordinates::at(const State& state, std::sp
     const double *const X = state.X.data()->data(), *const V = state.V.data()->data();
     for (std::size_t i = 0; i < n; ++i) {
         all[i] = {coordinates_[i].at_stated + values[i], (*sparse_)[i].rate(X, V)};
-        if (!A.empty()) all[i].acceleration = (*sparse_)[i].acceleration(X, V, A.data()->data());
+        if (accelerated != nullptr)
+            all[i].acceleration =
+                (*sparse_)[i].acceleration(accelerated->X.data()->data(), accelerated->V.data()->data(),
+                                           accelerated->A.data()->data());
     }
     return all;
 }
@@ -124,9 +128,10 @@ std::vector<CoordinateValue> JointCoordinates::at(double t) const
     return places_.empty() ? std::vector<CoordinateValue>() : at(sample_state(motion_, t));
 }
 
-std::vector<CoordinateValue> JointCoordinates::at(const State& state, std::span<const Matrix34> A) const
+std::vector<CoordinateValue> JointCoordinates::at(const State& state,
+                                                  const AcceleratedState* accelerated) const
 {
-    return places_.empty() ? std::vector<CoordinateValue>() : followed_.at(state, A);
+    return places_.empty() ? std::vector<CoordinateValue>() : followed_.at(state, accelerated);
 }
 
 namespace {
@@ -211,9 +216,10 @@ std::vector<double> SensorReadings::at(double t, Side side) const
 
 std::vector<double> SensorReadings::at(const State& state, Side side) const
 {
-    const std::vector<Matrix34> A =
-        accelerations_ ? accelerations_->at(state, side) : std::vector<Matrix34>();
-    const std::vector<CoordinateValue> coordinates = followed_.at(state, A);
+    AcceleratedState accelerated;
+    if (accelerations_) accelerated = accelerations_->at(state, side);
+    const std::vector<CoordinateValue> coordinates =
+        followed_.at(state, accelerations_ ? &accelerated : nullptr);
     const std::vector<double> angles = turns_.at(state);
     std::vector<double> all;
     std::size_t next = 0;

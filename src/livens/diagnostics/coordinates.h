@@ -19,10 +19,16 @@ class SparseCoordinate;
 
 class Accelerations;
 
+/// X'' of all bodies at an instant, and X and X' that it belongs to: those of the motion as rigid bodies that
+/// keep to the rates of their joints.
+struct AcceleratedState {
+    std::vector<Matrix34> X, V, A;
+};
+
 struct CoordinateValue {
     double value = 0;   ///< rad or m
     double rate = 0;    ///< its rate, per s
-    double acceleration = std::numeric_limits<double>::quiet_NaN();   ///< per s^2, where X'' was given
+    double acceleration = std::numeric_limits<double>::quiet_NaN();   ///< per s^2, where they were given
 };
 
 /// Coordinates along a motion. An angle is followed from node to node, between
@@ -33,8 +39,8 @@ class FollowedCoordinates {
 public:
     FollowedCoordinates(const Model& model, const Motion& motion, std::vector<NamedCoordinate> coordinates);
 
-    /// In a state of the motion: X and V at an instant of it. With X'' (see Accelerations) accelerations, too.
-    std::vector<CoordinateValue> at(const State& state, std::span<const Matrix34> A = {}) const;
+    /// In a state of the motion: X and V at an instant of it; with what Accelerations say, accelerations too.
+    std::vector<CoordinateValue> at(const State& state, const AcceleratedState* accelerated = nullptr) const;
 
 private:
     void turn(const double* X, std::span<double> near) const;
@@ -64,7 +70,7 @@ public:
     /// Of all places at t, after snap_to_element_end().
     std::vector<CoordinateValue> at(double t) const;
     /// In a state at an instant of the motion, as sample_exactly() has it; see FollowedCoordinates.
-    std::vector<CoordinateValue> at(const State& state, std::span<const Matrix34> A = {}) const;
+    std::vector<CoordinateValue> at(const State& state, const AcceleratedState* accelerated = nullptr) const;
 
 private:
     const Model& model_;

@@ -39,7 +39,7 @@ struct Hunt {
     void look_at(std::span<const double> t, std::span<const double> f);
 };
 
-constexpr double equal_values = 1e-9;   // relative
+constexpr double equal_values = 1e-9;     // relative
 constexpr std::size_t most_places = 24;   // that are kept of a series
 
 void Hunt::look_at(std::span<const double> t, std::span<const double> f)
@@ -49,8 +49,8 @@ void Hunt::look_at(std::span<const double> t, std::span<const double> f)
         const double here = sign * f[i], before = i > 0 ? sign * f[i - 1] : here,
                      after = i < last ? sign * f[i + 1] : here;
         if (!(here >= before && here >= after)) continue;
-        const double rise = i > 0 && i < last ? std::max(here - before, here - after)
-                                              : std::abs(2 * here - before - after);
+        const double rise =
+            i > 0 && i < last ? std::max(here - before, here - after) : std::abs(2 * here - before - after);
         places.push_back({t[i > 0 ? i - 1 : 0], t[i], t[i < last ? i + 1 : last], here, rise});
     }
     if (places.size() < 4 * most_places) return;

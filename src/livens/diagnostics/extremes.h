@@ -34,10 +34,7 @@ struct Extremes {
     std::string name, unit;
     Extreme least, largest;
     /// What is farther from zero of both, with its sign.
-    const Extreme& peak() const
-    {
-        return -least.value > largest.value ? least : largest;
-    }
+    const Extreme& peak() const { return -least.value > largest.value ? least : largest; }
     /// An instant at which it is no number; nan: none was met. Then the others are nan as well.
     double lost_at;
 };
@@ -50,11 +47,11 @@ struct BetterSample {
 };
 using BetterState = std::function<std::optional<BetterSample>(double t)>;
 
-/// Of each series over the whole motion. Every element is looked at in 2 p + 4 places or more; each place that
-/// is above (below) its neighbours is one to look around at, element ends from their own side. Where the
+/// Of each series over the whole motion. Every element is looked at in 2 p + 4 places or more; each place
+/// that is above (below) its neighbours is one to look around at, element ends from their own side. Where the
 /// extreme may be the largest, it is found by Brent's minimisation to 1e-7 of the way between the neighbours,
 /// in states of `better` where there are any. Of places that are equal within 1e-9 the first is told.
 std::vector<Extremes> find_extremes(const Quantities& quantities, const Motion& motion,
                                     std::span<const QuantitySeries> series, const BetterState& better);
 
-}   // namespace livens
+}   // namespace gnu::visibility("default")]]livens

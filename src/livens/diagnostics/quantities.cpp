@@ -36,12 +36,15 @@ struct BodyQuantity {
     int size;
 };
 
-constexpr BodyQuantity body_quantities[] = {
-    {"position", "m", 3},          {"center_of_mass", "m", 3},
-    {"quaternion", "1", 4},        {"velocity", "m/s", 3},
-    {"angular_velocity", "rad/s", 3},   {"acceleration", "m/s^2", 3},
-    {"angular_acceleration", "rad/s^2", 3}, {"linear_momentum", "kg m/s", 3},
-    {"angular_momentum", "kg m^2/s", 3}};
+constexpr BodyQuantity body_quantities[] = {{"position", "m", 3},
+                                            {"center_of_mass", "m", 3},
+                                            {"quaternion", "1", 4},
+                                            {"velocity", "m/s", 3},
+                                            {"angular_velocity", "rad/s", 3},
+                                            {"acceleration", "m/s^2", 3},
+                                            {"angular_acceleration", "rad/s^2", 3},
+                                            {"linear_momentum", "kg m/s", 3},
+                                            {"angular_momentum", "kg m^2/s", 3}};
 
 bool needs_accelerations(const NamedQuantity& q) { return q.what.ends_with("acceleration"); }
 
@@ -136,7 +139,9 @@ Quantities::Quantities(const Model& model, const Motion& motion, const std::vect
         const std::string& joint = model.joints()[places[i].joint].name;
         for (const char* derivative : {"", "_rate", "_acceleration"})
             add(QuantityOf::coordinate, static_cast<int>(i), joint, q.name + derivative,
-                unit + (*derivative == '\0' ? "" : derivative[1] == 'r' ? "/s" : "/s^2"));
+                unit + (*derivative == '\0'    ? ""
+                        : derivative[1] == 'r' ? "/s"
+                                               : "/s^2"));
     }
     add_parts();
 }
@@ -183,14 +188,14 @@ void Quantities::at(const State& state, Side side, std::span<const NamedQuantity
     const auto any = [&](auto... kinds) {
         return std::ranges::any_of(wanted, [&](const NamedQuantity& q) { return ((q.of == kinds) || ...); });
     };
-    std::vector<Matrix34> A;
-    if (std::ranges::any_of(wanted, [](const NamedQuantity& q) {
-            return q.of != QuantityOf::sensor && needs_accelerations(q);
-        }))
-        A = sources_->accelerations.at(state, side);
-    if (any(QuantityOf::body)) put_bodies(state, A, wanted, numbers);
+    AcceleratedState accelerated;
+    const bool is_accelerated = std::ranges::any_of(
+        wanted, [](const NamedQuantity& q) { return q.of != QuantityOf::sensor && needs_accelerations(q); });
+    if (is_accelerated) accelerated = sources_->accelerations.at(state, side);
+    if (any(QuantityOf::body)) put_bodies(state, accelerated, wanted, numbers);
     if (any(QuantityOf::coordinate)) {
-        const std::vector<CoordinateValue> values = sources_->coordinates.at(state, A);
+        const std::vector<CoordinateValue> values =
+            sources_->coordinates.at(state, is_accelerated ? &accelerated : nullptr);
         for (const NamedQuantity& q : wanted) {
             if (q.of != QuantityOf::coordinate) continue;
             const CoordinateValue& value = values[static_cast<std::size_t>(q.index)];
@@ -209,7 +214,7 @@ void Quantities::at(const State& state, Side side, std::span<const NamedQuantity
             numbers[static_cast<std::size_t>(q.first)] = read[static_cast<std::size_t>(q.first - first)];
 }
 
-void Quantities::put_bodies(const State& state, std::span<const Matrix34> A,
+void Quantities::put_bodies(const State& state, const AcceleratedState& accelerated,
                             std::span<const NamedQuantity> wanted, std::span<double> numbers) const
 {
     const std::vector<BodySample> samples = sample_bodies(model_, motion_, state);
@@ -225,9 +230,11 @@ void Quantities::put_bodies(const State& state, std::span<const Matrix34> A,
         if (q.what == "angular_velocity") put(numbers, q, s.angular_velocity);
         if (q.what == "linear_momentum") put(numbers, q, s.linear_momentum);
         if (q.what == "angular_momentum") put(numbers, q, s.angular_momentum);
-        if (q.what == "acceleration") put(numbers, q, A[b].column(0));
+        if (q.what == "acceleration") put(numbers, q, accelerated.A[b].column(0));
         if (q.what == "angular_acceleration")
-            put(numbers, q, model_.bodies()[b].is_point ? none : angular_acceleration(state.X[b], A[b]));
+            put(numbers, q,
+                model_.bodies()[b].is_point ? none
+                                            : angular_acceleration(accelerated.X[b], accelerated.A[b]));
     }
 }
 
@@ -248,9 +255,9 @@ void Quantities::put_joints(const State& state, Side side, std::span<const Named
         if (q.what == "force") put(numbers, q, r.force);
         if (q.what == "torque") put(numbers, q, r.torque);
         if (q.of != QuantityOf::drive) continue;
-        numbers[static_cast<std::size_t>(q.first)] =
-            q.what == "power" ? joint_power(joint, state.X, state.V, r)
-                              : sources_->efforts[j]->of(joint, state.X, r);
+        numbers[static_cast<std::size_t>(q.first)] = q.what == "power"
+                                                         ? joint_power(joint, state.X, state.V, r)
+                                                         : sources_->efforts[j]->of(joint, state.X, r);
     }
 }
 

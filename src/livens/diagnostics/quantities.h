@@ -20,12 +20,12 @@ enum class QuantityOf { model, body, coordinate, reaction, drive, load, sensor }
 /// A number, a vector (x, y, z) or a quaternion (w, x, y, z) that a motion has at every instant.
 struct NamedQuantity {
     QuantityOf of;
-    int index = 0;      ///< of the body, joint, load or sensor
-    std::string part;   ///< its name; empty: the whole model
-    std::string what;   ///< "force", "angle_rate"
-    std::string unit;   ///< "m/s^2"
-    int size = 1;       ///< how many numbers
-    int first = 0;      ///< the place of its first one among those of all
+    int index = 0;              ///< of the body, joint, load or sensor
+    std::string part;           ///< its name; empty: the whole model
+    std::string what;           ///< "force", "angle_rate"
+    std::string unit;           ///< "m/s^2"
+    int size = 1;               ///< how many numbers
+    int first = 0;              ///< the place of its first one among those of all
     bool is_repeated = false;   ///< of a sensor that reads a load of its own name
 
     std::string name() const { return part.empty() ? what : part + "." + what; }
@@ -71,8 +71,8 @@ private:
     void add(QuantityOf of, int index, const std::string& part, const std::string& what,
              const std::string& unit, int size = 1);
     void add_parts();
-    void put_bodies(const State& state, std::span<const Matrix34> A, std::span<const NamedQuantity> wanted,
-                    std::span<double> numbers) const;
+    void put_bodies(const State& state, const AcceleratedState& accelerated,
+                    std::span<const NamedQuantity> wanted, std::span<double> numbers) const;
     void put_joints(const State& state, Side side, std::span<const NamedQuantity> wanted,
                     std::span<const JointSample> joints, std::span<double> numbers) const;
     void put_loads(const State& state, Side side, std::span<const NamedQuantity> wanted,
@@ -99,4 +99,4 @@ std::optional<DriveEffort> drive_effort(const Joint& joint);
 double joint_power(const Joint& joint, std::span<const Matrix34> X, std::span<const Matrix34> V,
                    const Reaction& reaction);
 
-}   // namespace livens
+}   // namespace gnu::visibility("default")]]livens

@@ -26,9 +26,9 @@ namespace {
     std::string help = "there are ";
     if (of_part.empty()) {
         const std::vector<std::string_view> all(known.begin(), known.end());
-        help = closest(name, all).empty() ? "write a part and what of it, as in \"pivot.force\"; parts " +
-                                                suggest("", parts)
-                                          : suggest(name, all);
+        help = closest(name, all).empty()
+                   ? "write a part and what of it, as in \"pivot.force\"; parts " + suggest("", parts)
+                   : suggest(name, all);
     } else {
         for (std::size_t i = 0; i < of_part.size(); ++i)
             help += (i > 0 ? ", '" : "'") + name + "." + std::string(of_part[i]) + "'";

@@ -13,14 +13,15 @@
 namespace [[gnu::visibility("default")]] livens {
 
 /// By name: "pivot.force" (of a vector the magnitude), "rod.position.z", "energy". Throws InputError
-/// (`quantity-unknown`) with what there is; for a quaternion without its component, and where parts of several
-/// kinds have the name.
+/// (`quantity-unknown`) with what there is; for a quaternion without its component, and where parts of
+/// several kinds have the name.
 QuantitySeries find_series(const Quantities& quantities, const std::string& name);
 
-/// Of the numbers named, or else of all coordinates of joints, reactions, drives, loads, sensors and energies.
-/// They are refined in states of the full order of `method`, the one that was taken; in the family mixed, which
-/// has none between its element ends, on the polynomials. Throws InputError (`quantity-unknown`).
+/// Of the numbers named, or else of all coordinates of joints, reactions, drives, loads, sensors and
+/// energies. They are refined in states of the full order of `method`, the one that was taken; in the family
+/// mixed, which has none between its element ends, on the polynomials. Throws InputError
+/// (`quantity-unknown`).
 std::vector<Extremes> find_peaks(const Run& run, const Scenario& scenario, const Method& method,
                                  std::span<const std::string> names);
 
-}   // namespace livens
+}   // namespace gnu::visibility("default")]]livens
