@@ -240,7 +240,16 @@ class BodySeries(Part):
 
 
 class PointSeries:
-    """A point of a body along a motion, world axes; see :meth:`BodySeries.point`."""
+    """A point of a body along a motion, world axes; see :meth:`BodySeries.point`.
+
+    Example:
+        >>> import livens as lv
+        >>> m = lv.Model()
+        >>> top = m.add_body("top", lv.sphere("10 cm", mass=1), angular_velocity=(0, 0, 2))
+        >>> rim = lv.solve(m, 1)["top"].point(("10 cm", 0, 0))
+        >>> (rim.acceleration[0] + 0.0).round(9).tolist()
+        [-0.4, 0.0, 0.0]
+    """
 
     def __init__(self, body: BodySeries, at: Floats) -> None:
         self._body = body
@@ -312,7 +321,9 @@ class JointSeries(Part):
                 return f"it has {', '.join('.' + n for n in found)}; bodies have {name if 'angular' in name else word}"
         if name in ("drive_torque", "drive_force", "power"):
             return "drives have that" + (", along a coordinate of a joint" if name != "power" else "")
-        return f"it has {', '.join(has)}" if not self.coordinates else _core.suggestion(name, has)
+        coordinates = f"its coordinates: {', '.join(self.coordinates) or 'none'}"
+        suggested = _core.suggestion(name, has)
+        return f"{coordinates}; {suggested}"
 
     def _names(self) -> list[str]:
         names = [name + end for name in self.coordinates for end in ("", "_rate", "_acceleration")]

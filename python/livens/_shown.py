@@ -16,7 +16,13 @@ if TYPE_CHECKING:
 
 
 class Peak(NamedTuple):
-    """A value of the motion and its instant: ``value, t = sol.peak("pivot.force")``."""
+    """A value of the motion and its instant: ``value, t = sol.peak("pivot.force")``.
+
+    Example:
+        >>> import livens as lv
+        >>> lv.Peak(481.1, 0.48).value
+        481.1
+    """
 
     value: float
     """In the unit of the array, or the one that was asked for."""
@@ -25,7 +31,13 @@ class Peak(NamedTuple):
 
 
 class Extremes(NamedTuple):
-    """The least and the largest value of a motion, with their instants."""
+    """The least and the largest value of a motion, with their instants.
+
+    Example:
+        >>> import livens as lv
+        >>> lv.Extremes(min=-3.0, t_min=1.0, max=2.0, t_max=5.0).peak
+        Peak(value=-3.0, t=1.0)
+    """
 
     min: float
     """In the unit of the array, or the one that was asked for."""
