@@ -202,9 +202,10 @@ void add_export_commands(CLI::App& app, Arguments& a)
         add_file(exports, std::string("--") + format.word, given->files[i++], format.what)
             ->type_name(std::string("FILE") + format.extension);
     const auto words = words_of(Instants{});
-    add_choice(exports, "--at", given->at, {words.begin(), words.end()},
-               "instants of CSV: smooth curves, the output times, element ends; default: output times where the "
-               "scenario lists them, else smooth curves");
+    add_choice(
+        exports, "--at", given->at, {words.begin(), words.end()},
+        "instants of CSV: smooth curves, the output times, element ends; default: output times where the "
+        "scenario lists them, else smooth curves");
     add_force(exports, given->force);
     add_common(exports, a);
     const auto both = arguments_of<DiffArguments>();

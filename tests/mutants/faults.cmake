@@ -1071,3 +1071,16 @@ livens_mutant(NAME forces_of_joints_have_no_slopes
               NEW [[if (tables_.bodies[b].dofs == 7) add_turning(b);]]
               TESTS_OF unit_spacetime
               MUST_FAIL MarchKernel.LinksThatAHeavyMassDrawsNeedNoNewton)
+# Extremes of the motion, and what is accelerated.
+livens_mutant(NAME extremes_are_those_of_samples
+              FILE diagnostics/extremes.cpp
+              OLD [[if (better_) sample = better_(t);]]
+              NEW [[;]]
+              TESTS_OF unit_spacetime
+              MUST_FAIL Extremes.AreThoseOfTheFormula)
+livens_mutant(NAME accelerations_forget_what_turns
+              FILE diagnostics/accelerations.cpp
+              OLD [[A[12 * b + i] + instant.centripetal()[12 * b + i];]]
+              NEW [[-A[12 * b + i] + instant.centripetal()[12 * b + i];]]
+              TESTS_OF unit_spacetime
+              MUST_FAIL Accelerations.AreWhatForcesMake)

@@ -90,9 +90,8 @@ std::vector<CoordinateValue> FollowedCoordinates::at(const State& state,
     for (std::size_t i = 0; i < n; ++i) {
         all[i] = {coordinates_[i].at_stated + values[i], (*sparse_)[i].rate(X, V)};
         if (accelerated != nullptr)
-            all[i].acceleration =
-                (*sparse_)[i].acceleration(accelerated->X.data()->data(), accelerated->V.data()->data(),
-                                           accelerated->A.data()->data());
+            all[i].acceleration = (*sparse_)[i].acceleration(
+                accelerated->X.data()->data(), accelerated->V.data()->data(), accelerated->A.data()->data());
     }
     return all;
 }
@@ -225,7 +224,8 @@ std::vector<double> SensorReadings::at(const State& state, Side side) const
     std::size_t next = 0;
     for (const Sensor& sensor : model_.sensors()) {
         if (sensor.load >= 0)
-            append_load(model_.loads()[sensor.load], state, side, turns_.turns().of(sensor.load, angles), all);
+            append_load(model_.loads()[sensor.load], state, side, turns_.turns().of(sensor.load, angles),
+                        all);
         else if (sensor.body >= 0)
             append_energy(model_, sensor.body, state, all);
         else

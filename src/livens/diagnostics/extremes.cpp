@@ -22,7 +22,7 @@ double QuantitySeries::of(std::span<const double> numbers) const
 
 namespace {
 
-constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
 
 /// A place that is above its neighbours, in an element; an element's end has one neighbour.
 struct Place {
@@ -158,7 +158,7 @@ Refined refine(Looker& look, const QuantitySeries& series, double sign, const Pl
 
 Extreme extreme_of(Looker& look, const QuantitySeries& series, Hunt& hunt, bool is_constant)
 {
-    if (hunt.places.empty()) return {unknown, unknown};
+    if (hunt.places.empty()) return {no_value, no_value};
     std::ranges::stable_sort(hunt.places, [](const Place& a, const Place& b) { return a.value > b.value; });
     if (is_constant) return {hunt.sign * hunt.places[0].value, hunt.places[0].at};
     if (hunt.places.size() > most_places) hunt.places.resize(most_places);
@@ -193,7 +193,7 @@ std::vector<double> places_of_element(const Motion& motion)
 class Survey {
 public:
     Survey(const Quantities& quantities, const Motion& motion, std::span<const QuantitySeries> series)
-        : quantities_(quantities), motion_(motion), series_(series), lost(series.size(), unknown),
+        : quantities_(quantities), motion_(motion), series_(series), lost(series.size(), no_value),
           sizes(series.size(), 0.0)
     {
         for (const QuantitySeries& one : series) wanted_.push_back(one.quantity);
@@ -277,7 +277,7 @@ std::vector<Extremes> find_extremes(const Quantities& quantities, const Motion& 
     Looker look(quantities, motion, better);
     std::vector<Extremes> all;
     for (std::size_t i = 0; i < series.size(); ++i) {
-        const Extreme none{unknown, unknown};
+        const Extreme none{no_value, no_value};
         Extremes found{series[i].name(), series[i].quantity.unit, none, none, survey.lost[i]};
         if (std::isnan(found.lost_at)) {
             const bool is_constant = survey.is_constant(i);

@@ -14,8 +14,8 @@
 
 namespace [[gnu::visibility("default")]] livens {
 
-/// At which instants a table shows a motion. automatic: at the output times where the scenario lists them, else
-/// dense.
+/// At which instants a table shows a motion. automatic: at the output times where the scenario lists them,
+/// else dense.
 enum class Instants {
     automatic,
     dense,   ///< see dense_instants()
@@ -49,9 +49,9 @@ struct ExportFormat {
 std::span<const ExportFormat> export_formats();
 
 /// CSV: t, then per body position, quaternion (w, x, y, z), velocity, angular velocity, acceleration, angular
-/// acceleration; energies; coordinates of joints, reactions, drives, sensors. An instant with two sides has two
-/// rows. Names that spreadsheets would take for formulas begin with an apostrophe.
-/// No instants: the output times.
+/// acceleration; energies; coordinates of joints, reactions, drives, sensors. An instant with two sides has
+/// two rows. Names that spreadsheets would take for formulas begin with an apostrophe. No instants: the
+/// output times.
 void write_csv(const std::filesystem::path& file, const Model& model, const Run& run,
                std::vector<SeenInstant> instants = {});
 

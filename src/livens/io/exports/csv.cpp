@@ -55,7 +55,8 @@ std::string header(const std::vector<NamedQuantity>& columns)
                                  : q.what == "energy"      ? "energy"
                                                            : q.what + " energy";
         for (int i = 0; i < q.size; ++i)
-            line += "," + header_cell(name + (q.size > 1 ? "." : "") + component_of(q, i) + " [" + q.unit + "]");
+            line +=
+                "," + header_cell(name + (q.size > 1 ? "." : "") + component_of(q, i) + " [" + q.unit + "]");
     }
     return line + "\r\n";
 }
