@@ -3,6 +3,9 @@
 
 #include "exit_code.h"
 #include "failure.h"
+#include "finite_number.h"
+#include "livens/base/error.h"
+#include "livens/diagnostics/sample.h"
 
 namespace livens::program {
 
@@ -14,6 +17,22 @@ ExactSample exact_sample(const Run& run, const Scenario& scenario, double t)
     ExactSample exact = sample_exactly(scenario.model, run.motion, scenario.method, t, scenario.options);
     if (!exact.report.converged()) throw failure(exit_not_converged, exact.report.message);
     return exact;
+}
+
+AcceleratedState accelerated_at(const Run& run, const Scenario& scenario, double t, bool is_exact)
+{
+    const Accelerations accelerations(scenario.model, run.motion);
+    return accelerations.at(is_exact ? exact_sample(run, scenario, t).state : sample_state(run.motion, t));
+}
+
+double instant_inside(const std::string& text, const Motion& motion)
+{
+    const double t = finite_number(text, "--at", "a time in seconds");
+    try {
+        return snap_to_element_end(motion.mesh, t);
+    } catch (const InputError& error) {
+        throw failure(exit_usage, error.what());
+    }
 }
 
 }   // namespace livens::program

@@ -11,7 +11,6 @@
 #include "console.h"
 #include "exact.h"
 #include "failure.h"
-#include "finite_number.h"
 #include "livens/base/error.h"
 #include "livens/diagnostics/coordinates.h"
 #include "livens/diagnostics/sample.h"
@@ -23,16 +22,6 @@
 namespace livens::program {
 
 namespace {
-
-double instant_inside(const std::string& text, const Motion& motion)
-{
-    const double t = finite_number(text, "--at", "a time in seconds");
-    try {
-        return snap_to_element_end(motion.mesh, t);
-    } catch (const InputError& error) {
-        throw failure(exit_usage, error.what());
-    }
-}
 
 int index_of(const std::vector<std::string>& names, const std::string& name, const char* kind)
 {
@@ -144,9 +133,17 @@ void body_members(JsonWriter& json, const Query& q, double t)
         add(json, "angular_velocity", s.angular_velocity);
         add(json, "angular_velocity_body", s.angular_velocity_body);
     }
+    const bool is_point = q.scenario.model.bodies()[q.index].is_point;
+    const AcceleratedState at = accelerated_at(q.run, q.scenario, t, q.arguments.exact);
+    add(json, "acceleration", at.A[q.index].column(0));
+    json.key("angular_acceleration");
+    if (is_point)
+        json.null();
+    else
+        json.value(std::span<const double>(angular_acceleration(at.X[q.index], at.A[q.index]).a));
     add(json, "linear_momentum", s.linear_momentum);
     add(json, "angular_momentum", s.angular_momentum);
-    if (q.scenario.model.bodies()[q.index].is_point)
+    if (is_point)
         for (const char* key : {"rigidity", "mean_stress"}) json.key(key).null();
     else
         rigidity_members(json, q.scenario.model.bodies()[q.index], rigidity_at(q, t));
@@ -197,8 +194,9 @@ std::vector<CoordinateAt> coordinates_at(const Query& q, double t)
 {
     std::vector<CoordinateAt> all;
     const bool is_exact = q.arguments.exact;
-    const std::vector<CoordinateValue> values =
-        is_exact ? q.coordinates->at(exact_sample(q.run, q.scenario, t).state) : q.coordinates->at(t);
+    const State state = is_exact ? exact_sample(q.run, q.scenario, t).state : sample_state(q.run.motion, t);
+    const AcceleratedState at = accelerated_at(q.run, q.scenario, t, is_exact);
+    const std::vector<CoordinateValue> values = q.coordinates->at(state, &at);
     for (std::size_t i = 0; i < values.size(); ++i)
         if (q.coordinates->places()[i].joint == q.index) {
             const NamedCoordinate& of = q.coordinates->coordinate(static_cast<int>(i));
@@ -230,6 +228,7 @@ void joint_members(JsonWriter& json, const Query& q, double t)
     for (const auto& [name, of, value] : coordinates_at(q, t)) {
         json.member(name, value.value);
         json.member(name + "_rate", value.rate);
+        json.member(name + "_acceleration", value.acceleration);
     }
 }
 

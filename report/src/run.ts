@@ -237,6 +237,8 @@ export class Run {
       ["displacement", "Displacements of joints", "m"],
       ["angle rate", "Rates of angles", "rad/s"],
       ["displacement rate", "Rates of displacements", "m/s"],
+      ["angle acceleration", "Accelerations of angles", "rad/s^2"],
+      ["displacement acceleration", "Accelerations of displacements", "m/s^2"],
     ])
       add(`joints ${name}`, "All joints", title, unit, many(coordinates(name)));
     // from that at the start, or what is exchanged would be a ripple far from zero
@@ -252,6 +254,12 @@ export class Run {
       ...sum,
       { label: "sum", at: (t) => sum[0].at(t) + sum[1].at(t) },
     ]);
+    for (const [name, title, unit] of [
+      ["torque", "Torques of drives", "N m"],
+      ["force", "Forces of drives", "N"],
+      ["power", "Power of drives", "W"],
+    ])
+      add(`drives ${name}`, "Drives", title, unit, many(meta.joints.flatMap((j, i) => of("drive", i, name, j.name))));
     add(
       "reactions",
       "All joints",
@@ -336,6 +344,18 @@ export class Run {
         "m/s",
         parts((t) => this.velocity(b, t)),
       );
+      for (const [what, unit] of [
+        ["acceleration", "m/s^2"],
+        ["angular acceleration", "rad/s^2"],
+      ])
+        if (!body.point || what === "acceleration")
+          add(
+            `body ${b} ${what}`,
+            body.name,
+            `${body.name}: ${what}${what === "acceleration" ? " of the reference point" : ""}`,
+            unit,
+            xyz.flatMap((x) => of("body", b, `${what} ${x}`, x)),
+          );
       if (!body.point)
         add(
           `body ${b} spin`,
@@ -380,7 +400,17 @@ export class Run {
       : this.meta.bodies.length === 1
         ? [...(this.travels(0) ? ["body 0 position"] : []), "body 0 spin"]
         : ["heights", "speeds"];
-    return [...sensors, ...first, ...about_bodies, "energy", "reactions", "loads", "load torques"]
+    const drives = ["drives torque", "drives force", "drives power"].filter(has).slice(0, 2);
+    return [
+      ...drives,
+      ...sensors.slice(0, 2 - Math.min(drives.length, 1)),
+      ...first.slice(0, drives.length ? 1 : 2),
+      ...about_bodies,
+      "energy",
+      "reactions",
+      "loads",
+      "load torques",
+    ]
       .filter(has)
       .slice(0, 4);
   }

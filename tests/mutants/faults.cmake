@@ -1087,3 +1087,17 @@ livens_mutant(NAME meant_key_lacks
               NEW [[if (other.meant.empty()) meant_.push_back(other.meant);]]
               TESTS_OF unit_io
               MUST_FAIL Mistakes.OfKeysAreAnsweredWithTheKeyOrTheTable)
+
+# Extremes of the motion, and what is accelerated.
+livens_mutant(NAME extremes_are_those_of_samples
+              FILE diagnostics/extremes.cpp
+              OLD [[if (better_) sample = better_(t);]]
+              NEW [[;]]
+              TESTS_OF unit_spacetime
+              MUST_FAIL Extremes.AreThoseOfTheFormula)
+livens_mutant(NAME accelerations_forget_what_turns
+              FILE diagnostics/accelerations.cpp
+              OLD [[A[12 * b + i] + instant.centripetal()[12 * b + i];]]
+              NEW [[-A[12 * b + i] + instant.centripetal()[12 * b + i];]]
+              TESTS_OF unit_spacetime
+              MUST_FAIL Accelerations.AreWhatForcesMake)

@@ -51,8 +51,14 @@ struct MeshSource {
     std::string kept = {};
 };
 
+/// Output times.
+struct OutputTimes {
+    std::vector<double> output;   ///< all element ends, where known, if the scenario lists none
+    bool lists_output = false;    ///< the scenario says which
+};
+
 /// A scenario that has been read, checked and closed as far as it can be without solving.
-struct Scenario {
+struct Scenario : OutputTimes {
     std::string file;   ///< as given by the caller; messages only, never written to results
     std::string text;   ///< the file itself
     std::string title;
@@ -60,7 +66,6 @@ struct Scenario {
     std::vector<Outline> outlines;               ///< of the bodies
     std::vector<std::vector<ShapePart>> parts;   ///< of the bodies' shapes; none of one that is no union
     Time time;   ///< element ends hold jumps of loads (unless breaks = "ignore") and output times
-    std::vector<double> output;   ///< output times; all element ends, where known, if the scenario lists none
     Method method;
     Conditions conditions;   ///< what is given at start and end, and the states there, with their times
     SolveOptions options;    ///< tolerance, max_iterations, initial, condition

@@ -514,7 +514,7 @@ TEST(ScenarioCodes, AllAreProvokedByTheseTests)
                                       "max-iterations-out-of-range",
                                       "no-elements",
                                       "no-such-port",
-                                      "not-at-rest",
+                                      "not-at-rest", "quantity-unbounded", "quantity-unknown",
                                       "not-in-equilibrium",
                                       "point-with-directors",
                                       "python-function",   // python/tests

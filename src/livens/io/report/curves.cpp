@@ -7,6 +7,7 @@
 
 #include "livens/diagnostics/coordinates.h"
 #include "livens/diagnostics/diagnostics.h"
+#include "livens/diagnostics/quantities.h"
 #include "livens/diagnostics/sample.h"
 #include "livens/io/report/lines_of_action.h"
 #include "livens/io/report/parts.h"
@@ -19,8 +20,8 @@ constexpr double most_numbers = 4e5;   // of all series, about: what they add to
 constexpr double most_instants = 700, fewest_instants = 120;
 
 struct Channel {
-    const char* kind;   ///< "energy", "joint", "reaction", "load", "sensor"
-    int index;          ///< of the joint, load or sensor
+    const char* kind;   ///< "energy", "joint", "reaction", "drive", "body", "load", "sensor"
+    int index;          ///< of the joint, body, load or sensor
     std::string name;
     std::string unit;
 };
@@ -54,10 +55,25 @@ struct Instants {
     }
 };
 
+/// What is told of accelerations and drives. Accelerations of many bodies would take most of a page, and of
+/// the time to make it.
+std::vector<NamedQuantity> of_equations(const Quantities& quantities, std::size_t n_bodies)
+{
+    constexpr std::size_t most_accelerated = 60;
+    std::vector<NamedQuantity> all;
+    for (const NamedQuantity& q : quantities.all())
+        if (q.of == QuantityOf::drive ||
+            (n_bodies <= most_accelerated && (q.of == QuantityOf::coordinate || q.of == QuantityOf::body) &&
+             q.what.ends_with("acceleration")))
+            all.push_back(q);
+    return all;
+}
+
 class Curves {
 public:
     Curves(const Scenario& scenario, const Run& run)
-        : model_(scenario.model), motion_(run.motion), coordinates_(model_, motion_),
+        : model_(scenario.model), motion_(run.motion), quantities_(model_, motion_, run.body_names),
+          equations_(of_equations(quantities_, run.body_names.size())), coordinates_(model_, motion_),
           sensors_(model_, motion_), joints_(model_, motion_), turns_(model_, motion_),
           lines_(lines_of_action(model_, motion_)),
           has_reactions_(!sample_joints(model_, motion_, motion_.start()).empty())
@@ -74,6 +90,7 @@ public:
             for (const char* const name :
                  {"force x", "force y", "force z", "torque x", "torque y", "torque z"})
                 channels_.push_back({"reaction", j, name, name[0] == 'f' ? "N" : "N m"});
+        for (const NamedQuantity& q : equations_) add_channels(q);
         for (std::size_t l = 0; l < lines_.size(); ++l) {
             for (const char* const name : {"force x", "force y", "force z"})
                 if (is_told(lines_[l])) channels_.push_back({"load", static_cast<int>(l), name, "N"});
@@ -100,6 +117,10 @@ public:
             all.push_back(c.rate);
         }
         if (has_reactions_) add_reactions(all, t, is_before);
+        std::vector<double> numbers(static_cast<std::size_t>(quantities_.n_numbers()));
+        quantities_.at(state, instant.side, equations_, numbers);
+        for (const NamedQuantity& q : equations_)
+            for (int i = 0; i < q.size; ++i) all.push_back(numbers[static_cast<std::size_t>(q.first + i)]);
         if (std::ranges::any_of(lines_, is_told)) {
             const std::vector<Reaction> given = load_reactions(model_, lines_, state, angles, instant.side);
             for (std::size_t l = 0; l < lines_.size(); ++l) {
@@ -112,6 +133,18 @@ public:
     }
 
 private:
+    /// "angle acceleration", "acceleration x", "torque" and "power" of drives.
+    void add_channels(const NamedQuantity& q)
+    {
+        const bool is_coordinate = q.of == QuantityOf::coordinate;
+        std::string name = q.what.starts_with("drive_") ? q.what.substr(6) : q.what;
+        std::ranges::replace(name, '_', ' ');
+        const char* const kind = is_coordinate ? "joint" : q.of == QuantityOf::body ? "body" : "drive";
+        const int index =
+            is_coordinate ? coordinates_.places()[static_cast<std::size_t>(q.index)].joint : q.index;
+        for (int i = 0; i < q.size; ++i)
+            channels_.push_back({kind, index, name + (q.size > 1 ? " " : "") + component_of(q, i), q.unit});
+    }
     static bool is_told(const LineOfAction& line) { return line.points[0] || line.place; }
     void add_reactions(std::vector<double>& all, double t, bool is_before) const
     {
@@ -126,6 +159,8 @@ private:
 
     const Model& model_;
     const Motion& motion_;
+    Quantities quantities_;
+    std::vector<NamedQuantity> equations_;
     JointCoordinates coordinates_;
     SensorReadings sensors_;
     JointSampler joints_;

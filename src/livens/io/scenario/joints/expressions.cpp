@@ -38,6 +38,14 @@ constexpr std::string_view rate_suffix = "_rate";
                       "", "", help});
 }
 
+[[noreturn]] void refuse_acceleration(const std::string& path, const std::string& symbol,
+                                      const std::string& text)
+{
+    refuse_input("input-algebraic", path, symbol, text,
+                 "a load cannot follow an acceleration, which follows from the loads",
+                 "give an expression of coordinates and their rates");
+}
+
 void add_input(const Builder& builder, Inputs& inputs, const std::string& symbol, const std::string& text,
                const std::string& path)
 {
@@ -73,9 +81,10 @@ void add_input(const Builder& builder, Inputs& inputs, const std::string& symbol
             has += (has.empty() ? "it has " : ", ") + component.name;
             const NamedCoordinate& q = component.coordinate;
             if (component.name != reference.what || q.coordinate.forms.empty()) continue;
+            if (component.is_acceleration()) refuse_acceleration(path, symbol, text);
             inputs.symbols.push_back(symbol);
-            inputs.reads.push_back({inputs.coordinates.size(), component.is_rate});
-            inputs.coordinates.push_back({q.coordinate, q.at_stated, !component.is_rate});
+            inputs.reads.push_back({inputs.coordinates.size(), component.is_rate()});
+            inputs.coordinates.push_back({q.coordinate, q.at_stated, !component.is_rate()});
             return;
         }
         const bool is_readable = !sensor.components[0].coordinate.coordinate.forms.empty();

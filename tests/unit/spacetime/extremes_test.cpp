@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Extremes and accelerations of a pendulum, whose rod is a point mass on a massless rod: 3 m g at its lowest.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "livens/diagnostics/extremes.h"
+#include "livens/multibody/joints.h"
+#include "livens/spacetime/solve.h"
+
+namespace livens {
+namespace {
+
+struct Pendulum {
+    Pendulum() : model({0, 0, -9.81})
+    {
+        model.add_body(point_mass("bob", 2, {1, 0, 0}));
+        model.add_joint(rod("rod", world, 0, {{0, 0, 0}, {0, 0, 0}}, 1));
+        solution = solve(model, {{model.start()}}, make_time_mesh(0, 3, 20), Lobatto{5});
+    }
+    Extremes of(const std::string& what, bool is_refined) const
+    {
+        const Quantities quantities(model, solution.motion, {"bob"});
+        const auto& all = quantities.all();
+        const auto q = std::ranges::find(all, what, &NamedQuantity::name);
+        const ExactSampler exact(model, solution.motion, solution.method);
+        const BetterState better = [&](double t) -> std::optional<BetterSample> {
+            ExactSample sample = exact.at(t);
+            return BetterSample{std::move(sample.state), std::move(sample.joints)};
+        };
+        const QuantitySeries series{*q};
+        return find_extremes(quantities, solution.motion, {&series, 1},
+                             is_refined ? better : BetterState())[0];
+    }
+    Model model;
+    Solution solution;
+};
+
+TEST(Extremes, AreThoseOfTheFormula)
+{
+    const Pendulum pendulum;
+    ASSERT_TRUE(pendulum.solution.report.converged());
+    const double exact = 3 * 2 * 9.81;
+    EXPECT_NEAR(pendulum.of("rod.force", true).largest.value, exact, 1e-6 * exact);
+    EXPECT_NEAR(pendulum.of("bob.acceleration", true).largest.value, 2 * 9.81, 1e-5);
+    // Without better states they are those of the polynomials (control).
+    EXPECT_GT(std::abs(pendulum.of("rod.force", false).largest.value - exact), 1e-6 * exact);
+}
+
+TEST(Accelerations, AreWhatForcesMake)
+{
+    const Pendulum pendulum;
+    const Motion& motion = pendulum.solution.motion;
+    const Accelerations accelerations(pendulum.model, motion);
+    const ExactSampler exact(pendulum.model, motion, pendulum.solution.method);
+    for (const double t : {0.0, 0.13, 0.71, 1.5, 2.99}) {
+        const ExactSample sample = exact.at(t);
+        const Vector3 a = accelerations.at(sample.state).A[0].column(0);
+        const Vector3 force = sample.joints[0].right.force + Vector3{0, 0, -2 * 9.81};
+        EXPECT_NEAR(norm(a - 0.5 * force), 0, 1e-10) << t;
+    }
+}
+
+TEST(DenseInstants, KeepElementEndsAndResolveElements)
+{
+    const Pendulum pendulum;
+    const std::vector<SeenInstant> all = dense_instants(pendulum.solution.motion);
+    EXPECT_GE(all.size(), 600u);
+    for (const double end : pendulum.solution.motion.mesh.ends)
+        EXPECT_TRUE(std::ranges::count(all, end, &SeenInstant::t) >= 1) << end;
+}
+
+}   // namespace
+}   // namespace livens
