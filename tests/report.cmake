@@ -15,6 +15,9 @@ if(LIVENS_BUILD_PROGRAM AND LIVENS_SLOW_TESTS)
     add_test(NAME report.in_a_browser COMMAND ${run_node} ${PROJECT_SOURCE_DIR}/report/test/browser.mjs)
     set_tests_properties(report.in_a_browser PROPERTIES LABELS "slow;browser" TIMEOUT 900 COST 100
                          ENVIRONMENT "LIVENS_PROGRAM=$<TARGET_FILE:livens>")
-    list(APPEND report_tests report.in_a_browser)
+    add_test(NAME report.what_the_page_saves COMMAND ${run_node} ${PROJECT_SOURCE_DIR}/report/test/saved.mjs)
+    set_tests_properties(report.what_the_page_saves PROPERTIES LABELS "slow;browser" TIMEOUT 600 COST 60
+                         ENVIRONMENT "LIVENS_PROGRAM=$<TARGET_FILE:livens>")
+    list(APPEND report_tests report.in_a_browser report.what_the_page_saves)
 endif()
 set_tests_properties(${report_tests} PROPERTIES SKIP_REGULAR_EXPRESSION "^SKIPPED: ")

@@ -132,6 +132,16 @@ export class Eye {
     this.target.copy(at(middle));
     this.aim();
   }
+  /** From where another eye looks, in a picture of another form. */
+  see_as(other: Eye) {
+    this.points = other.points === other.extent.near ? this.extent.near : this.extent.whole;
+    this.fit(other.side);
+    if (!other.moved) return;
+    this.moved = true;
+    this.camera.position.copy(other.camera.position);
+    this.target.copy(other.target);
+    this.aim();
+  }
   /** `above`, `below`: shares of the height that are left to what is written there. */
   resize(aspect: number, above: number, below: number) {
     this.room = { above, below };

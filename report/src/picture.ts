@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The picture with what lies about it: names, scales, switches. Without WebGL plots stand alone.
 import type { Side } from "./camera";
+import { beside, spread } from "./labels";
 import type { Run } from "./run";
 import { Stage, type Shown } from "./stage";
+import type { Screen } from "./studio";
 import { by_id, element, number, rough, seconds } from "./text";
 import { body_colour, dark_wanted, theme } from "./theme";
 import type { Timeline } from "./timeline";
@@ -93,6 +95,11 @@ export class Picture {
       by_id(`view-${side}`).addEventListener("click", () => this.stage?.eye.fit_by_hand(side));
   }
 
+  /** What pictures that are saved take from this one. */
+  screen(): Screen {
+    const { run, other, stage, shown } = this;
+    return { run, other: shown.other ? other : null, stage, shown };
+  }
   compare(other: Run | null) {
     this.other = other;
     by_id("other-label").hidden = other === null;
@@ -115,18 +122,16 @@ export class Picture {
     by_id("labels").hidden = !this.shown.names;
     if (!this.stage || !this.shown.names) return;
     const { clientWidth: width, clientHeight: height } = by_id("space");
-    this.labels.forEach((label, b) => {
+    const placed = this.labels.flatMap((label, b) => {
       const at = this.stage!.screen(b);
       label.hidden = at === null || !Number.isFinite(at[0] + at[1]);
-      if (!at || label.hidden) return;
+      if (!at || label.hidden) return [];
       this.sizes[b] ??= [label.offsetWidth, label.offsetHeight];
-      // Beside the middle of the body, and in the picture as long as that is in it.
-      const [w, h] = this.sizes[b],
-        is_in = at[0] > 0 && at[0] < width && at[1] > 0 && at[1] < height,
-        x = is_in ? Math.min(at[0] + 11, width - w - 2) : at[0] + 11,
-        y = is_in ? Math.max(at[1] - h - 7, 2) : at[1] - h - 7;
-      label.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px)`;
+      return [{ label, ...beside(at, this.sizes[b], width, height) }];
     });
+    spread(placed, height);
+    for (const { label, x, y } of placed)
+      label.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px)`;
   }
 
   /** The scales of the picture. */

@@ -102,6 +102,15 @@ export class Stage {
     this.eye.resize(width / Math.max(height, 1), share(above), share(below));
   }
 
+  /** To so many pixels, `scale` of them for one of a screen. */
+  size_exactly(width: number, height: number, scale: number) {
+    const room = 1e-6; // three rounds down
+    this.renderer.setPixelRatio(scale);
+    this.renderer.setSize((width + room) / scale, (height + room) / scale, false);
+    this.eye.resize(width / height, 0.06, 0.06);
+    return this.renderer.getContext();
+  }
+
   show(t: number) {
     const { shown, poses, run } = this;
     this.now = t;
@@ -139,12 +148,14 @@ export class Stage {
   bars_at(t: number) {
     return this.joints.bars_at(t);
   }
-  /** Where the middle of a body is in the picture, in pixels of the page; null behind the eye. */
-  screen(b: number): [number, number] | null {
+  /** Where the middle of a body is in a picture of that size; null behind the eye. */
+  screen(
+    b: number,
+    width = this.canvas.clientWidth,
+    height = this.canvas.clientHeight,
+  ): [number, number] | null {
     const p = this.poses.place(b, vector(this.run.meta.bodies[b].middle)).project(this.eye.camera);
-    return p.z > 1
-      ? null
-      : [((p.x + 1) / 2) * this.canvas.clientWidth, ((1 - p.y) / 2) * this.canvas.clientHeight];
+    return p.z > 1 ? null : [((p.x + 1) / 2) * width, ((1 - p.y) / 2) * height];
   }
 }
 

@@ -21,6 +21,9 @@ const light = {
   now: "#20262d",
   bad: "#b3261e",
   card: "#fff",
+  sky: "#fdfdfe", // as in page.css
+  floor: "#e9edf1",
+  shadow: 0.2, // how dark it is
 };
 const dark: typeof light = {
   edge: "#05070a",
@@ -39,15 +42,24 @@ const dark: typeof light = {
   now: "#e6edf3",
   bad: "#ff8a80",
   card: "#151b23",
+  sky: "#161d26",
+  floor: "#0b0f14",
+  shadow: 0.5,
 };
 
 export const dark_wanted = matchMedia("(prefers-color-scheme: dark)");
-let printing = false;
+export type Scheme = "light" | "dark" | null; // null: as the screen is
+let printing = false,
+  scheme: Scheme = null;
 /** Paper is white. */
 export function set_printing(is_printing: boolean) {
   printing = is_printing;
 }
-const is_dark = () => dark_wanted.matches && !printing;
+/** Of what is drawn until it is set again. */
+export function set_scheme(wanted: Scheme) {
+  scheme = wanted;
+}
+const is_dark = () => (scheme ? scheme === "dark" : dark_wanted.matches && !printing);
 export const theme = () => (is_dark() ? dark : light);
 export const colour = (i: number) => (is_dark() ? on_dark : on_light)[i % on_light.length];
 export const body_colour = colour;
