@@ -16,8 +16,12 @@ if(LIVENS_BUILD_PROGRAM AND LIVENS_SLOW_TESTS)
     set_tests_properties(report.in_a_browser PROPERTIES LABELS "slow;browser" TIMEOUT 900 COST 100
                          ENVIRONMENT "LIVENS_PROGRAM=$<TARGET_FILE:livens>")
     add_test(NAME report.what_the_page_saves COMMAND ${run_node} ${PROJECT_SOURCE_DIR}/report/test/saved.mjs)
-    set_tests_properties(report.what_the_page_saves PROPERTIES LABELS "slow;browser" TIMEOUT 600 COST 60
-                         ENVIRONMENT "LIVENS_PROGRAM=$<TARGET_FILE:livens>")
-    list(APPEND report_tests report.in_a_browser report.what_the_page_saves)
+    add_test(NAME report.plots COMMAND ${run_node} ${PROJECT_SOURCE_DIR}/report/test/plots.mjs)
+    foreach(test what_the_page_saves plots)
+        set_tests_properties(report.${test} PROPERTIES LABELS "slow;browser" TIMEOUT 600 COST 60
+                             ENVIRONMENT "LIVENS_PROGRAM=$<TARGET_FILE:livens>")
+        list(APPEND report_tests report.${test})
+    endforeach()
+    list(APPEND report_tests report.in_a_browser)
 endif()
 set_tests_properties(${report_tests} PROPERTIES SKIP_REGULAR_EXPRESSION "^SKIPPED: ")

@@ -3,9 +3,9 @@
 import { build_about } from "./about";
 import { Compare } from "./compare";
 import { runs_of } from "./data";
+import type { Figure } from "./figure";
 import { Picture } from "./picture";
 import { Playback } from "./playback";
-import type { Plot } from "./plot";
 import { PlotList } from "./plot_list";
 import { build_quality } from "./quality";
 import { record, type Course, type Kind } from "./record";
@@ -17,6 +17,7 @@ import { Tabs, tab_names } from "./tabs";
 import { by_id, element } from "./text";
 import { dark_wanted, set_printing } from "./theme";
 import { Timeline } from "./timeline";
+import { on_angles } from "./units";
 import { verdict_of } from "./verdict";
 
 const half_of_a_page = 335; // px, of A4 and of letter
@@ -29,7 +30,7 @@ class Report {
   private readonly list: PlotList;
   private readonly compare: Compare;
   private readonly tabs: Tabs;
-  private quality: Plot[] | null = null;
+  private quality: Figure[] | null = null;
 
   constructor(
     readonly run: Run,
@@ -41,12 +42,7 @@ class Report {
     this.picture = new Picture(run, this.time);
     this.list = new PlotList(run, this.time);
     this.playback = new Playback(this.time);
-    this.scrub = new Scrub(
-      this.time,
-      motion.ends,
-      run.meta.pose.precision === "thinned" ? "part" : "element",
-      () => this.playback.stop(),
-    );
+    this.scrub = new Scrub(this.time, motion.ends, () => this.playback.stop());
     new Save(this.picture, this.time, this.playback, run.meta.name);
     this.compare = new Compare(by_id("compare"), run, this.time, (second) => this.picture.compare(second));
     const script = document.querySelector('script[type="module"]')!.textContent ?? "";
@@ -56,6 +52,10 @@ class Report {
       for (const plot of this.plots()) plot.show(t);
     });
     this.time.on_zoom(() => {
+      for (const plot of this.plots()) plot.zoom();
+    });
+    on_angles(() => {
+      this.compare.say();
       for (const plot of this.plots()) plot.zoom();
     });
     this.tabs = new Tabs((name) => {
@@ -68,7 +68,7 @@ class Report {
     this.read_address();
   }
 
-  private plots(): Plot[] {
+  private plots(): Figure[] {
     return [...this.list.plots, ...(this.quality ?? []), ...this.compare.plots];
   }
   private build_quality() {
