@@ -39,7 +39,7 @@ export function build_about(host: HTMLElement, run: Run, program: string, notice
               element(
                 "p",
                 { class: "thinned" },
-                `The surface of ${name} is drawn with ${thinned[1]} of its ${thinned[0]} triangles: corners are at most ${rough(thinned[2])} m from where they are, and what is smaller may be gone. Motion and masses are those of the whole.`,
+                `The surface of ${name} is drawn with ${thinned[1]} of its ${thinned[0]} triangles: corners are at most ${rough(thinned[2])}\u00a0m from where they are, and what is smaller may be gone. Motion and masses are those of the whole.`,
               ),
             ]
           : [],

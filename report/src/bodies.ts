@@ -5,7 +5,9 @@ import {
   BufferGeometry,
   Color,
   EdgesGeometry,
+  InstancedBufferAttribute,
   LineBasicMaterial,
+  Material,
   Matrix4,
   MeshPhongMaterial,
   Vector3,
@@ -18,6 +20,24 @@ import { body_colour, theme } from "./theme";
 const looks = 1500; // instants that are looked at
 const most_looks = 30000; // times bodies
 const edge_angle = 28; // degrees between faces
+
+const most_ranks = 12;
+const step = 1.5e-6; // of depth, from one rank to the next: some 0.015 % of the distance
+
+/** Where bodies lie in one plane, that of the higher rank is seen, from both sides and at every instant. */
+const rank_of = (run: Run, body: number) => body % Math.min(run.meta.bodies.length, most_ranks);
+
+function in_ranks(instances: Instances, ranks: number[]): Instances {
+  const { geometry, material } = instances.mesh;
+  geometry.setAttribute("rank", new InstancedBufferAttribute(Float32Array.from(ranks), 1));
+  (material as Material).onBeforeCompile = (shader) => {
+    shader.vertexShader = `attribute float rank;\n${shader.vertexShader}`.replace(
+      "#include <project_vertex>",
+      `#include <project_vertex>\n\tgl_Position.z -= ${step.toExponential()} * rank * gl_Position.w;`,
+    );
+  };
+  return instances;
+}
 
 /** Forms and their edges; a ghost is what another run is shown as. */
 export function make_bodies(run: Run, is_ghost: boolean): Instances[] {
@@ -33,20 +53,24 @@ export function make_bodies(run: Run, is_ghost: boolean): Instances[] {
       return [{ body: b, local, colour: new Color(is_ghost ? theme().ghost : body_colour(b)) }];
     });
     const ghostly = is_ghost ? { transparent: true, opacity: 0.4, depthWrite: false } : {};
-    layers.push(
-      new Instances(
-        geometry,
-        new MeshPhongMaterial({ specular: 0x222222, shininess: 40, ...ghostly }),
-        places,
-      ),
-    );
+    const ranks = places.map(({ body }) => rank_of(run, body)),
+      surface = new MeshPhongMaterial({ specular: 0x222222, shininess: 40, ...ghostly });
+    layers.push(in_ranks(new Instances(geometry, surface, places), ranks));
     const edges = new LineBasicMaterial({
       color: theme().edge,
       transparent: true,
       opacity: is_ghost ? 0.3 : 0.55,
     });
     const bare = places.map(({ body, local }) => ({ body, local }));
-    layers.push(as_lines(new Instances(new EdgesGeometry(geometry, edge_angle), edges, bare)));
+    const lines = new Instances(new EdgesGeometry(geometry, edge_angle), edges, bare);
+    layers.push(
+      as_lines(
+        in_ranks(
+          lines,
+          ranks.map((rank) => rank + 0.5),
+        ),
+      ),
+    );
   }
   return layers;
 }
@@ -139,6 +163,8 @@ export function extent_of(run: Run): Extent {
     }
   });
   for (const joint of meta.joints) if (joint.first < 0) all.push(...joint.point_first);
+  for (const { first, path } of meta.joints)
+    if (first < 0) for (const place of path ?? []) all.push(...place);
   for (const spring of run.springs) if (spring.second < 0) all.push(...spring.point_second!);
   const whole = Float32Array.from(all.length ? all : [-1, -1, -1, 1, 1, 1]);
   return { whole, ...near_of(run, whole, owners) };

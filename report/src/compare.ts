@@ -93,7 +93,7 @@ function sides(first: Run, second: Run): HTMLElement {
         row("elements", (r) => number(r.figure("elements"), 9)),
         row("estimated error", (r) => rough(r.figure("estimated_error"))),
         row("energy balance", (r) => rough(r.figure("energy_drift"))),
-        row("time", (r) => `${number(r.meta.start, 6)} s to ${number(r.meta.end, 6)} s`),
+        row("time", (r) => `${number(r.meta.start, 6)}\u00a0s to ${number(r.meta.end, 6)}\u00a0s`),
         row("bodies", (r) => String(r.meta.bodies.length)),
       ),
     ),

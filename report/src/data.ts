@@ -25,6 +25,7 @@ export interface Joint {
   axis_second: Vector;
   from: number | null; // s, when it begins and ends to act; null: always
   until: number | null;
+  path?: Vector[]; // of a slot: its whole curve, on the first body
 }
 export interface Load {
   name: string;

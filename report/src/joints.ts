@@ -20,6 +20,7 @@ import { Instances, Poses, acts, unit_z, vector, type Place } from "./instances"
 import type { Run } from "./run";
 import { body_colour, theme } from "./theme";
 
+const foot_height = 3.5; // radii
 const many = 30; // joints that are drawn with fewer sides
 
 export class Joints {
@@ -127,6 +128,14 @@ export class Joints {
     }
   }
 
+  /** The height of what the feet stand on; infinite where there are none. */
+  get floor(): number {
+    const { meta, up } = this.run,
+      standing = meta.joints.filter((joint) => joint.first < 0 && has_foot(joint.type));
+    return Math.min(
+      ...standing.map((joint) => vector(joint.point_first).dot(up) - foot_height * this.radius),
+    );
+  }
   /** Bars between points that act. */
   bars_at(t: number) {
     return this.bars.filter(({ joint }) => acts(joint, t)).length;

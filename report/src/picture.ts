@@ -147,22 +147,22 @@ export class Picture {
     if (run.meta.bodies.length > few) add(null, `${run.meta.bodies.length} bodies`);
     if (stage.leaving.length)
       add(null, `${stage.leaving.slice(0, 3).join(", ")} goes far: Fit once more shows the whole way`);
-    add(null, `grid ${number(stage.cell)} m`);
+    add(null, `grid ${number(stage.cell)}\u00a0m`);
     if (this.shown.trails && stage.path_window > 0)
-      add(null, `paths of the last ${number(stage.path_window, 2)} s`);
+      add(null, `paths of the last ${number(stage.path_window, 2)}\u00a0s`);
     const kinds = new Set(run.forces.filter((f) => f.largest > 0).map((f) => f.kind));
     if (this.shown.forces && run.largest_force > 0) {
       if (kinds.has("reaction")) add(theme().force, "force of a joint on its second body");
       if (kinds.has("load")) add(theme().load, "force of a load");
-      add(null, `longest arrow ${number(run.largest_force, 3)} N, lengths as \u221aforce`);
+      add(null, `longest arrow ${number(run.largest_force, 3)}\u00a0N, lengths as \u221aforce`);
     }
     if (this.shown.forces && run.largest_torque > 0) {
       if (!kinds.has("load") || run.largest_force === 0) add(theme().load, "torque of a load");
-      add(null, `largest torque ${number(run.largest_torque, 3)} N m`);
+      add(null, `largest torque ${number(run.largest_torque, 3)}\u00a0N\u00a0m`);
     }
     const thinned = run.meta.bodies.filter((body) => body.thinned);
     if (thinned.length)
-      add(null, `surfaces thinned, off by ${rough(Math.max(...thinned.map((b) => b.thinned![2])))} m`);
+      add(null, `surfaces thinned, off by ${rough(Math.max(...thinned.map((b) => b.thinned![2])))}\u00a0m`);
     if (this.shown.frames) ["d\u2081", "d\u2082", "d\u2083"].forEach((d, i) => add(theme().axes[i], d));
     by_id("caption").replaceChildren(...said);
   }
@@ -183,7 +183,7 @@ export class Picture {
       stage.show(t);
       const canvas = element("canvas", { width: String(source.width), height: String(source.height) });
       canvas.getContext("2d")!.drawImage(source, 0, 0);
-      host.append(element("figure", {}, canvas, element("figcaption", {}, `${seconds(t, span)} s`)));
+      host.append(element("figure", {}, canvas, element("figcaption", {}, `${seconds(t, span)}\u00a0s`)));
     }
     stage.show(now);
     this.resize();

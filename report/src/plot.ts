@@ -154,7 +154,7 @@ export class Plot implements Figure {
       width,
       height,
       legend: { show: false },
-      padding: [6 * scale, 10 * scale, 0, 0],
+      padding: [6 * scale, 18 * scale, 0, 0],
       cursor: {
         drag: { x: true, y: false, setScale: false },
         points: { show: false },

@@ -101,7 +101,7 @@ function facts(run: Run): HTMLElement {
   add("elements divided", number(f("divided")), f("divided") > 0);
   add("accuracy asked for", rough(f("accuracy")), f("accuracy") > 0);
   add("perturbations grow by", rough(f("growth")), Number.isFinite(f("growth")));
-  add("horizon", `${number(f("horizon"), 5)} s`, Number.isFinite(f("horizon")));
+  add("horizon", `${number(f("horizon"), 5)}\u00a0s`, Number.isFinite(f("horizon")));
   add("condition number (2-norm)", rough(f("condition_2")), f("condition_2") > 0);
   return list;
 }
@@ -128,7 +128,7 @@ export function build_quality(host: HTMLElement, run: Run, time: Timeline): Plot
           element(
             "p",
             {},
-            `The largest error is that of \u201c${worst.name}\u201d at ${number(run.figure("estimated_error_time"), 6)} s.`,
+            `The largest error is that of \u201c${worst.name}\u201d at ${number(run.figure("estimated_error_time"), 6)}\u00a0s.`,
           ),
         ]
       : [];

@@ -8,6 +8,7 @@ import { Frames, make_grid } from "./ground";
 import { Poses, vector, type Instances } from "./instances";
 import { Joints } from "./joints";
 import type { Run } from "./run";
+import { Shadow, casts } from "./shadow";
 import { Slots } from "./slots";
 import { Trails } from "./trails";
 
@@ -32,6 +33,7 @@ export class Stage {
   private readonly scene = new Scene();
   private readonly poses: Poses;
   private readonly bodies: Instances[];
+  private readonly shadow: Shadow;
   private readonly joints: Joints;
   private readonly trails: Trails;
   private readonly arrows: Arrows;
@@ -68,9 +70,16 @@ export class Stage {
     this.slots = new Slots(run);
     this.frames = new Frames(bodies.length, 0.16 * detail);
     this.beads = new Beads(run, 0.022 * detail);
-    const grid = make_grid(points, run.up, size);
+    const grid = make_grid(points, run.up, size, this.joints.floor);
     this.cell = grid.cell;
-    this.scene.add(grid.object, ...lights(run.up), ...this.bodies.map((layer) => layer.mesh));
+    this.shadow = new Shadow(grid.plane, 2.5 * size + grid.cell);
+    for (const { mesh } of this.bodies) if (mesh.isMesh) mesh.layers.enable(casts);
+    this.scene.add(
+      grid.object,
+      this.shadow.object,
+      ...lights(run.up),
+      ...this.bodies.map((layer) => layer.mesh),
+    );
     for (const part of [
       this.joints,
       this.trails,
@@ -141,6 +150,7 @@ export class Stage {
   }
   draw() {
     if (!Number.isFinite(this.now)) return;
+    this.shadow.draw(this.renderer, this.scene);
     this.renderer.render(this.scene, this.eye.camera);
     this.after_draw();
   }

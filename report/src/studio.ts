@@ -59,7 +59,7 @@ export class Studio {
     }
     stage.shown = { ...screen.shown };
     if (screen.other) stage.compare(screen.other);
-    if (look.side) stage.eye.fit_by_hand(look.side);
+    if (look.side) stage.eye.fit(look.side);
     else if (screen.stage) stage.eye.see_as(screen.stage.eye);
   }
   /** In the colours that are wished. */

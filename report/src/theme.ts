@@ -23,7 +23,8 @@ const light = {
   card: "#fff",
   sky: "#fdfdfe", // as in page.css
   floor: "#e9edf1",
-  shadow: 0.2, // how dark it is
+  shade: "#3a4654",
+  shadow: 0.28, // how dark it is
 };
 const dark: typeof light = {
   edge: "#05070a",
@@ -44,7 +45,8 @@ const dark: typeof light = {
   card: "#151b23",
   sky: "#161d26",
   floor: "#0b0f14",
-  shadow: 0.5,
+  shade: "#000000",
+  shadow: 0.55,
 };
 
 export const dark_wanted = matchMedia("(prefers-color-scheme: dark)");

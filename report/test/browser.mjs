@@ -311,7 +311,7 @@ const tests = {
       };
     });
     assert.match(await page.textContent("#motion .bad"), /no picture in space/);
-    assert.equal(await page.locator("#plot-list figure").count(), 3);
+    assert.equal(await page.locator("#plot-list figure").count(), 4);
     await page.keyboard.press("ArrowRight");
     assert.deepEqual(
       page.problems.filter((p) => !/WebGL/.test(p)),
@@ -375,7 +375,7 @@ const tests = {
       assert.notEqual(await picture(page, 0.3), shown, what);
       await page.locator(`#show-${what}`).click();
     }
-    assert.match(await page.textContent("#caption"), /largest torque 0\.1 N m/);
+    assert.match(await page.textContent("#caption"), /largest torque 0\.1\sN\sm/);
     assert.ok((await page.evaluate(() => livensReport.frames(2))).calls <= 20);
     assert.deepEqual(page.problems, []);
   },
@@ -401,11 +401,11 @@ const tests = {
       readFileSync(file, "utf8").replace('"thinned": null', '"thinned": [1000000, 58311, 0.0021]'),
     );
     const page = await open(thinned);
-    assert.match(await page.textContent("#caption"), /surfaces thinned, off by 2\.1e\u22123 m/);
+    assert.match(await page.textContent("#caption"), /surfaces thinned, off by 2\.1e\u22123\sm/);
     await page.click("#tab-about");
     assert.match(
       await page.textContent("#about"),
-      /of crank is drawn with 58311 of its 1000000 triangles: corners are at most 2\.1e\u22123 m/,
+      /of crank is drawn with 58311 of its 1000000 triangles: corners are at most 2\.1e\u22123\sm/,
     );
     assert.deepEqual(page.problems, []);
     assert.doesNotMatch(await (await open(file)).textContent("#about"), /triangles/, "the control");

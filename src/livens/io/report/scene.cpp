@@ -168,7 +168,9 @@ void write_joints(JsonWriter& json, const Model& model)
             json.key(key);
             std::isfinite(t) ? json.value(t) : json.null();
         }
-        json.end_object();
+        json.key("path").begin_array();
+        for (const Vector3& place : joint.path) json.value(std::span<const double>(place.a));
+        json.end_array().end_object();
     }
     json.end_array();
 }
