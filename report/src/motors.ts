@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What drives give: force or torque along what they drive, and power.
+// What drives and actuators give: force or torque along what they drive, and power.
 import { Vector3 } from "three";
 import type { Run } from "./run";
 
@@ -38,18 +38,59 @@ function axis_at(run: Run, body: number, axis: Vector3, t: number): Vector3 {
 
 const looks = 60;
 
+/** What acts on a body at a point of it, and the opposite on another. */
+interface Wrench {
+  label: string;
+  kind: "reaction" | "load";
+  index: number;
+  body: number;
+  other: number;
+  point: [number, number, number];
+}
+
+/** Drives are constraints, actuators are loads. */
+function wrenches_of({ meta }: Run): Wrench[] {
+  const drives = meta.joints.flatMap((j, index): Wrench[] =>
+    j.type === "drive"
+      ? [{ label: j.name, kind: "reaction", index, body: j.second, other: j.first, point: j.point_second }]
+      : [],
+  );
+  const actuators = meta.loads.flatMap((l, index): Wrench[] => {
+    const point = l.place ?? l.point_first;
+    return l.type === "actuator" && point
+      ? [{ label: l.name, kind: "load", index, body: l.first, other: l.second, point }]
+      : [];
+  });
+  return [...drives, ...actuators];
+}
+
+/** The axis of the joint whose coordinate is driven, on the body, towards greater coordinates; null: not known. */
+function axis_of(run: Run, { kind, body, other, point }: Wrench): Vector3 | null {
+  const near = 1e-9 * run.meta.length,
+    joints = run.meta.joints.filter((j) => {
+      const is_pair = (j.first === other && j.second === body) || (j.first === body && j.second === other),
+        is_there = kind === "load" || j.point_second.every((x, i) => Math.abs(x - point[i]) < near);
+      return j.type !== "drive" && is_pair && is_there && Math.hypot(...j.axis_second) > 0.5;
+    });
+  if (joints.length !== 1) return null;
+  const [joint] = joints;
+  return joint.second === body
+    ? new Vector3(...joint.axis_second)
+    : new Vector3(...joint.axis_first).negate();
+}
+
 export function motors_of(run: Run): Motor[] {
-  const { joints } = run.meta,
-    { start, end } = run.motion;
-  return joints.flatMap((drive, d) => {
-    if (drive.type !== "drive") return [];
-    const reaction = (what: string) => {
-      const channels = ["x", "y", "z"].map((x) => run.channel("reaction", d, `${what} ${x}`));
+  const { start, end } = run.motion;
+  return wrenches_of(run).flatMap((wrench) => {
+    const { label, kind, index, body, other } = wrench,
+      point = new Vector3(...wrench.point);
+    const vector = (what: string) => {
+      const channels = ["x", "y", "z"].map((x) => run.channel(kind, index, `${what} ${x}`));
       if (channels.some((c) => c < 0)) return null;
       return (t: number) => new Vector3(...channels.map((c) => run.curves.at(c, t)));
     };
-    const force = reaction("force"),
-      torque = reaction("torque");
+    const force = vector("force"),
+      torque = vector("torque");
     if (!force || !torque) return [];
     let largest = [0, 0];
     for (let k = 0; k <= looks; ++k) {
@@ -57,28 +98,17 @@ export function motors_of(run: Run): Motor[] {
       largest = [force, torque].map((of, i) => Math.max(largest[i], of(t).length() || 0));
     }
     const turns = largest[1] * 1e6 > largest[0] * run.meta.length && largest[1] > 0,
-      of = turns ? torque : force;
-    const same = (p: number[], q: number[]) => p.every((v, i) => Math.abs(v - q[i]) < 1e-9 * run.meta.length);
-    // The joint whose coordinate it drives; without one, its size is told.
-    const axes = joints.filter(
-      (j) =>
-        j.type !== "drive" &&
-        j.first === drive.first &&
-        j.second === drive.second &&
-        same(j.point_second, drive.point_second) &&
-        Math.hypot(...j.axis_second) > 0.5,
-    );
-    const axis = axes.length === 1 ? new Vector3(...axes[0].axis_second) : null,
-      point = new Vector3(...drive.point_second);
+      of = turns ? torque : force,
+      axis = axis_of(run, wrench);
     return [
       {
-        label: drive.name,
+        label,
         turns,
-        effort: (t: number) => (axis ? of(t).dot(axis_at(run, drive.second, axis, t)) : of(t).length()),
+        effort: (t: number) => (axis ? of(t).dot(axis_at(run, body, axis, t)) : of(t).length()),
         power: (t: number) => {
-          const place = place_at(run, drive.second, point, t),
-            v = velocity_at(run, drive.second, place, t).sub(velocity_at(run, drive.first, place, t)),
-            w = spin_of(run, drive.second, t).sub(spin_of(run, drive.first, t));
+          const place = place_at(run, body, point, t),
+            v = velocity_at(run, body, place, t).sub(velocity_at(run, other, place, t)),
+            w = spin_of(run, body, t).sub(spin_of(run, other, t));
           return force(t).dot(v) + torque(t).dot(w);
         },
       },

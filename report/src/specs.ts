@@ -135,8 +135,14 @@ class Specs {
         of.map((m) => ({ label: m.label, at: (t) => m[what](t) })),
       );
     add("motor torques", "Torques of motors", "N m", some(true), "effort");
-    add("motor forces", "Forces of motors", "N", some(false), "effort");
-    add("motor power", "Power of motors", "W", motors.slice(0, most_series), "power");
+    add("motor forces", "Forces of drives", "N", some(false), "effort");
+    add(
+      "motor power",
+      motors.every((m) => m.turns) ? "Power of motors" : "Power of drives",
+      "W",
+      motors.slice(0, most_series),
+      "power",
+    );
   }
   joints() {
     const { meta } = this.run,

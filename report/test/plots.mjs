@@ -57,6 +57,35 @@ const tests = {
     });
     assert.ok(worst < 2e-4, `${worst} N m`);
     assert.deepEqual(torque.head, ["t [s]", "motor [N m]"]);
+    // An actuator: as its formula says, with the sign of the coordinate, whichever body comes first.
+    for (const pair of ['["world", "rotor"]', '["rotor", "arm"]', '["arm", "rotor"]']) {
+      const arm =
+        '[[body]]\nname = "arm"\nshape = { box = [0.3, 0.05, 0.05] }\nmass = 2\nposition = [0, 0.1, 0]\n';
+      const text = shaft_and_flap()
+        .replace(
+          /\[\[drive\]\][\s\S]*?rate = 6\n/,
+          `${pair.includes("arm") ? arm : ""}[[load]]\nname = "motor"\ntype = "actuator"\njoint = "shaft"\nexpression = "0.3*cos(2*t)"\n`,
+        )
+        .replace('["world", "rotor"]', pair);
+      const page = await open(made("actuator", text).page);
+      await page.selectOption("#add", {
+        label: await page.locator("#add option", { hasText: "Rates of angles" }).first().textContent(),
+      });
+      assert.equal((await titles(page))[0], "Torques of motors");
+      const torque = await table(page, plot(page, "Torques of motors")),
+        power = await table(page, plot(page, "Power of motors")),
+        rates = await table(page, plot(page, "Rates of angles")),
+        shaft = rates.head.indexOf("shaft [rad/s]");
+      const off = Math.max(
+        ...torque.rows.map(([t, effort], k) =>
+          Math.max(
+            Math.abs(effort - 0.3 * Math.cos(2 * t)),
+            Math.abs(power.rows[k][1] - effort * rates.rows[k][shaft]) / 10,
+          ),
+        ),
+      );
+      assert.ok(off < 1e-4, `${pair}: ${off}`);
+    }
     // A sensor that reads what the plot of a single body shows.
     const falls = (sensor) =>
       `format = 1\ngravity = [0, 0, -9.81]\n[[body]]\nname = "stone"\nshape = { sphere = 0.1 }\nmass = 1\nvelocity = [1, 0, 2]\nangular_velocity = [0, 0, 1]\n${sensor}[time]\nend = 1\n`;

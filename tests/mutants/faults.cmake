@@ -1071,3 +1071,10 @@ livens_mutant(NAME forces_of_joints_have_no_slopes
               NEW [[if (tables_.bodies[b].dofs == 7) add_turning(b);]]
               TESTS_OF unit_spacetime
               MUST_FAIL MarchKernel.LinksThatAHeavyMassDrawsNeedNoNewton)
+# Half of a slot is drawn.
+livens_mutant(NAME slot_drawn_by_half
+              FILE multibody/joints/slot.cpp
+              OLD [[(curve.last - curve.first) * k / pieces]]
+              NEW [[0.5 * (curve.last - curve.first) * k / pieces]]
+              TESTS_OF unit_multibody
+              MUST_FAIL Joint.SlotKeepsItsWholeCurveToBeDrawn)
