@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Stills, videos and GIFs of reports without a hand on the page, by a headless browser (scripts/setup browser):
-//   node report/record.mjs REPORT.html OUT.png|OUT.webm|OUT.gif [KEY=VALUE...]
+// Stills, sketches (SVG), videos and GIFs of reports without a hand on the page, by a headless browser (scripts/setup browser):
+//   node report/record.mjs REPORT.html OUT.png|OUT.svg|OUT.webm|OUT.gif [KEY=VALUE...]
 //   at=0.7                    the instant of a still [s]; without it the start
 //   from=0 to=2               of a moving picture [s]; without them all of the motion
 //   speed=0.5 fps=30          seconds of motion in one of the picture; pictures a second
@@ -77,8 +77,8 @@ export async function recorded(page, kind, { look, course, shown = {} }) {
 if (process.argv[1] && import.meta.url === pathToFileURL(resolve(process.argv[1])).href) {
   const [file, out, ...words] = process.argv.slice(2),
     kind = extname(out ?? "").slice(1);
-  if (!["png", "webm", "gif"].includes(kind)) {
-    console.error("usage: node report/record.mjs REPORT.html OUT.png|OUT.webm|OUT.gif [KEY=VALUE...]");
+  if (!["png", "svg", "webm", "gif"].includes(kind)) {
+    console.error("usage: node report/record.mjs REPORT.html OUT.png|OUT.svg|OUT.webm|OUT.gif [KEY=VALUE...]");
     process.exit(2);
   }
   const browser = await launch();

@@ -93,12 +93,18 @@ export class Eye {
     this.points = is_again ? this.extent.whole : this.extent.near;
     this.fit(side);
   }
-  private fit_points() {
-    const { side } = this;
-    this.moved = false;
+  view_of(side: Side): View {
     const rise = side === "top" ? 1.5 : side !== "fitted" ? 0 : this.flat ? 0.85 : 0.3;
     const turn = side === "side" ? Math.PI / 2 : side === "fitted" ? -0.42 : 0;
-    const v = view_from(this.up, this.across, turn, rise);
+    return view_from(this.up, this.across, turn, rise);
+  }
+  /** Nobody has chosen from where to look. */
+  get is_untouched() {
+    return this.side === "fitted" && !this.moved;
+  }
+  private fit_points() {
+    this.moved = false;
+    const v = this.view_of(this.side);
     const tangent = Math.tan((this.camera.fov * Math.PI) / 360),
       tx = 0.9 * tangent * this.camera.aspect,
       t_up = tangent * (1 - 2 * this.room.above),

@@ -2,6 +2,7 @@
 // Stills and moving pictures, picture by picture: how long one takes to draw changes nothing of them.
 import { png_of } from "./files";
 import { Gif, Palette } from "./gif";
+import { sketch } from "./sketch";
 import { Studio, type Look, type Screen } from "./studio";
 import { webm_of, type Chunk } from "./webm";
 
@@ -12,7 +13,8 @@ export interface Course {
   speed: number;
   rate: number;
 }
-export type Kind = "png" | "webm" | "gif";
+export type Kind = "png" | "svg" | "webm" | "gif";
+export const is_still = (kind: Kind) => kind === "png" || kind === "svg";
 
 export const most_frames = 20_000;
 const looks = 12; // pictures that the colours of a GIF are chosen by
@@ -180,5 +182,6 @@ export function record(
   signal: AbortSignal = new AbortController().signal,
 ): Promise<Blob> {
   if (kind === "png") return still(screen, look, course.from);
+  if (kind === "svg") return Promise.resolve(sketch(screen, look, course.from));
   return kind === "gif" ? gif(screen, look, course, told, signal) : video(screen, look, course, told, signal);
 }

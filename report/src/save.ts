@@ -3,7 +3,7 @@
 import { file_name, hand_over } from "./files";
 import type { Picture } from "./picture";
 import type { Playback } from "./playback";
-import { can_encode, instants_of, record, type Course, type Kind } from "./record";
+import { can_encode, instants_of, is_still, record, type Course, type Kind } from "./record";
 import { least_size, most_size, type Look } from "./studio";
 import { by_id, element, number, seconds } from "./text";
 import type { Scheme } from "./theme";
@@ -13,11 +13,13 @@ const sizes = ["1280 x 720", "1920 x 1080", "3840 x 2160", "1080 x 1080", "960 x
 const rates = [10, 12.5, 20, 25, 30, 50, 60];
 const usual: Record<Kind, { size: string; rate: number }> = {
   png: { size: "1920 x 1080", rate: 30 },
+  svg: { size: "1280 x 720", rate: 30 },
   webm: { size: "1280 x 720", rate: 30 },
   gif: { size: "640 x 400", rate: 20 },
 };
 const kinds: [Kind, string][] = [
   ["png", "Picture (PNG)"],
+  ["svg", "Sketch (SVG)"],
   ["webm", "Video (WebM)"],
   ["gif", "GIF"],
 ];
@@ -150,7 +152,7 @@ export class Save {
       this.cancel();
     });
     if (!(this.time.span > 0))
-      for (const radio of choice.querySelectorAll("input")) radio.disabled = radio.value !== "png";
+      for (const radio of choice.querySelectorAll("input")) radio.disabled = !is_still(radio.value as Kind);
   }
   private cancel() {
     if (this.running) this.running.abort();
@@ -182,7 +184,7 @@ export class Save {
       width,
       height,
       scheme: (this.scheme.value || null) as Scheme,
-      is_clear: this.kind === "png" && this.checked("save-clear"),
+      is_clear: is_still(this.kind) && this.checked("save-clear"),
       names: this.checked("save-names"),
       clock: this.checked("save-clock"),
     };
@@ -192,7 +194,7 @@ export class Save {
     const inside = (input: HTMLInputElement) =>
       input.value === "" ? NaN : Math.min(Math.max(Number(input.value), start), end);
     return {
-      from: this.kind === "png" ? this.time.now : inside(this.from),
+      from: is_still(this.kind) ? this.time.now : inside(this.from),
       to: inside(this.to),
       speed: Number(this.speed.value),
       rate: Number(this.rate.value),
@@ -201,17 +203,19 @@ export class Save {
 
   /** What fits the kind, and how many frames it makes. */
   private show() {
-    const is_still = this.kind === "png",
+    const { kind } = this,
+      is_one = is_still(kind),
       course = this.course();
     by_id("save-own").hidden = this.size.value !== "other";
-    by_id("save-course").hidden = is_still;
-    by_id("save-clear").parentElement!.hidden = !is_still;
+    by_id("save-course").hidden = is_one;
+    by_id("save-clock").parentElement!.hidden = kind === "svg";
+    by_id("save-clear").parentElement!.hidden = !is_one;
     this.told.className = "";
     try {
       if (this.kind === "webm" && !can_encode())
         throw new Error("This browser cannot encode video: choose GIF");
-      const n = is_still ? 1 : instants_of(course).length;
-      this.told.textContent = is_still
+      const n = is_one ? 1 : instants_of(course).length;
+      this.told.textContent = is_one
         ? `at ${seconds(course.from, this.time.span)} s`
         : `${n} frames, ${number(n / course.rate, 3)} s long`;
       this.go.disabled = false;
@@ -230,10 +234,10 @@ export class Save {
       course = this.course(),
       running = (this.running = new AbortController());
     go.disabled = true;
-    bar.hidden = kind === "png";
+    bar.hidden = is_still(kind);
     bar.value = 0;
     try {
-      const when = kind === "png" ? [`${seconds(course.from, time.span)}s`] : [];
+      const when = is_still(kind) ? [`${seconds(course.from, time.span)}s`] : [];
       const told = (share: number) => {
         bar.value = share;
         this.told.textContent = `${Math.round(100 * share)} %`;

@@ -249,6 +249,57 @@ const tests = {
     assert.deepEqual(page.problems, []);
   },
 
+  async "a sketch is flat, true to scale, and text"() {
+    const name = '</title>"&<b>';
+    const text = example("four_bar").replaceAll('"coupler"', JSON.stringify(name)),
+      page = await open(made("sketch", text).page);
+    const svg = (
+      await record(page, "svg", { width: 800, height: 500, names: true }, { from: 0.7 })
+    ).toString();
+    const told = await page.evaluate((source) => {
+      const root = new DOMParser().parseFromString(source, "image/svg+xml").documentElement,
+        number = (e, key) => Number(e.getAttribute(key));
+      return {
+        name: root.nodeName,
+        pins: [...root.querySelectorAll("circle")].map((e) => [number(e, "cx"), number(e, "cy")]),
+        links: [...root.querySelectorAll("path")].filter((e) =>
+          /^#(0072b2|e69f00|009e73)$/.test(e.getAttribute("stroke")),
+        ).length,
+        names: [...root.querySelectorAll("text")].map((e) => e.textContent),
+      };
+    }, svg);
+    assert.equal(told.name, "svg");
+    assert.ok(told.names.includes(name), `${told.names}`);
+    assert.equal(told.links, 3);
+    // Distances of pins as in the mechanism, at this instant: all one scale.
+    const run = await page.evaluate(() => JSON.parse(document.querySelector("script.run").textContent)),
+      poses = await page.evaluate(() => livensReport.poses(0.7));
+    const pins = run.joints
+      .filter((j) => j.type === "revolute")
+      .map(({ second: b, point_second: p }) =>
+        [0, 1, 2].map(
+          (i) =>
+            poses[12 * b + i] + [0, 1, 2].reduce((sum, k) => sum + poses[12 * b + 3 + 3 * k + i] * p[k], 0),
+        ),
+      );
+    assert.equal(told.pins.length, pins.length);
+    const apart = (all) =>
+      all.flatMap((p, i) => all.slice(0, i).map((q) => Math.hypot(...p.map((x, k) => x - q[k]))));
+    const scales = apart(told.pins).map((d, i) => d / apart(pins)[i]);
+    assert.ok(Math.max(...scales) / Math.min(...scales) < 1.001, `${scales}`);
+    for (const [x, y] of told.pins) assert.ok(x > 0 && x < 800 && y > 0 && y < 500);
+    // From a side a hinge is no circle; another instant is another sketch.
+    const top = (
+      await record(page, "svg", { width: 800, height: 500, side: "top" }, { from: 0.7 })
+    ).toString();
+    assert.ok(!/<circle/.test(top) && /<rect x/.test(top));
+    assert.notEqual(
+      (await record(page, "svg", { width: 800, height: 500, names: true }, { from: 1.7 })).toString(),
+      svg,
+    );
+    assert.deepEqual(page.problems, []);
+  },
+
   async "the dialog saves, says what is wrong, and stops"() {
     const { page: file } = made("four_bar", example("four_bar")),
       page = await open(file);
