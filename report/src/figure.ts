@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What all plots have: a head with buttons, and ways to be drawn again.
 import { cell, file_name, hand_over, png_of } from "./files";
-import { element } from "./text";
+import { element, shortened } from "./text";
 
 export interface Figure {
   readonly box: HTMLElement;
@@ -82,7 +82,8 @@ export function framed(
   c.font = font(400, 12);
   const rows: { label: string; colour: string; x: number }[][] = [[]];
   let x = left;
-  for (const key of keys) {
+  for (const { label, colour } of keys) {
+    const key = { label: shortened(c, label, width - 3 * left - 40 * scale), colour };
     const wide = c.measureText(key.label).width + 40 * scale;
     if (x > left && x + wide > width) {
       rows.push([]);
@@ -96,8 +97,9 @@ export function framed(
   c.fillRect(0, 0, width, canvas.height);
   c.fillStyle = colours.ink;
   c.font = font(600, 14);
-  c.fillText(title, left, 23 * scale);
-  const after = left + c.measureText(title).width + 8 * scale;
+  const name = shortened(c, title, 0.85 * width);
+  c.fillText(name, left, 23 * scale);
+  const after = left + c.measureText(name).width + 8 * scale;
   c.fillStyle = colours.soft;
   c.font = font(400, 12);
   c.fillText(unit, after, 23 * scale);

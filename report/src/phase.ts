@@ -2,7 +2,7 @@
 // One quantity against another: phase portraits, paths of points. Both axes are as long for a metre, where both are lengths.
 import { framed, heading, sheet, type Columns, type Figure } from "./figure";
 import { padded, ticks } from "./scales";
-import { element, number, steady } from "./text";
+import { element, number, shortened, steady } from "./text";
 import { colour, theme } from "./theme";
 import type { Timeline } from "./timeline";
 import { shown_in } from "./units";
@@ -163,11 +163,11 @@ export class Phase implements Figure {
     }
     c.textAlign = "center";
     const [name_x, name_y] = [this.o.x, this.o.y].map(named);
-    c.fillText(name_x, (left + right) / 2, bottom + 32 * scale, right - left);
+    c.fillText(shortened(c, name_x, right - left), (left + right) / 2, bottom + 32 * scale);
     c.save();
     c.translate(13 * scale, (top + bottom) / 2);
     c.rotate(-Math.PI / 2);
-    c.fillText(name_y, 0, 0, bottom - top);
+    c.fillText(shortened(c, name_y, bottom - top), 0, 0);
     c.restore();
   }
 

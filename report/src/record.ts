@@ -26,7 +26,7 @@ export function instants_of({ from, to, speed, rate }: Course): number[] {
   if (![from, to, speed, rate].every(Number.isFinite))
     throw new Error("from, to, speed and rate must be numbers");
   if (!(speed > 0) || !(rate > 0)) throw new Error("speed and frames a second must be positive");
-  if (!(to > from)) throw new Error("the end must lie behind the start");
+  if (!(to > from)) throw new Error("the end must be after the start");
   const n = Math.floor(((to - from) / speed) * rate + 1e-6) + 1;
   if (n > most_frames)
     throw new Error(

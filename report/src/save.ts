@@ -18,9 +18,9 @@ const usual: Record<Kind, { size: string; rate: number }> = {
   gif: { size: "640 x 400", rate: 20 },
 };
 const kinds: [Kind, string][] = [
-  ["png", "Picture (PNG)"],
-  ["svg", "Sketch (SVG)"],
-  ["webm", "Video (WebM)"],
+  ["png", "Picture"],
+  ["svg", "Sketch"],
+  ["webm", "Video"],
   ["gif", "GIF"],
 ];
 
@@ -210,6 +210,7 @@ export class Save {
     by_id("save-course").hidden = is_one;
     by_id("save-clock").parentElement!.hidden = kind === "svg";
     by_id("save-clear").parentElement!.hidden = !is_one;
+    this.go.textContent = `Save ${kind === "webm" ? "WebM" : kind.toUpperCase()}`;
     this.told.className = "";
     try {
       if (this.kind === "webm" && !can_encode())

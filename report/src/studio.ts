@@ -4,7 +4,7 @@ import type { Side } from "./camera";
 import { beside, spread } from "./labels";
 import type { Run } from "./run";
 import { Stage, type Shown } from "./stage";
-import { element, seconds } from "./text";
+import { element, seconds, shortened } from "./text";
 import { body_colour, set_scheme, theme, type Scheme } from "./theme";
 
 export interface Look {
@@ -36,6 +36,7 @@ export class Studio {
   private readonly scale: number; // px of the picture for one of the screen
   private readonly context: CanvasRenderingContext2D;
   private readonly sizes: [number, number][] = [];
+  private readonly names: string[] = [];
 
   /** Throws where there is no WebGL, or no canvas of that size. */
   constructor(
@@ -102,11 +103,12 @@ export class Studio {
     const labels = bodies.flatMap((body, b) => {
       const at = stage.screen(b, canvas.width, canvas.height);
       if (!at || !Number.isFinite(at[0] + at[1])) return [];
-      this.sizes[b] ??= [c.measureText(body.name).width + 2 * pad + bar, 1.5 * label_size * scale];
-      return [{ b, ...beside(at, this.sizes[b], canvas.width, canvas.height, scale) }];
+      const name = (this.names[b] ??= shortened(c, body.name, 0.3 * canvas.width));
+      this.sizes[b] ??= [c.measureText(name).width + 2 * pad + bar, 1.5 * label_size * scale];
+      return [{ b, name, ...beside(at, this.sizes[b], canvas.width, canvas.height, scale) }];
     });
     spread(labels, canvas.height);
-    for (const { b, x, y, width, height } of labels) {
+    for (const { b, name, x, y, width, height } of labels) {
       c.globalAlpha = 0.9;
       c.fillStyle = theme().card;
       c.fillRect(x, y, width, height);
@@ -114,7 +116,7 @@ export class Studio {
       c.fillStyle = body_colour(b);
       c.fillRect(x, y, bar, height);
       c.fillStyle = theme().ink;
-      c.fillText(bodies[b].name, x + bar + pad, y + height / 2);
+      c.fillText(name, x + bar + pad, y + height / 2);
     }
   }
   private write_clock(t: number) {

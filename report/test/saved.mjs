@@ -329,7 +329,7 @@ const tests = {
     await own(160, 100);
     await page.fill("#save-from", "0.5");
     await page.fill("#save-to", "0.25");
-    assert.match(await page.textContent("#save-told"), /end must lie behind the start/);
+    assert.match(await page.textContent("#save-told"), /end must be after the start/);
     assert.ok(await page.isDisabled("#save-go"));
     await page.fill("#save-to", "0.9");
     assert.match(await page.textContent("#save-told"), /^9 frames, 0\.45 s long/);

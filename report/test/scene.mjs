@@ -172,7 +172,7 @@ const tests = {
     assert.equal(readFileSync(join(folder, "a.webm")).readUInt32BE(0), 0x1a45dfa3);
     assert.match(record("b.png", "colour=dark"), /'colour=dark' is none of/);
     assert.match(record("b.mp4"), /usage: /);
-    assert.match(record("b.webm", "from=2", "to=1"), /end must lie behind the start/);
+    assert.match(record("b.webm", "from=2", "to=1"), /end must be after the start/);
     assert.ok(!existsSync(join(folder, "b.png")) && !existsSync(join(folder, "b.webm")));
     assert.throws(() => asked(["at=soon"]), /a number is needed/);
     assert.throws(() => asked(["size=big"]), /two numbers/);
