@@ -2,15 +2,25 @@
 // Files that the page hands to whoever looks at it. Nothing is sent anywhere: the browser saves what the page made.
 import { element } from "./text";
 
+const most_letters = 60; // at most 240 bytes
+
 /** What a name may be of on every system. */
 export function file_name(...parts: string[]): string {
   const [last, ...first] = parts.reverse();
-  const stem = first
-    .reverse()
-    .map((part) => part.replace(/[^\p{L}\p{N}.-]+/gu, "_").replace(/^[_.]+|[_.]+$/g, ""))
-    .filter((part) => part !== "")
-    .join("_")
-    .slice(0, 100);
+  const stem = [
+    ...first
+      .reverse()
+      .map((part) =>
+        part
+          .replace(/[^\p{L}\p{N}.-]+/gu, "_")
+          .replace(/\.{2,}/g, ".")
+          .replace(/^[_.]+|[_.]+$/g, ""),
+      )
+      .filter((part) => part !== "")
+      .join("_"),
+  ]
+    .slice(0, most_letters)
+    .join("");
   return (stem || "livens") + last;
 }
 
