@@ -56,8 +56,8 @@ UNITS = r"(?:m|mm|cm|km|kg|g|s|ms|Hz|N|kN|N m|J|W|kW|rad|deg|rpm|Pa|MPa|GPa|MB|k
 
 
 def unbroken(text: str) -> str:
-    """No line ends between a number and its unit, nor about the stroke of "5 / s"."""
-    spans = re.compile(r"(`+[^`\n]*`+|\$[^$\n]*\$|\]\([^)\n]*\))")
+    """No line ends between a number and its unit. Headings stay as they are: anchors are made of them."""
+    spans = re.compile(r"(^#.*$|`+[^`\n]*`+|\$[^$\n]*\$|\]\([^)\n]*\))", re.M)
 
     def change(part: str) -> str:
         pieces = spans.split(part)
