@@ -174,6 +174,22 @@ void add_run_commands(CLI::App& app, Arguments& a)
     add_common(sample, a);
 }
 
+void add_peaks_command(CLI::App& app, Arguments& a)
+{
+    const auto given = arguments_of<PeaksArguments>();
+    CLI::App& peaks = add_command(
+        app, a, "peaks", "Largest and least values of a run, and when",
+        [given](const Common& common) { return with_runs([&] { return peaks_command(*given, common); }); });
+    peaks.add_option("RUN", given->run, "result file")->required()->type_name("RUN.nc");
+    peaks
+        .add_option("NAME", given->names,
+                    "as \"pivot.force\" (of vectors the magnitude), \"rod.position.z\", \"energy\"; default: "
+                    "all of joints, loads and sensors, and energies")
+        ->type_name("NAME");
+    peaks.add_flag("--csv", given->csv, "print CSV");
+    add_common(peaks, a);
+}
+
 void add_export_commands(CLI::App& app, Arguments& a)
 {
     const auto given = arguments_of<ExportArguments>();
@@ -185,6 +201,10 @@ void add_export_commands(CLI::App& app, Arguments& a)
     for (std::size_t i = 0; const ExportFormat& format : export_formats())
         add_file(exports, std::string("--") + format.word, given->files[i++], format.what)
             ->type_name(std::string("FILE") + format.extension);
+    const auto words = words_of(Instants{});
+    add_choice(exports, "--at", given->at, {words.begin(), words.end()},
+               "instants of CSV: smooth curves, the output times, element ends; default: output times where the "
+               "scenario lists them, else smooth curves");
     add_force(exports, given->force);
     add_common(exports, a);
     const auto both = arguments_of<DiffArguments>();
@@ -291,6 +311,7 @@ void declare(CLI::App& app, Arguments& arguments)
     add_mass_command(app, arguments);
     add_rest_commands(app, arguments);
     add_run_commands(app, arguments);
+    add_peaks_command(app, arguments);
     add_export_commands(app, arguments);
     add_report_commands(app, arguments);
     add_other_commands(app, arguments);

@@ -66,9 +66,17 @@ int sample_command(const SampleArguments& arguments, const Common& common);
 std::string sample_sensor(const SampleArguments& arguments, const Common& common, const Run& run,
                           const Scenario& scenario, const std::vector<double>& times);
 
+struct PeaksArguments {
+    std::string run;
+    std::vector<std::string> names;   ///< of find_peaks()
+    bool csv = false;
+};
+int peaks_command(const PeaksArguments& arguments, const Common& common);
+
 struct ExportArguments {
     std::string run;
     std::vector<std::string> files;   ///< one a format of export_formats(); empty: not asked for
+    std::string at = "auto";          ///< a word of Instants
     bool force = false;
 };
 int export_command(const ExportArguments& arguments, const Common& common);

@@ -306,7 +306,8 @@ void do_job(Job& job, const Common& common, double share, ProgressLine& line)
     write_record(record, job);
     if (!p.csv.empty()) {
         check_export_place(p.csv, export_formats().front(), p.output, job.force);
-        write_csv(p.csv, job.scenario.model, solved.run);
+        write_csv(p.csv, job.scenario.model, solved.run,
+                  instants_of(job.scenario, solved.run, Instants::automatic));
     }
     job.detail(fmt::format("written in {:.3g} s", seconds_since(writing)));
 }

@@ -25,18 +25,19 @@ from ._generated import Body, Drive, Joint, Load, MethodOptions, Sensor
 from ._functions import BodyState
 from ._load import load
 from ._model import Model
-from ._parts import BodySeries, JointSeries, LoadSeries, Parts, ReadingSeries, SensorSeries
+from ._parts import BodySeries, JointSeries, LoadSeries, Parts, PointSeries, ReadingSeries, SensorSeries
 from ._rest import (Equilibrium, EquilibriumError, Linearisation, ModeBody, ModeJoint, Modes, RestBody, RestJoint,
                     StateMatrices)
 from ._results import Solution, load_solution
 from ._series import Series
+from ._shown import Extremes, Peak
 from ._solve import solve, solve_many
 from ._values import Condition, Method, Shape, momenta, positions, state, table
 
 __all__ = [
     "Body", "BodySeries", "BodyState", "Comparison", "Condition", "Diagnostic", "Drive", "Entry", "Equilibrium",
-    "EquilibriumError", "InputError", "Joint", "JointSeries", "Linearisation", "Load", "LoadSeries", "Method",
-    "MethodOptions", "ModeBody", "ModeJoint", "Model", "ModelWarning", "Modes", "Names", "Parts", "Place",
+    "EquilibriumError", "Extremes", "InputError", "Joint", "JointSeries", "Linearisation", "Load", "LoadSeries", "Method",
+    "MethodOptions", "ModeBody", "ModeJoint", "Model", "ModelWarning", "Modes", "Names", "Parts", "Peak", "Place", "PointSeries",
     "ReadingSeries", "RestBody", "RestJoint", "ResultFileError", "Section", "Sensor", "SensorSeries", "Series",
     "Shape", "SlowWarning", "Solution", "SolveError", "SolveWarning", "StateMatrices", "__version__", "compare",
     "explain", "load", "load_solution", "momenta", "positions", "solve", "solve_many", "state", "table",

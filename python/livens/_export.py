@@ -10,6 +10,7 @@ import numpy.typing as npt
 from ._errors import fault, need
 from ._parts import UNITS, Floats
 from ._series import Series
+from ._shown import check_units, factor_to
 
 if TYPE_CHECKING:
     import pandas
@@ -35,6 +36,8 @@ def to_xarray(series: Series) -> xarray.Dataset:
                        ("angular_velocity_body", ["xyz"]), ("linear_momentum", ["xyz"]), ("angular_momentum", ["xyz"])):
         array = series._shaped(series._bodies()[name])
         add(name, ["body", *last], array, UNITS[name], name.replace("_", " "))
+    for name in ("acceleration", "angular_acceleration"):
+        add(name, ["body", "xyz"], series._shaped(series._accelerations()[name]), UNITS[name], name.replace("_", " "))
     if joints and series._result.has_multipliers:
         add("reaction_force", ["joint", "xyz"], series._shaped(series._joints()["force"]), "N", "on the second body")
         add("reaction_torque", ["joint", "xyz"], series._shaped(series._joints()["torque"]), "N m",
@@ -45,7 +48,7 @@ def to_xarray(series: Series) -> xarray.Dataset:
         having = [name for name in joints if kind in series.joints[name].coordinates]
         if having:
             coordinates[kind] = having
-            for end in ("", "_rate"):
+            for end in ("", "_rate", "_acceleration"):
                 columns = [getattr(series.joints[name], kind + end) for name in having]
                 add(f"joint_{kind}{end}", [kind], np.stack(columns, axis=-1), UNITS[kind + end], f"{kind}{end} of the joint")
     for word, parts in (("sensor", series.sensors), ("load", series.loads)):
@@ -62,11 +65,12 @@ def to_xarray(series: Series) -> xarray.Dataset:
     return dataset
 
 
-def to_dataframe(series: Series, names: tuple[Any, ...]) -> pandas.DataFrame:
+def to_dataframe(series: Series, names: tuple[Any, ...], unit: Any = None) -> pandas.DataFrame:
     """See Series.to_dataframe()."""
     pd = need("pandas", "pandas", "to_dataframe()")
     columns: dict[str, Floats] = {}
     units: dict[str, str] = {}
+    known: list[str] = []
     for name in names or tuple(series.bodies):
         part = series[name]
         for key, array in part.arrays().items():
@@ -78,32 +82,39 @@ def to_dataframe(series: Series, names: tuple[Any, ...]) -> pandas.DataFrame:
                 ends = ["." + c for c in _COLUMNS[array.shape[1]]]
             else:
                 ends = ["." + c for c in _TRIAD]
+            factor, shown = factor_to(part.unit(key), unit)
+            known.append(part.unit(key))
             for i, end in enumerate(ends):
-                columns[f"{part.name}.{key}{end}"] = flat[:, i]
-                units[f"{part.name}.{key}{end}"] = part.unit(key)
+                columns[f"{part.name}.{key}{end}"] = flat[:, i] if factor == 1 else flat[:, i] * factor
+                units[f"{part.name}.{key}{end}"] = shown
+    check_units(unit, known)
     frame: pandas.DataFrame = pd.DataFrame(columns, index=pd.Index(np.atleast_1d(series.t), name="t"))
     frame.attrs["units"] = units
     return frame
 
 
-def plot(series: list[tuple[str, Series]], what: tuple[str, ...], keywords: dict[str, Any]) -> npt.NDArray[Any]:
+def plot(series: list[tuple[str, Series]], what: tuple[str, ...], keywords: dict[str, Any],
+         unit: Any = None) -> npt.NDArray[Any]:
     """See Series.plot(); several are drawn over one another."""
     plt = need("matplotlib.pyplot", "plot", "plot()")
     groups = list(what) or ["energy"]
     if any(not isinstance(name, str) for name in groups):
         raise TypeError("plot() takes names: 'rod.position', 'energy'")
     arrays = [[s._array(name) for _, s in series] for name in groups]
+    check_units(unit, [rows[0][1] for rows in arrays])
     _, axes = plt.subplots(len(groups), 1, sharex=True, squeeze=False, layout="constrained",
                            figsize=(7, 1.2 + 2 * len(groups)))
     for axis, name, rows in zip(axes[:, 0], groups, arrays):
-        for (label, s), (array, unit), style in zip(series, rows, ("-", "--", ":")):
+        factor, shown = factor_to(rows[0][1], unit)
+        for (label, s), (array, _), style in zip(series, rows, ("-", "--", ":")):
+            array = array if factor == 1 else array * factor
             flat = np.atleast_1d(array).reshape(len(np.atleast_1d(s.t)), -1)
             ends = _ends_of(name, flat.shape[1])
             for i, end in enumerate(ends):
                 words = " ".join(word for word in (end, label) if word)
                 axis.plot(np.atleast_1d(s.t), flat[:, i], **{"linestyle": style, "color": f"C{i}", "label": words or "_",
                                                             "marker": "o" if len(flat) == 1 else None, **keywords})
-        axis.set_ylabel(f"{name}\n[{rows[0][1]}]")
+        axis.set_ylabel(f"{name}\n[{shown}]")
         axis.grid(True, alpha=0.3)
         if any(not label.startswith("_") for label in axis.get_legend_handles_labels()[1]):
             axis.legend(loc="best", fontsize="small")
@@ -131,8 +142,9 @@ class Comparison:
         """Largest differences of each body: ``position`` (m), ``orientation`` (rad), ``velocity`` (m/s)."""
 
     def plot(self, *what: str, **keywords: Any) -> npt.NDArray[Any]:
-        """Draws both, the second one dashed; see :meth:`Solution.plot`."""
-        return plot([("first", self.first), ("second", self.second)], what, keywords)
+        """Draws both, the second one dashed; see :meth:`Solution.plot`, whose ``unit`` is taken."""
+        unit = keywords.pop("unit", None)
+        return plot([("first", self.first), ("second", self.second)], what, keywords, unit)
 
     def __repr__(self) -> str:
         rows = "".join(f"\n  {name:<18}" + ", ".join(f"{key} {value:.2e} {UNITS.get(key, 'rad')}"

@@ -10,6 +10,8 @@ import numpy.typing as npt
 
 from . import _core
 from ._entries import Entry, unknown_name
+from ._errors import fault
+from ._shown import components_along, euler_of, relative_quaternion, rotation_of, rotation_vector_of
 
 if TYPE_CHECKING:
     from typing_extensions import TypeAlias
@@ -25,9 +27,11 @@ UNITS = {
     "angular_momentum": "kg m^2/s", "force": "N", "torque": "N m", "force_before": "N", "torque_before": "N m",
     "angle": "rad", "angle_rate": "rad/s", "displacement": "m", "displacement_rate": "m/s", "kinetic": "J",
     "potential": "J", "energy": "J", "work": "J", "drift": "J", "position_error": "m", "orientation_error": "rad",
-    "velocity_error": "m/s", "rigidity_stress": "N m", "mean_stress": "Pa", "reaction_error": "1", "growth": "1", "t": "s", "power": "W"}
+    "velocity_error": "m/s", "rigidity_stress": "N m", "mean_stress": "Pa", "reaction_error": "1", "growth": "1", "t": "s", "power": "W",
+    "acceleration": "m/s^2", "angular_acceleration": "rad/s^2", "center_acceleration": "m/s^2",
+    "angle_acceleration": "rad/s^2", "displacement_acceleration": "m/s^2", "drive_torque": "N m", "drive_force": "N"}
 _BODY_ARRAYS = ("position", "center_of_mass", "quaternion", "directors", "velocity", "angular_velocity",
-                "angular_velocity_body", "linear_momentum", "angular_momentum")
+                "angular_velocity_body", "acceleration", "angular_acceleration", "linear_momentum", "angular_momentum")
 
 
 class Part:
@@ -128,6 +132,72 @@ class BodySeries(Part):
         return self._get("angular_velocity_body")
 
     @property
+    def acceleration(self) -> Floats:
+        """Of the reference point, m/s^2, world, shape (n, 3).
+
+        From the equations of motion at the instant, not from differences; nan where joints lose rank. Where a load
+        jumps, afterwards."""
+        return self._series._shaped(self._series._accelerations()["acceleration"][:, self._index])
+
+    @property
+    def angular_acceleration(self) -> Floats:
+        """rad/s^2, world axes, shape (n, 3). Likewise."""
+        return self._series._shaped(self._series._accelerations()["angular_acceleration"][:, self._index])
+
+    @property
+    def center_acceleration(self) -> Floats:
+        """Of the centre of mass, m/s^2, world, shape (n, 3): the forces on the body by its mass."""
+        return self._moved(self.acceleration, self.center_of_mass - self.position)
+
+    def _moved(self, acceleration: Floats, arm: Floats) -> Floats:
+        w = self.angular_velocity
+        if np.isnan(w).all():   # a point mass
+            return acceleration
+        moved: Floats = acceleration + np.cross(self.angular_acceleration, arm) + np.cross(w, np.cross(w, arm))
+        return moved
+
+    @property
+    def rotation(self) -> Floats:
+        """The rotation matrix R, body to world, its columns the body's axes, shape (n, 3, 3)."""
+        return rotation_of(self.quaternion)
+
+    def rotation_vector(self, seen_from: str | Entry | Part = "world") -> Floats:
+        """The turn of the body from the axes of another one (or the world), rad, in these axes, shape (n, 3).
+
+        At most half a turn long: joints count turns, with their ``angle``."""
+        return rotation_vector_of(self._quaternion_from(seen_from))
+
+    def angle_to(self, other: str | Entry | Part = "world") -> Floats:
+        """The angle between both bodies' axes, rad, from 0 to pi, shape (n,)."""
+        angle: Floats = np.linalg.norm(self.rotation_vector(other), axis=-1)
+        return angle
+
+    def euler(self, order: str, seen_from: str | Entry | Part = "world") -> Floats:
+        """Euler angles, rad, in the order of their turns, shape (n, 3).
+
+        Args:
+            order: ``"zyx"`` (yaw, pitch, roll), ``"zxz"``, ..: turns about the body's own axes one after another, so
+                that ``R = R_z(a) R_y(b) R_x(c)``; SciPy writes it ``"ZYX"``. First and last angle are without jumps.
+            seen_from: The body in whose axes they are; default the world.
+        """
+        return euler_of(self._quaternion_from(seen_from), order)
+
+    def _quaternion_from(self, other: str | Entry | Part) -> Floats:
+        if isinstance(other, str) and other == "world":
+            return self.quaternion
+        body = self._series.bodies[other]   # type: ignore[index]   # handles are names, too
+        return relative_quaternion(self.quaternion, body.quaternion)
+
+    def point(self, at: Any) -> PointSeries:
+        """A material point of the body, in its coordinates, m: its position, velocity and acceleration."""
+        from ._tree import plain
+        given = plain(at, {"unit": "m", "other_unit": "", "child": None}, "at")
+        if not isinstance(given, (tuple, list)) or len(given) != 3:
+            raise fault("wrong-type", "a point has three coordinates, as in (0.5, 0, 0)", "at")
+        numbers = [_core.quantity(item, "m", "") if isinstance(item, str) else float(item) for item in given]
+        return PointSeries(self, np.array(numbers))
+
+    @property
     def linear_momentum(self) -> Floats:
         """kg m/s, world, shape (n, 3)."""
         return self._get("linear_momentum")
@@ -169,6 +239,47 @@ class BodySeries(Part):
         return self._series._estimate("velocity", self._index)
 
 
+class PointSeries:
+    """A point of a body along a motion, world axes; see :meth:`BodySeries.point`.
+
+    Example:
+        >>> import livens as lv
+        >>> m = lv.Model()
+        >>> top = m.add_body("top", lv.sphere("10 cm", mass=1), angular_velocity=(0, 0, 2))
+        >>> rim = lv.solve(m, 1)["top"].point(("10 cm", 0, 0))
+        >>> (rim.acceleration[0] + 0.0).round(9).tolist()
+        [-0.4, 0.0, 0.0]
+    """
+
+    def __init__(self, body: BodySeries, at: Floats) -> None:
+        self._body = body
+        self._arm: Floats = np.zeros_like(body.position) if not at.any() else np.asarray(at @ body.directors)
+
+    @property
+    def t(self) -> Floats:
+        """Instants, s, shape (n,)."""
+        return self._body.t
+
+    @property
+    def position(self) -> Floats:
+        """m, shape (n, 3)."""
+        return self._body.position + self._arm
+
+    @property
+    def velocity(self) -> Floats:
+        """m/s, shape (n, 3)."""
+        velocity: Floats = self._body.velocity + (np.cross(self._body.angular_velocity, self._arm) if self._arm.any() else 0)
+        return velocity
+
+    @property
+    def acceleration(self) -> Floats:
+        """m/s^2, shape (n, 3); see :attr:`BodySeries.acceleration`."""
+        return self._body._moved(self._body.acceleration, self._arm)
+
+    def __repr__(self) -> str:
+        return f"<livens point of '{self._body.name}' at {self._body._series._n_text()}: position, velocity, acceleration>"
+
+
 class JointSeries(Part):
     """A joint or drive along a motion; its coordinates (``angle``, ``displacement``, rates) are attributes, too."""
 
@@ -184,15 +295,60 @@ class JointSeries(Part):
     def __getattr__(self, name: str) -> Any:
         coordinates = self.__dict__.get("coordinates", {})
         for i, known in enumerate(coordinates):
+            if name == known + "_acceleration":
+                return self._series._shaped(
+                    self._series._accelerations()["coordinate_acceleration"][:, self._first + i])
             if name in (known, known + "_rate"):
                 column = "coordinate" if name == known else "coordinate_rate"
                 return self._series._shaped(self._series._scalars()[column][:, self._first + i])
-        have = ", ".join(coordinates) or "none"
-        raise AttributeError(f"joint '{self._name}' has no '{name}'; its coordinates: {have}", name=name, obj=self)
+        if name in ("drive_torque", "drive_force", "power"):
+            column = f"{name} {self._index}"
+            if column in self._series._drives():
+                return self._series._shaped(self._series._drives()[column][:, 0])
+        if name.startswith("_"):
+            raise AttributeError(name)
+        raise AttributeError(f"joint '{self._name}' has no '{name}'; {self._instead(name)}", name=name, obj=self)
+
+    def _instead(self, name: str) -> str:
+        """What there is where something is asked for that joints do not have by that name."""
+        has = list(self._names())
+        if name.startswith("reaction"):
+            return "its reaction on the second body is .force and .torque, or .force_in(body) in axes of a body"
+        ends = {"velocity": "_rate", "speed": "_rate", "rate": "_rate", "acceleration": "_acceleration"}
+        for word, end in ends.items():
+            found = [n for n in has if n.endswith(end)]
+            if name.endswith(word) and found:
+                return f"it has {', '.join('.' + n for n in found)}; bodies have {name if 'angular' in name else word}"
+        if name in ("drive_torque", "drive_force", "power"):
+            return "drives have that" + (", along a coordinate of a joint" if name != "power" else "")
+        coordinates = f"its coordinates: {', '.join(self.coordinates) or 'none'}"
+        suggested = _core.suggestion(name, has)
+        return f"{coordinates}; {suggested}"
+
+    def _names(self) -> list[str]:
+        names = [name + end for name in self.coordinates for end in ("", "_rate", "_acceleration")]
+        drives = [key for key in ("drive_torque", "drive_force", "power")
+                  if f"{key} {self._index}" in self._series._result.drive_columns]
+        return [*names, "force", "torque", *drives]
+
+    def force_in(self, body: str | Entry | Part) -> Floats:
+        """:attr:`force` in components along the axes of a body, N, shape (n, 3)."""
+        return components_along(self.force, self._axes_of(body))
+
+    def torque_in(self, body: str | Entry | Part) -> Floats:
+        """:attr:`torque` in components along the axes of a body, N m, shape (n, 3)."""
+        return components_along(self.torque, self._axes_of(body))
+
+    def _axes_of(self, body: str | Entry | Part) -> Floats:
+        if isinstance(body, str) and body == "world":
+            return np.array([1.0, 0.0, 0.0, 0.0])
+        axes = self._series.bodies[body]   # type: ignore[index]   # handles are names, too
+        if np.isnan(axes.quaternion).any():
+            raise fault("wrong-type", f"'{axes.name}' is a point mass, which has no axes", "body")
+        return axes.quaternion
 
     def arrays(self) -> dict[str, Floats]:
-        names = [name + end for name in self.coordinates for end in ("", "_rate")]
-        return {name: getattr(self, name) for name in [*names, "force", "torque"]}
+        return {name: getattr(self, name) for name in self._names()}
 
     @property
     def force(self) -> Floats:

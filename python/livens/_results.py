@@ -13,9 +13,12 @@ from . import _core
 from ._errors import fault, file_name, make_way
 from ._parts import Floats
 from ._series import Series
+from ._shown import Extremes, Peak, found_extremes
 from ._tree import plain
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from ._model import Model
 
 _LARGEST_INLINE = 4_000_000   # characters of a page inside a notebook
@@ -38,7 +41,8 @@ class Solution(Series):
     """
 
     def __init__(self, result: Any, has_functions: bool = False) -> None:
-        super().__init__(result, None)
+        super().__init__(result, None, before=_last_from_before(result.t, result.t))
+        self._dense: Series | None = None
         self._has_functions = has_functions
 
     def __call__(self, t: Any, *, exact: bool = False) -> Series:
@@ -61,7 +65,58 @@ class Solution(Series):
         numbers = [_core.quantity(item, "s", "") if isinstance(item, str) else item for item in items]
         times = self._result.snapped(np.array(numbers, dtype=float))
         found = self._result.exact_at(times) if exact else None
-        return Series(self._result, times, is_single, found)
+        return Series(self._result, times, is_single, found, _last_from_before(times, self._result.t))
+
+    def _chosen(self, at: str | None, is_table: bool) -> Series:
+        chosen = at or ("output" if is_table and self._result.lists_output else "dense")
+        if chosen == "ends":
+            return self
+        if chosen == "output":
+            return self(self.output[(self.output >= self.t[0]) & (self.output <= self.t[-1])])
+        if chosen != "dense":
+            raise fault("unknown-choice", f"'{at}' is no choice of instants", "at",
+                        "there are 'dense', 'output' and 'ends'; sol(t) has those that you give")
+        if self._dense is None:
+            times, before = self._result.dense()
+            self._dense = Series(self._result, times, before=before)
+        return self._dense
+
+    # Peaks.
+
+    def peak(self, name: str, *, unit: str | Sequence[str] | None = None) -> Peak:
+        """The value that is farthest from zero, and its instant, found on the motion and not among samples.
+
+        Every element is searched on the polynomials, and each peak that may be the largest is refined by solving
+        shortened elements, in the full order of the method. Jumps are seen from both sides.
+
+        Args:
+            name: ``"pivot.force"`` (of a vector the magnitude), ``"rod.position.z"``, ``"pivot.angle"``, ``"energy"``.
+            unit: ``"deg"``, ``"kN"``, ..; default SI.
+
+        Raises:
+            InputError: ``quantity-unknown``, ``quantity-unbounded``, ``unit``.
+
+        Example:
+            >>> import livens as lv
+            >>> m = lv.Model("pendulum", gravity=(0, 0, -9.81))
+            >>> bob = m.add_body("bob", lv.point(mass=1), position=(1, 0, 0))
+            >>> rod = m.add_rod("rod", "world", bob, points=[(0, 0, 0), (0, 0, 0)])
+            >>> value, t = lv.solve(m, 2).peak("rod.force")
+            >>> f"{value:.4f} N, three times the weight, at {t:.4f} s"
+            '29.4300 N, three times the weight, at 0.5920 s'
+        """
+        return self.extremes(name, unit=unit).peak
+
+    def extremes(self, name: str, *, unit: str | Sequence[str] | None = None) -> Extremes:
+        """The least and the largest value, and their instants; see :meth:`peak`."""
+        return next(iter(found_extremes(self._result, (name,), unit).values()))
+
+    def peaks(self, *names: str, unit: str | Sequence[str] | None = None) -> dict[str, Extremes]:
+        """Extremes of the arrays named, or of all joints, loads, sensors and energies, as ``livens peaks`` prints them.
+
+        Where one is no number at some instant, all four are nan.
+        """
+        return found_extremes(self._result, names, unit)
 
     # How it went.
 
@@ -274,12 +329,14 @@ class Solution(Series):
         page: str = self._result.report(name, None if other is None else other._result, "other")
         return page
 
-    def export(self, file: str | os.PathLike[str], format: str | None = None, *, force: bool = False) -> None:
+    def export(self, file: str | os.PathLike[str], format: str | None = None, *, at: str | None = None,
+               force: bool = False) -> None:
         """Writes the motion for other programs, by the ending of the name or by ``format``.
 
         Args:
             file: Its name.
             format: ``"csv"``, ``"npz"``, ``"gltf"`` or ``"pvd"``, as ``livens export`` has them.
+            at: Of CSV, as :meth:`to_dataframe` has it.
             force: An older export is replaced, any other file only if this is true.
 
         Raises:
@@ -291,14 +348,18 @@ class Solution(Series):
         if chosen not in known:
             endings = ", ".join(f"{word} ({ending})" for word, ending in known.items())
             raise fault("unknown-choice", f"no format fits '{chosen or name}'", "format", f"there are {endings}")
+        words = ("auto", "dense", "output", "ends")
+        if (at or "auto") not in words:
+            raise fault("unknown-choice", f"'{at}' is no choice of instants", "at", "there are 'dense', 'output', 'ends'")
+        instants = words.index(at or "auto")
         make_way(name, str(chosen), self._result.inputs(), force)
         if chosen == "npz":
             import tempfile
             with tempfile.TemporaryDirectory() as folder:   # it copies the variables of a result
                 self.save(result := os.path.join(folder, "run.nc"))
-                self._result.export_to(chosen, result, name, force)
+                self._result.export_to(chosen, result, name, force, instants)
         else:
-            self._result.export_to(chosen, "", name, force)
+            self._result.export_to(chosen, "", name, force, instants)
 
     def __reduce__(self) -> tuple[Any, ...]:
         self._refuse_functions("pickled")
@@ -339,6 +400,11 @@ class Solution(Series):
             return table + "<p>sol.report(\"run.html\") shows the motion; for a notebook its page is too large.</p>"
         return (f'{table}<iframe srcdoc="{escape(page)}" sandbox="allow-scripts" title="livens report" '
                 'style="width:100%;height:640px;border:1px solid #8888"></iframe>')
+
+
+def _last_from_before(times: Floats, ends: Floats) -> Floats:
+    """Nothing follows the end of a motion: what is told there is what was."""
+    return np.where(times == ends[-1], 1.0, 0.0) if len(ends) > 1 else np.zeros(len(times))
 
 
 def _unpickled(content: bytes) -> Solution:

@@ -8,9 +8,12 @@ import numpy as np
 import numpy.typing as npt
 
 from ._entries import Entry, unknown_name
+from ._errors import fault
 from ._parts import UNITS, BodySeries, Floats, JointSeries, LoadSeries, Part, Parts, SensorSeries
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     import pandas
     import xarray
 
@@ -22,13 +25,15 @@ class Series:
     """
 
     def __init__(self, result: Any, times: Floats | None, is_single: bool = False,
-                 exact: dict[str, Floats] | None = None) -> None:
+                 exact: dict[str, Floats] | None = None, before: Floats | None = None) -> None:
         self._result = result
+        self._before = np.zeros(0) if before is None else before   # 1: the instant is seen from before
         self._times = times
         self._is_single = is_single
         self._groups: dict[str, dict[str, Floats]] = {}
         if exact is not None:
-            self._groups = {"bodies_at": exact, "joints_at": exact, "scalars_at": exact, "rigidity_at": exact}
+            self._groups = dict.fromkeys(("bodies_at", "joints_at", "scalars_at", "rigidity_at", "accelerations_at",
+                                          "drives_at"), self._seen(exact))
 
     # What arrays are made of.
 
@@ -38,8 +43,19 @@ class Series:
 
     def _group(self, name: str) -> dict[str, Floats]:
         if name not in self._groups:
-            self._groups[name] = getattr(self._result, name)(self._instants())
+            sides = (self._before,) if name in ("scalars_at", "accelerations_at", "drives_at") else ()
+            self._groups[name] = self._seen(getattr(self._result, name)(self._instants(), *sides))
         return self._groups[name]
+
+    def _seen(self, group: dict[str, Floats]) -> dict[str, Floats]:
+        """What is told of both sides of an instant, from the side that it is seen from."""
+        if not self._before.any():
+            return group
+        for name in [name for name in group if name + "_before" in group]:
+            mask = (self._before != 0).reshape((-1,) + (1,) * (group[name].ndim - 1))
+            group[name] = np.where(mask, group[name + "_before"], group[name])
+            group[name].flags.writeable = False
+        return group
 
     def _bodies(self) -> dict[str, Floats]:
         return self._group("bodies_at")
@@ -52,6 +68,18 @@ class Series:
 
     def _scalars(self) -> dict[str, Floats]:
         return self._group("scalars_at")
+
+    def _accelerations(self) -> dict[str, Floats]:
+        return self._group("accelerations_at")
+
+    def _drives(self) -> dict[str, Floats]:
+        return self._group("drives_at")
+
+    def _chosen(self, at: str | None, is_table: bool) -> Series:
+        """The instants that are shown; only solutions have a choice."""
+        if at is not None:
+            raise fault("unknown-choice", "these instants were chosen already: 'at' is for solutions", "at")
+        return self
 
     def _end_view(self, name: str) -> Floats | None:
         return None if self._times is not None else getattr(self._result, name)
@@ -154,34 +182,48 @@ class Series:
 
     # Elsewhere.
 
-    def to_xarray(self) -> xarray.Dataset:
+    def to_xarray(self, *, at: str | None = None) -> xarray.Dataset:
         """An ``xarray.Dataset`` with dimensions ``time``, ``body``, ``joint``, ``xyz``; units in ``attrs``.
+
+        Args:
+            at: As :meth:`to_dataframe` has it.
 
         Needs xarray: ``pip install 'livens[xarray]'``.
         """
         from ._export import to_xarray
-        return to_xarray(self)
+        return to_xarray(self._chosen(at, True))
 
-    def to_dataframe(self, *names: str | Entry) -> pandas.DataFrame:
+    def to_dataframe(self, *names: str | Entry, at: str | None = None,
+                     unit: str | Sequence[str] | None = None) -> pandas.DataFrame:
         """A ``pandas.DataFrame`` of the parts named (default: all bodies), a row an instant.
 
         Columns are ``"rod.position.x"``, the index is ``t``; ``frame.attrs["units"]`` has the units. Needs pandas:
         ``pip install 'livens[pandas]'``.
+
+        Args:
+            *names: Of bodies, joints, loads, sensors.
+            at: Of a solution: ``"dense"``, enough instants of every element for smooth curves (where something
+                jumps, one row before and one after); ``"output"``, the output times; ``"ends"``, element ends.
+                Default: ``"output"`` where output times were asked for, else ``"dense"``.
+            unit: ``"deg"``, ``"mm"``, or several, for the columns that they fit.
         """
         from ._export import to_dataframe
-        return to_dataframe(self, names)
+        return to_dataframe(self._chosen(at, True), names, unit)
 
-    def plot(self, *what: str, **keywords: Any) -> npt.NDArray[Any]:
+    def plot(self, *what: str, at: str | None = None, unit: str | Sequence[str] | None = None,
+             **keywords: Any) -> npt.NDArray[Any]:
         """Draws arrays over time, one axis each, with units; returns the axes.
 
         Args:
             *what: ``"rod.position"``, ``"pivot.force"``, ``"energy"``; default: energies.
+            at: Of a solution: ``"dense"`` (default), ``"output"`` or ``"ends"``; see :meth:`to_dataframe`.
+            unit: ``"deg"``, ``"rpm"``, ``"mm"``, ``"kN"``, or several, for the axes that they fit.
             **keywords: For ``Axes.plot``.
 
         Needs matplotlib: ``pip install 'livens[plot]'``.
         """
         from ._export import plot
-        return plot([("", self)], what, keywords)
+        return plot([("", self._chosen(at, False))], what, keywords, unit)
 
     def _array(self, what: str) -> tuple[Floats, str]:
         """By a name with a dot: (array, unit)."""

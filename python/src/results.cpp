@@ -232,11 +232,11 @@ Result from_bytes(const nb::bytes& bytes)
 }
 
 void export_to(const Result& r, const std::string& format, const std::string& result, const std::string& file,
-               bool force)
+               bool force, int instants)
 {
     const nb::gil_scoped_release unlock;
     for (const ExportFormat& f : export_formats())
-        if (f.word == format) f.write(file, {result, *r.scenario, r.run, force});
+        if (f.word == format) f.write(file, {result, *r.scenario, r.run, force, static_cast<Instants>(instants)});
 }
 
 }   // namespace
@@ -278,6 +278,8 @@ void add_results(nb::module_& m)
         .def_prop_ro("loads", &loads)
         .def_prop_ro("figures", &figures)
         .def_prop_ro("is_damping", [](const Result& r) { return r.run.motion.damps(); })
+        .def_prop_ro("lists_output", [](const Result& r) { return r.scenario->lists_output; })
+        .def_prop_ro("drive_columns", &drive_columns)
         .def_prop_ro("has_multipliers", [](const Result& r) {
             return !r.run.motion.end_multipliers.empty() || !r.run.motion.multipliers.empty();
         });
@@ -293,7 +295,7 @@ void add_results(nb::module_& m)
     result.def("save", &save, nb::arg("file"))
         .def("report", &report, nb::arg("name"), nb::arg("other").none(), nb::arg("other_name"))
         .def("to_bytes", &to_bytes)
-        .def("export_to", &export_to, nb::arg("format"), nb::arg("result"), nb::arg("file"), nb::arg("force"))
+        .def("export_to", &export_to, nb::arg("format"), nb::arg("result"), nb::arg("file"), nb::arg("force"), nb::arg("instants"))
         .def("inputs", &inputs);
     m.def("load_result", &load_result, nb::arg("file"));
     m.def("from_bytes", &from_bytes, nb::arg("bytes"));

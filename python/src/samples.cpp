@@ -2,6 +2,7 @@
 // A motion at given instants, as arrays: one dict for bodies, joints, coordinates, sensors, loads, energies.
 #include <algorithm>
 #include <chrono>
+#include <functional>
 #include <limits>
 #include <map>
 #include <string>
@@ -9,11 +10,15 @@
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
 
 #include "livens/base/error.h"
 #include "livens/diagnostics/coordinates.h"
+#include "livens/diagnostics/quantities.h"
 #include "livens/diagnostics/rigidity.h"
 #include "livens/diagnostics/sample.h"
+#include "livens/io/peaks.h"
+#include "livens/solvers/patience.h"
 #include "livens/spacetime/solve.h"
 #include "result.h"
 
@@ -62,7 +67,14 @@ private:
     std::map<std::string, Column> columns_;
 };
 
-/// work(t) for all instants, without the lock, which is taken now and then to look for signals.
+/// From which side an instant is seen: those of `before` that are not zero are seen from the left; of a single
+/// instant or where there is no list, from the right.
+Side side_of(const Times& before, std::size_t i)
+{
+    return before.size() > i && before.data()[i] != 0 ? Side::left : Side::right;
+}
+
+/// work(t, i) for all instants, without the lock, which is taken now and then to look for signals.
 template <class Work>
 void at_all(const Times& times, const Work& work)
 {
@@ -70,7 +82,7 @@ void at_all(const Times& times, const Work& work)
     const nb::gil_scoped_release unlock;
     Clock::time_point next = Clock::now() + std::chrono::milliseconds(50);
     for (std::size_t i = 0; i < times.size(); ++i) {
-        work(times.data()[i]);
+        work(times.data()[i], i);
         if (i % 16 != 15 || Clock::now() < next) continue;
         const nb::gil_scoped_acquire lock;
         if (PyErr_CheckSignals() != 0) throw nb::python_error();
@@ -152,7 +164,7 @@ nb::dict bodies_at(const Result& r, const Times& times)
     const Model& model = r.scenario->model;
     std::vector<Vector4> previous = upright(model);
     declare_bodies(c, previous.size());
-    at_all(times, [&](double t) { add_bodies(c, sample_bodies(model, r.run.motion, t), previous); });
+    at_all(times, [&](double t, std::size_t) { add_bodies(c, sample_bodies(model, r.run.motion, t), previous); });
     return c.take();
 }
 
@@ -162,7 +174,7 @@ nb::dict rigidity_at(const Result& r, const Times& times)
     const Model& model = r.scenario->model;
     declare_rigidity(c, model.bodies().size());
     const Rigidity rigidity(model, r.run.motion);
-    at_all(times, [&](double t) { add_rigidity(c, rigidity.at(t)); });
+    at_all(times, [&](double t, std::size_t) { add_rigidity(c, rigidity.at(t)); });
     return c.take();
 }
 
@@ -183,7 +195,7 @@ nb::dict joints_at(const Result& r, const Times& times)
     const std::size_t n = model.joints().size();
     declare_joints(c, n);
     const JointSampler joints(model, r.run.motion);
-    at_all(times, [&](double t) { add_joints(c, joints.at(sample_state(r.run.motion, t)), n); });
+    at_all(times, [&](double t, std::size_t) { add_joints(c, joints.at(sample_state(r.run.motion, t)), n); });
     return c.take();
 }
 
@@ -230,16 +242,15 @@ public:
         c.declare("potential", {});
     }
 
-    void add(const State& state)
+    void add(const State& state, Side side)
     {
         for (const CoordinateValue& q : coordinates_.at(state)) {
             c.add("coordinate", q.value);
             c.add("coordinate_rate", q.rate);
         }
-        for (const double x : readings_.at(state)) c.add("reading", x);
+        for (const double x : readings_.at(state, side)) c.add("reading", x);
         c.add("kinetic", kinetic_energy(model_, state.X, state.V));
-        c.add("potential",
-              potential_energy(model_, {state.t, Side::right}, state.X, state.V, turns_.at(state)));
+        c.add("potential", potential_energy(model_, {state.t, side}, state.X, state.V, turns_.at(state)));
     }
 
     Columns c;
@@ -251,11 +262,119 @@ private:
     LoadTurns turns_;
 };
 
-nb::dict scalars_at(const Result& r, const Times& times)
+nb::dict scalars_at(const Result& r, const Times& times, const Times& before)
 {
     OfStates of_states(r, times.size());
-    at_all(times, [&](double t) { of_states.add(sample_state(r.run.motion, t)); });
+    at_all(times, [&](double t, std::size_t i) {
+        of_states.add(sample_state(r.run.motion, t), side_of(before, i));
+    });
     return of_states.c.take();
+}
+
+bool is_acceleration(const NamedQuantity& q)
+{
+    return q.of != QuantityOf::sensor && q.what.ends_with("acceleration");
+}
+
+/// Accelerations of bodies and coordinates, and what drives do.
+class OfEquations {
+public:
+    OfEquations(const Result& r, bool (*is_wanted)(const NamedQuantity&))
+        : quantities_(r.scenario->model, r.run.motion, r.run.body_names),
+          numbers_(static_cast<std::size_t>(quantities_.n_numbers()))
+    {
+        for (const NamedQuantity& q : quantities_.all())
+            if (is_wanted(q)) wanted_.push_back(q);
+    }
+
+    void declare(Columns& c) const
+    {
+        std::map<std::string, std::size_t> sizes;
+        for (const NamedQuantity& q : wanted_) sizes[column_of(q)] += static_cast<std::size_t>(q.size);
+        for (const auto& [name, size] : sizes)
+            c.declare(name, name == "acceleration" || name == "angular_acceleration"
+                                ? std::vector<std::size_t>{size / 3, 3}
+                                : std::vector<std::size_t>{size});
+    }
+    void add(Columns& c, const State& state, Side side, std::span<const JointSample> joints = {})
+    {
+        quantities_.at(state, side, wanted_, numbers_, joints);
+        for (const NamedQuantity& q : wanted_)
+            for (int i = 0; i < q.size; ++i)
+                c.add(column_of(q), numbers_[static_cast<std::size_t>(q.first + i)]);
+    }
+
+private:
+    static std::string column_of(const NamedQuantity& q)
+    {
+        if (q.of == QuantityOf::body) return q.what;
+        return q.of == QuantityOf::coordinate ? "coordinate_acceleration"
+                                              : q.what + " " + std::to_string(q.index);
+    }
+
+    Quantities quantities_;
+    std::vector<NamedQuantity> wanted_;
+    std::vector<double> numbers_;
+};
+
+nb::dict of_equations_at(const Result& r, const Times& times, const Times& before,
+                         bool (*is_wanted)(const NamedQuantity&))
+{
+    Columns c(times.size());
+    OfEquations of_equations(r, is_wanted);
+    of_equations.declare(c);
+    at_all(times, [&](double t, std::size_t i) {
+        of_equations.add(c, sample_state(r.run.motion, t), side_of(before, i));
+    });
+    return c.take();
+}
+
+nb::dict accelerations_at(const Result& r, const Times& times, const Times& before)
+{
+    return of_equations_at(r, times, before, &is_acceleration);
+}
+
+nb::dict drives_at(const Result& r, const Times& times, const Times& before)
+{
+    return of_equations_at(r, times, before,
+                           [](const NamedQuantity& q) { return q.of == QuantityOf::drive; });
+}
+
+/// (t, whether it is seen from before): enough to show the motion as it is.
+nb::tuple dense(const Result& r)
+{
+    std::vector<double> t, before;
+    for (const SeenInstant& seen : dense_instants(r.run.motion)) {
+        t.push_back(seen.t);
+        before.push_back(seen.side == Side::left ? 1 : 0);
+    }
+    const std::size_t n = t.size();
+    return nb::make_tuple(array(std::move(t), {n}), array(std::move(before), {n}));
+}
+
+/// (name, unit, least, its instant, largest, its instant, where there is none) of each.
+nb::list peaks(const Result& r, const std::vector<std::string>& names)
+{
+    std::vector<Extremes> found;
+    {
+        const nb::gil_scoped_release unlock;
+        const std::function<bool()> goes_on = [] {
+            const nb::gil_scoped_acquire lock;
+            return PyErr_CheckSignals() == 0;
+        };
+        const Patience patience(goes_on);
+        try {
+            found = find_peaks(r.run, *r.scenario, r.method, names);
+        } catch (const Stopped&) {
+            const nb::gil_scoped_acquire lock;
+            throw nb::python_error();
+        }
+    }
+    nb::list all;
+    for (const Extremes& e : found)
+        all.append(nb::make_tuple(e.name, e.unit, e.least.value, e.least.t, e.largest.value, e.largest.t,
+                                  e.lost_at));
+    return all;
 }
 
 /// Everything, each instant solved in the full order of the method.
@@ -264,13 +383,17 @@ nb::dict exact_at(const Result& r, const Times& times)
     const Model& model = r.scenario->model;
     const std::size_t n_joints = model.joints().size();
     OfStates all(r, times.size());
+    OfEquations of_equations(
+        r, [](const NamedQuantity& q) { return q.of == QuantityOf::drive || is_acceleration(q); });
+    of_equations.declare(all.c);
     std::vector<Vector4> previous = upright(model);
     declare_bodies(all.c, previous.size());
     declare_joints(all.c, n_joints);
     declare_rigidity(all.c, model.bodies().size());
     const Rigidity rigidity(model, r.run.motion);
-    at_all(times, [&](double t) {
-        ExactSample s = sample_exactly(model, r.run.motion, r.method, t, r.scenario->options);
+    const ExactSampler exact(model, r.run.motion, r.method, r.scenario->options);
+    at_all(times, [&](double t, std::size_t) {
+        ExactSample s = exact.at(t);
         if (!s.report.converged())
             throw InputError({"sample-exact-method", "",
                               "the motion cannot be had exactly at this instant: " + s.report.message, "", "",
@@ -280,9 +403,11 @@ nb::dict exact_at(const Result& r, const Times& times)
             bodies.push_back(sample_body(model.bodies()[b], s.state.X[b], s.state.V[b],
                                          s.state.V[b] * model.bodies()[b].mass));
         add_bodies(all.c, std::move(bodies), previous);
+        const Side side = t == r.run.motion.end() ? Side::left : Side::right;
+        of_equations.add(all.c, s.state, side, s.joints);
         add_joints(all.c, std::move(s.joints), n_joints);
         add_rigidity(all.c, rigidity.at(s.state));
-        all.add(s.state);
+        all.add(s.state, side);
     });
     return all.c.take();
 }
@@ -328,6 +453,22 @@ nb::object snapped(const Result& r, const Times& times)
 
 }   // namespace
 
+std::vector<std::string> drive_columns(const Result& r)
+{
+    std::vector<std::string> names;
+    const Model& model = r.scenario->model;
+    if (r.run.motion.multipliers.empty() && r.run.motion.end_multipliers.empty()) return names;
+    for (std::size_t j = 0; j < model.joints().size(); ++j) {
+        const Joint& joint = model.joints()[j];
+        if (joint.type != "drive") continue;
+        if (const auto effort = drive_effort(joint))
+            names.push_back((effort->coordinate.is_angle() ? "drive_torque " : "drive_force ") +
+                            std::to_string(j));
+        names.push_back("power " + std::to_string(j));
+    }
+    return names;
+}
+
 void add_samples(nb::class_<Result>& result)
 {
     result.def("snapped", &snapped, nb::arg("t"))
@@ -335,7 +476,11 @@ void add_samples(nb::class_<Result>& result)
         .def("rigidity_at", &rigidity_at, nb::arg("t"))
         .def("body_volumes", &body_volumes)
         .def("joints_at", &joints_at, nb::arg("t"))
-        .def("scalars_at", &scalars_at, nb::arg("t"))
+        .def("scalars_at", &scalars_at, nb::arg("t"), nb::arg("before"))
+        .def("accelerations_at", &accelerations_at, nb::arg("t"), nb::arg("before"))
+        .def("drives_at", &drives_at, nb::arg("t"), nb::arg("before"))
+        .def("dense", &dense)
+        .def("peaks", &peaks, nb::arg("names"))
         .def("exact_at", &exact_at, nb::arg("t"))
         .def("balance", &balance_at_ends);
 }

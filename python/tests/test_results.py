@@ -232,16 +232,17 @@ def test_samples_are_the_programs(program: str, tmp_path: pathlib.Path, sol: lv.
 
 def test_xarray(sol: lv.Solution) -> None:
     pytest.importorskip("xarray")
-    data = sol.to_xarray()
+    data = sol.to_xarray(at="ends")
     assert (data["position"].sel(body="crank", xyz="z").values == sol["crank"].position[:, 2]).all()
     assert data["position"].attrs["units"] == "m" and data["reaction_torque"].attrs["units"] == "N m"
     assert (data["joint_angle"].sel(angle="crank shaft").values == sol["crank shaft"].angle).all()
+    assert data.sizes["time"] == len(sol.t) and sol.to_xarray().sizes["time"] == len(sol._result.output)
     assert data["energy"].dims == ("time",) and sol(0.5).to_xarray()["position"].dims == ("body", "xyz")
 
 
 def test_pandas(sol: lv.Solution) -> None:
     pytest.importorskip("pandas")
-    frame = sol.to_dataframe("crank", "crank pin", "tip")
+    frame = sol.to_dataframe("crank", "crank pin", "tip", at="ends")
     assert (frame["crank.position.z"] == sol["crank"].position[:, 2]).all() and frame.index.name == "t"
     assert (frame["crank pin.force.x"] == sol["crank pin"].force[:, 0]).all()
     assert frame.attrs["units"]["crank pin.torque.y"] == "N m" and "crank.directors.d1.x" in frame
@@ -289,7 +290,10 @@ def test_plots(sol: lv.Solution) -> None:
     axes = sol.plot("crank.position", "crank pin.force", "energy", "crank shaft.angle", "tip.x")
     assert [a.get_ylabel().split("\n")[1] for a in axes] == ["[m]", "[N]", "[J]", "[rad]", "[m]"]
     assert axes[-1].get_xlabel() == "t [s]" and len(axes[0].lines) == 3
-    assert (axes[0].lines[2].get_ydata() == sol["crank"].position[:, 2]).all()
+    line = axes[0].lines[2]
+    assert (line.get_ydata() == sol(line.get_xdata())["crank"].position[:, 2]).all() and len(line.get_xdata()) > 600
+    ends = sol.plot("crank.position", at="ends")[0].lines[2].get_ydata()
+    assert (ends == sol["crank"].position[:, 2]).all()
     assert len(lv.compare(sol, sol).plot("crank.position")[0].lines) == 6
     with pytest.raises(KeyError, match="did you mean 'position'"):
         sol.plot("crank.posision")

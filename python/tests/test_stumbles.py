@@ -96,7 +96,7 @@ def test_plots_of_components_and_triads(sol: lv.Solution) -> None:
     for what, label in names.items():
         assert label in [text.get_text() for text in sol.plot(what)[0].get_legend().get_texts()]
     for what, array in (("rod.position.z", sol["rod"].position[:, 2]), ("rod.quaternion.x", sol["rod"].quaternion[:, 1])):
-        axis, = sol.plot(what)
+        axis, = sol.plot(what, at="ends")
         assert len(axis.lines) == 1 and np.array_equal(axis.lines[0].get_ydata(), array)
     assert sol(0.5).plot("rod.position")[0].lines[0].get_marker() == "o", "one instant is a point"
     plt.close("all")

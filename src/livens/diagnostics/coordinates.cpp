@@ -9,6 +9,7 @@
 #include <numbers>
 #include <utility>
 
+#include "livens/diagnostics/accelerations.h"
 #include "livens/diagnostics/detail/sparse_form.h"
 #include "livens/diagnostics/sample.h"
 #include "livens/solvers/patience.h"
@@ -61,7 +62,8 @@ void FollowedCoordinates::turn(const double* X, std::span<double> near) const
     }
 }
 
-std::vector<CoordinateValue> FollowedCoordinates::at(const State& state) const
+std::vector<CoordinateValue> FollowedCoordinates::at(const State& state,
+                                                     const AcceleratedState* accelerated) const
 {
     const std::size_t n = coordinates_.size();
     std::vector<CoordinateValue> all(n);
@@ -84,9 +86,14 @@ std::vector<CoordinateValue> FollowedCoordinates::at(const State& state) const
             turn(motion_.X.coefficient(element, node).data(), values);
         turn(state.X.data()->data(), values);
     }
-    for (std::size_t i = 0; i < n; ++i)
-        all[i] = {coordinates_[i].at_stated + values[i],
-                  (*sparse_)[i].rate(state.X.data()->data(), state.V.data()->data())};
+    const double *const X = state.X.data()->data(), *const V = state.V.data()->data();
+    for (std::size_t i = 0; i < n; ++i) {
+        all[i] = {coordinates_[i].at_stated + values[i], (*sparse_)[i].rate(X, V)};
+        if (accelerated != nullptr)
+            all[i].acceleration =
+                (*sparse_)[i].acceleration(accelerated->X.data()->data(), accelerated->V.data()->data(),
+                                           accelerated->A.data()->data());
+    }
     return all;
 }
 
@@ -121,9 +128,10 @@ std::vector<CoordinateValue> JointCoordinates::at(double t) const
     return places_.empty() ? std::vector<CoordinateValue>() : at(sample_state(motion_, t));
 }
 
-std::vector<CoordinateValue> JointCoordinates::at(const State& state) const
+std::vector<CoordinateValue> JointCoordinates::at(const State& state,
+                                                  const AcceleratedState* accelerated) const
 {
-    return places_.empty() ? std::vector<CoordinateValue>() : followed_.at(state);
+    return places_.empty() ? std::vector<CoordinateValue>() : followed_.at(state, accelerated);
 }
 
 namespace {
@@ -137,10 +145,10 @@ std::vector<NamedCoordinate> sensed_coordinates(const Model& model)
     return all;
 }
 
-void append_load(const Load& load, const State& state, std::span<const double> angles,
+void append_load(const Load& load, const State& state, Side side, std::span<const double> angles,
                  std::vector<double>& values)
 {
-    const LoadArguments arguments = load_arguments(load, {state.t, Side::right}, state.X, state.V, angles);
+    const LoadArguments arguments = load_arguments(load, {state.t, side}, state.X, state.V, angles);
     for (const LoadReading& reading : load.readings) values.push_back(reading.value(arguments));
     values.push_back(load_power(load, arguments));
 }
@@ -195,25 +203,37 @@ std::vector<double> LoadTurns::at(const State& state) const
 SensorReadings::SensorReadings(const Model& model, const Motion& motion)
     : model_(model), motion_(motion), followed_(model, motion, sensed_coordinates(model)),
       turns_(model, motion)
-{}
-
-std::vector<double> SensorReadings::at(double t) const { return at(sample_state(motion_, t)); }
-
-std::vector<double> SensorReadings::at(const State& state) const
 {
-    const std::vector<CoordinateValue> coordinates = followed_.at(state);
+    for (const Sensor& sensor : model.sensors())
+        if (std::ranges::any_of(sensor.components, &SensorComponent::is_acceleration))
+            accelerations_ = std::make_shared<const Accelerations>(model, motion);
+}
+
+std::vector<double> SensorReadings::at(double t, Side side) const
+{
+    return at(sample_state(motion_, t), side);
+}
+
+std::vector<double> SensorReadings::at(const State& state, Side side) const
+{
+    AcceleratedState accelerated;
+    if (accelerations_) accelerated = accelerations_->at(state, side);
+    const std::vector<CoordinateValue> coordinates =
+        followed_.at(state, accelerations_ ? &accelerated : nullptr);
     const std::vector<double> angles = turns_.at(state);
     std::vector<double> all;
     std::size_t next = 0;
     for (const Sensor& sensor : model_.sensors()) {
         if (sensor.load >= 0)
-            append_load(model_.loads()[sensor.load], state, turns_.turns().of(sensor.load, angles), all);
+            append_load(model_.loads()[sensor.load], state, side, turns_.turns().of(sensor.load, angles), all);
         else if (sensor.body >= 0)
             append_energy(model_, sensor.body, state, all);
         else
             for (const SensorComponent& component : sensor.components) {
                 const CoordinateValue& q = coordinates[next++];
-                all.push_back(component.is_rate ? q.rate : q.value);
+                all.push_back(component.is_acceleration() ? q.acceleration
+                              : component.is_rate()       ? q.rate
+                                                          : q.value);
             }
     }
     return all;

@@ -2,6 +2,7 @@
 // Coordinates of joints along a motion: angles with their turns, displacements, and their rates.
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <span>
 #include <vector>
@@ -16,9 +17,18 @@ inline namespace diagnostics_internal {
 class SparseCoordinate;
 }   // namespace diagnostics_internal
 
+class Accelerations;
+
+/// X'' of all bodies at an instant, and X and X' that it belongs to: those of the motion as rigid bodies that
+/// keep to the rates of their joints.
+struct AcceleratedState {
+    std::vector<Matrix34> X, V, A;
+};
+
 struct CoordinateValue {
     double value = 0;   ///< rad or m
     double rate = 0;    ///< its rate, per s
+    double acceleration = std::numeric_limits<double>::quiet_NaN();   ///< per s^2, where they were given
 };
 
 /// Coordinates along a motion. An angle is followed from node to node, between
@@ -29,8 +39,8 @@ class FollowedCoordinates {
 public:
     FollowedCoordinates(const Model& model, const Motion& motion, std::vector<NamedCoordinate> coordinates);
 
-    /// In a state of the motion: X and V at an instant of it.
-    std::vector<CoordinateValue> at(const State& state) const;
+    /// In a state of the motion: X and V at an instant of it; with what Accelerations say, accelerations too.
+    std::vector<CoordinateValue> at(const State& state, const AcceleratedState* accelerated = nullptr) const;
 
 private:
     void turn(const double* X, std::span<double> near) const;
@@ -59,8 +69,8 @@ public:
     }
     /// Of all places at t, after snap_to_element_end().
     std::vector<CoordinateValue> at(double t) const;
-    /// In a state at an instant of the motion, as sample_exactly() has it.
-    std::vector<CoordinateValue> at(const State& state) const;
+    /// In a state at an instant of the motion, as sample_exactly() has it; see FollowedCoordinates.
+    std::vector<CoordinateValue> at(const State& state, const AcceleratedState* accelerated = nullptr) const;
 
 private:
     const Model& model_;
@@ -91,15 +101,16 @@ public:
     SensorReadings(const Model& model, const Motion& motion);
 
     /// Of all components of all sensors at t, one after the other, after snap_to_element_end(). Where a load
-    /// jumps, what is there afterwards.
-    std::vector<double> at(double t) const;
+    /// jumps, what is there on that side.
+    std::vector<double> at(double t, Side side = Side::right) const;
     /// The same in a state at an instant of the motion, as sample_exactly() has it.
-    std::vector<double> at(const State& state) const;
+    std::vector<double> at(const State& state, Side side = Side::right) const;
 
 private:
     const Model& model_;
     const Motion& motion_;
     FollowedCoordinates followed_;   ///< of components that have a coordinate, in their order
+    std::shared_ptr<const Accelerations> accelerations_;   ///< null: no component is one
     LoadTurns turns_;
 };
 

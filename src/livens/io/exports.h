@@ -2,14 +2,29 @@
 // Runs for other programs: one table of formats.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <span>
 #include <string_view>
+#include <vector>
 
+#include "livens/diagnostics/quantities.h"
 #include "livens/io/results.h"
 #include "livens/io/scenario.h"
 
 namespace [[gnu::visibility("default")]] livens {
+
+/// At which instants a table shows a motion. automatic: at the output times where the scenario lists them, else
+/// dense.
+enum class Instants {
+    automatic,
+    dense,   ///< see dense_instants()
+    output,
+    ends   ///< of elements
+};
+/// In options, in this order.
+constexpr std::array<std::string_view, 4> words_of(Instants) { return {"auto", "dense", "output", "ends"}; }
+std::vector<SeenInstant> instants_of(const Scenario& scenario, const Run& run, Instants which);
 
 /// What an export is made of.
 struct ExportInput {
@@ -17,6 +32,7 @@ struct ExportInput {
     const Scenario& scenario;       ///< that of its text
     const Run& run;
     bool force = false;   ///< whatever stands where further files go, beside the one that is named
+    Instants instants = Instants::automatic;   ///< of tables
 };
 
 struct ExportFormat {
@@ -32,8 +48,11 @@ struct ExportFormat {
 /// docs/results.md has the same table.
 std::span<const ExportFormat> export_formats();
 
-/// CSV of the samples at the output times: t, then per body position, quaternion (w, x, y, z), velocity,
-/// angular velocity; then energies. Names that spreadsheets would take for formulas begin with an apostrophe.
-void write_csv(const std::filesystem::path& file, const Model& model, const Run& run);
+/// CSV: t, then per body position, quaternion (w, x, y, z), velocity, angular velocity, acceleration, angular
+/// acceleration; energies; coordinates of joints, reactions, drives, sensors. An instant with two sides has two
+/// rows. Names that spreadsheets would take for formulas begin with an apostrophe.
+/// No instants: the output times.
+void write_csv(const std::filesystem::path& file, const Model& model, const Run& run,
+               std::vector<SeenInstant> instants = {});
 
 }   // namespace gnu::visibility("default")]]livens

@@ -61,6 +61,7 @@ struct Scenario {
     std::vector<std::vector<ShapePart>> parts;   ///< of the bodies' shapes; none of one that is no union
     Time time;   ///< element ends hold jumps of loads (unless breaks = "ignore") and output times
     std::vector<double> output;   ///< output times; all element ends, where known, if the scenario lists none
+    bool lists_output = false;    ///< the scenario says which
     Method method;
     Conditions conditions;   ///< what is given at start and end, and the states there, with their times
     SolveOptions options;    ///< tolerance, max_iterations, initial, condition

@@ -13,17 +13,18 @@ namespace livens {
 
 namespace {
 
-constexpr std::array<const char*, 6> of_point{"x", "y", "z", "vx", "vy", "vz"};
+constexpr std::array<const char*, 9> of_point{"x", "y", "z", "vx", "vy", "vz", "ax", "ay", "az"};
+constexpr std::array<const char*, 3> per_second{"", " s-1", " s-2"};
+constexpr std::array<const char*, 3> of_rates{"", "_rate", "_acceleration"};
 
-/// Three forms, and their rates.
+/// Three forms, their rates and accelerations.
 std::vector<SensorComponent> components_of(const std::vector<ConstraintRow>& rows, const Configurations& X)
 {
     std::vector<SensorComponent> all;
-    for (std::size_t i = 0; i < 6; ++i) {
-        const bool is_rate = i >= 3;
+    for (std::size_t i = 0; i < of_point.size(); ++i) {
         const PairForm& form = rows[i % 3];
         const NamedCoordinate q{of_point[i % 3], {{form}}, form_value(form, form.body_i, form.body_j, X)};
-        all.push_back({of_point[i], is_rate ? "m s-1" : "m", q, is_rate});
+        all.push_back({of_point[i], std::string("m") + per_second[i / 3], q, static_cast<int>(i / 3)});
     }
     return all;
 }
@@ -60,10 +61,9 @@ Sensor joint_sensor(const std::string& name, const Joint& joint)
                           ""});
     Sensor sensor{name, "joint", {}};
     for (const NamedCoordinate& q : joint.coordinates)
-        for (const bool is_rate : {false, true}) {
-            const std::string unit =
-                std::string(q.coordinate.is_angle() ? "rad" : "m") + (is_rate ? " s-1" : "");
-            sensor.components.push_back({q.name + (is_rate ? "_rate" : ""), unit, q, is_rate});
+        for (std::size_t k = 0; k < of_rates.size(); ++k) {
+            const std::string unit = std::string(q.coordinate.is_angle() ? "rad" : "m") + per_second[k];
+            sensor.components.push_back({q.name + of_rates[k], unit, q, static_cast<int>(k)});
         }
     return sensor;
 }

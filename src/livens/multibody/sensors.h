@@ -17,7 +17,10 @@ struct SensorComponent {
     std::string name;               ///< "x", "angle_rate"
     std::string unit;               ///< "m", "rad s-1", as files of results have it
     NamedCoordinate coordinate{};   ///< no forms: none
-    bool is_rate = false;           ///< the coordinate's rate
+    int derivative = 0;             ///< by time, of the coordinate: 1 is its rate, 2 its acceleration
+
+    bool is_rate() const { return derivative == 1; }
+    bool is_acceleration() const { return derivative == 2; }
 };
 
 /// Components are those of coordinates; a sensor of a load reads Load::readings and its power, one of a
@@ -32,13 +35,13 @@ struct Sensor {
 
 // X is the configuration of all bodies at the start.
 
-/// A point of a body: x, y, z and vx, vy, vz in world axes.
+/// A point of a body: x, y, z, vx, vy, vz and ax, ay, az in world axes.
 Sensor point_sensor(const std::string& name, int body, const Vector3& point, const Configurations& X);
-/// A point of the second body from one of the first, in axes of the first: x, y, z and their rates vx, vy,
-/// vz. Either may be the world.
+/// A point of the second body from one of the first, in axes of the first: x, y, z, their rates vx, vy, vz
+/// and the rates of these, ax, ay, az. Either may be the world.
 Sensor relative_sensor(const std::string& name, int first, const Vector3& point_first, int second,
                        const Vector3& point_second, const Configurations& X);
-/// All coordinates of a joint and their rates. Throws InputError (`joint-coordinate`) if it has none.
+/// All coordinates of a joint, their rates and accelerations. Throws InputError (`joint-coordinate`) if it has none.
 Sensor joint_sensor(const std::string& name, const Joint& joint);
 /// What a load reports, and its power on the bodies.
 Sensor load_sensor(const std::string& name, int index, const Load& load);

@@ -14,7 +14,6 @@
 
 #include "livens/base/error.h"
 #include "livens/base/text.h"
-#include "livens/diagnostics/coordinates.h"
 #include "livens/dynamics/rows/tables.h"
 #include "livens/dynamics/start/prepared.h"
 #include "livens/dynamics/start/singular.h"
@@ -146,40 +145,55 @@ Solution solve(const Model& model, const Problem& stated, const Time& time, cons
     return solution;
 }
 
-ExactSample sample_exactly(const Model& model, const Motion& motion, const Method& given, double t,
+ExactSampler::ExactSampler(const Model& model, const Motion& motion, const Method& method,
                            const SolveOptions& options)
+    : model_(model), motion_(motion), method_(method), options_(options), turns_(model, motion),
+      joints_(model, motion), prepared_(std::make_shared<Prepared>())
 {
-    Method method = given;   // the motion knows what was taken of what was left open
-    if (is_nodal(given) && motion.X.points == Points::radau)
-        method = Radau{motion.X.degree};
-    else if (is_nodal(given))
-        method = Lobatto{motion.X.degree};
-    if (!(t >= motion.start() && t <= motion.end()))
+    // The motion knows what was taken of what was left open.
+    if (is_nodal(method) && motion.X.points == Points::radau)
+        method_ = Radau{motion.X.degree};
+    else if (is_nodal(method))
+        method_ = Lobatto{motion.X.degree};
+    options_.progress = {};
+    options_.condition = false;   // one shortened element is not what was asked about
+    options_.initial =
+        StartPolicy::project;   // an end state holds its constraints to rounding; polish, never refuse
+    options_.judge = false;
+    options_.meeting = std::numeric_limits<double>::infinity();
+}
+
+ExactSample ExactSampler::at(double t) const
+{
+    if (!(t >= motion_.start() && t <= motion_.end()))
         throw InputError({"time-out-of-range", "at", "the instant lies outside the motion", to_text(t),
-                          to_text(motion.start()) + " to " + to_text(motion.end()), "", ""});
-    const int element = motion.mesh.element_at(t);
+                          to_text(motion_.start()) + " to " + to_text(motion_.end()), "", ""});
+    const int element = motion_.mesh.element_at(t);
     for (int end = element; end <= element + 1; ++end)
-        if (motion.mesh.ends[end] == t) return {motion.at_end(end), sample_joints(model, motion, t), {}};
-    if (std::holds_alternative<Mixed>(method))
+        if (motion_.mesh.ends[end] == t) {
+            State state = motion_.at_end(end);
+            std::vector<JointSample> joints = joints_.at(state);
+            return {std::move(state), std::move(joints), {}};
+        }
+    if (std::holds_alternative<Mixed>(method_))
         throw InputError(
             {"sample-exact-method", "at", "the elements of the family mixed cannot be solved one by one", "",
              "", "each depends on all others of its block",
              "sample the polynomials, whose order is stated, or make the instant an output time"});
-    SolveOptions quiet = options;
-    quiet.progress = {};
-    quiet.condition = false;   // one shortened element is not what was asked about
-    quiet.initial =
-        StartPolicy::project;   // an end state holds its constraints to rounding; polish, never refuse
-    Problem problem = with_prepared({{motion.at_end(element)}});
-    problem.conditions.start.angles = LoadTurns(model, motion).at_end(element);   // files do not hold them
+    Problem problem = with_prepared({{motion_.at_end(element)}, {}, nullptr, prepared_});
+    problem.conditions.start.angles = turns_.at_end(element);   // files do not hold them
     // One shortened element from the state before it: its end has the order 2p that the polynomial lacks.
-    const TimeMesh one{{motion.mesh.ends[element], t}};
-    quiet.judge = false;
-    quiet.meeting = std::numeric_limits<double>::infinity();
-    Solution s = solve_all_time(model, problem, one, method, quiet);
+    const TimeMesh one{{motion_.mesh.ends[element], t}};
+    Solution s = solve_all_time(model_, problem, one, method_, options_);
     if (s.cannot_begin) throw InputError(std::move(*s.cannot_begin));
     const double there = s.motion.end();   // t, if it converged
-    return {sample_state(s.motion, there), sample_joints(model, s.motion, there), std::move(s.report)};
+    return {sample_state(s.motion, there), sample_joints(model_, s.motion, there), std::move(s.report)};
+}
+
+ExactSample sample_exactly(const Model& model, const Motion& motion, const Method& method, double t,
+                           const SolveOptions& options)
+{
+    return ExactSampler(model, motion, method, options).at(t);
 }
 
 }   // namespace livens

@@ -8,7 +8,9 @@
 #include <vector>
 
 #include "livens/diagnostics/acceptance.h"
+#include "livens/diagnostics/coordinates.h"
 #include "livens/diagnostics/estimate.h"
+#include "livens/diagnostics/sample.h"
 #include "livens/spacetime/options.h"
 #include "livens/spacetime/problem.h"
 
@@ -84,5 +86,24 @@ struct ExactSample {
 };
 ExactSample sample_exactly(const Model& model, const Motion& motion, const Method& method, double t,
                            const SolveOptions& options = {});
+
+/// sample_exactly() at many instants: what follows from model and motion is found once.
+class ExactSampler {
+public:
+    /// Model and motion must outlive it.
+    ExactSampler(const Model& model, const Motion& motion, const Method& method,
+                 const SolveOptions& options = {});
+
+    ExactSample at(double t) const;
+
+private:
+    const Model& model_;
+    const Motion& motion_;
+    Method method_;
+    SolveOptions options_;
+    LoadTurns turns_;
+    JointSampler joints_;
+    std::shared_ptr<Prepared> prepared_;
+};
 
 }   // namespace gnu::visibility("default")]]livens

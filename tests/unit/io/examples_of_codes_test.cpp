@@ -113,6 +113,8 @@ TEST(ExamplesOfCodes, StandWhereverAScenarioLeads)
         "point-with-directors",
         "python-function",
         "quadrature-points",
+        "quantity-unbounded",
+        "quantity-unknown",
         "quaternion-zero",
         "sample-exact-method",
         "samples",

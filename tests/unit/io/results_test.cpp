@@ -487,7 +487,7 @@ TEST_F(Results, CsvHasOneLinePerTime)
     EXPECT_EQ(text.substr(0, 7), "t [s],k");
     const std::string line =
         text.substr(text.find("\r\n") + 2, text.find("\r\n", text.find("\r\n") + 2) - text.find("\r\n") - 2);
-    EXPECT_EQ(std::count(line.begin(), line.end(), ','), 2 * 13 + 3 + 6);   // bodies, energies, a joint
+    EXPECT_EQ(std::count(line.begin(), line.end(), ','), 2 * 19 + 3 + 6);   // bodies, energies, a joint
     EXPECT_EQ(line.substr(0, 25), "0,0,0,0,1,0,0,0,3,0,0,0,0");
 }
 

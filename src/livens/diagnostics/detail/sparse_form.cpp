@@ -50,6 +50,16 @@ double SparseForm::rate(const double* X, const double* V) const
     return sum;
 }
 
+double SparseForm::acceleration(const double* X, const double* V, const double* A) const
+{
+    double sum = 0;
+    for (const Product& p : products_) {
+        const double *u = V + p.x, *v = V + p.y;
+        sum += 2 * p.value * (u[0] * v[0] + u[1] * v[1] + u[2] * v[2]);
+    }
+    return sum + rate(X, A);
+}
+
 SparseCoordinate::SparseCoordinate(const JointCoordinate& coordinate, const double* stated)
 {
     for (const PairForm& form : coordinate.forms) {
@@ -70,6 +80,16 @@ double SparseCoordinate::rate(const double* X, const double* V) const
     if (!is_angle()) return forms_[0].rate(X, V);
     const double c = forms_[0].value(X), s = forms_[1].value(X);
     return (c * forms_[1].rate(X, V) - s * forms_[0].rate(X, V)) / (c * c + s * s);
+}
+
+/// theta' = (c s' - s c') / r, r = c^2 + s^2: the slope of that.
+double SparseCoordinate::acceleration(const double* X, const double* V, const double* A) const
+{
+    if (!is_angle()) return forms_[0].acceleration(X, V, A);
+    const double c = forms_[0].value(X), s = forms_[1].value(X), dc = forms_[0].rate(X, V),
+                 ds = forms_[1].rate(X, V), r = c * c + s * s;
+    const double turned = c * forms_[1].acceleration(X, V, A) - s * forms_[0].acceleration(X, V, A);
+    return (turned - 2 * (c * dc + s * ds) * (c * ds - s * dc) / r) / r;
 }
 
 }   // namespace livens::inline diagnostics_internal

@@ -15,6 +15,8 @@ public:
 
     double value(const double* X) const;
     double rate(const double* X, const double* V) const;
+    /// Its second derivative by time where X'' is A.
+    double acceleration(const double* X, const double* V, const double* A) const;
 
 private:
     struct Term {
@@ -43,6 +45,7 @@ public:
     /// See coordinate_change(), from the stated bodies; and coordinate_rate().
     double change(const double* X) const;
     double rate(const double* X, const double* V) const;
+    double acceleration(const double* X, const double* V, const double* A) const;
 
 private:
     std::vector<SparseForm> forms_;

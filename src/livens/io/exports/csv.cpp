@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A table of samples at the output times, one row each, as spreadsheets read it: docs/results.md. Units stand
-// in the header; what is no number is an empty cell.
-#include <limits>
+// A table of a motion, a row an instant, as spreadsheets read it: docs/results.md. Units stand in the header;
+// what is no number is an empty cell.
+#include <algorithm>
+#include <iterator>
 
-#include "livens/diagnostics/coordinates.h"
-#include "livens/diagnostics/sample.h"
+#include "livens/diagnostics/quantities.h"
 #include "livens/io/exports.h"
+#include "livens/io/exports/formats.h"
 #include "livens/io/json.h"
 #include "livens/io/results/atomic_file.h"
 
@@ -29,74 +30,75 @@ std::string header_cell(const std::string& name)
     return needs_quotes ? '"' + quoted + '"' : quoted;
 }
 
-using Parts = std::initializer_list<const char*>;
-
-void add_header(std::string& line, const std::string& of, const char* quantity, Parts parts, const char* unit)
+/// What the table has of a motion, in its order.
+std::vector<NamedQuantity> columns_of(const Quantities& quantities)
 {
-    for (const char* part : parts)
-        line += "," + header_cell(of + "." + quantity + "." + part + " [" + unit + "]");
+    constexpr std::string_view left_out[] = {"center_of_mass", "linear_momentum", "angular_momentum"};
+    std::vector<NamedQuantity> all;
+    const auto take = [&](QuantityOf first, QuantityOf last) {
+        for (const NamedQuantity& q : quantities.all())
+            if (q.of >= first && q.of <= last && q.of != QuantityOf::load &&
+                std::ranges::find(left_out, q.what) == std::end(left_out))
+                all.push_back(q);
+    };
+    take(QuantityOf::body, QuantityOf::body);
+    take(QuantityOf::model, QuantityOf::model);
+    take(QuantityOf::coordinate, QuantityOf::sensor);
+    return all;
 }
 
-std::string header(const Model& model, const Run& run, const JointCoordinates& coordinates,
-                   bool has_reactions)
+std::string header(const std::vector<NamedQuantity>& columns)
 {
     std::string line = "t [s]";
-    for (const std::string& body : run.body_names) {
-        add_header(line, body, "position", {"x", "y", "z"}, "m");
-        add_header(line, body, "quaternion", {"w", "x", "y", "z"}, "1");
-        add_header(line, body, "velocity", {"x", "y", "z"}, "m/s");
-        add_header(line, body, "angular_velocity", {"x", "y", "z"}, "rad/s");
+    for (const NamedQuantity& q : columns) {
+        const std::string name = q.of != QuantityOf::model ? q.name()
+                                 : q.what == "energy"      ? "energy"
+                                                           : q.what + " energy";
+        for (int i = 0; i < q.size; ++i)
+            line += "," + header_cell(name + (q.size > 1 ? "." : "") + component_of(q, i) + " [" + q.unit + "]");
     }
-    line += ",kinetic energy [J],potential energy [J],energy [J]";
-    for (std::size_t i = 0; i < coordinates.places().size(); ++i) {
-        const NamedCoordinate& q = coordinates.coordinate(static_cast<int>(i));
-        const std::string name = model.joints()[coordinates.places()[i].joint].name + "." + q.name,
-                          unit = q.coordinate.is_angle() ? "rad" : "m";
-        line +=
-            "," + header_cell(name + " [" + unit + "]") + "," + header_cell(name + "_rate [" + unit + "/s]");
-    }
-    for (const Joint& joint : model.joints()) {
-        if (!has_reactions) break;
-        add_header(line, joint.name, "force", {"x", "y", "z"}, "N");
-        add_header(line, joint.name, "torque", {"x", "y", "z"}, "N m");
-    }
-    for (const Sensor& sensor : model.sensors())
-        for (const SensorComponent& c : sensor.components)
-            line += "," + header_cell(sensor.name + "." + c.name + " [" + c.unit + "]");
     return line + "\r\n";
 }
 
 constexpr std::size_t largest_piece = std::size_t{1} << 20;   // of the table that is held in memory
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-constexpr Vector3 no_number{nan, nan, nan};
-
 void add_cell(std::string& line, double x)
 {
     line += ',';
     if (x == x) line += to_text(x);   // nan: an empty cell, which every reader takes for "none"
 }
 
-template <int Rows, int Cols>
-void add_cells(std::string& line, const Matrix<Rows, Cols>& values)
+/// Of q and -q the one that is nearer to the row before: columns have no jumps of sign.
+void continue_quaternion(std::span<double> numbers, const NamedQuantity& q, Vector4& before)
 {
-    for (const double x : values.a) add_cell(line, x);
+    double* const mine = numbers.data() + q.first;
+    before = continued(before, {mine[0], mine[1], mine[2], mine[3]});
+    std::copy_n(before.data(), 4, mine);
 }
 
-/// As in the balance: where loads jump, what follows.
-void add_energies(std::string& line, const Model& model, const Motion& motion, const LoadTurns& turns,
-                  double t)
+/// Where something jumps, what follows is told, and at the very end what was.
+std::vector<SeenInstant> output_instants(const Run& run)
 {
-    const State state = sample_state(motion, t);
-    const Instant at{t, t == motion.end() ? Side::left : Side::right};
-    const double kinetic = kinetic_energy(model, state.X, state.V);
-    const double potential = potential_energy(model, at, state.X, state.V, turns.at(state));
-    add_cells(line, Vector3{kinetic, potential, kinetic + potential});
+    std::vector<SeenInstant> all;
+    for (const double t : reached_times(run)) {
+        const bool is_last = snap_to_element_end(run.motion.mesh, t) == run.motion.end();
+        all.push_back({t, is_last ? Side::left : Side::right});
+    }
+    return all;
 }
 
 }   // namespace
 
-void write_csv(const std::filesystem::path& file, const Model& model, const Run& run)
+std::vector<SeenInstant> instants_of(const Scenario& scenario, const Run& run, Instants which)
 {
+    if (which == Instants::automatic) which = scenario.lists_output ? Instants::output : Instants::dense;
+    if (which == Instants::dense) return dense_instants(run.motion);
+    return which == Instants::ends ? end_instants(run.motion) : output_instants(run);
+}
+
+void write_csv(const std::filesystem::path& file, const Model& model, const Run& run,
+               std::vector<SeenInstant> instants)
+{
+    if (instants.empty()) instants = output_instants(run);
     AtomicFile out(file);
     std::uint64_t n_written = 0;
     const auto write = [&](std::string& text) {   // a small run may have a large table
@@ -104,41 +106,19 @@ void write_csv(const std::filesystem::path& file, const Model& model, const Run&
         n_written += text.size();
         text.clear();
     };
-    const JointCoordinates coordinates(model, run.motion);
-    const SensorReadings sensors(model, run.motion);
-    const JointSampler joints(model, run.motion);
-    const bool has_reactions = !sample_joints(model, run.motion, run.motion.start()).empty();
-    std::string text = header(model, run, coordinates, has_reactions);
-    const LoadTurns turns(model, run.motion);
+    const Quantities quantities(model, run.motion, run.body_names);
+    const std::vector<NamedQuantity> columns = columns_of(quantities);
+    std::string text = header(columns);
     std::vector<Vector4> previous(run.body_names.size(), Vector4{1, 0, 0, 0});
-    for (const double asked : run.output) {
-        if (asked < run.motion.start() || asked > run.motion.end()) continue;
-        const State state = sample_state(run.motion, asked);
-        const double t = state.t;
-        text += to_text(asked);
-        const std::vector<BodySample> bodies = sample_bodies(model, run.motion, state);
-        for (std::size_t b = 0; b < bodies.size(); ++b) {
-            const BodySample& s = bodies[b];
-            // Of q and -q the one that is nearer to the row before: columns have no jumps of sign.
-            previous[b] = continued(previous[b], s.quaternion);
-            add_cells(text, s.position);
-            add_cells(text, previous[b]);
-            add_cells(text, s.velocity);
-            add_cells(text, s.angular_velocity);
+    std::vector<double> numbers(static_cast<std::size_t>(quantities.n_numbers()));
+    for (const SeenInstant& seen : instants) {
+        text += to_text(seen.t);
+        quantities.at(sample_state(run.motion, seen.t), seen.side, columns, numbers);
+        for (const NamedQuantity& q : columns) {
+            if (q.of == QuantityOf::body && q.size == 4)
+                continue_quaternion(numbers, q, previous[static_cast<std::size_t>(q.index)]);
+            for (int i = 0; i < q.size; ++i) add_cell(text, numbers[static_cast<std::size_t>(q.first + i)]);
         }
-        add_energies(text, model, run.motion, turns, t);
-        for (const CoordinateValue& q : coordinates.at(state)) {
-            add_cell(text, q.value);
-            add_cell(text, q.rate);
-        }
-        if (has_reactions)
-            for (const JointSample& joint : joints.at(state)) {
-                // Where a reaction jumps, what follows is told, and at the very end what was.
-                const Reaction& r = t == run.motion.end() ? joint.left : joint.right;
-                add_cells(text, joint.is_bounded ? r.force : no_number);
-                add_cells(text, joint.is_bounded ? r.torque : no_number);
-            }
-        for (const double reading : sensors.at(state)) add_cell(text, reading);
         text += "\r\n";
         if (text.size() > largest_piece) write(text);
     }

@@ -24,10 +24,11 @@ bool begins_as_gltf(std::string_view head)
 }
 
 constexpr ExportFormat formats[] = {
-    {"csv", ".csv", "table of the samples at the output times",
+    {"csv", ".csv", "table of the motion, or of the output times where they are listed",
      [](std::string_view head) { return head.starts_with("t [s],"); },
      [](const std::filesystem::path& file, const ExportInput& input) {
-         write_csv(file, input.scenario.model, input.run);
+         write_csv(file, input.scenario.model, input.run,
+                   instants_of(input.scenario, input.run, input.instants));
      }},
     {"npz", ".npz", "NumPy archive of all variables of the result", begins_as_npz,
      [](const std::filesystem::path& file, const ExportInput& input) { write_npz(file, input); }},

@@ -70,9 +70,13 @@ void add_input(const Builder& builder, Inputs& inputs, const std::string& symbol
             has += (has.empty() ? "it has " : ", ") + component.name;
             const NamedCoordinate& q = component.coordinate;
             if (component.name != reference.what || q.coordinate.forms.empty()) continue;
+            if (component.is_acceleration())
+                refuse_input("input-algebraic", path, symbol, text,
+                             "a load cannot follow an acceleration, which follows from the loads",
+                             "give an expression of coordinates and their rates");
             inputs.symbols.push_back(symbol);
-            inputs.reads.push_back({inputs.coordinates.size(), component.is_rate});
-            inputs.coordinates.push_back({q.coordinate, q.at_stated, !component.is_rate});
+            inputs.reads.push_back({inputs.coordinates.size(), component.is_rate()});
+            inputs.coordinates.push_back({q.coordinate, q.at_stated, !component.is_rate()});
             return;
         }
         const bool is_readable = !sensor.components[0].coordinate.coordinate.forms.empty();

@@ -66,17 +66,17 @@ const std::vector<SensorKind>& sensor_kinds()
     const Key body = Key{"body", types::text, "The body."}.needed();
     static const std::vector<SensorKind> all{
         {{"point",
-          "a point of a body: x, y, z in m and vx, vy, vz in m/s, world axes",
+          "a point of a body: x, y, z in m, vx, vy, vz in m/s and ax, ay, az in m/s^2, world axes",
           {body, Key{"point", types::vector3, "In body coordinates.", "m", "[0, 0, 0]"}}},
          make_point},
         {{"joint",
-          "the coordinates of a joint, and their rates: angle, angle_rate, displacement, displacement_rate",
+          "the coordinates of a joint, their rates and accelerations: angle, angle_rate, angle_acceleration, "
+          "displacement, displacement_rate, displacement_acceleration",
           {Key{"joint", types::text, "The joint."}.needed()}},
          make_joint_sensor},
         {{"relative",
-          "a point of the second body from one of the first: x, y, z and their rates vx, vy, vz in axes of "
-          "the "
-          "first",
+          "a point of the second body from one of the first, in axes of the first: x, y, z, their rates vx, "
+          "vy, vz and the rates of these, ax, ay, az",
           {Key{"between", types::names, "Two different bodies, or one and `\"world\"`."}.needed(),
            Key{"points", types::pair,
                "One on each body, in its coordinates. Default: the reference points, for the world its "

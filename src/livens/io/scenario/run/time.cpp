@@ -282,6 +282,7 @@ bool follows_accuracy(const Section& time, const Method& method)
 bool read_time(Builder& builder, const Section& time, const Section* method, Scenario& scenario)
 {
     if (!check_end(time, builder.findings()) || !time.is_valid()) return false;
+    scenario.lists_output = time.find("output") != nullptr;
     if (follows_accuracy(time, scenario.method))
         return check_span(time, method, builder.findings()) && make_span(builder, time, scenario);
     const bool is_made = has_knots(scenario.method) ? make_knot_mesh(builder, time, *method, scenario)
