@@ -3,12 +3,22 @@
 
 export type Vector = [number, number, number];
 
+/** A form at a place and in axes (columns) of its body or of the world; null: those of the body, its colour. */
+export interface Piece {
+  shape: number;
+  middle: Vector;
+  half: Vector;
+  axes: number[] | null;
+  color: string | null;
+  opacity: number;
+}
 export interface Body {
   name: string;
   point: boolean;
   mark: boolean;
   mass: number;
-  shape: number;
+  color: string | null;
+  pieces: Piece[];
   middle: Vector;
   half: Vector;
   centre: Vector;
@@ -74,6 +84,7 @@ export interface Meta {
     forms: number[];
   };
   bodies: Body[];
+  world: Piece[];
   joints: Joint[];
   loads: Load[];
   sensors: Sensor[];

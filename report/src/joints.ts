@@ -123,7 +123,7 @@ export class Joints {
         turn,
         new Vector3(thick, thick, size / 2),
       );
-      this.places.cylinder.push({ body: b, colour: new Color(body_colour(b)), local });
+      this.places.cylinder.push({ body: b, colour: new Color(body.color ?? body_colour(b)), local });
     }
   }
 
