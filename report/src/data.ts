@@ -27,6 +27,7 @@ export interface Body {
 export interface Joint {
   name: string;
   type: string;
+  bar: boolean; // it holds the distance of two points
   first: number;
   second: number;
   point_first: Vector;

@@ -242,6 +242,8 @@ void write_joints(JsonWriter& json, const Model& model)
     for (const Joint& joint : model.joints()) {
         const RowDirections axes = axes_of(joint);
         json.begin_object().member("name", joint.name).member("type", joint.type);
+        const auto is_driven = [](const ConstraintRow& row) { return row.label == "driven distance"; };
+        json.member("bar", joint.type == "rod" || std::ranges::any_of(joint.rows, is_driven));
         json.member("first", joint.first).member("second", joint.second);
         add(json, "point_first", joint.point_first);
         add(json, "point_second", joint.point_second);
