@@ -3,12 +3,22 @@
 
 export type Vector = [number, number, number];
 
+/** A form at a place and in axes (columns) of its body or of the world; null: those of the body, its colour. */
+export interface Piece {
+  shape: number;
+  middle: Vector;
+  half: Vector;
+  axes: number[] | null;
+  color: string | null;
+  opacity: number;
+}
 export interface Body {
   name: string;
   point: boolean;
   mark: boolean;
   mass: number;
-  shape: number;
+  color: string | null;
+  pieces: Piece[];
   middle: Vector;
   half: Vector;
   centre: Vector;
@@ -17,6 +27,7 @@ export interface Body {
 export interface Joint {
   name: string;
   type: string;
+  bar: boolean; // it holds the distance of two points
   first: number;
   second: number;
   point_first: Vector;
@@ -75,6 +86,7 @@ export interface Meta {
     forms: number[];
   };
   bodies: Body[];
+  world: Piece[];
   joints: Joint[];
   loads: Load[];
   sensors: Sensor[];

@@ -14,12 +14,14 @@ export interface Plane {
   half: [number, number];
 }
 
-/** Cells of a round number of metres under all points; `floor`: a height that it does not lie above. */
+/** Cells of a round number of metres under all points; `floor`: a height that it does not lie above;
+ *  `stated`: where it lies, if there is a floor. */
 export function make_grid(
   points: Float32Array,
   up: Vector3,
   size: number,
   floor: number,
+  stated: number | null,
 ): { object: LineSegments; cell: number; plane: Plane } {
   const cell = nice(size / 2.5),
     seed = Math.abs(up.y) < 0.9 ? new Vector3(0, 1, 0) : new Vector3(0, 0, 1);
@@ -40,7 +42,7 @@ export function make_grid(
   const from = [0, 1].map((k) => Math.floor(low[k] / cell) - 1),
     to = [0, 1].map((k) => Math.ceil(high[k] / cell) + 1);
   const lines: number[] = [],
-    height = low[2] - 0.002 * size; // what rests on it does not flicker
+    height = stated === null ? low[2] - 0.002 * size : stated + 0.001 * size; // what rests on it does not flicker
   const at = (a: number, b: number) =>
     new Vector3()
       .addScaledVector(x, a * cell)

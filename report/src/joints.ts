@@ -15,7 +15,7 @@ import {
 } from "three";
 import { Couplings } from "./couplings";
 import type { Joint } from "./data";
-import { has_bar, has_foot, pieces_of, type Part, type Piece } from "./glyphs";
+import { has_foot, pieces_of, type Part, type Piece } from "./glyphs";
 import { Instances, Poses, acts, unit_z, vector, type Place } from "./instances";
 import type { Run } from "./run";
 import { body_colour, theme } from "./theme";
@@ -96,7 +96,7 @@ export class Joints {
         this.put({ part: "cylinder", half: [0.55, 0.55, 1.5], at: [0, 0, -1.5] }, -1, first, run.up, fixed);
         this.put({ part: "box", half: [2.4, 2.4, 0.3], at: [0, 0, -3.2] }, -1, first, run.up, fixed);
       }
-      if (has_bar(joint.type)) this.bars.push({ joint, a: first, b: second });
+      if (joint.bar) this.bars.push({ joint, a: first, b: second });
     }
     for (const load of run.meta.loads)
       if (load.type === "bushing" && load.place)
@@ -124,7 +124,7 @@ export class Joints {
         turn,
         new Vector3(thick, thick, size / 2),
       );
-      this.places.cylinder.push({ body: b, colour: new Color(body_colour(b)), local });
+      this.places.cylinder.push({ body: b, colour: new Color(body.color ?? body_colour(b)), local });
     }
   }
 

@@ -45,7 +45,7 @@ export class Picture {
     this.stage?.renderer.dispose();
     this.stage = null;
     this.labels.forEach((label, b) => {
-      label.style.borderColor = body_colour(b);
+      label.style.borderColor = this.run.meta.bodies[b].color ?? body_colour(b);
     });
     const canvas = element("canvas", {
       id: "stage",

@@ -200,7 +200,7 @@ class Sketch {
 
   private bodies() {
     this.screen.run.meta.bodies.forEach((body, b) => {
-      const colour = body_colour(b),
+      const colour = body.color ?? body_colour(b),
         points = this.points_of(b).map((p) => this.place(b, p));
       if (body.point || points.length < 2) return this.circle(points[0], 8, colour, colour);
       if (points.length > 2) {
@@ -244,7 +244,7 @@ class Sketch {
       p = this.place(second, vector(joint.point_second)),
       q = this.place(first, vector(joint.point_first));
     if (placeless.has(type) || !acts(joint, this.t)) return;
-    if (type === "rod") {
+    if (joint.bar) {
       this.line([q, p], ink, 1.6);
       for (const end of [q, p]) this.circle(end, 4, card, ink);
       if (first < 0) this.ground(q);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The picture in space. Few draw calls, however many bodies there are.
 import { DirectionalLight, HemisphereLight, Object3D, Scene, Vector3, WebGLRenderer } from "three";
-import { extent_of, make_bodies, with_room } from "./bodies";
+import { extent_of, floor_of, make_bodies, with_room } from "./bodies";
 import { Eye } from "./camera";
 import { Arrows, Beads, Springs, Torques } from "./forces";
 import { Frames, make_grid } from "./ground";
@@ -70,10 +70,10 @@ export class Stage {
     this.slots = new Slots(run);
     this.frames = new Frames(bodies.length, 0.16 * detail);
     this.beads = new Beads(run, 0.022 * detail);
-    const grid = make_grid(points, run.up, size, this.joints.floor);
+    const grid = make_grid(points, run.up, size, this.joints.floor, floor_of(run, points));
     this.cell = grid.cell;
     this.shadow = new Shadow(grid.plane, 2.5 * size + grid.cell);
-    for (const { mesh } of this.bodies) if (mesh.isMesh) mesh.layers.enable(casts);
+    for (const { mesh } of this.bodies) if (mesh.isMesh && !mesh.userData.is_still) mesh.layers.enable(casts);
     this.scene.add(
       grid.object,
       this.shadow.object,

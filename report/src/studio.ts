@@ -113,7 +113,7 @@ export class Studio {
       c.fillStyle = theme().card;
       c.fillRect(x, y, width, height);
       c.globalAlpha = 1;
-      c.fillStyle = body_colour(b);
+      c.fillStyle = bodies[b].color ?? body_colour(b);
       c.fillRect(x, y, bar, height);
       c.fillStyle = theme().ink;
       c.fillText(name, x + bar + pad, y + height / 2);
