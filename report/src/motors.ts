@@ -92,6 +92,15 @@ export function motors_of(run: Run): Motor[] {
     const force = vector("force"),
       torque = vector("torque");
     if (!force || !torque) return [];
+    // Of drives the program tells it, where it is not older than that.
+    const told = (what: string) => {
+      const channel = kind === "reaction" ? run.channel("drive", index, what) : -1;
+      return channel < 0 ? null : (t: number) => run.curves.at(channel, t);
+    };
+    const told_power = told("power"),
+      told_effort = told("torque") ?? told("force");
+    if (told_power && told_effort)
+      return [{ label, turns: told("torque") !== null, effort: told_effort, power: told_power }];
     let largest = [0, 0];
     for (let k = 0; k <= looks; ++k) {
       const t = start + (k / looks) * (end - start);

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The plots beside the picture: some to begin with, any other to be added, and any quantity against any other.
 import type { Figure } from "./figure";
+import { default_plots } from "./first_plots";
 import { Phase } from "./phase";
 import { Plot } from "./plot";
 import type { Run } from "./run";
-import { default_plots, quantities_of, type PhaseSpec } from "./specs";
+import { quantities_of, type PhaseSpec } from "./specs";
 import { by_id, element, number } from "./text";
 import type { Timeline } from "./timeline";
 import { angles_now, is_angular, set_angles, type Angles } from "./units";

@@ -34,7 +34,7 @@ const xyz = ["x", "y", "z"];
 
 type Bare = Omit<Series, "colour">;
 
-function instants({ motion: { start, end } }: Run, n = looks): number[] {
+export function instants({ motion: { start, end } }: Run, n = looks): number[] {
   return Array.from({ length: n + 1 }, (_, k) => start + (k / n) * (end - start));
 }
 /** The least and the largest value; one of both where there is nothing but rounding between them. */
@@ -152,6 +152,8 @@ class Specs {
       ["displacement", "Displacements of joints", "m"],
       ["angle rate", "Rates of angles", "rad/s"],
       ["displacement rate", "Rates of displacements", "m/s"],
+      ["angle acceleration", "Accelerations of angles", "rad/s^2"],
+      ["displacement acceleration", "Accelerations of displacements", "m/s^2"],
     ])
       this.add(
         `joints ${name}`,
@@ -254,6 +256,18 @@ class Specs {
         "m/s",
         parts((t) => run.velocity(b, t)),
       );
+      for (const [what, unit] of [
+        ["acceleration", "m/s^2"],
+        ["angular acceleration", "rad/s^2"],
+      ])
+        if (!point || what === "acceleration")
+          this.add(
+            `body ${b} ${what}`,
+            name,
+            `${name}: ${what}${what === "acceleration" ? " of the reference point" : ""}`,
+            unit,
+            xyz.flatMap((x) => this.of("body", b, `${what} ${x}`, x)),
+          );
       if (!point)
         this.add(
           `body ${b} spin`,
@@ -349,52 +363,4 @@ export function quantities_of(run: Run): { id: string; group: string; quantity: 
       },
     })),
   );
-}
-
-const twins = 40; // instants at which plots are the same
-
-function travels(run: Run, b: number): boolean {
-  const from = run.centre(b, run.motion.start);
-  return instants(run, 49).some((t) => run.centre(b, t).distanceTo(from) > 1e-6 * run.meta.length);
-}
-/** The same lines under another name. */
-function is_twin(run: Run, a: PlotSpec, b: PlotSpec): boolean {
-  if (a.unit !== b.unit || a.series.length !== b.series.length) return false;
-  return a.series.every(({ at }, i) => {
-    const pairs = instants(run, twins).map((t) => [at(t), b.series[i].at(t)]),
-      size = Math.max(...pairs.flat().map(Math.abs));
-    return pairs.every(([u, v]) => Math.abs(u - v) <= 1e-5 * size);
-  });
-}
-
-/** What a stranger should see first. */
-export function default_plots(run: Run): string[] {
-  const spec = (id: string) => run.specs.find((s) => s.id === id);
-  const motors = ["motor torques", "motor forces", "motor power"],
-    joints = ["joints angle", "joints angle 2", "joints displacement"].filter(spec);
-  const sensors = run.specs
-    .filter((s) => s.id.startsWith("sensor "))
-    .slice(0, 2)
-    .map((s) => s.id);
-  const about_bodies = joints.length
-    ? []
-    : run.meta.bodies.length === 1
-      ? [...(travels(run, 0) ? ["body 0 position"] : []), "body 0 spin"]
-      : ["heights", "speeds"];
-  const chosen: PlotSpec[] = [];
-  for (const id of [
-    ...motors,
-    ...sensors,
-    ...joints,
-    ...about_bodies,
-    "energy",
-    "reactions",
-    "loads",
-    "load torques",
-  ]) {
-    const one = spec(id);
-    if (one && !chosen.some((other) => is_twin(run, one, other))) chosen.push(one);
-  }
-  const most = motors.some(spec) ? 5 : 4;
-  return chosen.slice(0, most).map((s) => s.id);
 }
