@@ -4,6 +4,7 @@ import type { Run } from "./run";
 import { instants, type PlotSpec } from "./specs";
 
 const twins = 40; // instants at which plots are the same
+const seen = 5e-3; // of the largest value: no eye tells less apart, and curves are interpolated
 
 function travels(run: Run, b: number): boolean {
   const from = run.centre(b, run.motion.start);
@@ -15,7 +16,7 @@ function is_twin(run: Run, a: PlotSpec, b: PlotSpec): boolean {
   return a.series.every(({ at }, i) => {
     const pairs = instants(run, twins).map((t) => [at(t), b.series[i].at(t)]),
       size = Math.max(...pairs.flat().map(Math.abs));
-    return pairs.every(([u, v]) => Math.abs(u - v) <= 1e-5 * size);
+    return pairs.every(([u, v]) => Math.abs(u - v) <= seen * size);
   });
 }
 
