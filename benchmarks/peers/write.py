@@ -159,7 +159,9 @@ def front(rows):
     return found
 
 
-STYLES = {name: {"color": f"C{i % 10}", "marker": "osD^vPX*hd<>p8"[i], "markersize": 3, "linewidth": 1,
+# Ten of matplotlib and others that none of them is taken for: each engine has a colour of its own.
+COLOURS = [f"C{k}" for k in range(10)] + ["#111111", "#a6761d", "#66a61e", "#7570b3", "#e7298a"]
+STYLES = {name: {"color": COLOURS[i], "marker": "osD^vPX*hd<>p8"[i], "markersize": 3, "linewidth": 1,
                  "linestyle": "-" if i < 10 else "--"}
           for i, name in enumerate(engines.ENGINES)}
 

@@ -52,6 +52,21 @@ def formulas(text: str) -> str:
     return outside_fences(text, lambda part: re.sub(r"\$`([^`\n]+)`\$", r"$\1$", part))
 
 
+UNITS = r"(?:m|mm|cm|km|kg|g|s|ms|Hz|N|kN|N m|J|W|kW|rad|deg|rpm|Pa|MPa|GPa|MB|kB|h|min)"
+
+
+def unbroken(text: str) -> str:
+    """No line ends between a number and its unit. Headings stay as they are: anchors are made of them."""
+    spans = re.compile(r"(^#.*$|`+[^`\n]*`+|\$[^$\n]*\$|\]\([^)\n]*\))", re.M)
+
+    def change(part: str) -> str:
+        pieces = spans.split(part)
+        pieces[::2] = [re.sub(rf"(?<=[0-9]) (?={UNITS}(?![\w-]))", "\u00a0", piece) for piece in pieces[::2]]
+        return "".join(pieces)
+
+    return outside_fences(text, change)
+
+
 def raised(text: str) -> str:
     """All headings one level up."""
     return outside_fences(text, lambda part: re.sub(r"^##", "#", part, flags=re.M))
@@ -141,7 +156,7 @@ class Site:
             wanted.add(file)
             if source:
                 text = self.relinked(source, page, text)
-            put(file, tabs(re.sub(r"^```math$", "```{math}", formulas(text), flags=re.M)))
+            put(file, tabs(re.sub(r"^```math$", "```{math}", unbroken(formulas(text)), flags=re.M)))
         for copy, source in self.copies.items():
             file = self.folder / copy
             wanted.add(file)

@@ -36,6 +36,8 @@ pygments_dark_style = "monokai"
 
 html_theme = "furo"
 html_title = f"livens {release}"
+html_favicon = str(HERE / "static" / "mark.svg")
+html_logo = str(HERE / "static" / "mark.svg")
 html_static_path = [str(HERE / "static")]
 html_extra_path = [str(BUILD / "extra")]
 html_css_files = ["livens.css"]

@@ -14,6 +14,8 @@ const keys: [string, string][] = [
   ["in the picture: arrows", "turn it, with Shift move it"],
   ["drag, wheel, two fingers", "turn, nearer; with Shift or the right button move"],
   ["drag in a plot", "zoom into that time; double click shows all"],
+  ["click in a plot, on its curve", "go to that time"],
+  ["click on a name below a plot", "hide its line, show it again"],
 ];
 
 export function build_about(host: HTMLElement, run: Run, program: string, notices: string) {
@@ -39,7 +41,7 @@ export function build_about(host: HTMLElement, run: Run, program: string, notice
               element(
                 "p",
                 { class: "thinned" },
-                `The surface of ${name} is drawn with ${thinned[1]} of its ${thinned[0]} triangles: corners are at most ${rough(thinned[2])} m from where they are, and what is smaller may be gone. Motion and masses are those of the whole.`,
+                `The surface of ${name} is drawn with ${thinned[1]} of its ${thinned[0]} triangles: corners are at most ${rough(thinned[2])}\u00a0m from where they are, and what is smaller may be gone. Motion and masses are those of the whole.`,
               ),
             ]
           : [],

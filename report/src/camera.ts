@@ -93,12 +93,18 @@ export class Eye {
     this.points = is_again ? this.extent.whole : this.extent.near;
     this.fit(side);
   }
-  private fit_points() {
-    const { side } = this;
-    this.moved = false;
+  view_of(side: Side): View {
     const rise = side === "top" ? 1.5 : side !== "fitted" ? 0 : this.flat ? 0.85 : 0.3;
     const turn = side === "side" ? Math.PI / 2 : side === "fitted" ? -0.42 : 0;
-    const v = view_from(this.up, this.across, turn, rise);
+    return view_from(this.up, this.across, turn, rise);
+  }
+  /** Nobody has chosen from where to look. */
+  get is_untouched() {
+    return this.side === "fitted" && !this.moved;
+  }
+  private fit_points() {
+    this.moved = false;
+    const v = this.view_of(this.side);
     const tangent = Math.tan((this.camera.fov * Math.PI) / 360),
       tx = 0.9 * tangent * this.camera.aspect,
       t_up = tangent * (1 - 2 * this.room.above),
@@ -130,6 +136,16 @@ export class Eye {
         .addScaledVector(v.into, depth);
     this.camera.position.copy(at(-back));
     this.target.copy(at(middle));
+    this.aim();
+  }
+  /** From where another eye looks, in a picture of another form. */
+  see_as(other: Eye) {
+    this.points = other.points === other.extent.near ? this.extent.near : this.extent.whole;
+    this.fit(other.side);
+    if (!other.moved) return;
+    this.moved = true;
+    this.camera.position.copy(other.camera.position);
+    this.target.copy(other.target);
     this.aim();
   }
   /** `above`, `below`: shares of the height that are left to what is written there. */

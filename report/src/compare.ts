@@ -5,6 +5,7 @@ import { Plot } from "./plot";
 import { Run } from "./run";
 import { by_id, element, number, rough } from "./text";
 import type { Timeline } from "./timeline";
+import { shown_in } from "./units";
 import { verdict_of } from "./verdict";
 
 const looks = 600;
@@ -92,7 +93,7 @@ function sides(first: Run, second: Run): HTMLElement {
         row("elements", (r) => number(r.figure("elements"), 9)),
         row("estimated error", (r) => rough(r.figure("estimated_error"))),
         row("energy balance", (r) => rough(r.figure("energy_drift"))),
-        row("time", (r) => `${number(r.meta.start, 6)} s to ${number(r.meta.end, 6)} s`),
+        row("time", (r) => `${number(r.meta.start, 6)}\u00a0s to ${number(r.meta.end, 6)}\u00a0s`),
         row("bodies", (r) => String(r.meta.bodies.length)),
       ),
     ),
@@ -102,7 +103,11 @@ function sides(first: Run, second: Run): HTMLElement {
 export class Compare {
   second: Run | null = null;
   plots: Plot[] = [];
+  private readonly empty = element("ol", { class: "steps" });
   private readonly result = element("div", { "aria-live": "polite" });
+
+  /** What was found, anew where units change. */
+  say = () => {};
 
   constructor(
     private readonly host: HTMLElement,
@@ -110,22 +115,37 @@ export class Compare {
     private readonly time: Timeline,
     private readonly changed: (second: Run | null) => void,
   ) {
-    const input = element("input", { type: "file", accept: ".html,text/html", id: "other-file" });
-    const label = element("label", { for: "other-file" }, "Another report");
+    const input = element("input", {
+      type: "file",
+      accept: ".html,text/html",
+      id: "other-file",
+      class: "unseen",
+    });
+    const steps = [
+      "Solve the same mechanism again: with another number in it, another accuracy, another method.",
+      "Write a report of that run, too: livens report OTHER.nc",
+      "Open it here. Both motions are shown in one picture, and how far they are apart over time.",
+    ];
     const section = element(
       "section",
       { class: "card" },
-      element("h2", {}, "Against another run"),
+      element("h2", {}, "Compare with another run"),
+      this.empty,
       element(
         "p",
-        {},
-        "Choose or drop another page that livens report wrote; nothing leaves this machine. On the command line: ",
-        element("code", {}, "livens report A.nc B.nc -o FILE.html"),
-        ".",
+        { class: "chooser" },
+        element("label", { for: "other-file", class: "button" }, "Open another report\u2026"),
+        input,
       ),
-      element("p", {}, label, " ", input),
+      element(
+        "p",
+        { class: "note" },
+        "You may also drop the file anywhere on this page; nothing leaves this machine. Both in one page from the start: ",
+        element("code", {}, "livens report A.nc B.nc -o FILE.html"),
+      ),
       this.result,
     );
+    this.empty.append(...steps.map((step) => element("li", {}, step)));
     host.append(section);
     const read = async (file: File | undefined) => {
       if (!file) return;
@@ -139,7 +159,7 @@ export class Compare {
           element(
             "p",
             { class: "bad" },
-            `${file.name} is no report that can be read: ${error instanceof Error ? error.message : String(error)}`,
+            `${file.name} cannot be read as a report: ${error instanceof Error ? error.message : String(error)}`,
           ),
         );
       }
@@ -157,6 +177,7 @@ export class Compare {
 
   set(second: Run) {
     this.second = second;
+    this.empty.hidden = true;
     for (const plot of this.plots) plot.destroy();
     this.plots = [];
     const from = Math.max(this.first.motion.start, second.motion.start),
@@ -168,11 +189,17 @@ export class Compare {
     const pairs = from <= to ? pairs_of(this.first, second, times) : [],
       grid = element("div", { class: "grid" });
     const largest = (of: (p: Pair) => Float64Array) => Math.max(0, ...pairs.map((p) => Math.max(...of(p))));
-    const said =
-      pairs.length === 0
-        ? "The runs have no body and no time in common."
-        : `${pairs.length === 1 ? "The body that both have is" : `The ${pairs.length} bodies that both have are`} at most ${rough(largest((p) => p.distance))} m and ${rough(largest((p) => p.angle))} rad apart, looked at ${times.length} times from ${number(from, 6)} s to ${number(to, 6)} s; “${pairs[0].name}” most. The second is the grey ghost in the picture.`;
-    this.result.replaceChildren(element("p", { class: "lead" }, said), sides(this.first, second));
+    const [apart, turned] = [largest((p) => p.distance), largest((p) => p.angle)],
+      lead = element("p", { class: "lead" });
+    this.say = () => {
+      const { unit, factor } = shown_in("rad");
+      lead.textContent =
+        pairs.length === 0
+          ? "The runs have no body and no time in common."
+          : `${pairs.length === 1 ? "The body that both have is" : `The ${pairs.length} bodies that both have are`} at most ${rough(apart)}\u00a0m and ${rough(factor * turned)}\u00a0${unit} apart, looked at ${times.length} times from ${number(from, 6)}\u00a0s to ${number(to, 6)}\u00a0s; \u201c${pairs[0].name}\u201d most. The second is the grey ghost in the picture.`;
+    };
+    this.say();
+    this.result.replaceChildren(lead, sides(this.first, second));
     if (!grid.parentElement) this.host.querySelector(".grid")?.remove();
     this.host.append(grid);
     if (pairs.length && times.length > 1) {

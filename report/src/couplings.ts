@@ -124,7 +124,7 @@ export class Couplings {
     e1.addScaledVector(axis, -e1.dot(axis)).normalize();
     const e2 = new Vector3().crossVectors(axis, e1),
       centre = shaft.at.clone().applyMatrix4(back),
-      colour = new Color(body_colour(body)),
+      colour = new Color(this.run.meta.bodies[body].color ?? body_colour(body)),
       pitch = (2 * Math.PI * r) / n,
       height = 0.3 * pitch,
       thick = this.thickness(shaft, r);
@@ -189,7 +189,7 @@ export class Couplings {
       along = rack.axis.clone().transformDirection(back),
       outwards = out.clone().transformDirection(back),
       axis = new Vector3().crossVectors(along, outwards),
-      colour = new Color(body_colour(rack.body)),
+      colour = new Color(this.run.meta.bodies[rack.body].color ?? body_colour(rack.body)),
       first = Math.floor(-high / pitch) - 4,
       last = Math.ceil(-low / pitch) + 4;
     if (last - first > 400) return;

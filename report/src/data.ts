@@ -3,12 +3,22 @@
 
 export type Vector = [number, number, number];
 
+/** A form at a place and in axes (columns) of its body or of the world; null: those of the body, its colour. */
+export interface Piece {
+  shape: number;
+  middle: Vector;
+  half: Vector;
+  axes: number[] | null;
+  color: string | null;
+  opacity: number;
+}
 export interface Body {
   name: string;
   point: boolean;
   mark: boolean;
   mass: number;
-  shape: number;
+  color: string | null;
+  pieces: Piece[];
   middle: Vector;
   half: Vector;
   centre: Vector;
@@ -17,6 +27,7 @@ export interface Body {
 export interface Joint {
   name: string;
   type: string;
+  bar: boolean; // it holds the distance of two points
   first: number;
   second: number;
   point_first: Vector;
@@ -25,6 +36,7 @@ export interface Joint {
   axis_second: Vector;
   from: number | null; // s, when it begins and ends to act; null: always
   until: number | null;
+  path?: Vector[]; // of a slot: its whole curve, on the first body
 }
 export interface Load {
   name: string;
@@ -74,6 +86,7 @@ export interface Meta {
     forms: number[];
   };
   bodies: Body[];
+  world: Piece[];
   joints: Joint[];
   loads: Load[];
   sensors: Sensor[];

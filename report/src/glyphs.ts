@@ -52,5 +52,3 @@ export function pieces_of(type: string): Piece[] {
   return Object.hasOwn(kinds, type) ? kinds[type] : [small_ball];
 }
 export const has_foot = (type: string) => standing.has(type);
-/** Between two points, like a rod. */
-export const has_bar = (type: string) => type === "rod";

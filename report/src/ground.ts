@@ -5,18 +5,30 @@ import { Poses } from "./instances";
 import { nice } from "./text";
 import { theme } from "./theme";
 
-/** Cells of a round number of metres under all points. */
+/** The ground: its axes, its middle, half of its sides. */
+export interface Plane {
+  x: Vector3;
+  y: Vector3;
+  up: Vector3;
+  middle: Vector3;
+  half: [number, number];
+}
+
+/** Cells of a round number of metres under all points; `floor`: a height that it does not lie above;
+ *  `stated`: where it lies, if there is a floor. */
 export function make_grid(
   points: Float32Array,
   up: Vector3,
   size: number,
-): { object: LineSegments; cell: number } {
+  floor: number,
+  stated: number | null,
+): { object: LineSegments; cell: number; plane: Plane } {
   const cell = nice(size / 2.5),
     seed = Math.abs(up.y) < 0.9 ? new Vector3(0, 1, 0) : new Vector3(0, 0, 1);
   const x = new Vector3().crossVectors(seed, up).normalize(),
     y = new Vector3().crossVectors(up, x),
     p = new Vector3();
-  const low = [Infinity, Infinity, Infinity],
+  const low = [Infinity, Infinity, floor],
     high = [-Infinity, -Infinity];
   for (let i = 0; i < points.length; i += 3) {
     p.fromArray(points, i);
@@ -30,21 +42,26 @@ export function make_grid(
   const from = [0, 1].map((k) => Math.floor(low[k] / cell) - 1),
     to = [0, 1].map((k) => Math.ceil(high[k] / cell) + 1);
   const lines: number[] = [],
-    height = low[2] - 0.02 * size;
-  const put = (a: number, b: number) => {
-    p.copy(x)
-      .multiplyScalar(a * cell)
+    height = stated === null ? low[2] - 0.002 * size : stated + 0.001 * size; // what rests on it does not flicker
+  const at = (a: number, b: number) =>
+    new Vector3()
+      .addScaledVector(x, a * cell)
       .addScaledVector(y, b * cell)
       .addScaledVector(up, height);
-    lines.push(p.x, p.y, p.z);
-  };
+  const put = (a: number, b: number) => lines.push(...at(a, b).toArray());
   for (let i = from[0]; i <= to[0]; ++i) for (const j of [from[1], to[1]]) put(i, j);
   for (let j = from[1]; j <= to[1]; ++j) for (const i of [from[0], to[0]]) put(i, j);
   const geometry = new BufferGeometry().setAttribute(
     "position",
     new BufferAttribute(Float32Array.from(lines), 3),
   );
-  return { object: new LineSegments(geometry, new LineBasicMaterial({ color: theme().grid })), cell };
+  const middle = at((from[0] + to[0]) / 2, (from[1] + to[1]) / 2),
+    half: [number, number] = [((to[0] - from[0]) * cell) / 2, ((to[1] - from[1]) * cell) / 2];
+  return {
+    object: new LineSegments(geometry, new LineBasicMaterial({ color: theme().grid })),
+    cell,
+    plane: { x, y, up, middle, half },
+  };
 }
 
 export class Frames {

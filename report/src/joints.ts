@@ -15,11 +15,12 @@ import {
 } from "three";
 import { Couplings } from "./couplings";
 import type { Joint } from "./data";
-import { has_bar, has_foot, pieces_of, type Part, type Piece } from "./glyphs";
+import { has_foot, pieces_of, type Part, type Piece } from "./glyphs";
 import { Instances, Poses, acts, unit_z, vector, type Place } from "./instances";
 import type { Run } from "./run";
 import { body_colour, theme } from "./theme";
 
+const foot_height = 3.5; // radii
 const many = 30; // joints that are drawn with fewer sides
 
 export class Joints {
@@ -95,7 +96,7 @@ export class Joints {
         this.put({ part: "cylinder", half: [0.55, 0.55, 1.5], at: [0, 0, -1.5] }, -1, first, run.up, fixed);
         this.put({ part: "box", half: [2.4, 2.4, 0.3], at: [0, 0, -3.2] }, -1, first, run.up, fixed);
       }
-      if (has_bar(joint.type)) this.bars.push({ joint, a: first, b: second });
+      if (joint.bar) this.bars.push({ joint, a: first, b: second });
     }
     for (const load of run.meta.loads)
       if (load.type === "bushing" && load.place)
@@ -123,10 +124,18 @@ export class Joints {
         turn,
         new Vector3(thick, thick, size / 2),
       );
-      this.places.cylinder.push({ body: b, colour: new Color(body_colour(b)), local });
+      this.places.cylinder.push({ body: b, colour: new Color(body.color ?? body_colour(b)), local });
     }
   }
 
+  /** The height of what the feet stand on; infinite where there are none. */
+  get floor(): number {
+    const { meta, up } = this.run,
+      standing = meta.joints.filter((joint) => joint.first < 0 && has_foot(joint.type));
+    return Math.min(
+      ...standing.map((joint) => vector(joint.point_first).dot(up) - foot_height * this.radius),
+    );
+  }
   /** Bars between points that act. */
   bars_at(t: number) {
     return this.bars.filter(({ joint }) => acts(joint, t)).length;

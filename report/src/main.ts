@@ -3,17 +3,21 @@
 import { build_about } from "./about";
 import { Compare } from "./compare";
 import { runs_of } from "./data";
+import type { Figure } from "./figure";
 import { Picture } from "./picture";
 import { Playback } from "./playback";
-import type { Plot } from "./plot";
 import { PlotList } from "./plot_list";
 import { build_quality } from "./quality";
+import { record, type Course, type Kind } from "./record";
 import { Run } from "./run";
+import { Save } from "./save";
 import { Scrub } from "./scrub";
+import type { Look } from "./studio";
 import { Tabs, tab_names } from "./tabs";
 import { by_id, element } from "./text";
 import { dark_wanted, set_printing } from "./theme";
 import { Timeline } from "./timeline";
+import { on_angles } from "./units";
 import { verdict_of } from "./verdict";
 
 const half_of_a_page = 335; // px, of A4 and of letter
@@ -26,7 +30,7 @@ class Report {
   private readonly list: PlotList;
   private readonly compare: Compare;
   private readonly tabs: Tabs;
-  private quality: Plot[] | null = null;
+  private quality: Figure[] | null = null;
 
   constructor(
     readonly run: Run,
@@ -38,12 +42,8 @@ class Report {
     this.picture = new Picture(run, this.time);
     this.list = new PlotList(run, this.time);
     this.playback = new Playback(this.time);
-    this.scrub = new Scrub(
-      this.time,
-      motion.ends,
-      run.meta.pose.precision === "thinned" ? "part" : "element",
-      () => this.playback.stop(),
-    );
+    this.scrub = new Scrub(this.time, motion.ends, () => this.playback.stop());
+    new Save(this.picture, this.time, this.playback, run.meta.name);
     this.compare = new Compare(by_id("compare"), run, this.time, (second) => this.picture.compare(second));
     const script = document.querySelector('script[type="module"]')!.textContent ?? "";
     const { version } = JSON.parse(by_id("program").textContent ?? "{}") as { version: string };
@@ -52,6 +52,10 @@ class Report {
       for (const plot of this.plots()) plot.show(t);
     });
     this.time.on_zoom(() => {
+      for (const plot of this.plots()) plot.zoom();
+    });
+    on_angles(() => {
+      this.compare.say();
       for (const plot of this.plots()) plot.zoom();
     });
     this.tabs = new Tabs((name) => {
@@ -64,7 +68,7 @@ class Report {
     this.read_address();
   }
 
-  private plots(): Plot[] {
+  private plots(): Figure[] {
     return [...this.list.plots, ...(this.quality ?? []), ...this.compare.plots];
   }
   private build_quality() {
@@ -109,7 +113,7 @@ class Report {
   private press(e: KeyboardEvent) {
     const target = e.target as HTMLElement,
       { time, playback, scrub } = this;
-    if (e.ctrlKey || e.metaKey || e.altKey) return;
+    if (e.ctrlKey || e.metaKey || e.altKey || document.querySelector("dialog[open]")) return;
     if (target.matches("input, select, textarea, summary") && !scrub.is(target)) return;
     if (e.key === " " && target.matches("button")) return; // presses it
     const is_scrolling = /^(Home|End|Page)/.test(e.key) && by_id("motion").hidden;
@@ -163,7 +167,24 @@ function say_verdict(run: Run) {
   );
 }
 
-/** What tests ask. */
+/** A still or a moving picture as base64, for scripts: report/stills.mjs. */
+async function made_of(picture: Picture, kind: Kind, look: Partial<Look>, course: Partial<Course>) {
+  const screen = picture.screen(),
+    { start, end } = screen.run.motion;
+  const data = await record(
+    kind,
+    screen,
+    { width: 1280, height: 720, scheme: null, is_clear: false, names: false, clock: false, ...look },
+    { from: start, to: end, speed: 1, rate: 25, ...course },
+  );
+  const bytes = new Uint8Array(await data.arrayBuffer()),
+    part = 0x8000;
+  let text = "";
+  for (let i = 0; i < bytes.length; i += part) text += String.fromCharCode(...bytes.subarray(i, i + part));
+  return btoa(text);
+}
+
+/** What tests and scripts ask. */
 function open_to_tests(report: Report, timings: Record<string, number>) {
   const { run, time, picture } = report,
     { motion } = run,
@@ -184,6 +205,8 @@ function open_to_tests(report: Report, timings: Record<string, number>) {
         at_end: picture.stage?.bars_at(time.end),
       }),
       has_picture: picture.stage !== null,
+      record: (kind: Kind, look: Partial<Look>, course: Partial<Course>) =>
+        made_of(picture, kind, look, course),
       timings,
       /** Mean milliseconds of a frame, every one waited for, and draw calls of the last. */
       frames(n: number) {

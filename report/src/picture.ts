@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The picture with what lies about it: names, scales, switches. Without WebGL plots stand alone.
 import type { Side } from "./camera";
+import { beside, spread } from "./labels";
 import type { Run } from "./run";
 import { Stage, type Shown } from "./stage";
+import type { Screen } from "./studio";
 import { by_id, element, number, rough, seconds } from "./text";
 import { body_colour, dark_wanted, theme } from "./theme";
 import type { Timeline } from "./timeline";
@@ -43,7 +45,7 @@ export class Picture {
     this.stage?.renderer.dispose();
     this.stage = null;
     this.labels.forEach((label, b) => {
-      label.style.borderColor = body_colour(b);
+      label.style.borderColor = this.run.meta.bodies[b].color ?? body_colour(b);
     });
     const canvas = element("canvas", {
       id: "stage",
@@ -93,6 +95,11 @@ export class Picture {
       by_id(`view-${side}`).addEventListener("click", () => this.stage?.eye.fit_by_hand(side));
   }
 
+  /** What pictures that are saved take from this one. */
+  screen(): Screen {
+    const { run, other, stage, shown } = this;
+    return { run, other: shown.other ? other : null, stage, shown };
+  }
   compare(other: Run | null) {
     this.other = other;
     by_id("other-label").hidden = other === null;
@@ -115,18 +122,16 @@ export class Picture {
     by_id("labels").hidden = !this.shown.names;
     if (!this.stage || !this.shown.names) return;
     const { clientWidth: width, clientHeight: height } = by_id("space");
-    this.labels.forEach((label, b) => {
+    const placed = this.labels.flatMap((label, b) => {
       const at = this.stage!.screen(b);
       label.hidden = at === null || !Number.isFinite(at[0] + at[1]);
-      if (!at || label.hidden) return;
+      if (!at || label.hidden) return [];
       this.sizes[b] ??= [label.offsetWidth, label.offsetHeight];
-      // Beside the middle of the body, and in the picture as long as that is in it.
-      const [w, h] = this.sizes[b],
-        is_in = at[0] > 0 && at[0] < width && at[1] > 0 && at[1] < height,
-        x = is_in ? Math.min(at[0] + 11, width - w - 2) : at[0] + 11,
-        y = is_in ? Math.max(at[1] - h - 7, 2) : at[1] - h - 7;
-      label.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px)`;
+      return [{ label, ...beside(at, this.sizes[b], width, height) }];
     });
+    spread(placed, height);
+    for (const { label, x, y } of placed)
+      label.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px)`;
   }
 
   /** The scales of the picture. */
@@ -142,22 +147,22 @@ export class Picture {
     if (run.meta.bodies.length > few) add(null, `${run.meta.bodies.length} bodies`);
     if (stage.leaving.length)
       add(null, `${stage.leaving.slice(0, 3).join(", ")} goes far: Fit once more shows the whole way`);
-    add(null, `grid ${number(stage.cell)} m`);
+    add(null, `grid ${number(stage.cell)}\u00a0m`);
     if (this.shown.trails && stage.path_window > 0)
-      add(null, `paths of the last ${number(stage.path_window, 2)} s`);
+      add(null, `paths of the last ${number(stage.path_window, 2)}\u00a0s`);
     const kinds = new Set(run.forces.filter((f) => f.largest > 0).map((f) => f.kind));
     if (this.shown.forces && run.largest_force > 0) {
       if (kinds.has("reaction")) add(theme().force, "force of a joint on its second body");
       if (kinds.has("load")) add(theme().load, "force of a load");
-      add(null, `longest arrow ${number(run.largest_force, 3)} N, lengths as \u221aforce`);
+      add(null, `longest arrow ${number(run.largest_force, 3)}\u00a0N, lengths as \u221aforce`);
     }
     if (this.shown.forces && run.largest_torque > 0) {
       if (!kinds.has("load") || run.largest_force === 0) add(theme().load, "torque of a load");
-      add(null, `largest torque ${number(run.largest_torque, 3)} N m`);
+      add(null, `largest torque ${number(run.largest_torque, 3)}\u00a0N\u00a0m`);
     }
     const thinned = run.meta.bodies.filter((body) => body.thinned);
     if (thinned.length)
-      add(null, `surfaces thinned, off by ${rough(Math.max(...thinned.map((b) => b.thinned![2])))} m`);
+      add(null, `surfaces thinned, off by ${rough(Math.max(...thinned.map((b) => b.thinned![2])))}\u00a0m`);
     if (this.shown.frames) ["d\u2081", "d\u2082", "d\u2083"].forEach((d, i) => add(theme().axes[i], d));
     by_id("caption").replaceChildren(...said);
   }
@@ -178,7 +183,7 @@ export class Picture {
       stage.show(t);
       const canvas = element("canvas", { width: String(source.width), height: String(source.height) });
       canvas.getContext("2d")!.drawImage(source, 0, 0);
-      host.append(element("figure", {}, canvas, element("figcaption", {}, `${seconds(t, span)} s`)));
+      host.append(element("figure", {}, canvas, element("figcaption", {}, `${seconds(t, span)}\u00a0s`)));
     }
     stage.show(now);
     this.resize();

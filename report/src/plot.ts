@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Plots over time that are linked: the instant shown, what is zoomed into. Curves are made again for what is seen.
 import uPlot from "uplot";
-import { element, number, seconds, steady } from "./text";
+import { framed, heading, sheet, type Columns, type Figure } from "./figure";
+import { decades, near, padded, power } from "./scales";
+import { element, number, steady } from "./text";
 import { colour, theme } from "./theme";
 import type { Timeline } from "./timeline";
+import { shown_in } from "./units";
 
 /** A series is a function of time, or values at given times. */
 export interface Drawn {
@@ -25,52 +28,32 @@ export interface PlotOptions {
 }
 
 const samples = 900;
-const font = "11px system-ui, sans-serif";
+const usual_height = 148; // px
+const font = (scale: number) => `${11 * scale}px system-ui, sans-serif`;
 
-export class Plot {
+export class Plot implements Figure {
   readonly box: HTMLElement;
   private readonly u: uPlot;
   private readonly line = element("div", { class: "now" });
   private readonly values: HTMLElement[] = [];
+  private readonly unit = element("small");
+  private readonly is_seen: boolean[];
 
   constructor(
     host: HTMLElement,
     private readonly o: PlotOptions,
     private readonly time: Timeline,
   ) {
-    const keys = element("p", { class: "keys" });
-    o.series.forEach((s) => {
-      const value = element("output", { "aria-live": "off" });
-      const swatch = element("i", {});
-      swatch.style.background = colour(s.colour);
-      const is_said = o.series.length === 1 && o.title.endsWith(s.label);
-      keys.append(
-        element("span", {}, swatch, is_said ? null : element("b", { title: s.label }, s.label), value),
-      );
-      this.values.push(value);
-    });
-    const title = element(
-      "span",
-      {},
-      o.title,
-      element(
-        "small",
-        {},
-        o.unit === ""
-          ? ""
-          : ` ${o.unit.replace(/ s-(\d)/, (_, n: string) => `/s${n === "1" ? "" : "\u00b2"}`)}`,
-      ),
+    this.is_seen = o.series.map(() => true);
+    const keys = element("p", { class: "keys" }, ...o.series.map((_, i) => this.key(i)));
+    this.write_unit();
+    const { title, remove } = o;
+    const head = heading(
+      { title, remove, picture: () => this.picture(), table: () => this.table() },
+      this.unit,
     );
-    const close =
-      o.remove &&
-      element(
-        "button",
-        { class: "remove", "aria-label": `remove the plot: ${o.title}`, title: "remove this plot" },
-        "\u00d7",
-      );
-    if (close) close.addEventListener("click", o.remove!);
     const area = element("div", { class: "area", role: "img", "aria-label": this.described() });
-    this.box = element("figure", {}, element("figcaption", {}, title, close), area, keys);
+    this.box = element("figure", {}, head, area, keys);
     host.append(this.box);
     this.u = new uPlot(this.options(area.clientWidth || 400), this.data(), area);
     this.u.over.append(this.line);
@@ -81,8 +64,47 @@ export class Plot {
     this.show(time.now);
   }
 
+  /** The name of a line with its value; where there are more, a button that hides the line. */
+  private key(i: number): HTMLElement {
+    const { series, title } = this.o,
+      s = series[i],
+      swatch = element("i", {}),
+      value = element("output", { "aria-live": "off" });
+    swatch.style.background = colour(s.colour);
+    this.values.push(value);
+    if (series.length === 1)
+      return element(
+        "span",
+        {},
+        swatch,
+        title.endsWith(s.label) ? null : element("b", { title: s.label }, s.label),
+        value,
+      );
+    const button = element(
+      "button",
+      {
+        "aria-pressed": "true",
+        "aria-label": `show ${s.label} in ${title}`,
+        title: `${s.label}: hide or show`,
+      },
+      swatch,
+      element("b", {}, s.label),
+    );
+    button.addEventListener("click", () => {
+      const is_seen = (this.is_seen[i] = !this.is_seen[i]);
+      button.setAttribute("aria-pressed", String(is_seen));
+      this.u.setSeries(i + 1, { show: is_seen });
+    });
+    return element("span", {}, button, value);
+  }
+  private write_unit() {
+    const { unit } = shown_in(this.o.unit);
+    this.unit.textContent = unit && ` ${unit}`;
+  }
+
   private described() {
-    const { title, unit, series } = this.o,
+    const { title, series } = this.o,
+      { unit, factor } = shown_in(this.o.unit),
       [from, to] = [this.time.start, this.time.end];
     const parts = series.slice(0, 4).map((s) => {
       let low = Infinity,
@@ -95,15 +117,16 @@ export class Plot {
       };
       if (s.at) for (let k = 0; k <= 60; ++k) see(s.at(from + (k / 60) * (to - from)));
       else for (let k = 0; k < s.values!.length; ++k) see(s.values![k]);
-      return `${s.label} from ${number(low, 3)} to ${number(high, 3)}`;
+      return `${s.label} from ${number(factor * low, 3)} to ${number(factor * high, 3)}`;
     });
     return `${title}${unit ? `, ${unit}` : ""}, over time: ${parts.join("; ")}`;
   }
 
   private data(): uPlot.AlignedData {
     const { series, times, log } = this.o,
-      [from, to] = this.time.range;
-    const shown = (v: number) => (Number.isFinite(v) && !(log && v <= 0) ? v : null);
+      [from, to] = this.time.range,
+      { factor } = shown_in(this.o.unit);
+    const shown = (v: number) => (Number.isFinite(v) && !(log && v <= 0) ? factor * v : null);
     if (times) return [Array.from(times), ...series.map((s) => Array.from(s.values!, shown))];
     const x = Array.from({ length: samples + 1 }, (_, k) => from + (k / samples) * (to - from));
     return [
@@ -114,11 +137,12 @@ export class Plot {
     ];
   }
 
-  private options(width: number): uPlot.Options {
+  /** `scale`: of everything that is written and drawn. */
+  private options(width: number, height = this.o.height ?? usual_height, scale = 1): uPlot.Options {
     const { o } = this,
       stroke = () => theme().soft,
-      grid = { stroke: () => theme().line, width: 1 };
-    const axis = { stroke, grid, ticks: { ...grid, size: 4 }, font };
+      grid = { stroke: () => theme().line, width: scale };
+    const axis = { stroke, grid, ticks: { ...grid, size: 4 * scale }, font: font(scale), gap: 5 * scale };
     const tens: uPlot.Scale.Range = (_, low, high) => {
       const all = [low, high, o.bound?.value ?? NaN].filter((v) => Number.isFinite(v) && v > 0);
       if (all.length === 0) return [1e-17, 1e-15];
@@ -128,9 +152,9 @@ export class Plot {
     };
     return {
       width,
-      height: o.height ?? 148,
+      height,
       legend: { show: false },
-      padding: [6, 10, 0, 0],
+      padding: [6 * scale, 18 * scale, 0, 0],
       cursor: {
         drag: { x: true, y: false, setScale: false },
         points: { show: false },
@@ -143,11 +167,16 @@ export class Plot {
         y: o.log ? { distr: 3, range: tens } : { range: (_, low, high) => padded(low, high) },
       },
       axes: [
-        { ...axis, size: 26, values: (_, ticks) => ticks.map((v) => number(v, 6)) },
         {
           ...axis,
-          size: 58,
-          space: 26,
+          size: 26 * scale,
+          space: 50 * scale,
+          values: (_, ticks) => ticks.map((v) => number(v, 6)),
+        },
+        {
+          ...axis,
+          size: 58 * scale,
+          space: 26 * scale,
           ...(o.log && { splits: decades, filter: (_u: uPlot, splits: number[]) => splits }),
           values: (_, ticks) => ticks.map((v) => (v === null ? "" : o.log ? power(v) : number(v, 5))),
         },
@@ -155,10 +184,11 @@ export class Plot {
       series: [
         {},
         ...o.series.map(
-          (s): uPlot.Series => ({
+          (s, i): uPlot.Series => ({
             label: s.label,
+            show: this.is_seen[i],
             stroke: () => colour(s.colour),
-            width: 1.6,
+            width: 1.6 * scale,
             points: { show: false },
             pxAlign: 0, // steep curves are no stairs
             spanGaps: true,
@@ -166,7 +196,7 @@ export class Plot {
         ),
       ],
       hooks: {
-        draw: [(u) => this.lines(u)],
+        draw: [(u) => this.lines(u, scale)],
         setSelect: [
           (u) => {
             if (u.select.width < 4) return;
@@ -183,11 +213,11 @@ export class Plot {
   }
 
   /** Bounds and marks. */
-  private lines(u: uPlot) {
+  private lines(u: uPlot, scale: number) {
     const { bound, mark } = this.o,
       c = u.ctx,
       { left, top, width, height } = u.bbox,
-      ratio = devicePixelRatio;
+      ratio = devicePixelRatio * scale;
     c.save();
     c.beginPath();
     c.rect(left, top, width, height);
@@ -223,18 +253,50 @@ export class Plot {
     c.restore();
   }
 
+  /** What is seen of the plot: its time and its lines. */
+  private table(): Columns {
+    const { unit } = shown_in(this.o.unit),
+      [x, ...all] = this.data(),
+      [from, to] = this.time.range;
+    const in_sight = (column: ArrayLike<number | null | undefined>) =>
+      Array.from(column, (v) => v ?? NaN).filter((_, k) => x[k] >= from && x[k] <= to);
+    const lines = this.o.series.flatMap((s, i) =>
+      this.is_seen[i] ? [{ head: unit ? `${s.label} [${unit}]` : s.label, values: in_sight(all[i]) }] : [],
+    );
+    return {
+      head: ["t [s]", ...lines.map(({ head }) => head)],
+      columns: [in_sight(x), ...lines.map(({ values }) => values)],
+    };
+  }
+  /** Drawn anew, as large as slides want it. */
+  private async picture(): Promise<HTMLCanvasElement> {
+    const { width, height, scale } = sheet,
+      host = element("div"),
+      ratio = devicePixelRatio,
+      options = this.options(width / ratio, height / ratio, scale / ratio);
+    const is_drawn = new Promise<void>((done) => options.hooks!.draw!.push(() => done()));
+    const plot = new uPlot(options, this.data(), host);
+    await is_drawn;
+    const keys = this.o.series.flatMap((s, i) =>
+      this.is_seen[i] ? [{ label: s.label, colour: colour(s.colour) }] : [],
+    );
+    const made = framed(plot.ctx.canvas, height, this.o.title, shown_in(this.o.unit).unit, keys, theme());
+    plot.destroy();
+    return made;
+  }
+
   zoom() {
+    this.write_unit();
     this.u.setData(this.data());
     this.show(this.time.now);
   }
   resize() {
     const width = (this.u.root.parentElement as HTMLElement).clientWidth;
-    if (width > 0 && width !== this.u.width) this.u.setSize({ width, height: this.o.height ?? 148 });
+    if (width > 0 && width !== this.u.width) this.u.setSize({ width, height: this.o.height ?? usual_height });
     this.show(this.time.now);
   }
-  /** For paper, which nothing tells the width of. */
   set_width(width: number) {
-    this.u.setSize({ width, height: this.o.height ?? 148 });
+    this.u.setSize({ width, height: this.o.height ?? usual_height });
   }
   recolour() {
     this.u.redraw();
@@ -247,8 +309,9 @@ export class Plot {
       share = (t - from) / (to - from);
     this.line.style.left = `${100 * share}%`;
     this.line.hidden = !(share >= -1e-9 && share <= 1 + 1e-9);
+    const { factor } = shown_in(this.o.unit);
     this.o.series.forEach((s, i) => {
-      const v = s.at ? s.at(t) : s.values![near(this.o.times!, t)];
+      const v = factor * (s.at ? s.at(t) : s.values![near(this.o.times!, t)]);
       this.values[i].textContent = this.o.log ? number(v, 2) : s.at ? steady(v) : number(v);
     });
   }
@@ -257,39 +320,3 @@ export class Plot {
     this.box.remove();
   }
 }
-
-/** The first of ascending times that is not before t. */
-function near(times: ArrayLike<number>, t: number) {
-  let low = 0,
-    high = times.length - 1;
-  while (low < high) {
-    const middle = (low + high) >> 1;
-    if (times[middle] < t) low = middle + 1;
-    else high = middle;
-  }
-  return low;
-}
-/** Powers of ten, some seven of them. */
-function decades(_: uPlot, __: number, low: number, high: number) {
-  const from = Math.round(Math.log10(low)),
-    to = Math.round(Math.log10(high)),
-    step = Math.max(1, Math.ceil((to - from) / 7));
-  return Array.from(
-    { length: Math.floor((to - from) / step) + 1 },
-    (_unused, k) => 10 ** (to - k * step),
-  ).reverse();
-}
-/** Rounding is no signal: a constant is shown as one. */
-function padded(low: number | null, high: number | null): [number, number] {
-  if (low === null || high === null) return [-1, 1];
-  const middle = (low + high) / 2,
-    half = Math.max((high - low) / 2, 1e-6 * Math.abs(middle), 1e-12);
-  return [middle - 1.12 * half, middle + 1.12 * half];
-}
-const digits = "\u2070\u00b9\u00b2\u00b3\u2074\u2075\u2076\u2077\u2078\u2079";
-function power(v: number) {
-  const e = Math.round(Math.log10(v));
-  if (Math.abs(v / 10 ** e - 1) > 1e-6) return "";
-  return "10" + (e < 0 ? "\u207b" : "") + [...String(Math.abs(e))].map((d) => digits[Number(d)]).join("");
-}
-export const at_time = (t: number, span: number) => `${seconds(t, span)} s`;

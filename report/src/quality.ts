@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The tab that tells how right a run is: figures against their bounds, and series over time.
+import { element_of } from "./motion";
 import { Plot, type PlotOptions } from "./plot";
 import type { Run } from "./run";
-import { element, number, rough } from "./text";
+import { element, number, rough, seconds } from "./text";
 import type { Timeline } from "./timeline";
 import { verdict_of } from "./verdict";
 
@@ -45,7 +46,7 @@ function table(run: Run): HTMLElement {
       value = run.figure(name);
     if (bound === undefined || (Number.isNaN(value) && name !== "estimated_error")) return [];
     const is_known = Number.isFinite(value),
-      is_kept = value <= bound;
+      is_passed = value <= bound;
     return [
       element(
         "tr",
@@ -56,8 +57,8 @@ function table(run: Run): HTMLElement {
         element("td", {}, is_known ? gauge(value, bound) : null),
         element(
           "td",
-          { class: !is_known ? "" : is_kept ? "kept" : "broken" },
-          !is_known ? "" : is_kept ? "\u2713 kept" : "\u2717 exceeded",
+          { class: !is_known ? "" : is_passed ? "passed" : "broken" },
+          !is_known ? "" : is_passed ? "\u2713 passed" : "\u2717 exceeded",
         ),
       ),
     ];
@@ -65,7 +66,9 @@ function table(run: Run): HTMLElement {
   const head = element(
     "tr",
     {},
-    ...["check", "measured", "accepted to", "", ""].map((h) => element("th", { scope: "col" }, h)),
+    ...["check", "measured", "limit", "logarithmic scale", ""].map((h) =>
+      element("th", { scope: "col", class: h.startsWith("log") ? "scale" : "" }, h),
+    ),
   );
   return element(
     "div",
@@ -98,7 +101,7 @@ function facts(run: Run): HTMLElement {
   add("elements divided", number(f("divided")), f("divided") > 0);
   add("accuracy asked for", rough(f("accuracy")), f("accuracy") > 0);
   add("perturbations grow by", rough(f("growth")), Number.isFinite(f("growth")));
-  add("horizon", `${number(f("horizon"), 5)} s`, Number.isFinite(f("horizon")));
+  add("horizon", `${number(f("horizon"), 5)}\u00a0s`, Number.isFinite(f("horizon")));
   add("condition number (2-norm)", rough(f("condition_2")), f("condition_2") > 0);
   return list;
 }
@@ -125,24 +128,32 @@ export function build_quality(host: HTMLElement, run: Run, time: Timeline): Plot
           element(
             "p",
             {},
-            `The largest error is that of \u201c${worst.name}\u201d at ${number(run.figure("estimated_error_time"), 6)} s.`,
+            `The largest error is that of \u201c${worst.name}\u201d at ${number(run.figure("estimated_error_time"), 6)}\u00a0s.`,
           ),
         ]
       : [];
+  const place = element("p", { id: "where" });
+  time.on_move((t) => {
+    const { ends } = run.motion,
+      word = run.meta.pose.precision === "thinned" ? "Part" : "Element";
+    place.textContent =
+      ends.length > 1
+        ? `${word} ${element_of(ends, t) + 1} of ${ends.length - 1} at ${seconds(t, time.span)}\u00a0s.`
+        : "";
+  });
   const grid = element("div", { class: "grid" });
-  host.append(
-    element(
-      "section",
-      { class: "card" },
-      element("h2", {}, "Is it right?"),
-      ...said,
-      ...where,
-      ...notes,
-      table(run),
-      facts(run),
-    ),
-    grid,
+  const judged = element(
+    "section",
+    { class: "card" },
+    element("h2", {}, "Is it right?"),
+    ...said,
+    ...where,
+    place,
+    ...notes,
+    table(run),
+    facts(run),
   );
+  host.append(element("div", { class: "columns" }, judged, grid));
   const times = run.array("quality_time");
   const add = (title: string, unit: string, names: string[], options: Partial<PlotOptions> = {}) => {
     const series = names
@@ -156,7 +167,7 @@ export function build_quality(host: HTMLElement, run: Run, time: Timeline): Plot
   const bound = (name: string, scale = 1, of = "") => {
     const value = quality.bounds[name] * scale;
     return Number.isFinite(value) && value > 0
-      ? { bound: { value, label: `${of}accepted to ${number(value, 2)}` } }
+      ? { bound: { value, label: `${of}limit ${number(value, 2)}` } }
       : {};
   };
   /** What a relative drift was divided by. */

@@ -3,19 +3,8 @@
 import { Vector3 } from "three";
 import type { Data, Load, Meta, Numbers } from "./data";
 import { Curves, Motion } from "./motion";
+import { phases_of, specs_of, type PhaseSpec, type PlotSpec } from "./specs";
 
-export interface Series {
-  label: string;
-  at(t: number): number;
-  colour: number;
-}
-export interface PlotSpec {
-  id: string;
-  group: string;
-  title: string;
-  unit: string;
-  series: Series[];
-}
 /** A force that is drawn, at a point of a body (-1: the world). */
 export interface Force {
   kind: "reaction" | "load";
@@ -26,7 +15,6 @@ export interface Force {
   at(t: number, out: Vector3): void;
 }
 
-const most_series = 7; // which colours tell apart
 const xyz = ["x", "y", "z"];
 
 export class Run {
@@ -43,6 +31,7 @@ export class Run {
   readonly largest_force: number;
   readonly largest_torque: number;
   readonly specs: PlotSpec[];
+  readonly phases: PhaseSpec[];
   private readonly one = new Float64Array(12);
 
   constructor(private readonly data: Data) {
@@ -69,7 +58,8 @@ export class Run {
         this.sensor_points.push(at as [number, number, number]);
     });
     this.tips = this.find_tips();
-    this.specs = this.all_specs();
+    this.specs = specs_of(this);
+    this.phases = phases_of(this);
   }
   array(name: string): Numbers {
     return this.data.arrays.get(name)!;
@@ -192,226 +182,5 @@ export class Run {
     const w = new Vector3();
     for (let i = 3; i < 12; i += 3) w.add(new Vector3().fromArray(D, i).cross(new Vector3().fromArray(R, i)));
     return w.multiplyScalar(0.5);
-  }
-
-  private all_specs(): PlotSpec[] {
-    const { meta } = this,
-      specs: PlotSpec[] = [];
-    const add = (
-      id: string,
-      group: string,
-      title: string,
-      unit: string,
-      series: Omit<Series, "colour">[],
-      colours?: number[],
-    ) => {
-      const of_more =
-        Math.max(meta.bodies.length, meta.joints.length) > most_series && series.length === most_series;
-      if (series.length)
-        specs.push({
-          id,
-          group,
-          title: of_more ? `${title}, the first ${most_series}` : title,
-          unit,
-          series: series.map((s, i) => ({ ...s, colour: colours ? colours[i] : i })),
-        });
-    };
-    const of = (kind: string, index: number, name: string, label: string) => {
-      const c = this.channel(kind, index, name);
-      return c < 0 ? [] : [{ label, at: (t: number) => this.curves.at(c, t) }];
-    };
-    const many = <T>(all: T[]) => all.slice(0, most_series);
-    const size = (kind: string, i: number, what: string, label: string) => {
-      const c = xyz.map((x) => this.channel(kind, i, `${what} ${x}`));
-      return c.some((k) => k < 0)
-        ? []
-        : [{ label, at: (t: number) => Math.hypot(...c.map((k) => this.curves.at(k, t))) }];
-    };
-    const { start, end } = this.motion;
-    // a torque has a force that is zero, which would be a flat line
-    const is_ever = (series: { at(t: number): number }) =>
-      Array.from({ length: 401 }, (_, k) => start + (k / 400) * (end - start)).some((t) => series.at(t) > 0);
-    const coordinates = (name: string) => meta.joints.flatMap((j, i) => of("joint", i, name, j.name));
-    for (const [name, title, unit] of [
-      ["angle", "Angles of joints", "rad"],
-      ["displacement", "Displacements of joints", "m"],
-      ["angle rate", "Rates of angles", "rad/s"],
-      ["displacement rate", "Rates of displacements", "m/s"],
-      ["angle acceleration", "Accelerations of angles", "rad/s^2"],
-      ["displacement acceleration", "Accelerations of displacements", "m/s^2"],
-    ])
-      add(`joints ${name}`, "All joints", title, unit, many(coordinates(name)));
-    // from that at the start, or what is exchanged would be a ripple far from zero
-    const of_start = this.curves.at(this.channel("energy", 0, "potential"), start);
-    const sum = [
-      ...of("energy", 0, "kinetic", "kinetic"),
-      ...of("energy", 0, "potential", "").map((s) => ({
-        label: "potential since the start",
-        at: (t: number) => s.at(t) - of_start,
-      })),
-    ];
-    add("energy", "Energy", "Energy", "J", [
-      ...sum,
-      { label: "sum", at: (t) => sum[0].at(t) + sum[1].at(t) },
-    ]);
-    for (const [name, title, unit] of [
-      ["torque", "Torques of drives", "N m"],
-      ["force", "Forces of drives", "N"],
-      ["power", "Power of drives", "W"],
-    ])
-      add(`drives ${name}`, "Drives", title, unit, many(meta.joints.flatMap((j, i) => of("drive", i, name, j.name))));
-    add(
-      "reactions",
-      "All joints",
-      "Forces of joints",
-      "N",
-      many(meta.joints.flatMap((j, i) => size("reaction", i, "force", j.name))),
-    );
-    add(
-      "torques",
-      "All joints",
-      "Torques of joints",
-      "N m",
-      many(meta.joints.flatMap((j, i) => size("reaction", i, "torque", j.name))),
-    );
-    add(
-      "loads",
-      "Loads",
-      "Forces of loads",
-      "N",
-      many(meta.loads.flatMap((l, i) => size("load", i, "force", l.name).filter(is_ever))),
-    );
-    add(
-      "load torques",
-      "Loads",
-      "Torques of loads",
-      "N m",
-      many(meta.loads.flatMap((l, i) => size("load", i, "torque", l.name).filter(is_ever))),
-    );
-    meta.sensors.forEach((sensor, s) => {
-      const units = new Map<string, string[]>();
-      for (const c of meta.channels)
-        if (c.kind === "sensor" && c.index === s) units.set(c.unit, [...(units.get(c.unit) ?? []), c.name]);
-      for (const [unit, names] of units)
-        add(
-          `sensor ${s} ${unit}`,
-          "Sensors",
-          `Sensor ${sensor.name}`,
-          unit,
-          names.flatMap((name) => of("sensor", s, name, name)),
-        );
-    });
-    const indices = meta.bodies.map((_, b) => b),
-      chosen = indices.slice(0, most_series);
-    add(
-      "heights",
-      "All bodies",
-      "Heights of centres of mass",
-      "m",
-      chosen.map((b) => ({ label: meta.bodies[b].name, at: (t) => this.centre(b, t).dot(this.up) })),
-    );
-    add(
-      "speeds",
-      "All bodies",
-      "Speeds of centres of mass",
-      "m/s",
-      chosen.map((b) => ({ label: meta.bodies[b].name, at: (t) => this.velocity(b, t).length() })),
-    );
-    add(
-      "spins",
-      "All bodies",
-      "Angular speeds",
-      "rad/s",
-      chosen
-        .filter((b) => !meta.bodies[b].point)
-        .map((b) => ({ label: meta.bodies[b].name, at: (t) => this.spin(b, t).length() })),
-      chosen.filter((b) => !meta.bodies[b].point),
-    );
-    const parts = (get: (t: number) => Vector3) =>
-      xyz.map((label, i) => ({ label, at: (t: number) => get(t).getComponent(i) }));
-    meta.bodies.forEach((body, b) => {
-      add(
-        `body ${b} position`,
-        body.name,
-        `${body.name}: centre of mass`,
-        "m",
-        parts((t) => this.centre(b, t)),
-      );
-      add(
-        `body ${b} velocity`,
-        body.name,
-        `${body.name}: velocity`,
-        "m/s",
-        parts((t) => this.velocity(b, t)),
-      );
-      for (const [what, unit] of [
-        ["acceleration", "m/s^2"],
-        ["angular acceleration", "rad/s^2"],
-      ])
-        if (!body.point || what === "acceleration")
-          add(
-            `body ${b} ${what}`,
-            body.name,
-            `${body.name}: ${what}${what === "acceleration" ? " of the reference point" : ""}`,
-            unit,
-            xyz.flatMap((x) => of("body", b, `${what} ${x}`, x)),
-          );
-      if (!body.point)
-        add(
-          `body ${b} spin`,
-          body.name,
-          `${body.name}: angular velocity`,
-          "rad/s",
-          parts((t) => this.spin(b, t)),
-        );
-    });
-    meta.joints.forEach((j, i) => {
-      for (const [what, unit] of [
-        ["force", "N"],
-        ["torque", "N m"],
-      ])
-        add(
-          `joint ${i} ${what}`,
-          `Joint ${j.name}`,
-          `${j.name}: ${what}`,
-          unit,
-          xyz.flatMap((x) => of("reaction", i, `${what} ${x}`, x)),
-        );
-    });
-    return specs;
-  }
-  private travels(b: number): boolean {
-    const { start, end } = this.motion,
-      from = this.centre(b, start);
-    return Array.from({ length: 50 }, (_, k) =>
-      this.centre(b, start + (k / 49) * (end - start)).distanceTo(from),
-    ).some((d) => d > 1e-6 * this.meta.length);
-  }
-  /** What a stranger should see first. */
-  default_plots(): string[] {
-    const has = (id: string) => this.specs.some((s) => s.id === id);
-    const first = ["joints angle", "joints displacement"].filter(has);
-    const sensors = this.specs
-      .filter((s) => s.id.startsWith("sensor "))
-      .slice(0, 2)
-      .map((s) => s.id);
-    const about_bodies = first.length
-      ? []
-      : this.meta.bodies.length === 1
-        ? [...(this.travels(0) ? ["body 0 position"] : []), "body 0 spin"]
-        : ["heights", "speeds"];
-    const drives = ["drives torque", "drives force", "drives power"].filter(has).slice(0, 2);
-    return [
-      ...drives,
-      ...sensors.slice(0, 2 - Math.min(drives.length, 1)),
-      ...first.slice(0, drives.length ? 1 : 2),
-      ...about_bodies,
-      "energy",
-      "reactions",
-      "loads",
-      "load torques",
-    ]
-      .filter(has)
-      .slice(0, 4);
   }
 }

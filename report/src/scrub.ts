@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The bar of time with the ends of elements below it, and the clock.
 import { element_of } from "./motion";
-import { by_id, seconds } from "./text";
+import { by_id, number, seconds } from "./text";
 import { theme } from "./theme";
 import type { Timeline } from "./timeline";
 
@@ -12,7 +12,6 @@ export class Scrub {
   constructor(
     private readonly time: Timeline,
     private readonly ends: Float64Array,
-    private readonly word: string, // for what lies between them
     moved_by_hand: () => void,
   ) {
     this.bar.min = String(time.start);
@@ -29,16 +28,14 @@ export class Scrub {
   }
 
   private show(t: number) {
-    const { span, start, end } = this.time,
-      n = this.ends.length - 1;
-    const element = n > 0 ? `${this.word} ${element_of(this.ends, t) + 1} of ${n}` : "only the start";
-    const [clock, where] = by_id("clock").children;
+    const { span, start, end } = this.time;
+    const [clock, whole] = by_id("clock").children;
     this.bar.value = String(t);
-    clock.textContent = `${seconds(t, span)} s`;
-    where.textContent = element;
+    clock.textContent = `${seconds(t, span)}\u00a0s`;
+    whole.textContent = span > 0 ? `of ${number(end, 6)}\u00a0s` : "only the start";
     this.bar.setAttribute(
       "aria-valuetext",
-      `${seconds(t, span)} seconds of ${seconds(start, span)} to ${seconds(end, span)}, ${element}`,
+      `${seconds(t, span)} seconds of ${seconds(start, span)} to ${seconds(end, span)}`,
     );
   }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Slots: of the curve that a point slides along, the part that it travels.
+// Slots: the whole curve that a point slides along; of files without it, the part that is travelled.
 import { Color, Object3D, Vector3 } from "three";
+import type { Joint } from "./data";
 import { Lines, Poses, vector } from "./instances";
 import type { Run } from "./run";
 import { theme } from "./theme";
@@ -12,23 +13,27 @@ export class Slots {
   private readonly curves: { body: number; points: Vector3[] }[] = [];
   private readonly lines: Lines | null = null;
 
-  constructor(run: Run) {
+  constructor(private readonly run: Run) {
     const slots = run.meta.joints.filter((joint) => joint.type === "slot");
     if (!slots.length) return;
-    const { motion } = run,
+    this.curves = slots.map((slot) => ({
+      body: slot.first,
+      points: slot.path?.length ? slot.path.map(vector) : this.travelled(slot),
+    }));
+    const pieces = this.curves.reduce((n, { points }) => n + points.length - 1, 0);
+    this.lines = new Lines(pieces, 7, 0.6, new Color(theme().joint));
+    this.objects.push(this.lines.object);
+  }
+
+  private travelled(slot: Joint): Vector3[] {
+    const { motion } = this.run,
       poses = new Poses(motion.bodies);
-    this.curves = slots.map((slot) => ({ body: slot.first, points: [] }));
-    for (let k = 0; k <= steps; ++k) {
+    return Array.from({ length: steps + 1 }, (_, k) => {
       motion.at(motion.start + (k / steps) * (motion.end - motion.start), poses.X);
       poses.update();
-      slots.forEach((slot, i) => {
-        const at = poses.place(slot.second, vector(slot.point_second));
-        if (slot.first >= 0) at.applyMatrix4(poses.matrices[slot.first].clone().invert());
-        this.curves[i].points.push(at);
-      });
-    }
-    this.lines = new Lines(slots.length * steps, 7, 0.6, new Color(theme().joint));
-    this.objects.push(this.lines.object);
+      const at = poses.place(slot.second, vector(slot.point_second));
+      return slot.first >= 0 ? at.applyMatrix4(poses.matrices[slot.first].clone().invert()) : at;
+    });
   }
 
   move(poses: Poses, is_shown: boolean) {
@@ -37,7 +42,7 @@ export class Slots {
     let k = 0;
     for (const { body, points } of this.curves) {
       const at = points.map((p) => poses.place(body, p));
-      for (let s = 0; s < steps; ++s, ++k) {
+      for (let s = 0; s + 1 < at.length; ++s, ++k) {
         at[s].toArray(positions, 6 * k);
         at[s + 1].toArray(positions, 6 * k + 3);
       }

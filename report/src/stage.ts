@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The picture in space. Few draw calls, however many bodies there are.
 import { DirectionalLight, HemisphereLight, Object3D, Scene, Vector3, WebGLRenderer } from "three";
-import { extent_of, make_bodies, with_room } from "./bodies";
+import { extent_of, floor_of, make_bodies, with_room } from "./bodies";
 import { Eye } from "./camera";
 import { Arrows, Beads, Springs, Torques } from "./forces";
 import { Frames, make_grid } from "./ground";
 import { Poses, vector, type Instances } from "./instances";
 import { Joints } from "./joints";
 import type { Run } from "./run";
+import { Shadow, casts } from "./shadow";
 import { Slots } from "./slots";
 import { Trails } from "./trails";
 
@@ -32,6 +33,7 @@ export class Stage {
   private readonly scene = new Scene();
   private readonly poses: Poses;
   private readonly bodies: Instances[];
+  private readonly shadow: Shadow;
   private readonly joints: Joints;
   private readonly trails: Trails;
   private readonly arrows: Arrows;
@@ -68,9 +70,16 @@ export class Stage {
     this.slots = new Slots(run);
     this.frames = new Frames(bodies.length, 0.16 * detail);
     this.beads = new Beads(run, 0.022 * detail);
-    const grid = make_grid(points, run.up, size);
+    const grid = make_grid(points, run.up, size, this.joints.floor, floor_of(run, points));
     this.cell = grid.cell;
-    this.scene.add(grid.object, ...lights(run.up), ...this.bodies.map((layer) => layer.mesh));
+    this.shadow = new Shadow(grid.plane, 2.5 * size + grid.cell);
+    for (const { mesh } of this.bodies) if (mesh.isMesh && !mesh.userData.is_still) mesh.layers.enable(casts);
+    this.scene.add(
+      grid.object,
+      this.shadow.object,
+      ...lights(run.up),
+      ...this.bodies.map((layer) => layer.mesh),
+    );
     for (const part of [
       this.joints,
       this.trails,
@@ -100,6 +109,15 @@ export class Stage {
     this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
     this.renderer.setSize(width, height, false);
     this.eye.resize(width / Math.max(height, 1), share(above), share(below));
+  }
+
+  /** To so many pixels, `scale` of them for one of a screen. */
+  size_exactly(width: number, height: number, scale: number) {
+    const room = 1e-6; // three rounds down
+    this.renderer.setPixelRatio(scale);
+    this.renderer.setSize((width + room) / scale, (height + room) / scale, false);
+    this.eye.resize(width / height, 0.06, 0.06);
+    return this.renderer.getContext();
   }
 
   show(t: number) {
@@ -132,6 +150,7 @@ export class Stage {
   }
   draw() {
     if (!Number.isFinite(this.now)) return;
+    this.shadow.draw(this.renderer, this.scene);
     this.renderer.render(this.scene, this.eye.camera);
     this.after_draw();
   }
@@ -139,12 +158,14 @@ export class Stage {
   bars_at(t: number) {
     return this.joints.bars_at(t);
   }
-  /** Where the middle of a body is in the picture, in pixels of the page; null behind the eye. */
-  screen(b: number): [number, number] | null {
+  /** Where the middle of a body is in a picture of that size; null behind the eye. */
+  screen(
+    b: number,
+    width = this.canvas.clientWidth,
+    height = this.canvas.clientHeight,
+  ): [number, number] | null {
     const p = this.poses.place(b, vector(this.run.meta.bodies[b].middle)).project(this.eye.camera);
-    return p.z > 1
-      ? null
-      : [((p.x + 1) / 2) * this.canvas.clientWidth, ((1 - p.y) / 2) * this.canvas.clientHeight];
+    return p.z > 1 ? null : [((p.x + 1) / 2) * width, ((1 - p.y) / 2) * height];
   }
 }
 

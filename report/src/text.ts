@@ -57,3 +57,16 @@ export function nice(x: number): number {
     m = x / power;
   return (m >= 5 ? 5 : m >= 2 ? 2 : 1) * power;
 }
+/** Text of a canvas that is not wider than that, with dots where it was cut. */
+export function shortened(c: CanvasRenderingContext2D, text: string, width: number): string {
+  if (c.measureText(text).width <= width) return text;
+  const letters = [...text];
+  let low = 0,
+    high = letters.length;
+  while (low < high) {
+    const middle = (low + high + 1) >> 1;
+    if (c.measureText(`${letters.slice(0, middle).join("")}\u2026`).width <= width) low = middle;
+    else high = middle - 1;
+  }
+  return `${letters.slice(0, low).join("")}\u2026`;
+}

@@ -9,6 +9,7 @@ const light = {
   grid: "#dde1e6",
   joint: "#8d97a3",
   foot: "#6a747f",
+  still: "#c9ced4",
   force: "#c2185b",
   load: "#6a3fb5",
   spring: "#4a535e",
@@ -21,12 +22,17 @@ const light = {
   now: "#20262d",
   bad: "#b3261e",
   card: "#fff",
+  sky: "#fdfdfe", // as in page.css
+  floor: "#e9edf1",
+  shade: "#3a4654",
+  shadow: 0.28, // how dark it is
 };
 const dark: typeof light = {
   edge: "#05070a",
   grid: "#2a313a",
   joint: "#9aa5b1",
   foot: "#6d7884",
+  still: "#4a535d",
   force: "#ff5c9a",
   load: "#b79bff",
   spring: "#b4bec9",
@@ -39,15 +45,25 @@ const dark: typeof light = {
   now: "#e6edf3",
   bad: "#ff8a80",
   card: "#151b23",
+  sky: "#161d26",
+  floor: "#0b0f14",
+  shade: "#000000",
+  shadow: 0.55,
 };
 
 export const dark_wanted = matchMedia("(prefers-color-scheme: dark)");
-let printing = false;
+export type Scheme = "light" | "dark" | null; // null: as the screen is
+let printing = false,
+  scheme: Scheme = null;
 /** Paper is white. */
 export function set_printing(is_printing: boolean) {
   printing = is_printing;
 }
-const is_dark = () => dark_wanted.matches && !printing;
+/** Of what is drawn until it is set again. */
+export function set_scheme(wanted: Scheme) {
+  scheme = wanted;
+}
+const is_dark = () => (scheme ? scheme === "dark" : dark_wanted.matches && !printing);
 export const theme = () => (is_dark() ? dark : light);
 export const colour = (i: number) => (is_dark() ? on_dark : on_light)[i % on_light.length];
 export const body_colour = colour;

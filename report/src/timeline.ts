@@ -18,6 +18,9 @@ export class Timeline {
   private whole(): [number, number] {
     return this.end > this.start ? [this.start, this.end] : [this.start - 0.5, this.start + 0.5];
   }
+  get is_whole() {
+    return this.whole().every((t, i) => t === this.range[i]);
+  }
   on_move(act: (t: number) => void) {
     this.moved.push(act);
   }

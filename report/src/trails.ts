@@ -32,7 +32,7 @@ export class Trails {
         : 0;
     this.length = Math.max(1, Math.min(Math.round(tail * this.steps), of_each(most_wide / 2)));
     this.pieces = this.find_pieces();
-    const palette = run.meta.bodies.map((_, b) => new Color(body_colour(b))),
+    const palette = run.meta.bodies.map((body, b) => new Color(body.color ?? body_colour(b))),
       colours = new Float32Array(this.pieces.length);
     for (let s = 0; s < n * this.steps; ++s)
       for (const end of [0, 3]) palette[s % n].toArray(colours, 6 * s + end);

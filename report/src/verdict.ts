@@ -29,11 +29,13 @@ export function verdict_of(run: Run): Verdict {
     rest = "";
   if (Number.isFinite(good) && good >= 1) {
     digits =
-      until < meta.end ? `right to ${times(good)} until ${number(until, 6)} s` : `right to ${times(good)}`;
-    rest = until < meta.end ? `, to ${times(all)} until ${end} s` : ` throughout ${end} s`;
+      until < meta.end
+        ? `right to ${times(good)} until ${number(until, 6)}\u00a0s`
+        : `right to ${times(good)}`;
+    rest = until < meta.end ? `, to ${times(all)} until ${end}\u00a0s` : ` throughout ${end}\u00a0s`;
   } else if (Number.isFinite(error)) {
     digits = `right to ${times(Math.max(all, 0))}`;
-    rest = ` throughout ${end} s`;
+    rest = ` throughout ${end}\u00a0s`;
   } else {
     rest = "its error was not estimated";
   }
@@ -51,7 +53,7 @@ export function verdict_of(run: Run): Verdict {
     };
   const far =
     run.figure("elements") > 0
-      ? `ends at ${end} s of ${number(meta.wanted_end, 6)} s`
+      ? `ends at ${end}\u00a0s of ${number(meta.wanted_end, 6)}\u00a0s`
       : "nothing was solved; this is the start";
   return {
     grade: "bad",
@@ -69,7 +71,7 @@ export function verdict_of(run: Run): Verdict {
 /** How exact the page itself is. */
 export function exactness(run: Run): string {
   const { precision, position_loss, orientation_loss } = run.meta.pose;
-  const off = `at most ${rough(position_loss)} m and ${rough(orientation_loss)} in directors`;
+  const off = `at most ${rough(position_loss)}\u00a0m and ${rough(orientation_loss)} in directors`;
   if (precision === "double")
     return `Poses are the polynomials of the result itself in double precision, at every instant; what is stored of them differs by ${off}.`;
   if (precision === "single")

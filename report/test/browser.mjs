@@ -3,92 +3,11 @@
 //   LIVENS_PROGRAM=build/release/livens node report/test/browser.mjs [NAME]
 // Says SKIPPED and why where Chromium or the packages of report/ are missing. tests/system/report_test.py looks at the
 // same files without a browser.
-import { execFileSync } from "node:child_process";
 import { createHash } from "node:crypto";
-import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
-import { tmpdir } from "node:os";
-import { dirname, join } from "node:path";
-import { fileURLToPath } from "node:url";
+import { existsSync, readFileSync, writeFileSync } from "node:fs";
+import { join } from "node:path";
 import assert from "node:assert/strict";
-
-const source = join(dirname(fileURLToPath(import.meta.url)), "../..");
-const program = process.env.LIVENS_PROGRAM ?? join(source, "build/release/livens");
-const executablePath = [
-  process.env.CHROMIUM,
-  "/usr/bin/chromium",
-  "/usr/bin/chromium-browser",
-  "/usr/bin/google-chrome",
-].find((file) => file && existsSync(file));
-const skip = (why) => {
-  console.log(`SKIPPED: ${why}`);
-  process.exit(0);
-};
-if (!executablePath) skip("no Chromium (Debian: chromium, or scripts/setup browser)");
-const { chromium } = await import("playwright-core").catch(() =>
-  skip("the packages of report/ are not installed (npm ci in report, or scripts/setup browser)"),
-);
-const axe = readFileSync(join(source, "report/node_modules/axe-core/axe.min.js"), "utf8");
-
-const folder = mkdtempSync(join(tmpdir(), "livens-report-"));
-const example = (name) => readFileSync(join(source, "examples", `${name}.toml`), "utf8");
-
-/** Solves a scenario and writes its page; returns the files. */
-function made(name, text, other = []) {
-  const [scenario, run, page] = [".toml", ".nc", ".html"].map((end) => join(folder, name + end));
-  writeFileSync(scenario, text);
-  try {
-    execFileSync(program, ["solve", scenario, "-o", run, "--quiet"], { stdio: "ignore" });
-  } catch (error) {
-    if (![4, 7].includes(error.status)) throw error;
-  }
-  execFileSync(program, ["report", run, ...other, "-o", page], { stdio: "ignore" });
-  return { run, page };
-}
-const sample = (run, ...args) =>
-  JSON.parse(
-    execFileSync(program, ["sample", run, ...args, "--json"], { stdio: ["ignore", "pipe", "ignore"] }),
-  );
-
-const browser = await chromium.launch({
-  executablePath,
-  args: ["--no-sandbox", "--disable-background-networking", "--disable-component-update"],
-});
-const driver = /GPU stall due to ReadPixels/; // what reading pixels makes the driver say
-
-/** A page with what it asked for and what it complained of. */
-async function open(file, options = {}, hash = "", before = null) {
-  const page = await browser.newPage({
-    viewport: { width: 1280, height: 800 },
-    colorScheme: "light",
-    ...options,
-  });
-  page.requests = [];
-  page.problems = [];
-  page.on("request", (r) => page.requests.push(r.url()));
-  page.on("console", (m) => {
-    if (!driver.test(m.text())) page.problems.push(`${m.type()}: ${m.text()}`);
-  });
-  page.on("pageerror", (e) => page.problems.push(String(e)));
-  page.on("dialog", (d) => {
-    page.problems.push(`dialog: ${d.message()}`);
-    void d.dismiss();
-  });
-  if (before) await page.addInitScript(before);
-  await page.goto(`file://${file}${hash}`);
-  await page.waitForFunction(() => window.livensReport, null, { timeout: 60000 });
-  return page;
-}
-const picture = async (page, t) => {
-  await page.evaluate((at) => livensReport.setTime(at), t);
-  await page.mouse.move(5, 5); // off the buttons in the picture
-  return createHash("sha256")
-    .update(await page.locator("#space").screenshot())
-    .digest("hex");
-};
-const focus_name = (page) =>
-  page.evaluate(
-    () => document.activeElement.id || document.activeElement.className || document.activeElement.tagName,
-  );
+import { axe, browser, example, focus_name, folder, made, open, picture, run, sample } from "./tools.mjs";
 
 const tests = {
   async "one request, nothing said"() {
@@ -379,7 +298,7 @@ const tests = {
     await alone.waitForSelector("#compare .lead");
     assert.equal(await alone.textContent("#compare .lead"), await page.textContent("#compare .lead"));
     await alone.setInputFiles("#other-file", b.run);
-    assert.match(await alone.locator("#compare .bad").textContent(), /no report/);
+    assert.match(await alone.locator("#compare .bad").textContent(), /cannot be read as a report/);
     assert.deepEqual([...page.problems, ...alone.problems], []);
   },
 
@@ -392,7 +311,7 @@ const tests = {
       };
     });
     assert.match(await page.textContent("#motion .bad"), /no picture in space/);
-    assert.equal(await page.locator("#plot-list figure").count(), 3);
+    assert.equal(await page.locator("#plot-list figure").count(), 4);
     await page.keyboard.press("ArrowRight");
     assert.deepEqual(
       page.problems.filter((p) => !/WebGL/.test(p)),
@@ -456,7 +375,7 @@ const tests = {
       assert.notEqual(await picture(page, 0.3), shown, what);
       await page.locator(`#show-${what}`).click();
     }
-    assert.match(await page.textContent("#caption"), /largest torque 0\.1 N m/);
+    assert.match(await page.textContent("#caption"), /largest torque 0\.1\sN\sm/);
     assert.ok((await page.evaluate(() => livensReport.frames(2))).calls <= 20);
     assert.deepEqual(page.problems, []);
   },
@@ -482,11 +401,11 @@ const tests = {
       readFileSync(file, "utf8").replace('"thinned": null', '"thinned": [1000000, 58311, 0.0021]'),
     );
     const page = await open(thinned);
-    assert.match(await page.textContent("#caption"), /surfaces thinned, off by 2\.1e\u22123 m/);
+    assert.match(await page.textContent("#caption"), /surfaces thinned, off by 2\.1e\u22123\sm/);
     await page.click("#tab-about");
     assert.match(
       await page.textContent("#about"),
-      /of crank is drawn with 58311 of its 1000000 triangles: corners are at most 2\.1e\u22123 m/,
+      /of crank is drawn with 58311 of its 1000000 triangles: corners are at most 2\.1e\u22123\sm/,
     );
     assert.deepEqual(page.problems, []);
     assert.doesNotMatch(await (await open(file)).textContent("#about"), /triangles/, "the control");
@@ -555,22 +474,4 @@ const tests = {
   },
 };
 
-let failed = 0;
-const chosen = Object.entries(tests).filter(([name]) =>
-  process.argv.slice(2).every((word) => name.includes(word)),
-);
-for (const [name, test] of chosen) {
-  const begun = performance.now();
-  try {
-    await test();
-    console.log(`ok      ${name} (${((performance.now() - begun) / 1000).toFixed(1)} s)`);
-  } catch (error) {
-    ++failed;
-    console.log(`FAILED  ${name}\n${error.stack}`);
-  }
-  for (const context of browser.contexts()) await context.close();
-}
-await browser.close();
-rmSync(folder, { recursive: true, force: true });
-console.log(`${chosen.length - failed} passed, ${failed} failed`);
-process.exit(failed || chosen.length === 0 ? 1 : 0);
+await run(tests);

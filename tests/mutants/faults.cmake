@@ -1101,3 +1101,11 @@ livens_mutant(NAME accelerations_forget_what_turns
               NEW [[-A[12 * b + i] + instant.centripetal()[12 * b + i];]]
               TESTS_OF unit_spacetime
               MUST_FAIL Accelerations.AreWhatForcesMake)
+
+# Half of a slot is drawn.
+livens_mutant(NAME slot_drawn_by_half
+              FILE multibody/joints/slot.cpp
+              OLD [[(curve.last - curve.first) * k / pieces]]
+              NEW [[0.5 * (curve.last - curve.first) * k / pieces]]
+              TESTS_OF unit_multibody
+              MUST_FAIL Joint.SlotKeepsItsWholeCurveToBeDrawn)

@@ -31,8 +31,12 @@ struct Outline {
     std::vector<Outline> parts{};
     Vector3 place{};
     Matrix3 axes = identity<3>();
+    std::optional<Vector3> color{};   ///< red, green, blue from 0 to 1, in sRGB
+    double opacity = 1;
+    /// What is drawn instead, each at a place and in axes of the body: from its reference point on.
+    std::vector<Outline> visuals{};
 
-    bool is_empty() const { return profile.empty() && triangles.empty() && parts.empty(); }
+    bool is_empty() const { return profile.empty() && triangles.empty() && parts.empty() && visuals.empty(); }
 };
 Outline ball_outline();   ///< of radius 1
 
@@ -63,7 +67,7 @@ struct Scenario : OutputTimes {
     std::string text;   ///< the file itself
     std::string title;
     Model model;
-    std::vector<Outline> outlines;               ///< of the bodies
+    std::vector<Outline> outlines;               ///< of the bodies, then of the world
     std::vector<std::vector<ShapePart>> parts;   ///< of the bodies' shapes; none of one that is no union
     Time time;   ///< element ends hold jumps of loads (unless breaks = "ignore") and output times
     Method method;

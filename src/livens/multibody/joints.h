@@ -36,6 +36,8 @@ struct Joint {
     /// It acts from one instant until another (s), which are events of the motion.
     double from = -std::numeric_limits<double>::infinity();
     double until = std::numeric_limits<double>::infinity();
+    /// Of a slot: points of its whole curve in coordinates of `first`, in order, to be drawn.
+    std::vector<Vector3> path{};
 
     bool acts_at(double t) const { return from <= t && t < until; }
 };

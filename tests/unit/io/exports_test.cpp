@@ -70,8 +70,10 @@ TEST_F(Results, SurfacesStandForBodiesWithoutAShape)
 {
     Scenario scenario;
     scenario.model = sample_model();   // made without a scenario: there are no outlines
-    const std::vector<Surface> surfaces = surfaces_of(scenario);
-    ASSERT_EQ(surfaces.size(), 2u);
+    std::vector<Surface> surfaces;
+    for (const std::vector<Drawn>& drawn : drawn_of(scenario)) surfaces.push_back(united(drawn));
+    ASSERT_EQ(surfaces.size(), 3u);   // the world has none
+    EXPECT_TRUE(surfaces[2].triangles.empty());
     const double size = 0.05 * scenario.model.length();
     EXPECT_EQ(surfaces[0].triangles.size(), 8u);   // an octahedron
     for (std::size_t b = 0; b < 2; ++b)

@@ -87,6 +87,7 @@ const Table& table_of(const std::string& header, const std::string& type)
     if (header == "[[joint.frames]]") heading = "frame of a joint";
     if (header == "[[load.frames]]") heading = "frame of a bushing";
     if (header == "[body.shape]") heading = "shape of [[body]]";
+    if (header == "[[body.visual]]" || header == "[world.visual]") heading = "visual";
     if (header == "[body.shape.parts.cylinder]")
         heading = "cylinder of shape";
     else if (header == "[[body.shape.parts]]")
@@ -152,7 +153,10 @@ void expect_at(const std::string& text, std::string_view code, std::size_t line,
     ADD_FAILURE() << "no " << code << " at " << line + 1 << ":" << column << " in\n" << shown(result);
 }
 
-bool holds_tables(const Key& key) { return key.type == types::table || key.type == types::tables; }
+bool holds_tables(const Key& key)
+{
+    return key.type == types::table || key.type == types::tables || key.type == types::table_or_tables;
+}
 
 TEST(Schema, DocumentsAreValidAndUseEveryKey)
 {

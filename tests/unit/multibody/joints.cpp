@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "livens/multibody/body.h"
+#include "livens/multibody/joints/spline_curve.h"
 #include "unit/multibody/random_states.h"
 
 namespace livens {
@@ -175,6 +176,26 @@ TEST(Joint, RefusesItselfZeroAxesAndNumbersThatAreNone)
     frame.point_first[0] = std::numeric_limits<double>::infinity();
     expect_complaint([&] { spherical("j", 0, 1, frame); }, "not-finite", "joint[j]");
     expect_complaint([] { spherical("j", 0, 1, {}, 0); }, "joint-scale", "joint[j]");
+}
+
+TEST(Joint, SlotKeepsItsWholeCurveToBeDrawn)
+{
+    const std::vector<Vector3> points{{-0.3, 0.3, 0}, {0, 0.3, 0.1}, {0.3, 0.45, 0}};
+    for (const bool is_closed : {false, true}) {
+        Matrix34 X = world_configuration;
+        X.set_column(0, points[1]);
+        const Joint joint = slot("s", world, 0, spline_curve(points, is_closed), {}, world_configuration, X);
+        ASSERT_GT(joint.path.size(), 100u);
+        EXPECT_LT(norm(joint.path.front() - points.front()), 1e-15);
+        EXPECT_LT(norm(joint.path.back() - (is_closed ? points.front() : points.back())), 1e-12);
+        double nearest = 1;
+        for (const Vector3& place : joint.path) {
+            nearest = std::min(nearest, norm(place - points[1]));
+            X.set_column(0, place);
+            for (const double phi : values(joint, world_configuration, X)) EXPECT_NEAR(phi, 0, 1e-12);
+        }
+        EXPECT_LT(nearest, 0.01) << "it goes through the points";
+    }
 }
 
 }   // namespace

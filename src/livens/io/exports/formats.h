@@ -4,6 +4,7 @@
 
 #include <bit>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -39,9 +40,21 @@ void put(std::string& out, Number number)
     for (std::size_t i = 0; i < sizeof bits; ++i) out += static_cast<char>(bits >> (8 * i) & 0xff);
 }
 
-/// One a body: of its outline, else, as a mark, an octahedron at its centre of mass (a ball for point
-/// masses).
-std::vector<Surface> surfaces_of(const Scenario& scenario);
+/// A surface at a place and in axes of its body or of the world.
+struct Drawn {
+    Surface surface;
+    Vector3 place{};
+    Matrix3 axes = identity<3>();
+    std::optional<Vector3> color{};   ///< red, green, blue from 0 to 1, in sRGB
+    double opacity = 1;
+};
+
+/// What is drawn of each body, then of the world: its visuals, else its shape, else, as a mark, an octahedron
+/// at its centre of mass (a ball for point masses).
+std::vector<std::vector<Drawn>> drawn_of(const Scenario& scenario);
+
+/// Likewise, all of a body as one surface in its own coordinates.
+Surface united(const std::vector<Drawn>& all);
 
 /// The output times that the motion has reached.
 std::vector<double> reached_times(const Run& run);

@@ -168,7 +168,7 @@ Tracks tracks_of(const ExportInput& input)
 class Scene {
 public:
     Scene(const ExportInput& input)
-        : run_(input.run), surfaces_(surfaces_of(input.scenario)), tracks_(tracks_of(input))
+        : run_(input.run), drawn_(drawn_of(input.scenario)), tracks_(tracks_of(input))
     {
         if (tracks_.times.empty())
             throw IoError("the run has reached no output time: there is nothing to show");
@@ -231,20 +231,51 @@ private:
     {
         json.key("meshes").begin_array();
         for (int b = 0; b < n_bodies(); ++b) {
-            const Surface& s = surfaces_[static_cast<std::size_t>(b)];
-            const int points = buffer_.add({"VEC3", 3, real, of_vertices, true}, floats(s.points));
-            const int normals = buffer_.add({"VEC3", 3, real, of_vertices}, floats(s.normals));
             json.begin_object().member("name", run_.body_names[static_cast<std::size_t>(b)]);
-            json.key("primitives").begin_array().begin_object().key("attributes").begin_object();
-            json.member("POSITION", points).member("NORMAL", normals).end_object();
-            json.member("indices", buffer_.add(s.triangles)).member("material", b % n_colours);
-            json.end_object().end_array().end_object();
+            json.key("primitives").begin_array();
+            for (const Drawn& one : drawn_[static_cast<std::size_t>(b)])
+                add_primitive(json, one, b % n_colours);
+            json.end_array().end_object();
         }
         json.begin_object().member("name", "ground").key("primitives").begin_array().begin_object();
         json.member("mode", lines).key("attributes").begin_object();
         json.member("POSITION", buffer_.add({"VEC3", 3, real, of_vertices, true}, floats(grid())));
-        json.end_object().member("material", n_worn()).end_object().end_array().end_object();
-        json.end_array();
+        json.end_object().member("material", n_worn()).end_object();
+        for (const Drawn& one : drawn_.back()) add_primitive(json, one, n_worn());
+        json.end_array().end_object().end_array();
+    }
+
+    void add_primitive(JsonWriter& json, const Drawn& one, int worn)
+    {
+        const Surface s = united({one});
+        const int points = buffer_.add({"VEC3", 3, real, of_vertices, true}, floats(s.points));
+        const int normals = buffer_.add({"VEC3", 3, real, of_vertices}, floats(s.normals));
+        json.begin_object().key("attributes").begin_object();
+        json.member("POSITION", points).member("NORMAL", normals).end_object();
+        json.member("indices", buffer_.add(s.triangles)).member("material", paint_of(one, worn)).end_object();
+    }
+
+    /// The material of what has a colour or can be seen through, else that which its body wears.
+    int paint_of(const Drawn& one, int worn)
+    {
+        if (!one.color && one.opacity == 1) return worn;
+        const std::array<double, 4> own = paint(worn);
+        std::array<double, 4> rgba{own[0], own[1], own[2], one.opacity};
+        // Factors are linear in light, colours of scenarios in sRGB. [IEC 61966-2-1]
+        for (std::size_t i = 0; i < 3 && one.color; ++i) {
+            const double c = (*one.color)[static_cast<int>(i)];
+            rgba[i] = c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
+        }
+        const auto known = std::ranges::find(paints_, rgba);
+        const auto index = static_cast<int>(known - paints_.begin());
+        if (known == paints_.end()) paints_.push_back(rgba);
+        return n_worn() + 1 + index;
+    }
+    std::array<double, 4> paint(int worn) const
+    {
+        if (worn >= n_worn()) return {0.5, 0.5, 0.5, 1};
+        const double* c = colours[worn];
+        return {c[0], c[1], c[2], 1};
     }
 
     /// Lines of a square below everything that moves.
@@ -252,8 +283,10 @@ private:
     {
         constexpr int n = 10;
         double reach = 0;
-        for (const Surface& s : surfaces_)
-            for (const Vector3& p : s.points) reach = std::max(reach, norm(p));
+        for (std::size_t b = 0; b + 1 < drawn_.size(); ++b)
+            for (const Drawn& one : drawn_[b])
+                for (const Vector3& p : one.surface.points)
+                    reach = std::max(reach, norm(one.place + one.axes * p));
         const Vector3 middle = 0.5 * (tracks_.least + tracks_.most), span = tracks_.most - tracks_.least;
         const double half = 0.5 * norm(span) + 2 * reach;
         double below = reach;
@@ -270,16 +303,19 @@ private:
         return points;
     }
 
-    /// As many as there are bodies to wear them, then the ground's.
+    /// As many as there are bodies to wear them, then the ground's, then those of colours that were stated.
     void add_materials(JsonWriter& json) const
     {
+        std::vector<std::array<double, 4>> all;
+        for (int i = 0; i <= n_worn(); ++i) all.push_back(paint(i));
+        all.insert(all.end(), paints_.begin(), paints_.end());
         json.key("materials").begin_array();
-        for (int i = 0; i <= n_worn(); ++i) {
-            constexpr double grey[] = {0.5, 0.5, 0.5};
-            const double* c = i < n_worn() ? colours[i] : grey;
+        for (const std::array<double, 4>& rgba : all) {
             json.begin_object().key("pbrMetallicRoughness").begin_object();
-            json.key("baseColorFactor").value(std::array{c[0], c[1], c[2], 1.0});
-            json.member("metallicFactor", 0.1).member("roughnessFactor", 0.6).end_object().end_object();
+            json.key("baseColorFactor").value(rgba);
+            json.member("metallicFactor", 0.1).member("roughnessFactor", 0.6).end_object();
+            if (rgba[3] < 1) json.member("alphaMode", "BLEND");
+            json.end_object();
         }
         json.end_array();
     }
@@ -329,7 +365,8 @@ private:
     }
 
     const Run& run_;
-    std::vector<Surface> surfaces_;
+    std::vector<std::vector<Drawn>> drawn_;       ///< of the bodies, then of the world
+    std::vector<std::array<double, 4>> paints_;   ///< beside those of n_worn() bodies and of the ground
     Tracks tracks_;
     Vector3 up_{0, 0, 1};
     Buffer buffer_;

@@ -126,7 +126,8 @@ void check_pieces(const fs::path& folder, const fs::path& name, std::size_t n_pi
 void write_pvd(const fs::path& file, const ExportInput& input)
 {
     const Run& run = input.run;
-    const std::vector<Surface> surfaces = surfaces_of(input.scenario);
+    std::vector<Surface> surfaces;
+    for (const std::vector<Drawn>& drawn : drawn_of(input.scenario)) surfaces.push_back(united(drawn));
     const fs::path name = file.stem(), folder = file.parent_path() / name;
     std::error_code error;
     fs::create_directories(folder, error);
@@ -142,6 +143,9 @@ void write_pvd(const fs::path& file, const ExportInput& input)
         const std::vector<BodySample> bodies = sample_bodies(input.scenario.model, run.motion, t);
         for (std::size_t b = 0; b < bodies.size(); ++b)
             picture.add(static_cast<int>(b), surfaces[b], bodies[b]);
+        BodySample still{};
+        still.quaternion = {1, 0, 0, 0};
+        picture.add(world, surfaces.back(), still);
         const fs::path piece = piece_of(name, n++);
         const std::string time = "<DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" "
                                  "format=\"ascii\">" +

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 #include <span>
+#include <utility>
 
 #include "livens/base/elementary.h"
 #include "livens/io/exports/formats.h"
@@ -142,6 +143,18 @@ void add_triangles(const Outline& outline, Surface& to)
     if (outline.n_left_out > 0) blend_normals(outline, areas, std::span(to.normals).subspan(n_before));
 }
 
+/// Adds a surface at a place in axes.
+void add_surface(Surface& to, const Surface& surface, const Vector3& place, const Matrix3& axes)
+{
+    const int first = static_cast<int>(to.points.size());
+    to.n_left_out += surface.n_left_out;
+    to.moved = std::max(to.moved, surface.moved);
+    for (const Vector3& p : surface.points) to.points.push_back(place + axes * p);
+    for (const Vector3& n : surface.normals) to.normals.push_back(axes * n);
+    for (const auto& t : surface.triangles)
+        to.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+}
+
 /// About the origin of the outline.
 Surface surface_of(const Outline& outline)
 {
@@ -149,38 +162,49 @@ Surface surface_of(const Outline& outline)
     add_triangles(outline, whole);
     whole.n_left_out += outline.n_left_out;
     whole.moved = largest(outline.stretch) * outline.moved;
-    for (const Outline& part : outline.parts) {
-        const Surface surface = surface_of(part);
-        const int first = static_cast<int>(whole.points.size());
-        whole.n_left_out += surface.n_left_out;
-        whole.moved = std::max(whole.moved, surface.moved);
-        for (const Vector3& p : surface.points) whole.points.push_back(part.place + part.axes * p);
-        for (const Vector3& n : surface.normals) whole.normals.push_back(part.axes * n);
-        for (const auto& t : surface.triangles)
-            whole.triangles.push_back({first + t[0], first + t[1], first + t[2]});
-    }
+    for (const Outline& part : outline.parts) add_surface(whole, surface_of(part), part.place, part.axes);
     return whole;
+}
+
+/// Of a body without visuals.
+Drawn shape_of(const Body& body, Outline outline, double size)
+{
+    if (outline.is_empty()) {
+        const std::optional<Vector3> color = outline.color;
+        const double opacity = outline.opacity;
+        outline = body.is_point ? ball_outline() : Outline{{{0, -1}, {1, 0}, {0, 1}}, 4};
+        outline.stretch = {size, size, size};
+        outline.color = color;
+        outline.opacity = opacity;
+    }
+    const Vector3 centre = body.is_point ? Vector3{} : mass_properties(body.mass).center_of_mass;
+    return {surface_of(outline), centre, identity<3>(), outline.color, outline.opacity};
 }
 
 }   // namespace
 
-std::vector<Surface> surfaces_of(const Scenario& scenario)
+std::vector<std::vector<Drawn>> drawn_of(const Scenario& scenario)
 {
-    std::vector<Surface> surfaces;
-    const Model& model = scenario.model;
-    const double size = mark * model.length();
-    for (std::size_t b = 0; b < model.bodies().size(); ++b) {
-        const Body& body = model.bodies()[b];
-        const Vector3 centre = body.is_point ? Vector3{} : mass_properties(body.mass).center_of_mass;
-        Outline outline = b < scenario.outlines.size() ? scenario.outlines[b] : Outline{};
-        if (outline.is_empty()) {
-            outline = body.is_point ? ball_outline() : Outline{{{0, -1}, {1, 0}, {0, 1}}, 4};
-            outline.stretch = {size, size, size};
-        }
-        surfaces.push_back(surface_of(outline));
-        for (Vector3& p : surfaces.back().points) p = centre + p;
+    std::vector<std::vector<Drawn>> all;
+    const std::vector<Body>& bodies = scenario.model.bodies();
+    const double size = mark * scenario.model.length();
+    for (std::size_t b = 0; b <= bodies.size(); ++b) {
+        std::vector<Drawn>& drawn = all.emplace_back();
+        const Outline outline = b < scenario.outlines.size() ? scenario.outlines[b] : Outline{};
+        for (const Outline& one : outline.visuals)
+            // A mesh of needles alone has nothing to show.
+            if (Surface surface = surface_of(one); !surface.triangles.empty())
+                drawn.push_back({std::move(surface), one.place, one.axes, one.color, one.opacity});
+        if (b < bodies.size() && drawn.empty()) drawn.push_back(shape_of(bodies[b], outline, size));
     }
-    return surfaces;
+    return all;
+}
+
+Surface united(const std::vector<Drawn>& all)
+{
+    Surface whole;
+    for (const Drawn& one : all) add_surface(whole, one.surface, one.place, one.axes);
+    return whole;
 }
 
 }   // namespace livens::inline io_internal

@@ -87,38 +87,121 @@ private:
     std::map<std::vector<int>, int> known_;
 };
 
-void write_bodies(ReportData& data, const Scenario& scenario)
-{
-    Shapes shapes(data.payload);
-    JsonWriter& json = data.json;
-    std::vector<Surface> surfaces = surfaces_of(scenario);
-    const std::size_t most_triangles = triangles_of_each(surfaces);
-    json.key("bodies").begin_array();
-    for (std::size_t b = 0; b < surfaces.size(); ++b) {
-        const Body& body = scenario.model.bodies()[b];
-        const Surface thin = thinned(std::move(surfaces[b]), most_triangles);
-        const UnitSurface unit = unit_surface(thin);
-        const bool is_mark = b >= scenario.outlines.size() || scenario.outlines[b].is_empty();
-        json.begin_object().member("name", body.name).member("point", body.is_point);
-        json.member("mark", is_mark).member("mass", body.mass(0, 0));
-        json.member("shape", shapes.index_of(unit.surface));
-        add(json, "middle", unit.middle);
-        add(json, "half", unit.half);
-        json.key("thinned");
-        if (thin.n_left_out == 0)
-            json.null();
-        else
-            json.begin_array()
-                .value(thin.triangles.size() + thin.n_left_out)
-                .value(thin.triangles.size())
-                .value(thin.moved)
-                .end_array();
-        add(json, "centre", body.is_point ? Vector3{} : mass_properties(body.mass).center_of_mass);
-        json.end_object();
+/// The box about something, in coordinates of its body.
+struct Box {
+    Vector3 least{}, most{};
+    bool is_empty = true;
+
+    void take(const Vector3& p)
+    {
+        for (int i = 0; i < 3; ++i) {
+            least[i] = is_empty ? p[i] : std::min(least[i], p[i]);
+            most[i] = is_empty ? p[i] : std::max(most[i], p[i]);
+        }
+        is_empty = false;
     }
-    json.end_array();
-    json.member("shapes", shapes.size());
+    Vector3 middle() const { return 0.5 * (least + most); }
+    Vector3 half() const
+    {
+        Vector3 h = 0.5 * (most - least);
+        for (int i = 0; i < 3; ++i)
+            if (!(h[i] > 0)) h[i] = 1;   // a plate has a side that is not stretched
+        return h;
+    }
+};
+
+/// "#rrggbb"
+std::string hexadecimal(const Vector3& color)
+{
+    constexpr char digits[] = "0123456789abcdef";
+    std::string text = "#";
+    for (const double c : color.a) {
+        const long level = std::lround(255 * c);
+        text += digits[level / 16];
+        text += digits[level % 16];
+    }
+    return text;
 }
+
+/// Bodies and the world, each with what is drawn of it.
+class BodyWriter {
+public:
+    explicit BodyWriter(ReportData& data) : shapes_(data.payload), json_(data.json) {}
+
+    void write(const Scenario& scenario)
+    {
+        std::vector<std::vector<Drawn>> all = drawn_of(scenario);
+        std::vector<Surface> surfaces;
+        for (const std::vector<Drawn>& drawn : all)
+            for (const Drawn& one : drawn) surfaces.push_back(one.surface);
+        most_triangles_ = triangles_of_each(surfaces);
+        json_.key("bodies").begin_array();
+        for (std::size_t b = 0; b + 1 < all.size(); ++b) {
+            const Outline outline = b < scenario.outlines.size() ? scenario.outlines[b] : Outline{};
+            write_body(scenario.model.bodies()[b], outline, all[b]);
+        }
+        json_.end_array();
+        write_pieces("world", all.back());
+        json_.member("shapes", shapes_.size());
+    }
+
+private:
+    void write_body(const Body& body, const Outline& outline, std::vector<Drawn>& drawn)
+    {
+        json_.begin_object().member("name", body.name).member("point", body.is_point);
+        json_.member("mark", outline.is_empty()).member("mass", body.mass(0, 0));
+        json_.key("color");
+        outline.color ? json_.value(hexadecimal(*outline.color)) : json_.null();
+        write_pieces("pieces", drawn);
+        add(json_, "middle", box_.middle());
+        add(json_, "half", box_.half());
+        json_.key("thinned");
+        if (n_left_out_ == 0)
+            json_.null();
+        else
+            json_.begin_array().value(n_drawn_ + n_left_out_).value(n_drawn_).value(moved_).end_array();
+        add(json_, "centre", body.is_point ? Vector3{} : mass_properties(body.mass).center_of_mass);
+        json_.end_object();
+    }
+
+    void write_pieces(const char* key, std::vector<Drawn>& drawn)
+    {
+        box_ = {};
+        n_drawn_ = n_left_out_ = 0;
+        moved_ = 0;
+        json_.key(key).begin_array();
+        for (Drawn& one : drawn) {
+            one.surface = thinned(std::move(one.surface), most_triangles_);
+            const Surface& thin = one.surface;
+            for (const Vector3& p : thin.points) box_.take(one.place + one.axes * p);
+            n_drawn_ += thin.triangles.size();
+            n_left_out_ += thin.n_left_out;
+            moved_ = std::max(moved_, thin.moved);
+            const UnitSurface unit = unit_surface(std::move(one.surface));
+            json_.begin_object().member("shape", shapes_.index_of(unit.surface));
+            add(json_, "middle", one.place + one.axes * unit.middle);
+            add(json_, "half", unit.half);
+            // The columns of the matrix are the axes of the piece, one behind the other.
+            json_.key("axes");
+            if (norm(one.axes - identity<3>()) == 0)
+                json_.null();
+            else
+                json_.value(std::span<const double>(one.axes.a));
+            json_.key("color");
+            one.color ? json_.value(hexadecimal(*one.color)) : json_.null();
+            json_.member("opacity", one.opacity).end_object();
+        }
+        json_.end_array();
+    }
+
+    Shapes shapes_;
+    JsonWriter& json_;
+    std::size_t most_triangles_ = 0;
+    // Of what was written last.
+    Box box_;
+    std::size_t n_drawn_ = 0, n_left_out_ = 0;
+    double moved_ = 0;
+};
 
 /// The two directions of a row a . b = 0, or a . (x - y) = 0, in coordinates of its bodies: its form is one
 /// product. Zero where it is not.
@@ -159,6 +242,8 @@ void write_joints(JsonWriter& json, const Model& model)
     for (const Joint& joint : model.joints()) {
         const RowDirections axes = axes_of(joint);
         json.begin_object().member("name", joint.name).member("type", joint.type);
+        const auto is_driven = [](const ConstraintRow& row) { return row.label == "driven distance"; };
+        json.member("bar", joint.type == "rod" || std::ranges::any_of(joint.rows, is_driven));
         json.member("first", joint.first).member("second", joint.second);
         add(json, "point_first", joint.point_first);
         add(json, "point_second", joint.point_second);
@@ -168,7 +253,9 @@ void write_joints(JsonWriter& json, const Model& model)
             json.key(key);
             std::isfinite(t) ? json.value(t) : json.null();
         }
-        json.end_object();
+        json.key("path").begin_array();
+        for (const Vector3& place : joint.path) json.value(std::span<const double>(place.a));
+        json.end_array().end_object();
     }
     json.end_array();
 }
@@ -213,7 +300,7 @@ void write_sensors(JsonWriter& json, const Model& model)
 
 void write_scene(ReportData& data, const Scenario& scenario, const Run& run)
 {
-    write_bodies(data, scenario);
+    BodyWriter(data).write(scenario);
     write_joints(data.json, scenario.model);
     write_loads(data.json, scenario.model, run.motion);
     write_sensors(data.json, scenario.model);

@@ -86,7 +86,7 @@ Builder::Builder(const Section& top, const MeshSource& meshes, Findings& finding
     : top_(top), findings_(findings), model_(top.vector("gravity")), meshes_(meshes)
 {
     remember("", top);
-    for (const std::string_view name : {"time", "method", "start", "end"})
+    for (const std::string_view name : {"world", "time", "method", "start", "end"})
         for (const Section& section : top.sections(name)) remember(std::string(name), section);
 }
 

@@ -14,6 +14,10 @@ Joint slot(const std::string& name, int first, int second, const Curve& curve, c
     frame.point_second = point_second;
     Joint joint = start_joint(name, "slot", first, second, frame, scale);
     joint.rows = curve_rows(curve, first, second, point(point_second), scale);
+    constexpr int pieces = 240;
+    const auto& place = curve.without_normals ? curve.without_normals : curve.at;
+    for (int k = 0; k <= pieces; ++k)
+        joint.path.push_back(place(curve.first + (curve.last - curve.first) * k / pieces).x);
     return joint;
 }
 

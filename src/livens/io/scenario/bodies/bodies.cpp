@@ -8,6 +8,7 @@
 #include "livens/base/text.h"
 #include "livens/io/scenario/bodies/bodies.h"
 #include "livens/io/scenario/bodies/shapes.h"
+#include "livens/io/scenario/bodies/visuals.h"
 
 namespace livens::inline io_internal {
 
@@ -66,10 +67,11 @@ void check_mass(const Section& body)
         body.at_most_one({"density", "mass"}, "mass-conflict");
         // Two statements of one quantity may contradict each other, and nothing says which is meant.
         if (body.has("inertia"))
-            body.error("inertia", "mass-conflict",
-                       "'inertia' of " + body.label() + " has no meaning: it follows from the shape",
-                       {"", "leave it out; or, where CAD gives mass and inertia, leave 'shape' out and give "
-                            "'mass', 'center_of_mass' and 'inertia'"});
+            body.error(
+                "shape", "mass-conflict", "'shape' and 'inertia' of " + body.label() + " exclude each other",
+                {"the inertia follows from a 'shape'",
+                 "where mass and inertia are known and the shape is to be seen, write visual = instead "
+                 "of shape ="});
         const Section* shape = only_section(body, "shape");
         const DensityBy by = shape != nullptr ? density_by(*shape) : DensityBy::body;
         if (by == DensityBy::shape)
@@ -125,6 +127,7 @@ bool check_body(const Section& body, Findings& findings)
     else
         check_mass(body);
     check_pose(body);
+    check_look(body);
     return findings.n_errors() == before && body.is_valid();
 }
 
@@ -266,9 +269,15 @@ Table body_table()
              "Time derivatives of the directors, [d1', d2', d3'], as they are. Rates that deform the triad "
              "need `initial = \"project\"`.",
              "1/s"},
+         visual_key("How the body looks, apart from its mass: one shape, or a list of them. Drawn instead of "
+                    "`shape`."),
          Key{"start", types::table, "The body at the start of time, if that is another place."}.holding(
              start),
          Key{"end", types::table, "The body at the end of time."}.holding(end)}};
+    for (const Key& key : color_keys("Of the body in pictures: a name of CSS, `\"#rrggbb\"`, or red, green "
+                                     "and blue. Default: one that others do not have.",
+                                     "1: nothing is seen through the body."))
+        body.keys.push_back(key);
     body.keys.insert(body.keys.begin() + 6, end.keys.begin(), end.keys.end());
     return body;
 }
@@ -339,12 +348,19 @@ void read_bodies(Builder& builder)
             const Solid shape = read_shape(section, builder.meshes(), with_surfaces);
             body.index = builder.model().add_body(build_body(section, named->text, shape));
             warn_of_rounded_directors(builder, section);
-            builder.outlines().push_back(shape.outline);
+            Outline outline = shape.outline;
+            read_look(section, builder.meshes(), outline);
+            builder.outlines().push_back(std::move(outline));
             builder.parts().push_back(parts_in_body(section, shape));
             builder.surfaces().push_back(surfaces_in_body(section, shape));
         });
     }
     builder.close_bodies();
+    Outline world;
+    if (const Section* ground = only_section(builder.top(), "world");
+        ground != nullptr && check_look(*ground))
+        read_look(*ground, builder.meshes(), world);
+    builder.outlines().push_back(std::move(world));
 }
 
 }   // namespace livens::inline io_internal

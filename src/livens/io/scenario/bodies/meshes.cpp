@@ -122,9 +122,21 @@ std::string numbers_of(const Moments& m)
            numbers_of(Vector3{E(0, 1), E(1, 2), E(2, 0)});
 }
 
+std::string lines_of(const Surface& picture)
+{
+    std::string text;
+    if (picture.n_left_out > 0)
+        text = "thinned " + std::to_string(picture.n_left_out) + " " + to_text(picture.moved) + "\n";
+    for (const Vector3& p : picture.points) text += "point " + numbers_of(p) + "\n";
+    for (const auto& t : picture.triangles)
+        text +=
+            "face " + std::to_string(t[0]) + " " + std::to_string(t[1]) + " " + std::to_string(t[2]) + "\n";
+    return text;
+}
+
 /// One line of what kept() writes. False if it is none: a run's file is a stranger.
 bool read_line(std::string_view text, std::map<std::pair<std::string, bool>, ReducedMesh>& meshes,
-               ReducedMesh*& mesh)
+               std::map<std::string, ReducedMesh>& seen, ReducedMesh*& mesh)
 {
     const std::string_view word = text.substr(0, text.find(' '));
     Line line(text.substr(std::min(text.size(), word.size() + 1)));
@@ -134,6 +146,10 @@ bool read_line(std::string_view text, std::map<std::pair<std::string, bool>, Red
         if (!line.read(is_turned) || !line.read(whole)) return false;
         mesh = &meshes[{line.rest(), is_turned != 0}];
         mesh->whole = whole;
+        return true;
+    }
+    if (word == "picture") {
+        mesh = &seen[line.rest()];
         return true;
     }
     if (mesh == nullptr) return false;
@@ -204,8 +220,9 @@ MeshStore::MeshStore(MeshSource source) : source_(std::move(source))
     ReducedMesh* mesh = nullptr;
     for (std::string_view text = source_.kept; !text.empty();) {
         const std::size_t end = std::min(text.find('\n'), text.size());
-        if (!read_line(text.substr(0, end), kept_, mesh)) {
+        if (!read_line(text.substr(0, end), kept_, kept_seen_, mesh)) {
             kept_.clear();   // damaged: nothing of it can be trusted
+            kept_seen_.clear();
             return;
         }
         text.remove_prefix(std::min(end + 1, text.size()));
@@ -234,7 +251,30 @@ const Moments& MeshStore::weighted(const std::string& path, bool is_turned, doub
         .first->second;
 }
 
+const Surface& MeshStore::picture(const std::string& path)
+{
+    const auto known = seen_.find(path);
+    if (known != seen_.end()) return known->second.picture;
+    ReducedMesh seen;
+    if (const auto kept = kept_seen_.find(path); kept != kept_seen_.end()) {
+        seen = kept->second;
+    } else {
+        const Mesh mesh = open(path);
+        seen.picture = picture_of(mesh.is_volume() ? boundary_of(mesh) : mesh, {});
+        if (seen.picture.triangles.empty()) refuse("mesh-file", path, "has no faces to show");
+    }
+    return seen_.emplace(path, std::move(seen)).first->second.picture;
+}
+
 Mesh MeshStore::read(const std::string& path, bool is_turned)
+{
+    Mesh mesh = open(path);
+    if (is_turned) turn_outwards(mesh);
+    require_sound(mesh);
+    return mesh;
+}
+
+Mesh MeshStore::open(const std::string& path)
 {
     namespace fs = std::filesystem;
     const fs::path relative(path);
@@ -255,10 +295,7 @@ Mesh MeshStore::read(const std::string& path, bool is_turned)
     if (error) refuse("mesh-file", path, "cannot be read: " + error.message());
     if (!is_inside(file, folder)) refuse("mesh-path", path, "leaves the scenario's folder by a link");
     files_.push_back(file);
-    Mesh mesh = read_mesh_file(file, path);
-    if (is_turned) turn_outwards(mesh);
-    require_sound(mesh);
-    return mesh;
+    return read_mesh_file(file, path);
 }
 
 std::string MeshStore::kept() const
@@ -275,14 +312,9 @@ std::string MeshStore::kept() const
         }
         for (const auto& [field, m] : mesh.weighted)
             text += "weighted " + numbers_of(m) + to_text(field.first) + " " + in_line(field.second);
-        const Surface& picture = mesh.picture;
-        if (picture.n_left_out > 0)
-            text += "thinned " + std::to_string(picture.n_left_out) + " " + to_text(picture.moved) + "\n";
-        for (const Vector3& p : picture.points) text += "point " + numbers_of(p) + "\n";
-        for (const auto& t : picture.triangles)
-            text += "face " + std::to_string(t[0]) + " " + std::to_string(t[1]) + " " + std::to_string(t[2]) +
-                    "\n";
+        text += lines_of(mesh.picture);
     }
+    for (const auto& [path, mesh] : seen_) text += "picture " + in_line(path) + lines_of(mesh.picture);
     return text;
 }
 

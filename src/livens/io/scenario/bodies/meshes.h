@@ -41,6 +41,10 @@ public:
     /// Also throws what Expression does, and `density-field`.
     const Moments& weighted(const std::string& path, bool is_turned, double unit, const std::string& density);
 
+    /// Triangles of a mesh that is looked at alone, in its own coordinates: it need not be closed or sound.
+    /// Throws InputError: `mesh-path`, `mesh-file`.
+    const Surface& picture(const std::string& path);
+
     /// All that was asked for, as MeshSource::kept.
     std::string kept() const;
     /// That were read.
@@ -48,12 +52,15 @@ public:
 
 private:
     using Key = std::pair<std::string, bool>;
+    Mesh open(const std::string& path);
     Mesh read(const std::string& path, bool is_turned);
     ReducedMesh& entry(const std::string& path, bool is_turned);
 
     MeshSource source_;
     std::map<Key, ReducedMesh> known_;
     std::map<Key, ReducedMesh> kept_;   ///< of a run
+    // Likewise, of those that are looked at alone: their pictures.
+    std::map<std::string, ReducedMesh> seen_, kept_seen_;
     std::vector<std::filesystem::path> files_;
 };
 

@@ -17,12 +17,6 @@ namespace livens {
 
 namespace {
 
-/// Of the mesh's numbers, m.
-double unit_of(const Section& shape)
-{
-    return (shape.has("scale") ? shape.number("scale") : 1) * unit_of_length(shape.text("unit"));
-}
-
 std::vector<Key> mesh_keys(bool is_part)
 {
     std::vector<Key> keys{
@@ -188,7 +182,7 @@ Moments weighted(const Section& shape, const ReducedMesh& mesh, double unit)
 Part read_mesh_part(const Section& shape, MeshStore& meshes)
 {
     const ReducedMesh& mesh = meshes.find(shape.text("mesh"), shape.has("turn"));
-    const double unit = unit_of(shape);
+    const double unit = mesh_unit(shape);
     const Moments whole = scaled(mesh.whole, unit);
     Part part{whole, whole, outline_of(mesh, unit), surfaces_of(mesh, unit)};
     if (shape.has("density_field"))
@@ -300,6 +294,11 @@ Table io_internal::shape_table()
     shape.keys.push_back(density_field_key(false));
     shape.keys.push_back(Key{"parts", types::tables, "A union of shapes."}.holding(part));
     return shape;
+}
+
+double io_internal::mesh_unit(const Section& shape)
+{
+    return (shape.has("scale") ? shape.number("scale") : 1) * unit_of_length(shape.text("unit"));
 }
 
 bool io_internal::is_point_mass(const Section& body)

@@ -26,6 +26,8 @@ Table shape_table();
 bool is_point_mass(const Section& body);
 /// Reports what is wrong with a shape without looking into its meshes.
 bool check_shape(const Section& shape);
+/// Of the mesh's numbers, m.
+double mesh_unit(const Section& shape);
 /// Of one that check_shape() found right.
 DensityBy density_by(const Section& shape);
 /// Of a body; empty without a shape and for point masses. Surfaces of primitives are known if they are

@@ -63,6 +63,7 @@ const Table& root_table()
          Key{"title", types::text, "One line for people; copied to results."},
          Key{"gravity", types::vector3, "Acceleration of free fall, world axes.", "m/s^2", "[0, 0, 0]"},
          Key{"body", types::tables, "Bodies, at least one."}.needed().holding(body_table()),
+         Key{"world", types::table, "What is drawn of the world."}.holding(world_table()),
          Key{"joint", types::tables, "Joints."}.holding(joint_table()),
          Key{"drive", types::tables, "Coordinates, distances and points that follow time."}.holding(
              drive_table()),

@@ -61,6 +61,8 @@ inline constexpr KeyType number_or_list{"a number or a list of numbers", Form::n
 inline constexpr KeyType number_or_table{"a number or a table", Form::number, 0, Form::table};
 inline constexpr KeyType table{"a table", Form::table};
 inline constexpr KeyType tables{"tables", Form::tables};
+inline constexpr KeyType table_or_tables{"a table or a list of tables", Form::table, 0, Form::tables};
+inline constexpr KeyType color{"a text or three numbers", Form::text, 3, Form::row};
 inline constexpr KeyType later{"", Form::none};   ///< known, but not part of this version
 }   // namespace types
 
@@ -141,6 +143,7 @@ inline constexpr int max_bodies = 10000;
 
 // Made once, for root_table(), which holds all others.
 Table body_table();
+Table world_table();
 Table joint_table();
 Table drive_table();
 Table load_table();

@@ -38,6 +38,7 @@ private:
             return node.kind == NodeKind::text && index_of(key_.choices, node.text()) >= 0;
         case Form::row:
         case Form::names:
+        case Form::tables:
             return node.kind == NodeKind::array;
         case Form::rows:
             return node.kind == NodeKind::array && !node.items().empty() &&
@@ -204,7 +205,10 @@ private:
     bool read_tables(const Node& node)
     {
         const std::string name(key_.name);
-        const std::string help = "each " + name + " begins with a line [[" + name + "]]";
+        const bool is_inside = key_.type.form == Form::table;   // one table may stand instead
+        const std::string help = is_inside ? "write " + name + " = [{ " +
+                                                 std::string(key_.child->keys.front().name) + " = ... }, ...]"
+                                           : "each " + name + " begins with a line [[" + name + "]]";
         if (node.kind != NodeKind::array) return wrong_type(node, help);
         value_.sections.reserve(node.items().size());
         bool is_valid = true;
@@ -214,7 +218,8 @@ private:
             const bool is_named = title != nullptr && title->kind == NodeKind::text && !title->text().empty();
             const std::string label =
                 is_named ? "'" + title->text() + "'" : std::to_string(value_.sections.size() + 1);
-            value_.sections.emplace_back(item, *key_.child, name + " " + label, findings_);
+            value_.sections.emplace_back(item, *key_.child,
+                                         name + " " + label + (is_inside ? " of " + label_ : ""), findings_);
             is_valid = value_.sections.back().is_valid() && is_valid;
         }
         return is_valid;
@@ -373,12 +378,6 @@ bool Section::refuse(std::initializer_list<std::string_view> keys, std::string_v
                 error(key, code, "'" + std::string(key) + "' of " + label_ + " has no meaning: " + reason,
                       {"", "leave it out"});
     return is_clean;
-}
-
-const Section* only_section(const Section& section, std::string_view key)
-{
-    const std::span<const Section> sections = section.sections(key);
-    return sections.empty() ? nullptr : &sections.front();
 }
 
 }   // namespace livens::inline io_internal

@@ -102,6 +102,10 @@ private:
 };
 
 /// The table `key` of a section; null if it is not there.
-const Section* only_section(const Section& section, std::string_view key);
+inline const Section* only_section(const Section& section, std::string_view key)
+{
+    const std::span<const Section> sections = section.sections(key);
+    return sections.empty() ? nullptr : &sections.front();
+}
 
 }   // namespace livens::inline io_internal

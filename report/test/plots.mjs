@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Plots of the page: which come first, what they save, degrees, one quantity against another.
+//   LIVENS_PROGRAM=build/release/livens node report/test/plots.mjs [NAME]
+import { readFileSync } from "node:fs";
+import assert from "node:assert/strict";
+import { example, made, open, run, sample } from "./tools.mjs";
+
+const titles = (page) =>
+  page
+    .locator("#plot-list figcaption > span:first-child")
+    .evaluateAll((all) => all.map((e) => e.firstChild.textContent));
+const plot = (page, title) => page.locator("#plot-list figure").filter({ hasText: title }).first();
+async function saved(page, figure, kind) {
+  const waits = page.waitForEvent("download");
+  await figure.hover();
+  await figure.locator(".out", { hasText: kind }).click();
+  const download = await waits;
+  return [download.suggestedFilename(), readFileSync(await download.path())];
+}
+async function table(page, figure) {
+  const [, bytes] = await saved(page, figure, "CSV"),
+    [head, ...rows] = bytes.toString().trim().split("\r\n");
+  return { head: head.split(","), rows: rows.map((row) => row.split(",").map(Number)) };
+}
+const shaft_and_flap = (sensors = "") =>
+  'format = 1\ntitle = "shaft and flap"\ngravity = [0, 0, -9.81]\n' +
+  '[[body]]\nname = "rotor"\nshape = { box = [0.4, 0.05, 0.05] }\nmass = 3\nposition = [0.2, 0, 0]\n' +
+  '[[joint]]\nname = "shaft"\ntype = "revolute"\nbetween = ["world", "rotor"]\nat = [0, 0, 0]\naxis = [0, 1, 0]\n' +
+  '[[drive]]\nname = "motor"\ntype = "joint"\njoint = "shaft"\nrate = 6\n' +
+  '[[body]]\nname = "flap"\nshape = { box = [0.05, 0.05, 0.4] }\nmass = 1\nposition = [2, 0, -0.2]\n' +
+  '[[joint]]\nname = "hinge"\ntype = "revolute"\nbetween = ["world", "flap"]\nat = [2, 0, 0.01]\naxis = [0, 1, 0]\n' +
+  '[[load]]\nname = "push"\ntype = "force"\nbody = "flap"\nexpression = ["0.5*sin(3*t)", "0", "0"]\n' +
+  sensors +
+  '[start]\ninitial = "project"\n[time]\nend = 2\n';
+
+const tests = {
+  async "motors come first, and nothing flat or twice"() {
+    const { page: file } = made("shaft", shaft_and_flap()),
+      page = await open(file);
+    const first = await titles(page);
+    assert.deepEqual(first.slice(0, 4), [
+      "Torques of motors",
+      "Power of motors",
+      "Angles of joints",
+      "Angles of joints (2)",
+    ]);
+    for (const figure of await page.locator("#plot-list figure").all())
+      if (/joints/.test(await figure.locator("figcaption").textContent()))
+        assert.doesNotMatch(await figure.locator(".keys").textContent(), /motor/);
+    // Of a rod that is turned evenly: torque against gravity, power by the rate; in single precision, and interpolated.
+    const torque = await table(page, plot(page, "Torques of motors")),
+      power = await table(page, plot(page, "Power of motors"));
+    let worst = 0;
+    torque.rows.forEach(([t, effort], k) => {
+      const truth = -3 * 9.81 * 0.2 * Math.cos(6 * t);
+      worst = Math.max(worst, Math.abs(effort - truth), Math.abs(power.rows[k][1] - 6 * truth) / 6);
+    });
+    assert.ok(worst < 2e-4, `${worst} N m`);
+    assert.deepEqual(torque.head, ["t [s]", "motor [N m]"]);
+    // An actuator: as its formula says, with the sign of the coordinate, whichever body comes first.
+    for (const pair of ['["world", "rotor"]', '["rotor", "arm"]', '["arm", "rotor"]']) {
+      const arm =
+        '[[body]]\nname = "arm"\nshape = { box = [0.3, 0.05, 0.05] }\nmass = 2\nposition = [0, 0.1, 0]\n';
+      const text = shaft_and_flap()
+        .replace(
+          /\[\[drive\]\][\s\S]*?rate = 6\n/,
+          `${pair.includes("arm") ? arm : ""}[[load]]\nname = "motor"\ntype = "actuator"\njoint = "shaft"\nexpression = "0.3*cos(2*t)"\n`,
+        )
+        .replace('["world", "rotor"]', pair);
+      const page = await open(made("actuator", text).page);
+      await page.selectOption("#add", {
+        label: await page.locator("#add option", { hasText: "Rates of angles" }).first().textContent(),
+      });
+      assert.equal((await titles(page))[0], "Torques of motors");
+      const torque = await table(page, plot(page, "Torques of motors")),
+        power = await table(page, plot(page, "Power of motors")),
+        rates = await table(page, plot(page, "Rates of angles")),
+        shaft = rates.head.indexOf("shaft [rad/s]");
+      const off = Math.max(
+        ...torque.rows.map(([t, effort], k) =>
+          Math.max(
+            Math.abs(effort - 0.3 * Math.cos(2 * t)),
+            Math.abs(power.rows[k][1] - effort * rates.rows[k][shaft]) / 10,
+          ),
+        ),
+      );
+      assert.ok(off < 1e-4, `${pair}: ${off}`);
+    }
+    // A sensor that reads what the plot of a single body shows.
+    const falls = (sensor) =>
+      `format = 1\ngravity = [0, 0, -9.81]\n[[body]]\nname = "stone"\nshape = { sphere = 0.1 }\nmass = 1\nvelocity = [1, 0, 2]\nangular_velocity = [0, 0, 1]\n${sensor}[time]\nend = 1\n`;
+    const both = '[[sensor]]\nname = "middle"\ntype = "point"\nbody = "stone"\n';
+    const one = await open(made("falls", falls(both)).page),
+      none = await open(made("falls_bare", falls("")).page);
+    const [with_sensor, bare] = [await titles(one), await titles(none)];
+    assert.ok(
+      with_sensor.some((title) => /Sensor middle/.test(title)) &&
+        !with_sensor.some((title) => /centre of mass/.test(title)),
+      `${with_sensor}`,
+    );
+    assert.ok(
+      bare.some((title) => /centre of mass/.test(title)),
+      "the control",
+    );
+    assert.deepEqual([...page.problems, ...one.problems, ...none.problems], []);
+  },
+
+  async "values are saved as they are seen, at full digits"() {
+    const { page: file, run: result } = made("four_bar", example("four_bar")),
+      page = await open(file);
+    await page.selectOption("#add", { label: "coupler: centre of mass" });
+    const figure = plot(page, "coupler: centre of mass"),
+      { head, rows } = await table(page, figure);
+    assert.deepEqual(head, ["t [s]", "x [m]", "y [m]", "z [m]"]);
+    assert.equal(rows.length, 901);
+    const times = [0, 7, 450, 893].map((k) => rows[k][0]),
+      truth = sample(result, "--body", "coupler", ...times.flatMap((t) => ["--at", String(t)])).samples;
+    const centre = await page.evaluate(
+      () =>
+        JSON.parse(document.querySelector("script.run").textContent).bodies.find((b) => b.name === "coupler")
+          .centre,
+    );
+    [0, 7, 450, 893].forEach((k, i) => {
+      const { position, directors_raw: d } = truth[i];
+      position.forEach((x, j) => {
+        const at = x + d[0][j] * centre[0] + d[1][j] * centre[1] + d[2][j] * centre[2];
+        assert.ok(Math.abs(at - rows[k][1 + j]) < 1e-14, `${at} ${rows[k][1 + j]}`);
+      });
+    });
+    // What is hidden is not saved, and what is zoomed into is.
+    await figure.locator(".keys button", { hasText: "y" }).click();
+    assert.equal(await figure.locator(".keys button[aria-pressed=false]").count(), 1);
+    await page.keyboard.press("+");
+    const part = await table(page, figure);
+    assert.deepEqual(part.head, ["t [s]", "x [m]", "z [m]"]);
+    assert.ok(part.rows.at(-1)[0] < 2.6 && part.rows.length === 901);
+    assert.ok(await page.isVisible("#zoom-all"));
+    await page.click("#zoom-all");
+    assert.ok((await page.isVisible("#zoom-hint")) && !(await page.isVisible("#zoom-all")));
+    const [name, png] = await saved(page, figure, "PNG");
+    assert.equal(name, "coupler_centre_of_mass.png");
+    assert.equal(png.readUInt32BE(16), 1600);
+    assert.ok(png.length > 20000, `${png.length} bytes`);
+    await figure.locator(".keys button", { hasText: "z" }).click();
+    assert.ok(
+      !png.equals((await saved(page, figure, "PNG"))[1]),
+      "without another line it is another picture",
+    );
+    // The other kind of plot, of values at given times.
+    await page.click("#tab-quality");
+    const lengths = page.locator("#quality figure").filter({ hasText: "Lengths of time elements" });
+    assert.ok((await table(page, lengths)).rows.length > 90);
+    assert.deepEqual(page.problems, []);
+  },
+
+  async "names in saved tables are no formulas"() {
+    const text = shaft_and_flap()
+      .replaceAll('"shaft"', '"=cmd, \\"a\\""')
+      .replaceAll('"hinge"', '"@b"')
+      .replace("rate = 6", "rate = 0.3");
+    const page = await open(made("formulas", text).page),
+      [, bytes] = await saved(page, plot(page, "Angles of joints"), "CSV");
+    assert.equal(bytes.toString().split("\r\n")[0], `t [s],"'=cmd, ""a"" [rad]",'@b [rad]`);
+    assert.deepEqual(page.problems, []);
+  },
+
+  async "angles in degrees, remembered"() {
+    const { page: file } = made("shaft", shaft_and_flap()),
+      page = await open(file);
+    const in_radians = await table(page, plot(page, "Angles of joints"));
+    await page.selectOption("#angles", "deg");
+    const in_degrees = await table(page, plot(page, "Angles of joints"));
+    assert.deepEqual([in_radians.head[1], in_degrees.head[1]], ["shaft [rad]", "shaft [deg]"]);
+    in_degrees.rows.forEach(([, angle], k) =>
+      assert.ok(Math.abs(angle - (in_radians.rows[k][1] * 180) / Math.PI) < 1e-9),
+    );
+    await page.reload();
+    await page.waitForFunction(() => window.livensReport);
+    assert.equal(await page.inputValue("#angles"), "deg");
+    assert.match(await plot(page, "Angles of joints").locator("figcaption").textContent(), /deg/);
+    await page.selectOption("#add", { label: "Rates of angles (2)" });
+    await page.selectOption("#angles", "rpm");
+    const rates = await table(page, plot(page, "Rates of angles (2)"));
+    assert.equal(rates.head[1], "shaft [rpm]");
+    assert.ok(Math.abs(rates.rows[450][1] - 180 / Math.PI) < 1e-4, `${rates.rows[450]}`);
+    await page.selectOption("#angles", "rad");
+    assert.deepEqual(page.problems, []);
+  },
+
+  async "one quantity against another"() {
+    const { page: file } = made("shaft", shaft_and_flap()),
+      page = await open(file);
+    await page.selectOption("#add", { label: "rotor: path of the centre of mass" });
+    const path = plot(page, "rotor: path"),
+      { head, rows } = await table(page, path);
+    assert.deepEqual(head, ["t [s]", "rotor x [m]", "rotor z [m]"]);
+    const off = Math.max(...rows.map(([, x, z]) => Math.abs(Math.hypot(x, z) - 0.2)));
+    assert.ok(off < 1e-6, `a circle, but for ${off} m`);
+    // A metre is as long upwards as across.
+    const dot = async (t) => {
+      await page.evaluate((at) => livensReport.setTime(at), t);
+      const style = await path.locator(".dot").evaluate((e) => e.style.transform);
+      return [...style.matchAll(/-?[\d.]+(?=px)/g)].map(([n]) => Number(n));
+    };
+    const at = (t) => rows.reduce((best, row) => (Math.abs(row[0] - t) < Math.abs(best[0] - t) ? row : best));
+    const [p, q, r] = [0, 0.5, 1.2].map(at),
+      [a, b, c] = [await dot(p[0]), await dot(q[0]), await dot(r[0])];
+    const across = (b[0] - a[0]) / (q[1] - p[1]),
+      up = -(c[1] - b[1]) / (r[2] - q[2]);
+    assert.ok(across > 0 && Math.abs(across / up - 1) < 1e-3, `${across} ${up}`);
+    // Where the curve is clicked, there the time goes.
+    const box = await path.locator("canvas").boundingBox();
+    await page.mouse.click(box.x + b[0], box.y + b[1]);
+    const now = await page.evaluate(() => livensReport.now());
+    const turn = (2 * Math.PI) / 6; // it passes there again
+    assert.ok(Math.abs(((now - q[0] + turn / 2 + turn) % turn) - turn / 2) < 0.01, `${now} for ${q[0]}`);
+    await page.selectOption("#add", { label: "hinge: phase portrait" });
+    assert.deepEqual((await table(page, plot(page, "hinge: phase portrait"))).head.slice(1), [
+      "hinge angle [rad]",
+      "hinge angle rate [rad/s]",
+    ]);
+    // Any pair.
+    await page.click("#pair summary");
+    await page.selectOption("#pair-y", { label: "Power of motors: motor" });
+    await page.selectOption("#pair-x", { label: "Torques of motors: motor" });
+    await page.click("#pair-add");
+    const pair = plot(page, "Power of motors: motor over Torques of motors: motor"),
+      values = await table(page, pair);
+    const apart = Math.max(...values.rows.map(([, x, y]) => Math.abs(y - 6 * x)));
+    assert.ok(apart < 2e-3, `${apart} W of 35: velocities are derivatives of polynomials`);
+    assert.ok((await saved(page, pair, "PNG"))[1].length > 10000);
+    await pair.locator(".remove").click();
+    assert.equal(await page.locator("#plot-list figure").filter({ hasText: "over" }).count(), 0);
+    assert.deepEqual(page.problems, []);
+  },
+};
+
+await run(tests);

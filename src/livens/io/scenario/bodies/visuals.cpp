@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Shapes that are looked at alone: they have no mass, may overlap, and stand for the shape of a body in all
+// pictures where there are some.
+#include "livens/io/scenario/bodies/visuals.h"
+
+#include <algorithm>
+
+#include "livens/io/scenario/bodies/bodies.h"
+#include "livens/io/scenario/bodies/colors.h"
+#include "livens/io/scenario/bodies/primitives.h"
+#include "livens/io/scenario/bodies/shapes.h"
+
+namespace livens::inline io_internal {
+
+namespace {
+
+bool check_color(const Section& section)
+{
+    const Value* given = section.find("color");
+    if (given == nullptr || given->n_rows > 0 || parse_color(given->text)) return true;
+    return section.error("color", "unknown-choice",
+                         "'color' of " + section.label() + " cannot be \"" + given->text + "\"",
+                         {"", color_help(given->text)});
+}
+
+void read_color(const Section& section, Outline& outline)
+{
+    const Value* given = section.find("color");
+    if (given != nullptr)
+        outline.color = given->n_rows > 0 ? section.vector("color") : parse_color(given->text);
+    if (section.has("opacity")) outline.opacity = section.number("opacity");
+}
+
+Outline outline_of(const Section& visual, MeshStore& meshes)
+{
+    for (const Value& v : visual.values())
+        if (const Primitive* p = find_primitive(v.key->name)) return p->outline(visual);
+    const double unit = mesh_unit(visual);
+    const Surface& picture = meshes.picture(visual.text("mesh"));
+    Outline outline;
+    outline.points = picture.points;
+    outline.triangles = picture.triangles;
+    outline.n_left_out = picture.n_left_out;
+    outline.moved = picture.moved;
+    outline.stretch = {unit, unit, unit};
+    return outline;
+}
+
+}   // namespace
+
+std::vector<Key> color_keys(const char* color, const char* opacity)
+{
+    return {Key{"color", types::color, color}.within({0, 1}),
+            Key{"opacity", types::number, opacity, "", "1"}.within({0, 1, true})};
+}
+
+Key visual_key(const char* doc)
+{
+    Table visual{
+        "visual",
+        "A shape that is drawn and weighs nothing: exactly one of the shapes, at a place of the body "
+        "or the world.",
+        {}};
+    for (const Primitive& p : primitives()) visual.keys.push_back(p.key);
+    visual.keys.push_back(
+        {"mesh", types::text,
+         "A file of triangles: STL, OBJ, PLY or Gmsh's MSH; a path from the scenario's folder "
+         "on, which it does not leave. It need not be closed."});
+    visual.keys.push_back(
+        {"unit", types::text, "Of the mesh's numbers, a length such as `\"mm\"`; a mesh needs it."});
+    visual.keys.push_back(
+        Key{"scale", types::number, "The mesh is made so many times larger.", "", "1"}.within(positive));
+    visual.keys.push_back({"position", types::vector3,
+                           "Of the shape's origin, in coordinates of the body or the world.", "m",
+                           "[0, 0, 0]"});
+    for (const Key& key : orientation_keys()) visual.keys.push_back(key);
+    for (const Key& key : color_keys("Default: that of the body.",
+                                     "1: nothing is seen through it. Default: that of the body."))
+        visual.keys.push_back(key);
+    return Key{"visual", types::table_or_tables, doc}.holding(visual);
+}
+
+Table world_table()
+{
+    return {"[world]",
+            "What stands still: a floor, walls, the base of a robot. It is drawn and nothing else.",
+            {visual_key("One shape, or a list of them, in the world's coordinates.")}};
+}
+
+bool check_look(const Section& section)
+{
+    const Value* given = section.find("visual");
+    bool is_right = !section.takes("color") || check_color(section);
+    if (given != nullptr && given->sections.empty())
+        return section.error("visual", "shape", "'visual' of " + section.label() + " has no shapes",
+                             {"", "leave it out, or give a list of tables such as { box = [1, 1, 1] }"});
+    for (const Section& visual : section.sections("visual"))
+        is_right = check_orientation(visual) && check_shape(visual) && check_color(visual) && is_right;
+    return is_right;
+}
+
+void read_look(const Section& section, MeshStore& meshes, Outline& outline)
+{
+    if (section.takes("color")) read_color(section, outline);
+    for (const Section& visual : section.sections("visual")) {
+        try {
+            Outline one = outline_of(visual, meshes);
+            one.place = visual.vector("position");
+            one.axes = read_orientation(visual);
+            one.color = outline.color;
+            one.opacity = outline.opacity;
+            read_color(visual, one);
+            outline.visuals.push_back(std::move(one));
+        } catch (const InputError& error) {
+            const Complaint& c = error.complaint();
+            visual.error("mesh", c.code, c.message, {c.note, c.help});
+        }
+    }
+}
+
+}   // namespace livens::inline io_internal
