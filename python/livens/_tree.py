@@ -13,6 +13,7 @@ import numpy as np
 
 from . import _core
 from ._errors import Diagnostic, InputError, Place, fault, user_place
+from ._values import Shape
 
 TABLE, TABLES = 11, 12   # of Form in schema.h
 KINDS = ("body", "joint", "drive", "load", "sensor")   # arrays of tables in the root
@@ -103,6 +104,8 @@ def plain(value: Any, key: dict[str, Any] | None, path: str) -> Any:
         return plain(value.tolist(), key, path)
     if isinstance(value, os.PathLike):
         return plain(os.fspath(value), key, path)
+    if isinstance(value, Shape) and key is not None and key["name"] == "visual":
+        value = _seen(value, path)
     if isinstance(value, Mapping):
         return _plain_table(value, schema().child(key), path)
     if isinstance(value, (int, float)):   # subclasses
@@ -115,6 +118,15 @@ def plain(value: Any, key: dict[str, Any] | None, path: str) -> Any:
     raise fault("wrong-type", f"{_article(type(value).__name__)} is no value of a model", path,
                 "m.add_function(name, body, function) takes functions; expressions are texts" if callable(value)
                 else "numbers, texts with units, lists and arrays are")
+
+
+def _seen(shape: Shape, path: str) -> Mapping[str, Any]:
+    """A shape that is looked at alone."""
+    for key in ("mass", "density"):
+        if key in shape.keys:
+            raise fault("wrong-type", f"what is looked at alone has no {key}", path, f"leave {key}= out of the shape")
+    inside: Mapping[str, Any] = shape.keys["shape"]
+    return inside
 
 
 def _article(word: str) -> str:
