@@ -262,10 +262,22 @@ def rows_of_examples(site: Site) -> dict[str, list[str]]:
     return rows
 
 
+def groups_of_examples(site: Site) -> dict[str, str]:
+    """Headings of docs/examples.md by the first example below each."""
+    text = (site.root / "docs/examples.md").read_text(encoding="utf-8")
+    found = re.findall(r"^## (.*)$|^\| `examples/(\w+)\.toml`", text, re.M)
+    return {after[1]: before[0] for before, after in zip(found, found[1:]) if before[0] and after[1]}
+
+
 def add_gallery(site: Site) -> None:
     rows = rows_of_examples(site)
-    cards = []
+    groups = groups_of_examples(site)
+    cards: list[str] = []
+    sections = []
     for name, (shows, witness, allowed) in rows.items():
+        if name in groups:
+            cards = []
+            sections.append((groups[name], cards))
         scenario = site.root / "examples" / f"{name}.toml"
         site.copies[f"gallery/{name}.toml"] = scenario
         report = solved_report(site, scenario)
@@ -292,6 +304,8 @@ def add_gallery(site: Site) -> None:
                  f"```sh\nlivens solve {name}.toml -o {name}.nc\nlivens view {name}.nc\n```\n\n"
                  f"{{download}}`{name}.toml`:\n\n```{{literalinclude}} {name}.toml\n:language: toml\n```\n")
     pages = [*rows]
+    cards = []
+    sections.append(("Python", cards))
     for file in sorted((site.root / "examples/python").glob("*.py")):
         add_script(site, file, pages, cards)
     for file in sorted((site.root / "examples/notebooks").glob("*.ipynb")):
@@ -299,8 +313,8 @@ def add_gallery(site: Site) -> None:
     site.where["docs/examples.md", ""] = ("gallery/index", "")
     site.add("gallery/index", "# Gallery\n\nEvery example of the sources, solved while these pages were made. Each has its live report: the "
              "mechanism in space at any instant, plots that follow, and whether the answer is right. Each runs in the tests "
-             "and is compared there with a reference.\n\n:::::{grid} 1 2 2 3\n:gutter: 3\n\n" + "\n".join(cards) +
-             ":::::\n\n" + toctree(pages, hidden=True))
+             "and is compared there with a reference.\n\n" +
+             "".join(f"## {heading}\n\n:::::{{grid}} 1 2 2 3\n:gutter: 3\n\n" + "\n".join(some) + ":::::\n\n" for heading, some in sections) + toctree(pages, hidden=True))
 
 
 def solved_report(site: Site, scenario: pathlib.Path) -> pathlib.Path:

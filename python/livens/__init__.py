@@ -34,7 +34,7 @@ from ._results import Solution, load_solution
 from ._series import Series
 from ._shown import Extremes, Peak
 from ._solve import solve, solve_many
-from ._values import Condition, Method, Shape, momenta, positions, state, table
+from ._values import Condition, Method, Shape, momenta, positions, state, table, visual
 
 __all__ = [
     "Body", "BodySeries", "BodyState", "Comparison", "Condition", "Diagnostic", "Drive", "Entry", "Equilibrium",
@@ -42,7 +42,7 @@ __all__ = [
     "MethodOptions", "ModeBody", "ModeJoint", "Model", "ModelWarning", "Modes", "Names", "Parts", "Peak", "Place", "PointSeries",
     "ReadingSeries", "RestBody", "RestJoint", "ResultFileError", "Section", "Sensor", "SensorSeries", "Series",
     "Shape", "SlowWarning", "Solution", "SolveError", "SolveWarning", "StateMatrices", "__version__", "compare",
-    "explain", "load", "load_solution", "momenta", "positions", "solve", "solve_many", "state", "table",
+    "explain", "load", "load_solution", "momenta", "positions", "solve", "solve_many", "state", "table", "visual",
 ]
 __all__ += _generated.__all__
 

@@ -139,7 +139,7 @@ class Tree(Adders):
             raise fault("unknown-key", f"unknown key '{name}' in {section._label()}", path, section._suggestion(name))
         if top._key in KINDS and not any(table is top._table for table in self._root.get(top._key, [])):
             raise unknown_name(top._key, f"{top.name} (which was removed)", list(Names(self, top._key, Entry)))
-        if isinstance(value, Shape):
+        if isinstance(value, Shape) and name != "visual":
             return self._reshape(section, value)
         if name == "rotation" and key is None and value is not None:
             name, value = oriented(value)

@@ -129,6 +129,11 @@ class Model(Tree):
         return Names(self, "sensor", Sensor)
 
     @property
+    def world(self) -> Section:
+        """The table ``[world]``: ``m.world.visual = lv.box(4, 2, 0.1)`` draws a floor."""
+        return self._section("world")
+
+    @property
     def time(self) -> Section:
         """The table ``[time]``: ``m.time.end = 5``. What :func:`livens.solve` is told wins."""
         return self._section("time")

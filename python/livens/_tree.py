@@ -14,6 +14,7 @@ import numpy as np
 from . import _core
 from ._errors import Diagnostic, InputError, Place, fault, user_place
 from ._rotations import ORIENTATIONS, as_key, doubt, is_rotation
+from ._values import Shape
 
 ROW, TABLE, TABLES = 9, 11, 12   # of Form in schema.h
 KINDS = ("body", "joint", "drive", "load", "sensor")   # arrays of tables in the root
@@ -110,6 +111,8 @@ def plain(value: Any, key: dict[str, Any] | None, path: str) -> Any:
         return plain(value.tolist(), key, path)
     if isinstance(value, os.PathLike):
         return plain(os.fspath(value), key, path)
+    if isinstance(value, Shape) and key is not None and key["name"] == "visual":
+        value = _seen(value, path)
     if isinstance(value, Mapping):
         return _plain_table(value, schema().child(key), path)
     if isinstance(value, (int, float)):   # subclasses
@@ -130,6 +133,15 @@ def _of_function(path: str) -> str:
     if path.startswith("drive["):
         return expression + "; values over time: table=lv.table(times, values)"
     return expression + "; m.add_function(name, body, function) takes a Python function"
+
+
+def _seen(shape: Shape, path: str) -> Mapping[str, Any]:
+    """A shape that is looked at alone."""
+    for key in ("mass", "density"):
+        if key in shape.keys:
+            raise fault("wrong-type", f"what is looked at alone has no {key}", path, f"leave {key}= out of the shape")
+    inside: Mapping[str, Any] = shape.keys["shape"]
+    return inside
 
 
 def _article(word: str) -> str:

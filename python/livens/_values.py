@@ -157,6 +157,35 @@ def three(name: str, x: Any, y: Any, z: Any) -> tuple[Any, Any, Any]:
     return (x, y, z)
 
 
+def visual(shape: Shape, *, position: Vector | None = None, directors: Matrix | None = None,
+           quaternion: Vector | None = None, rotation_vector: Vector | None = None,
+           color: str | Vector | None = None, opacity: float | None = None) -> dict[str, Any]:
+    """A shape that is looked at alone, for ``visual=`` of a body or of :attr:`Model.world`.
+
+    Args:
+        shape: Without ``mass`` and ``density``.
+        position: Of its origin in coordinates of the body or the world, m, shape (3,).
+        directors: Its axes, one a row, shape (3, 3).
+        quaternion: (w, x, y, z) instead.
+        rotation_vector: Axis times angle, rad, instead.
+        color: A name of CSS, ``"#rrggbb"``, or red, green and blue from 0 to 1. Default: that of the body.
+        opacity: 1: nothing is seen through it.
+
+    Example:
+        >>> import livens as lv
+        >>> m = lv.Model("arm")
+        >>> arm = m.add_body("arm", mass=3, inertia=(0.001, 0.3, 0.3), color="steelblue", visual=[
+        ...     lv.box(1, 0.05, 0.05), lv.visual(lv.sphere("6 cm"), position=(0.5, 0, 0), color="#c33")])
+        >>> arm.visual[1].color
+        '#c33'
+        >>> m.world.visual = lv.box(3, 2, 0.02)
+    """
+    keys = {"position": position, "directors": directors, "quaternion": quaternion, "rotation_vector": rotation_vector,
+            "color": color, "opacity": opacity}
+    given = {key: value for key, value in keys.items() if value is not None}
+    return {**shape.keys["shape"], **{key: shape.keys[key] for key in ("mass", "density") if key in shape.keys}, **given}
+
+
 def open_keys(kind: str, word: str) -> Callable[[_F], _F]:
     """Lets a generated method hand keywords that it does not know to the reader, who knows what was meant."""
     def decorate(method: _F) -> _F:

@@ -302,3 +302,23 @@ def test_the_text_of_a_scenario_is_a_text() -> None:
     for text in (5, b"format = 1", ["format = 1"]):
         with pytest.raises(TypeError, match="text= of load"):
             lv.load(text=text)   # type: ignore[arg-type]
+
+
+def test_looks_are_apart_from_mass_and_are_kept(tmp_path: Any) -> None:
+    m = lv.Model("arm")
+    arm = m.add_body("arm", mass=3, inertia=(0.001, 0.3, 0.3), color="steelblue", opacity=0.5, visual=[
+        lv.box(1, 0.05, 0.05), lv.visual(lv.sphere("6 cm"), position=(0.5, 0, 0), color=(0.8, 0.2, 0.2))])
+    m.world.visual = lv.box(3, 2, 0.02)
+    m.to_toml(tmp_path / "arm.toml")
+    again = lv.load(tmp_path / "arm.toml")
+    assert again == m and again["arm"].mass == 3
+    assert again["arm"].visual[1].sphere == 0.06 and again.world.visual.box.tolist() == [3, 2, 0.02]
+    arm.visual[1].color = "#c33"
+    assert m["arm"].visual[1].color == "#c33"
+    arm.visual = lv.sphere(0.1)
+    assert m["arm"].visual.sphere == 0.1 and m["arm"].mass == 3
+    with pytest.raises(lv.InputError, match="looked at alone has no mass"):
+        arm.visual = lv.sphere(0.1, mass=2)
+    with pytest.raises(lv.InputError, match="cannot be \"stelblue\""):
+        m.add_body("bad", lv.sphere(0.1, mass=2), color="stelblue")
+        m.check()

@@ -1109,3 +1109,23 @@ livens_mutant(NAME slot_drawn_by_half
               NEW [[0.5 * (curve.last - curve.first) * k / pieces]]
               TESTS_OF unit_multibody
               MUST_FAIL Joint.SlotKeepsItsWholeCurveToBeDrawn)
+
+# What is looked at alone stands from the reference point on; shapes stand about the centre of mass.
+livens_mutant(NAME visuals_lose_their_axes
+              FILE io/scenario/bodies/visuals.cpp
+              OLD [[one.axes = read_orientation(visual);]]
+              NEW [[one.axes = identity<3>();]]
+              TESTS_OF unit_io
+              MUST_FAIL Visual.StandsWhereItIsSaidWhateverTheMass)
+livens_mutant(NAME visuals_forget_the_colour_of_their_body
+              FILE io/scenario/bodies/visuals.cpp
+              OLD [[one.color = outline.color;]]
+              NEW [[one.color = {};]]
+              TESTS_OF unit_io
+              MUST_FAIL Visual.HasTheColourOfItsBodyUnlessItHasItsOwn)
+livens_mutant(NAME pictures_are_not_kept
+              FILE io/scenario/bodies/meshes.cpp
+              OLD [[for (const auto& [path, mesh] : seen_) text +=]]
+              NEW [[for (const auto& [path, mesh] : kept_seen_) text +=]]
+              TESTS_OF unit_io
+              MUST_FAIL Visual.OfAMeshNeedNotBeClosedAndIsKeptByTheRun)
