@@ -13,6 +13,7 @@ if(LIVENS_UMFPACK)
 endif()
 if(LIVENS_BUILD_PROGRAM)
     list(APPEND libraries livens_io livens_zlib)
+    add_dependencies(livens ${libraries})   # a build of the program alone can be installed
     install(TARGETS livens RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} ${program})
     # Where the shells and man look without being told.
     install(FILES ${livens_pages}/livens.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 ${program})

@@ -3,6 +3,6 @@
 
 namespace [[gnu::visibility("default")]] livens {
 
-inline constexpr const char* version = "0.2.0";
+inline constexpr const char* version = "0.3.0";
 
 }   // namespace livens
