@@ -58,7 +58,7 @@ def factor_to(unit: str, wanted: str | Sequence[str] | None) -> tuple[float, str
     """What numbers in ``unit`` are multiplied with, and the unit then: as it is where none of the wanted fits."""
     for one in ([wanted] if isinstance(wanted, str) else list(wanted or ())):
         if not isinstance(one, str):
-            raise TypeError(f"units are texts, as 'deg', not {type(one).__name__}")
+            raise TypeError(f"units are strings, as 'deg', not {type(one).__name__}")
         first, _, rest = unit.partition("/")
         for text in (one, f"{one}/{rest}" if rest else one):   # "deg" of rates: deg/s
             if text != one and first not in ("rad", "m"):
@@ -71,7 +71,7 @@ def factor_to(unit: str, wanted: str | Sequence[str] | None) -> tuple[float, str
 
 
 def check_units(wanted: str | Sequence[str] | None, units: Sequence[str]) -> None:
-    """A unit that is none, or that nothing has that is shown, is a slip."""
+    """An unknown unit, or one that nothing shown has, is a slip."""
     for one in ([wanted] if isinstance(wanted, str) else list(wanted or ())):
         if all(factor_to(unit, one)[1] == unit != one for unit in units):
             kinds = ", ".join(dict.fromkeys(units))
@@ -83,7 +83,7 @@ def found_extremes(result: Any, names: tuple[str, ...], unit: str | Sequence[str
     """See Solution.peaks()."""
     for name in names:
         if not isinstance(name, str):
-            raise TypeError(f"names are texts, as 'pivot.force', not {type(name).__name__}")
+            raise TypeError(f"names are strings, as 'pivot.force', not {type(name).__name__}")
     found = result.peaks(list(names))
     check_units(unit, [row[1] for row in found])
     all_of_them: dict[str, Extremes] = {}

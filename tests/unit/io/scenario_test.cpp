@@ -451,11 +451,9 @@ TEST(ScenarioCodes, WarningsLeaveTheScenarioAlone)
     const std::string late = replaced(valid_scenario, "value = [0, 1, 0]", "value = [0, 1, 0]\nfrom = 5");
     const std::string second =
         replaced(valid_scenario, "format = 1\ngravity = [0, 0, -9.81]", "gravity = [0, 0, 1]\nformat = 1");
-    const std::string missed = replaced(
-        replaced(valid_scenario, "type = \"spherical\"\nbetween = [\"upper\", \"lower\"]\nat = [1, 0, 0]",
-                 "type = \"spherical\"\nbetween = [\"upper\", \"lower\"]\npoints = [[0.5, 0, 1e-8], "
-                 "[-0.5, 0, 0]]"),
-        "[time]", "[start]\njoints = \"fit\"\n\n[time]");
+    const std::string missed =
+        replaced(replaced(valid_scenario, "at = [1, 0, 0]", "points = [[0.5, 0, 1e-8], [-0.5, 0, 0]]"),
+                 "[time]", "[start]\njoints = \"fit\"\n\n[time]");
     const std::string kinked = replaced(
         valid_scenario, "[time]",
         "[[load]]\ntype = \"actuator\"\njoint = \"shoulder\"\ninputs = { w = \"shoulder.angle_rate\" }\n"

@@ -62,7 +62,7 @@ inline constexpr KeyType number_or_table{"a number or a table", Form::number, 0,
 inline constexpr KeyType table{"a table", Form::table};
 inline constexpr KeyType tables{"tables", Form::tables};
 inline constexpr KeyType table_or_tables{"a table or a list of tables", Form::table, 0, Form::tables};
-inline constexpr KeyType color{"a text or three numbers", Form::text, 3, Form::row};
+inline constexpr KeyType color{"a string or three numbers", Form::text, 3, Form::row};
 inline constexpr KeyType later{"", Form::none};   ///< known, but not part of this version
 }   // namespace types
 
