@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pathlib
+from typing import Any
 
 import livens as lv
 import numpy as np
@@ -32,14 +33,14 @@ def test_the_peak_of_a_pendulum_is_that_of_its_formula(rod: lv.Solution) -> None
 def random_motion(seed: int) -> lv.Solution:
     rng = np.random.default_rng(seed)
     m = lv.Model("random", gravity=tuple(rng.normal(size=3) * 6))
-    before: object = "world"
+    before: Any = "world"
     place = np.zeros(3)
     for i in range(int(rng.integers(1, 4))):
         arm = rng.normal(size=3)
         body = m.add_body(f"b{i}", lv.box(*rng.uniform(0.1, 0.6, 3), mass=float(rng.uniform(0.5, 3))),
                           position=tuple(place + arm), rotation_vector=tuple(rng.normal(size=3)))
         add = m.add_revolute if rng.random() < 0.6 else m.add_spherical
-        axis = {"axis": tuple(rng.normal(size=3))} if add == m.add_revolute else {}
+        axis: dict[str, Any] = {"axis": tuple(rng.normal(size=3))} if add == m.add_revolute else {}
         add(f"j{i}", before, body, at=tuple(place), **axis)
         before, place = body, place + 2 * arm
     m.add_force("push", before, expression=("5*sin(7*t)", "0", "4*cos(3*t)"))
@@ -115,7 +116,8 @@ def test_sensors_read_accelerations() -> None:
 def test_dense_instants_show_jumps_from_both_sides() -> None:
     m = lv.Model("pulled")
     m.add_body("ball", lv.point(mass=2))
-    m.add_force("pull", "ball", value=(3, 0, 0), **{"from": 0.5, "until": 1})
+    when: dict[str, Any] = {"from": 0.5, "until": 1}
+    m.add_force("pull", "ball", value=(3, 0, 0), **when)
     sol = lv.solve(m, 2)
     pd = pytest.importorskip("pandas")
     frame = sol.to_dataframe("ball")

@@ -99,13 +99,14 @@ accuracy = 1e-11
     const double g = 9.81, m = 0.5, c = 0.02, end = std::sqrt(m * g / c), t = 2;
     const double v = end * std::tanh(g * t / end), z = -end * end / g * std::log(std::cosh(g * t / end));
     const std::vector<double> read = s.sensed(2);
-    ASSERT_EQ(read.size(), 12u);
+    ASSERT_EQ(read.size(), 15u);
     EXPECT_NEAR(read[2], z, 1e-9);
     EXPECT_NEAR(read[5], -v, 1e-9);
-    EXPECT_NEAR(read[6], 0.5 * m * v * v, 1e-8);   // those of loads come last
-    EXPECT_NEAR(read[7], m * g * z, 1e-8);
-    EXPECT_NEAR(read[10], c * v * v, 1e-9);
-    EXPECT_NEAR(read[11], -c * v * v * v, 1e-8);
+    EXPECT_NEAR(read[8], c / m * v * v - g, 1e-8);
+    EXPECT_NEAR(read[9], 0.5 * m * v * v, 1e-8);   // those of loads come last
+    EXPECT_NEAR(read[10], m * g * z, 1e-8);
+    EXPECT_NEAR(read[13], c * v * v, 1e-9);
+    EXPECT_NEAR(read[14], -c * v * v * v, 1e-8);
 }
 
 TEST(Laws, APlanetCloses)

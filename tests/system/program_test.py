@@ -306,7 +306,9 @@ class Solve(ProgramTest):
         self.assertEqual(len(lines), 1 + 6)
         self.assertEqual(lines[0].split(",")[:2], ["t [s]", "brick.position.x [m]"])
         self.assertEqual([line.split(",")[0] for line in lines[1:]], ["0", "0.1", "0.2", "0.3", "0.4", "0.5"])
-        self.assertEqual(lines[1].split(",")[17:21], [""] * 4)   # a point mass has no orientation
+        of_point = dict(zip(lines[0].split(","), lines[1].split(",")))   # which has no orientation
+        turning = [key for key in of_point if key.startswith("bob.quaternion")]
+        self.assertEqual([of_point[key] for key in turning], [""] * 4)
 
     def test_csv_of_joints_and_sensors(self):
         self.write("hinge.toml", """format = 1
@@ -338,8 +340,8 @@ output = 0.25
         self.expect(0, "solve", "hinge.toml", "-o", "run.nc", "--csv", "run.csv")
         with (self.folder / "run.csv").open(newline="") as file:
             rows = list(csv.DictReader(file))
-        self.assertEqual(list(rows[0])[-10:], [
-            "hinge.angle [rad]", "hinge.angle_rate [rad/s]", "hinge.force.x [N]", "hinge.force.y [N]", "hinge.force.z [N]",
+        self.assertEqual(list(rows[0])[-11:], [
+            "hinge.angle [rad]", "hinge.angle_rate [rad/s]", "hinge.angle_acceleration [rad/s^2]", "hinge.force.x [N]", "hinge.force.y [N]", "hinge.force.z [N]",
             "hinge.torque.x [N m]", "hinge.torque.y [N m]", "hinge.torque.z [N m]", "effort.force [N m]", "effort.power [W]"])
         for row in rows:
             at = json.loads(self.expect(0, "sample", "run.nc", "--joint", "hinge", f"--at={row['t [s]']}", "--json").out)
@@ -515,7 +517,7 @@ degree = 3
             of_joint = json.loads(self.expect(0, "sample", run, "--joint", "hinge", "--at", "0.4", *how, "--json").out)
             read = json.loads(self.expect(0, "sample", run, "--sensor", "turn", "--at", "0.4", *how, "--json").out)
             angle[run, how] = of_joint["angle"]
-            self.assertEqual(read["samples"][0]["values"], [of_joint["angle"], of_joint["angle_rate"]])
+            self.assertEqual(read["samples"][0]["values"], [of_joint["angle"], of_joint["angle_rate"], of_joint["angle_acceleration"]])
         right = angle["fine.nc", ()]
         self.assertLess(abs(angle["swing.nc", ("--exact",)] - right), 0.2 * abs(angle["swing.nc", ()] - right))
 
