@@ -214,22 +214,25 @@ private:
         const auto made = [&](Operation operation, int a, int b = -1) {
             return add({operation, a, b, place});
         };
-        using enum Operation;
         expect('(');
         const int x = sum();
         if (name == "step") return step(x, place);
         expect(')');
         const int one = add_number(1, place);
-        if (name == "atan") return made(arc_tangent, x, one);
+        if (name == "atan") return made(Operation::arc_tangent, x, one);
         if (name == "sinh" || name == "cosh") {
-            const int rising = made(exponential, x), falling = made(exponential, made(negative, x));
-            const int cosh = made(times, add_number(0.5, place), made(plus, rising, falling));
+            const int rising = made(Operation::exponential, x),
+                      falling = made(Operation::exponential, made(Operation::negative, x));
+            const int cosh =
+                made(Operation::times, add_number(0.5, place), made(Operation::plus, rising, falling));
             // Their difference has few digits where x is small.
-            return name == "cosh" ? cosh : made(times, made(hyperbolic_tangent, x), cosh);
+            return name == "cosh" ? cosh
+                                  : made(Operation::times, made(Operation::hyperbolic_tangent, x), cosh);
         }
         // sqrt(1 - x^2) by factors, which keep their digits near 1
-        const int rest = made(root, made(times, made(minus, one, x), made(plus, one, x)));
-        return name == "asin" ? made(arc_tangent, x, rest) : made(arc_tangent, rest, x);
+        const int rest = made(Operation::root, made(Operation::times, made(Operation::minus, one, x),
+                                                    made(Operation::plus, one, x)));
+        return name == "asin" ? made(Operation::arc_tangent, x, rest) : made(Operation::arc_tangent, rest, x);
     }
 
     /// step(x), or step(x, x0, h0, x1, h1) = h0 + (h1 - h0) s^2 (3 - 2 s), s = (x - x0) / (x1 - x0) within 0
@@ -240,19 +243,22 @@ private:
             return add({operation, a, b, place});
         };
         const auto constant = [&](double value) { return add_number(value, place); };
-        using enum Operation;
-        if (take(')')) return made(times, constant(0.5), made(plus, constant(1), made(Operation::sign, x)));
+        if (take(')'))
+            return made(Operation::times, constant(0.5),
+                        made(Operation::plus, constant(1), made(Operation::sign, x)));
         int of[4];
         for (int& one : of) {
             expect(',');
             one = sum();
         }
         expect(')');
-        const int share = made(divided, made(minus, x, of[0]), made(minus, of[2], of[0]));
-        const int s = made(least, made(greatest, share, constant(0)), constant(1));
-        const int rise =
-            made(times, made(times, s, s), made(minus, constant(3), made(times, constant(2), s)));
-        return made(plus, of[1], made(times, made(minus, of[3], of[1]), rise));
+        const int share =
+            made(Operation::divided, made(Operation::minus, x, of[0]), made(Operation::minus, of[2], of[0]));
+        const int s = made(Operation::least, made(Operation::greatest, share, constant(0)), constant(1));
+        const int rise = made(Operation::times, made(Operation::times, s, s),
+                              made(Operation::minus, constant(3), made(Operation::times, constant(2), s)));
+        return made(Operation::plus, of[1],
+                    made(Operation::times, made(Operation::minus, of[3], of[1]), rise));
     }
 
     /// One level deeper, while it lives.
