@@ -26,14 +26,14 @@ struct Channel {
     std::string unit;
 };
 
-/// Instants in elements, or in several of them together: at the nodes of a polynomial through the series,
+/// CurveInstants in elements, or in several of them together: at the nodes of a polynomial through the series,
 /// which the page evaluates in between. Both ends of an element are instants of it.
-struct Instants {
+struct CurveInstants {
     std::vector<double> ends;
     int degree = 0;
     std::vector<double> nodes{0};
 
-    Instants(const TimeMesh& mesh, std::size_t n_channels, int most_degree)
+    CurveInstants(const TimeMesh& mesh, std::size_t n_channels, int most_degree)
     {
         const double wanted =
             std::clamp(most_numbers / static_cast<double>(n_channels), fewest_instants, most_instants);
@@ -175,7 +175,7 @@ private:
 void write_curves(ReportData& data, const Scenario& scenario, const Run& run)
 {
     const Curves curves(scenario, run);
-    const Instants instants(run.motion.mesh, curves.channels().size(), std::max(run.motion.X.degree, 2));
+    const CurveInstants instants(run.motion.mesh, curves.channels().size(), std::max(run.motion.X.degree, 2));
     std::vector<std::vector<double>> columns(curves.channels().size());
     for (std::size_t e = 0; e < instants.n_elements(); ++e)
         for (std::size_t a = 0; a < instants.nodes.size(); ++a) {
