@@ -26,7 +26,7 @@ struct Channel {
     std::string unit;
 };
 
-/// CurveInstants in elements, or in several of them together: at the nodes of a polynomial through the series,
+/// Instants in elements, or in several of them together: at the nodes of a polynomial through the series,
 /// which the page evaluates in between. Both ends of an element are instants of it.
 struct CurveInstants {
     std::vector<double> ends;
