@@ -181,7 +181,8 @@ class Body:
 
     def __init__(self, entry):
         known = {"name", "shape", "density", "mass", "center_of_mass", "inertia", "position", "directors",
-                 "rotation_vector", "velocity", "angular_velocity", "angular_velocity_body"}
+                 "rotation_vector", "velocity", "angular_velocity", "angular_velocity_body",
+                 "visual", "color", "opacity"}   # looks, which nothing follows from
         assert set(entry) <= known, f"not read here: {set(entry) - known}"
         shape = entry.get("shape", {})
         assert set(shape) <= {"box", "point", "cylinder"}, f"not read here: {shape}"
@@ -239,7 +240,7 @@ class Mechanism:
     """f of y' = f(t, y), y = (centre 3, quaternion 4, velocity 3, spin 3) of each body."""
 
     def __init__(self, scenario):
-        known = {"format", "title", "gravity", "body", "joint", "drive", "load", "sensor", "start"}
+        known = {"format", "title", "gravity", "body", "world", "joint", "drive", "load", "sensor", "start"}
         assert set(scenario) <= known, f"not read here: {set(scenario) - known}"
         assert scenario.get("start", {}) in ({}, {"initial": "project"}), "not read here: [start]"
         self.gravity = real(scenario.get("gravity", [0, 0, 0]))

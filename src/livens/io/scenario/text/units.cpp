@@ -239,6 +239,8 @@ Quantity parse_quantity(std::string_view text, std::string_view si_unit)
         return {0, "the unit is missing",
                 "leave out the quotes for " + wanted + ", or write \"" + to_text(number) + " " + wanted +
                     "\""};
+    if (rest[0] == '*' || rest[0] == '+' || rest[0] == '-')
+        return {0, "numbers are not computed here", "write the result, or compute it in Python"};
     std::string reason;
     const std::optional<Unit> unit = parse_unit(rest, reason);
     if (!unit) return {0, reason, std::string(known_units)};
