@@ -122,11 +122,13 @@ private:
             value_.has_other_unit = true;
             return accept(node, other.value);
         }
-        const Quantity quantity = parse_quantity(node.text(), key_.unit);
+        Quantity quantity = parse_quantity(node.text(), key_.unit);
         if (quantity.error.empty()) {
             value_.has_unit = true;
             return accept(node, quantity.value);
         }
+        if (!key_.other_unit.empty() && quantity.help.starts_with("it is measured in"))
+            quantity.help += " or " + std::string(key_.other_unit);
         return findings_.error(node.place, "unit",
                                subject() + " cannot be \"" + node.text() + "\": " + quantity.error,
                                {std::string(key_.formulas), quantity.help});
