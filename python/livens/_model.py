@@ -135,7 +135,7 @@ class Model(Tree):
 
     @property
     def time(self) -> Section:
-        """The table ``[time]``: ``m.time.end = 5``. What :func:`livens.solve` is told wins."""
+        """The table ``[time]``: ``m.time.end = 5``. Arguments of :func:`livens.solve` take precedence."""
         return self._section("time")
 
     @property

@@ -242,7 +242,7 @@ class Solution(Series):
 
     @property
     def error(self) -> float:
-        """Largest estimated error of positions (in lengths of the model) and orientations (rad); nan: not known."""
+        """Largest estimated error of positions (in model lengths) and orientations (rad); nan: not known."""
         value = self.figures["estimated_error"]
         return float("nan") if value is None else float(value)
 
@@ -407,7 +407,7 @@ class Solution(Series):
 
 
 def _last_from_before(times: Floats, ends: Floats) -> Floats:
-    """Nothing follows the end of a motion: what is told there is what was."""
+    """Nothing follows the end of a motion: values there are those just before it."""
     return np.where(times == ends[-1], 1.0, 0.0) if len(ends) > 1 else np.zeros(len(times))
 
 

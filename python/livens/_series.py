@@ -61,7 +61,7 @@ class Series:
         return self._groups[name]
 
     def _seen(self, group: dict[str, Floats]) -> dict[str, Floats]:
-        """What is told of both sides of an instant, from the side that it is seen from."""
+        """Values on both sides of an instant, from the side that it is seen from."""
         if not self._before.any():
             return group
         for name in [name for name in group if name + "_before" in group]:

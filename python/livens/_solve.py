@@ -50,7 +50,7 @@ def solve(model: Model, time: Time = None, *, accuracy: Number | None = None, el
     Args:
         model: What is solved; it is not changed.
         time: Its end, or (start, end), s.
-        accuracy: Largest error of positions, in lengths of the model, and of orientations, in rad. Elements and,
+        accuracy: Largest error of positions, in model lengths, and of orientations, in rad. Elements and,
             unless stated, the degree follow from it. Default: 1e-6.
         elements: Instead: so many time elements of equal length.
         output: Interval between output times, or their ascending list, s: they become element ends.
@@ -322,7 +322,7 @@ def _given(model: Model, name: str, word: str) -> Table:
 
 
 def _moved(bodies: list[Table], condition: Condition, at: str) -> list[Table]:
-    """Bodies with what they have at an end of time."""
+    """States of bodies at the start or end of the motion."""
     names = [str(body.get("name")) for body in bodies]
     for name in condition.bodies:
         if name not in names:

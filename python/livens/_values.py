@@ -94,7 +94,7 @@ def positions(bodies: Mapping[str, Mapping[str, Any]] | None = None) -> Conditio
     """Positions are known at an end of time: ``solve(m, 1, start="positions", end=lv.positions({...}))``.
 
     Args:
-        bodies: For each body by name what it has there: ``position`` (m, world), one of ``quaternion``,
+        bodies: For each body by name a table with ``position`` (m, world), one of ``quaternion``,
             ``rotation_vector``, ``directors``, and velocities, which are a guess. At the start bodies have their
             own, which these replace.
 

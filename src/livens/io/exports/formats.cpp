@@ -24,7 +24,7 @@ bool begins_as_gltf(std::string_view head)
 }
 
 constexpr ExportFormat formats[] = {
-    {"csv", ".csv", "table of the motion, or of the output times where they are listed",
+    {"csv", ".csv", "table of the motion; at the output times if the scenario lists them",
      [](std::string_view head) { return head.starts_with("t [s],"); },
      [](const std::filesystem::path& file, const ExportInput& input) {
          write_csv(file, input.scenario.model, input.run,
@@ -33,7 +33,7 @@ constexpr ExportFormat formats[] = {
     {"npz", ".npz", "NumPy archive of all variables of the result", begins_as_npz,
      [](const std::filesystem::path& file, const ExportInput& input) { write_npz(file, input); }},
     {"gltf", ".glb", "glTF 2.0 animation of the bodies", begins_as_gltf, write_gltf},
-    {"pvd", ".pvd", "ParaView collection; its surfaces lie in a folder beside it",
+    {"pvd", ".pvd", "ParaView collection, with its surface files in a folder beside it",
      [](std::string_view head) { return head.starts_with(pvd_head); }, write_pvd},
 };
 

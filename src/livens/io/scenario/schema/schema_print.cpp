@@ -26,8 +26,10 @@ std::vector<Row> rows_of(const Table& table)
                 return row.key->name == key.name && row.key->doc == key.doc && row.key->unit == key.unit &&
                        row.key->type == key.type;
             });
-            if (same == rows.end()) rows.push_back({&key, {kind.word}});
-            else same->kinds.push_back(kind.word);
+            if (same == rows.end())
+                rows.push_back({&key, {kind.word}});
+            else
+                same->kinds.push_back(kind.word);
         }
     return rows;
 }
@@ -45,9 +47,9 @@ std::string markdown_row(const Row& row)
 
 constexpr std::string_view introduction = R"(# Scenario files
 
-A scenario is one TOML 1.0 file that describes bodies, joints, loads, time and method. This page is printed
-by `livens schema --md`; `livens schema --json` prints a JSON Schema for editors. The folder `examples/` holds
-scenarios to begin with.
+A scenario is one TOML 1.0 file that describes bodies, joints, loads, the time interval and the integration
+method. This page is printed by `livens schema --md`; `livens schema --json` prints a JSON Schema for
+[editors](howto/editors.md). The folder `examples/` has scenarios to start from.
 
 ```toml
 format = 1
@@ -73,28 +75,33 @@ elements = 40
 
 ## Numbers and units
 
-A plain number is in SI units: m, kg, s, rad, N and products of them. Wherever the tables below name a unit,
-a string with a number and a unit may stand instead, and its dimension is checked: `"30 deg"`, `"5 mm"`,
-`"60 rpm"`, `"7850 kg/m^3"`, `"2 kN/m"`, `"3 N m"`, `"8 lbf in"`. Keys that follow a joint's coordinate take
-angles for angles and lengths for lengths: `rate = "60 rpm"`, `rise = "90 deg"`, `amplitude = "5 mm"`.
+Plain numbers are in SI units: m, kg, s, rad, N and products of these. Where the tables below name a unit, a
+string with a number and a unit is accepted as well, and its dimension is checked: `"30 deg"`, `"5 mm"`,
+`"60 rpm"`, `"7850 kg/m^3"`, `"2 kN/m"`, `"3 N m"`, `"8 lbf in"`. Keys that refer to a joint coordinate take
+an angle if the coordinate is an angle, and a length if it is a displacement: `rate = "60 rpm"`,
+`rise = "90 deg"`, `amplitude = "5 mm"`.
 
-- With the prefixes n, u (or µ), m, c, d, k, M, G: m, g, s, N, J, W, Pa, bar, Hz, rad.
-- Without prefixes: t (1000 kg), min, h, deg (or °), rev, rpm; in, ft, yd, mi; lb, oz, slug (mass); lbf, ozf,
-  kip, kgf (force, with 9.80665 m/s^2); psi, ksi; mph, kn (knots); hp (550 ft lbf/s). Their definitions are
-  exact (NIST SP 811).
-- Products are written with a blank, `*` or `·`, powers with `^`. Behind a slash stands one factor or a
-  parenthesis: `kg/(m s)`; `J/kg m` could mean two things and is refused.
+- Units with the prefixes n, u (or µ), m, c, d, k, M, G: m, g, s, N, J, W, Pa, bar, Hz, rad.
+- Units without prefixes: t (1000 kg), min, h, deg (or °), rev, rpm; in, ft, yd, mi; lb, oz, slug (mass); lbf,
+  ozf, kip, kgf (force, with 9.80665 m/s^2); psi, ksi; mph, kn (knots); hp (550 ft lbf/s). Their definitions
+  are exact (NIST SP 811).
+- Products are written with a blank, `*` or `·`, powers with `^`. A slash is followed by one factor or by
+  parentheses: `kg/(m s)`. `J/kg m` is ambiguous and therefore an error.
 - Every number must be finite.
 
-Lists of rows are lists of lists: `directors = [[1, 0, 0], [0, 1, 0], [0, 0, 1]]` lists d1, d2, d3.
+A matrix is a list of rows: `directors = [[1, 0, 0], [0, 1, 0], [0, 0, 1]]` lists d1, d2, d3.
 
-What is wrong with a file is reported with line and column, all of it in one run (a syntax error ends it);
-codes are explained in [diagnostics.md](diagnostics.md). Nothing is ignored: unknown keys are errors.
+All errors of a file are reported in one run, with line and column; only a syntax error ends it at once. Error
+codes are explained in [diagnostics.md](diagnostics.md). Unknown keys are errors: nothing is ignored.
 
-Limits: 16 MiB, 2 000 000 values, nesting of 64, 10 000 bodies, joints and loads each, 10 000 000 time
-elements, a motion of 8 GiB, and with the family mixed 8 GiB for the system of one block, at 72 kB a rigid
-body and time node (where joints tie bodies together 36 kB times their number, if that is more): 100 000
-linear elements of one body fit, and any number of them in blocks.
+The *model length* is the size of the mechanism, by which errors of positions are divided: the largest of
+twice the distance of a centre of mass from the mean of all of them, the distances between joint points and
+centres of mass, and the radii of gyration. Result files state it as `model_length`.
+
+Limits: 16 MiB, 2 000 000 values, nesting depth 64, 10 000 bodies, joints and loads each, 10 000 000 time
+elements, 8 GiB for the motion, and 8 GiB for the equations of the elements that are solved together. The
+family mixed needs 72 kB for these per rigid body and time node; where joints connect bodies, 36 kB times the
+number of bodies, if that is more. 100 000 linear elements of one body fit; in blocks, any number does.
 )";
 
 }   // namespace
@@ -108,8 +115,10 @@ std::string schema_markdown()
         section += "| key | value | default | meaning |\n| --- | --- | --- | --- |\n";
         std::string later;
         for (const Row& row : rows_of(*table))
-            if (row.key->type != types::later) section += markdown_row(row);
-            else later += (later.empty() ? "`" : ", `") + std::string(row.key->name) + "`";
+            if (row.key->type != types::later)
+                section += markdown_row(row);
+            else
+                later += (later.empty() ? "`" : ", `") + std::string(row.key->name) + "`";
         if (!later.empty()) section += "\nNot part of this version: " + later + ".\n";
         if (out.find(section) == std::string::npos) out += section;   // tables that several kinds have
     }
