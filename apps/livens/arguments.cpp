@@ -254,15 +254,19 @@ void add_report_commands(CLI::App& app, Arguments& a)
 
 struct SchemaArguments {
     bool json = false, markdown = false;
+    std::string type;
 };
 
 void add_other_commands(CLI::App& app, Arguments& a)
 {
     const auto form = arguments_of<SchemaArguments>();
     CLI::App& schema = add_command(app, a, "schema", "Print the scenario schema",
-                                   [form](const Common&) { return schema_command(!form->json); });
+                                   [form](const Common&) { return schema_command(!form->json, form->type); });
     auto* as_json = schema.add_flag("--json", form->json, "as JSON Schema, for editors");
     schema.add_flag("--md", form->markdown, "as a reference page (default)")->excludes(as_json);
+    schema.add_option("--type", form->type, "only the keys of one type, such as joint.revolute, as a table")
+        ->excludes(as_json)
+        ->type_name("TYPE");
     const auto code = arguments_of<std::string>();
     CLI::App& explain = add_command(app, a, "explain",
                                     "Explain a diagnostic code with examples; without a code, list all codes",

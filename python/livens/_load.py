@@ -17,12 +17,12 @@ def load(file: str | os.PathLike[str] | None = None, *, text: str | None = None,
 
     Args:
         file: Its name.
-        text: The scenario itself, instead.
-        check: Whether what is wrong with it is raised now; else by :func:`solve`, and listed by
-            :meth:`Model.check`. What is no TOML is always raised.
+        text: The scenario as a string, instead of ``file``.
+        check: Whether errors are raised at once; otherwise by :func:`solve`, and listed by :meth:`Model.check`.
+            TOML syntax errors are always raised.
 
     Raises:
-        InputError: with line and column of all that is wrong.
+        InputError: with line and column of all errors.
         OSError: the file cannot be read.
 
     Example:

@@ -76,8 +76,7 @@ def largest_drifts(root, program):
 
 def kinds_of_joints(program):
     text = run(program, "schema", "--md")
-    row = re.search(r"^\| `type` \| ([^|]*)\|", text[text.index("## [[joint]]"):], re.M).group(1)
-    return set(re.findall(r'"(\w+)"', row))
+    return set(re.findall(r"^\| \[`(\w+)`\]\(joints/", text, re.M))
 
 
 def accuracies_of_tests(root):

@@ -74,8 +74,8 @@ struct Scenario : OutputTimes {
     Conditions conditions;   ///< what is given at start and end, and the states there, with their times
     SolveOptions options;    ///< tolerance, max_iterations, initial, condition
     std::shared_ptr<Prepared> prepared;   ///< what reading has found of the model, for Problem
-    std::string resolved;    ///< all options after defaults, as one JSON object
-    std::string meshes;      ///< what its meshes come to, so that a run needs no file beside its own
+    std::string resolved;                 ///< all options after defaults, as one JSON object
+    std::string meshes;   ///< what its meshes come to, so that a run needs no file beside its own
     std::vector<std::filesystem::path> mesh_files;   ///< that were read for it
 };
 
@@ -111,5 +111,8 @@ double unit_of_length(const std::string& unit);
 /// The schema of scenarios: for editors (JSON Schema draft 2020-12) and for people (Markdown).
 std::string schema_json();
 std::string schema_markdown();
+/// The keys of one type, such as "joint.revolute"; empty for what is not in schema_types().
+std::string schema_markdown(std::string_view type);
+std::vector<std::string> schema_types();
 
 }   // namespace gnu::visibility("default")]]livens

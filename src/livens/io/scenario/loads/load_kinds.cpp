@@ -203,11 +203,11 @@ const std::vector<LoadKind>& load_kinds()
 {
     const Key point{"point", types::vector3, "Point of application, in body coordinates.", "m", "[0, 0, 0]"};
     static const std::vector<LoadKind> all{
-        {{"force", "force at a point of a body", keys_on_body("force", "N", {point})},
+        {{"force", "acts at a point of a body", keys_on_body("force", "N", {point})},
          make_force,
          check_value},
-        {{"torque", "torque on a body", keys_on_body("torque", "N m", {})}, make_torque, check_value},
-        {{"spring", "spring and damper along the line between two points, or along a joint coordinate",
+        {{"torque", "acts on a body", keys_on_body("torque", "N m", {})}, make_torque, check_value},
+        {{"spring", "acts along the line between two points, or along a joint coordinate, with a damper",
           keys_of_spring()},
          make_spring,
          check_spring},
@@ -249,7 +249,7 @@ const std::vector<LoadKind>& load_kinds()
                                            "Pa/m"}})},
          make_traction,
          check_field},
-        {{"pressure", "pressure on a surface of the body's shape, normal to it as the body moves",
+        {{"pressure", "acts on a surface of the body's shape, normal to it as the body moves",
           keys_of_pressure()},
          make_pressure,
          check_field},

@@ -9,40 +9,111 @@ namespace livens {
 
 namespace {
 
-/// An entry as pages show it: once for all kinds that share it.
-struct Row {
-    const Key* key;
-    Words kinds;   ///< empty: all
-};
+constexpr std::string_view columns = "| key | value | default | meaning |\n| --- | --- | --- | --- |\n";
 
-std::vector<Row> rows_of(const Table& table)
+std::string markdown_row(const Key& key)
 {
-    std::vector<Row> rows;
-    for (const Key& key : table.keys) rows.push_back({&key, {}});
-    for (const Kind& kind : table.kinds)
-        for (const Key& key : kind.keys) {
-            // Keys that several kinds share are one row, which names them.
-            const auto same = std::find_if(rows.begin(), rows.end(), [&](const Row& row) {
-                return row.key->name == key.name && row.key->doc == key.doc && row.key->unit == key.unit &&
-                       row.key->type == key.type;
-            });
-            if (same == rows.end())
-                rows.push_back({&key, {kind.word}});
-            else
-                same->kinds.push_back(kind.word);
-        }
+    std::string fallback(key.fallback);
+    if (index_of(key.choices, fallback) >= 0) fallback = '"' + fallback + '"';
+    if (!fallback.empty()) fallback = "`" + fallback + "`";
+    return "| `" + std::string(key.name) + "` | " + describe_type(key) + " | " +
+           (key.required ? "**needed**" : fallback) + " | " + key.doc + " |\n";
+}
+
+std::string markdown_rows(const std::vector<const Key*>& keys)
+{
+    std::string rows, later;
+    for (const Key* key : keys)
+        if (key->type != types::later)
+            rows += markdown_row(*key);
+        else
+            later += (later.empty() ? "`" : ", `") + std::string(key->name) + "`";
+    if (!later.empty()) rows += "\nNot part of this version: " + later + ".\n";
     return rows;
 }
 
-std::string markdown_row(const Row& row)
+std::vector<const Key*> pointers(const std::vector<Key>& keys)
 {
-    const Key& key = *row.key;
-    std::string kind = describe_type(key), fallback(key.fallback);
-    if (!row.kinds.empty()) kind += " — " + quoted_alternatives(row.kinds);
-    if (index_of(key.choices, fallback) >= 0) fallback = '"' + fallback + '"';
-    if (!fallback.empty()) fallback = "`" + fallback + "`";
-    return "| `" + std::string(key.name) + "` | " + kind + " | " + (key.required ? "**needed**" : fallback) +
-           " | " + key.doc + " |\n";
+    std::vector<const Key*> all;
+    for (const Key& key : keys) all.push_back(&key);
+    return all;
+}
+
+/// A kind with a page of its own has a `type`; other kinds are sections of the same page.
+bool has_pages(const Table& table) { return table.chooser == "type"; }
+
+/// "joint" of "[[joint]]".
+std::string word_of_table(const Table& table) { return table.heading.substr(2, table.heading.size() - 4); }
+
+/// The words of a chooser and what they mean are below its table, not in its row.
+std::string chooser_row(const Table& table, Key key)
+{
+    const std::string first(table.kinds.front().word);
+    key.doc = key.doc.substr(0, key.doc.find(first + ": "));
+    if (key.doc.ends_with("; ")) key.doc.replace(key.doc.size() - 2, 2, ". ");
+    key.doc += has_pages(table) ? "One of the types below." : "One of the families below.";
+    key.choices.clear();
+    key.type = types::text;
+    return markdown_row(key);
+}
+
+std::string table_of_kinds(const Table& table)
+{
+    const std::string word = word_of_table(table);
+    std::string out = "\n| type | what it does |\n| --- | --- |\n";
+    for (const Kind& kind : table.kinds)
+        out += "| [`" + std::string(kind.word) + "`](" + word + "s/" + std::string(kind.word) + ".md) | " +
+               std::string(kind.doc) + " |\n";
+    return out;
+}
+
+/// Keys of each kind, under a heading of its own.
+std::string sections_of_kinds(const Table& table)
+{
+    std::string out;
+    for (const Kind& kind : table.kinds) {
+        out += "\n### " + std::string(table.chooser) + " " + std::string(kind.word) + "\n\n" +
+               std::string(kind.doc) + ".\n";
+        if (!kind.keys.empty()) out += "\n" + std::string(columns) + markdown_rows(pointers(kind.keys));
+    }
+    return out;
+}
+
+std::string markdown_section(const Table& table, std::string_view level)
+{
+    std::string section = "\n" + std::string(level) + " " + table.heading + "\n\n";
+    if (!table.doc.empty()) section += std::string(table.doc) + "\n\n";
+    section += columns;
+    for (const Key& key : table.keys)
+        section += !table.kinds.empty() && key.name == table.chooser ? chooser_row(table, key)
+                                                                     : markdown_rows({&key});
+    if (table.kinds.empty()) return section;
+    return section + (has_pages(table) ? table_of_kinds(table) : sections_of_kinds(table));
+}
+
+/// Tables inside these keys, each before those inside it.
+void collect_inside(const std::vector<Key>& keys, std::vector<const Table*>& all)
+{
+    for (const Key& key : keys) {
+        if (key.child == nullptr || std::ranges::find(all, key.child.get()) != all.end()) continue;
+        all.push_back(key.child.get());
+        collect_inside(key.child->keys, all);
+        if (has_pages(*key.child)) continue;   // what a type has inside is on its page
+        for (const Kind& kind : key.child->kinds) collect_inside(kind.keys, all);
+    }
+}
+
+std::string page_of_kind(const Table& table, const Kind& kind)
+{
+    std::vector<const Key*> keys;
+    for (const Key& key : table.keys)
+        if (key.name != table.chooser) keys.push_back(&key);
+    for (const Key& key : kind.keys) keys.push_back(&key);
+    std::string out = std::string(columns) + markdown_rows(keys);
+    std::vector<const Table*> inside;
+    collect_inside(kind.keys, inside);
+    for (const Table* one : inside) out += markdown_section(*one, "###");
+    return out;
 }
 
 constexpr std::string_view introduction = R"(# Scenario files
@@ -108,21 +179,34 @@ number of bodies, if that is more. 100 000 linear elements of one body fit; in b
 
 std::string schema_markdown()
 {
+    std::vector<const Table*> tables{&root_table()};
+    collect_inside(root_table().keys, tables);
     std::string out(introduction);
-    for (const Table* table : schema_tables()) {
-        std::string section = "\n## " + table->heading + "\n\n";
-        if (!table->doc.empty()) section += std::string(table->doc) + "\n\n";
-        section += "| key | value | default | meaning |\n| --- | --- | --- | --- |\n";
-        std::string later;
-        for (const Row& row : rows_of(*table))
-            if (row.key->type != types::later)
-                section += markdown_row(row);
-            else
-                later += (later.empty() ? "`" : ", `") + std::string(row.key->name) + "`";
-        if (!later.empty()) section += "\nNot part of this version: " + later + ".\n";
-        if (out.find(section) == std::string::npos) out += section;   // tables that several kinds have
+    for (const Table* table : tables) {
+        const std::string section = markdown_section(*table, "##");
+        if (out.find(section) == std::string::npos) out += section;   // tables that several keys have
     }
     return out;
+}
+
+std::vector<std::string> schema_types()
+{
+    std::vector<std::string> all;
+    for (const Table* table : schema_tables())
+        if (has_pages(*table))
+            for (const Kind& kind : table->kinds)
+                all.push_back(word_of_table(*table) + "." + std::string(kind.word));
+    return all;
+}
+
+std::string schema_markdown(std::string_view type)
+{
+    for (const Table* table : schema_tables())
+        if (has_pages(*table))
+            for (const Kind& kind : table->kinds)
+                if (type == word_of_table(*table) + "." + std::string(kind.word))
+                    return page_of_kind(*table, kind);
+    return {};
 }
 
 }   // namespace livens
