@@ -150,13 +150,27 @@ std::vector<Key> keys_of_pressure()
         expression_keys(false), interval_keys());
 }
 
+/// Of forces and torques by displacements and rotations, as the matrix of a bushing has them.
+Words units_of_bushing(std::string_view force_by_length, std::string_view force_by_angle,
+                       std::string_view torque_by_length, std::string_view torque_by_angle)
+{
+    Words all;
+    for (int i = 0; i < 36; ++i) {
+        const bool is_torque = i >= 18, is_angle = i % 6 >= 3;
+        all.push_back(is_torque ? (is_angle ? torque_by_angle : torque_by_length)
+                                : (is_angle ? force_by_angle : force_by_length));
+    }
+    return all;
+}
+
 std::vector<Key> keys_of_bushing()
 {
     const std::string of_u =
         "per unit of u, where u holds three displacements in m and a rotation vector in rad: the six "
-        "diagonal entries of the stiffness matrix, or all 36 entries of a symmetric matrix row by row, in SI "
-        "units. Valid for rotations up to 175 degrees: at half a turn the rotation vector changes sign, and "
-        "a motion that comes closer is reported as suspect.";
+        "diagonal entries of the stiffness matrix, or all 36 entries of a symmetric matrix row by row, in "
+        "N/m "
+        "and N m/rad, or as strings with units. Valid for rotations up to 175 degrees: at half a turn the "
+        "rotation vector changes sign, and a motion that comes closer is reported as suspect.";
     return {
         Key{"between", types::names,
             "Names of the two bodies, first and second; one of them may be `\"world\"`."}
@@ -166,14 +180,18 @@ std::vector<Key> keys_of_bushing()
         frames_key("frame of a bushing",
                    "One frame per body, in that body's coordinates, instead of `at`. Displacements and "
                    "rotations are those of the second frame relative to the first, in axes of the first."),
-        Key{"stiffness", types::list, "Force and torque " + of_u}.needed(),
+        Key{"stiffness", types::list, "Force and torque " + of_u}
+            .each_in(units_of_bushing("N/m", "N/rad", "N m/m", "N m/rad"))
+            .needed(),
         Key{"damping", types::list,
             "Damping in the same form, for the rate of u. Its last three components are rates of the "
             "rotation vector: they equal the relative angular velocity for small rotations and for rotations "
-            "about one axis, but not for large rotations about several axes."},
+            "about one axis, but not for large rotations about several axes."}
+            .each_in(units_of_bushing("N s/m", "N s/rad", "N m s/m", "N m s/rad")),
         Key{"preload", types::list,
             "Three forces in N and three torques in N m that do not depend on u, with the sign of the "
-            "elastic ones at positive u."}};
+            "elastic ones at positive u."}
+            .each_in({"N", "N", "N", "N m", "N m", "N m"})};
 }
 
 bool check_drag(const Section& load)
