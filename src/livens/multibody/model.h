@@ -16,24 +16,24 @@
 
 namespace [[gnu::visibility("default")]] livens {
 
-/// Configurations X and their rates V = dX/dt of all bodies at one time.
+/// Positions and their rates of all bodies at one instant.
 struct State {
     double t = 0;
     std::vector<Matrix34> X;
     std::vector<Matrix34> V;
-    std::vector<double> angles{};   ///< of loads, with full turns; empty: no full turns
+    std::vector<double> angles{};   ///< of loads, see Turns; empty: no turns since the bodies were stated
 };
 
-/// A mechanism. Build it with the add_ functions; afterwards it is constant. Functions in it (laws of loads,
-/// drives, rows) must depend on their arguments alone, since their results are cached.
+/// A mechanism is built by the add_ functions and constant from then on; all others take it const. Functions
+/// in it (laws of loads, drives, rows) depend on their arguments alone: what was found with them is kept.
 class Model {
 public:
     explicit Model(const Vector3& gravity = {0, 0, 0});
 
-    /// Each returns the index of the added part. Throw InputError for: a name that is empty, "world" or a
-    /// duplicate; an invalid body index; a body with impossible mass properties; a joint without rows, with
-    /// rows that violate the rules of ConstraintRow, or with drives that jump or have kinks; a load without
-    /// forces; a part that needs directors on a point mass; numbers that are not finite.
+    /// Each returns the index of what was added. They throw InputError: a name given twice, empty or "world";
+    /// an index of a body that does not exist; a body that no MassProperties describe; a joint without rows
+    /// or with rows that break the rules of ConstraintRow, or with drives that jump or kink; a load without
+    /// forces; what needs directors on a point mass; numbers that are not finite.
     int add_body(Body body);
     int add_joint(Joint joint);
     int add_load(Load load);
@@ -46,10 +46,7 @@ public:
     const std::vector<Sensor>& sensors() const { return sensors_; }
 
     int n_bodies() const { return static_cast<int>(bodies_.size()); }
-    int n_rows() const
-    {
-        return static_cast<int>(rows_.size());
-    }   ///< scalar constraints of all joints, in their order
+    int n_rows() const { return static_cast<int>(rows_.size()); }   ///< of all joints, in their order
     /// Row r of the model belongs to joint `row_joint(r)` and is its row number `row_in_joint(r)`.
     const ConstraintRow& row(int r) const { return joints_[rows_[r].joint].rows[rows_[r].row]; }
     int row_joint(int r) const { return rows_[r].joint; }
@@ -66,27 +63,27 @@ public:
     int find_joint(const std::string& name) const;
     std::string body_name(int body) const { return body == world ? "world" : bodies_[body].name; }
 
-    /// X and V of all bodies in the configuration of the model.
+    /// X and V of all bodies as they were given.
     State start() const;
-    /// Whether any constraint depends on time.
+    /// Whether rows depend on time.
     bool has_drives() const { return has_drives_; }
-    /// Whether a load or row has kinks or jumps that depend on the motion; see Load::guards.
+    /// Whether the law of a load or row bends or jumps where the motion decides; see Load::guards.
     bool has_pieces() const { return has_pieces_; }
-    /// Whether joints act for part of the time only; solve() divides the motion there, see acting_at().
+    /// Whether joints act for a part of the time; these are what solve() divides it by, see acting_at().
     bool has_events() const { return has_events_; }
-    /// Times at which joints engage or are released, ascending, without duplicates.
+    /// When joints begin or end to act, ascending, without repetition.
     std::vector<double> events() const;
-    /// Times at which a load has a jump or kink, a drive has a kink, or a joint engages or is released;
-    /// ascending, without duplicates.
+    /// All instants where a load jumps or bends, a drive bends, or a joint begins or ends to act, ascending,
+    /// without repetition.
     std::vector<double> load_breaks() const;
-    /// The model length (m), to which tolerances and errors are relative: in the configuration of the model,
-    /// the largest of the radii of gyration, twice the distances of centres of mass from their mean, the
-    /// distances between centres of mass and joint points, and those between the two points of a joint. If
-    /// all distances are zero: the distance to an attracting point, or else 1. Always positive. Rigid motions
-    /// of the model change it by rounding errors only.
+    /// A length typical of the model (m), at the start: the largest of the bodies' radii of gyration, twice
+    /// the distances of their centres of mass from the mean of these, the arms from centres of mass to joint
+    /// points, the lengths between the two points of a joint; if there are no distances, those from what
+    /// attracts. Always positive: 1 if there is nothing to measure but rounding. Tolerances are relative to
+    /// it. Moving and turning the model changes it by rounding only.
     double length() const;
-    /// Equal for copies, and different after each change, so that cached results can be matched to their
-    /// model.
+    /// The same for copies, and another after each change, so that what was found of a model is known to be
+    /// of it.
     std::uint64_t version() const { return version_; }
 
 private:
@@ -94,7 +91,7 @@ private:
         int joint;
         int row;
     };
-    /// Cache of length(), 0 before the first call; concurrent calls compute the same value.
+    /// length(), 0 where nobody has asked: threads that do so at once find the same.
     struct Length {
         Length() = default;
         Length(const Length& other) : value(other.value.load(std::memory_order_relaxed)) {}
@@ -122,10 +119,10 @@ private:
     friend Model frozen(const Model& model, Instant at);
 };
 
-/// The model with all constraints frozen at a time, without drives, for questions on positions alone.
+/// The model with all rows as they are at an instant, without drives: for what is asked of positions alone.
 Model frozen(const Model& model, Instant at);
 
-/// A model with only the joints that act at a time; indices of these and their rows in the full model.
+/// A model with the joints alone that act at an instant, and where they and their rows are in the whole one.
 struct ActingModel {
     Model model;
     std::vector<int> joints, rows;

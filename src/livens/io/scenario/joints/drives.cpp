@@ -317,20 +317,6 @@ Key step_key(const KeyType& numbers)
 
 }   // namespace
 
-void check_units(const Section& section, bool is_angle, const std::string& path)
-{
-    for (const Value& v : section.values()) {
-        for (const Section& inner : v.sections)
-            check_units(inner, is_angle, path + "." + std::string(v.key->name));
-        if (v.key->other_unit.empty() || !(is_angle ? v.has_unit : v.has_other_unit)) continue;
-        throw InputError({"unit", path + "." + std::string(v.key->name),
-                          "'" + std::string(v.key->name) + "' of " + section.label() + " is along " +
-                              (is_angle ? "an angle" : "a length"),
-                          "", "", "",
-                          "give it in " + std::string(is_angle ? v.key->other_unit : v.key->unit)});
-    }
-}
-
 void read_times(const Builder& builder, const Section& section, Joint& joint)
 {
     const Section* time = only_section(builder.top(), "time");
