@@ -238,7 +238,7 @@ const std::vector<LoadKind>& load_kinds()
          make_bushing,
          check_bushing},
         {{"drag",
-          "resistance (linear + quadratic |v|) v against the velocity v of a point relative to the medium",
+          "resistance (linear + quadratic abs(v)) v against the velocity v of a point relative to the medium",
           {body_key(), point,
            Key{"linear", types::number, "Coefficient of the linear part.", "N s/m", "0"}.within(not_negative),
            Key{"quadratic", types::number, "Coefficient of the quadratic part.", "N s^2/m^2", "0"}.within(

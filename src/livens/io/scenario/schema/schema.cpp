@@ -30,7 +30,7 @@ Table time_table()
              "times. Each output time is an element end, where results are most accurate. Default: all "
              "element ends.",
              "s"},
-         choice("breaks", {"from_loads", "ignore"}, "Whether elements end at jumps and kinks of loads."),
+         choice("breaks", {"from_loads", "ignore"}, "from_loads: elements end at jumps and kinks of loads; ignore: they do not."),
          Key{"accuracy", types::number,
              "Permitted error at all element ends: of centres of mass relative to the model "
              "length, and of orientations in rad. The elements, and the degree "

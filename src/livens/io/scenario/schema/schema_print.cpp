@@ -52,7 +52,9 @@ std::string chooser_row(const Table& table, Key key)
     key.doc = key.doc.substr(0, key.doc.find(first + ": "));
     if (key.doc.ends_with("; ")) key.doc.replace(key.doc.size() - 2, 2, ". ");
     key.doc += has_pages(table) ? "One of the types below." : "One of the families below.";
+    const std::string quoted = key.fallback.empty() ? "" : '"' + std::string(key.fallback) + '"';
     key.choices.clear();
+    key.fallback = quoted;
     key.type = types::text;
     return markdown_row(key);
 }
