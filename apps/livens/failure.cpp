@@ -236,7 +236,7 @@ int with_runs(const std::function<int()>& command)
 
 Scenario load_scenario(const std::string& file, const Common& common, std::vector<Diagnostic>* warnings)
 {
-    ScenarioResult result = read_scenario(file);
+    ScenarioResult result = read_scenario(file, common.parameters);
     if (!result.scenario) {
         const int code = exit_code_of(result.diagnostics);
         throw Failure{code, status_of(code), std::move(result.diagnostics), std::move(result.text)};

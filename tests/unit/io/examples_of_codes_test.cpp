@@ -109,7 +109,7 @@ TEST(ExamplesOfCodes, StandWhereverAScenarioLeads)
         "no-elements",
         "no-such-port",
         "not-at-rest",
-        "not-in-equilibrium", "not-in-this-version",
+        "not-in-equilibrium", "not-in-this-version", "parameter-set",
         "point-with-directors",
         "python-function",
         "quadrature-points",
