@@ -74,15 +74,16 @@ struct Scenario : OutputTimes {
     Conditions conditions;   ///< what is given at start and end, and the states there, with their times
     SolveOptions options;    ///< tolerance, max_iterations, initial, condition
     std::shared_ptr<Prepared> prepared;   ///< what reading has found of the model, for Problem
-    std::string resolved;    ///< all options after defaults, as one JSON object
-    std::string meshes;      ///< what its meshes come to, so that a run needs no file beside its own
+    std::string resolved;                 ///< all options after defaults, as one JSON object
+    std::string meshes;   ///< what its meshes come to, so that a run needs no file beside its own
     std::vector<std::filesystem::path> mesh_files;   ///< that were read for it
 };
 
 struct ScenarioResult {
-    std::optional<Scenario> scenario;      ///< empty if there is an error
-    std::vector<Diagnostic> diagnostics;   ///< up to 20
-    std::string text;                      ///< what was read, for render()
+    std::optional<Scenario> scenario;                ///< empty if there is an error
+    std::vector<Diagnostic> diagnostics;             ///< up to 20
+    std::string text;                                ///< what was read, for render()
+    std::vector<std::filesystem::path> mesh_files;   ///< that were read or looked for, also after an error
 };
 
 /// Memory that solving and writing will take at least, bytes.
