@@ -474,6 +474,18 @@ TEST(ScenarioCodes, WarningsLeaveTheScenarioAlone)
     }
 }
 
+TEST(Scenario, GravityOfOtherUnitsIsNoticedFromTheEquatorToThePoles)
+{
+    for (const char* weight : {"-9780", "-9800", "-9832", "-981", "-386.4", "-32.2"})
+        EXPECT_NE(find(read(replaced(valid_scenario, "-9.81]", std::string(weight) + "]")), "gravity-unit"),
+                  nullptr)
+            << weight;
+    for (const char* weight : {"-9.81", "-1.62", "-24.8", "-274", "-9700", "\"-9810 mm/s^2\"", "\"-1 g0\""})
+        EXPECT_EQ(find(read(replaced(valid_scenario, "-9.81]", std::string(weight) + "]")), "gravity-unit"),
+                  nullptr)
+            << weight;
+}
+
 /// Of mesh_scenario_test.cpp, but for the last lines.
 const std::set<std::string_view> codes_of_meshes{
     "density-field",      "mesh-file",         "mesh-format",       "mesh-inverted",
@@ -512,7 +524,9 @@ TEST(ScenarioCodes, AllAreProvokedByTheseTests)
                                       "max-iterations-out-of-range",
                                       "no-elements",
                                       "no-such-port",
-                                      "not-at-rest", "quantity-unbounded", "quantity-unknown",
+                                      "not-at-rest",
+                                      "quantity-unbounded",
+                                      "quantity-unknown",
                                       "not-in-equilibrium",
                                       "point-with-directors",
                                       "python-function",   // python/tests

@@ -27,13 +27,15 @@ Table time_table()
              .within({1, max_elements}),
          Key{"output", types::number_or_list,
              "Interval between output times (start and end are output times, too), or their ascending list. "
-             "They become element ends, where results are most accurate. Default: all element ends.", "s"},
+             "They become element ends, where results are most accurate. Default: all element ends.",
+             "s"},
          choice("breaks", {"from_loads", "ignore"}, "Whether elements end where loads jump or bend."),
          Key{"accuracy", types::number,
              "Largest error of centres of mass, in lengths of the model, and of orientations, in rad, at all "
              "element ends; elements and, unless it is stated, the degree follow from it. For the families "
              "lobatto and radau with the state at the start. Default where neither `elements` nor `knots` of "
-             "`[method]` stand.", "", "1e-6"}
+             "`[method]` stand.",
+             "", "1e-6"}
              .within({0, 0.1, true})}};
 }
 
@@ -143,6 +145,13 @@ std::string quoted_alternatives(const Words& words)
         text += '"' + std::string(word) + '"';
     }
     return text;
+}
+
+std::string_view Key::unit_of(std::size_t i, std::size_t n) const
+{
+    if (units.empty()) return unit;
+    if (n == units.size()) return units[i];
+    return n * n == units.size() ? units[i * (n + 1)] : std::string_view();
 }
 
 std::string describe_type(const Key& key)
