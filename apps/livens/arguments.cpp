@@ -33,6 +33,16 @@ CLI::Option* add_file(CLI::App& command, const std::string& name, std::string& v
     return command.add_option(name, value, description)->check(CLI::Validator(is_named, ""));
 }
 
+void add_units(CLI::App& command, std::vector<std::string>& units, const std::string& where)
+{
+    command
+        .add_option("--unit", units,
+                    where + " in this unit instead of SI, where it fits: deg (of rates deg/s), rpm, mm, kN; "
+                            "may be repeated")
+        ->allow_extra_args(false)
+        ->type_name("UNIT");
+}
+
 void add_force(CLI::App& command, bool& force)
 {
     command.add_flag("--force", force, "replace files that livens did not write, too; never inputs");
@@ -200,6 +210,7 @@ void add_run_commands(CLI::App& app, Arguments& a)
     sample.add_flag("--exact", given->exact,
                     "between element ends solve a shortened element: full order anywhere");
     sample.add_flag("--csv", given->csv, "print CSV");
+    add_units(sample, given->units, "text and CSV");
     add_common(sample, a);
 }
 
@@ -216,7 +227,37 @@ void add_peaks_command(CLI::App& app, Arguments& a)
                     "all of joints, loads and sensors, and energies")
         ->type_name("NAME");
     peaks.add_flag("--csv", given->csv, "print CSV");
+    add_units(peaks, given->units, "values");
     add_common(peaks, a);
+}
+
+std::string endings()
+{
+    std::string all;
+    for (const ExportFormat& format : export_formats())
+        all += (all.empty() ? "" : " ") + std::string(format.extension);
+    return all;
+}
+
+void add_picture(CLI::App& command, ExportArguments& given)
+{
+    PictureOptions& o = given.picture;
+    command
+        .add_option("--size", given.size, "of pictures; default: 1280x720, of PNG 1920x1080, of GIF 640x400")
+        ->type_name("WxH");
+    command.add_option("--fps", o.rate, "frames per second; default: 30, of GIF 20")->type_name("N");
+    command
+        .add_option("--duration", o.duration,
+                    "of the video, s; default: that of the motion, 8 s where it is under 2 s or over 40 s")
+        ->type_name("S");
+    command
+        .add_option("--from", o.from, "instant of a still, or the first of a video, s; default: the start")
+        ->type_name("T");
+    command.add_option("--to", o.to, "last instant of a video, s; default: the end")->type_name("T");
+    add_choice(command, "--view", o.view, {"fitted", "front", "side", "top"}, "where pictures are seen from");
+    command.add_flag("--dark", o.is_dark, "pictures in dark colours");
+    command.add_flag("--names", o.names, "names of bodies in pictures");
+    command.add_flag("--clock", o.clock, "the time in pictures");
 }
 
 void add_export_commands(CLI::App& app, Arguments& a)
@@ -226,6 +267,11 @@ void add_export_commands(CLI::App& app, Arguments& a)
         app, a, "export", "Write a run for other programs, in one format or more",
         [given](const Common& common) { return with_runs([&] { return export_command(*given, common); }); });
     exports.add_option("RUN", given->run, "result file")->required()->type_name("RUN.nc");
+    exports
+        .add_option("-o,--output", given->outputs,
+                    "file in the format of its ending, " + endings() + "; may be repeated")
+        ->allow_extra_args(false)
+        ->type_name("FILE");
     given->files.resize(export_formats().size());
     for (std::size_t i = 0; const ExportFormat& format : export_formats())
         add_file(exports, std::string("--") + format.word, given->files[i++], format.what)
@@ -235,6 +281,8 @@ void add_export_commands(CLI::App& app, Arguments& a)
         exports, "--at", given->at, {words.begin(), words.end()},
         "instants of CSV: smooth curves, the output times, element ends; default: output times where the "
         "scenario lists them, else smooth curves");
+    add_units(exports, given->units, "CSV");
+    add_picture(exports, *given);
     add_force(exports, given->force);
     add_common(exports, a);
     const auto both = arguments_of<DiffArguments>();
@@ -259,7 +307,9 @@ void add_report_commands(CLI::App& app, Arguments& a)
         app, a, "view", "Show that page in the browser, from a local server",
         [given](const Common& common) { return with_runs([&] { return view_command(*given, common); }); });
     for (CLI::App* command : {&report, &view}) {
-        command->add_option("RUN", given->run, "result file")->required()->type_name("RUN.nc");
+        command->add_option("RUN", given->run, "result file")
+            ->required(command == &report)
+            ->type_name("RUN.nc");
         command->add_option("OTHER", given->other, "result file to compare it with")->type_name("RUN.nc");
         add_common(*command, a);
     }
@@ -269,6 +319,9 @@ void add_report_commands(CLI::App& app, Arguments& a)
     view.add_option("--port", given->port, "on 127.0.0.1; default: any that is free")
         ->check(CLI::Range(1, 65535))
         ->type_name("N");
+    add_file(view, "--watch", given->watched,
+             "solve this scenario, and show it again whenever it or a mesh of it is saved")
+        ->type_name("FILE.toml");
     view.add_flag("--address", given->address_only, "print the address and open no browser");
 }
 

@@ -84,9 +84,10 @@ struct Scenario : OutputTimes {
 using ParameterValues = std::vector<std::pair<std::string, std::string>>;
 
 struct ScenarioResult {
-    std::optional<Scenario> scenario;      ///< empty if there is an error
-    std::vector<Diagnostic> diagnostics;   ///< up to 20
-    std::string text;                      ///< what was read, for render()
+    std::optional<Scenario> scenario;                ///< empty if there is an error
+    std::vector<Diagnostic> diagnostics;             ///< up to 20
+    std::string text;                                ///< what was read, for render()
+    std::vector<std::filesystem::path> mesh_files;   ///< that were read or looked for, also after an error
 };
 
 /// Memory that solving and writing will take at least, bytes.

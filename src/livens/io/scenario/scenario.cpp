@@ -104,6 +104,7 @@ void build(const Node& root, TreePart part, const MeshSource& meshes, const Para
     // where the joints stand then, and loads read sensors, except for sensors that read loads.
     Builder builder(top, meshes, findings);
     read_bodies(builder);
+    scenario.mesh_files = builder.meshes().files();   // also where there are errors
     read_joints(builder);
     move_bodies(builder);
     read_drives(builder);
@@ -129,7 +130,6 @@ void build(const Node& root, TreePart part, const MeshSource& meshes, const Para
     scenario.outlines = std::move(builder.outlines());
     scenario.parts = std::move(builder.parts());
     scenario.meshes = builder.meshes().kept();
-    scenario.mesh_files = builder.meshes().files();
 }
 
 void parse(Scenario& scenario, const MeshSource& meshes, const ParameterValues& values, Findings& findings)
@@ -205,6 +205,7 @@ ScenarioResult parse_scenario(std::string text, const std::string& file_name, co
     scenario.text = std::move(text);
     result.text = scenario.text;
     shield(findings, [&] { parse(scenario, meshes, values, findings); });
+    result.mesh_files = scenario.mesh_files;
     if (findings.n_errors() == 0) result.scenario = std::move(scenario);
     result.diagnostics = findings.take(file_name);
     return result;
