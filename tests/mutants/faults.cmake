@@ -569,8 +569,8 @@ livens_mutant(NAME view_everywhere
 # Pages of other sites may ask for it by a name of their own.
 livens_mutant(NAME view_any_host
               FILE apps/livens/visitors.cpp
-              OLD [[is_ours = (is_get || is_head) && asks_this_host(head_, served.port)]]
-              NEW [[is_ours = is_get || is_head]]
+              OLD [[is_here = asks_this_host(head_, served.port)]]
+              NEW [[is_here = true]]
               TESTS_OF livens
               MUST_FAIL report_test.View.test_serves_the_page_here_and_nothing_else)
 

@@ -126,7 +126,10 @@ Table start_table()
         "needed in any case, since joints placed by `at` refer to them.",
         {given("state", "state: positions and velocities; positions, or momenta: only these; nothing: "
                         "neither. The rest is a first guess."),
-         choice<StartPolicy>("initial", "Treatment of initial values that violate a joint. check: an error that names the joint; project: positions and velocities are moved to the nearest admissible ones, where distances are weighted by mass (the mass metric)."),
+         choice<StartPolicy>("initial",
+                             "Treatment of initial values that violate a joint. check: an error that names "
+                             "the joint; project: positions and velocities are moved to the nearest "
+                             "admissible ones, where distances are weighted by mass (the mass metric)."),
          choice("joints", {"fixed", "fit"},
                 "Treatment of rounded joint dimensions. fixed: joints are used as given; fit: points and "
                 "axes on the second body of a joint are moved by the least amount that closes it where the "

@@ -84,7 +84,8 @@ std::vector<Key> mixed_keys()
         Key{"gauss_points", types::integer,
             "Number of Gauss points per element. Default: enough to integrate all polynomials exactly."}
             .within({1, 64}),
-        window("all", ", called a block; positions and momenta at the end of a block are the initial values of the next. Conditions at both ends need \"all\"."),
+        window("all", ", called a block; positions and momenta at the end of a block are the initial values "
+                      "of the next. Conditions at both ends need \"all\"."),
         choice<Mixed::Interfaces>("interfaces",
                                   "Transfer between blocks. carry: positions and momenta are passed on "
                                   "unchanged, with their constraint errors; project: they are projected onto "
@@ -110,23 +111,27 @@ const std::vector<MethodKind>& method_kinds()
 {
     static const std::vector<MethodKind> all{
         {{"lobatto",
-          "space-time finite elements on Gauss-Lobatto points; their order at element ends is twice the degree",
+          "space-time finite elements on Gauss-Lobatto points; their order at element ends is twice the "
+          "degree",
           {Key{"degree", types::integer, "Polynomial degree of the elements.", "", "4"}.within({1, 16}),
            window("1", "; it does not change the equations. With conditions at both ends all elements are "
                        "solved together in any case.")}},
          make_lobatto},
         {{"radau",
-          "space-time finite elements on Radau points; their order at element ends is twice the degree minus 1; they damp vibrations that they do not resolve, and need the state at the initial time",
+          "space-time finite elements on Radau points; their order at element ends is twice the degree minus "
+          "1; they damp vibrations that they do not resolve, and need the state at the initial time",
           {Key{"degree", types::integer, "Polynomial degree of the elements.", "", "4"}.within({1, 8})}},
          make_radau},
         {{"auto",
-          "lobatto, or radau if fast decay or irrelevant vibrations would dictate the length of lobatto's elements; with `accuracy` only",
+          "lobatto, or radau if fast decay or irrelevant vibrations would dictate the length of lobatto's "
+          "elements; with `accuracy` only",
           {Key{"degree", types::integer,
                "Polynomial degree of the elements; radau uses at most 8. Default: chosen for the accuracy."}
                .within({1, 16})}},
          make_auto},
         {{"mixed",
-          "the space-time elements of Hesch, Glas and Schuss: positions, momenta and multipliers are independent fields, rigidity is imposed weakly, and elements are solved all at once or in blocks",
+          "the space-time elements of Hesch, Glas and Schuss: positions, momenta and multipliers are "
+          "independent fields, rigidity is imposed weakly, and elements are solved all at once or in blocks",
           mixed_keys()},
          make_mixed},
         {{"midpoint", "classical time stepping, order 2", {}},
@@ -200,7 +205,9 @@ const std::vector<OptionKey>& option_keys()
              "", "true"},
          &SolveOptions::look_at_laws},
         {Key{"condition", types::truth,
-             "Whether condition numbers are computed: of the matrix of the last block (mixed), of all elements (lobatto) or of the last element (radau), the latter two reduced to the motions that the joints leave free. They cost as much as tens to hundreds of solutions.",
+             "Whether condition numbers are computed: of the matrix of the last block (mixed), of all "
+             "elements (lobatto) or of the last element (radau), the latter two reduced to the motions that "
+             "the joints leave free. They cost as much as tens to hundreds of solutions.",
              "", "false"},
          &SolveOptions::condition}};
     return all;
@@ -251,8 +258,12 @@ Table method_table()
     std::vector<Key> keys{
         {"family", types::choice, "Default: auto with `accuracy`, else lobatto", "", "lobatto"}};
     for (const OptionKey& one : option_keys()) keys.push_back(one.key);
-    return Table{"[method]", "Integration method and its options. The defaults suit most models. Choose radau to damp fast vibrations or for strong damping, mixed to reproduce the elements of Hesch, Glas and Schuss, midpoint and endpoint for comparison with classical methods.", std::move(keys)}.with_kinds(
-        "family", {method_kinds().begin(), method_kinds().end()});
+    return Table{"[method]",
+                 "Integration method and its options. The defaults suit most models. Choose radau to damp "
+                 "fast vibrations or for strong damping, mixed to reproduce the elements of Hesch, Glas and "
+                 "Schuss, midpoint and endpoint for comparison with classical methods.",
+                 std::move(keys)}
+        .with_kinds("family", {method_kinds().begin(), method_kinds().end()});
 }
 
 void write_method(JsonWriter& json, const Method& method)

@@ -30,7 +30,8 @@ Table time_table()
              "times. Each output time is an element end, where results are most accurate. Default: all "
              "element ends.",
              "s"},
-         choice("breaks", {"from_loads", "ignore"}, "from_loads: elements end at jumps and kinks of loads; ignore: they do not."),
+         choice("breaks", {"from_loads", "ignore"},
+                "from_loads: elements end at jumps and kinks of loads; ignore: they do not."),
          Key{"accuracy", types::number,
              "Permitted error at all element ends: of centres of mass relative to the model "
              "length, and of orientations in rad. The elements, and the degree "
@@ -39,6 +40,28 @@ Table time_table()
              "", "1e-6"}
              .within({0, 0.1, true})}};
 }
+
+}   // namespace
+
+Table repeat_table()
+{
+    return {
+        "[[repeat]]",
+        "Tables that are repeated `count` times, as if the copies were appended to the file: all tables of "
+        "the first index, then all of the next. In strings, `{i}`, `{i-1}` and similar stand for whole "
+        "numbers computed from the index and parameters. In numbers and formulas the index is a number, "
+        "too: `position = [\"(i-0.5)*L\", 0, 0]`.",
+        {Key{"index", types::text, "Name of the index.", "", "i"},
+         Key{"count", types::integer, "Number of copies."}.needed().within({1, max_bodies}),
+         Key{"first", types::integer, "First value of the index.", "", "1"}.within({-1000000, 1000000}),
+         Key{"body", types::templates, "Repeated bodies: `[[repeat.body]]`."},
+         Key{"joint", types::templates, "Repeated joints: `[[repeat.joint]]`."},
+         Key{"drive", types::templates, "Repeated drives: `[[repeat.drive]]`."},
+         Key{"load", types::templates, "Repeated loads: `[[repeat.load]]`."},
+         Key{"sensor", types::templates, "Repeated sensors: `[[repeat.sensor]]`."}}};
+}
+
+namespace {
 
 void collect(const Table& table, std::vector<const Table*>& all)
 {
@@ -65,6 +88,9 @@ const Table& root_table()
         {Key{"format", types::integer, "Version of this file format."}.needed().within({1, 1}),
          Key{"title", types::text, "A title; copied to the result file."},
          Key{"gravity", types::vector3, "Gravitational acceleration, world axes.", "m/s^2", "[0, 0, 0]"},
+         Key{"parameters", types::named_numbers,
+             "Named numbers: each is a number, a string with a unit, or an expression of other parameters; "
+             "see [parameters](#parameters)."},
          Key{"body", types::tables, "Bodies, at least one."}.needed().holding(body_table()),
          Key{"world", types::table, "Shapes drawn in the world; they have no effect on the motion."}.holding(
              world_table()),
@@ -76,6 +102,8 @@ const Table& root_table()
          Key{"load", types::tables, "Forces, torques, springs and dampers."}.holding(load_table()),
          Key{"sensor", types::tables, "Quantities to record: points, joint coordinates, loads, energies."}
              .holding(sensor_table()),
+         Key{"repeat", types::tables, "Bodies, joints, drives, loads and sensors that are repeated."}.holding(
+             repeat_table()),
          Key{"time", types::table, "Time interval, accuracy or elements, output times."}.needed().holding(
              time_table()),
          Key{"method", types::table, "Integration method and its options."}.holding(method_table()),

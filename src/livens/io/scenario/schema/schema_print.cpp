@@ -118,7 +118,7 @@ std::string page_of_kind(const Table& table, const Kind& kind)
     return out;
 }
 
-constexpr std::string_view introduction = R"(# Scenario files
+constexpr std::string_view introduction = R"md(# Scenario files
 
 A scenario is one TOML 1.0 file that describes bodies, joints, loads, the time interval and the integration
 method. This page is printed by `livens schema --md`; `livens schema --json` prints a JSON Schema for
@@ -162,6 +162,56 @@ an angle if the coordinate is an angle, and a length if it is a displacement: `r
   parentheses: `kg/(m s)`. `J/kg m` is ambiguous and therefore an error.
 - Every number must be finite.
 
+## Parameters
+
+`[parameters]` defines named numbers. Each is a number, a string with a unit, or an expression of other
+parameters, in any order. Every number in the file can be a string with an expression of parameters.
+
+```toml
+format = 1
+gravity = [0, 0, "-g"]
+
+[parameters]
+L = "400 mm"
+width = "L/10"
+g = "9.81 m/s^2"
+
+[[body]]
+name = "arm"
+shape = { box = ["L", "width", "width"] }
+density = 7850
+position = ["L/2", 0, 0]
+
+[[joint]]
+type = "revolute"
+between = ["world", "arm"]
+at = [0, 0, 0]
+axis = [0, 1, 0]
+
+[time]
+end = "5*2*pi*sqrt(2*L/(3*g))"
+```
+
+- Expressions contain numbers, `+ - * / ^`, parentheses, `pi` and the functions of
+  [load expressions](joints.md#expressions), but not the time: `"2*L"`, `"L/2 + 30 mm"`, `"sqrt(2)*L"`,
+  `"2*0.5 m"`. Whole numbers can be computed, too, as in `elements = "4*n"`.
+- Units are checked: every number carries its dimension, different dimensions cannot be added, and the result
+  must have the dimension of the key. An expression without any unit is in SI units, like a plain number.
+  Beside numbers with units, a number without a unit is dimensionless: with `L = 0.4` write `"L/2 + 0.03"`,
+  with `L = "400 mm"` write `"L/2 + 30 mm"`.
+- Angles are ratios, so that `"v/R"` is an angular velocity. But 3 Hz is not one without its `2*pi`, and 30
+  deg is not a ratio.
+- A unit after a number takes precedence: `"2 m"` is two metres even if `m` is a parameter; `"2*m"` is twice
+  the parameter.
+- In formulas of loads and drives, parameters are numbers in SI units.
+- `livens solve FILE --set L=0.3` (or `--set "L=300 mm"`) uses another value, and so do `check`, `mass`,
+  `equilibrium` and `modes`. A plain number there is in the SI unit of the parameter. The result contains the
+  scenario with these values. In Python: `m.parameters["L"] = 0.3`.
+- Names consist of letters, digits and `_`, and differ from functions, `pi` and `t`. Unused parameters cause a
+  warning.
+
+## Lists and limits
+
 A matrix is a list of rows: `directors = [[1, 0, 0], [0, 1, 0], [0, 0, 1]]` lists d1, d2, d3.
 
 All errors of a file are reported in one run, with line and column; only a syntax error ends it at once. Error
@@ -175,7 +225,7 @@ Limits: 16 MiB, 2 000 000 values, nesting depth 64, 10 000 bodies, joints and lo
 elements, 8 GiB for the motion, and 8 GiB for the equations of the elements that are solved together. The
 family mixed needs 72 kB for these per rigid body and time node; where joints connect bodies, 36 kB times the
 number of bodies, if that is more. 100 000 linear elements of one body fit; in blocks, any number does.
-)";
+)md";
 
 }   // namespace
 
