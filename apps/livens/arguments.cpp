@@ -322,6 +322,7 @@ void add_report_commands(CLI::App& app, Arguments& a)
     add_file(view, "--watch", given->watched,
              "solve this scenario, and show it again whenever it or a mesh of it is saved")
         ->type_name("FILE.toml");
+    add_set(view, a);
     view.add_flag("--address", given->address_only, "print the address and open no browser");
 }
 
