@@ -4,6 +4,7 @@
 // rounded once.
 #include "livens/io/scenario/text/units.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
