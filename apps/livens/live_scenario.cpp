@@ -74,7 +74,7 @@ std::shared_ptr<const std::string> LiveScenario::event(const char* kind, const s
 void LiveScenario::go_on()
 {
     if (files_.have_changed()) is_wanted_ = true;
-    if (is_solving() && is_wanted_) is_cancelled_ = true;
+    if (is_solving() && (is_wanted_ || files_.are_changing())) is_cancelled_ = true;
     if (is_solving() && is_done_) {
         worker_.join();
         if (!is_cancelled_) tell(std::move(outcome_));
