@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "arguments.h"
 
-#include <functional>
 #include <memory>
 
 #include <CLI/CLI.hpp>
@@ -332,6 +331,7 @@ void add_report_commands(CLI::App& app, Arguments& a)
     add_file(view, "--watch", given->watched,
              "solve this scenario, and show it again whenever the file or one of its meshes is saved")
         ->type_name("FILE.toml");
+    add_set(view, a);
     view.add_flag("--address", given->address_only, "print the address instead of opening a browser");
 }
 
@@ -359,8 +359,8 @@ void add_other_commands(CLI::App& app, Arguments& a)
     CLI::App& completion =
         add_command(app, a, "completion", "Print a shell completion script",
                     [given, &app](const Common&) { return completion_command(*given, command_table(app)); });
-    const std::vector<std::string> shells{"bash", "zsh", "fish"};
-    add_choice(completion, "SHELL", given->shell, shells, "shell for which to print the script");
+    add_choice(completion, "SHELL", given->shell, {"bash", "zsh", "fish"},
+               "shell for which to print the script");
     completion.add_option("--bodies", given->bodies)->group("");   // for the scripts
     completion.add_option("--joints", given->joints)->group("");
     completion.add_option("--sensors", given->sensors)->group("");
@@ -373,26 +373,12 @@ void add_other_commands(CLI::App& app, Arguments& a)
 std::string footer()
 {
     std::string text = "Exit codes:\n";
-    for (const ExitMeaning& e : exit_meanings)
-        text += "  " + std::string(e.code) + std::string(10 - std::string_view(e.code).size(), ' ') +
-                e.meaning + "\n";
-    return text + "\nFirst steps: livens init; livens solve pendulum.toml";
-}
-
-std::vector<OptionInfo> options_of(const CLI::App& app)
-{
-    std::vector<OptionInfo> options;
-    for (const CLI::Option* option : app.get_options()) {
-        if (option->get_group().empty()) continue;   // hidden
-        OptionInfo info;
-        for (const std::string& name : option->get_snames()) info.names.push_back("-" + name);
-        for (const std::string& name : option->get_lnames()) info.names.push_back("--" + name);
-        if (option->get_items_expected_max() > 0) info.value = option->get_type_name();
-        info.description = option->get_description();
-        info.is_required = option->get_required();
-        options.push_back(info);
-    }
-    return options;
+    for (const auto& [code, meaning] : exit_meanings)
+        text += std::string("  ") + code + std::string(10 - std::string_view(code).size(), ' ') + meaning +
+                "
+                ";
+                return text +
+                "\nFirst steps: livens init; livens solve pendulum.toml";
 }
 
 }   // namespace
@@ -413,14 +399,6 @@ void declare(CLI::App& app, Arguments& arguments)
     add_report_commands(app, arguments);
     add_other_commands(app, arguments);
     app.footer(footer());
-}
-
-std::vector<CommandInfo> command_table(const CLI::App& app)
-{
-    std::vector<CommandInfo> commands{{"", app.get_description(), options_of(app)}};
-    for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
-        commands.push_back({command->get_name(), command->get_description(), options_of(*command)});
-    return commands;
 }
 
 }   // namespace livens::program

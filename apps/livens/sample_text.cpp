@@ -201,8 +201,10 @@ std::vector<std::string> units_shown(const Query& q)
 {
     if (!q.arguments.body.empty()) return {"m", "m/s", "m/s^2", "rad/s", "rad/s^2", "rad", "N s", "N m s"};
     std::vector<std::string> units{"N", "N m"};
-    for (const auto& [name, of, value] : coordinates_at(q, q.run.motion.start()))
-        units.push_back(of->is_angle() ? "rad" : "m");
+    for (const auto& [name, of, value] : coordinates_at(q, q.run.motion.start())) {
+        const std::string unit = of->is_angle() ? "rad" : "m";
+        units.insert(units.end(), {unit, rate_of(unit), rate_of(unit, "^2")});
+    }
     return units;
 }
 

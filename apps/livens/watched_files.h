@@ -23,6 +23,8 @@ public:
 
     /// Looks; true once for every change.
     bool have_changed(Clock::time_point now = Clock::now());
+    /// A change was seen that does not count yet: what is read now may be half of it.
+    bool are_changing() const { return is_changed_; }
 
 private:
     struct Stamp {

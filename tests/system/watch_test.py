@@ -146,7 +146,8 @@ class Watching(ProgramTest):
         self.assertEqual(follower.hear()[0], "solving")
         self.write("small.toml", SMALL)
         kind, data = follower.hear("run", "fault")
-        self.assertEqual((kind, data["run"]["end"]), ("run", 0.5))
+        self.assertEqual(kind, "run", data["said"])
+        self.assertEqual(data["run"]["end"], 0.5)
 
     def test_ends_while_it_solves(self):
         self.write("small.toml", LONG)
