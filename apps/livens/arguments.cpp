@@ -374,11 +374,9 @@ std::string footer()
 {
     std::string text = "Exit codes:\n";
     for (const auto& [code, meaning] : exit_meanings)
-        text += std::string("  ") + code + std::string(10 - std::string_view(code).size(), ' ') + meaning +
-                "
-                ";
-                return text +
-                "\nFirst steps: livens init; livens solve pendulum.toml";
+        text +=
+            "  " + std::string(code) + std::string(10 - std::string_view(code).size(), ' ') + meaning + "\n";
+    return text + "\nFirst steps: livens init; livens solve pendulum.toml";
 }
 
 }   // namespace
