@@ -286,8 +286,7 @@ void add_export_commands(CLI::App& app, Arguments& a)
             ->type_name(std::string("FILE") + format.extension);
     const auto words = words_of(Instants{});
     add_choice(exports, "--at", given->at, {words.begin(), words.end()},
-               "times of the CSV rows: dense enough for smooth curves, the output times, or element ends; "
-               "default: output if the scenario lists output times, else dense");
+               "times of CSV rows; default: output times if the scenario lists them, else dense");
     add_units(exports, given->units, "CSV");
     add_picture(exports, *given);
     add_force(exports, given->force);
@@ -374,8 +373,7 @@ std::string footer()
 {
     std::string text = "Exit codes:\n";
     for (const auto& [code, meaning] : exit_meanings)
-        text +=
-            "  " + std::string(code) + std::string(10 - std::string_view(code).size(), ' ') + meaning + "\n";
+        text += "  " + (std::string(code) + std::string(10, ' ')).substr(0, 10) + meaning + "\n";
     return text + "\nFirst steps: livens init; livens solve pendulum.toml";
 }
 
