@@ -63,6 +63,31 @@ void add_common(CLI::App& command, Arguments& a)
                "layout of errors on standard error");
 }
 
+/// Of what reads scenarios.
+void add_set(CLI::App& command, Arguments& a)
+{
+    const auto keep = [&a](const std::vector<std::string>& given) {
+        for (const std::string& one : given) {
+            const std::size_t sign = one.find('=');
+            const auto trimmed = [](std::string text) { return CLI::detail::trim(text); };
+            a.common.parameters.emplace_back(trimmed(one.substr(0, sign)), trimmed(one.substr(sign + 1)));
+        }
+    };
+    const auto has_value = [](const std::string& one) {
+        const std::size_t sign = one.find('=');
+        const bool is_pair = sign != std::string::npos && sign > 0 &&
+                             one.find_first_not_of(" \t", sign + 1) != std::string::npos;
+        return is_pair ? std::string()
+                       : "'" + one + "' is no NAME=VALUE, as in --set L=0.4 or --set \"L=400 mm\"";
+    };
+    command
+        .add_option_function<std::vector<std::string>>(
+            "--set", keep, "value of a parameter of the scenario, a number or an expression; may be repeated")
+        ->check(CLI::Validator(has_value, ""))
+        ->allow_extra_args(false)
+        ->type_name("NAME=VALUE");
+}
+
 /// `run` is called once all is parsed, if this is the command that was typed.
 CLI::App& add_command(CLI::App& app, Arguments& a, const std::string& name, const std::string& description,
                       const std::function<int(const Common&)>& run)
@@ -90,6 +115,7 @@ void add_scenario_commands(CLI::App& app, Arguments& a)
     CLI::App& check = add_command(app, a, "check", "Check a scenario without solving it",
                                   [file](const Common& common) { return check_command(*file, common); });
     check.add_option("FILE", *file, "scenario (TOML)")->required()->type_name("FILE.toml");
+    add_set(check, a);
     add_common(check, a);
 }
 
@@ -111,6 +137,7 @@ void add_solve_command(CLI::App& app, Arguments& a)
         ->type_name("N");
     add_choice(solve, "--simd", given->simd, {"sse2", "avx2", "avx512"},
                "instructions to solve with; default: avx2 where the processor has it");
+    add_set(solve, a);
     add_common(solve, a);
 }
 
@@ -126,6 +153,7 @@ void add_mass_command(CLI::App& app, Arguments& a)
     mass.add_option("--unit", given->unit, "of the mesh's numbers; default: m")->type_name("UNIT");
     mass.add_option("--density", given->density, "of the mesh, kg/m^3; default: 1")->type_name("D");
     mass.add_flag("--turn", given->turn, "flip faces of the mesh that point inwards");
+    add_set(mass, a);
     add_common(mass, a);
 }
 
@@ -136,6 +164,7 @@ void add_rest_commands(CLI::App& app, Arguments& a)
         add_command(app, a, "equilibrium", "Find the static equilibrium, and whether it is stable",
                     [file](const Common& common) { return equilibrium_command(*file, common); });
     equilibrium.add_option("FILE", *file, "scenario (TOML)")->required()->type_name("FILE.toml");
+    add_set(equilibrium, a);
     add_common(equilibrium, a);
     const auto given = arguments_of<ModesArguments>();
     CLI::App& modes =
@@ -154,6 +183,7 @@ void add_rest_commands(CLI::App& app, Arguments& a)
                     "of the state matrices: likewise, as a position; with _rate its rate")
         ->allow_extra_args(false)
         ->type_name("NAME");
+    add_set(modes, a);
     add_common(modes, a);
 }
 
@@ -292,6 +322,7 @@ void add_report_commands(CLI::App& app, Arguments& a)
     add_file(view, "--watch", given->watched,
              "solve this scenario, and show it again whenever it or a mesh of it is saved")
         ->type_name("FILE.toml");
+    add_set(view, a);
     view.add_flag("--address", given->address_only, "print the address and open no browser");
 }
 

@@ -20,6 +20,7 @@ struct Common {
     bool quiet = false;
     bool verbose = false;
     DiagnosticFormat diagnostics = DiagnosticFormat::human;
+    ParameterValues parameters = {};   ///< of scenarios, by --set
 };
 
 struct SolveArguments {

@@ -44,7 +44,7 @@ LiveScenario::LiveScenario(const std::string& file, const Common& common, Served
 {
     std::error_code error;
     if (!std::filesystem::is_regular_file(file_, error))
-        if (ScenarioResult result = read_scenario(file_); !result.scenario)
+        if (ScenarioResult result = read_scenario(file_, common_.parameters); !result.scenario)
             throw failure_of(std::move(result));
     files_.watch({file_});
     served_.has_events = true;
@@ -99,7 +99,7 @@ LiveScenario::Outcome LiveScenario::solved() const
     Outcome out;
     try {
         const Clock::time_point begin = Clock::now();
-        ScenarioResult read = read_scenario(file_);
+        ScenarioResult read = read_scenario(file_, common_.parameters);
         out.meshes = read.mesh_files;
         if (!read.scenario) throw failure_of(std::move(read));
         if (!read.diagnostics.empty())

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -15,6 +15,7 @@ from ._entries import Entry, Names, Section, default_name, unknown_name
 from ._errors import Diagnostic, SlowWarning, SolveWarning, fault, file_name, make_way, stack_level, user_place
 from ._generated import Body, Drive, Joint, Load, Sensor
 from ._other_names import of_model
+from ._parameters import Parameters
 from ._places import some_time
 from ._rest import Equilibrium, EquilibriumError, Linearisation, Modes
 from ._tree import KINDS, Table, frozen, toml
@@ -70,7 +71,7 @@ class Model(Tree):
 
         def __setattr__(self, name: str, value: Any) -> None:
             if not name.startswith("_") and not hasattr(type(self), name):
-                known = ["title", "gravity"]
+                known = ["title", "gravity", "parameters"]
                 help = _core.other_key("top of the file", "", name) or _core.suggestion(name, known)
                 raise AttributeError(f"a model has no '{name}' to set; {help}", name=name, obj=self)
             super().__setattr__(name, value)
@@ -102,6 +103,15 @@ class Model(Tree):
     @gravity.setter
     def gravity(self, value: Any) -> None:
         self._edit_root("gravity", value)
+
+    @property
+    def parameters(self) -> Parameters:
+        """Names for numbers, as in ``m.parameters = {"L": "400 mm"}``: ``"L/2"`` is a number of the model then."""
+        return Parameters(self)
+
+    @parameters.setter
+    def parameters(self, values: Mapping[str, Any]) -> None:
+        Parameters(self)._replace(values)
 
     @property
     def bodies(self) -> Names[Body]:

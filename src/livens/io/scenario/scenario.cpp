@@ -15,6 +15,7 @@
 #include "livens/io/scenario/joints/joints.h"
 #include "livens/io/scenario/loads/load_kinds.h"
 #include "livens/io/scenario/run/run.h"
+#include "livens/io/scenario/schema/repeat.h"
 #include "livens/io/scenario/text/tree.h"
 #include "livens/spacetime/solve.h"
 
@@ -80,11 +81,23 @@ void warn_of_gravity(const Section& top, Findings& findings)
     }
 }
 
+std::vector<Override> overrides_of(const ParameterValues& values)
+{
+    std::vector<Override> all;
+    for (const auto& [name, value] : values)
+        all.push_back({.name = name, .text = value, .said_by = "set: " + name + " = " + value});
+    return all;
+}
+
 /// Everything behind the parser. The scenario counts if there is no error.
-void build(const Node& root, TreePart part, const MeshSource& meshes, Scenario& scenario, Findings& findings)
+void build(const Node& root, TreePart part, const MeshSource& meshes, const ParameterValues& values,
+           Scenario& scenario, Findings& findings)
 {
     if (!check_format(root, findings)) return;
-    const Section top(root, root_table(), "the scenario", findings);
+    const Parameters parameters(root.find("parameters"), overrides_of(values), findings);
+    std::optional<Node> expanded;
+    if (root.find("repeat") != nullptr && !(expanded = without_repeats(root, parameters, findings))) return;
+    const Section top(expanded ? *expanded : root, root_table(), "the scenario", findings, parameters);
     if (!check_counts(top, findings)) return;
     warn_of_gravity(top, findings);
     // The order is that of references: joints name bodies, the start moves them along joints, drives begin
@@ -101,6 +114,8 @@ void build(const Node& root, TreePart part, const MeshSource& meshes, Scenario& 
     if (part == TreePart::model) return;
     read_run(builder, scenario);
     if (findings.n_errors() > 0) return;
+    parameters.warn_of_unused(findings);
+    scenario.text = with_set_values(std::move(scenario.text), parameters);
     scenario.conditions.start = builder.model().start();
     scenario.conditions.start.t = start_of(scenario.time);
     scenario.conditions.end.t = end_of(scenario.time);
@@ -117,7 +132,7 @@ void build(const Node& root, TreePart part, const MeshSource& meshes, Scenario& 
     scenario.meshes = builder.meshes().kept();
 }
 
-void parse(Scenario& scenario, const MeshSource& meshes, Findings& findings)
+void parse(Scenario& scenario, const MeshSource& meshes, const ParameterValues& values, Findings& findings)
 {
     const std::string_view text = scenario.text;
     if (text.size() > max_scenario_bytes) {
@@ -132,7 +147,7 @@ void parse(Scenario& scenario, const MeshSource& meshes, Findings& findings)
     }
     if (!scan(text, findings)) return;
     const std::optional<Node> root = parse_toml(text, findings);
-    if (root) build(*root, TreePart::whole, meshes, scenario, findings);
+    if (root) build(*root, TreePart::whole, meshes, values, scenario, findings);
 }
 
 /// Reads a file to its end or to one byte over the limit. False after an error.
@@ -180,15 +195,16 @@ void shield(Findings& findings, Work work)
 
 }   // namespace
 
-ScenarioResult parse_scenario(std::string text, const std::string& file_name, const MeshSource& meshes)
+ScenarioResult parse_scenario(std::string text, const std::string& file_name, const MeshSource& meshes,
+                              const ParameterValues& values)
 {
     Findings findings;
     ScenarioResult result;
     Scenario scenario;
     scenario.file = file_name;
     scenario.text = std::move(text);
-    shield(findings, [&] { parse(scenario, meshes, findings); });
     result.text = scenario.text;
+    shield(findings, [&] { parse(scenario, meshes, values, findings); });
     result.mesh_files = scenario.mesh_files;
     if (findings.n_errors() == 0) result.scenario = std::move(scenario);
     result.diagnostics = findings.take(file_name);
@@ -202,20 +218,20 @@ ScenarioResult io_internal::read_tree(const Node& root, std::string text, const 
     ScenarioResult result;
     Scenario scenario;
     scenario.text = std::move(text);
-    shield(findings, [&] { build(root, part, meshes, scenario, findings); });
+    shield(findings, [&] { build(root, part, meshes, {}, scenario, findings); });
     if (findings.n_errors() == 0 && part == TreePart::whole) result.scenario = std::move(scenario);
     result.diagnostics = findings.take("");
     return result;
 }
 
-ScenarioResult read_scenario(const std::filesystem::path& file)
+ScenarioResult read_scenario(const std::filesystem::path& file, const ParameterValues& values)
 {
     Findings findings;
     ScenarioResult result;
     std::string text;
     bool is_read = false;
     shield(findings, [&] { is_read = read_text(file, text, findings); });
-    if (is_read) return parse_scenario(std::move(text), file.string(), {file.parent_path()});
+    if (is_read) return parse_scenario(std::move(text), file.string(), {file.parent_path()}, values);
     result.diagnostics = findings.take(file.string());
     return result;
 }

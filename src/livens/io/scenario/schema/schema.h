@@ -26,7 +26,9 @@ enum class Form : std::uint8_t {
     row,           ///< `count` numbers
     rows,          ///< `count` rows of 3 numbers
     table,
-    tables   ///< array of tables
+    tables,         ///< array of tables
+    templates,      ///< array of tables of the root's key of that name, with braces: see without_repeats()
+    named_numbers   ///< a table of numbers and expressions under names of the user's choice: see Parameters
 };
 
 struct KeyType {
@@ -55,12 +57,14 @@ inline constexpr KeyType pair{"two rows of three numbers", Form::rows, 2};
 inline constexpr KeyType names{"two strings", Form::names, 2};
 inline constexpr KeyType text_or_list{"a string or a list of strings", Form::text, 0, Form::names};
 inline constexpr KeyType named_texts{"a table of strings", Form::named_texts};
+inline constexpr KeyType named_numbers{"a table of numbers and strings", Form::named_numbers};
 inline constexpr KeyType list{"a list of numbers", Form::row};
 inline constexpr KeyType rows{"rows of three numbers", Form::rows};
 inline constexpr KeyType number_or_list{"a number or a list of numbers", Form::number, 0, Form::row};
 inline constexpr KeyType number_or_table{"a number or a table", Form::number, 0, Form::table};
 inline constexpr KeyType table{"a table", Form::table};
 inline constexpr KeyType tables{"tables", Form::tables};
+inline constexpr KeyType templates{"tables", Form::templates};
 inline constexpr KeyType table_or_tables{"a table or a list of tables", Form::table, 0, Form::tables};
 inline constexpr KeyType color{"a string or three numbers", Form::text, 3, Form::row};
 inline constexpr KeyType later{"", Form::none};   ///< known, but not part of this version
@@ -158,6 +162,7 @@ Table sensor_table();
 Table start_table();
 Table end_table();
 Table method_table();
+Table repeat_table();
 const Table& root_table();
 /// All, from the root on, each before those inside it.
 std::vector<const Table*> schema_tables();

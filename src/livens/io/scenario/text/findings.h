@@ -2,9 +2,11 @@
 // Collecting what is wrong with a file, all of it, and putting it in order.
 #pragma once
 
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <vector>
 
 #include "livens/io/diagnostic.h"
@@ -16,6 +18,7 @@ struct SourceLocation {
     int line = 0;
     int column = 0;
     int length = 1;
+    int origin = 0;   ///< of a copy: see Findings::add_origin()
 };
 
 /// What to say beside the message.
@@ -30,6 +33,10 @@ public:
     bool error(const SourceLocation& place, std::string_view code, std::string message, Advice advice = {});
     void warning(const SourceLocation& place, std::string_view code, std::string message, Advice advice = {});
 
+    /// A copy of what stands in the file: findings at places of this origin have the words as a note, and
+    /// those that other copies of the place have as well are told once.
+    int add_origin(std::string words);
+
     /// Errors so far: a reader compares before and after to learn whether a part was in order.
     int n_errors() const { return n_errors_; }
 
@@ -42,6 +49,8 @@ private:
              Advice advice);
 
     std::vector<Diagnostic> found_;
+    std::vector<std::string> origins_;
+    std::set<std::tuple<int, int, std::string>> told_of_copies_;   ///< line, column, code
     int n_errors_ = 0;
     int n_dropped_ = 0;
 };
