@@ -1107,8 +1107,8 @@ livens_mutant(NAME meant_key_lacks
 # Extremes of the motion, and what is accelerated.
 livens_mutant(NAME extremes_are_those_of_samples
               FILE diagnostics/extremes.cpp
-              OLD [[if (better_) sample = better_(t);]]
-              NEW [[;]]
+              OLD [[if (!look.has_better()) return {{place.value, place.at}, 0};]]
+              NEW [[return {{place.value, place.at}, 0};]]
               TESTS_OF unit_spacetime
               MUST_FAIL Extremes.AreThoseOfTheFormula)
 livens_mutant(NAME accelerations_forget_what_turns
