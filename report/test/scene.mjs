@@ -6,7 +6,7 @@ import { existsSync, readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import assert from "node:assert/strict";
 import { asked } from "../record.mjs";
-import { example, folder, made, open, run, source } from "./tools.mjs";
+import { example, folder, made, open, run, source, with_script } from "./tools.mjs";
 
 const switched = async (page, shown) => {
   for (const what of ["trails", "forces", "joints", "names", "frames"])
@@ -56,7 +56,8 @@ const tests = {
     for (const [blue, orange] of await seen(page))
       assert.ok(blue === 0 && orange > 2000, `${blue} pixels of ${orange} are of the other`);
     // The control: without ranks both are mixed.
-    writeFileSync(bare, readFileSync(file, "utf8").replace("rank * gl_Position.w", "0.0 * gl_Position.w"));
+    const flat = (script) => script.replace("rank * gl_Position.w", "0.0 * gl_Position.w");
+    writeFileSync(bare, with_script(readFileSync(file, "utf8"), flat));
     const without = await open(bare, { bypassCSP: true });
     assert.ok(
       (await seen(without)).some(([blue]) => blue > 20),

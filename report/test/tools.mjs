@@ -7,6 +7,7 @@ import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "no
 import { tmpdir } from "node:os";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
+import { deflateSync, inflateSync } from "node:zlib";
 
 export const source = join(dirname(fileURLToPath(import.meta.url)), "../..");
 export const program = process.env.LIVENS_PROGRAM ?? join(source, "build/release/livens");
@@ -40,6 +41,14 @@ export function made(name, text, other = []) {
   }
   execFileSync(program, ["report", run, ...other, "-o", page], { stdio: "ignore" });
   return { run, page };
+}
+/** A page whose script is another one: it is unpacked, changed and packed again. Its policy no longer admits it. */
+export function with_script(page, change) {
+  const place = /(id="code">)([A-Za-z0-9+/=]+)/,
+    script = inflateSync(Buffer.from(place.exec(page)[2], "base64")).toString(),
+    changed = change(script);
+  if (changed === script) throw new Error("the script is the same");
+  return page.replace(place, (_, before) => before + deflateSync(changed).toString("base64"));
 }
 export const sample = (run, ...args) =>
   JSON.parse(
