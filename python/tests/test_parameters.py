@@ -111,7 +111,7 @@ def test_what_is_no_parameter_is_refused_where_it_is_written(name: str, value: o
     m = lv.Model("one")
     m.parameters = {"L": 1}
     with pytest.raises(lv.InputError) as raised:
-        m.parameters[name] = value   # type: ignore[assignment]
+        m.parameters[name] = value
     assert raised.value.code == code
     assert dict(m.parameters) == {"L": 1}
     with pytest.raises(KeyError, match="did you mean 'L'"):
