@@ -133,7 +133,7 @@ def test_tables_at_output_times_keep_them(tmp_path: pathlib.Path) -> None:
     m.add_body("ball", lv.point(mass=1))
     sol = lv.solve(m, 1, elements=20, output=0.05)
 
-    def rows(**keywords: str) -> int:
+    def rows(**keywords: Any) -> int:
         sol.export(tmp_path / "a.csv", force=True, **keywords)
         return len((tmp_path / "a.csv").read_text().splitlines()) - 1
     assert rows() == 21 and rows(at="dense") > 600 and rows(at="ends") == 21
