@@ -126,12 +126,16 @@ struct Duration {
     double ends;     ///< the drive, at the end or earlier
 };
 
-/// A drive is held in positions and in velocities, so that both are numbers while it acts.
-void check_values(const Expression& expression, const Duration& during, const std::string& path)
+/// A drive is held in positions and in velocities, so that both are numbers while it acts; where it jumps it
+/// has one on either side.
+void check_values(const Expression& expression, const Duration& during, const std::vector<double>& events,
+                  const std::string& path)
 {
     constexpr int n_looks = 1000;   // what passes between them is no number, and the solution says so
     for (int i = 0; i <= n_looks; ++i) {
         const double t = during.begins + (during.ends - during.begins) * i / n_looks;
+        const double near = 1e-9 * (during.ends - during.begins);
+        if (std::ranges::any_of(events, [&](double jump) { return std::abs(t - jump) <= near; })) continue;
         const TimeValue at = expression.by_time(t);
         if (std::isfinite(at.value) && std::isfinite(at.first)) continue;
         const std::string why = expression.without_value(t, {});
@@ -148,9 +152,9 @@ void check_values(const Expression& expression, const Duration& during, const st
 /// With its kinks as breaks, so that the model refuses what a drive cannot follow.
 TimeFunction by_formula(const Expression& expression, const Duration& during, const std::string& path)
 {
-    check_values(expression, during, path);
     std::vector<double> events;
     if (during.end > during.start) events = expression.events(during.start, during.end);
+    check_values(expression, during, events, path);
     return expression_of_time(expression, events);
 }
 
