@@ -79,7 +79,7 @@ def test_calls_of_other_programs(pendulum: lv.Model, sol: lv.Solution) -> None:
             (lambda: setattr(m, "accuracy", 1e-8), "[time]"),
             (lambda: sol["rod.position"], "sol['rod'].position"),
             (lambda: sol.save("x.mat"), "ncread"), (lambda: sol.save("x.csv"), "sol.export('x.csv')"),
-            (lambda: sol.export("x.gif"), "sol.report"), (lambda: lv.load("x.urdf"), "TOML"), (lambda: lv.load("run.nc"), "load_solution"),
+            (lambda: sol.export("x.mp4"), "webm (.webm)"), (lambda: lv.load("x.urdf"), "TOML"), (lambda: lv.load("run.nc"), "load_solution"),
             (lambda: lv.box(1), "box(x, y, z)")):
         assert wanted in answer(call), wanted
     assert len(m.joints) == 1 and len(m.bodies) == 1 and len(m.drives) == 0
