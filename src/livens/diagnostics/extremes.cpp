@@ -40,6 +40,7 @@ struct Hunt {
 };
 
 constexpr double equal_values = 1e-9;     // relative
+constexpr double alike = 1e-4;            // that polynomials do not tell apart, relative
 constexpr std::size_t most_places = 24;   // that are kept of a series
 
 void Hunt::look_at(std::span<const double> t, std::span<const double> f)
@@ -207,7 +208,7 @@ Extreme extreme_of(Looker& look, const QuantitySeries& series, Hunt& hunt, bool 
     Extreme best = first.extreme;
     double gap = first.gap;
     for (const Place& place : std::span(hunt.places).subspan(1)) {
-        if (place.value + 2 * gap < best.value) break;
+        if (place.value + 2 * gap + alike * std::abs(best.value) < best.value) break;
         const Refined refined = refine(look, series, hunt.sign, place);
         gap = std::max(gap, refined.gap);
         const Extreme& found = refined.extreme;
