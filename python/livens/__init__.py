@@ -23,7 +23,7 @@ from ._errors import (Diagnostic, InputError, ModelWarning, Place, ResultFileErr
 from ._explain import explain
 from ._export import Comparison, compare
 from ._generated import *   # noqa: F403  the shapes and methods that the schema has, see __all__ there
-from ._generated import Body, Drive, Joint, Load, MethodOptions, Sensor
+from ._generated import Body, Drive, Joint, Load, MethodOptions, Point, Sensor
 from ._functions import BodyState
 from ._load import load
 from ._model import Model
@@ -39,7 +39,8 @@ from ._values import Condition, Method, Shape, momenta, positions, state, table,
 __all__ = [
     "Body", "BodySeries", "BodyState", "Comparison", "Condition", "Diagnostic", "Drive", "Entry", "Equilibrium",
     "EquilibriumError", "Extremes", "InputError", "Joint", "JointSeries", "Linearisation", "Load", "LoadSeries", "Method",
-    "MethodOptions", "ModeBody", "ModeJoint", "Model", "ModelWarning", "Modes", "Names", "Parts", "Peak", "Place", "PointSeries",
+    "MethodOptions", "ModeBody", "ModeJoint", "Model", "ModelWarning", "Modes", "Names", "Parts", "Peak", "Place", "Point",
+    "PointSeries",
     "ReadingSeries", "RestBody", "RestJoint", "ResultFileError", "Section", "Sensor", "SensorSeries", "Series",
     "Shape", "SlowWarning", "Solution", "SolveError", "SolveWarning", "StateMatrices", "__version__", "compare",
     "explain", "load", "load_solution", "momenta", "positions", "solve", "solve_many", "state", "table", "visual",

@@ -12,13 +12,13 @@ from . import _core
 from ._entries import Entry, Names, RootSection, Section, default_name, unknown_name
 from ._errors import Diagnostic, InputError, ModelWarning, fault, raised, stack_level, user_place
 from ._functions import adapted
-from ._generated import Adders, Body, Drive, Joint, Load, Sensor
+from ._generated import Adders, Body, Drive, Joint, Load, Point, Sensor
 from ._places import arranged, diagnostic_of, faults_in, key_below, of_table, path_at, path_of, store, words_in
 from ._rotations import oriented, with_rotation
 from ._tree import KINDS, Table, diagnostics_of_text, frozen, plain, schema, toml
 from ._values import Shape
 
-_TYPES: dict[str, type[Entry]] = {"body": Body, "joint": Joint, "drive": Drive, "load": Load, "sensor": Sensor}
+_TYPES: dict[str, type[Entry]] = {"body": Body, "point": Point, "joint": Joint, "drive": Drive, "load": Load, "sensor": Sensor}
 _MISSING = object()
 _INSTEAD = {   # keys that say the same in other ways: assigning one takes the others away
     "body": (("mass", "density"), ("directors", "quaternion", "rotation_vector"),
@@ -201,7 +201,7 @@ class Tree(Adders):
         name = content.get("name")
         path = f"{kind}[{name if isinstance(name, str) else len(self._root.get(kind, [])) + 1}]"
         table = Table(place=user_place())
-        given = {"name": name, "type": word or None, **with_rotation(arranged(content, word))}
+        given = {"name": name, "type": word or None, **with_rotation(arranged(content, word, self._is_point))}
         self._refuse_part_as_type(kind, word, name)
         for key_name, value in given.items():
             if value is None:
@@ -236,6 +236,12 @@ class Tree(Adders):
             raise raised(found)
         self._text, self._built, self._warned = None, {}, False
         return self._handle(kind, table)
+
+    def _is_point(self, part: object) -> bool:
+        """Whether a part in front is a point: a handle, or the name of one."""
+        if isinstance(part, Entry):
+            return part._key == "point"
+        return isinstance(part, str) and [kind for kind, _ in self._named(part)] == ["point"]
 
     def _refuse_part_as_type(self, kind: str, word: str, name: object) -> None:
         """add_drive("motor", "pivot", rate=1): the joint stands where the type does."""

@@ -13,7 +13,7 @@ from . import _core
 from ._editing import Tree
 from ._entries import Entry, Names, Section, default_name, unknown_name
 from ._errors import Diagnostic, SlowWarning, SolveWarning, fault, file_name, make_way, stack_level, user_place
-from ._generated import Body, Drive, Joint, Load, Sensor
+from ._generated import Body, Drive, Joint, Load, Point, Sensor
 from ._other_names import of_model
 from ._places import some_time
 from ._rest import Equilibrium, EquilibriumError, Linearisation, Modes
@@ -109,6 +109,11 @@ class Model(Tree):
         return Names(self, "body", Body)
 
     @property
+    def points(self) -> Names[Point]:
+        """All points by name."""
+        return Names(self, "point", Point)
+
+    @property
     def joints(self) -> Names[Joint]:
         """All joints by name."""
         return Names(self, "joint", Joint)
@@ -154,7 +159,7 @@ class Model(Tree):
         return self._section("end")
 
     def __getitem__(self, name: str) -> Any:
-        """The body, joint, drive, load or sensor of that name."""
+        """The body, point, joint, drive, load or sensor of that name."""
         found = self._named(name)
         if len(found) == 1:
             return self._handle(*found[0])
@@ -170,7 +175,7 @@ class Model(Tree):
         return isinstance(name, str) and bool(self._named(name))
 
     def remove(self, part: str | Entry) -> None:
-        """Takes a body, joint, drive, load or sensor away. What refers to it is an error on solving.
+        """Takes a body, point, joint, drive, load or sensor away. What refers to it is an error on solving.
 
         Raises:
             KeyError: nothing is called that.

@@ -17,7 +17,7 @@ from ._rotations import ORIENTATIONS, as_key, doubt, is_rotation
 from ._values import Shape
 
 ROW, TABLE, TABLES = 9, 11, 12   # of Form in schema.h
-KINDS = ("body", "joint", "drive", "load", "sensor")   # arrays of tables in the root
+KINDS = ("body", "point", "joint", "drive", "load", "sensor")   # arrays of tables in the root
 
 
 class Table(dict[str, Any]):

@@ -119,6 +119,21 @@ nb::list sensors(const Result& r)
     return all;
 }
 
+/// Of named points: name, body (None: the world) and place in its axes.
+nb::list points(const Result& r)
+{
+    nb::list all;
+    const Model& model = r.scenario->model;
+    for (const NamedPoint& point : model.points()) {
+        const Vector3& p = point.position;
+        all.append(nb::make_tuple(
+            point.name,
+            point.body == world ? nb::none() : nb::object(nb::str(model.body_name(point.body).c_str())),
+            nb::make_tuple(p[0], p[1], p[2])));
+    }
+    return all;
+}
+
 nb::list loads(const Result& r)
 {
     nb::list all;
@@ -236,7 +251,8 @@ void export_to(const Result& r, const std::string& format, const std::string& re
 {
     const nb::gil_scoped_release unlock;
     for (const ExportFormat& f : export_formats())
-        if (f.word == format) f.write(file, {result, *r.scenario, r.run, force, static_cast<Instants>(instants)});
+        if (f.word == format)
+            f.write(file, {result, *r.scenario, r.run, force, static_cast<Instants>(instants)});
 }
 
 }   // namespace
@@ -275,6 +291,7 @@ void add_results(nb::module_& m)
         .def_prop_ro("body_names", [](const Result& r) { return r.run.body_names; })
         .def_prop_ro("joints", &joints)
         .def_prop_ro("sensors", &sensors)
+        .def_prop_ro("points", &points)
         .def_prop_ro("loads", &loads)
         .def_prop_ro("figures", &figures)
         .def_prop_ro("is_damping", [](const Result& r) { return r.run.motion.damps(); })
@@ -295,7 +312,8 @@ void add_results(nb::module_& m)
     result.def("save", &save, nb::arg("file"))
         .def("report", &report, nb::arg("name"), nb::arg("other").none(), nb::arg("other_name"))
         .def("to_bytes", &to_bytes)
-        .def("export_to", &export_to, nb::arg("format"), nb::arg("result"), nb::arg("file"), nb::arg("force"), nb::arg("instants"))
+        .def("export_to", &export_to, nb::arg("format"), nb::arg("result"), nb::arg("file"), nb::arg("force"),
+             nb::arg("instants"))
         .def("inputs", &inputs);
     m.def("load_result", &load_result, nb::arg("file"));
     m.def("from_bytes", &from_bytes, nb::arg("bytes"));

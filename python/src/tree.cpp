@@ -97,6 +97,7 @@ nb::dict to_python(const Key& key, nb::dict& indices)
     d["other_unit"] = key.other_unit;
     d["fallback"] = key.fallback;
     d["required"] = key.required;
+    d["told_by"] = key.told_by;
     nb::list choices;
     for (const std::string_view word : key.choices) choices.append(word);
     d["choices"] = nb::tuple(choices);

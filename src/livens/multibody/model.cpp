@@ -307,12 +307,31 @@ int Model::add_sensor(Sensor sensor)
     return static_cast<int>(sensors_.size()) - 1;
 }
 
+int Model::add_point(NamedPoint point)
+{
+    check_name(points_, point.name, "point");
+    const std::string path = "point[" + point.name + "]";
+    check_body_index(point.body, n_bodies(), path);
+    require_finite(point.position, path + ".position", "the place of a point");
+    if (find_by_name(bodies_, point.name) >= 0)
+        throw InputError({"name-duplicate", path, "a body has this name", point.name, "",
+                          "the name of a point stands for its body, too", "rename one of them"});
+    if (point.body != world && bodies_[point.body].is_point && point.position != Vector3{})
+        refuse("point-mass", path + ".position", "a point mass has no other point than its own",
+               "leave the position out");
+    points_.push_back(std::move(point));
+    changed();
+    return static_cast<int>(points_.size()) - 1;
+}
+
 int Model::find_body(const std::string& name) const
 {
     return name == "world" ? world : find_by_name(bodies_, name);
 }
 
 int Model::find_joint(const std::string& name) const { return find_by_name(joints_, name); }
+
+int Model::find_point(const std::string& name) const { return find_by_name(points_, name); }
 
 State Model::start() const
 {
@@ -385,6 +404,7 @@ ActingModel acting_at(const Model& model, double t)
     }
     for (const Load& load : model.loads()) acting.model.add_load(load);
     for (const Sensor& sensor : model.sensors()) acting.model.add_sensor(sensor);
+    for (const NamedPoint& point : model.points()) acting.model.add_point(point);
     return acting;
 }
 

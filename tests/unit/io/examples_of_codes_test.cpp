@@ -86,6 +86,7 @@ TEST(ExamplesOfCodes, StandWhereverAScenarioLeads)
         "drives-method",
         "gauss-points-out-of-range",
         "gear-ratio",
+        "gravity-differs",
         "internal",
         "io-directory",
         "io-damaged",

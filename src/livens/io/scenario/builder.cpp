@@ -104,7 +104,7 @@ void Builder::remember(const std::string& path, const Section& section)
 /// the path that is known counts.
 SourceLocation Builder::find_place(std::string path, const std::string& context) const
 {
-    for (const std::string_view kind : {"body.", "joint.", "drive.", "load."})
+    for (const std::string_view kind : {"body.", "joint.", "drive.", "load.", "point."})
         if (path.substr(0, kind.size()) == kind) path = context + path.substr(kind.size() - 1);
     while (!path.empty()) {
         const auto found = places_.find(path);
@@ -126,7 +126,7 @@ InputError Builder::unknown_name(const std::string& kind, const std::string& nam
         return (one.has("name") ? one.text("name") : default_name(one)) == name;
     };
     const bool is_told = findings_.n_errors() > 0 && std::ranges::any_of(top_.sections(kind), is_it);
-    for (const char* other : {"body", "joint", "drive", "load", "sensor"})
+    for (const char* other : {"body", "joint", "drive", "load", "sensor", "point"})
         if (!is_told && kind != other && std::ranges::any_of(top_.sections(other), is_it))
             return InputError(
                 {kind + "-unknown", path + "." + kind, "'" + name + "' is a " + other + ", not a " + kind, "",
@@ -169,9 +169,11 @@ BodyReference Builder::find_body(const std::string& name, const SourceLocation& 
     for (const Section& body : top_.sections("body"))
         if (const Value* v = body.find("name")) known.push_back(v->text);
     known.push_back("world");
+    const bool is_point = model_.find_point(name) >= 0;
     findings_.error(place, "body-unknown",
                     section.label() + " refers to '" + name + "', but there is no such body",
-                    {"", means_world(name) ? "the fixed frame is called \"world\"" : suggest(name, known)});
+                    {is_point ? "'" + name + "' is a point, which 'point' or 'points' takes" : "",
+                     means_world(name) ? "the fixed frame is called \"world\"" : suggest(name, known)});
     return {};
 }
 
@@ -231,6 +233,10 @@ bool check_name(const Section& section)
 std::string default_name(const Section& section)
 {
     const std::string type = section.text("type");
+    // Names of points, where they stand for bodies.
+    if (const Value* two = section.find("points"); two != nullptr && !two->texts.empty())
+        return type + " " + two->texts[0] + "-" + two->texts[1];
+    if (section.is_implied("body")) return type + " on " + section.find("point")->text;
     for (const char* key : {"between", "joints"})
         if (const Value* two = section.find(key)) return type + " " + two->texts[0] + "-" + two->texts[1];
     for (const char* key : {"body", "joint"})

@@ -12,6 +12,7 @@
 #include "livens/base/text.h"
 #include "livens/dynamics/start/prepared.h"
 #include "livens/io/scenario/bodies/bodies.h"
+#include "livens/io/scenario/bodies/named_points.h"
 #include "livens/io/scenario/joints/joints.h"
 #include "livens/io/scenario/loads/load_kinds.h"
 #include "livens/io/scenario/run/run.h"
@@ -25,7 +26,7 @@ namespace {
 bool check_counts(const Section& top, Findings& findings)
 {
     const int before = findings.n_errors();
-    for (const std::string kind : {"body", "joint", "load"}) {
+    for (const std::string kind : {"body", "joint", "load", "point"}) {
         const std::span<const Section> sections = top.sections(kind);
         if (sections.size() > max_bodies)
             sections[max_bodies].error("", "resource-limit",
@@ -83,13 +84,15 @@ void warn_of_gravity(const Section& top, Findings& findings)
 void build(const Node& root, TreePart part, const MeshSource& meshes, Scenario& scenario, Findings& findings)
 {
     if (!check_format(root, findings)) return;
-    const Section top(root, root_table(), "the scenario", findings);
+    Section top(root, root_table(), "the scenario", findings);
     if (!check_counts(top, findings)) return;
     warn_of_gravity(top, findings);
     // The order is that of references: joints name bodies, the start moves them along joints, drives begin
     // where the joints stand then, and loads read sensors, except for sensors that read loads.
     Builder builder(top, meshes, findings);
     read_bodies(builder);
+    read_points(builder);
+    tell_points(builder, top);
     read_joints(builder);
     move_bodies(builder);
     read_drives(builder);

@@ -118,7 +118,34 @@ TapeVector LoadTape::arm(int side, const Vector4& w, bool is_rate)
 {
     if (bodies_[static_cast<std::size_t>(side)] == world)
         return vector(is_rate ? Vector3{} : world_configuration * w);
-    return {this, add({is_rate ? TapeKind::arm_rate : TapeKind::arm, -1, -1, -1, find_arm(side, w), 0})};
+    const TapeVector v{this,
+                       add({is_rate ? TapeKind::arm_rate : TapeKind::arm, -1, -1, -1, find_arm(side, w), 0})};
+    return frame_.is_none() ? v : as_before(v, is_rate ? 0 : w[0]);
+}
+
+LoadTape::Moved::Moved(LoadTape& tape, const Displacement& by) : tape_(tape), before_(tape.frame_)
+{
+    tape.frame_ = before_.after(by);
+}
+
+/// R^T (v - shift p): the columns of R are what its components are along.
+TapeVector LoadTape::as_before(TapeVector v, double shift)
+{
+    v = v - vector(shift * frame_.position);
+    const auto along = [&](int i) {
+        Vector3 axis{};
+        axis[i] = 1;
+        return dot(vector(frame_.rotation.column(i)), v) * vector(axis);
+    };
+    return along(0) + along(1) + along(2);
+}
+
+/// R v.
+TapeVector LoadTape::turned(TapeVector v)
+{
+    if (const Vector3* known = constant(v)) return vector(frame_.rotation * *known);
+    const auto along = [&](int i) { return v[i] * vector(frame_.rotation.column(i)); };
+    return along(0) + along(1) + along(2);
 }
 
 TapeNumber LoadTape::unwrapped(TapeNumber value, int angle)
@@ -138,6 +165,7 @@ void LoadTape::pull(int side, const Vector4& w, TapeNumber s, TapeVector v)
 {
     if (bodies_[static_cast<std::size_t>(side)] == world) return;
     if (s.place < 0) s = number(1);
+    if (!frame_.is_none()) v = turned(v);
     add({TapeKind::pull, -1, s.place, v.place, find_arm(side, w), 0});
 }
 

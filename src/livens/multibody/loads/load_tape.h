@@ -11,6 +11,7 @@
 #include <tuple>
 #include <vector>
 
+#include "livens/multibody/displacement.h"
 #include "livens/multibody/loads.h"
 
 namespace livens::inline multibody_internal {
@@ -98,6 +99,20 @@ public:
     using Function = double (*)(double, double);
     using Outer = std::function<void(Instant, std::span<const double>, std::span<double>)>;
 
+    /// As long as it lives, what is recorded is of a load that was displaced: arms are seen as they were
+    /// before, and what is pulled is turned.
+    class Moved {
+    public:
+        [[gnu::visibility("hidden")]] Moved(LoadTape& tape, const Displacement& by);
+        ~Moved() { tape_.frame_ = before_; }
+        Moved(const Moved&) = delete;
+        Moved& operator=(const Moved&) = delete;
+
+    private:
+        LoadTape& tape_;
+        Displacement before_;
+    };
+
     /// What follows is of this load: its bodies are meant by their places in it, its angles begin at number
     /// `first_angle` of the model's.
     [[gnu::visibility("hidden")]] void begin(const Load& load, int first_angle);
@@ -149,6 +164,8 @@ public:
 
 private:
     [[gnu::visibility("hidden")]] int find_arm(int side, const Vector4& w);
+    [[gnu::visibility("hidden")]] TapeVector as_before(TapeVector v, double shift);
+    [[gnu::visibility("hidden")]] TapeVector turned(TapeVector v);
 
     std::vector<TapeStep> steps_;
     std::map<std::tuple<TapeKind, int, int, int, double>, int> known_;   ///< places
@@ -162,6 +179,7 @@ private:
     std::vector<std::vector<int>> inputs_;
     std::vector<TapeWatch> watched_;
     std::vector<int> bodies_;   ///< of the load at hand
+    Displacement frame_;        ///< likewise
     int first_angle_ = 0, size_ = 0;
     bool takes_looks_ = false;
 };

@@ -27,19 +27,21 @@ const std::vector<Kind>& drive_kinds()
           coordinate_key()}},
         {"distance",
          "the distance of two points",
-         {Key{"between", types::names, "Two different bodies, or one and `\"world\"`."}.needed(),
-          Key{"points", types::pair,
+         {Key{"between", types::names,
+              "Two different bodies, or one and `\"world\"`; names in `points` say them as well."}
+              .needed_without("points"),
+          Key{"points", types::two_points,
               "One on each body, in its coordinates. Default: the reference points, for the world its "
               "origin.",
               "m"}}},
         {"point",
          "a point of a body, from where it stands, in world axes",
-         {Key{"body", types::text, "The body."}.needed(),
-          Key{"point", types::vector3, "In body coordinates.", "m", "[0, 0, 0]"}}},
+         {Key{"body", types::text, "The body; a name as `point` says it as well."}.needed_without("point"),
+          Key{"point", types::point, "In body coordinates.", "m", "[0, 0, 0]"}}},
         {"body",
          "a point of a body, which does not turn",
-         {Key{"body", types::text, "The body."}.needed(),
-          Key{"point", types::vector3, "In body coordinates.", "m", "[0, 0, 0]"}}}};
+         {Key{"body", types::text, "The body; a name as `point` says it as well."}.needed_without("point"),
+          Key{"point", types::point, "In body coordinates.", "m", "[0, 0, 0]"}}}};
     return all;
 }
 
@@ -113,8 +115,11 @@ std::string drive_name(const Section& drive)
 {
     if (drive.has("name")) return drive.text("name");
     if (drive.find("joint") != nullptr) return "drive of " + drive.text("joint");
+    if (drive.is_implied("body")) return "drive of " + drive.find("point")->text;
     if (drive.find("body") != nullptr) return "drive of " + drive.text("body");
-    const Value* between = drive.find("between");
+    const Value *between = drive.find("between"), *points = drive.find("points");
+    if (points != nullptr && !points->texts.empty())
+        return "drive " + points->texts[0] + "-" + points->texts[1];
     return between == nullptr ? "" : "drive " + between->texts[0] + "-" + between->texts[1];
 }
 

@@ -14,9 +14,9 @@ namespace livens::inline io_internal {
 
 namespace {
 
-const Key at{"at", types::vector3, "The joint's point at the start, in the world.", "m"};
+const Key at{"at", types::point, "The joint's point at the start, in the world.", "m"};
 const Key axis{"axis", types::vector3, "With `at`: the axis at the start, world axes, of any length."};
-const Key points{"points", types::pair,
+const Key points{"points", types::two_points,
                  "The joint's point on each body, in its coordinates. A rod's default: the reference points, "
                  "for the world its origin.",
                  "m"};
@@ -173,8 +173,7 @@ std::vector<JointKind> kinds_of_curves_and_distances()
                 {Key{"points", types::rows, "Two or more, in coordinates of the first body.", "m"}.needed(),
                  Key{"closed", types::truth, "Whether it comes back from the last point to the first.", "",
                      "false"}}}),
-           Key{"point", types::vector3, "What slides, in coordinates of the second body.", "m",
-               "[0, 0, 0]"}}},
+           Key{"point", types::point, "What slides, in coordinates of the second body.", "m", "[0, 0, 0]"}}},
          Location::on_curve,
          make_slot},
         {{"rod",
@@ -226,7 +225,7 @@ const std::vector<JointKind>& joint_kinds()
 
 Key frames_key(const std::string& heading, const std::string& doc)
 {
-    std::vector<Key> keys{{"point", types::vector3, "In coordinates of the body.", "m", "[0, 0, 0]"}};
+    std::vector<Key> keys{{"point", types::point, "In coordinates of the body.", "m", "[0, 0, 0]"}};
     for (const Key& key : orientation_keys()) keys.push_back(key);
     return Key{"frames", types::tables, doc}.holding({heading, "Point and axes.", keys});
 }

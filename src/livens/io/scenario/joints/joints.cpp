@@ -5,8 +5,8 @@
 
 #include "livens/base/text.h"
 #include "livens/io/scenario/bodies/bodies.h"
-#include "livens/io/scenario/joints/joints.h"
 #include "livens/io/scenario/joints/joint_kinds.h"
+#include "livens/io/scenario/joints/joints.h"
 #include "livens/multibody/joints/fit.h"
 
 namespace livens::inline io_internal {
@@ -337,7 +337,9 @@ Table joint_table()
         else
             keys.insert(
                 keys.begin(),
-                Key{"between", types::names, "Two different bodies, or one and `\"world\"`."}.needed());
+                Key{"between", types::names,
+                    "Two different bodies, or one and `\"world\"`; names in `points` say them as well."}
+                    .needed_without("points"));
     }
     return Table{
         "[[joint]]",

@@ -63,11 +63,11 @@ Sensor make_energy(const SensorSources& s) { return energy_sensor(s.name, s.firs
 
 const std::vector<SensorKind>& sensor_kinds()
 {
-    const Key body = Key{"body", types::text, "The body."}.needed();
     static const std::vector<SensorKind> all{
         {{"point",
           "a point of a body: x, y, z in m, vx, vy, vz in m/s and ax, ay, az in m/s^2, world axes",
-          {body, Key{"point", types::vector3, "In body coordinates.", "m", "[0, 0, 0]"}}},
+          {Key{"body", types::text, "The body; a name as `point` says it as well."}.needed_without("point"),
+           Key{"point", types::point, "In body coordinates.", "m", "[0, 0, 0]"}}},
          make_point},
         {{"joint",
           "the coordinates of a joint, their rates and accelerations: angle, angle_rate, angle_acceleration, "
@@ -77,8 +77,10 @@ const std::vector<SensorKind>& sensor_kinds()
         {{"relative",
           "a point of the second body from one of the first, in axes of the first: x, y, z, their rates vx, "
           "vy, vz and the rates of these, ax, ay, az",
-          {Key{"between", types::names, "Two different bodies, or one and `\"world\"`."}.needed(),
-           Key{"points", types::pair,
+          {Key{"between", types::names,
+               "Two different bodies, or one and `\"world\"`; names in `points` say them as well."}
+               .needed_without("points"),
+           Key{"points", types::two_points,
                "One on each body, in its coordinates. Default: the reference points, for the world its "
                "origin.",
                "m"}}},
@@ -91,7 +93,9 @@ const std::vector<SensorKind>& sensor_kinds()
           "bodies, W",
           {Key{"load", types::text, "The load."}.needed()}},
          make_load_sensor},
-        {{"energy", "kinetic and potential energy of a body in J, the latter of its weight", {body}},
+        {{"energy",
+          "kinetic and potential energy of a body in J, the latter of its weight",
+          {Key{"body", types::text, "The body."}.needed()}},
          make_energy}};
     return all;
 }

@@ -14,6 +14,13 @@ namespace {
 
 Key body_key() { return Key{"body", types::text, "On which body it acts."}.needed(); }
 
+/// Of what acts at a point.
+Key body_of_point()
+{
+    return Key{"body", types::text, "On which body it acts; a name as `point` says it as well."}
+        .needed_without("point");
+}
+
 Key interpolation_key()
 {
     return choice("interpolation", {"linear", "spline"},
@@ -48,7 +55,7 @@ std::vector<Key> keys_on_body(const std::string& what, std::string_view unit, co
          {times_key(), Key{"values", types::rows, "One for each time.", unit}.needed(),
           interpolation_key()}});
     return joined(
-        {body_key()}, more,
+        {more.empty() || more.front().name != "point" ? body_key() : body_of_point()}, more,
         std::vector<Key>{Key{"value", types::vector3, "Constant; instead of `table`.", unit}.or_formulas(
                              formulas_for_value),
                          table},
@@ -71,10 +78,11 @@ std::vector<Key> keys_of_spring()
               .needed(),
           interpolation_key()}});
     return {
-        Key{"between", types::names, "The two bodies it connects; one may be `\"world\"`."},
+        Key{"between", types::names,
+            "The two bodies it connects; one may be `\"world\"`; names in `points` say them as well."},
         Key{"joint", types::text, "Instead of `between`: the joint along whose coordinate it acts."},
         coordinate_key(),
-        Key{"points", types::pair,
+        Key{"points", types::two_points,
             "Its ends on each body, in the body's coordinates. Default: the reference points, for the "
             "world its origin.",
             "m"},
@@ -155,7 +163,7 @@ std::vector<Key> keys_of_bushing()
         "turn the vector changes its sign, and a motion that gets there is suspect.";
     return {
         Key{"between", types::names, "The two bodies it connects; one may be `\"world\"`."}.needed(),
-        Key{"at", types::vector3, "Its point at the start, in the world, whose axes it has there.", "m"},
+        Key{"at", types::point, "Its point at the start, in the world, whose axes it has there.", "m"},
         frames_key("frame of a bushing", "Instead of `at`: one frame for each body, in its coordinates; "
                                          "displacements and rotations are those of the second in axes "
                                          "of the first."),
@@ -192,7 +200,7 @@ Load make_attraction(const LoadSources& p)
 
 const std::vector<LoadKind>& load_kinds()
 {
-    const Key point{"point", types::vector3, "Where it acts, in body coordinates.", "m", "[0, 0, 0]"};
+    const Key point{"point", types::point, "Where it acts, in body coordinates.", "m", "[0, 0, 0]"};
     static const std::vector<LoadKind> all{
         {{"force", "at a point of a body", keys_on_body("force", "N", {point})}, make_force, check_value},
         {{"torque", "on a body", keys_on_body("torque", "N m", {})}, make_torque, check_value},
@@ -209,14 +217,14 @@ const std::vector<LoadKind>& load_kinds()
          check_bushing},
         {{"drag",
           "against the velocity v of a point, (linear + quadratic |v|) v",
-          {body_key(), point, Key{"linear", types::number, "", "N s/m", "0"}.within(not_negative),
+          {body_of_point(), point, Key{"linear", types::number, "", "N s/m", "0"}.within(not_negative),
            Key{"quadratic", types::number, "", "N s^2/m^2", "0"}.within(not_negative),
            Key{"medium", types::vector3, "Velocity of the medium, world axes.", "m/s", "[0, 0, 0]"}}},
          make_drag,
          check_drag},
         {{"attraction",
           "gravity toward a point, mu mass / r^2 at the centre of mass",
-          {body_key(), Key{"point", types::vector3, "The attracting point, in the world.", "m", "[0, 0, 0]"},
+          {body_key(), Key{"point", types::point, "The attracting point, in the world.", "m", "[0, 0, 0]"},
            Key{"mu", types::number, "Constant of gravity times the attracting mass.", "m^3/s^2"}
                .needed()
                .within(positive),

@@ -27,13 +27,15 @@ Table time_table()
              .within({1, max_elements}),
          Key{"output", types::number_or_list,
              "Interval between output times (start and end are output times, too), or their ascending list. "
-             "They become element ends, where results are most accurate. Default: all element ends.", "s"},
+             "They become element ends, where results are most accurate. Default: all element ends.",
+             "s"},
          choice("breaks", {"from_loads", "ignore"}, "Whether elements end where loads jump or bend."),
          Key{"accuracy", types::number,
              "Largest error of centres of mass, in lengths of the model, and of orientations, in rad, at all "
              "element ends; elements and, unless it is stated, the degree follow from it. For the families "
              "lobatto and radau with the state at the start. Default where neither `elements` nor `knots` of "
-             "`[method]` stand.", "", "1e-6"}
+             "`[method]` stand.",
+             "", "1e-6"}
              .within({0, 0.1, true})}};
 }
 
@@ -64,6 +66,7 @@ const Table& root_table()
          Key{"gravity", types::vector3, "Acceleration of free fall, world axes.", "m/s^2", "[0, 0, 0]"},
          Key{"body", types::tables, "Bodies, at least one."}.needed().holding(body_table()),
          Key{"world", types::table, "What is drawn of the world."}.holding(world_table()),
+         Key{"point", types::tables, "Places with names."}.holding(point_table()),
          Key{"joint", types::tables, "Joints."}.holding(joint_table()),
          Key{"drive", types::tables, "Coordinates, distances and points that follow time."}.holding(
              drive_table()),

@@ -52,6 +52,9 @@ inline constexpr KeyType principal_or_full{"three numbers or three rows of three
                                            Form::rows};
 inline constexpr KeyType triple{"three rows of three numbers", Form::rows, 3};
 inline constexpr KeyType pair{"two rows of three numbers", Form::rows, 2};
+inline constexpr KeyType point{"the name of a point or three numbers", Form::row, 3, Form::text};
+inline constexpr KeyType two_points{"two names of points or two rows of three numbers", Form::rows, 2,
+                                    Form::names};
 inline constexpr KeyType names{"two strings", Form::names, 2};
 inline constexpr KeyType text_or_list{"a string or a list of strings", Form::text, 0, Form::names};
 inline constexpr KeyType named_texts{"a table of strings", Form::named_texts};
@@ -98,12 +101,17 @@ struct Key {
     std::string_view other_unit = {};   ///< SI; what texts may have instead, along angles
     std::shared_ptr<const Table> child = {};   ///< of a table, or tables
     std::string_view formulas = {};            ///< where formulas stand instead; empty: nowhere
+    std::string_view told_by = {};             ///< key of points whose names say it as well; empty: none
 
     // One property each, so that an entry of a table reads as a sentence.
     Key needed() && { return required = true, std::move(*this); }
     Key or_in(std::string_view u) && { return other_unit = u, std::move(*this); }
     Key or_formulas(std::string_view where) && { return formulas = where, std::move(*this); }
     Key within(const Range& r) && { return range = r, std::move(*this); }
+    Key needed_without(std::string_view points) &&
+    {
+        return required = true, told_by = points, std::move(*this);
+    }
     Key holding(Table t) &&;
 };
 
@@ -148,6 +156,7 @@ Table joint_table();
 Table drive_table();
 Table load_table();
 Table sensor_table();
+Table point_table();
 Table start_table();
 Table end_table();
 Table method_table();
