@@ -25,6 +25,7 @@ from ._export import Comparison, compare
 from ._generated import *   # noqa: F403  the shapes and methods that the schema has, see __all__ there
 from ._generated import Body, Drive, Joint, Load, MethodOptions, Point, Sensor
 from ._functions import BodyState
+from ._included import Added
 from ._load import load
 from ._model import Model
 from ._parts import BodySeries, JointSeries, LoadSeries, Parts, PointSeries, ReadingSeries, SensorSeries
@@ -37,7 +38,7 @@ from ._solve import solve, solve_many
 from ._values import Condition, Method, Shape, momenta, positions, state, table, visual
 
 __all__ = [
-    "Body", "BodySeries", "BodyState", "Comparison", "Condition", "Diagnostic", "Drive", "Entry", "Equilibrium",
+    "Added", "Body", "BodySeries", "BodyState", "Comparison", "Condition", "Diagnostic", "Drive", "Entry", "Equilibrium",
     "EquilibriumError", "Extremes", "InputError", "Joint", "JointSeries", "Linearisation", "Load", "LoadSeries", "Method",
     "MethodOptions", "ModeBody", "ModeJoint", "Model", "ModelWarning", "Modes", "Names", "Parts", "Peak", "Place", "Point",
     "PointSeries",

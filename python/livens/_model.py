@@ -14,10 +14,14 @@ from ._editing import Tree
 from ._entries import Entry, Names, Section, default_name, unknown_name
 from ._errors import Diagnostic, SlowWarning, SolveWarning, fault, file_name, make_way, stack_level, user_place
 from ._generated import Body, Drive, Joint, Load, Point, Sensor
+from ._included import Added, as_part, files_of
 from ._other_names import of_model
 from ._places import some_time
 from ._rest import Equilibrium, EquilibriumError, Linearisation, Modes
 from ._tree import KINDS, Table, frozen, toml
+
+if TYPE_CHECKING:
+    from ._values import Matrix, Vector
 
 
 def _holds(name: str, content: bytes) -> bool:
@@ -26,13 +30,6 @@ def _holds(name: str, content: bytes) -> bool:
         return False
     with open(name, "rb") as stream:
         return stream.read(len(content) + 1) == content
-
-
-def _meshes(tree: Any) -> list[str]:
-    """Paths of all meshes of a tree."""
-    items = tree.items() if isinstance(tree, dict) else enumerate(tree) if isinstance(tree, (list, tuple)) else ()
-    return [path for key, item in items
-            for path in ([item] if key == "mesh" and isinstance(item, str) else _meshes(item))]
 
 
 class Model(Tree):
@@ -245,7 +242,7 @@ class Model(Tree):
         if file is not None:
             name = file_name(file)
             if not _holds(name, text.encode()):
-                make_way(name, "scenario", [os.path.join(self._folder, mesh) for mesh in _meshes(self._root)], force)
+                make_way(name, "scenario", [os.path.join(self._folder, mesh) for mesh in files_of(self._root)], force)
                 _core.write_file(name, text.encode())
         return text
 
@@ -263,6 +260,52 @@ class Model(Tree):
             for kind in KINDS for t in self._root.get(kind, [])[:200])
         return (f"<b>{escape(self.title or 'model')}</b><table><tr><th>part</th><th>name</th><th>type</th></tr>"
                 f"{rows}</table>")
+
+    # Models inside.
+
+    def add(self, other: Model, prefix: str = "", *, position: Vector | None = None, rotation: Any = None,
+            directors: Matrix | None = None, quaternion: Vector | None = None,
+            rotation_vector: Vector | None = None) -> Added:
+        """Adds all of another model, as it is now: bodies, points, joints, drives, loads and sensors.
+
+        It is moved and turned as one. What it says of the world's axes and places moves along: points and axes there,
+        forces in world axes, paths of drives, the axes of its sensors. Its ``title``, ``time`` and ``method`` do not
+        count; its gravity must be that of this model, or not stated: gravity does not turn.
+
+        Args:
+            other: What is added; later changes of it are not seen.
+            prefix: Before all of its names: with ``"left "`` its ``knee`` is ``left knee``.
+            position: Where its origin comes to be, m.
+            rotation: A Rotation of SciPy or a matrix; or ``directors``, ``quaternion``, ``rotation_vector``, one of
+                them, as bodies have it.
+            directors: Likewise.
+            quaternion: Likewise, (w, x, y, z).
+            rotation_vector: Likewise, rad.
+
+        Returns:
+            Its names here, by those that it has itself.
+
+        Raises:
+            InputError: ``name-duplicate``, naming the part; ``gravity-differs``; what is wrong with it.
+
+        Example:
+            >>> import livens as lv
+            >>> leg = lv.Model("leg")
+            >>> shin = leg.add_body("shin", lv.box(0.05, 0.05, 0.4, mass=1), position=(0, 0, -0.2))
+            >>> hip = leg.add_revolute("hip", "world", shin, at=(0, 0, 0), axis=(0, 1, 0))
+            >>> m = lv.Model("two legs", gravity=(0, 0, -9.81))
+            >>> left = m.add(leg, "left ", position=(0, 0.1, 0))
+            >>> right = m.add(leg, "right ", position=(0, -0.1, 0), rotation_vector=(0, "20 deg", 0))
+            >>> bar = m.add_rod("bar", left["shin"], right["shin"])
+            >>> sol = lv.solve(m, 1)
+            >>> sol["right shin"].position[0].round(4).tolist()
+            [-0.0684, -0.1, -0.1879]
+        """
+        placement = {"position": position, "rotation": rotation, "directors": directors, "quaternion": quaternion,
+                     "rotation_vector": rotation_vector}
+        table, names = as_part(self, other, prefix, placement)
+        self._include(table)
+        return names
 
     # Python functions.
 

@@ -86,7 +86,7 @@ def arranged(content: Mapping[str, Any], kind: str = "",
 
 def path_of(kind: str, table: Mapping[str, Any], index: int = -1) -> str:
     if kind not in KINDS:
-        return kind
+        return f"{kind}[{index + 1}]" if index >= 0 else kind
     return f"{kind}[{table.get('name') or (default_name(kind, table) if index < 0 else index + 1)}]"
 
 
@@ -118,6 +118,9 @@ def of_table(d: dict[str, Any], kind: str, table: Table) -> Diagnostic:
 
 def diagnostic_of(d: dict[str, Any], root: Mapping[str, Any]) -> Diagnostic:
     """Of the compiled reader, with the place in the user's file."""
+    if d["file"]:   # which the model includes
+        place = Place(d["file"], d["line"], d["column"], d["length"])
+        return Diagnostic(d["severity"], d["code"], d["message"], "include", d["note"], d["help"], place, d["source_line"])
     kind, index, _, _ = d["location"]
     value = root.get(kind)
     if isinstance(value, list) and 0 <= index < len(value) and isinstance(value[index], Table):

@@ -354,8 +354,10 @@ nb::list to_python(const std::vector<Diagnostic>& diagnostics, const std::vector
         item["length"] = d.length;
         item["note"] = d.note;
         item["help"] = d.help;
+        item["file"] = d.file;
+        item["source_line"] = d.source_line;
         const bool is_known =
-            locations != nullptr && d.line > 0 && static_cast<std::size_t>(d.line) < locations->size();
+            locations != nullptr && d.file.empty() && d.line > 0 && static_cast<std::size_t>(d.line) < locations->size();
         const Location at = is_known ? (*locations)[static_cast<std::size_t>(d.line)] : Location{};
         nb::list inner;
         for (const std::string& step : at.inner) inner.append(nb::str(step.c_str(), step.size()));

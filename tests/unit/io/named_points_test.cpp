@@ -3,12 +3,14 @@
 #include <functional>
 
 #include "livens/io/scenario.h"
+#include "unit/io/model_numbers.h"
 #include "unit/io/scenario_text.h"
 
 namespace livens {
 namespace {
 
 using test::expect_error;
+using test::numbers_of;
 using test::read;
 using test::replaced;
 using test::shown;
@@ -45,30 +47,6 @@ position = [0, 0, 1]
 [time]
 end = 1
 )";
-
-/// What is compared of two models: rows and forces at the start.
-std::vector<double> numbers_of(const Model& model)
-{
-    std::vector<double> all;
-    const State state = model.start();
-    for (int r = 0; r < model.n_rows(); ++r) {
-        all.push_back(constraint_value(model.row(r), {0}, state.X));
-        for (int b = 0; b < model.n_bodies(); ++b) {
-            const Matrix34 g = constraint_gradient(model.row(r), {0}, state.X).of(b);
-            all.insert(all.end(), g.a, g.a + 12);
-        }
-    }
-    for (const Load& load : model.loads()) {
-        LoadForces F{};
-        load.forces(load_arguments(load, {0.1}, state.X, state.V), F);
-        for (const Matrix34& of : F) all.insert(all.end(), of.a, of.a + 12);
-    }
-    for (const Sensor& sensor : model.sensors())
-        for (const SensorComponent& c : sensor.components)
-            if (!c.coordinate.coordinate.forms.empty())
-                all.push_back(coordinate_value(c.coordinate.coordinate, state.X));
-    return all;
-}
 
 void expect_same(const std::string& named, const std::string& written)
 {
@@ -138,9 +116,9 @@ TEST(NamedPoints, AreReadByExpressionsAsSensorsAre)
     const std::string load =
         "[[load]]\nname = \"l\"\ntype = \"force\"\nbody = \"hand\"\nexpression = [\"0\", "
         "\"-3*tip.z + tip.vx\", \"0\"]\n";
-    expect_same(load,
-                replaced(replaced(load, "tip.z", "s.z"), "tip.vx", "s.vx") +
-                    "[[sensor]]\nname = \"s\"\ntype = \"point\"\nbody = \"arm\"\npoint = [0.5, 0.05, 0]\n");
+    const std::string sensor =
+        "[[sensor]]\nname = \"s\"\ntype = \"point\"\nbody = \"arm\"\npoint = [0.5, 0.05, 0]\n";
+    expect_same(load + sensor, replaced(replaced(load, "tip.z", "s.z"), "tip.vx", "s.vx") + sensor);
     expect_error(two_bodies + replaced(load, "tip.vx", "tip.ax"), "input-algebraic", "[\"0\", \"-3");
     expect_error(two_bodies + replaced(load, "tip.vx", "hook.x"), "input-unknown", "[\"0\", \"-3");
 }

@@ -501,9 +501,7 @@ TEST(ScenarioCodes, AllAreProvokedByTheseTests)
                                       "io-version",
                                       "joint-empty",
                                       "joint-method",
-                                      "joint-row",
-                                      "joint-scale",
-                                      "joint-second",
+                                      "joint-row", "joint-scale", "joint-second",
                                       "knots-not-finite",
                                       "load-empty",
                                       "load-negative",
@@ -535,6 +533,8 @@ TEST(ScenarioCodes, AllAreProvokedByTheseTests)
                    "start-changed", "drive-turns", "end-position", "end-velocity", "point-outside",
                    "spring-kink", "directors-dependent", "directors-metric", "directors-nearly-orthonormal",
                    "io-directory", "io-not-found", "io-unreadable"});   // here, of meshes, of hostile files
+    others.insert({"point-body", "point-unknown", "gravity-differs", "include-file", "include-ignored",
+                   "include-limit", "include-path", "include-ring", "include-source"});   // their own tests
     others.insert(codes_of_meshes.begin(), codes_of_meshes.end());
     for (const Case& c : cases()) {
         EXPECT_NE(explain(c.code), "") << c.code;

@@ -11,10 +11,7 @@
 
 #include "livens/base/text.h"
 #include "livens/dynamics/start/prepared.h"
-#include "livens/io/scenario/bodies/bodies.h"
-#include "livens/io/scenario/bodies/named_points.h"
-#include "livens/io/scenario/joints/joints.h"
-#include "livens/io/scenario/loads/load_kinds.h"
+#include "livens/io/scenario/assembly.h"
 #include "livens/io/scenario/run/run.h"
 #include "livens/io/scenario/text/tree.h"
 #include "livens/spacetime/solve.h"
@@ -81,26 +78,24 @@ void warn_of_gravity(const Section& top, Findings& findings)
 }
 
 /// Everything behind the parser. The scenario counts if there is no error.
-void build(const Node& root, TreePart part, const MeshSource& meshes, Scenario& scenario, Findings& findings)
+void build(const Node& root, TreePart part, const MeshSource& files, Scenario& scenario, Findings& findings)
 {
     if (!check_format(root, findings)) return;
-    Section top(root, root_table(), "the scenario", findings);
-    if (!check_counts(top, findings)) return;
-    warn_of_gravity(top, findings);
-    // The order is that of references: joints name bodies, the start moves them along joints, drives begin
-    // where the joints stand then, and loads read sensors, except for sensors that read loads.
-    Builder builder(top, meshes, findings);
-    read_bodies(builder);
-    read_points(builder);
-    tell_points(builder, top);
-    read_joints(builder);
-    move_bodies(builder);
-    read_drives(builder);
-    read_sensors(builder, false);
-    read_loads(builder);
-    read_sensors(builder, true);
+    AssemblySources sources(files, findings);
+    const bool has_file = files.folder && !scenario.file.empty();
+    Assembly assembly(root, has_file ? std::filesystem::path(scenario.file).filename().generic_string() : "",
+                      sources);
+    if (!check_counts(assembly.top(), findings)) return;
+    warn_of_gravity(assembly.top(), findings);
+    assembly.read_model();
     if (part == TreePart::model) return;
+    assembly.remember_places();
+    Builder& builder = assembly.builder();
     read_run(builder, scenario);
+    const Section* end = only_section(assembly.top(), "end");
+    // Where [end] is faulty, bodies cannot be judged.
+    if (end == nullptr || end->is_valid())
+        assembly.read_ends(scenario.conditions.at_end != Known::nothing, scenario.conditions.end);
     if (findings.n_errors() > 0) return;
     scenario.conditions.start = builder.model().start();
     scenario.conditions.start.t = start_of(scenario.time);
@@ -115,8 +110,10 @@ void build(const Node& root, TreePart part, const MeshSource& meshes, Scenario& 
     scenario.model = std::move(builder.model());
     scenario.outlines = std::move(builder.outlines());
     scenario.parts = std::move(builder.parts());
-    scenario.meshes = builder.meshes().kept();
-    scenario.mesh_files = builder.meshes().files();
+    scenario.meshes = sources.meshes.kept() + sources.texts.kept();
+    scenario.mesh_files = sources.meshes.files();
+    scenario.mesh_files.insert(scenario.mesh_files.end(), sources.texts.files().begin(),
+                               sources.texts.files().end());
 }
 
 void parse(Scenario& scenario, const MeshSource& meshes, Findings& findings)

@@ -4,6 +4,8 @@
 // they are written they must agree.
 #include "livens/io/scenario/bodies/named_points.h"
 
+#include <utility>
+
 namespace livens::inline io_internal {
 
 namespace {
@@ -31,6 +33,7 @@ const NamedPoint* find_point(Builder& builder, Section& section, const std::stri
     const int index = builder.model().find_point(name);
     if (index >= 0) return &builder.model().points()[static_cast<std::size_t>(index)];
     section.spoil();
+    if (builder.is_excused(name)) return nullptr;
     // One that is stated, but wrong, has been told of.
     for (const Section& point : builder.top().sections("point"))
         if (point.has("name") && point.text("name") == name && builder.findings().n_errors() > 0)
@@ -164,7 +167,9 @@ void read_points(Builder& builder)
 {
     Findings& findings = builder.findings();
     std::unordered_set<std::string> taken;
-    for (const Section& section : builder.top().sections("point")) {
+    for (const NamedPoint& point : builder.model().points())
+        taken.insert(point.name);   // of what is included
+    for (const Section& section : std::as_const(builder).top().sections("point")) {
         const int before = findings.n_errors();
         const std::string name = section.text("name"), path = "point[" + name + "]";
         check_name(section);
@@ -183,10 +188,10 @@ void read_points(Builder& builder)
     }
 }
 
-void tell_points(Builder& builder, Section& top)
+void tell_points(Builder& builder)
 {
     for (const std::string_view kind : {"joint", "drive", "load", "sensor"})
-        for (Section& section : top.sections(kind)) {
+        for (Section& section : builder.top().sections(kind)) {
             if (section.kind() == any_kind) continue;
             tell_two(builder, section);
             if (section.takes("point")) tell_point(builder, section);

@@ -216,12 +216,11 @@ Joint make_on_joint(Builder& builder, const Section& drive, const std::string& n
 Joint make_drive(Builder& builder, const Section& drive, const std::string& name, const BodyReference& first,
                  const BodyReference& second)
 {
-    const Section* time = only_section(builder.top(), "time");
+    const Section* time = only_section(builder.run(), "time");
     const double start = time == nullptr ? 0 : time->number("start");
     const Duration during{start, time == nullptr ? start : time->number("end"),
                           std::max(start, drive.has("from") ? drive.number("from") : start)};
-    std::vector<Matrix34> all;
-    for (const Body& body : builder.model().bodies()) all.push_back(body.X);
+    const std::vector<Matrix34> all = builder.start_configurations();
     const Configurations X(all);
     const std::string type = drive.text("type");
     if (type == "joint") return make_on_joint(builder, drive, name, during, X);
@@ -296,7 +295,7 @@ void check_units(const Section& section, bool is_angle, const std::string& path)
 
 void read_times(const Builder& builder, const Section& section, Joint& joint)
 {
-    const Section* time = only_section(builder.top(), "time");
+    const Section* time = only_section(builder.run(), "time");
     if (section.has("from")) joint.from = section.number("from");
     if (section.has("until")) joint.until = section.number("until");
     if (time == nullptr) return;

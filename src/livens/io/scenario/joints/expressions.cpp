@@ -115,6 +115,8 @@ void add_input(const Builder& builder, Inputs& inputs, const std::string& symbol
         if (sensor.has("name") && sensor.text("name") == reference.name && sensor.takes("load"))
             refuse_input("input-algebraic", path, symbol, text, "a load cannot follow a load",
                          "give an expression of coordinates and their rates");
+    if (builder.is_excused(reference.name))
+        throw InputError({"", path, "", "", "", "", ""});   // told already
     refuse_input("input-unknown", path, symbol, text, "there is nothing of this name",
                  suggest(reference.name, known).empty()
                      ? "give a joint and its coordinate, as in \"pivot.angle\" or \"pivot.angle_rate\""
@@ -196,7 +198,7 @@ std::vector<double> breaks_of(const Builder& builder, const Section& section,
 {
     std::vector<double> breaks;
     if (const Value* given = section.find("breaks")) breaks = given->numbers;
-    const Section* time = only_section(builder.top(), "time");
+    const Section* time = only_section(builder.run(), "time");
     for (const Expression& one : expressions) {
         if (time == nullptr || !time->is_valid()) break;
         // Bends that follow from time alone are known beforehand: elements end there.

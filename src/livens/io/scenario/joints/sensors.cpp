@@ -124,8 +124,7 @@ void read_sensor(Builder& builder, const Section& section, std::unordered_set<st
         if (!first.is_usable) return;
     }
     if (findings.n_errors() > before || !section.is_valid()) return;
-    std::vector<Matrix34> X;
-    for (const Body& body : builder.model().bodies()) X.push_back(body.X);
+    const std::vector<Matrix34> X = builder.start_configurations();
     const auto make = sensor_kinds()[static_cast<std::size_t>(section.kind())].make;
     builder.guard(path, [&] {
         builder.model().add_sensor(make({section, name, first.index, second.index, builder, X}));

@@ -66,11 +66,10 @@ Matrix3 straightened(const Matrix3& directors, const Matrix3& stretch, const std
     const Matrix3 triad = directors * inverse(stretch);
     // Rigidity keeps lengths and angles of directors, so that an end with others could never be reached.
     if (skewness(triad) > 1e-10)
-        throw InputError(
-            {"directors-metric", "body[" + name + "].directors",
-             "skew directors must keep their lengths and angles",
-             "they differ by " + to_text(skewness(triad), 3) + ", relative to those given first", "<= 1e-10",
-             "a rigid body turns, no more", "a quaternion says by how much"});
+        throw InputError({"directors-metric", "body[" + name + "].directors",
+                          "skew directors must keep their lengths and angles",
+                          "they differ by " + to_text(skewness(triad), 3) + ", relative to those given first",
+                          "<= 1e-10", "a rigid body turns, no more", "a quaternion says by how much"});
     return triad;
 }
 
@@ -131,23 +130,21 @@ Table start_table()
              "initial",
              "check: refuse it, naming the joint; project: move positions and velocities to the nearest "
              "that fit, in the metric of the masses."),
-         choice(
-             "joints", {"fixed", "fit"},
-             "fixed: as given; fit: points and axes on the second body of a joint are moved as little as "
-             "closes it where the bodies are placed, at most 1e-6 of the model length, which is reported: "
-             "for dimensions that are rounded."),
+         choice("joints", {"fixed", "fit"},
+                "fixed: as given; fit: points and axes on the second body of a joint are moved as little as "
+                "closes it where the bodies are placed, at most 1e-6 of the model length, which is reported: "
+                "for dimensions that are rounded."),
          Key{"coordinates", types::tables,
              "Where joints stand at the start, and how fast they move: the bodies are led there along the "
              "joints. Independent coordinates that are not listed stay as the bodies are stated; what no "
              "coordinate tells moves by the least, in the metric of the masses."}
-             .holding(
-                 {"[[start.coordinates]]",
-                  "A coordinate of a joint at the start.",
-                  {Key{"joint", types::text, "The joint."}.needed(), coordinate_key(),
-                   Key{"value", types::number, "As the joint counts it. Default: as given.", "rad"}
-                       .or_in("m"),
-                   Key{"rate", types::number, "Default: that of the bodies' velocities.", "rad/s"}.or_in(
-                       "m/s")}})}};
+             .holding({"[[start.coordinates]]",
+                       "A coordinate of a joint at the start.",
+                       {Key{"joint", types::text, "The joint."}.needed(), coordinate_key(),
+                        Key{"value", types::number, "As the joint counts it. Default: as given.", "rad"}
+                            .or_in("m"),
+                        Key{"rate", types::number, "Default: that of the bodies' velocities.", "rad/s"}.or_in(
+                            "m/s")}})}};
 }
 
 Table end_table()
@@ -161,18 +158,19 @@ Table end_table()
         {given("nothing", "Likewise, of `[body.end]`.")}};
 }
 
-void read_boundary(Builder& builder, Conditions& boundary)
+void read_boundary(const Builder& builder, Conditions& boundary)
 {
-    const Section* const start = only_section(builder.top(), "start");
-    const Section* const end = only_section(builder.top(), "end");
+    const Section* const start = only_section(builder.run(), "start");
+    const Section* const end = only_section(builder.run(), "end");
     boundary.at_start = start != nullptr ? start->pick<Known>("given") : Known::state;
     boundary.at_end = end != nullptr ? end->pick<Known>("given") : Known::nothing;
-    if (end != nullptr && !end->is_valid()) return;   // then bodies cannot be judged
-    const bool is_given = boundary.at_end != Known::nothing;
-    if (is_given) {
-        boundary.end.X.resize(builder.model().bodies().size());
-        boundary.end.V.resize(builder.model().bodies().size());
-    }
+    if (boundary.at_end == Known::nothing) return;
+    boundary.end.X.resize(builder.model().bodies().size());
+    boundary.end.V.resize(builder.model().bodies().size());
+}
+
+void read_body_ends(Builder& builder, bool is_given, State& end)
+{
     for (const Section& body : builder.top().sections("body")) {
         if (!is_given) {
             body.refuse({"end"}, "boundary-conditions", "[end] does not say that anything is given there");
@@ -188,7 +186,7 @@ void read_boundary(Builder& builder, Conditions& boundary)
         const Value* name = body.find("name");
         if (name == nullptr || !builder.bodies()[name->text].is_usable) continue;   // told already
         for (const Section& at_end : body.sections("end"))
-            read_pose_of(builder, name->text, at_end, "end", boundary.end);
+            read_pose_of(builder, name->text, at_end, "end", end);
     }
 }
 

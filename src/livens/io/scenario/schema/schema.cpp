@@ -64,9 +64,12 @@ const Table& root_table()
         {Key{"format", types::integer, "Version of this file format."}.needed().within({1, 1}),
          Key{"title", types::text, "One line for people; copied to results."},
          Key{"gravity", types::vector3, "Acceleration of free fall, world axes.", "m/s^2", "[0, 0, 0]"},
-         Key{"body", types::tables, "Bodies, at least one."}.needed().holding(body_table()),
+         Key{"body", types::tables, "Bodies, at least one, here or in what is included."}
+             .needed_without("include")
+             .holding(body_table()),
          Key{"world", types::table, "What is drawn of the world."}.holding(world_table()),
          Key{"point", types::tables, "Places with names."}.holding(point_table()),
+         Key{"include", types::tables, "Other files, as parts of this one."}.holding(include_table()),
          Key{"joint", types::tables, "Joints."}.holding(joint_table()),
          Key{"drive", types::tables, "Coordinates, distances and points that follow time."}.holding(
              drive_table()),
@@ -76,6 +79,16 @@ const Table& root_table()
          Key{"method", types::table, "Discretisation and its tolerances."}.holding(method_table()),
          Key{"start", types::table, "Conditions at the start."}.holding(start_table()),
          Key{"end", types::table, "Conditions at the end of time."}.holding(end_table())}};
+    return table;
+}
+
+const Table& part_table()
+{
+    static const Table table = [] {
+        Table part = root_table();
+        for (Key& key : part.keys) key.required = false;
+        return part;
+    }();
     return table;
 }
 

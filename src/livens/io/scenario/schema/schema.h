@@ -26,7 +26,8 @@ enum class Form : std::uint8_t {
     row,           ///< `count` numbers
     rows,          ///< `count` rows of 3 numbers
     table,
-    tables   ///< array of tables
+    tables,   ///< array of tables
+    model     ///< a table that holds what a file would, read by itself
 };
 
 struct KeyType {
@@ -63,6 +64,7 @@ inline constexpr KeyType rows{"rows of three numbers", Form::rows};
 inline constexpr KeyType number_or_list{"a number or a list of numbers", Form::number, 0, Form::row};
 inline constexpr KeyType number_or_table{"a number or a table", Form::number, 0, Form::table};
 inline constexpr KeyType table{"a table", Form::table};
+inline constexpr KeyType model{"a table", Form::model};
 inline constexpr KeyType tables{"tables", Form::tables};
 inline constexpr KeyType table_or_tables{"a table or a list of tables", Form::table, 0, Form::tables};
 inline constexpr KeyType color{"a string or three numbers", Form::text, 3, Form::row};
@@ -101,16 +103,16 @@ struct Key {
     std::string_view other_unit = {};   ///< SI; what texts may have instead, along angles
     std::shared_ptr<const Table> child = {};   ///< of a table, or tables
     std::string_view formulas = {};            ///< where formulas stand instead; empty: nowhere
-    std::string_view told_by = {};             ///< key of points whose names say it as well; empty: none
+    std::string_view told_by = {};   ///< key of points or files that may say it as well; empty: none
 
     // One property each, so that an entry of a table reads as a sentence.
     Key needed() && { return required = true, std::move(*this); }
     Key or_in(std::string_view u) && { return other_unit = u, std::move(*this); }
     Key or_formulas(std::string_view where) && { return formulas = where, std::move(*this); }
     Key within(const Range& r) && { return range = r, std::move(*this); }
-    Key needed_without(std::string_view points) &&
+    Key needed_without(std::string_view other) &&
     {
-        return required = true, told_by = points, std::move(*this);
+        return required = true, told_by = other, std::move(*this);
     }
     Key holding(Table t) &&;
 };
@@ -148,6 +150,7 @@ Key choice(std::string_view name, const std::string& doc)
 
 inline constexpr int max_elements = 10'000'000;
 inline constexpr int max_bodies = 10000;
+inline constexpr int max_includes = 1000, max_include_depth = 8;
 
 // Made once, for root_table(), which holds all others.
 Table body_table();
@@ -157,10 +160,13 @@ Table drive_table();
 Table load_table();
 Table sensor_table();
 Table point_table();
+Table include_table();
 Table start_table();
 Table end_table();
 Table method_table();
 const Table& root_table();
+/// The same of what is included, where nothing is needed.
+const Table& part_table();
 /// All, from the root on, each before those inside it.
 std::vector<const Table*> schema_tables();
 

@@ -70,6 +70,7 @@ std::vector<std::string_view> types_of(const Key& key, Form form)
         return {"array"};
     case Form::named_texts:
     case Form::table:
+    case Form::model:
         return {"object"};
     case Form::none:
         break;

@@ -83,6 +83,8 @@ private:
             return read_table(node);
         case Form::tables:
             return read_tables(node);
+        case Form::model:
+            return node.kind == NodeKind::table || wrong_type(node);
         case Form::none:
             break;
         }
@@ -251,15 +253,6 @@ int kind_of(const Node& node, const Table& table)
     return kind >= 0 ? kind : index_of(key.choices, in_other_words(given->text(), key.choices, with));
 }
 
-/// Whether names of points stand where they say a body, or two.
-bool is_told_by_points(const Key& key, const Node& node)
-{
-    const Node* given = key.told_by.empty() ? nullptr : node.find(key.told_by);
-    if (given == nullptr) return false;
-    const bool is_list = given->kind == NodeKind::array && !given->items().empty();
-    return (is_list ? given->items().front() : *given).kind == NodeKind::text;
-}
-
 }   // namespace
 
 Section::Section(const Node& node, const Table& table, std::string label, Findings& findings)
@@ -274,7 +267,7 @@ Section::Section(const Node& node, const Table& table, std::string label, Findin
     for (std::size_t i = 0; i < n_known; ++i) {
         const Key& key = *keys[i];
         if (!key.required || node.find(key.name) != nullptr || is_meant(key.name)) continue;
-        if (is_told_by_points(key, node)) continue;
+        if (is_told_otherwise(key, node)) continue;
         const std::string name = "'" + std::string(key.name) + "'";
         findings.error(
             &table == &root_table() ? SourceLocation{1, 1, 1} : node.place, "missing-key",
@@ -362,38 +355,6 @@ std::span<const Section> Section::sections(std::string_view key) const
 {
     const Value* v = value(key);
     return v != nullptr ? std::span<const Section>(v->sections) : std::span<const Section>();
-}
-
-std::span<Section> Section::sections(std::string_view key)
-{
-    for (Value& v : values_)
-        if (v.key->name == key) return v.sections;
-    return {};
-}
-
-void Section::tell(std::string_view key, const std::vector<double>& numbers)
-{
-    for (Value& v : values_)
-        if (v.key->name == key) v.numbers = numbers;
-}
-
-void Section::imply(std::string_view key, const std::vector<std::string>& texts, const Value& told_by)
-{
-    Value implied;
-    implied.key = key_of(key);
-    implied.node = told_by.node;
-    implied.is_valid = true;
-    implied.text = texts.front();
-    if (texts.size() > 1) implied.texts = texts;
-    values_.push_back(std::move(implied));
-}
-
-bool Section::is_implied(std::string_view key) const
-{
-    const Value* v = value(key);
-    if (v == nullptr) return false;
-    return std::ranges::any_of(values_,
-                               [&](const Value& other) { return &other != v && other.node == v->node; });
 }
 
 bool Section::error(std::string_view key, std::string_view code, std::string message, Advice advice) const

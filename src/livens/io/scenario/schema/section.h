@@ -112,6 +112,9 @@ private:
     bool is_valid_ = true;
 };
 
+/// Whether names of points stand where they say a body, or two; or files that may have what is needed.
+bool is_told_otherwise(const Key& key, const Node& node);
+
 /// The table `key` of a section; null if it is not there.
 inline const Section* only_section(const Section& section, std::string_view key)
 {
