@@ -171,6 +171,14 @@ def _magnitude(value: Any, key: dict[str, Any] | None, path: str) -> Any:
     raise fault("unit", f"{value} is not in {wanted}", path)
 
 
+def _key_of_number(key: dict[str, Any] | None, i: int, n: int) -> dict[str, Any] | None:
+    """The key with the unit of number i of n, where each has its own (Key::unit_of)."""
+    units = key.get("units") if key is not None else None
+    if key is None or not units or n * n != len(units) and n != len(units):
+        return key
+    return {**key, "unit": units[i if n == len(units) else i * (n + 1)]}
+
+
 def si(value: Any, key: dict[str, Any] | None) -> Any:
     """A value of the tree as users read it: numbers and arrays in SI units."""
     if isinstance(value, str):
@@ -181,7 +189,7 @@ def si(value: Any, key: dict[str, Any] | None) -> Any:
                 return value   # check() tells
         return value
     if isinstance(value, tuple):
-        items = [si(item, key) for item in value]
+        items = [si(item, _key_of_number(key, i, len(value))) for i, item in enumerate(value)]
         try:
             return Numbers(items)
         except (TypeError, ValueError):

@@ -95,6 +95,9 @@ nb::dict to_python(const Key& key, nb::dict& indices)
     d["doc"] = key.doc;
     d["unit"] = key.unit;
     d["other_unit"] = key.other_unit;
+    nb::list units;
+    for (const std::string_view unit : key.units) units.append(unit);
+    d["units"] = units;
     d["fallback"] = key.fallback;
     d["required"] = key.required;
     d["told_by"] = key.told_by;

@@ -1129,3 +1129,19 @@ livens_mutant(NAME pictures_are_not_kept
               NEW [[for (const auto& [path, mesh] : kept_seen_) text +=]]
               TESTS_OF unit_io
               MUST_FAIL Visual.OfAMeshNeedNotBeClosedAndIsKeptByTheRun)
+
+# Rows of a moved node in the axes that it has now: a step off a solution does not make them smaller.
+livens_mutant(NAME rows_are_not_carried
+              FILE spacetime/nodal/elimination.cpp
+              OLD [[if (!maps_.empty()) to_factorised(x_.data());]]
+              NEW [[;]]
+              TESTS_OF unit_spacetime
+              MUST_FAIL Lobatto/TangentOf.ShortStepsShrinkTheNextIncrement/*)
+
+# One pull, and bases from before it: multipliers leave a part of themselves in the rows.
+livens_mutant(NAME bases_from_before_the_pull
+              FILE spacetime/nodal/system.cpp
+              OLD [[if (!are_placed && !(correction_ < before / 2)) return false;]]
+              NEW [[if (!are_placed) return true;]]
+              TESTS_OF convergence
+              MUST_FAIL LobattoEnds.EveryRateNearbyFindsTheMotion)

@@ -46,7 +46,8 @@ def cpu_seconds(pid):
 @unittest.skipUnless(os.path.exists("/proc/self/stat"), "needs /proc")
 class Stops(ProgramTest):
     def whole_run(self, scenario):
-        """CPU seconds of a run that nobody stops: signals come at parts of it, as fast as the machine and the program are."""
+        """CPU seconds of a run that nobody stops: signals come at parts of it, as fast as the machine and the program are.
+        Beside other processes the same run takes up to twice as many, so that parts stay well below a half."""
         program = subprocess.Popen([PROGRAM, "solve", scenario, "-q", "-o", "run.nc"], cwd=self.folder)
         _, status, used = os.wait4(program.pid, 0)
         program.returncode = os.waitstatus_to_exitcode(status)
@@ -79,7 +80,7 @@ class Stops(ProgramTest):
     def test_long_runs_stop_at_once(self):
         self.write("run.toml", FREE_BODY % (40000, 400000, "false"))
         whole = self.whole_run("run.toml")
-        for part in (0.1, 0.3, 0.5):
+        for part in (0.05, 0.15, 0.3):
             self.assertLess(self.after_signal("run.toml", part * whole), 2)
             self.expect(0, "info", "run.nc")
 
@@ -92,7 +93,7 @@ class Stops(ProgramTest):
                      f'between = ["{f"b{i - 1}" if i > 0 else "world"}", "b{i}"]\n')
         self.write("run.toml", text + "[time]\nend = 0.6\nelements = 6000\noutput = 0.01\n")
         whole = self.whole_run("run.toml")
-        for part in (0.2, 0.5):
+        for part in (0.1, 0.3):
             self.assertLess(self.after_signal("run.toml", part * whole), 2)
             self.expect(0, "info", "run.nc")
 

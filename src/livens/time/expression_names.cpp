@@ -25,7 +25,7 @@ constexpr std::array functions{
 constexpr std::array<std::string_view, 6> composed{"asin", "acos", "atan", "sinh", "cosh", "step"};
 
 // Names that other programs have for the same: a refusal proposes the one that is known here.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 21> other_names{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 32> other_names{
     {{"time", "t"},
      {"TIME", "t"},
      {"T", "t"},
@@ -43,6 +43,17 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 21> other_na
      {"clip", "min(max(x, a), b)"},
      {"clamp", "min(max(x, a), b)"},
      {"heaviside", "step"},
+     {"ceil", "-floor(-x)"},
+     {"ceiling", "-floor(-x)"},
+     {"round", "floor(x + 0.5)"},
+     {"mod", "x - y*floor(x/y)"},
+     {"fmod", "x - y*floor(x/y)"},
+     {"hypot", "sqrt(x^2 + y^2)"},
+     {"log10", "log(x)/log(10)"},
+     {"log2", "log(x)/log(2)"},
+     {"cbrt", "sign(x)*abs(x)^(1/3)"},
+     {"tau", "2*pi"},
+     {"STEP5", "step"},
      {"maximum", "max"},
      {"minimum", "min"},
      {"IF", "step(x)*a + (1 - step(x))*b"},
@@ -56,9 +67,12 @@ constexpr std::string_view no_prefix = "functions have no prefix, as in sin(t)";
 constexpr std::string_view no_branch = "step(x)*a + (1 - step(x))*b is a where x > 0, else b";
 constexpr std::string_view no_power = "a power is written x^2";
 constexpr std::string_view in_radians = "angles are in rad: 30 deg is 30*pi/180";
+constexpr std::string_view no_unit = "angles are in rad, so that the unit is left out";
 constexpr std::string_view an_input =
     "coordinates and their rates are read by name, as in shaft.angle and shaft.angle_rate";
-constexpr std::array<Instead, 15> instead{{
+constexpr std::string_view no_comparison = "there are no comparisons: step(t - 1) is 1 where t > 1 and 0 "
+                                           "before, step(x)*a + (1 - step(x))*b chooses";
+constexpr std::array<Instead, 17> instead{{
     {"np", no_prefix},
     {"numpy", no_prefix},
     {"math", no_prefix},
@@ -67,6 +81,8 @@ constexpr std::array<Instead, 15> instead{{
     {"power", no_power},
     {"e", "exp(1) is e, exp(x) a power of it"},
     {"deg", in_radians},
+    {"degrees", in_radians},
+    {"rad", no_unit},
     {"radians", in_radians},
     {"AX", an_input},
     {"AZ", an_input},
@@ -115,6 +131,22 @@ std::string known_names(std::string_view word, const std::vector<std::string>& s
     for (const std::string_view name : composed) known += ", " + std::string(name);
     for (const std::string& symbol : symbols) known += ", " + symbol;
     return known;
+}
+
+std::string_view habit_at(std::string_view text, std::size_t at)
+{
+    if (at >= text.size()) return {};
+    const char c = text[at], before = at > 0 ? text[at - 1] : ' ';
+    if (c == '*' && before == '*') return no_power;
+    if (c == '>' || c == '<' || c == '=' || c == '?' || c == '!' || c == '&' || c == '|')
+        return no_comparison;
+    if (c == '%') return "the rest of x/y is x - y*floor(x/y)";
+    if (c == ',') return "min and max take two arguments: min(a, min(b, c)); decimals have a point: 1.5";
+    if (c == '[' || c == '{') return "parentheses are round";
+    if (c != '(' && c != '\'' && !begins_name(c) && !is_digit(c)) return {};
+    const std::string_view word = text.substr(at, name_at(text, at).end - at);
+    if (word == "deg" || word == "degrees") return in_radians;
+    return word == "rad" ? no_unit : "a product is written with *, as in 2*t";
 }
 
 Name name_at(std::string_view text, std::size_t at)

@@ -50,11 +50,9 @@ private:
     [[noreturn]] void refuse_here(const std::string& expected) const
     {
         const std::string column = " at column " + std::to_string(at_ + 1);
-        // x**2 is what many languages write; the refusal says how a power is written here.
-        const bool is_power = at_ > 0 && at_ < text_.size() && text_[at_] == '*' && text_[at_ - 1] == '*';
         refuse("expression-syntax", "an expression cannot be read",
                (at_ < text_.size() ? "'" + character() + "'" : "it ends") + column, expected,
-               is_power ? "a power is written x^2" : "");
+               std::string(habit_at(text_, at_)));
     }
 
     /// UTF-8: with what continues it.

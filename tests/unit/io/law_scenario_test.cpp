@@ -53,6 +53,49 @@ TEST(LawScenario, AnExpressionWithoutInputsIsAFunctionOfTime)
     EXPECT_EQ(load.readings[0].value(at), 0);
 }
 
+TEST(LawScenario, DrivesNeedValuesOnlyWhileTheyAct)
+{
+    for (const bool acts : {false, true}) {
+        const ScenarioResult result = test::read(
+            with("[[drive]]\nname = \"d\"\ntype = \"joint\"\njoint = \"j\"\nexpression = \"0*log(0.75 - "
+                 "t)\"\n" +
+                 std::string(acts ? "" : "until = 0.5\n")));
+        EXPECT_EQ(result.scenario.has_value(), !acts) << test::shown(result);
+        if (acts) EXPECT_NE(test::shown(result).find("t = 0.75"), std::string::npos) << test::shown(result);
+    }
+}
+
+/// One number each, with units of their own, and a whole matrix.
+TEST(LawScenario, BushingsTakeUnits)
+{
+    const std::string at = "at = [0, 0, 0]\n";
+    const std::string with_units = "stiffness = [\"1 kN/mm\", 2, 3, \"1 N m/deg\", 5, 6]\ndamping = [\"2 kN "
+                                   "s/m\", 0, 0, \"3 N mm s/rad\", 0, "
+                                   "0]\npreload = [\"1 kN\", 0, 0, \"2 kN mm\", 0, 0]";
+    const std::string plain = "stiffness = [1e6, 2, 3, 57.29577951308232, 5, 6]\ndamping = [2000, 0, 0, "
+                              "0.003, 0, 0]\npreload = [1000, 0, 0, "
+                              "2, 0, 0]";
+    const ScenarioResult one = test::read(bushing(at + with_units)), two = test::read(bushing(at + plain));
+    ASSERT_TRUE(one.scenario && two.scenario) << test::shown(one) << test::shown(two);
+    for (const LoadReading& r : one.scenario->model.loads()[0].readings) EXPECT_NE(r.name, "");
+    EXPECT_EQ(test::shown(one), test::shown(two));
+    std::string matrix = "stiffness = [";
+    for (int i = 0; i < 36; ++i) {
+        const bool is_torque = i >= 18, is_angle = i % 6 >= 3;
+        const std::string unit = is_torque ? (is_angle ? "N m/rad" : "N") : (is_angle ? "N/rad" : "N/m");
+        matrix += std::string(i == 0 ? "" : ", ") + "\"" + (i % 7 == 0 ? "1 " : "0 ") + unit + "\"";
+    }
+    EXPECT_TRUE(test::read(bushing(at + matrix + "]")).scenario.has_value());
+    for (const std::string& wrong :
+         {std::string("stiffness = [1, 1, 1, \"1 N/m\", 1, 1]"),
+          std::string("stiffness = [\"1 N m/rad\", 1, 1, 1, 1, 1]"),
+          std::string("stiffness = [1, 1, 1, 1, 1, 1]\npreload = [0, 0, 0, \"1 N\", 0, 0]")}) {
+        const ScenarioResult refused = test::read(bushing(at + wrong));
+        EXPECT_NE(test::shown(refused).find("is not a unit of this quantity"), std::string::npos)
+            << test::shown(refused);
+    }
+}
+
 TEST(LawScenario, InputsAreReadFromJointsAndSensors)
 {
     const ScenarioResult result = test::read(actuator("expression = \"a + 10*b + 100*c\"\ninputs = { a = "
@@ -132,7 +175,14 @@ namespace {
 
 std::vector<test::Case> cases_of_driven_laws()
 {
+    const auto by = [](const std::string& expression, const std::string& lines = "") {
+        return with("[[drive]]\nname = \"d\"\ntype = \"joint\"\njoint = \"j\"\nexpression = \"" + expression +
+                    "\"\n" + lines + "[start]\ninitial = \"project\"");
+    };
     return {
+        {"expression-value", by("acos(t - 1.5)"), "\"acos"},
+        {"expression-value", by("sqrt(t)"), "\"sqrt"},   // it begins with an infinite rate
+        {"expression-value", by("log(0.75 - t)"), "\"log"},
         {"drive-jumps",
          with("[[drive]]\nname = \"d\"\ntype = \"joint\"\njoint = \"j\"\nexpression = \"abs(t - 0.5137) - "
               "0.5137\"\n[start]\ninitial = \"project\""),

@@ -474,6 +474,18 @@ TEST(ScenarioCodes, WarningsLeaveTheScenarioAlone)
     }
 }
 
+TEST(Scenario, GravityOfOtherUnitsIsNoticedFromTheEquatorToThePoles)
+{
+    for (const char* weight : {"-9780", "-9800", "-9832", "-981", "-386.4", "-32.2"})
+        EXPECT_NE(find(read(replaced(valid_scenario, "-9.81]", std::string(weight) + "]")), "gravity-unit"),
+                  nullptr)
+            << weight;
+    for (const char* weight : {"-9.81", "-1.62", "-24.8", "-274", "-9700", "\"-9810 mm/s^2\"", "\"-1 g0\""})
+        EXPECT_EQ(find(read(replaced(valid_scenario, "-9.81]", std::string(weight) + "]")), "gravity-unit"),
+                  nullptr)
+            << weight;
+}
+
 /// Of mesh_scenario_test.cpp, but for the last lines.
 const std::set<std::string_view> codes_of_meshes{
     "density-field",      "mesh-file",         "mesh-format",       "mesh-inverted",
@@ -485,49 +497,19 @@ const std::set<std::string_view> codes_of_meshes{
 TEST(ScenarioCodes, AllAreProvokedByTheseTests)
 {
     // The reader refuses these before the core sees them, or only calls of the library lead to them.
-    std::set<std::string_view> others{"accuracy-out-of-range",
-                                      "backend-missing",   // depends on the build; mixed_scenario_test.cpp
-                                      "basis-nodes",
-                                      "degree",
-                                      "drives-method",
-                                      "degree-out-of-range",
-                                      "gauss-points-out-of-range",
-                                      "gear-ratio",
-                                      "internal",
-                                      "io-damaged",   // of result files, with these: result_files_test.cpp
-                                      "io-foreign",
-                                      "io-not-a-file",
-                                      "io-truncated",
-                                      "io-version",
-                                      "joint-empty",
-                                      "joint-method",
-                                      "joint-row", "joint-scale", "joint-second",
-                                      "knots-not-finite",
-                                      "load-empty",
-                                      "load-negative",
-                                      "load-without-tangent",
-                                      "mass-not-positive",
-                                      "max-iterations-out-of-range",
-                                      "no-elements",
-                                      "no-such-port",
-                                      "not-at-rest", "quantity-unbounded", "quantity-unknown",
-                                      "not-in-equilibrium",
-                                      "point-with-directors",
-                                      "python-function",   // python/tests
-                                      "quadrature-points",
-                                      "quaternion-zero",
-                                      "sample-exact-method",
-                                      "samples",
-                                      "size-not-positive",
-                                      "sensor-empty",
-                                      "attraction-mu",
-                                      "start-size",
-                                      "time-elements",
-                                      "time-out-of-range",
-                                      "time-outside",
-                                      "time-start",
-                                      "tolerance-out-of-range",
-                                      "window",
+    std::set<std::string_view> others{"accuracy-out-of-range", "backend-missing", "basis-nodes", "degree",
+                                      "drives-method", "degree-out-of-range", "gauss-points-out-of-range",
+                                      "gear-ratio", "internal", "io-damaged", "io-foreign", "io-not-a-file",
+                                      "io-truncated", "io-version", "joint-empty", "joint-method",
+                                      "joint-row", "joint-scale", "joint-second", "knots-not-finite",
+                                      "load-empty", "load-negative", "load-without-tangent",
+                                      "mass-not-positive", "max-iterations-out-of-range", "no-elements",
+                                      "no-such-port", "not-at-rest", "quantity-unbounded",
+                                      "quantity-unknown", "not-in-equilibrium", "point-with-directors",
+                                      "python-function", "quadrature-points", "quaternion-zero",
+                                      "sample-exact-method", "samples", "size-not-positive", "sensor-empty",
+                                      "attraction-mu", "start-size", "time-elements", "time-out-of-range",
+                                      "time-outside", "time-start", "tolerance-out-of-range", "window",
                                       "window-out-of-range"};
     others.insert({"gravity-unit", "format-first", "load-never-acts", "joint-fitted", "expression-kink",
                    "start-changed", "drive-turns", "end-position", "end-velocity", "point-outside",

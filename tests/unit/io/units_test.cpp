@@ -85,6 +85,53 @@ TEST(Units, ParenthesesAndInverses)
     EXPECT_EQ(si("  -2 t", "kg"), -2000);
 }
 
+TEST(Units, TypesetSignsAreReadLikeThoseOfAKeyboard)
+{
+    EXPECT_EQ(si("7850 kg/m\u00b3", "kg/m^3"), 7850);
+    EXPECT_EQ(si("9.81 m\u00b7s\u207b\u00b2", "m/s^2"), 9.81);
+    EXPECT_EQ(si("7 N\u22c5m", "N m"), 7);
+    EXPECT_EQ(si("7\u00a0N\u2009m", "N m"), 7);
+    EXPECT_EQ(si("\u22125\u202fmm", "m"), -0.005);
+    EXPECT_EQ(si("2 \u03bcm", "m"), 2e-6);
+    EXPECT_EQ(si("2 kg\u00d7m\u00b2", "kg m^2"), 2);
+    EXPECT_EQ(si("30\u00ba", "rad"), si("30 deg", "rad"));
+    EXPECT_EQ(si("3 m\u2044s", "m/s"), 3);
+    for (const char* text : {"1 m\u00b2\u00b2\u00b2", "1 \u00b2", "1 m\u207b", "1 \u00b0C", "1\u00b3 m",
+                             "1 m\u00b2\u207b", "1 m\u207b\u00b9\u00b2"})
+        EXPECT_NE(parse_quantity(text, "m").error, "") << text;
+}
+
+TEST(Units, OfStandardGravityAndOfSeldomPrefixes)
+{
+    EXPECT_EQ(si("1 g0", "m/s^2"), 9.80665);
+    EXPECT_EQ(si("1000 mil", "m"), 0.0254);
+    EXPECT_EQ(si("3 hPa", "Pa"), 300);
+    EXPECT_EQ(si("3 daN", "N"), 30);
+    EXPECT_EQ(si("2 h", "s"), 7200) << "an hour, no prefix";
+}
+
+TEST(Units, MistakenQuantitiesAreNamed)
+{
+    struct Mistake {
+        std::string text, wanted, hint;
+    };
+    for (const Mistake& m : {Mistake{"5 kg", "N", "kgf or lbf"},
+                             {"5 lbf", "kg", "a mass is in kg or lb"},
+                             {"60 Hz", "rad/s", "rpm"},
+                             {"60 rpm", "Hz", "60 rpm are 1 Hz"},
+                             {"5 N", "N m", "torque"},
+                             {"5 N/m", "N m/rad", "N m/rad or N m/deg"},
+                             {"5 deg", "rad/s", "deg/s"},
+                             {"5 N m", "N m/rad", "each radian"},
+                             {"1 kg/m3", "kg/m^3", "units are"}}) {
+        const Quantity q = parse_quantity(m.text, m.wanted);
+        EXPECT_NE(q.error, "") << m.text;
+        EXPECT_NE(q.help.find(m.hint), std::string::npos) << m.text << ": " << q.help;
+    }
+    EXPECT_NE(parse_quantity("1 kg/m3", "kg/m^3").error.find("write m^3"), std::string::npos);
+    EXPECT_NE(parse_quantity("1 kg*m**2", "kg m^2").error.find("m^2"), std::string::npos);
+}
+
 TEST(Units, AmbiguousAndUnknownOnesAreRefused)
 {
     for (const char* text :

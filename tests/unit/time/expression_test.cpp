@@ -122,6 +122,36 @@ TEST(Expression, RefusesWhatIsNone)
     EXPECT_EQ(code_of("1", std::vector<std::string>(65, "a")), "expression-size");
 }
 
+TEST(Expression, AnswersHabitsOfOtherLanguages)
+{
+    struct Habit {
+        std::string text, answer;
+    };
+    for (const Habit& h : {Habit{"2t", "2*t"},
+                           {"2(t + 1)", "2*t"},
+                           {"(t)(t)", "2*t"},
+                           {"t > 1", "step(t - 1)"},
+                           {"t == 1", "step(t - 1)"},
+                           {"t > 1 ? 2 : 3", "step(t - 1)"},
+                           {"t % 2", "x - y*floor(x/y)"},
+                           {"mod(t, 2)", "x - y*floor(x/y)"},
+                           {"ceil(t)", "-floor(-x)"},
+                           {"sin(30 deg)", "pi/180"},
+                           {"2 rad", "left out"},
+                           {"min(t, 1, 2)", "min(a, min(b, c))"},
+                           {"1,5*t", "point"},
+                           {"STEP5(t, 0, 0, 1, 1)", "'step'"},
+                           {"t**2", "x^2"},
+                           {"[t]", ""},
+                           {"hypot(t, 1)", "sqrt"}})
+        try {
+            Expression(h.text, {});
+            ADD_FAILURE() << h.text;
+        } catch (const InputError& e) {
+            EXPECT_NE(e.complaint().help.find(h.answer), std::string::npos) << h.text << ": " << e.what();
+        }
+}
+
 TEST(Expression, HasFunctionsThatAreMadeOfOthers)
 {
     for (const double x : {-1.0, -0.999999999, -0.3, 0.0, 1e-9, 0.7, 1.0}) {

@@ -65,7 +65,8 @@ void warn_of_gravity(const Section& top, Findings& findings)
     if (gravity == nullptr || gravity->has_unit) return;
     const double size = norm(top.vector("gravity"));
     for (const Habit& habit : habits) {
-        if (std::abs(size - habit.weight) > 2e-3 * habit.weight) continue;
+        // From the equator to the poles, and as people round.
+        if (std::abs(size - habit.weight) > 4e-3 * habit.weight) continue;
         const std::string unit(habit.unit);
         findings.warning(gravity->node->place, "gravity-unit",
                          "'gravity' is " + to_text(size) + " m/s^2, the Earth's in " + unit + ": are " +

@@ -12,6 +12,7 @@
 #include "livens/dynamics/instant/instant.h"
 #include "livens/solvers/dense.h"
 #include "livens/solvers/patience.h"
+#include "livens/spacetime/nodal/carried.h"
 #include "livens/spacetime/nodal/nodes.h"
 
 namespace livens::inline spacetime_internal {
@@ -55,6 +56,8 @@ public:
         for (int A = 0; A < layout.n_nodes(); ++A)
             if (layout.is_active(A) || layout.is_unknown(A))
                 nodes.basis(A).q.null_space(z_.data() + place(A));
+        maps_.clear();
+        if (!layout.is_march()) maps_.assign(nodes.maps(0), nodes.maps(layout.n_nodes()));
     }
     void open(int e, int A, int B) override
     {
@@ -84,6 +87,12 @@ private:
         return z_.data() + place(A) + tables_.bodies[body].first * f_;
     }
     void multiply_pair(int r, double* u, double* w) const;
+    const double* maps_at(int A) const
+    {
+        return maps_.data() + 12 * tables_.bodies.size() * static_cast<std::size_t>(A);
+    }
+    void to_factorised(double* x) const;
+    void to_current(const double* x, int A, double* y) const;
 
     const ModelTables& tables_;
     const WindowLayout* layout_ = nullptr;   // current
@@ -96,6 +105,7 @@ private:
     std::vector<double> z_;         // null space of every node, n x f
     std::vector<double> product_;   // block of the tangent times the null space at B, n x f
     std::vector<double> x_;         // reduced unknowns
+    std::vector<double> maps_;      // of the nodes where the tangent was formed; empty: bases may turn
 };
 
 void NullSpaces::mass(int body, double factor, const double* H)
@@ -170,17 +180,55 @@ void NullSpaces::close()
     }
 }
 
+/// Reduced rows at the nodes as they stand now, to those that the factors belong to. Where a node has moved,
+/// its null space and its axes have turned: rows in turned coordinates would not fall with a step, however
+/// short, off a solution.
+void NullSpaces::to_factorised(double* x) const
+{
+    const int n = tables_.n_twists, k = tables_.rank;
+    std::vector<double> row(static_cast<std::size_t>(n));
+    for (int A = 0; A < structure_.n_nodes(); ++A) {
+        if (!layout_->is_active(A)) continue;
+        std::fill_n(row.begin(), k, 0.0);
+        std::copy_n(x, f_, row.begin() + k);
+        nodes_->basis(A).q.apply(row.data());
+        carry_rows(tables_.bodies, nodes_->maps(A), maps_at(A), row.data());
+        std::fill_n(x, f_, 0.0);
+        const double* z = z_.data() + place(A);
+        for (int i = 0; i < n; ++i)
+            for (int j = 0; j < f_; ++j) x[j] += z[i * f_ + j] * row[i];
+        x += f_;
+    }
+}
+
+/// A twist of node A in the null space that the factors belong to, in the axes of where it stands now. It is
+/// not turned into the null space there: increments are compared with those before.
+void NullSpaces::to_current(const double* x, int A, double* y) const
+{
+    const double* z = z_.data() + place(A);
+    for (int i = 0; i < tables_.n_twists; ++i) {
+        y[i] = 0;
+        for (int j = 0; j < f_; ++j) y[i] += z[i * f_ + j] * x[j];
+    }
+    carry_twists(tables_.bodies, maps_at(A), nodes_->maps(A), y);
+}
+
 void NullSpaces::solve(std::span<const double> rows, const double*, double* y)
 {
     const int n = tables_.n_twists, k = tables_.rank;
     x_.assign(rows.begin(), rows.end());
+    if (!maps_.empty()) to_factorised(x_.data());
     if (f_ > 0) solver_->solve(x_);
     const double* x = x_.data();
     for (int A = 0; A < structure_.n_nodes(); ++A) {
         if (!layout_->is_unknown(A)) continue;
-        std::fill(y, y + k, 0.0);
-        std::copy(x, x + f_, y + k);
-        nodes_->basis(A).q.apply(y);
+        if (!maps_.empty()) {
+            to_current(x, A, y);
+        } else {
+            std::fill(y, y + k, 0.0);
+            std::copy(x, x + f_, y + k);
+            nodes_->basis(A).q.apply(y);
+        }
         x += f_;
         y += n;
     }

@@ -53,13 +53,16 @@ bool NodalSystem::settle()
 {
     if (elimination_ == nullptr) choose_elimination();
     in_use_ = pending_ = false;
+    correction_ = 0;
+    if (!nodes_.constrain(layout_, false)) return false;
+    if (!layout_.is_march()) return pull(true);
     for (int round = 0; round < 6; ++round) {
-        if (!nodes_.constrain(layout_, false)) return false;
         pending_ = nodes_.is_near() && elimination_->takes_constraints();
         correction_ = 0;
         if (pending_) break;
         correction_ = nodes_.correct(layout_);
         if (correction_ < 1e-3) break;   // lengths and radians: bases turn by no more
+        if (!nodes_.constrain(layout_, false)) return false;
     }
     return true;
 }
@@ -104,8 +107,32 @@ bool NodalSystem::move(std::span<const double> dx, double damping)
     }
     pending_ = false;
     if (!nodes_.constrain(layout_, in_use_)) return false;
-    correction_ = damping > 0 ? nodes_.correct(layout_) : 0;   // the way back changes nothing
+    if (damping == 0)
+        correction_ = 0;   // the way back changes nothing
+    else if (layout_.is_march())
+        correction_ = nodes_.correct(layout_);
+    else if (!pull(false))
+        return false;
     measure();
+    return true;
+}
+
+/// Of a whole window nodes may move far: they are pulled until their bases fit. Else the next step would
+/// begin elsewhere than this one ended, and multipliers, which must belong to the places, would leave a part
+/// of themselves in the rows. Placed nodes may come from anywhere; moved ones are as good as their step:
+/// false where a pull does not halve what is left.
+bool NodalSystem::pull(bool are_placed)
+{
+    constexpr double fits = 1e-9;   // lengths and radians
+    double before = std::numeric_limits<double>::infinity();
+    for (int round = 0; round < 20; ++round) {
+        correction_ = nodes_.correct(layout_);
+        if (bases_fit()) return true;
+        if (!are_placed && !(correction_ < before / 2)) return false;
+        if (!nodes_.constrain(layout_, in_use_)) return false;
+        if (correction_ < fits) return true;
+        before = correction_;
+    }
     return true;
 }
 

@@ -61,6 +61,7 @@ public:
 private:
     void choose_elimination();
     std::unique_ptr<Elimination> on_null_spaces() const;
+    bool pull(bool are_placed);
     void measure();
 
     const ModelTables& tables_;

@@ -23,6 +23,10 @@ bool is_composed(std::string_view name);
 /// What was perhaps meant, and what is known.
 std::string known_names(std::string_view word, const std::vector<std::string>& symbols);
 
+/// What a text that cannot be read from there on has of other languages, and how it is written here; empty:
+/// nothing that is known.
+std::string_view habit_at(std::string_view text, std::size_t at);
+
 bool is_digit(char c);
 bool begins_name(char c);
 /// A name with all its points, and where it ends in the text.

@@ -127,11 +127,32 @@ std::string drive_name(const Section& drive)
 struct Duration {
     double start, end;
     double begins;   ///< the drive, at the start or later
+    double ends;     ///< the drive, at the end or earlier
 };
 
-/// With its kinks as breaks, so that the model refuses what a drive cannot follow.
-TimeFunction by_formula(const Expression& expression, const Duration& during)
+/// A drive is held in positions and in velocities, so that both are numbers while it acts.
+void check_values(const Expression& expression, const Duration& during, const std::string& path)
 {
+    constexpr int n_looks = 1000;   // what passes between them is no number, and the solution says so
+    for (int i = 0; i <= n_looks; ++i) {
+        const double t = during.begins + (during.ends - during.begins) * i / n_looks;
+        const TimeValue at = expression.by_time(t);
+        if (std::isfinite(at.value) && std::isfinite(at.first)) continue;
+        const std::string why = expression.without_value(t, {});
+        const bool is_rate = std::isfinite(at.value);
+        throw InputError(
+            {"expression-value", path + ".expression",
+             std::string("'expression' of a drive has no ") + (is_rate ? "finite rate" : "value"),
+             expression.text() + " at t = " + to_text(t, 6) + " s", "", why.empty() || is_rate ? "" : why,
+             is_rate ? "joints start and stop with finite velocities: \"t^2\", 'step'"
+                     : "set 'from' and 'until' where it has one, or take another formula"});
+    }
+}
+
+/// With its kinks as breaks, so that the model refuses what a drive cannot follow.
+TimeFunction by_formula(const Expression& expression, const Duration& during, const std::string& path)
+{
+    check_values(expression, during, path);
     std::vector<double> events;
     if (during.end > during.start) events = expression.events(during.start, during.end);
     return expression_of_time(expression, events);
@@ -156,9 +177,9 @@ TimeFunction read_law(const Section& drive, std::size_t c, std::size_t n, double
     if (drive.has("rate")) return ramp(now, component(drive, "rate", c), during.begins);
     if (const Section* one = only_section(drive, "harmonic"))
         return harmonic(component(*one, "amplitude", c), one->number("frequency"), one->number("phase"));
+    const std::string path = "drive[" + drive_name(drive) + "]";
     if (drive.has("expression")) check_names_of_time(drive);
-    if (drive.has("expression"))
-        return by_formula(read_expressions(drive, {}, "drive[" + drive_name(drive) + "]")[c], during);
+    if (drive.has("expression")) return by_formula(read_expressions(drive, {}, path)[c], during, path);
     if (const Section* one = only_section(drive, "step")) {
         const TimeFunction step =
             smooth_step(one->number("from"), one->number("until"), component(*one, "rise", c));
@@ -217,9 +238,10 @@ Joint make_drive(Builder& builder, const Section& drive, const std::string& name
                  const BodyReference& second)
 {
     const Section* time = only_section(builder.run(), "time");
-    const double start = time == nullptr ? 0 : time->number("start");
-    const Duration during{start, time == nullptr ? start : time->number("end"),
-                          std::max(start, drive.has("from") ? drive.number("from") : start)};
+    const double start = time == nullptr ? 0 : time->number("start"),
+                 end = time == nullptr ? start : time->number("end");
+    const Duration during{start, end, std::max(start, drive.has("from") ? drive.number("from") : start),
+                          std::min(end, drive.has("until") ? drive.number("until") : end)};
     const std::vector<Matrix34> all = builder.start_configurations();
     const Configurations X(all);
     const std::string type = drive.text("type");
@@ -230,7 +252,6 @@ Joint make_drive(Builder& builder, const Section& drive, const std::string& name
                       b = builder.in_axes(second.index, drive.row("points", 1));
         const double now = norm(X[second.index] * point(b) - X[first.index] * point(a));
         const TimeFunction length = read_law(drive, 0, 1, now, during);
-        const double end = during.end;
         constexpr int n_looks = 1000;   // what passes between them is no number, see driven_distance()
         for (int i = 0; i <= n_looks; ++i) {
             const double t = start + (end - start) * i / n_looks, l = length({t}).value;

@@ -155,11 +155,25 @@ std::vector<Key> keys_of_pressure()
         expression_keys(false), interval_keys());
 }
 
+/// Of forces and torques by displacements and rotations, as the matrix of a bushing has them.
+Words units_of_bushing(std::string_view force_by_length, std::string_view force_by_angle,
+                       std::string_view torque_by_length, std::string_view torque_by_angle)
+{
+    Words all;
+    for (int i = 0; i < 36; ++i) {
+        const bool is_torque = i >= 18, is_angle = i % 6 >= 3;
+        all.push_back(is_torque ? (is_angle ? torque_by_angle : torque_by_length)
+                                : (is_angle ? force_by_angle : force_by_length));
+    }
+    return all;
+}
+
 std::vector<Key> keys_of_bushing()
 {
     const std::string of_u =
         "of u, three displacements in m and a rotation vector in rad: six numbers, or 36 "
-        "of a symmetric matrix row by row, in SI units. Up to 175 degrees: at half a "
+        "of a symmetric matrix row by row, in N/m and N m/rad, or strings with units of their own. Up to 175 "
+        "degrees: at half a "
         "turn the vector changes its sign, and a motion that gets there is suspect.";
     return {
         Key{"between", types::names, "The two bodies it connects; one may be `\"world\"`."}.needed(),
@@ -167,12 +181,16 @@ std::vector<Key> keys_of_bushing()
         frames_key("frame of a bushing", "Instead of `at`: one frame for each body, in its coordinates; "
                                          "displacements and rotations are those of the second in axes "
                                          "of the first."),
-        Key{"stiffness", types::list, "Force and torque " + of_u}.needed(),
+        Key{"stiffness", types::list, "Force and torque " + of_u}
+            .each_in(units_of_bushing("N/m", "N/rad", "N m/m", "N m/rad"))
+            .needed(),
         Key{"damping", types::list,
             "Likewise of the rate of u, whose last three are the rates of the rotation vector: the relative "
             "angular velocity for small turns and for turns about one axis, not for large ones about "
-            "several."},
-        Key{"preload", types::list, "Three forces in N, three torques in N m, against u wherever it is."}};
+            "several."}
+            .each_in(units_of_bushing("N s/m", "N s/rad", "N m s/m", "N m s/rad")),
+        Key{"preload", types::list, "Three forces in N, three torques in N m, against u wherever it is."}
+            .each_in({"N", "N", "N", "N m", "N m", "N m"})};
 }
 
 bool check_drag(const Section& load)

@@ -161,6 +161,13 @@ std::string quoted_alternatives(const Words& words)
     return text;
 }
 
+std::string_view Key::unit_of(std::size_t i, std::size_t n) const
+{
+    if (units.empty()) return unit;
+    if (n == units.size()) return units[i];
+    return n * n == units.size() ? units[i * (n + 1)] : std::string_view();
+}
+
 std::string describe_type(const Key& key)
 {
     std::string text(key.type.words);

@@ -104,9 +104,12 @@ struct Key {
     std::shared_ptr<const Table> child = {};   ///< of a table, or tables
     std::string_view formulas = {};            ///< where formulas stand instead; empty: nowhere
     std::string_view told_by = {};   ///< key of points or files that may say it as well; empty: none
+    /// SI, where the numbers of a list differ: of a matrix row by row, whose diagonal may stand alone.
+    Words units = {};
 
     // One property each, so that an entry of a table reads as a sentence.
     Key needed() && { return required = true, std::move(*this); }
+    Key each_in(Words u) && { return units = std::move(u), std::move(*this); }
     Key or_in(std::string_view u) && { return other_unit = u, std::move(*this); }
     Key or_formulas(std::string_view where) && { return formulas = where, std::move(*this); }
     Key within(const Range& r) && { return range = r, std::move(*this); }
@@ -115,6 +118,10 @@ struct Key {
         return required = true, told_by = other, std::move(*this);
     }
     Key holding(Table t) &&;
+
+    bool takes_units() const { return !unit.empty() || !units.empty(); }
+    /// Of number i of n; empty where there is none.
+    std::string_view unit_of(std::size_t i, std::size_t n) const;
 };
 
 /// A kind of joint, load or method: the word for it and the keys that it has beyond those of all kinds.

@@ -58,7 +58,7 @@ std::vector<std::string_view> types_of(const Key& key, Form form)
     case Form::integer:
         return {"integer"};
     case Form::number:
-        if (key.unit.empty()) return {"number"};
+        if (!key.takes_units()) return {"number"};
         return {"number", "string"};
     case Form::text:
     case Form::choice:
@@ -104,7 +104,7 @@ void write_keywords(JsonWriter& json, const Key& key, Form form)
         break;
     case Form::number:
         // The unit itself is for the reader to check.
-        if (!key.unit.empty()) json.member("pattern", "^[ \\t]*[-+]?[0-9.].*[A-Za-z]");
+        if (key.takes_units()) json.member("pattern", "^[ \\t]*([-+]|\xe2\x88\x92)?[0-9.].*[A-Za-z\xc2\xb0]");
         write_range(json, key);
         break;
     case Form::integer:

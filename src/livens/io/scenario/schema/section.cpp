@@ -123,13 +123,13 @@ private:
             return findings_.error(node.place, "not-finite",
                                    subject() + " must be finite, not " + to_text(node.number));
         }
-        if (node.kind != NodeKind::text || key_.unit.empty()) return wrong_type(node);
+        if (node.kind != NodeKind::text || unit_.empty()) return wrong_type(node);
         const Quantity other = parse_quantity(node.text(), key_.other_unit);
         if (!key_.other_unit.empty() && other.error.empty()) {
             value_.has_other_unit = true;
             return accept(node, other.value);
         }
-        Quantity quantity = parse_quantity(node.text(), key_.unit);
+        Quantity quantity = parse_quantity(node.text(), unit_);
         if (quantity.error.empty()) {
             value_.has_unit = true;
             return accept(node, quantity.value);
@@ -197,7 +197,11 @@ private:
     bool read_row(const Node& node, int count)
     {
         ++value_.n_rows;
-        return read_each(node, count, [&](const Node& item) { return read_number(item); });
+        std::size_t i = 0;
+        return read_each(node, count, [&](const Node& item) {
+            unit_ = key_.unit_of(i++, node.items().size());
+            return read_number(item);
+        });
     }
 
     bool read_table(const Node& node)
@@ -237,6 +241,7 @@ private:
     const Key& key_;
     const std::string& label_;
     Findings& findings_;
+    std::string_view unit_ = key_.unit;   ///< of the number that is read
 };
 
 /// The kind that the file chooses, or its default; any_kind for a word that is none.

@@ -31,21 +31,22 @@ constexpr std::array symbols{
     Symbol{"rad", {1, 1, 0, {0, 0, 0, 1}}}, Symbol{"bar", {1, 1, 5, {-1, 1, -2, 0}}},
     Symbol{"Nm", {1, 1, 0, {2, 1, -2, 0}}}, Symbol{"t", {1, 1, 3, {0, 1, 0, 0}}, false},
     Symbol{"min", {60, 1, 0, {0, 0, 1, 0}}, false}, Symbol{"h", {3600, 1, 0, {0, 0, 1, 0}}, false},
-    Symbol{"deg", {pi, 180, 0, {0, 0, 0, 1}}, false}, Symbol{"\xc2\xb0", {pi, 180, 0, {0, 0, 0, 1}}, false},
-    Symbol{"degree", {pi, 180, 0, {0, 0, 0, 1}}, false}, Symbol{"degrees", {pi, 180, 0, {0, 0, 0, 1}}, false},
-    Symbol{"rev", {2 * pi, 1, 0, {0, 0, 0, 1}}, false}, Symbol{"rpm", {2 * pi, 60, 0, {0, 0, -1, 1}}, false},
+    Symbol{"deg", {pi, 180, 0, {0, 0, 0, 1}}, false}, Symbol{"degree", {pi, 180, 0, {0, 0, 0, 1}}, false},
+    Symbol{"degrees", {pi, 180, 0, {0, 0, 0, 1}}, false}, Symbol{"rev", {2 * pi, 1, 0, {0, 0, 0, 1}}, false},
+    Symbol{"rpm", {2 * pi, 60, 0, {0, 0, -1, 1}}, false},
     // Inch, foot, yard, mile, pound and ounce by the international agreement of 1959; forces with the
     // standard gravity of 9.80665 m/s^2 (NIST SP 811, appendix B). All are exact.
     Symbol{"in", {254, 1, -4, {1, 0, 0, 0}}, false}, Symbol{"inch", {254, 1, -4, {1, 0, 0, 0}}, false},
-    Symbol{"ft", {3048, 1, -4, {1, 0, 0, 0}}, false}, Symbol{"yd", {9144, 1, -4, {1, 0, 0, 0}}, false},
-    Symbol{"mi", {1609344, 1, -3, {1, 0, 0, 0}}, false}, Symbol{"lb", {45359237, 1, -8, {0, 1, 0, 0}}, false},
+    Symbol{"mil", {254, 1, -7, {1, 0, 0, 0}}, false}, Symbol{"ft", {3048, 1, -4, {1, 0, 0, 0}}, false},
+    Symbol{"yd", {9144, 1, -4, {1, 0, 0, 0}}, false}, Symbol{"mi", {1609344, 1, -3, {1, 0, 0, 0}}, false},
+    Symbol{"lb", {45359237, 1, -8, {0, 1, 0, 0}}, false},
     Symbol{"lbm", {45359237, 1, -8, {0, 1, 0, 0}}, false},
     Symbol{"oz", {28349523125, 1, -12, {0, 1, 0, 0}}, false},
     Symbol{"slug", {pound_force, 3048, -9, {0, 1, 0, 0}}, false},   // lbf s^2 / ft
     Symbol{"lbf", {pound_force, 1, -13, {1, 1, -2, 0}}, false},
     Symbol{"kip", {pound_force, 1, -10, {1, 1, -2, 0}}, false},
     Symbol{"ozf", {pound_force, 16, -13, {1, 1, -2, 0}}, false},
-    Symbol{"kgf", {980665, 1, -5, {1, 1, -2, 0}}, false},
+    Symbol{"kgf", {980665, 1, -5, {1, 1, -2, 0}}, false}, Symbol{"g0", {980665, 1, -5, {1, 0, -2, 0}}, false},
     Symbol{"psi", {pound_force, 64516, -5, {-1, 1, -2, 0}}, false},   // lbf / in^2
     Symbol{"ksi", {pound_force, 64516, -2, {-1, 1, -2, 0}}, false},
     Symbol{"mph", {1609344, 3600, -3, {1, 0, -1, 0}}, false},
@@ -57,13 +58,48 @@ struct Prefix {
     std::string_view name;
     int power_of_ten;
 };
-constexpr std::array prefixes{
-    Prefix{"n", -9}, Prefix{"u", -6}, Prefix{"\xc2\xb5", -6}, Prefix{"\xce\xbc", -6}, Prefix{"m", -3},
-    Prefix{"c", -2}, Prefix{"d", -1}, Prefix{"k", 3},         Prefix{"M", 6},         Prefix{"G", 9}};
+constexpr std::array prefixes{Prefix{"n", -9}, Prefix{"u", -6}, Prefix{"m", -3}, Prefix{"c", -2},
+                              Prefix{"d", -1}, Prefix{"da", 1}, Prefix{"h", 2},  Prefix{"k", 3},
+                              Prefix{"M", 6},  Prefix{"G", 9}};
 constexpr int largest_exponent = 9;
 constexpr std::string_view known_units =
-    "units are m, g, s, N, J, W, Pa, bar, Hz, rad with the prefixes n u m c d k M G; t, min, h, deg or "
-    "\xc2\xb0, rev, rpm; in, ft, yd, mi, lb, oz, slug, lbf, ozf, kip, kgf, psi, ksi, mph, kn, hp";
+    "units are m, g, s, N, J, W, Pa, bar, Hz, rad with the prefixes n u m c d da h k M G; t, min, h, deg or "
+    "\xc2\xb0, rev, rpm; in, ft, yd, mi, mil, lb, oz, slug, lbf, ozf, kip, kgf, psi, ksi, mph, kn, hp; "
+    "g0 = 9.80665 m/s^2";
+
+/// Signs of typeset text, as data sheets have them, and what a keyboard has instead. An exponent follows a
+/// caret: see in_ascii().
+struct Sign {
+    std::string_view typeset, plain;
+    bool is_exponent = false;
+};
+constexpr std::array signs{
+    Sign{"\xc2\xb7", "*"},           Sign{"\xe2\x8b\x85", "*"},       Sign{"\xc3\x97", "*"},
+    Sign{"\xe2\x88\x92", "-"},       Sign{"\xe2\x81\x84", "/"},       Sign{"\xe2\x88\x95", "/"},
+    Sign{"\xc2\xa0", " "},           Sign{"\xe2\x80\x87", " "},       Sign{"\xe2\x80\x89", " "},
+    Sign{"\xe2\x80\xaf", " "},       Sign{"\xc2\xb5", "u"},           Sign{"\xce\xbc", "u"},
+    Sign{"\xc2\xb0", "deg"},         Sign{"\xc2\xba", "deg"},         Sign{"\xe2\x81\xbb", "-", true},
+    Sign{"\xe2\x81\xb0", "0", true}, Sign{"\xc2\xb9", "1", true},     Sign{"\xc2\xb2", "2", true},
+    Sign{"\xc2\xb3", "3", true},     Sign{"\xe2\x81\xb4", "4", true}, Sign{"\xe2\x81\xb5", "5", true},
+    Sign{"\xe2\x81\xb6", "6", true}, Sign{"\xe2\x81\xb7", "7", true}, Sign{"\xe2\x81\xb8", "8", true},
+    Sign{"\xe2\x81\xb9", "9", true}};
+
+/// "N m^-1" for "N m" and a raised "-1". Other bytes stay, and are refused where they stand.
+std::string in_ascii(std::string_view text)
+{
+    std::string plain;
+    bool is_raised = false;
+    while (!text.empty()) {
+        const auto* sign =
+            std::ranges::find_if(signs, [&](const Sign& s) { return text.starts_with(s.typeset); });
+        const bool is_sign = sign != signs.end();
+        if (is_sign && sign->is_exponent && !is_raised) plain += '^';
+        is_raised = is_sign && sign->is_exponent;
+        plain += is_sign ? sign->plain : text.substr(0, 1);
+        text.remove_prefix(is_sign ? sign->typeset.size() : 1);
+    }
+    return plain;
+}
 
 /// A symbol that people write otherwise.
 std::string other_spelling(std::string_view name)
@@ -85,6 +121,35 @@ std::string other_spelling(std::string_view name)
         std::pair{"turn", "rev"},    std::pair{"turns", "rev"},    std::pair{"watt", "W"}};
     for (const auto& [other, ours] : spellings)
         if (name == other) return std::string(": write ") + ours;
+    return {};
+}
+
+/// What a quantity of one dimension is taken for where one of another is wanted.
+std::string_view mistaken(const Dimension& given, const Dimension& wanted)
+{
+    struct Pair {
+        Dimension given, wanted;
+        std::string_view hint;
+    };
+    static constexpr Dimension mass{0, 1, 0, 0}, force{1, 1, -2, 0}, torque{2, 1, -2, 0},
+        frequency{0, 0, -1, 0}, rate{0, 0, -1, 1}, angle{0, 0, 0, 1}, pure{};
+    static constexpr std::array pairs{
+        Pair{mass, force, "that is a mass; a force is in N, kgf or lbf"},
+        Pair{force, mass, "that is a force; a mass is in kg or lb"},
+        Pair{frequency, rate, "that is a frequency; an angular velocity is in rad/s, deg/s, rev/s or rpm"},
+        Pair{rate, frequency, "that is an angular velocity; a frequency is in Hz: 60 rpm are 1 Hz"},
+        Pair{force, torque, "that is a force; a torque has a length, too: N m, lbf in"},
+        Pair{torque, force, "that is a torque; along a length it is a force: N, lbf"},
+        Pair{{0, 1, -2, 0},
+             {2, 1, -2, -1},
+             "that is the stiffness of a length; of an angle it is in N m/rad or N m/deg"},
+        Pair{torque, {2, 1, -2, -1}, "a stiffness of an angle is for each radian or degree: N m/rad"},
+        Pair{{2, 1, -1, 0}, {2, 1, -1, -1}, "a damping of an angle is for each rad/s: N m s/rad"},
+        Pair{angle, rate, "that is an angle; its rate is for each second: deg/s"},
+        Pair{pure, angle, "angles have a unit: rad, deg or rev"},
+        Pair{{0, 1, 0, 0}, {2, 1, 0, 0}, "that is a mass; a moment of inertia is in kg m^2"}};
+    for (const Pair& p : pairs)
+        if (p.given == given && p.wanted == wanted) return p.hint;
     return {};
 }
 
@@ -116,7 +181,8 @@ void multiply(Unit& unit, const Unit& factor, int exponent)
         unit.dimension[i] += exponent * factor.dimension[i];
 }
 
-/// unit = product [ "/" ( factor | "(" product ")" ) ];  product = factor { (" " | "*" | "·") factor };
+/// Of a text without typeset signs, see in_ascii().
+/// unit = product [ "/" ( factor | "(" product ")" ) ];  product = factor { (" " | "*") factor };
 /// factor = symbol [ "^" [ "-" ] digit ]
 class UnitParser {
 public:
@@ -156,7 +222,7 @@ private:
     void product(Unit& unit, int sign)
     {
         factor(unit, sign);
-        while (reason_.empty() && (take("*") || take("\xc2\xb7") || !ends_product())) factor(unit, sign);
+        while (reason_.empty() && (take("*") || !ends_product())) factor(unit, sign);
     }
 
     void quotient(Unit& unit)
@@ -175,17 +241,12 @@ private:
     void factor(Unit& unit, int sign)
     {
         skip_blanks();
-        const std::size_t end = std::min(rest_.find_first_of(" \t*/^()\xc2"), rest_.size());
-        // The first byte of a micro sign, and of a degree sign, is that of a middle dot.
-        const bool is_sign = rest_.starts_with("\xc2\xb5") || rest_.starts_with("\xc2\xb0");
-        const std::size_t length =
-            is_sign ? 2 + std::min(rest_.substr(2).find_first_of(" \t*/^()\xc2"), rest_.size() - 2) : end;
+        const std::size_t length = std::min(rest_.find_first_of(" \t*/^()"), rest_.size());
         const std::string_view name = rest_.substr(0, length);
         const std::optional<Unit> found = find_symbol(name);
         if (!found) {
-            reason_ = name.empty()
-                          ? "a unit is missing"
-                          : "'" + std::string(name) + "' is no unit known here" + other_spelling(name);
+            reason_ = name.empty() ? missing_factor()
+                                   : "'" + std::string(name) + "' is no unit known here" + meant(name);
             return;
         }
         rest_.remove_prefix(length);
@@ -200,6 +261,19 @@ private:
             rest_.remove_prefix(static_cast<std::size_t>(r.ptr - rest_.data()));
         }
         multiply(unit, *found, sign * exponent);
+    }
+
+    std::string missing_factor() const
+    {
+        return rest_.starts_with('*') ? "powers are written with ^, as in m^2" : "a unit is missing";
+    }
+    /// Another spelling of a symbol, or a power without its caret.
+    static std::string meant(std::string_view name)
+    {
+        const std::size_t digits = name.find_last_not_of("0123456789-") + 1;
+        const std::string symbol(name.substr(0, digits));
+        if (digits == name.size() || !find_symbol(symbol)) return other_spelling(name);
+        return ": write " + symbol + "^" + std::string(name.substr(digits));
     }
 
     std::string_view rest_;
@@ -218,13 +292,15 @@ double to_si(double number, const Unit& unit)
 
 std::optional<Unit> parse_unit(std::string_view text, std::string& reason)
 {
-    return UnitParser(text).parse(reason);
+    const std::string plain = in_ascii(text);
+    return UnitParser(plain).parse(reason);
 }
 
-Quantity parse_quantity(std::string_view text, std::string_view si_unit)
+Quantity parse_quantity(std::string_view given, std::string_view si_unit)
 {
-    const std::string wanted(si_unit);
-    std::string_view rest = text.substr(std::min(text.find_first_not_of(" \t"), text.size()));
+    const std::string wanted(si_unit), text = in_ascii(given);
+    std::string_view rest = text;
+    rest.remove_prefix(std::min(rest.find_first_not_of(" \t"), rest.size()));
     // `from_chars` knows no plus sign, which people write; "+-5" stays an error.
     if (rest.size() > 1 && rest[0] == '+' && rest[1] != '-') rest.remove_prefix(1);
     double number = 0;
@@ -245,9 +321,11 @@ Quantity parse_quantity(std::string_view text, std::string_view si_unit)
     const std::optional<Unit> unit = parse_unit(rest, reason);
     if (!unit) return {0, reason, std::string(known_units)};
     const std::optional<Unit> expected = parse_unit(si_unit, reason);
-    if (!expected || unit->dimension != expected->dimension)
+    if (!expected || unit->dimension != expected->dimension) {
+        const std::string_view hint = expected ? mistaken(unit->dimension, expected->dimension) : "";
         return {0, "'" + std::string(rest) + "' is not a unit of this quantity",
-                "it is measured in " + wanted};
+                "it is measured in " + wanted + (hint.empty() ? "" : "; " + std::string(hint))};
+    }
     const double value = to_si(number, *unit);
     if (!std::isfinite(value)) return {0, "the number does not fit into 64 bits", ""};
     return {value, "", ""};

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "livens/spacetime/nodal/carried.h"
+
+namespace livens::inline spacetime_internal {
+
+namespace {
+
+/// K^-T column by column: the cross products of the columns of K over its determinant.
+Matrix3 inverse_transposed(const double* map)
+{
+    const Vector3 a{map[0], map[1], map[2]}, b{map[3], map[4], map[5]}, c{map[6], map[7], map[8]};
+    const Vector3 bc = cross(b, c), ca = cross(c, a), ab = cross(a, b);
+    const double s = 1 / dot(a, bc);
+    return {s * bc[0], s * bc[1], s * bc[2], s * ca[0], s * ca[1],
+            s * ca[2], s * ab[0], s * ab[1], s * ab[2]};
+}
+
+/// From the reference point to the centre of mass at `from`, less that at `to`.
+Vector3 arm_between(const double* from, const double* to)
+{
+    return {from[9] - to[9], from[10] - to[10], from[11] - to[11]};
+}
+
+}   // namespace
+
+void carry_rows(const BodyTables& bodies, const double* maps_from, const double* maps_to, double* y)
+{
+    for (int b = 0; b < bodies.n_bodies(); ++b) {
+        const BodyTable& body = bodies[b];
+        if (body.dofs == 3) continue;   // its scale is the same everywhere
+        const double *from = maps_from + 12 * b, *to = maps_to + 12 * b;
+        double* row = y + body.first;
+        const Vector3 force = (1 / body.inverse_root_mass) * Vector3{row[0], row[1], row[2]};
+        const Vector3 moment =
+            inverse_transposed(from) * Vector3{row[3], row[4], row[5]} + cross(arm_between(from, to), force);
+        for (int i = 0; i < 3; ++i)
+            row[3 + i] = to[3 * i] * moment[0] + to[3 * i + 1] * moment[1] + to[3 * i + 2] * moment[2];
+    }
+}
+
+void carry_twists(const BodyTables& bodies, const double* maps_from, const double* maps_to, double* y)
+{
+    for (int b = 0; b < bodies.n_bodies(); ++b) {
+        const BodyTable& body = bodies[b];
+        if (body.dofs == 3) continue;
+        const double *from = maps_from + 12 * b, *to = maps_to + 12 * b;
+        double* twist = y + body.first;
+        Vector3 spin;
+        for (int i = 0; i < 3; ++i)
+            spin[i] = from[i] * twist[3] + from[3 + i] * twist[4] + from[6 + i] * twist[5];
+        const Vector3 shift = (1 / body.inverse_root_mass) * cross(arm_between(from, to), spin);
+        const Vector3 scaled = transpose(inverse_transposed(to)) * spin;
+        for (int i = 0; i < 3; ++i) {
+            twist[i] += shift[i];
+            twist[3 + i] = scaled[i];
+        }
+    }
+}
+
+}   // namespace livens::inline spacetime_internal
