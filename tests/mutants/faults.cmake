@@ -1145,3 +1145,51 @@ livens_mutant(NAME bases_from_before_the_pull
               NEW [[if (!are_placed) return true;]]
               TESTS_OF convergence
               MUST_FAIL LobattoEnds.EveryRateNearbyFindsTheMotion)
+
+# What turns with a model that is added stays behind by a sign.
+livens_mutant(NAME added_rows_shifted_back
+              FILE multibody/relocation.cpp
+              OLD [[moved.b_i = turned_i - outer(]]
+              NEW [[moved.b_i = turned_i + outer(]]
+              TESTS_OF properties
+              MUST_FAIL Relocated.JointsHoldWhatTheyHeld)
+
+# Velocities of what was added are seen as they are in the world.
+livens_mutant(NAME added_loads_see_world_velocities
+              FILE multibody/relocation.cpp
+              OLD [[seen.V[k] = back_.rotation * at.V[k];]]
+              NEW [[seen.V[k] = at.V[k];]]
+              TESTS_OF properties
+              MUST_FAIL Relocated/EveryMovedLoad.RunsInLanesAndPullsWhatItPulled/drag_drag)
+
+# The same on a tape: places are turned back and not moved back.
+livens_mutant(NAME added_arms_not_moved_back
+              FILE multibody/loads/load_tape.cpp
+              OLD [[v = v - vector(shift * frame_.position);]]
+              NEW [[(void)shift;]]
+              TESTS_OF properties
+              MUST_FAIL Relocated/EveryMovedLoad.RunsInLanesAndPullsWhatItPulled/attraction_*)
+
+# Drives and loads of an included file begin where it was stated, and not where the start has led it.
+livens_mutant(NAME included_files_do_not_settle
+              FILE io/scenario/assembly.cpp
+              OLD [[if (builder_.model().version() != stated) settle();]]
+              NEW [[;]]
+              TESTS_OF unit_io
+              MUST_FAIL Include.PartsBeginWhereTheStartHasLedThem)
+
+# A file outside of the folder is found by a way that climbs.
+livens_mutant(NAME includes_climb
+              FILE io/scenario/bodies/meshes.cpp
+              OLD [[        if (part == "..")]]
+              NEW [[        if (part == "...")]]
+              TESTS_OF unit_io
+              MUST_FAIL Include.WhatCannotBeIncludedIsOneErrorAtTheKey)
+
+# A point is taken for one of the body that the section names, whichever it is on.
+livens_mutant(NAME points_of_other_bodies
+              FILE io/scenario/bodies/named_points.cpp
+              OLD [[if (builder.body_name(point.body) == body) return true;]]
+              NEW [[return true;]]
+              TESTS_OF unit_io
+              MUST_FAIL NamedPoints.OneMistakeIsOneError)

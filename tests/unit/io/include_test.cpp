@@ -187,6 +187,22 @@ TEST(Include, NamesArePrefixedAndFoundFromOutside)
     EXPECT_EQ(r.scenario->mesh_files.size(), 1u);
 }
 
+TEST(Include, PartsBeginWhereTheStartHasLedThem)
+{
+    const Folder folder;
+    folder.write("parts/leg.toml", leg + "[[drive]]\ntype = \"joint\"\njoint = \"knee\"\nrate = 0\n");
+    const ScenarioResult r =
+        folder.read(two_legs + "[start]\ncoordinates = [{ joint = \"right.knee\", value = 0.3 }]\n");
+    ASSERT_TRUE(r.scenario) << shown(r);
+    const Model& m = r.scenario->model;
+    const int knee = m.find_joint("right.knee"), drive = m.find_joint("right.drive of knee");
+    ASSERT_GE(drive, 0);
+    EXPECT_NEAR(m.joints()[static_cast<std::size_t>(knee)].coordinates[0].at_stated, 0.3, 1e-12);
+    // it holds what was there: its row is closed
+    const ConstraintRow& row = m.joints()[static_cast<std::size_t>(drive)].rows[0];
+    EXPECT_LT(std::abs(constraint_value(row, {0}, m.start().X)), 1e-12);
+}
+
 TEST(Include, ARunNeedsNoFileBesideItsOwn)
 {
     const Folder folder;
