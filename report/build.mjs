@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Makes the page that livens ships, src/livens/io/report/page.html: script, style and the hashes of both in one file.
+// Makes the page that livens ships, src/livens/io/report/page.html: scripts, style and their hashes in one file. The program
+// compresses the script when it writes a page; the loader unpacks it.
 //   node build.mjs [FILE]
 import { build } from "esbuild";
 import { createHash } from "node:crypto";
@@ -54,6 +55,7 @@ const slim = {
   },
 };
 const js = await bundle({ entryPoints: ["src/main.ts"], format: "esm", target: "es2022", plugins: [slim] });
+const loader = (await bundle({ entryPoints: ["src/loader.ts"], format: "esm", target: "es2022" })).text;
 const notices = (await Promise.all(["three", "uplot"].map(notice))).join("\n\n").replaceAll("*/", "* /");
 const script = `/*!\n${notices}\n*/\n${js.text}`;
 const style = (
@@ -67,19 +69,21 @@ const style = (
 const hash = (text) => `sha256-${createHash("sha256").update(text).digest("base64")}`;
 
 // Nothing may end an element early, begin a comment in a script, or stand where the program puts titles and data.
-for (const text of [script, style])
+for (const text of [loader, script, style])
   if (/<\/(script|style)|<!--/i.test(text)) throw new Error("the bundle contains </script, </style or <!--");
 let page = await read("src/page.html");
 for (const [key, value] of Object.entries({
+  "@LOADER_HASH@": hash(loader),
   "@SCRIPT_HASH@": hash(script),
   "@STYLE_HASH@": hash(style),
   "@STYLE@": style,
+  "@LOADER@": loader,
   "@SCRIPT@": script,
 })) {
   if (page.split(key).length !== 2) throw new Error(`${key} must stand in the page once`);
   page = page.replace(key, () => value);
 }
-for (const place of ["<!--title-->", "<!--data-->"])
+for (const place of ["<!--title-->", "<!--data-->", '<script type="text/plain" id="code">'])
   if (page.split(place).length !== 2) throw new Error(`${place} must stand in the page once`);
 await writeFile(target, page);
 

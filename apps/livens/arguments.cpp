@@ -33,6 +33,16 @@ CLI::Option* add_file(CLI::App& command, const std::string& name, std::string& v
     return command.add_option(name, value, description)->check(CLI::Validator(is_named, ""));
 }
 
+void add_units(CLI::App& command, std::vector<std::string>& units, const std::string& where)
+{
+    command
+        .add_option("--unit", units,
+                    where + " in this unit instead of SI, where it fits: deg (of rates deg/s), rpm, mm, kN; "
+                            "may be repeated")
+        ->allow_extra_args(false)
+        ->type_name("UNIT");
+}
+
 void add_force(CLI::App& command, bool& force)
 {
     command.add_flag("--force", force, "replace files that livens did not write, too; never inputs");
@@ -51,6 +61,31 @@ void add_common(CLI::App& command, Arguments& a)
     command.add_flag("-v,--verbose", a.common.verbose, "more figures; what is done and how long it takes");
     add_choice(command, "--diagnostics", a.layout, {"human", "json", "gnu"},
                "layout of errors on standard error");
+}
+
+/// Of what reads scenarios.
+void add_set(CLI::App& command, Arguments& a)
+{
+    const auto keep = [&a](const std::vector<std::string>& given) {
+        for (const std::string& one : given) {
+            const std::size_t sign = one.find('=');
+            const auto trimmed = [](std::string text) { return CLI::detail::trim(text); };
+            a.common.parameters.emplace_back(trimmed(one.substr(0, sign)), trimmed(one.substr(sign + 1)));
+        }
+    };
+    const auto has_value = [](const std::string& one) {
+        const std::size_t sign = one.find('=');
+        const bool is_pair = sign != std::string::npos && sign > 0 &&
+                             one.find_first_not_of(" \t", sign + 1) != std::string::npos;
+        return is_pair ? std::string()
+                       : "'" + one + "' is no NAME=VALUE, as in --set L=0.4 or --set \"L=400 mm\"";
+    };
+    command
+        .add_option_function<std::vector<std::string>>(
+            "--set", keep, "value of a parameter of the scenario, a number or an expression; may be repeated")
+        ->check(CLI::Validator(has_value, ""))
+        ->allow_extra_args(false)
+        ->type_name("NAME=VALUE");
 }
 
 /// `run` is called once all is parsed, if this is the command that was typed.
@@ -80,6 +115,7 @@ void add_scenario_commands(CLI::App& app, Arguments& a)
     CLI::App& check = add_command(app, a, "check", "Check a scenario without solving it",
                                   [file](const Common& common) { return check_command(*file, common); });
     check.add_option("FILE", *file, "scenario (TOML)")->required()->type_name("FILE.toml");
+    add_set(check, a);
     add_common(check, a);
 }
 
@@ -96,12 +132,12 @@ void add_solve_command(CLI::App& app, Arguments& a)
         ->type_name("RUN.nc");
     add_file(solve, "--csv", given->csv, "write the samples as CSV too")->type_name("FILE.csv");
     add_force(solve, given->force);
-    solve
-        .add_option("-j,--jobs", given->jobs, "scenarios solved at a time; default: one per processor")
+    solve.add_option("-j,--jobs", given->jobs, "scenarios solved at a time; default: one per processor")
         ->check(CLI::Range(1, 1024))
         ->type_name("N");
     add_choice(solve, "--simd", given->simd, {"sse2", "avx2", "avx512"},
                "instructions to solve with; default: avx2 where the processor has it");
+    add_set(solve, a);
     add_common(solve, a);
 }
 
@@ -117,6 +153,7 @@ void add_mass_command(CLI::App& app, Arguments& a)
     mass.add_option("--unit", given->unit, "of the mesh's numbers; default: m")->type_name("UNIT");
     mass.add_option("--density", given->density, "of the mesh, kg/m^3; default: 1")->type_name("D");
     mass.add_flag("--turn", given->turn, "flip faces of the mesh that point inwards");
+    add_set(mass, a);
     add_common(mass, a);
 }
 
@@ -127,6 +164,7 @@ void add_rest_commands(CLI::App& app, Arguments& a)
         add_command(app, a, "equilibrium", "Find the static equilibrium, and whether it is stable",
                     [file](const Common& common) { return equilibrium_command(*file, common); });
     equilibrium.add_option("FILE", *file, "scenario (TOML)")->required()->type_name("FILE.toml");
+    add_set(equilibrium, a);
     add_common(equilibrium, a);
     const auto given = arguments_of<ModesArguments>();
     CLI::App& modes =
@@ -145,6 +183,7 @@ void add_rest_commands(CLI::App& app, Arguments& a)
                     "of the state matrices: likewise, as a position; with _rate its rate")
         ->allow_extra_args(false)
         ->type_name("NAME");
+    add_set(modes, a);
     add_common(modes, a);
 }
 
@@ -171,6 +210,7 @@ void add_run_commands(CLI::App& app, Arguments& a)
     sample.add_flag("--exact", given->exact,
                     "between element ends solve a shortened element: full order anywhere");
     sample.add_flag("--csv", given->csv, "print CSV");
+    add_units(sample, given->units, "text and CSV");
     add_common(sample, a);
 }
 
@@ -187,7 +227,37 @@ void add_peaks_command(CLI::App& app, Arguments& a)
                     "all of joints, loads and sensors, and energies")
         ->type_name("NAME");
     peaks.add_flag("--csv", given->csv, "print CSV");
+    add_units(peaks, given->units, "values");
     add_common(peaks, a);
+}
+
+std::string endings()
+{
+    std::string all;
+    for (const ExportFormat& format : export_formats())
+        all += (all.empty() ? "" : " ") + std::string(format.extension);
+    return all;
+}
+
+void add_picture(CLI::App& command, ExportArguments& given)
+{
+    PictureOptions& o = given.picture;
+    command
+        .add_option("--size", given.size, "of pictures; default: 1280x720, of PNG 1920x1080, of GIF 640x400")
+        ->type_name("WxH");
+    command.add_option("--fps", o.rate, "frames per second; default: 30, of GIF 20")->type_name("N");
+    command
+        .add_option("--duration", o.duration,
+                    "of the video, s; default: that of the motion, 8 s where it is under 2 s or over 40 s")
+        ->type_name("S");
+    command
+        .add_option("--from", o.from, "instant of a still, or the first of a video, s; default: the start")
+        ->type_name("T");
+    command.add_option("--to", o.to, "last instant of a video, s; default: the end")->type_name("T");
+    add_choice(command, "--view", o.view, {"fitted", "front", "side", "top"}, "where pictures are seen from");
+    command.add_flag("--dark", o.is_dark, "pictures in dark colours");
+    command.add_flag("--names", o.names, "names of bodies in pictures");
+    command.add_flag("--clock", o.clock, "the time in pictures");
 }
 
 void add_export_commands(CLI::App& app, Arguments& a)
@@ -197,6 +267,11 @@ void add_export_commands(CLI::App& app, Arguments& a)
         app, a, "export", "Write a run for other programs, in one format or more",
         [given](const Common& common) { return with_runs([&] { return export_command(*given, common); }); });
     exports.add_option("RUN", given->run, "result file")->required()->type_name("RUN.nc");
+    exports
+        .add_option("-o,--output", given->outputs,
+                    "file in the format of its ending, " + endings() + "; may be repeated")
+        ->allow_extra_args(false)
+        ->type_name("FILE");
     given->files.resize(export_formats().size());
     for (std::size_t i = 0; const ExportFormat& format : export_formats())
         add_file(exports, std::string("--") + format.word, given->files[i++], format.what)
@@ -206,6 +281,8 @@ void add_export_commands(CLI::App& app, Arguments& a)
         exports, "--at", given->at, {words.begin(), words.end()},
         "instants of CSV: smooth curves, the output times, element ends; default: output times where the "
         "scenario lists them, else smooth curves");
+    add_units(exports, given->units, "CSV");
+    add_picture(exports, *given);
     add_force(exports, given->force);
     add_common(exports, a);
     const auto both = arguments_of<DiffArguments>();
@@ -230,7 +307,9 @@ void add_report_commands(CLI::App& app, Arguments& a)
         app, a, "view", "Show that page in the browser, from a local server",
         [given](const Common& common) { return with_runs([&] { return view_command(*given, common); }); });
     for (CLI::App* command : {&report, &view}) {
-        command->add_option("RUN", given->run, "result file")->required()->type_name("RUN.nc");
+        command->add_option("RUN", given->run, "result file")
+            ->required(command == &report)
+            ->type_name("RUN.nc");
         command->add_option("OTHER", given->other, "result file to compare it with")->type_name("RUN.nc");
         add_common(*command, a);
     }
@@ -240,6 +319,10 @@ void add_report_commands(CLI::App& app, Arguments& a)
     view.add_option("--port", given->port, "on 127.0.0.1; default: any that is free")
         ->check(CLI::Range(1, 65535))
         ->type_name("N");
+    add_file(view, "--watch", given->watched,
+             "solve this scenario, and show it again whenever it or a mesh of it is saved")
+        ->type_name("FILE.toml");
+    add_set(view, a);
     view.add_flag("--address", given->address_only, "print the address and open no browser");
 }
 

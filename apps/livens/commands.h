@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "livens/io/diagnostic.h"
+#include "livens/io/exports.h"
 #include "livens/io/results.h"
 #include "livens/io/scenario.h"
 
@@ -19,6 +20,7 @@ struct Common {
     bool quiet = false;
     bool verbose = false;
     DiagnosticFormat diagnostics = DiagnosticFormat::human;
+    ParameterValues parameters = {};   ///< of scenarios, by --set
 };
 
 struct SolveArguments {
@@ -60,6 +62,7 @@ struct SampleArguments {
     std::vector<std::string> at;   ///< instants as typed, s
     bool exact = false;
     bool csv = false;
+    std::vector<std::string> units;   ///< of text and CSV; none: SI
 };
 int sample_command(const SampleArguments& arguments, const Common& common);
 /// What is printed of a sensor.
@@ -69,14 +72,19 @@ std::string sample_sensor(const SampleArguments& arguments, const Common& common
 struct PeaksArguments {
     std::string run;
     std::vector<std::string> names;   ///< of find_peaks()
+    std::vector<std::string> units;   ///< none: SI
     bool csv = false;
 };
 int peaks_command(const PeaksArguments& arguments, const Common& common);
 
 struct ExportArguments {
     std::string run;
-    std::vector<std::string> files;   ///< one a format of export_formats(); empty: not asked for
-    std::string at = "auto";          ///< a word of Instants
+    std::vector<std::string> files;     ///< one a format of export_formats(); empty: not asked for
+    std::vector<std::string> outputs;   ///< whose formats their endings tell
+    std::string at = "auto";            ///< a word of Instants
+    std::vector<std::string> units;     ///< of CSV; none: SI
+    PictureOptions picture;
+    std::string size;   ///< of pictures, "1280x720"; empty: as usual
     bool force = false;
 };
 int export_command(const ExportArguments& arguments, const Common& common);
@@ -88,6 +96,7 @@ struct ReportArguments {
     bool force = false;          ///< of `report` alone
     int port = 0;                ///< of `view` alone; 0: one that is free
     bool address_only = false;   ///< of `view`: no browser
+    std::string watched;         ///< of `view`: a scenario instead of a run; empty: none
 };
 int report_command(const ReportArguments& arguments, const Common& common);
 int view_command(const ReportArguments& arguments, const Common& common);

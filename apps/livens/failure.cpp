@@ -71,31 +71,6 @@ int exit_code_of(const std::vector<Diagnostic>& diagnostics)
     return first->code == "resource-limit" ? exit_resources : exit_scenario;
 }
 
-Failure current_failure()
-{
-    kept_for_report.reset();
-    try {
-        throw;
-    } catch (const Failure& f) {
-        return f;
-    } catch (const OutputError& e) {
-        return failure(exit_input_output, e.message);
-    } catch (const InputError& e) {
-        return {exit_scenario, status_of(exit_scenario), {from_complaint(e.complaint())}};
-    } catch (const IoError& e) {
-        return {exit_input_output, status_of(exit_input_output), {plain_error(e.code(), e.what())}};
-    } catch (const std::bad_alloc&) {
-        return failure(exit_resources,
-                       "memory is exhausted; fewer elements, output times or bodies need less");
-    } catch (const std::length_error&) {
-        return failure(exit_resources, "the problem is larger than memory can ever be");
-    } catch (const std::exception& e) {
-        return failure(exit_internal, std::string("internal error, please report it: ") + e.what());
-    } catch (...) {
-        return failure(exit_internal, "internal error of unknown kind, please report it");
-    }
-}
-
 std::string counted(std::ptrdiff_t n, const char* what)
 {
     return std::to_string(n) + " " + what + (n == 1 ? "" : "s");
@@ -115,25 +90,16 @@ std::string last_line(const std::vector<Diagnostic>& diagnostics)
     return first == diagnostics.end() ? text : text + "; for more: livens explain " + first->code;
 }
 
-/// Findings about a file are laid out by render(); all else is a line with the program's name.
-void show(const Failure& f, const Common& common)
+bool concerns_file(const Failure& f)
 {
-    const bool concerns_file =
-        std::ranges::any_of(f.diagnostics, [](const Diagnostic& d) { return !d.file.empty(); });
-    if (concerns_file || common.diagnostics != DiagnosticFormat::human) {
-        const Terminal terminal = terminal_of(STDERR_FILENO);
-        std::string text =
-            render(f.diagnostics, f.source, common.diagnostics, terminal.colour, terminal.columns);
-        if (!text.ends_with('\n')) text += '\n';
-        if (common.diagnostics == DiagnosticFormat::human) text += "\n" + last_line(f.diagnostics) + "\n";
-        say_raw(text);
-        return;
-    }
-    for (const Diagnostic& d : f.diagnostics) {
-        say_error(d.message);
-        if (!d.note.empty()) say_error("note: " + d.note);
-        if (!d.help.empty()) say_error("help: " + d.help);
-    }
+    return std::ranges::any_of(f.diagnostics, [](const Diagnostic& d) { return !d.file.empty(); });
+}
+
+std::string rendered(const Failure& f, DiagnosticFormat format, const Terminal& terminal)
+{
+    std::string text = render(f.diagnostics, f.source, format, terminal.colour, terminal.columns);
+    if (!text.ends_with('\n')) text += '\n';
+    return format == DiagnosticFormat::human ? text + "\n" + last_line(f.diagnostics) + "\n" : text;
 }
 
 std::string json_of(const Failure& f)
@@ -170,6 +136,60 @@ int finish(const Failure& f, const Common& common)
 }
 
 }   // namespace
+
+Failure current_failure()
+{
+    kept_for_report.reset();
+    try {
+        throw;
+    } catch (const Failure& f) {
+        return f;
+    } catch (const OutputError& e) {
+        return failure(exit_input_output, e.message);
+    } catch (const InputError& e) {
+        return {exit_scenario, status_of(exit_scenario), {from_complaint(e.complaint())}};
+    } catch (const IoError& e) {
+        return {exit_input_output, status_of(exit_input_output), {plain_error(e.code(), e.what())}};
+    } catch (const std::bad_alloc&) {
+        return failure(exit_resources,
+                       "memory is exhausted; fewer elements, output times or bodies need less");
+    } catch (const std::length_error&) {
+        return failure(exit_resources, "the problem is larger than memory can ever be");
+    } catch (const std::exception& e) {
+        return failure(exit_internal, std::string("internal error, please report it: ") + e.what());
+    } catch (...) {
+        return failure(exit_internal, "internal error of unknown kind, please report it");
+    }
+}
+
+Failure failure_of(ScenarioResult&& result)
+{
+    const int code = exit_code_of(result.diagnostics);
+    return {code, status_of(code), std::move(result.diagnostics), std::move(result.text)};
+}
+
+void show(const Failure& f, const Common& common)
+{
+    if (concerns_file(f) || common.diagnostics != DiagnosticFormat::human)
+        return say_raw(rendered(f, common.diagnostics, terminal_of(STDERR_FILENO)));
+    for (const Diagnostic& d : f.diagnostics) {
+        say_error(d.message);
+        if (!d.note.empty()) say_error("note: " + d.note);
+        if (!d.help.empty()) say_error("help: " + d.help);
+    }
+}
+
+std::string text_of(const Failure& f)
+{
+    if (concerns_file(f)) return rendered(f, DiagnosticFormat::human, {});
+    std::string text;
+    for (const Diagnostic& d : f.diagnostics) {
+        text += d.message + "\n";
+        for (const auto& [word, more] : {std::pair{"note", &d.note}, std::pair{"help", &d.help}})
+            if (!more->empty()) text += std::string(word) + ": " + *more + "\n";
+    }
+    return text;
+}
 
 Failure failure(int exit_code, const std::string& message)
 {
@@ -234,13 +254,19 @@ int with_runs(const std::function<int()>& command)
     }
 }
 
+void as_usage(const std::function<void()>& check)
+{
+    try {
+        check();
+    } catch (const InputError& error) {
+        throw failure(exit_usage, error.what());
+    }
+}
+
 Scenario load_scenario(const std::string& file, const Common& common, std::vector<Diagnostic>* warnings)
 {
-    ScenarioResult result = read_scenario(file);
-    if (!result.scenario) {
-        const int code = exit_code_of(result.diagnostics);
-        throw Failure{code, status_of(code), std::move(result.diagnostics), std::move(result.text)};
-    }
+    ScenarioResult result = read_scenario(file, common.parameters);
+    if (!result.scenario) throw failure_of(std::move(result));
     if (!result.diagnostics.empty() && !common.quiet) {
         const Terminal terminal = terminal_of(STDERR_FILENO);
         std::string text =

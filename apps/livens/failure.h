@@ -25,6 +25,16 @@ struct Failure {
 
 Failure failure(int exit_code, const std::string& message);
 
+/// Of a scenario that cannot be read.
+Failure failure_of(ScenarioResult&& result);
+/// Of what is being handled.
+Failure current_failure();
+
+/// On standard error: findings about a file as render() has them, all else in lines with the program's name.
+void show(const Failure& f, const Common& common);
+/// The same for a page: without colours, lines of any length.
+std::string text_of(const Failure& f);
+
 /// Sets memory aside that guarded() gives back before it tells of a failure, so that exhausted memory is told
 /// in full. Once, before all else.
 void keep_memory_for_report();
@@ -35,6 +45,9 @@ int guarded(const Common& common, const std::function<int()>& command);
 
 /// Likewise of a command that reads runs: what the core complains of is a fault of theirs.
 int with_runs(const std::function<int()>& command);
+
+/// What the core complains of is a fault of the command line.
+void as_usage(const std::function<void()>& check);
 
 /// Reads a scenario; warnings are shown, errors thrown.
 Scenario load_scenario(const std::string& file, const Common& common,

@@ -299,6 +299,8 @@ int mass_of_scenario(const MassArguments& arguments, const Common& common)
 int mass_command(const MassArguments& arguments, const Common& common)
 {
     const bool is_scenario = arguments.file.ends_with(".toml");
+    if (!is_scenario && !common.parameters.empty())
+        throw failure(exit_usage, "--set is for parameters of scenarios, and a mesh has none");
     return is_scenario ? mass_of_scenario(arguments, common) : mass_of_mesh(arguments, common);
 }
 

@@ -13,6 +13,7 @@
 #include "livens/base/error.h"
 #include "livens/base/text.h"
 #include "livens/io/json.h"
+#include "livens/io/shown_unit.h"
 #include "simd.h"
 
 namespace livens::program {
@@ -75,6 +76,20 @@ std::string text_of(const std::vector<Extremes>& all)
     return out;
 }
 
+/// In the units that are wished.
+void show_in(std::vector<Extremes>& all, const std::vector<std::string>& wished)
+{
+    std::vector<std::string> units;
+    for (const Extremes& one : all) units.push_back(one.unit);
+    check_shown_units(wished, units);
+    for (Extremes& one : all) {
+        const ShownUnit shown = shown_unit(one.unit, wished);
+        one.unit = shown.unit;
+        one.least.value *= shown.factor;
+        one.largest.value *= shown.factor;
+    }
+}
+
 }   // namespace
 
 int peaks_command(const PeaksArguments& arguments, const Common& common)
@@ -85,11 +100,10 @@ int peaks_command(const PeaksArguments& arguments, const Common& common)
     if (!run.report.converged())
         say_warning(std::string("the run is not converged: ") + to_string(run.report.status));
     std::vector<Extremes> all;
-    try {
+    as_usage([&] {
         all = find_peaks(run, scenario, scenario.method, arguments.names);
-    } catch (const InputError& error) {
-        throw failure(exit_usage, error.what());
-    }
+        show_in(all, arguments.units);
+    });
     print(common.json ? json_of(all, run) : arguments.csv ? csv_of(all) : text_of(all));
     return exit_ok;
 }

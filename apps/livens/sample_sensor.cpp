@@ -12,6 +12,7 @@
 #include "livens/diagnostics/coordinates.h"
 #include "livens/diagnostics/sample.h"
 #include "livens/io/json.h"
+#include "livens/io/shown_unit.h"
 
 namespace livens::program {
 
@@ -49,16 +50,28 @@ Found find_sensor(const Model& model, const std::string& name)
                   fmt::format("the run has no sensor '{}'; it has {}", name, known.empty() ? "none" : known));
 }
 
-std::string csv_of(const Sensor& sensor, const std::vector<double>& times,
-                   const std::vector<std::vector<double>>& rows)
+/// In the units that are wished.
+std::vector<ShownUnit> units_of(const Sensor& sensor, const std::vector<std::string>& wished)
+{
+    std::vector<std::string> units;
+    for (const SensorComponent& component : sensor.components) units.push_back(component.unit);
+    as_usage([&] { check_shown_units(wished, units); });
+    std::vector<ShownUnit> shown;
+    for (const std::string& unit : units) shown.push_back(shown_unit(unit, wished));
+    return shown;
+}
+
+std::string csv_of(const Sensor& sensor, const std::vector<ShownUnit>& units,
+                   const std::vector<double>& times, const std::vector<std::vector<double>>& rows)
 {
     std::string out = "t [s]";
-    for (const SensorComponent& component : sensor.components)
-        out += fmt::format(",{} [{}]", component.name, component.unit);
+    for (std::size_t i = 0; i < units.size(); ++i)
+        out += fmt::format(",{} [{}]", sensor.components[i].name, units[i].unit);
     out += "\r\n";
     for (std::size_t i = 0; i < times.size(); ++i) {
         out += to_text(times[i]);
-        for (const double x : rows[i]) out += "," + (std::isfinite(x) ? to_text(x) : "");
+        for (std::size_t k = 0; k < units.size(); ++k)
+            out += "," + (std::isfinite(rows[i][k]) ? to_text(units[k].factor * rows[i][k]) : "");
         out += "\r\n";
     }
     return out;
@@ -82,12 +95,13 @@ std::string json_of(const Sensor& sensor, const std::vector<double>& times,
     return json.text() + "\n";
 }
 
-std::string text_of(const Sensor& sensor, double t, const std::vector<double>& row)
+std::string text_of(const Sensor& sensor, const std::vector<ShownUnit>& units, double t,
+                    const std::vector<double>& row)
 {
     std::string out = fmt::format("t = {} s\n", to_text(t));
     for (std::size_t i = 0; i < row.size(); ++i)
-        out += fmt::format("  {:<22} {:>24}  {}\n", sensor.components[i].name, to_text(row[i]),
-                           sensor.components[i].unit);
+        out += fmt::format("  {:<22} {:>24}  {}\n", sensor.components[i].name,
+                           to_text(units[i].factor * row[i]), units[i].unit);
     return out;
 }
 
@@ -107,9 +121,10 @@ std::string sample_sensor(const SampleArguments& arguments, const Common& common
         rows.emplace_back(first, first + static_cast<std::ptrdiff_t>(found.sensor->components.size()));
     }
     if (common.json) return json_of(*found.sensor, times, rows);
-    if (arguments.csv) return csv_of(*found.sensor, times, rows);
+    const std::vector<ShownUnit> units = units_of(*found.sensor, arguments.units);
+    if (arguments.csv) return csv_of(*found.sensor, units, times, rows);
     std::string text;
-    for (std::size_t i = 0; i < times.size(); ++i) text += text_of(*found.sensor, times[i], rows[i]);
+    for (std::size_t i = 0; i < times.size(); ++i) text += text_of(*found.sensor, units, times[i], rows[i]);
     return text;
 }
 

@@ -19,14 +19,6 @@ std::string number(double x)
     return std::isfinite(x) ? fmt::format("{:.1e}", x) : "not known";
 }
 
-const char* grade(double drift)
-{
-    if (drift <= 1e-10) return "to rounding";
-    if (drift <= 1e-6) return "very well";
-    if (drift <= 1e-3) return "well enough for most purposes";
-    return "coarsely: take more elements or a higher degree";
-}
-
 const char* sign_of(const Terminal& terminal, Ink ink)
 {
     if (ink == Ink::good) return terminal.signs ? "\u2713" : "+";
@@ -34,64 +26,9 @@ const char* sign_of(const Terminal& terminal, Ink ink)
     return terminal.signs ? "\u2717" : "x";
 }
 
-struct Headline {
-    Ink ink;
-    std::string word;
-    std::string rest;   ///< of the sentence
-};
-
-std::string kept_of(const Run& run, double end)
+Ink ink_of(Grade grade)
 {
-    if (run.report.n_elements == 0) return "no element was solved; the file holds the start";
-    return fmt::format("the file holds the motion up to {:.6g} s", end);
-}
-
-/// "7 digits through 31 s"
-std::string through(double digits, double t)
-{
-    return fmt::format("{:.0f} digit{} through {:.6g} s", digits, digits == 1 ? "" : "s", t);
-}
-
-/// "7 digits through 31 s, then 2"; files before format 2.2 know the last of it alone.
-std::string good_of(const Verdict& s, double end)
-{
-    const double last = std::floor(s.estimated_digits);
-    if (!std::isfinite(s.good_digits)) return through(last, end);
-    return through(s.good_digits, s.good_until) +
-           (s.good_until < end ? fmt::format(", then {:.0f}", last) : "");
-}
-
-Headline headline_of(const Run& run, double end)
-{
-    const SolveReport& report = run.report;
-    const Verdict& s = run.verdict;
-    if (report.status == SolveStatus::suspect)
-        return {Ink::doubtful, "Suspect", "the solver converged, but the motion fails its checks"};
-    if (report.status == SolveStatus::cancelled) return {Ink::bad, "Cancelled", kept_of(run, end)};
-    if (!report.converged()) {
-        const bool is_plain = report.status == SolveStatus::not_converged;
-        return {Ink::bad,
-                is_plain ? "Not converged" : fmt::format("Not converged ({})", to_string(report.status)),
-                kept_of(run, end)};
-    }
-    const char* const holds = s.max_weak_violation > 0              ? " in the mean"
-                              : s.max_constraint_violation <= 1e-10 ? " to rounding"
-                                                                    : "";
-    if (std::isfinite(s.estimated_error))
-        return {Ink::good, "Converged",
-                fmt::format("good to {}, constraints hold{}", good_of(s, end), holds)};
-    return {Ink::good, "Converged",
-            fmt::format("constraints hold{} and the balances hold {}; the error is not known", holds,
-                        grade(std::max(s.energy_drift, s.angular_momentum_drift)))};
-}
-
-/// The texts behind a verdict that is not "converged": why it is what it is.
-std::vector<std::string> reasons_of(const Run& run)
-{
-    if (run.report.converged()) return {};
-    if (!run.verdict.reasons.empty()) return run.verdict.reasons;
-    if (run.report.message.empty()) return {};
-    return {run.report.message};
+    return grade == Grade::good ? Ink::good : grade == Grade::doubtful ? Ink::doubtful : Ink::bad;
 }
 
 constexpr int name_width = 18;        // of figures, two spaces before it not counted
@@ -103,6 +40,11 @@ void Summary::headline(Ink ink, std::string_view word, std::string_view rest)
     const std::string first = std::string(sign_of(terminal_, ink)) + " " + std::string(word);
     text_ += painted(terminal_, ink, first) + ": " +
              wrapped(rest, terminal_.columns, 2, width_of(first) + 2) + "\n";
+}
+
+void Summary::headline(const Headline& h, std::string_view behind)
+{
+    headline(ink_of(h.grade), h.word, h.lead + (h.rest.empty() ? "" : ", " + h.rest) + std::string(behind));
 }
 
 void Summary::figure(std::string_view name, std::string_view text)
@@ -117,8 +59,7 @@ void Summary::aside(std::string_view text) { text_ += painted(terminal_, Ink::di
 
 void add_verdict(Summary& summary, const Run& run, double end)
 {
-    const Headline h = headline_of(run, end);
-    summary.headline(h.ink, h.word, h.rest);
+    summary.headline(headline_of(run, end));
     for (const std::string& reason : reasons_of(run)) summary.figure("because", plain(reason));
     if (!run.title.empty()) summary.figure("title", plain(run.title));
 }
@@ -137,24 +78,25 @@ void add_figures(Summary& summary, const Run& run, bool verbose)
     const bool is_weak = s.max_weak_violation > 0;
     if (run.report.n_elements == 0) return;   // there is nothing to measure
     if (std::isfinite(s.estimated_error))
-        summary.figure(
-            "estimated error",
-            fmt::format(
-                "{} at most at element ends (rad, or relative to the model length, {:.3g} m), at {:.6g} s; "
-                "by {}{}",
-                number(s.estimated_error), run.estimate.length, s.estimated_error_time, witness_of(run),
-                report.converged() || !(s.good_digits > 0) ? ""
-                                                           : "; " + through(s.good_digits, s.good_until)));
-    summary.figure("constraints", fmt::format("error {} at most{} (velocity level {} 1/s)",
-                                              number(s.max_constraint_violation),
-                                              is_weak ? ", in the mean " + number(s.max_weak_violation) : "",
-                                              number(s.max_velocity_violation)));
-    const auto balance = [&](const char* what, double drift, const char* of) {
-        summary.figure(what, drift == 0 ? std::string("balanced to rounding")
-                                        : fmt::format("error {} (relative to {})", number(drift), of));
+        summary.figure("estimated error",
+                       fmt::format("{} at most at element ends ({}, {:.3g} m), at {:.6g} s; by {}{}",
+                                   number(s.estimated_error), judged_figure("estimated_error").meaning,
+                                   run.estimate.length, s.estimated_error_time, witness_of(run),
+                                   report.converged() || !(s.good_digits > 0)
+                                       ? ""
+                                       : "; " + digits_through(s.good_digits, s.good_until)));
+    summary.figure(judged_figure("max_constraint_violation").name,
+                   fmt::format("error {} at most{} (velocity level {} 1/s)",
+                               number(s.max_constraint_violation),
+                               is_weak ? ", in the mean " + number(s.max_weak_violation) : "",
+                               number(s.max_velocity_violation)));
+    const auto balance = [&](const char* figure, double drift) {
+        const JudgedFigure& of = judged_figure(figure);
+        summary.figure(of.name, drift == 0 ? std::string("balanced to rounding")
+                                           : fmt::format("error {} ({})", number(drift), of.meaning));
     };
-    balance("energy", s.energy_drift, "peak kinetic or stored energy");
-    balance("angular momentum", s.angular_momentum_drift, "its peak");
+    balance("energy_drift", s.energy_drift);
+    balance("angular_momentum_drift", s.angular_momentum_drift);
     if (verbose) {
         summary.figure("zig-zag",
                        fmt::format("{} in positions, {} in momenta (0: smooth, 1: from node to node)",

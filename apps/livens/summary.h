@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "livens/io/results.h"
+#include "livens/io/verdict_words.h"
 #include "terminal.h"
 
 namespace livens::program {
@@ -17,6 +18,8 @@ public:
 
     /// A sign and a word in its colour, then the rest of the sentence.
     void headline(Ink ink, std::string_view word, std::string_view rest);
+    /// That of a run, and what may stand behind it.
+    void headline(const Headline& headline, std::string_view behind = "");
     void figure(std::string_view name, std::string_view text);
     /// A line in dim letters, such as what to do next.
     void aside(std::string_view text);

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// livens view: a page of a run, served to browsers on this machine until the user has seen enough.
+// livens view: a page of a run, or of a scenario that is solved whenever it is saved, served to browsers on
+// this machine until the user has seen enough.
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <optional>
 #include <string>
 
 #include <arpa/inet.h>
@@ -17,6 +19,8 @@
 #include "console.h"
 #include "failure.h"
 #include "interrupt.h"
+#include "live_scenario.h"
+#include "simd.h"
 #include "visitors.h"
 
 extern char** environ;
@@ -25,7 +29,8 @@ namespace livens::program {
 
 namespace {
 
-constexpr int slice = 200;   // ms between looks for a signal
+// ms between looks for a signal; for files that were saved; for a solution that is done
+constexpr int slice = 200, slice_of_files = 50, slice_of_solution = 10;
 
 [[noreturn]] void give_up(const std::string& what)
 {
@@ -73,26 +78,50 @@ int listen_here(const Descriptor& door, int port)
     return ntohs(place.sin_port);
 }
 
+void check_view(const ReportArguments& arguments)
+{
+    if (arguments.watched.empty() && arguments.run.empty())
+        throw failure(exit_usage, "view needs RUN.nc, or --watch FILE.toml");
+    if (!arguments.watched.empty() && !arguments.run.empty())
+        throw failure(exit_usage, "view shows a run, or with --watch a scenario, not both");
+    if (arguments.run.ends_with(".toml"))
+        throw failure(exit_usage, "'" + plain(arguments.run) +
+                                      "' is a scenario, not a run; 'livens view --watch " +
+                                      plain(arguments.run) + "' solves and shows it");
+}
+
+void show_address(const std::string& address, const ReportArguments& arguments, const Common& common)
+{
+    print(common.json ? "{\"address\": \"" + address + "\"}\n" : address + "\n");
+    if (!arguments.address_only && !open_browser(address))
+        say_warning("found no browser; open the address in one");
+    say_note("serving until Ctrl-C");
+}
+
 }   // namespace
 
 int view_command(const ReportArguments& arguments, const Common& common)
 {
-    const std::string page = report_of(arguments);
+    check_view(arguments);
+    const bool is_live = !arguments.watched.empty();
+    pin_instructions("");
+    Served served;
     const InterruptWatch watch;
-    const Descriptor door(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
-    const int port = listen_here(door, arguments.port);
-    const Served served{page, "/" + secret() + "/", port};
-    const std::string address = fmt::format("http://127.0.0.1:{}{}", port, served.path);
-    if (common.json)
-        print("{\"address\": \"" + address + "\"}\n");
+    std::optional<LiveScenario> scenario;
+    if (is_live)
+        scenario.emplace(arguments.watched, common, served);
     else
-        print(address + "\n");
-    if (!arguments.address_only && !open_browser(address))
-        say_warning("found no browser; open the address in one");
-    say_note("serving until Ctrl-C");
+        served.page = std::make_shared<std::string>(report_of(arguments));
+    const Descriptor door(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
+    served.port = listen_here(door, arguments.port);
+    served.path = "/" + secret() + "/";
+    show_address(fmt::format("http://127.0.0.1:{}{}", served.port, served.path), arguments, common);
     Visitors visitors(served);
     while (InterruptWatch::signal() == 0) {
-        visitors.wait(door.number(), slice);
+        if (is_live) scenario->go_on();
+        visitors.wait(door.number(), !is_live                 ? slice
+                                     : scenario->is_solving() ? slice_of_solution
+                                                              : slice_of_files);
         while (::waitpid(-1, nullptr, WNOHANG) > 0) {
         }   // what opened the browser
     }

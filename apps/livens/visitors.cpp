@@ -5,6 +5,7 @@
 #include <array>
 #include <cctype>
 #include <cerrno>
+#include <charconv>
 #include <utility>
 
 #include <fmt/format.h>
@@ -59,15 +60,24 @@ bool asks_this_host(std::string_view head, int port)
     return n_hosts == 1 && is_this;
 }
 
-pollfd Visitor::wanted() const
+/// Who listens is also heard hanging up.
+pollfd Visitor::wanted(const Served& served) const
 {
-    return {socket_.number(), static_cast<short>(stage_ == Stage::taking ? POLLOUT : POLLIN), 0};
+    const bool is_sent = stage_ == Stage::taking ||
+                         (stage_ == Stage::listening && (!body_.empty() || news(served) != nullptr));
+    const int events = (is_sent ? POLLOUT : 0) | (stage_ == Stage::taking ? 0 : POLLIN);
+    return {socket_.number(), static_cast<short>(events), 0};
 }
 
 void Visitor::go_on(const Served& served)
 {
     if (stage_ == Stage::asking) ask(served);
-    if (stage_ == Stage::taking) take();
+    if (stage_ == Stage::taking && take()) {
+        stage_ = is_follower_ ? Stage::listening : Stage::leaving;
+        if (!is_follower_) ::shutdown(socket_.number(), SHUT_WR);
+        until_ = Clock::now() + farewell;
+    }
+    if (stage_ == Stage::listening) listen(served);
     if (stage_ == Stage::leaving) leave();
 }
 
@@ -82,17 +92,32 @@ void Visitor::ask(const Served& served)
         is_done_ = head_.size() > most_head;
         return;
     }
-    const bool is_head = head_.starts_with("HEAD " + served.path + " "),
-               is_get = head_.starts_with("GET " + served.path + " ");
-    const bool is_ours = (is_get || is_head) && asks_this_host(head_, served.port);
-    const std::string_view body = is_ours ? served.page : "not here\n";
-    head_ = fmt::format("HTTP/1.1 {}\r\nContent-Type: text/{}; charset=utf-8\r\nContent-Length: {}\r\n"
-                        "Cache-Control: no-store\r\nX-Content-Type-Options: nosniff\r\n"
-                        "Referrer-Policy: no-referrer\r\nConnection: close\r\n\r\n",
-                        is_ours ? "200 OK" : "404 Not Found", is_ours ? "html" : "plain", body.size());
-    body_ = is_head ? std::string_view() : body;
+    answer(served);
     stage_ = Stage::taking;
     until_ = Clock::now() + patience;
+}
+
+void Visitor::answer(const Served& served)
+{
+    const std::string events = "GET " + served.path + "events?";
+    const bool is_head = head_.starts_with("HEAD " + served.path + " "),
+               is_get = head_.starts_with("GET " + served.path + " "),
+               is_here = asks_this_host(head_, served.port);
+    is_follower_ = is_here && served.has_events && head_.starts_with(events);
+    const bool is_page = is_here && (is_get || is_head);
+    if (is_follower_) std::from_chars(head_.data() + events.size(), head_.data() + head_.size(), heard_);
+    if (is_page && !is_head) kept_ = served.page;
+    const std::string_view other = is_follower_ ? "" : "not here\n";
+    const std::size_t size = is_page ? served.page->size() : other.size();
+    head_ = fmt::format("HTTP/1.1 {}\r\nContent-Type: text/{}; charset=utf-8\r\n{}"
+                        "Cache-Control: no-store\r\nX-Content-Type-Options: nosniff\r\n"
+                        "Referrer-Policy: no-referrer\r\nConnection: close\r\n\r\n",
+                        is_page || is_follower_ ? "200 OK" : "404 Not Found",
+                        is_page        ? "html"
+                        : is_follower_ ? "event-stream"
+                                       : "plain",
+                        is_follower_ ? "" : fmt::format("Content-Length: {}\r\n", size));
+    body_ = kept_ ? std::string_view(*kept_) : is_page ? std::string_view() : other;
 }
 
 /// False if it cannot be taken now, or ever.
@@ -105,20 +130,42 @@ bool Visitor::send_some(std::string_view text, std::size_t& n_sent)
     return n > 0;
 }
 
-void Visitor::take()
+bool Visitor::take()
 {
     std::size_t n = 0;
     while (!head_.empty()) {
-        if (!send_some(head_, n)) return;
+        if (!send_some(head_, n)) return false;
         head_.erase(0, n);
     }
     while (!body_.empty()) {
-        if (!send_some(body_, n)) return;
+        if (!send_some(body_, n)) return false;
         body_.remove_prefix(n);
     }
-    ::shutdown(socket_.number(), SHUT_WR);
-    stage_ = Stage::leaving;
-    until_ = Clock::now() + farewell;
+    return true;
+}
+
+/// The first one that it has not heard; null: there is none.
+const Event* Visitor::news(const Served& served) const
+{
+    const Event* first = nullptr;
+    for (const Event& event : served.events)
+        if (event.number > heard_ && (first == nullptr || event.number < first->number)) first = &event;
+    return first;
+}
+
+/// What it says is not listened to: it is looked whether it has hung up.
+void Visitor::listen(const Served& served)
+{
+    std::array<char, 4096> rest{};
+    const ssize_t n = ::recv(socket_.number(), rest.data(), rest.size(), MSG_DONTWAIT);
+    is_done_ = n == 0 || (n < 0 && !would_block());
+    while (!is_done_ && take()) {
+        const Event* const next = news(served);
+        if (next == nullptr) return;
+        heard_ = next->number;
+        kept_ = next->text;
+        body_ = *kept_;
+    }
 }
 
 /// Closing with unread bytes would take back what is on its way.
@@ -143,7 +190,7 @@ void Visitors::receive(int door)
 void Visitors::wait(int door, int milliseconds)
 {
     std::vector<pollfd> polls;
-    for (const Visitor& visitor : all_) polls.push_back(visitor.wanted());
+    for (const Visitor& visitor : all_) polls.push_back(visitor.wanted(served_));
     polls.push_back({door, POLLIN, 0});
     if (::poll(polls.data(), polls.size(), milliseconds) > 0) {
         for (std::size_t i = 0; i < all_.size(); ++i)

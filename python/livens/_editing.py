@@ -124,7 +124,8 @@ class Tree(Adders):
         key = schema().key(schema().root, {}, name)
         old = self._root.get(name, _MISSING)
         store(self._root, name, plain(value, key, name))
-        _, found = _core.build_tree({"format": 1, **{name: self._root[name]}}, "", "", True)
+        _, found = _core.build_tree({**{key: self._root[key] for key in ("format", "parameters", name) if key in self._root}},
+                                    "", "", True)
         self._raise_or_keep(self._root, name, old,
                             [diagnostic_of(d, self._root) for d in found
                              if d["location"][0] == name and d["severity"] == "error"
@@ -165,7 +166,7 @@ class Tree(Adders):
         if section is not top:
             top._table.places[top_key] = user_place()
         found = [] if value is None else [
-            of_table(d, top._key, top._table) for d in _core.check_table(top._key, top._table)
+            of_table(d, top._key, top._table) for d in _core.check_table(top._key, top._table, self._root.get("parameters", {}))
             if d["severity"] == "error" and d["location"][2] == top_key]
         if found:
             section._table.update(replaced)
@@ -292,7 +293,8 @@ class Tree(Adders):
             for word in words:
                 for candidate in {word, word.rpartition(".")[0]}:
                     open_ends += self._named(candidate)
-        part: dict[str, Any] = {key: value for key, value in self._root.items() if key in ("format", "gravity", "start")}
+        part: dict[str, Any] = {key: value for key, value in self._root.items() 
+                                if key in ("format", "parameters", "gravity", "start")}
         part["time"] = {"end": 1}
         if "include" in self._root:
             part["include"] = self._root["include"]

@@ -81,7 +81,7 @@ class Section:
                 return Section(self._model, value, child, key["name"], self)
             if isinstance(value, list) and child is not None:
                 return tuple(Section(self._model, item, child, key["name"], self) for item in value)
-            return si(value.copy() if isinstance(value, Table) else value, key)
+            return si(value.copy() if isinstance(value, Table) else value, key, self._model._root.get("parameters", {}))
         return _fallback(key)
 
     def __setattr__(self, name: str, value: Any) -> None:

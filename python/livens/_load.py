@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Mapping
+from typing import Any
 
 from . import _core
 from ._errors import InputError, Place, fault, file_name, raised
 from ._model import Model
 from ._other_names import refused_model
+from ._parameters import text_of
 from ._places import some_time
 from ._tree import diagnostics_of_text, tables
 
 
-def load(file: str | os.PathLike[str] | None = None, *, text: str | None = None, check: bool = True) -> Model:
+def load(file: str | os.PathLike[str] | None = None, *, text: str | None = None, check: bool = True,
+         parameters: Mapping[str, Any] | None = None) -> Model:
     """Reads a scenario, from a file or from a string.
 
     Args:
@@ -20,6 +24,8 @@ def load(file: str | os.PathLike[str] | None = None, *, text: str | None = None,
         text: The scenario itself, instead.
         check: Whether what is wrong with it is raised now; else by :func:`solve`, and listed by
             :meth:`Model.check`. What is no TOML is always raised.
+        parameters: Values that parameters have instead of those of the scenario: numbers (in SI units) or strings, as in
+            ``{"L": 0.4, "width": "30 mm"}``.
 
     Raises:
         InputError: with line and column of all that is wrong.
@@ -59,6 +65,12 @@ def load(file: str | os.PathLike[str] | None = None, *, text: str | None = None,
     shown = content.decode("utf-8", "replace")
     if parsed is None:
         raise InputError(diagnostics_of_text(found, name, shown))
+    if parameters is not None:
+        values = [(key, text_of(value, f"parameters.{key}")) for key, value in parameters.items()]
+        shown, found = _core.with_parameters(shown, values)
+        if found:
+            raise InputError(diagnostics_of_text(found, name, shown))
+        parsed, _ = _core.parse(shown.encode())
     model = Model()
     model._root = tables(parsed[0], parsed[1], name or "<text>", Place(name or "<text>", 1))
     model._file, model._text = name or "<text>", shown

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -16,6 +16,7 @@ from ._errors import Diagnostic, SlowWarning, SolveWarning, fault, file_name, ma
 from ._generated import Body, Drive, Joint, Load, Point, Sensor
 from ._included import Added, as_part, files_of
 from ._other_names import of_model
+from ._parameters import Parameters
 from ._places import some_time
 from ._rest import Equilibrium, EquilibriumError, Linearisation, Modes
 from ._tree import KINDS, Table, frozen, toml
@@ -67,7 +68,7 @@ class Model(Tree):
 
         def __setattr__(self, name: str, value: Any) -> None:
             if not name.startswith("_") and not hasattr(type(self), name):
-                known = ["title", "gravity"]
+                known = ["title", "gravity", "parameters"]
                 help = _core.other_key("top of the file", "", name) or _core.suggestion(name, known)
                 raise AttributeError(f"a model has no '{name}' to set; {help}", name=name, obj=self)
             super().__setattr__(name, value)
@@ -99,6 +100,15 @@ class Model(Tree):
     @gravity.setter
     def gravity(self, value: Any) -> None:
         self._edit_root("gravity", value)
+
+    @property
+    def parameters(self) -> Parameters:
+        """Names for numbers, as in ``m.parameters = {"L": "400 mm"}``: ``"L/2"`` is a number of the model then."""
+        return Parameters(self)
+
+    @parameters.setter
+    def parameters(self, values: Mapping[str, Any]) -> None:
+        Parameters(self)._replace(values)
 
     @property
     def bodies(self) -> Names[Body]:
@@ -265,7 +275,7 @@ class Model(Tree):
 
     def add(self, other: Model, prefix: str = "", *, position: Vector | None = None, rotation: Any = None,
             directors: Matrix | None = None, quaternion: Vector | None = None,
-            rotation_vector: Vector | None = None) -> Added:
+            rotation_vector: Vector | None = None, parameters: Mapping[str, Any] | None = None) -> Added:
         """Adds all of another model, as it is now: bodies, points, joints, drives, loads and sensors.
 
         It is moved and turned as one. What it says of the world's axes and places moves along: points and axes there,
@@ -281,6 +291,7 @@ class Model(Tree):
             directors: Likewise.
             quaternion: Likewise, (w, x, y, z).
             rotation_vector: Likewise, rad.
+            parameters: Values that its parameters have instead of their own, as expressions of those of this model.
 
         Returns:
             Its names here, by those that it has itself.
@@ -302,7 +313,7 @@ class Model(Tree):
             [-0.0684, -0.1, -0.1879]
         """
         placement = {"position": position, "rotation": rotation, "directors": directors, "quaternion": quaternion,
-                     "rotation_vector": rotation_vector}
+                     "rotation_vector": rotation_vector, "parameters": parameters}
         table, names = as_part(self, other, prefix, placement)
         self._include(table)
         return names

@@ -333,17 +333,34 @@ class Solution(Series):
         return page
 
     def export(self, file: str | os.PathLike[str], format: str | None = None, *, at: str | None = None,
+               unit: str | Sequence[str] | None = None, size: tuple[int, int] | None = None, fps: float | None = None,
+               duration: float | None = None, start: float | None = None, end: float | None = None,
+               view: str = "fitted", dark: bool = False, names: bool = False, clock: bool = False,
                force: bool = False) -> None:
-        """Writes the motion for other programs, by the ending of the name or by ``format``.
+        """Writes the motion for other programs, or as a picture or video, by the ending of the name or by ``format``.
+
+        Videos and pictures are drawn by Chromium or Chrome without a window, which must be on this machine.
 
         Args:
             file: Its name.
-            format: ``"csv"``, ``"npz"``, ``"gltf"`` or ``"pvd"``, as ``livens export`` has them.
+            format: ``"csv"``, ``"npz"``, ``"gltf"``, ``"pvd"``, ``"webm"``, ``"gif"``, ``"png"``, ``"svg"``, as
+                ``livens export`` has them.
             at: Of CSV, as :meth:`to_dataframe` has it.
+            unit: Of CSV, as :meth:`to_dataframe` has it: ``"deg"``.
+            size: Of pictures and videos, width and height in pixels.
+            fps: Frames per second of a video; default 30, of a GIF 20.
+            duration: Of a video, s; default: that of the motion, 8 s where it is under 2 s or over 40 s.
+            start: Instant of a still, or the first of a video, s; default: the start of the motion.
+            end: Last instant of a video, s.
+            view: ``"fitted"``, ``"front"``, ``"side"`` or ``"top"``.
+            dark: Dark colours.
+            names: Names of bodies are written beside them.
+            clock: The time is written into the picture.
             force: An older export is replaced, any other file only if this is true.
 
         Raises:
-            OSError: it cannot be written; ``FileExistsError`` if another file would be lost.
+            OSError: it cannot be written; ``FileExistsError`` if another file would be lost; no browser is found.
+            InputError: ``unit``, ``picture``.
         """
         name = file_name(file)
         known = {word: ending for word, ending, _ in _core.export_formats()}
@@ -355,15 +372,22 @@ class Solution(Series):
         words = ("auto", "dense", "output", "ends")
         if (at or "auto") not in words:
             raise fault("unknown-choice", f"'{at}' is no choice of instants", "at", "there are 'dense', 'output', 'ends'")
-        instants = words.index(at or "auto")
+        if view not in ("fitted", "front", "side", "top"):
+            raise fault("unknown-choice", f"'{view}' is no view", "view", "there are 'fitted', 'front', 'side', 'top'")
+        width, height = (0, 0) if size is None else (int(n) for n in size)
+        given = {"fps": fps, "duration": duration, "start": start, "end": end}
+        picture = {"width": width, "height": height, "view": view, "dark": bool(dark), "names": bool(names),
+                   "clock": bool(clock), **{key: float(value) for key, value in given.items() if value is not None}}
+        units = [unit] if isinstance(unit, str) else list(unit or ())
         make_way(name, str(chosen), self._result.inputs(), force)
+        options = (name, force, words.index(at or "auto"), units, picture)
         if chosen == "npz":
             import tempfile
             with tempfile.TemporaryDirectory() as folder:   # it copies the variables of a result
                 self.save(result := os.path.join(folder, "run.nc"))
-                self._result.export_to(chosen, result, name, force, instants)
+                self._result.export_to(chosen, result, *options)
         else:
-            self._result.export_to(chosen, "", name, force, instants)
+            self._result.export_to(chosen, "", *options)
 
     def __reduce__(self) -> tuple[Any, ...]:
         self._refuse_functions("pickled")
@@ -373,20 +397,19 @@ class Solution(Series):
 
     def _summary(self) -> list[tuple[str, str]]:
         f = self.figures
-        rows = [("title", self.title)] if self.title else []
+        rows = [("verdict", str(self._result.headline))]
+        rows += [("title", self.title)] if self.title else []
         if self.reasons or not self.success:
             rows.append(("because", "; ".join(self.reasons) or self.message))
         span = f"{self.t[0]:.6g} s to {self.t[-1]:.6g} s"
         rows.append(("method", f"{self.method}, {self.n_elements} elements, {span}"
                      + (f", in {self.seconds:.3g} s" if self.seconds else "")))
-        length = f["model_length"] or float("nan")
-        words = (("estimated_error", "estimated error", f"rad, or relative to the model length, {length:.3g} m"),
-                 ("max_constraint_violation", "constraints", "largest error, relative"),
-                 ("energy_drift", "energy", "relative error"),
-                 ("angular_momentum_drift", "angular momentum", "relative error"),
-                 ("horizon", "horizon", "s: beyond it rounding decides"))
-        rows += [(name, f"{f[key]:.1e} {meaning}" if key != "horizon" else f"{f[key]:.3g} {meaning}")
-                 for key, name, meaning in words if f[key] is not None]
+        for figure, name, meaning in _core.judged_figures():
+            if figure in ("estimated_error", "max_constraint_violation", "energy_drift", "angular_momentum_drift") \
+                    and f[figure] is not None:
+                rows.append((name, f"{f[figure]:.1e} ({meaning})"))
+        if f["horizon"] is not None:
+            rows.append(("horizon", f"{f['horizon']:.3g} s: beyond it rounding decides"))
         return rows + [("note", note) for note in self.notes if note not in self.reasons]
 
     def __repr__(self) -> str:

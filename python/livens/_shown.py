@@ -56,18 +56,12 @@ class Extremes(NamedTuple):
 
 def factor_to(unit: str, wanted: str | Sequence[str] | None) -> tuple[float, str]:
     """What numbers in ``unit`` are multiplied with, and the unit then: as it is where none of the wanted fits."""
-    for one in ([wanted] if isinstance(wanted, str) else list(wanted or ())):
+    wishes = [wanted] if isinstance(wanted, str) else list(wanted or ())
+    for one in wishes:
         if not isinstance(one, str):
             raise TypeError(f"units are strings, as 'deg', not {type(one).__name__}")
-        first, _, rest = unit.partition("/")
-        for text in (one, f"{one}/{rest}" if rest else one):   # "deg" of rates: deg/s
-            if text != one and first not in ("rad", "m"):
-                continue
-            try:
-                return 1 / float(_core.quantity(f"1 {text}", unit, "")), text
-            except ValueError:
-                continue
-    return 1.0, unit
+    factor, shown = _core.shown_unit(unit, wishes)
+    return float(factor), str(shown)
 
 
 def check_units(wanted: str | Sequence[str] | None, units: Sequence[str]) -> None:

@@ -16,7 +16,8 @@ from ._errors import Diagnostic, InputError, Place, fault, user_place
 from ._rotations import ORIENTATIONS, as_key, doubt, is_rotation
 from ._values import Shape
 
-ROW, TABLE, TABLES = 9, 11, 12   # of Form in schema.h
+INTEGER, ROW, TABLE, TABLES = 3, 9, 11, 12   # of Form in schema.h
+NUMERIC = (INTEGER, 4, ROW, 10)
 KINDS = ("body", "point", "joint", "drive", "load", "sensor")   # arrays of tables in the root
 
 
@@ -179,17 +180,19 @@ def _key_of_number(key: dict[str, Any] | None, i: int, n: int) -> dict[str, Any]
     return {**key, "unit": units[i if n == len(units) else i * (n + 1)]}
 
 
-def si(value: Any, key: dict[str, Any] | None) -> Any:
+def si(value: Any, key: dict[str, Any] | None, parameters: Mapping[str, Any] = {}, in_list: bool = False) -> Any:
     """A value of the tree as users read it: numbers and arrays in SI units."""
     if isinstance(value, str):
-        if key is not None and (key["unit"] or key["other_unit"]):
-            try:
-                return _core.quantity(value, key["unit"], key["other_unit"])
-            except InputError:
-                return value   # check() tells
-        return value
+        is_number = key is not None and (key["form"] in NUMERIC or in_list and key["other"] in NUMERIC)
+        if key is None or not is_number or value in key["choices"]:
+            return value
+        try:
+            number = _core.quantity(value, key["unit"], key["other_unit"], dict(parameters))
+            return round(number) if key["form"] == INTEGER else number
+        except InputError:
+            return value   # check() tells
     if isinstance(value, tuple):
-        items = [si(item, _key_of_number(key, i, len(value))) for i, item in enumerate(value)]
+        items = [si(item, _key_of_number(key, i, len(value)), parameters, True) for i, item in enumerate(value)]
         try:
             return Numbers(items)
         except (TypeError, ValueError):
@@ -279,7 +282,7 @@ def _scenario_lines(root: Mapping[str, Any], path: str) -> list[str]:
     """``path``: of a model inside, ``include.model.``."""
     order = [key["name"] for key in schema().root["keys"]]
     names = sorted(root, key=lambda name: order.index(name) if name in order else len(order))
-    headed = {key["name"] for key in schema().root["keys"] if key["child"] is not None}
+    headed = {key["name"] for key in schema().root["keys"] if key["child"] is not None} | {"parameters"}
     lines = [line for name in names for line in toml_lines({name: root[name]})
              if name not in headed or not isinstance(root[name], (dict, list))]
     for name in names:

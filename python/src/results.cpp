@@ -15,6 +15,9 @@
 #include "livens/io/report.h"
 #include "livens/io/results/figures.h"
 #include "livens/io/results/layout.h"
+#include "livens/io/shown_unit.h"
+#include "livens/io/verdict_words.h"
+#include "livens/solvers/patience.h"
 #include "result.h"
 
 namespace livens::python {
@@ -246,13 +249,38 @@ Result from_bytes(const nb::bytes& bytes)
     return with_scenario(read_run_from(source), "pickle");
 }
 
+/// Throws what Python's signals throw.
 void export_to(const Result& r, const std::string& format, const std::string& result, const std::string& file,
-               bool force, int instants)
+               bool force, int instants, const std::vector<std::string>& units, const nb::dict& picture)
 {
+    PictureOptions o;
+    const auto take = [&](const char* name, auto& member) {
+        if (picture.contains(name)) member = nb::cast<std::remove_reference_t<decltype(member)>>(picture[name]);
+    };
+    take("width", o.width);
+    take("height", o.height);
+    take("fps", o.rate);
+    take("duration", o.duration);
+    take("start", o.from);
+    take("end", o.to);
+    take("view", o.view);
+    take("dark", o.is_dark);
+    take("names", o.names);
+    take("clock", o.clock);
     const nb::gil_scoped_release unlock;
-    for (const ExportFormat& f : export_formats())
-        if (f.word == format)
-            f.write(file, {result, *r.scenario, r.run, force, static_cast<Instants>(instants)});
+    const std::function<bool()> goes_on = [] {
+        const nb::gil_scoped_acquire lock;
+        return PyErr_CheckSignals() == 0;
+    };
+    const Patience patience(goes_on);
+    try {
+        for (const ExportFormat& f : export_formats())
+            if (f.word == format)
+                f.write(file, {result, *r.scenario, r.run, force, static_cast<Instants>(instants), units, o});
+    } catch (const Stopped&) {
+        const nb::gil_scoped_acquire lock;
+        throw nb::python_error();
+    }
 }
 
 }   // namespace
@@ -281,6 +309,11 @@ void add_results(nb::module_& m)
         .def_prop_ro("message", [](const Result& r) { return r.run.report.message; })
         .def_prop_ro("reasons", [](const Result& r) { return r.run.verdict.reasons; })
         .def_prop_ro("notes", [](const Result& r) { return r.run.notes; })
+        .def_prop_ro("headline",
+                     [](const Result& r) {
+                         const Headline h = headline_of(r.run, r.run.motion.end());
+                         return h.word + ": " + h.lead + (h.rest.empty() ? "" : ", " + h.rest);
+                     })
         .def_prop_ro("title", [](const Result& r) { return r.run.title; })
         .def_prop_ro("method", [](const Result& r) { return r.run.method; })
         .def_prop_ro("version", [](const Result& r) { return r.run.version; })
@@ -313,13 +346,26 @@ void add_results(nb::module_& m)
         .def("report", &report, nb::arg("name"), nb::arg("other").none(), nb::arg("other_name"))
         .def("to_bytes", &to_bytes)
         .def("export_to", &export_to, nb::arg("format"), nb::arg("result"), nb::arg("file"), nb::arg("force"),
-             nb::arg("instants"))
+             nb::arg("instants"), nb::arg("units"), nb::arg("picture"))
         .def("inputs", &inputs);
     m.def("load_result", &load_result, nb::arg("file"));
     m.def("from_bytes", &from_bytes, nb::arg("bytes"));
     m.def("objection", &objection, nb::arg("file"), nb::arg("kind"), nb::arg("inputs"), nb::arg("force"));
     m.def("write_file", &write_file, nb::arg("file"), nb::arg("bytes"));
     m.def("figure_meanings", &figure_meanings);
+    m.def(
+        "shown_unit",
+        [](const std::string& unit, const std::vector<std::string>& wished) {
+            const ShownUnit shown = shown_unit(unit, wished);
+            return nb::make_tuple(shown.factor, shown.unit);
+        },
+        nb::arg("unit"), nb::arg("wished"));
+    m.def("judged_figures", [] {
+        nb::list all;
+        for (const JudgedFigure& f : judged_figures())
+            all.append(nb::make_tuple(f.figure, f.name, f.meaning));
+        return all;
+    });
     m.def("export_formats", [] {
         nb::list all;
         for (const ExportFormat& f : export_formats())

@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tree.h"
 
+#include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/string_view.h>
+#include <nanobind/stl/vector.h>
 
 #include "livens/base/error.h"
 #include "livens/io/scenario/schema/other_keys.h"
 #include "livens/io/scenario/schema/other_words.h"
+#include "livens/io/scenario/schema/repeat.h"
 #include "livens/io/scenario/schema/schema.h"
 #include "livens/io/scenario/schema/section.h"
+#include "livens/io/scenario/text/parameters.h"
 #include "livens/io/scenario/text/units.h"
 
 namespace livens::python {
@@ -140,8 +144,50 @@ nb::list schema()
     return all;
 }
 
+/// Those of a model, from its table.
+struct ModelParameters {
+    explicit ModelParameters(const nb::dict& table)
+    {
+        nb::dict root;
+        root["parameters"] = table;
+        tree = reader.read(root);
+        parameters = Parameters(tree.find("parameters"), {}, findings);
+    }
+
+    TreeReader reader{};
+    Node tree{};
+    Findings findings{};
+    Parameters parameters{};
+};
+
+/// ({name: value in SI units}, what is wrong).
+nb::tuple parameters_of(const nb::dict& table)
+{
+    ModelParameters all(table);
+    nb::dict values;
+    for (const Parameters::One& one : all.parameters.all()) values[one.name.c_str()] = one.amount.value;
+    return nb::make_tuple(values, python::to_python(all.findings.take(""), &all.reader.locations()));
+}
+
+/// (the text of a scenario with other values of its parameters, what is wrong).
+nb::tuple with_parameters(const std::string& text,
+                          const std::vector<std::pair<std::string, std::string>>& values)
+{
+    Findings findings;
+    std::string set = text;
+    std::optional<Node> root;
+    if (text.size() <= max_scenario_bytes && scan(text, findings)) root = parse_toml(text, findings);
+    if (root) {
+        std::vector<Override> overrides;
+        for (const auto& [name, value] : values) overrides.push_back({.name = name, .text = value});
+        const Parameters parameters(root->find("parameters"), overrides, findings);
+        set = with_set_values(text, parameters);
+    }
+    return nb::make_tuple(set, python::to_python(findings.take(""), nullptr));
+}
+
 /// What the schema alone says of a table of the scenario, as in ("joint", {...}).
-nb::list check_table(const std::string& name, nb::dict table)
+nb::list check_table(const std::string& name, nb::dict table, const nb::dict& parameters)
 {
     const Key* key = find_key(root_table().keys_of(any_kind), name);
     if (key == nullptr || key->child == nullptr) throw nb::key_error(name.c_str());
@@ -156,10 +202,11 @@ nb::list check_table(const std::string& name, nb::dict table)
     const Node* title = node.find("name");
     const bool is_named = title != nullptr && title->kind == Node::Kind::text;
     Findings findings;
+    const ModelParameters all(parameters);
     const Section section(node, *key->child,
                           key->type.form == Form::tables ? name + (is_named ? " '" + title->text() + "'" : "")
                                                          : "[" + name + "]",
-                          findings);
+                          findings, all.parameters);
     return python::to_python(findings.take(""), &reader.locations());
 }
 
@@ -177,13 +224,28 @@ nb::tuple parse(nb::bytes text)
                        {"", "the folder examples holds scenarios to begin with"});
     else if (scan(view, findings))
         root = parse_toml(view, findings);
+    if (root && root->find("repeat") != nullptr) {
+        Findings told_later;   // of parameters, by whatever builds the model
+        const Parameters parameters(root->find("parameters"), {}, told_later);
+        root = without_repeats(*root, parameters, findings);
+    }
     nb::object tables = root ? nb::object(tables_of(*root)) : nb::none();
     return nb::make_tuple(tables, python::to_python(findings.take(""), nullptr));
 }
 
-/// In SI units; of a text in either unit.
-double quantity(std::string_view text, std::string_view unit, std::string_view other_unit)
+/// In SI units; of a text in either unit, or computed.
+double quantity(std::string_view text, std::string_view unit, std::string_view other_unit,
+                const nb::dict& parameters)
 {
+    const ModelParameters all(parameters);
+    if (is_computed(text, all.parameters)) {
+        Computed found = compute(text, other_unit.empty() ? unit : other_unit, all.parameters);
+        if (!found.code.empty() && !other_unit.empty()) found = compute(text, unit, all.parameters);
+        if (!found.code.empty())
+            throw InputError(
+                {found.code, "", "\"" + std::string(text) + "\": " + found.error, "", "", "", found.help});
+        return found.amount.value;
+    }
     if (!other_unit.empty()) {
         const Quantity other = parse_quantity(text, other_unit);
         if (other.error.empty()) return other.value;
@@ -374,8 +436,11 @@ void add_tree(nb::module_& m)
 {
     m.def("schema", &schema);
     m.def("parse", &parse, nb::arg("text"));
-    m.def("check_table", &check_table, nb::arg("name"), nb::arg("table"));
-    m.def("quantity", &quantity, nb::arg("text"), nb::arg("unit"), nb::arg("other_unit") = "");
+    m.def("check_table", &check_table, nb::arg("name"), nb::arg("table"), nb::arg("parameters"));
+    m.def("quantity", &quantity, nb::arg("text"), nb::arg("unit"), nb::arg("other_unit") = "",
+          nb::arg("parameters") = nb::dict());
+    m.def("parameters", &parameters_of, nb::arg("table"));
+    m.def("with_parameters", &with_parameters, nb::arg("text"), nb::arg("values"));
     m.def("suggestion", &suggestion, nb::arg("word"), nb::arg("known"));
     m.def("other_word", &other_word, nb::arg("word"), nb::arg("choices"));
     m.def("other_key", &other_key, nb::arg("heading"), nb::arg("kind"), nb::arg("key"), nb::arg("name") = "");

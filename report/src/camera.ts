@@ -25,10 +25,14 @@ function view_from(up: Vector3, across: Vector3, turn: number, height: number): 
   return { right, up: new Vector3().crossVectors(right, into), into };
 }
 
+const most_growth = 1.3, // of the distance, and of it sideways, by which a picture still fits
+  most_shift = 0.1;
+
 export class Eye {
   readonly camera = new PerspectiveCamera(28, 1, 0.01, 1000);
   readonly target = new Vector3();
   private moved = false;
+  private held = NaN; // the form of the picture in which this eye stays as another one
   private side: Side = "fitted";
   private room = { above: 0.05, below: 0.05 };
   private readonly across = new Vector3(); // level, where the motion is widest
@@ -104,6 +108,7 @@ export class Eye {
   }
   private fit_points() {
     this.moved = false;
+    this.held = NaN;
     const v = this.view_of(this.side);
     const tangent = Math.tan((this.camera.fov * Math.PI) / 360),
       tx = 0.9 * tangent * this.camera.aspect,
@@ -148,12 +153,28 @@ export class Eye {
     this.target.copy(other.target);
     this.aim();
   }
+  /** As the eye of a run before, so that what has changed is seen; but all is fitted anew where nobody has chosen from where
+   * to look and the whole has become much larger, much smaller, or has gone elsewhere. */
+  stay_as(other: Eye) {
+    this.room = other.room;
+    this.camera.aspect = other.camera.aspect;
+    this.see_as(other);
+    if (other.moved) return;
+    const far = (eye: Eye) => eye.camera.position.distanceTo(eye.target),
+      ratio = far(this) / far(other),
+      apart = this.target.distanceTo(other.target) / far(other);
+    if (Math.max(ratio, 1 / ratio) > most_growth || apart > most_shift) return;
+    this.camera.position.copy(other.camera.position);
+    this.target.copy(other.target);
+    this.held = other.camera.aspect;
+    this.aim();
+  }
   /** `above`, `below`: shares of the height that are left to what is written there. */
   resize(aspect: number, above: number, below: number) {
     this.room = { above, below };
     this.camera.aspect = aspect;
     this.camera.updateProjectionMatrix();
-    if (!this.moved) this.fit();
+    if (!this.moved && this.held !== aspect) this.fit();
   }
   private aim() {
     const distance = this.camera.position.distanceTo(this.target);

@@ -87,7 +87,7 @@ function sides(first: Run, second: Run): HTMLElement {
         row("file", (r) => r.meta.name),
         row("verdict", (r) => {
           const v = verdict_of(r);
-          return `${v.sign} ${v.word}, ${v.digits || "error not known"}`;
+          return `${v.sign} ${v.word}: ${v.lead}`;
         }),
         row("method", (r) => r.meta.method),
         row("elements", (r) => number(r.figure("elements"), 9)),
@@ -114,6 +114,7 @@ export class Compare {
     private readonly first: Run,
     private readonly time: Timeline,
     private readonly changed: (second: Run | null) => void,
+    signal: AbortSignal,
   ) {
     const input = element("input", {
       type: "file",
@@ -165,14 +166,16 @@ export class Compare {
       }
     };
     input.addEventListener("change", () => void read(input.files?.[0]));
-    for (const event of ["dragover", "drop"]) document.addEventListener(event, (e) => e.preventDefault());
-    document.addEventListener("drop", (e) => {
+    for (const event of ["dragover", "drop"])
+      document.addEventListener(event, (e) => e.preventDefault(), { signal });
+    const dropped = (e: Event) => {
       const file = (e as DragEvent).dataTransfer?.files[0];
       if (file) {
         by_id("tab-compare").click();
         void read(file);
       }
-    });
+    };
+    document.addEventListener("drop", dropped, { signal });
   }
 
   set(second: Run) {

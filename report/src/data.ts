@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What stands in the page: one JSON text and one block of numbers a run. src/livens/io/report writes both.
+import { unpacked } from "./unpacked";
 
 export type Vector = [number, number, number];
 
@@ -65,6 +66,14 @@ export interface Meta {
   status: string;
   message: string;
   converged: boolean;
+  verdict: {
+    grade: "good" | "doubtful" | "bad";
+    word: string;
+    lead: string;
+    rest: string;
+    reasons: string[];
+    figures: { figure: string; name: string; meaning: string }[]; // that it was judged by
+  };
   notes: string[];
   method: string;
   version: string;
@@ -74,7 +83,6 @@ export interface Meta {
   figures: Record<string, number | null>;
   start: number;
   end: number;
-  wanted_end: number;
   pose: {
     precision: "double" | "single" | "thinned";
     position_loss: number | null;
@@ -105,14 +113,6 @@ export interface Data {
   arrays: Map<string, Numbers>;
 }
 
-async function inflated(base64: string): Promise<Uint8Array> {
-  const text = atob(base64);
-  const bytes = new Uint8Array(text.length);
-  for (let i = 0; i < text.length; ++i) bytes[i] = text.charCodeAt(i);
-  const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"));
-  return new Uint8Array(await new Response(stream).arrayBuffer());
-}
-
 /** Bytes of one significance lie together. */
 function unshuffled(bytes: Uint8Array, at: number, size: number, count: number): ArrayBuffer {
   const plain = new Uint8Array(size * count);
@@ -121,30 +121,32 @@ function unshuffled(bytes: Uint8Array, at: number, size: number, count: number):
   return plain.buffer;
 }
 
+export async function data_of(meta: Meta, base64: string): Promise<Data> {
+  const bytes = await unpacked(base64),
+    arrays = new Map<string, Numbers>();
+  let at = 0;
+  for (const [name, [kind, count]] of Object.entries(meta.arrays)) {
+    const size = kind === "f8" ? 8 : 4,
+      plain = unshuffled(bytes, at, size, count);
+    arrays.set(
+      name,
+      kind === "f8"
+        ? new Float64Array(plain)
+        : kind === "f4"
+          ? new Float32Array(plain)
+          : new Uint32Array(plain),
+    );
+    at += size * count;
+  }
+  return { meta, arrays };
+}
+
 /** All runs that a page holds: this one, or another report that was read from a file. */
 export async function runs_of(page: ParentNode): Promise<Data[]> {
-  const texts = [...page.querySelectorAll("script.run")],
-    blocks = [...page.querySelectorAll("script.numbers")];
+  const blocks = [...page.querySelectorAll("script.numbers")];
   return Promise.all(
-    texts.map(async (text, i) => {
-      const meta = JSON.parse(text.textContent ?? "") as Meta;
-      const bytes = await inflated((blocks[i].textContent ?? "").trim());
-      const arrays = new Map<string, Numbers>();
-      let at = 0;
-      for (const [name, [kind, count]] of Object.entries(meta.arrays)) {
-        const size = kind === "f8" ? 8 : 4,
-          plain = unshuffled(bytes, at, size, count);
-        arrays.set(
-          name,
-          kind === "f8"
-            ? new Float64Array(plain)
-            : kind === "f4"
-              ? new Float32Array(plain)
-              : new Uint32Array(plain),
-        );
-        at += size * count;
-      }
-      return { meta, arrays };
-    }),
+    [...page.querySelectorAll("script.run")].map((text, i) =>
+      data_of(JSON.parse(text.textContent ?? "") as Meta, (blocks[i].textContent ?? "").trim()),
+    ),
   );
 }

@@ -197,6 +197,9 @@ export class Gif {
     out.bytes(0x21, 0xff, 11);
     out.text("NETSCAPE2.0");
     out.bytes(3, 1, 0, 0, 0); // again and again
+    out.bytes(0x21, 0xfe, 6);
+    out.text("livens");
+    out.byte(0);
   }
 
   /** One more picture: r, g, b, a. */

@@ -4,9 +4,10 @@ import { build_about } from "./about";
 import { Compare } from "./compare";
 import { runs_of } from "./data";
 import type { Figure } from "./figure";
-import { Picture } from "./picture";
+import { follow } from "./live";
+import { Picture, type Seen } from "./picture";
 import { Playback } from "./playback";
-import { PlotList } from "./plot_list";
+import { PlotList, type Choices } from "./plot_list";
 import { build_quality } from "./quality";
 import { record, type Course, type Kind } from "./record";
 import { Run } from "./run";
@@ -22,6 +23,20 @@ import { verdict_of } from "./verdict";
 
 const half_of_a_page = 335; // px, of A4 and of letter
 
+/** What somebody has chosen on this page, which a newer run takes over. */
+interface Kept {
+  seen: Seen;
+  t: number;
+  range: [number, number] | null; // null: everything
+  is_playing: boolean;
+  speed: string;
+  choices: Choices;
+  second: Run | null;
+  tab: string;
+  scrolled: number; // px, of the plots
+  focus: string;
+}
+
 class Report {
   readonly time: Timeline;
   readonly picture: Picture;
@@ -30,24 +45,29 @@ class Report {
   private readonly list: PlotList;
   private readonly compare: Compare;
   private readonly tabs: Tabs;
+  private readonly life = new AbortController();
   private quality: Figure[] | null = null;
 
   constructor(
     readonly run: Run,
-    other: Run | undefined,
+    other: Run | null,
+    kept: Kept | null = null,
   ) {
-    const { motion } = run;
+    const { motion } = run,
+      { signal } = this.life;
     this.time = new Timeline(motion.start, motion.end);
+    if (kept?.range) this.time.zoom(kept.range);
+    if (kept) this.time.set(kept.t);
     say_verdict(run);
-    this.picture = new Picture(run, this.time);
-    this.list = new PlotList(run, this.time);
+    this.picture = new Picture(run, this.time, signal, kept?.seen ?? null);
+    this.list = new PlotList(run, this.time, kept?.choices ?? null);
     this.playback = new Playback(this.time);
     this.scrub = new Scrub(this.time, motion.ends, () => this.playback.stop());
     new Save(this.picture, this.time, this.playback, run.meta.name);
-    this.compare = new Compare(by_id("compare"), run, this.time, (second) => this.picture.compare(second));
-    const script = document.querySelector('script[type="module"]')!.textContent ?? "";
+    const show = (second: Run | null) => this.picture.compare(second);
+    this.compare = new Compare(by_id("compare"), run, this.time, show, signal);
     const { version } = JSON.parse(by_id("program").textContent ?? "{}") as { version: string };
-    build_about(by_id("about"), run, version, /\/\*!([\s\S]*?)\*\//.exec(script)?.[1].trim() ?? "");
+    build_about(by_id("about"), run, version, notices());
     this.time.on_move((t) => {
       for (const plot of this.plots()) plot.show(t);
     });
@@ -57,15 +77,46 @@ class Report {
     on_angles(() => {
       this.compare.say();
       for (const plot of this.plots()) plot.zoom();
-    });
+    }, signal);
     this.tabs = new Tabs((name) => {
       if (name === "quality") this.build_quality();
       this.layout();
     });
     if (other) this.compare.set(other);
-    this.tabs.open("motion");
-    this.listen();
-    this.read_address();
+    this.tabs.open(kept?.tab ?? "motion");
+    this.listen(signal);
+    if (kept) this.go_on(kept);
+    else this.read_address();
+  }
+
+  /** As the page of another run was when it was left. */
+  private go_on({ speed, is_playing, scrolled, focus }: Kept) {
+    const select = by_id<HTMLSelectElement>("speed");
+    if ([...select.options].some(({ value }) => value === speed)) select.value = speed;
+    by_id("plots").scrollTop = scrolled;
+    if (focus) by_id(focus)?.focus();
+    if (is_playing) this.playback.play();
+  }
+  /** Leaves the page to a newer run. */
+  close(): Kept {
+    const { time, playback } = this,
+      kept: Kept = {
+        seen: this.picture.seen(),
+        t: time.now,
+        range: time.is_whole ? null : time.range,
+        is_playing: playback.is_playing,
+        speed: by_id<HTMLSelectElement>("speed").value,
+        choices: this.list.chosen(),
+        second: this.compare.second,
+        tab: this.tabs.now,
+        scrolled: by_id("plots").scrollTop,
+        focus: document.activeElement?.id ?? "",
+      };
+    playback.stop();
+    this.life.abort();
+    for (const plot of this.plots()) plot.destroy();
+    this.picture.close();
+    return kept;
   }
 
   private plots(): Figure[] {
@@ -85,29 +136,32 @@ class Report {
     for (const plot of this.plots()) plot.recolour();
   }
 
-  private listen() {
-    addEventListener("resize", () => this.layout());
-    addEventListener("keydown", (e) => this.press(e));
-    addEventListener("hashchange", () => this.read_address());
-    dark_wanted.addEventListener("change", () => {
+  private listen(signal: AbortSignal) {
+    addEventListener("resize", () => this.layout(), { signal });
+    addEventListener("keydown", (e) => this.press(e), { signal });
+    addEventListener("hashchange", () => this.read_address(), { signal });
+    const recoloured = () => {
       this.picture.build();
       this.recolour();
       this.layout();
-    });
-    addEventListener("beforeprint", () => {
+    };
+    dark_wanted.addEventListener("change", recoloured, { signal });
+    const before_print = () => {
       set_printing(true); // paper is white
       by_id("quality").hidden = false;
       this.build_quality();
       this.recolour();
       for (const plot of this.plots()) plot.set_width(half_of_a_page);
       this.picture.print_stills(by_id("paper"));
-    });
-    addEventListener("afterprint", () => {
+    };
+    addEventListener("beforeprint", before_print, { signal });
+    const after_print = () => {
       set_printing(false);
       if (dark_wanted.matches) this.picture.build();
       this.recolour();
-      this.tabs.open(tab_names.find((tab) => by_id(`tab-${tab}`).ariaSelected === "true") ?? "motion");
-    });
+      this.tabs.open(this.tabs.now);
+    };
+    addEventListener("afterprint", after_print, { signal });
   }
 
   private press(e: KeyboardEvent) {
@@ -161,7 +215,7 @@ function say_verdict(run: Run) {
   by_id("title").textContent = run.name;
   by_id("verdict").append(
     element("span", { class: `chip ${v.grade}` }, `${v.sign} ${v.word}`),
-    v.digits ? element("strong", {}, v.digits) : "",
+    element("strong", {}, v.lead),
     element("small", {}, v.rest),
     ...v.reasons.slice(0, 3).map((reason) => element("span", { class: "reason" }, reason)),
   );
@@ -225,16 +279,47 @@ function open_to_tests(report: Report, timings: Record<string, number>) {
   });
 }
 
+/** Of other people's work in the script, which stand at its head. */
+function notices(): string {
+  const scripts = [...document.querySelectorAll('script[type="module"]')]
+    .map((s) => s.textContent)
+    .join("\n");
+  return /\/\*!([\s\S]*?)\*\//.exec(scripts)?.[1].trim() ?? "";
+}
+
+/** What a report fills, as it was before: a page that follows a program is filled again and again. */
+const blank = ["header", "main", "footer", "#paper"].map((part) => {
+  const found = document.querySelector(part)!;
+  return { part, node: found.cloneNode(true) };
+});
+function clear() {
+  for (const { part, node } of blank) document.querySelector(part)!.replaceWith(node.cloneNode(true));
+  document.querySelector("dialog")?.remove();
+}
+
 async function start() {
   const begun = performance.now(),
+    { live } = JSON.parse(by_id("program").textContent ?? "{}") as { live?: number },
     runs = (await runs_of(document)).map((data) => new Run(data)),
     unpacked = performance.now();
-  const report = new Report(runs[0], runs[1]),
-    ready = performance.now();
-  open_to_tests(report, {
-    unpack_ms: unpacked - begun,
-    build_ms: ready - unpacked,
-    since_navigation_ms: ready,
+  let report = runs.length ? new Report(runs[0], runs[1] ?? null) : null;
+  const ready = performance.now(),
+    timings = {
+      unpack_ms: unpacked - begun,
+      build_ms: ready - unpacked,
+      since_navigation_ms: ready,
+    };
+  if (report) open_to_tests(report, timings);
+  document.body.classList.toggle("waiting", report === null);
+  if (live === undefined) return;
+  follow(live, (data) => {
+    const run = new Run(data), // throws before anything is left
+      kept = report?.close() ?? null;
+    clear();
+    document.body.classList.remove("waiting");
+    document.title = `${run.name} \u00b7 livens`;
+    report = new Report(run, kept?.second ?? null, kept);
+    open_to_tests(report, timings);
   });
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The picture with what lies about it: names, scales, switches. Without WebGL plots stand alone.
-import type { Side } from "./camera";
+import type { Eye, Side } from "./camera";
 import { beside, spread } from "./labels";
 import type { Run } from "./run";
 import { Stage, type Shown } from "./stage";
@@ -8,6 +8,12 @@ import type { Screen } from "./studio";
 import { by_id, element, number, rough, seconds } from "./text";
 import { body_colour, dark_wanted, theme } from "./theme";
 import type { Timeline } from "./timeline";
+
+/** What somebody has chosen to see. */
+export interface Seen {
+  shown: Shown;
+  eye: Eye | null;
+}
 
 const few = 8; // bodies that carry their names unless asked otherwise, twice the joints whose forces are shown
 const most_names = 60;
@@ -22,9 +28,11 @@ export class Picture {
   constructor(
     private readonly run: Run,
     private readonly time: Timeline,
+    private readonly signal: AbortSignal,
+    kept: Seen | null,
   ) {
     const { bodies } = run.meta;
-    this.shown = {
+    this.shown = kept?.shown ?? {
       trails: true,
       forces: run.forces.length <= 2 * few,
       joints: true,
@@ -35,10 +43,20 @@ export class Picture {
     this.labels = bodies.slice(0, most_names).map((body) => element("span", {}, body.name));
     by_id("labels").append(...this.labels);
     this.build();
+    if (kept?.eye) this.stage?.eye.stay_as(kept.eye);
     this.listen();
     time.on_move((t) => this.stage?.show(t));
   }
 
+  /** For the picture of another run. */
+  seen(): Seen {
+    return { shown: this.shown, eye: this.stage?.eye ?? null };
+  }
+  close() {
+    this.stage?.renderer.dispose();
+    this.stage?.renderer.forceContextLoss();
+    this.stage = null;
+  }
   /** Also anew, where colours change. */
   build() {
     by_id("space").querySelector("canvas")?.remove();
@@ -89,7 +107,7 @@ export class Picture {
       fold = () => {
         by_id<HTMLDetailsElement>("show").open = wide.matches;
       };
-    wide.addEventListener("change", fold);
+    wide.addEventListener("change", fold, { signal: this.signal });
     fold();
     for (const side of ["fitted", "front", "side", "top"] as Side[])
       by_id(`view-${side}`).addEventListener("click", () => this.stage?.eye.fit_by_hand(side));

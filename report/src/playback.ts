@@ -39,7 +39,7 @@ export class Playback {
     this.frame = 0;
     this.show();
   }
-  private play() {
+  play() {
     if (!(this.time.span > 0)) return;
     if (this.time.now >= this.time.end) this.time.set(this.time.start);
     let last = performance.now();

@@ -24,6 +24,7 @@ export interface PlotOptions {
   bound?: { value: number; label: string }; // a level line
   mark?: { t: number; label: string }; // an upright line
   height?: number;
+  hidden?: string[]; // names of lines
   remove?: () => void;
 }
 
@@ -44,7 +45,7 @@ export class Plot implements Figure {
     private readonly o: PlotOptions,
     private readonly time: Timeline,
   ) {
-    this.is_seen = o.series.map(() => true);
+    this.is_seen = o.series.map(({ label }) => !o.hidden?.includes(label));
     const keys = element("p", { class: "keys" }, ...o.series.map((_, i) => this.key(i)));
     this.write_unit();
     const { title, remove } = o;
@@ -83,7 +84,7 @@ export class Plot implements Figure {
     const button = element(
       "button",
       {
-        "aria-pressed": "true",
+        "aria-pressed": String(this.is_seen[i]),
         "aria-label": `show ${s.label} in ${title}`,
         title: `${s.label}: hide or show`,
       },
@@ -96,6 +97,9 @@ export class Plot implements Figure {
       this.u.setSeries(i + 1, { show: is_seen });
     });
     return element("span", {}, button, value);
+  }
+  get hidden(): string[] {
+    return this.o.series.filter((_, i) => !this.is_seen[i]).map(({ label }) => label);
   }
   private write_unit() {
     const { unit } = shown_in(this.o.unit);

@@ -12,16 +12,30 @@ import { angles_now, is_angular, set_angles, type Angles } from "./units";
 
 const many_elements = 450; // more than plots of 900 points show
 
+/** A plot that is shown: by its name, or as one quantity over another, by theirs; and its lines that are not. */
+export interface Choice {
+  id?: string;
+  pair?: { title: string; x: string; y: string };
+  hidden: string[];
+}
+export interface Choices {
+  all: Choice[];
+  are_usual: boolean; // nobody has chosen
+}
+
 export class PlotList {
   readonly plots: Figure[] = [];
   private readonly host = by_id("plot-list");
   private readonly chooser = by_id<HTMLSelectElement>("add");
+  private readonly choices = new Map<Figure, Omit<Choice, "hidden">>();
 
   constructor(
     private readonly run: Run,
     private readonly time: Timeline,
+    kept: Choices | null,
   ) {
-    for (const id of default_plots(run)) this.add(id);
+    const usual = default_plots(run).map((id) => ({ id, hidden: [] }));
+    for (const choice of !kept || kept.are_usual ? usual : kept.all) this.restore(choice);
     const n = run.meta.pose.elements,
       coarse = "energies, forces, joints and sensors are known here every few elements";
     if (n > many_elements)
@@ -36,6 +50,27 @@ export class PlotList {
     this.listen_to_zoom();
     this.offer_angles();
     this.offer_pairs();
+  }
+
+  /** What is shown now, for a page of another run. */
+  chosen(): Choices {
+    const all = this.plots.map((figure) => ({
+        ...this.choices.get(figure),
+        hidden: figure instanceof Plot ? figure.hidden : [],
+      })),
+      usual = default_plots(this.run);
+    const are_usual =
+      all.length === usual.length && all.every(({ id, hidden }, i) => id === usual[i] && !hidden.length);
+    return { all, are_usual };
+  }
+  /** Where the run has it. */
+  private restore({ id, pair, hidden }: Choice) {
+    if (id) this.add(id, hidden);
+    if (!pair) return;
+    const find = (label: string) =>
+      quantities_of(this.run).find(({ quantity }) => quantity.label === label)?.quantity;
+    const [x, y] = [find(pair.x), find(pair.y)];
+    if (x && y) this.add_phase({ id: "", title: pair.title, x, y });
   }
 
   private fill() {
@@ -99,22 +134,25 @@ export class PlotList {
     });
   }
 
-  private put<T extends Figure>(make: (remove: () => void) => T) {
+  private put<T extends Figure>(choice: Omit<Choice, "hidden">, make: (remove: () => void) => T) {
     const figure: T = make(() => {
       this.plots.splice(this.plots.indexOf(figure), 1);
+      this.choices.delete(figure);
       figure.destroy();
       this.chooser.focus();
     });
     this.plots.push(figure);
+    this.choices.set(figure, choice);
   }
-  private add_phase({ title, x, y }: PhaseSpec) {
-    const { elements } = this.run.meta.pose;
-    this.put((remove) => new Phase(this.host, { title, x, y, elements, remove }, this.time));
+  private add_phase({ id, title, x, y }: PhaseSpec) {
+    const { elements } = this.run.meta.pose,
+      choice = id ? { id } : { pair: { title, x: x.label, y: y.label } };
+    this.put(choice, (remove) => new Phase(this.host, { title, x, y, elements, remove }, this.time));
   }
-  private add(id: string) {
+  private add(id: string, hidden: string[] = []) {
     const spec = this.run.specs.find((s) => s.id === id),
       phase = this.run.phases.find((s) => s.id === id);
-    if (spec) this.put((remove) => new Plot(this.host, { ...spec, remove }, this.time));
+    if (spec) this.put({ id }, (remove) => new Plot(this.host, { ...spec, hidden, remove }, this.time));
     if (phase) this.add_phase(phase);
   }
 }

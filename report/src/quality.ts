@@ -7,27 +7,6 @@ import { element, number, rough, seconds } from "./text";
 import type { Timeline } from "./timeline";
 import { verdict_of } from "./verdict";
 
-const checks: [string, string, string][] = [
-  [
-    "estimated_error",
-    "Estimated error",
-    "of positions in lengths of the model, of orientations in rad, against a finer solution",
-  ],
-  [
-    "max_constraint_violation",
-    "Constraint violation",
-    "largest at the nodes of elements, each row by its length",
-  ],
-  ["max_weak_violation", "Constraint violation, mean", "where constraints hold as integrals"],
-  ["energy_drift", "Energy balance", "what is left of it, by the largest energy in motion"],
-  ["linear_momentum_drift", "Momentum balance", "what is left of it, by the largest momentum"],
-  ["angular_momentum_drift", "Angular momentum balance", "likewise"],
-  ["zigzag_positions", "Zig-zag of positions", "0 is smooth, 1 alternates from node to node"],
-  ["zigzag_momenta", "Zig-zag of momenta", "likewise"],
-  ["velocity_jump", "Velocity jump", "of an element\u2019s polynomial against its momentum"],
-  ["guess_distance", "Distance from the guess", "of the march that it began with, in lengths"],
-];
-
 /** Where a value lies between rounding and its bound, both ends of a scale of powers of ten. */
 function gauge(value: number, bound: number): HTMLElement {
   const low = -17,
@@ -41,17 +20,17 @@ function gauge(value: number, bound: number): HTMLElement {
 }
 
 function table(run: Run): HTMLElement {
-  const rows = checks.flatMap(([name, label, what]) => {
-    const bound = run.meta.quality.bounds[name],
-      value = run.figure(name);
-    if (bound === undefined || (Number.isNaN(value) && name !== "estimated_error")) return [];
+  const rows = run.meta.verdict.figures.flatMap(({ figure, name, meaning }) => {
+    const bound = run.meta.quality.bounds[figure],
+      value = run.figure(figure);
+    if (bound === undefined || (Number.isNaN(value) && figure !== "estimated_error")) return [];
     const is_known = Number.isFinite(value),
       is_passed = value <= bound;
     return [
       element(
         "tr",
         {},
-        element("th", { scope: "row", title: what }, label, element("small", {}, what)),
+        element("th", { scope: "row" }, name[0].toUpperCase() + name.slice(1), element("small", {}, meaning)),
         element("td", { class: "n" }, is_known ? rough(value) : "not known"),
         element("td", { class: "n" }, number(bound, 2)),
         element("td", {}, is_known ? gauge(value, bound) : null),
@@ -115,7 +94,7 @@ export function build_quality(host: HTMLElement, run: Run, time: Timeline): Plot
       "p",
       { class: "lead" },
       element("strong", { class: v.grade }, `${v.sign} ${v.word}`),
-      ` \u2014 ${v.digits}${v.rest}.`,
+      `: ${v.lead}${v.rest}.`,
     ),
   ];
   const notes = run.meta.notes.length

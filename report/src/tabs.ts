@@ -5,11 +5,14 @@ import { by_id } from "./text";
 export const tab_names = ["motion", "quality", "compare", "about"];
 
 export class Tabs {
+  now = tab_names[0];
+
   constructor(private readonly opened: (name: string) => void) {
     for (const tab of tab_names) by_id(`tab-${tab}`).addEventListener("click", () => this.open(tab));
     by_id("tabs").addEventListener("keydown", (e) => this.press(e));
   }
   open(name: string, is_focused = false) {
+    this.now = name;
     for (const tab of tab_names) {
       const button = by_id(`tab-${tab}`),
         is_open = tab === name;

@@ -9,7 +9,7 @@ export interface Unit {
 
 const degrees = 180 / Math.PI;
 const place = "livens.angles"; // in what the browser keeps of this page
-const followers: (() => void)[] = [];
+const followers = new Set<() => void>();
 
 function remembered(): Angles {
   try {
@@ -31,8 +31,9 @@ export function set_angles(wanted: Angles) {
   }
   for (const act of followers) act();
 }
-export function on_angles(act: () => void) {
-  followers.push(act);
+export function on_angles(act: () => void, signal: AbortSignal) {
+  followers.add(act);
+  signal.addEventListener("abort", () => followers.delete(act));
 }
 
 /** m s-2 as m/s², and angles as wanted. */

@@ -18,7 +18,36 @@ const tests = {
     assert.deepEqual(page.problems, []);
     assert.ok(await page.evaluate(() => livensReport.has_picture), "a picture");
     assert.match(await page.title(), /four-bar linkage/);
-    assert.match(await page.textContent("#verdict"), /Converged.*right to \d+ digits/);
+    assert.match(await page.textContent("#verdict"), /Converged.*good to \d+ digits through/);
+  },
+
+  async "opens inside the frame of a notebook, which may keep nothing and ask for nothing"() {
+    const { page: file } = made("four_bar", example("four_bar")),
+      text = readFileSync(file, "utf8").replaceAll("&", "&amp;").replaceAll('"', "&quot;"),
+      book = join(folder, "notebook.html");
+    const frame = `<iframe srcdoc="${text}" sandbox="allow-scripts" style="width:100%;height:640px"></iframe>`;
+    writeFileSync(book, `<!doctype html><title>notebook</title><p id="title">x</p>${frame}${frame}`);
+    const page = await browser.newPage(),
+      problems = [],
+      requests = [];
+    page.on("pageerror", (e) => problems.push(String(e)));
+    page.on("request", (r) => requests.push(r.url()));
+    await page.goto(`file://${book}`);
+    for (const inner of page.frames().slice(1)) {
+      await inner.waitForFunction(() => window.livensReport, null, { timeout: 60000 });
+      assert.ok(await inner.evaluate(() => livensReport.has_picture));
+      assert.match(await inner.textContent("#verdict"), /good to \d+ digits/);
+    }
+    assert.deepEqual(problems, []);
+    assert.deepEqual(
+      requests.filter((r) => r.startsWith("http")),
+      [],
+    );
+    console.log(`    ${(text.length / 1e6).toFixed(3)} MB a display`);
+    writeFileSync(book, `<!doctype html>${frame.replace("id=&quot;code&quot;>", "id=&quot;code&quot;>!")}`);
+    await page.goto(`file://${book}`); // the control: a script that cannot be unpacked is said
+    await page.frames()[1].waitForSelector("#verdict .bad");
+    assert.match(await page.frames()[1].textContent("#verdict"), /could not be shown/);
   },
 
   async "poses are those of livens sample at 20 instants"() {

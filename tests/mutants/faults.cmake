@@ -569,10 +569,26 @@ livens_mutant(NAME view_everywhere
 # Pages of other sites may ask for it by a name of their own.
 livens_mutant(NAME view_any_host
               FILE apps/livens/visitors.cpp
-              OLD [[is_ours = (is_get || is_head) && asks_this_host(head_, served.port)]]
-              NEW [[is_ours = is_get || is_head]]
+              OLD [[is_here = asks_this_host(head_, served.port)]]
+              NEW [[is_here = true]]
               TESTS_OF livens
               MUST_FAIL report_test.View.test_serves_the_page_here_and_nothing_else)
+
+# A file that is gone between two versions of it is told as an error.
+livens_mutant(NAME watch_gap
+              FILE apps/livens/watched_files.cpp
+              OLD [[(is_gone ? Clock::duration(patience) : quiet)]]
+              NEW [[quiet * (is_gone ? 1 : 1)]]
+              TESTS_OF livens
+              MUST_FAIL watch_test.Watching.test_editors_that_save_by_rename_or_leave_a_gap)
+
+# A report that may ask for more than it holds.
+livens_mutant(NAME report_may_connect
+              FILE io/report/page.cpp
+              OLD [[page_of(first.title, "", "", {&first})]]
+              NEW [[page_of(first.title, "", "; connect-src 'self'", {&first})]]
+              TESTS_OF livens
+              MUST_FAIL report_test.Report.test_loads_nothing_and_admits_its_own_script_alone)
 
 # Directors that are not orthonormal as quaternions: a picture of another motion.
 livens_mutant(NAME report_free_directors

@@ -92,7 +92,7 @@ class Formats(ProgramTest):
         self.solve()
         text = self.expect(USAGE, "export", "run.nc").err
         words = re.findall(r"--([a-z]+)", text)
-        self.assertEqual(words, ["csv", "npz", "gltf", "pvd"])
+        self.assertEqual(words, ["csv", "npz", "gltf", "pvd", "webm", "gif", "png", "svg"])
         page, script = self.expect(0, "export", "--help").out, self.expect(0, "completion", "bash").out
         for word in words:
             extension = "glb" if word == "gltf" else word

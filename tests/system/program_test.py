@@ -75,6 +75,26 @@ def text_with(old, new, text=SMALL):
     return text.replace(old, new, 1)
 
 
+HINGED = """format = 1
+gravity = [0, 0, -9.81]
+[[body]]
+name = "brick"
+shape = { box = [0.3, 0.2, 0.1] }
+density = 1000
+position = [1, 0, 0]
+[[joint]]
+name = "hinge"
+type = "revolute"
+between = ["world", "brick"]
+at = [0, 0, 0]
+axis = [0, 1, 0]
+rate = 1
+[time]
+end = 0.5
+elements = 10
+"""
+
+
 class ProgramTest(unittest.TestCase):
     def setUp(self):
         self.folder = pathlib.Path(tempfile.mkdtemp(prefix="livens-system-"))
@@ -613,9 +633,54 @@ degree = 6
         self.assertEqual(len(rows), 3)
         self.assertEqual(float(rows[2].split(",")[1]), one["position"][0])
 
+    def test_degrees_and_accelerations(self):
+        self.solve(HINGED)
+        s, j = self.sample("--body", "brick", "--at", "0.1"), self.sample("--joint", "hinge", "--at", "0.1")
+        degree = math.pi / 180
+
+        def table(*arguments):
+            header, row = self.expect(0, "sample", "run.nc", *arguments, "--at", "0.1", "--csv").out.splitlines()
+            return {name: float(cell or "nan") for name, cell in zip(header.split(","), row.split(","))}
+        plain, shown = table("--body", "brick"), table("--body", "brick", "--unit", "deg", "--unit", "mm")
+        self.assertEqual([plain[f"a{x} [m/s^2]"] for x in "xyz"], s["acceleration"])
+        self.assertEqual([plain[f"alpha{x} [rad/s^2]"] for x in "xyz"], s["angular_acceleration"])
+        self.assertTrue(any(s["acceleration"]) and any(s["angular_acceleration"]), "the control")
+        for i, x in enumerate("xyz"):
+            for name, si, factor in ((f"alpha{x} [deg/s^2]", s["angular_acceleration"], 1 / degree),
+                                     (f"w{x} [deg/s]", s["angular_velocity"], 1 / degree), (f"{x} [mm]", s["position"], 1000),
+                                     (f"a{x} [mm/s^2]", s["acceleration"], 1000)):
+                self.assertAlmostEqual(shown[name], factor * si[i], delta=1e-12 * abs(factor * si[i]))
+        joint = table("--joint", "hinge", "--unit", "deg")
+        for end, per in (("", ""), ("_rate", "/s"), ("_acceleration", "/s^2")):
+            self.assertAlmostEqual(joint[f"angle{end} [deg{per}]"], j["angle" + end] / degree, delta=1e-12 * abs(j["angle" + end] / degree))
+        text = self.expect(0, "sample", "run.nc", "--body", "brick", "--at", "0.1", "--unit", "deg").out
+        self.assertRegex(text, r"(?m)^  acceleration .* m/s\^2$")
+        self.assertRegex(text, r"(?m)^  angular acceleration .* deg/s\^2$")
+        self.assertRegex(self.expect(0, "sample", "run.nc", "--joint", "hinge", "--at", "0.1", "--unit", "rpm").out,
+                         r"(?m)^  angle rate .* rpm$")
+        self.expect(0, "export", "run.nc", "--csv", "deg.csv", "--unit", "deg")
+        self.expect(0, "export", "run.nc", "--csv", "rad.csv")
+        deg, rad = (list(csv.reader((self.folder / name).read_text().splitlines())) for name in ("deg.csv", "rad.csv"))
+        self.assertIn("hinge.angle_acceleration [deg/s^2]", deg[0])
+        for head, unit, x, y in zip(rad[0], deg[0], rad[-1], deg[-1]):
+            if head != unit:
+                self.assertEqual(unit, head.replace("[rad", "[deg"))
+                self.assertAlmostEqual(float(y) * degree, float(x), delta=1e-12 * abs(float(x)))
+            else:
+                self.assertEqual(x, y, head)
+        peaks = json.loads(self.expect(0, "peaks", "run.nc", "hinge.angle", "--unit", "deg", "--json").out)["peaks"][0]
+        plain = json.loads(self.expect(0, "peaks", "run.nc", "hinge.angle", "--json").out)["peaks"][0]
+        self.assertEqual(peaks["unit"], "deg")
+        self.assertAlmostEqual(peaks["peak"]["value"] * degree, plain["peak"]["value"], delta=1e-12)
+
     def test_usage_errors(self):
         self.solve()
         for arguments in (
+            ("sample", "run.nc", "--body", "brick", "--at", "0", "--unit", "furlong"),
+            ("sample", "run.nc", "--joint", "upper", "--at", "0", "--unit", "kg"),
+            ("sample", "run.nc", "--body", "brick", "--at", "0", "--unit", "deg", "--json"),
+            ("export", "run.nc", "--csv", "x.csv", "--unit", "kg"),
+            ("peaks", "run.nc", "--unit", "kg"),
             ("sample", "run.nc", "--body", "nobody", "--at", "0"),
             ("sample", "run.nc", "--joint", "brick", "--at", "0"),
             ("sample", "run.nc", "--at", "0"),

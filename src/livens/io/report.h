@@ -21,6 +21,7 @@ struct ReportOptions {
     /// double precision if they fit, else in single precision, else those of fewer, longer elements. The page
     /// says which, and by how much it is off.
     double most_bytes = 8e6;
+    int level = 9;   ///< of compression: 1 is quick, 9 small
 };
 
 /// HTML of one run, or of two that are compared (the poses of each may take `most_bytes`): `other` may be
@@ -31,6 +32,19 @@ struct ReportOptions {
 /// zlib).
 std::string report_page(const ReportInput& run, const ReportInput* other = nullptr,
                         const ReportOptions& options = {});
+
+/// A run as pages hold it.
+struct ReportedRun {
+    std::string title;
+    std::string meta;      ///< JSON on one line
+    std::string numbers;   ///< base64
+};
+ReportedRun reported(const ReportInput& run, const ReportOptions& options = {});
+
+/// The page of a scenario that is solved again and again: its policy lets it listen to where it was loaded
+/// from. There "events?N" sends what is newer than number N, the page's own: `run` null is a page that waits
+/// for the first. docs/program.md, "Watching a file".
+std::string live_page(const std::string& title, const ReportedRun* run, long number);
 
 /// Whether a file that begins so is such a page; see is_occupied().
 bool begins_as_report(std::string_view head);

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "livens/io/diagnostic.h"
@@ -64,7 +65,7 @@ struct OutputTimes {
 /// A scenario that has been read, checked and closed as far as it can be without solving.
 struct Scenario : OutputTimes {
     std::string file;   ///< as given by the caller; messages only, never written to results
-    std::string text;   ///< the file itself
+    std::string text;   ///< the file itself, with the parameters that were set
     std::string title;
     Model model;
     std::vector<Outline> outlines;               ///< of the bodies, then of the world
@@ -80,10 +81,14 @@ struct Scenario : OutputTimes {
     std::vector<std::filesystem::path> mesh_files;   ///< that were read for it, included ones, too
 };
 
+/// Values that parameters have instead of those of the file: names, each with a number or an expression.
+using ParameterValues = std::vector<std::pair<std::string, std::string>>;
+
 struct ScenarioResult {
-    std::optional<Scenario> scenario;      ///< empty if there is an error
-    std::vector<Diagnostic> diagnostics;   ///< up to 20
-    std::string text;                      ///< what was read, for render()
+    std::optional<Scenario> scenario;                ///< empty if there is an error
+    std::vector<Diagnostic> diagnostics;             ///< up to 20
+    std::string text;                                ///< what was read, for render()
+    std::vector<std::filesystem::path> mesh_files;   ///< that were read or looked for, also after an error
 };
 
 /// Memory that solving and writing will take at least, bytes.
@@ -102,9 +107,12 @@ inline constexpr std::size_t max_scenario_bytes = 16u << 20;
 inline constexpr int max_scenario_depth = 64;
 
 /// Reads and checks (including check_method() and consistent_start()). Throws nothing: every problem is a
-/// diagnostic; codes `io-...` mean the file could not be read at all. Meshes lie in the file's folder.
-ScenarioResult read_scenario(const std::filesystem::path& file);
-ScenarioResult parse_scenario(std::string text, const std::string& file_name, const MeshSource& meshes = {});
+/// diagnostic; codes `io-...` mean the file could not be read at all. Meshes lie in the file's folder. The
+/// text of the scenario is that of the file with `values` in the places of its own: it can be read without
+/// them.
+ScenarioResult read_scenario(const std::filesystem::path& file, const ParameterValues& values = {});
+ScenarioResult parse_scenario(std::string text, const std::string& file_name, const MeshSource& meshes = {},
+                              const ParameterValues& values = {});
 
 /// "mm" in m; 0 for what is no unit of length.
 double unit_of_length(const std::string& unit);

@@ -162,8 +162,8 @@ std::string describe(const Expression::Step& step, const TimeValue& a, const Tim
 
 }   // namespace
 
-Expression::Expression(std::string_view text, std::vector<std::string> symbols)
-    : text_(text), steps_(read_expression(text, symbols))
+Expression::Expression(std::string_view text, std::vector<std::string> symbols, const ExpressionWords& words)
+    : text_(text), steps_(read_expression(text, symbols, words))
 {
     find_guards();
     // What depends on nothing has its value now, or never.
@@ -225,6 +225,13 @@ double Expression::operator()(double t, std::span<const double> symbols, std::sp
         // One pass for each symbol: expressions are short, and symbols few (`most_symbols`).
         slopes[k] = depends_on(k) ? evaluate(t, symbols, static_cast<int>(k)).back().first : 0;
     return evaluate(t, symbols, -1).back().value;
+}
+
+std::vector<double> Expression::values(double t, std::span<const double> symbols) const
+{
+    std::vector<double> all;
+    for (const TimeValue& value : evaluate(t, symbols, -1)) all.push_back(value.value);
+    return all;
 }
 
 TimeValue Expression::by_time(double t, std::span<const double> symbols) const

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -13,6 +15,15 @@
 #include "livens/time/time_function.h"
 
 namespace [[gnu::visibility("default")]] livens {
+
+/// What else the text of an expression may hold. Columns are those of steps.
+struct ExpressionWords {
+    /// The number that a name stands for; empty: for none. Symbols come first.
+    std::function<std::optional<double>(std::string_view name, int column)> constant = {};
+    /// Of `text` from `end` on, where the number at `column` has ended: where its unit ends, if it has one,
+    /// and the number with it.
+    std::function<std::size_t(std::string_view text, std::size_t end, int column, double& number)> unit = {};
+};
 
 /// `-3*phi - 0.2*w + sin(2*pi*t)`: numbers, `+ - * / ^`, parentheses, `pi`, `t` (s), symbols, and
 ///
@@ -64,8 +75,8 @@ public:
     };
 
     /// Throws InputError (`expression-size`, `expression-syntax`, `expression-name`, `expression-value`) with
-    /// the column in the text.
-    Expression(std::string_view text, std::vector<std::string> symbols);
+    /// the column in the text; and what `words` throw.
+    Expression(std::string_view text, std::vector<std::string> symbols, const ExpressionWords& words = {});
 
     const std::string& text() const { return text_; }
     /// What it is made of; the last is the value.
@@ -75,6 +86,8 @@ public:
 
     /// The value, and its derivatives by the symbols unless `slopes` is empty; one number for each symbol.
     double operator()(double t, std::span<const double> symbols, std::span<double> slopes = {}) const;
+    /// Of all steps.
+    std::vector<double> values(double t, std::span<const double> symbols) const;
     /// Value and two derivatives by time, where symbols do not change.
     TimeValue by_time(double t, std::span<const double> symbols = {}) const;
     /// "division by 0 at column 5": the first operation that has no value there; empty if all have.
@@ -110,6 +123,11 @@ private:
     std::vector<int> guarded_;   ///< of these, which jump or bend where symbols decide
     std::vector<Guard> guards_;
 };
+
+/// Whether a word means something in every expression: t, pi and the functions.
+bool is_word_of_expressions(std::string_view word);
+/// Letters, digits and _, no digit first.
+bool is_plain_name(std::string_view word);
 
 /// Names with points that stand in a text, each once, without their quotes; they need not be known.
 std::vector<std::string> names_with_points(std::string_view text);

@@ -178,6 +178,17 @@ Name name_at(std::string_view text, std::size_t at)
 
 namespace livens {
 
+bool is_word_of_expressions(std::string_view word)
+{
+    return word == "t" || word == "pi" || is_composed(word) || find_function(word) != nullptr;
+}
+
+bool is_plain_name(std::string_view word)
+{
+    return !word.empty() && begins_name(word[0]) &&
+           std::ranges::all_of(word, [](char c) { return begins_name(c) || is_digit(c); });
+}
+
 std::vector<std::string> names_with_points(std::string_view text)
 {
     std::vector<std::string> names;

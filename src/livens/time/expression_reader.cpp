@@ -22,7 +22,9 @@ using Operation = Expression::Operation;
 /// By descent: sum, product, sign, power, atom.
 class Reader {
 public:
-    Reader(std::string_view text, const std::vector<std::string>& symbols) : text_(text), symbols_(symbols) {}
+    Reader(std::string_view text, const std::vector<std::string>& symbols, const ExpressionWords& words)
+        : text_(text), symbols_(symbols), words_(words)
+    {}
 
     std::vector<Expression::Step> read()
     {
@@ -65,12 +67,8 @@ private:
 
     void check_symbol(const std::string& symbol) const
     {
-        const bool is_name =
-            !symbol.empty() && begins_name(symbol[0]) &&
-            std::ranges::all_of(symbol, [](char c) { return begins_name(c) || is_digit(c); });
-        const bool is_taken =
-            symbol == "t" || symbol == "pi" || is_composed(symbol) || find_function(symbol) != nullptr;
-        if ((is_name && !is_taken) || symbol.find('.') != std::string::npos) return;
+        const bool is_taken = is_word_of_expressions(symbol);
+        if ((is_plain_name(symbol) && !is_taken) || symbol.find('.') != std::string::npos) return;
         refuse("expression-name",
                is_taken ? "an input has the name of something else" : "an input is no name",
                "'" + symbol + "'", "letters, digits and _, no digit first",
@@ -168,6 +166,7 @@ private:
         if (error != std::errc() || !std::isfinite(value)) refuse_here("a number");
         const int place = column() + 1;
         at_ += static_cast<std::size_t>(end - first);
+        if (words_.unit) at_ = words_.unit(text_, at_, place, value);
         return add({Operation::number, -1, -1, place, value});
     }
 
@@ -187,6 +186,8 @@ private:
         const auto symbol = std::ranges::find(symbols_, word);
         if (symbol != symbols_.end())
             return add({Operation::symbol, static_cast<int>(symbol - symbols_.begin()), -1, place});
+        if (const std::optional<double> value = words_.constant ? words_.constant(word, place) : std::nullopt)
+            return add_number(*value, place);
         refuse("expression-name", "an expression has an unknown name",
                "'" + word + "' at column " + std::to_string(place), "", known_names(word, symbols_));
     }
@@ -276,6 +277,7 @@ private:
 
     std::string_view text_;
     const std::vector<std::string>& symbols_;
+    const ExpressionWords& words_;
     std::vector<Expression::Step> steps_;
     std::size_t at_ = 0;
     int depth_ = 0;
@@ -283,9 +285,10 @@ private:
 
 }   // namespace
 
-std::vector<Expression::Step> read_expression(std::string_view text, const std::vector<std::string>& symbols)
+std::vector<Expression::Step> read_expression(std::string_view text, const std::vector<std::string>& symbols,
+                                              const ExpressionWords& words)
 {
-    return Reader(text, symbols).read();
+    return Reader(text, symbols, words).read();
 }
 
 }   // namespace livens::inline time_internal

@@ -54,8 +54,9 @@ TEST(OtherWords, ShapesAndFormulasAreShown)
               std::string::npos);
     const ScenarioResult formula =
         read(replaced(valid_scenario, "value = [0, 1, 0]", "value = [0, \"sin(t)\", 0]"));
-    ASSERT_NE(find(formula, "unit"), nullptr);
-    EXPECT_EQ(find(formula, "unit")->note, "a formula is given as 'expression', instead of 'value'");
+    ASSERT_NE(find(formula, "expression-name"), nullptr);
+    EXPECT_EQ(find(formula, "expression-name")->note,
+              "a formula is given as 'expression', instead of 'value'");
     const auto expression = [](const std::string& y) {
         return replaced(valid_scenario, "value = [0, 1, 0]", "expression = [\"0\", \"" + y + "\", \"0\"]");
     };

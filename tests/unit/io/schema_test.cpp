@@ -206,10 +206,14 @@ TEST(Schema, LONG_EveryValueOfAnotherTypeIsAnErrorAtTheValue)
         SCOPED_TRACE(o.key->name);
         const bool is_text = o.key->type.form == Form::text || o.key->type == types::choice;
         for (const char* wrong : {"1979-05-27", "{ x = 1 }", "[[[1]]]", is_text ? "1.5" : "\"\"", "[]"}) {
+            const std::string_view right = o.key->type == types::named_numbers ? "{ x = 1 }"
+                                           : o.key->type == types::templates   ? "[]"
+                                                                               : "";
+            if (wrong == right) continue;
             const ScenarioResult result = read(o.with_value(wrong));
             EXPECT_FALSE(result.scenario.has_value()) << wrong;
-            const bool is_told = std::any_of(
-                result.diagnostics.begin(), result.diagnostics.end(), [&](const Diagnostic& d) {
+            const bool is_told =
+                std::any_of(result.diagnostics.begin(), result.diagnostics.end(), [&](const Diagnostic& d) {
                     return d.line == static_cast<int>(o.line) + 1 && d.column >= o.value_column() &&
                            (d.code == "wrong-type" || d.code == "unit" || d.code == "unknown-key" ||
                             d.code == "point-unknown");
@@ -255,8 +259,7 @@ TEST(Schema, EveryRangeIsKept)
             return o.with_value(is_list ? "[" + number + value.substr(value.find(',')) : number);
         };
         const std::string code = o.key->name == "format" ? "format-version" : "out-of-range";
-        const bool is_whole =
-            o.key->type == types::integer || o.key->type == types::integer_or_choice;
+        const bool is_whole = o.key->type == types::integer || o.key->type == types::integer_or_choice;
         if (range.low > -1e300) {
             const double below = is_whole ? range.low - 1 : range.above ? range.low : range.low - 1e-3;
             expect_at(
@@ -289,6 +292,7 @@ TEST(Schema, EveryNumberMustBeFinite)
                                o.key->type == types::number_or_table;
         if (value.front() != '[' && !is_number) continue;
         if (o.key->type.form == Form::names || value.find('"') != std::string::npos) continue;
+        if (o.key->type == types::templates) continue;   // tables
         SCOPED_TRACE(o.key->name);
         const std::size_t digit = value.find_first_of("-0123456789");
         const std::size_t end = value.find_first_of(",]", digit);
@@ -388,8 +392,8 @@ TEST(Schema, ResolvedStatesEveryKeyOfTheMethod)
         const std::string family(method.kinds[kind].word);
         if (family == "auto") continue;   // with an accuracy only
         const auto resolved = [&](const std::string& line) {
-            const ScenarioResult result = read(test::replaced(
-                test::valid_scenario, "degree = 4", "family = \"" + family + "\"\n" + line));
+            const ScenarioResult result = read(
+                test::replaced(test::valid_scenario, "degree = 4", "family = \"" + family + "\"\n" + line));
             EXPECT_TRUE(result.scenario.has_value()) << shown(result);
             return result.scenario ? result.scenario->resolved : "";
         };
@@ -439,7 +443,16 @@ TEST(Schema, JsonNamesEveryKeyAndClosesEveryBracket)
     }
     EXPECT_NE(json.find("https://json-schema.org/draft/2020-12/schema"), std::string::npos);
     int depth = 0;
-    for (const char c : json) depth += c == '{' || c == '[' ? 1 : c == '}' || c == ']' ? -1 : 0;
+    bool is_text = false;
+    for (std::size_t i = 0; i < json.size(); ++i) {
+        const char c = json[i];
+        if (is_text && c == '\\')
+            ++i;
+        else if (c == '"')
+            is_text = !is_text;
+        else if (!is_text)
+            depth += c == '{' || c == '[' ? 1 : c == '}' || c == ']' ? -1 : 0;
+    }
     EXPECT_EQ(depth, 0);
 }
 

@@ -9,6 +9,7 @@
 #include "livens/io/exports/formats.h"
 #include "livens/io/json.h"
 #include "livens/io/results/atomic_file.h"
+#include "livens/io/shown_unit.h"
 
 namespace livens {
 
@@ -47,16 +48,29 @@ std::vector<NamedQuantity> columns_of(const Quantities& quantities)
     return all;
 }
 
-std::string header(const std::vector<NamedQuantity>& columns)
+/// Of each column.
+std::vector<ShownUnit> units_of(const std::vector<NamedQuantity>& columns,
+                                std::span<const std::string> wished)
+{
+    std::vector<std::string> units;
+    for (const NamedQuantity& q : columns) units.push_back(q.unit);
+    check_shown_units(wished, units);
+    std::vector<ShownUnit> shown;
+    for (const std::string& unit : units) shown.push_back(shown_unit(unit, wished));
+    return shown;
+}
+
+std::string header(const std::vector<NamedQuantity>& columns, const std::vector<ShownUnit>& units)
 {
     std::string line = "t [s]";
-    for (const NamedQuantity& q : columns) {
+    for (std::size_t k = 0; k < columns.size(); ++k) {
+        const NamedQuantity& q = columns[k];
         const std::string name = q.of != QuantityOf::model ? q.name()
                                  : q.what == "energy"      ? "energy"
                                                            : q.what + " energy";
         for (int i = 0; i < q.size; ++i)
-            line +=
-                "," + header_cell(name + (q.size > 1 ? "." : "") + component_of(q, i) + " [" + q.unit + "]");
+            line += "," + header_cell(name + (q.size > 1 ? "." : "") + component_of(q, i) + " [" +
+                                      units[k].unit + "]");
     }
     return line + "\r\n";
 }
@@ -97,9 +111,12 @@ std::vector<SeenInstant> instants_of(const Scenario& scenario, const Run& run, I
 }
 
 void write_csv(const std::filesystem::path& file, const Model& model, const Run& run,
-               std::vector<SeenInstant> instants)
+               std::vector<SeenInstant> instants, std::span<const std::string> units)
 {
     if (instants.empty()) instants = output_instants(run);
+    const Quantities quantities(model, run.motion, run.body_names);
+    const std::vector<NamedQuantity> columns = columns_of(quantities);
+    const std::vector<ShownUnit> shown = units_of(columns, units);
     AtomicFile out(file);
     std::uint64_t n_written = 0;
     const auto write = [&](std::string& text) {   // a small run may have a large table
@@ -107,18 +124,18 @@ void write_csv(const std::filesystem::path& file, const Model& model, const Run&
         n_written += text.size();
         text.clear();
     };
-    const Quantities quantities(model, run.motion, run.body_names);
-    const std::vector<NamedQuantity> columns = columns_of(quantities);
-    std::string text = header(columns);
+    std::string text = header(columns, shown);
     std::vector<Vector4> previous(run.body_names.size(), Vector4{1, 0, 0, 0});
     std::vector<double> numbers(static_cast<std::size_t>(quantities.n_numbers()));
     for (const SeenInstant& seen : instants) {
         text += to_text(seen.t);
         quantities.at(sample_state(run.motion, seen.t), seen.side, columns, numbers);
-        for (const NamedQuantity& q : columns) {
+        for (std::size_t k = 0; k < columns.size(); ++k) {
+            const NamedQuantity& q = columns[k];
             if (q.of == QuantityOf::body && q.size == 4)
                 continue_quaternion(numbers, q, previous[static_cast<std::size_t>(q.index)]);
-            for (int i = 0; i < q.size; ++i) add_cell(text, numbers[static_cast<std::size_t>(q.first + i)]);
+            for (int i = 0; i < q.size; ++i)
+                add_cell(text, shown[k].factor * numbers[static_cast<std::size_t>(q.first + i)]);
         }
         text += "\r\n";
         if (text.size() > largest_piece) write(text);

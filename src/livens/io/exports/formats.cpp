@@ -23,18 +23,38 @@ bool begins_as_gltf(std::string_view head)
            head.substr(0, 200).find(R"("generator": "livens )") != std::string_view::npos;
 }
 
+/// Pictures carry our name near their beginning: of a GIF behind its palette.
+template <char First, char Second>
+bool begins_as_picture(std::string_view head)
+{
+    return head.size() > 1 && head[0] == First && head[1] == Second &&
+           head.substr(0, 1024).find("livens") != std::string_view::npos;
+}
+
 constexpr ExportFormat formats[] = {
     {"csv", ".csv", "table of the motion, or of the output times where they are listed",
      [](std::string_view head) { return head.starts_with("t [s],"); },
      [](const std::filesystem::path& file, const ExportInput& input) {
          write_csv(file, input.scenario.model, input.run,
-                   instants_of(input.scenario, input.run, input.instants));
+                   instants_of(input.scenario, input.run, input.instants), input.units);
      }},
     {"npz", ".npz", "NumPy archive of all variables of the result", begins_as_npz,
      [](const std::filesystem::path& file, const ExportInput& input) { write_npz(file, input); }},
     {"gltf", ".glb", "glTF 2.0 animation of the bodies", begins_as_gltf, write_gltf},
     {"pvd", ".pvd", "ParaView collection; its surfaces lie in a folder beside it",
      [](std::string_view head) { return head.starts_with(pvd_head); }, write_pvd},
+    {"webm", ".webm", "video, drawn by a browser without a window", begins_as_picture<'\x1a', '\x45'>,
+     [](const std::filesystem::path& file, const ExportInput& input) { write_picture(file, input, "webm"); },
+     true},
+    {"gif", ".gif", "moving picture for slides, likewise", begins_as_picture<'G', 'I'>,
+     [](const std::filesystem::path& file, const ExportInput& input) { write_picture(file, input, "gif"); },
+     true},
+    {"png", ".png", "still, likewise", begins_as_picture<'\x89', 'P'>,
+     [](const std::filesystem::path& file, const ExportInput& input) { write_picture(file, input, "png"); },
+     true},
+    {"svg", ".svg", "sketch with joint symbols, likewise", begins_as_picture<'<', 's'>,
+     [](const std::filesystem::path& file, const ExportInput& input) { write_picture(file, input, "svg"); },
+     true},
 };
 
 }   // namespace

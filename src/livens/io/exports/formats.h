@@ -20,6 +20,8 @@ void write_npz(const std::filesystem::path& file, const ExportInput& input,
                std::uint64_t narrow = 0xffffffff);
 void write_gltf(const std::filesystem::path& file, const ExportInput& input);
 void write_pvd(const std::filesystem::path& file, const ExportInput& input);
+/// `word`: of the format, "png", "svg", "webm" or "gif".
+void write_picture(const std::filesystem::path& file, const ExportInput& input, std::string_view word);
 
 /// How a list of surfaces and a surface begin.
 inline constexpr std::string_view pvd_head =

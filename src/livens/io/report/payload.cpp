@@ -52,17 +52,7 @@ void Payload::write_table(JsonWriter& json) const
     json.end_object();
 }
 
-std::string Payload::encoded() const
-{
-    uLongf size = ::compressBound(bytes_.size());
-    std::string packed(size, '\0');
-    // Only memory can fail: the buffer is large enough by compressBound().
-    if (::compress2(reinterpret_cast<Bytef*>(packed.data()), &size,
-                    reinterpret_cast<const Bytef*>(bytes_.data()), bytes_.size(), Z_BEST_COMPRESSION) != Z_OK)
-        throw std::bad_alloc();
-    packed.resize(size);
-    return base64(packed);
-}
+std::string Payload::encoded(int level) const { return packed(bytes_, level); }
 
 std::string base64(std::string_view bytes)
 {
@@ -77,6 +67,18 @@ std::string base64(std::string_view bytes)
             out += i + k <= bytes.size() ? letters[three >> (18 - 6 * k) & 63] : '=';
     }
     return out;
+}
+
+std::string packed(std::string_view bytes, int level)
+{
+    uLongf size = ::compressBound(bytes.size());
+    std::string out(size, '\0');
+    // Only memory can fail: the buffer is large enough by compressBound().
+    if (::compress2(reinterpret_cast<Bytef*>(out.data()), &size, reinterpret_cast<const Bytef*>(bytes.data()),
+                    bytes.size(), level) != Z_OK)
+        throw std::bad_alloc();
+    out.resize(size);
+    return base64(out);
 }
 
 }   // namespace livens::inline io_internal

@@ -21,8 +21,8 @@ public:
 
     /// {"name": [kind, count]}, kind "f8", "f4" or "u4", in the order of the bytes.
     void write_table(JsonWriter& json) const;
-    /// zlib's format in base64.
-    std::string encoded() const;
+    /// See packed().
+    std::string encoded(int level) const;
     std::size_t n_bytes() const { return bytes_.size(); }
 
 private:
@@ -36,5 +36,7 @@ private:
 };
 
 std::string base64(std::string_view bytes);
+/// zlib's format in base64; `level`: from 1, quick, to 9, small.
+std::string packed(std::string_view bytes, int level);
 
 }   // namespace livens::inline io_internal

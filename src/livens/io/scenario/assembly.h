@@ -11,6 +11,7 @@
 #include "livens/io/scenario/builder.h"
 #include "livens/io/scenario/included.h"
 #include "livens/io/scenario/text/document.h"
+#include "livens/io/scenario/text/parameters.h"
 #include "livens/multibody/relocation.h"
 
 namespace livens::inline io_internal {
@@ -35,12 +36,16 @@ struct StatedStart;
 class Assembly {
 public:
     /// The scenario itself; `file`: its own name, if it has one.
-    Assembly(const Node& root, const std::string& file, AssemblySources& sources);
+    Assembly(const Node& root, const std::string& file, const std::vector<Override>& overrides,
+             AssemblySources& sources);
     Assembly(const Assembly&) = delete;
     Assembly& operator=(const Assembly&) = delete;
 
     Builder& builder() { return builder_; }
     const Section& top() const { return top_; }
+    /// False: its copies could not be made, which was told.
+    bool is_readable() const { return !expanded_ || !expanded_->entries().empty(); }
+    void warn_of_unused_parameters() const;
     /// Everything of the model, in the order of references: joints name bodies, the start moves them along
     /// joints, drives begin where the joints stand then, and loads read sensors, except for sensors that read
     /// loads. Reports all it finds.
@@ -56,12 +61,14 @@ private:
         const Node* inside = nullptr;   ///< of the tree of `around`
         std::optional<Node> root{};     ///< or else a file's
         std::string label{}, folder{}, file{};
+        std::vector<Override> overrides{};   ///< of its parameters
     };
     Assembly(Opened opened, const Section& include, Assembly& around);
 
     void open_all();
     std::unique_ptr<Assembly> open(const Section& include);
     std::optional<Opened> open_file(const Section& include);
+    std::vector<Override> overrides_of(const Section& include);
     void check_part();
 
     // Each goes through what is included first.
@@ -84,6 +91,8 @@ private:
     AssemblySources& sources_;
     std::optional<Node> root_;    // of what is included
     std::string folder_, file_;   // from the scenario's folder on: "parts/", "parts/leg.toml"
+    Parameters parameters_;
+    std::optional<Node> expanded_;   // with copies, if there are some
     Section top_;
     Builder builder_;
     const Section* include_ = nullptr;   // that took it in, in

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Opening what a scenario includes: paths, rings, limits, and what a part may not say of the whole.
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <utility>
 
@@ -8,6 +9,7 @@
 #include "livens/base/text.h"
 #include "livens/io/scenario/assembly.h"
 #include "livens/io/scenario/bodies/bodies.h"
+#include "livens/io/scenario/schema/repeat.h"
 
 namespace livens::inline io_internal {
 
@@ -33,6 +35,18 @@ bool check_rotation(const Section& include)
                              " are not a right-handed set of perpendicular unit vectors");
 }
 
+/// With the tables of its repeats; empty: it has none; without any table after an error.
+std::optional<Node> with_copies(const Node& root, const Parameters& parameters, Findings& findings)
+{
+    if (root.find("repeat") == nullptr) return std::nullopt;
+    std::optional<Node> all = without_repeats(root, parameters, findings);
+    if (all) return all;
+    Node nothing;
+    nothing.place = root.place;
+    nothing.content = std::make_unique<NodeContent>();
+    return nothing;
+}
+
 std::string plain_path(const std::string& path)
 {
     return std::filesystem::path(path).lexically_normal().generic_string();
@@ -55,13 +69,21 @@ Table include_table()
          Key{"prefix", types::text,
              "Before all names of what is included: with `\"left.\"` its `knee` is `left.knee`. Default: "
              "none."},
+         Key{"parameters", types::named_numbers,
+             "Values that `[parameters]` of what is included have instead of their own: numbers, or "
+             "expressions of "
+             "parameters of this file, `{ L = \"2*reach\" }`."},
          Key{"position", types::vector3, "Where its origin comes to be.", "m", "[0, 0, 0]"}}};
     for (const Key& key : orientation_keys()) table.keys.push_back(key);
     return table;
 }
 
-Assembly::Assembly(const Node& root, const std::string& file, AssemblySources& sources)
-    : sources_(sources), file_(file), top_(root, root_table(), "the scenario", sources.findings),
+Assembly::Assembly(const Node& root, const std::string& file, const std::vector<Override>& overrides,
+                   AssemblySources& sources)
+    : sources_(sources), file_(file), parameters_(root.find("parameters"), overrides, sources.findings),
+      expanded_(with_copies(root, parameters_, sources.findings)),
+      top_(expanded_ ? *expanded_ : root, is_readable() ? root_table() : part_table(), "the scenario",
+           sources.findings, parameters_),
       builder_(top_, top_, sources.meshes, sources.findings)
 {
     if (!file_.empty()) sources_.open.push_back(file_);
@@ -71,7 +93,12 @@ Assembly::Assembly(const Node& root, const std::string& file, AssemblySources& s
 Assembly::Assembly(Opened opened, const Section& include, Assembly& around)
     : sources_(around.sources_), root_(std::move(opened.root)), folder_(std::move(opened.folder)),
       file_(std::move(opened.file)),
-      top_(root_ ? *root_ : *opened.inside, part_table(), opened.label, sources_.findings),
+      parameters_((root_ ? *root_ : *opened.inside).find("parameters"), opened.overrides, sources_.findings),
+      expanded_(with_copies(root_ ? *root_ : *opened.inside, parameters_, sources_.findings)),
+      top_(expanded_ ? *expanded_
+           : root_   ? *root_
+                     : *opened.inside,
+           part_table(), opened.label, sources_.findings, parameters_),
       builder_(top_, around.builder_.run(), sources_.meshes, sources_.findings), include_(&include),
       around_(&around), to_(relocation_of(include))
 {
@@ -79,6 +106,49 @@ Assembly::Assembly(Opened opened, const Section& include, Assembly& around)
     if (!file_.empty()) sources_.open.push_back(file_);
     open_all();
     if (!file_.empty()) sources_.open.pop_back();
+}
+
+/// What an include says of the parameters of its file, computed from those of this one.
+std::vector<Override> Assembly::overrides_of(const Section& include)
+{
+    std::vector<Override> all;
+    const Value* given = include.find("parameters");
+    if (given == nullptr) return all;
+    Findings& findings = sources_.findings;
+    for (const Entry& entry : given->node->entries()) {
+        const Node& value = entry.value;
+        const std::string named = "the parameter '" + entry.key + "' of " + include.label();
+        Override one{.name = entry.key, .text = {}, .amount = {}, .place = value.place, .said_by = {}};
+        if (value.kind == Node::Kind::integer || value.kind == Node::Kind::number) {
+            one.amount.value = value.number;
+            if (!std::isfinite(value.number)) {
+                findings.error(value.place, "not-finite", named + " must be finite");
+                continue;
+            }
+        } else if (value.kind == Node::Kind::text) {
+            const Computed found = compute(value.text(), parameters_);
+            if (!found.code.empty()) {
+                if (!found.error.empty())
+                    findings.error(value.place, found.code,
+                                   named + " cannot be \"" + value.text() + "\": " + found.error,
+                                   {"", found.help});
+                continue;
+            }
+            one.amount = found.amount;
+        } else {
+            findings.error(value.place, "wrong-type",
+                           named + " must be a number or a string, not " + std::string(describe(value.kind)));
+            continue;
+        }
+        all.push_back(std::move(one));
+    }
+    return all;
+}
+
+void Assembly::warn_of_unused_parameters() const
+{
+    parameters_.warn_of_unused(sources_.findings);
+    for (const std::unique_ptr<Assembly>& part : parts_) part->warn_of_unused_parameters();
 }
 
 /// What a part says that is the whole's to say.
@@ -126,7 +196,7 @@ std::unique_ptr<Assembly> Assembly::open(const Section& include)
         return refuse_limit("files include each other more than " + std::to_string(max_include_depth) +
                             " deep");
     if (const Value* model = include.find("model")) {
-        Opened inside{model->node, {}, include.label(), folder_};
+        Opened inside{model->node, {}, include.label(), folder_, "", overrides_of(include)};
         return std::unique_ptr<Assembly>(new Assembly(std::move(inside), include, *this));
     }
     if (!include.has("file")) {
@@ -169,7 +239,8 @@ std::optional<Assembly::Opened> Assembly::open_file(const Section& include)
         if (!root) return {};
         place_in(*root, file);
         const std::string parent = std::filesystem::path(path).parent_path().generic_string();
-        return Opened{nullptr, std::move(root), "'" + path + "'", parent.empty() ? "" : parent + "/", path};
+        return Opened{nullptr, std::move(root),      "'" + path + "'", parent.empty() ? "" : parent + "/",
+                      path,    overrides_of(include)};
     } catch (const InputError& error) {
         const Complaint& c = error.complaint();
         include.error("file", c.code, c.message + (c.value.empty() ? "" : " (" + c.value + ")"),

@@ -78,17 +78,29 @@ void warn_of_gravity(const Section& top, Findings& findings)
     }
 }
 
+std::vector<Override> overrides_of(const ParameterValues& values)
+{
+    std::vector<Override> all;
+    for (const auto& [name, value] : values)
+        all.push_back({.name = name, .text = value, .said_by = "set: " + name + " = " + value});
+    return all;
+}
+
 /// Everything behind the parser. The scenario counts if there is no error.
-void build(const Node& root, TreePart part, const MeshSource& files, Scenario& scenario, Findings& findings)
+void build(const Node& root, TreePart part, const MeshSource& files, const ParameterValues& values,
+           Scenario& scenario, Findings& findings)
 {
     if (!check_format(root, findings)) return;
     AssemblySources sources(files, findings);
     const bool has_file = files.folder && !scenario.file.empty();
     Assembly assembly(root, has_file ? std::filesystem::path(scenario.file).filename().generic_string() : "",
-                      sources);
-    if (!check_counts(assembly.top(), findings)) return;
+                      overrides_of(values), sources);
+    if (!assembly.is_readable() || !check_counts(assembly.top(), findings)) return;
     warn_of_gravity(assembly.top(), findings);
     assembly.read_model();
+    scenario.mesh_files = sources.meshes.files();   // also where there are errors
+    scenario.mesh_files.insert(scenario.mesh_files.end(), sources.texts.files().begin(),
+                               sources.texts.files().end());
     if (part == TreePart::model) return;
     assembly.remember_places();
     Builder& builder = assembly.builder();
@@ -98,6 +110,8 @@ void build(const Node& root, TreePart part, const MeshSource& files, Scenario& s
     if (end == nullptr || end->is_valid())
         assembly.read_ends(scenario.conditions.at_end != Known::nothing, scenario.conditions.end);
     if (findings.n_errors() > 0) return;
+    assembly.warn_of_unused_parameters();
+    scenario.text = with_set_values(std::move(scenario.text), assembly.top().parameters());
     scenario.conditions.start = builder.model().start();
     scenario.conditions.start.t = start_of(scenario.time);
     scenario.conditions.end.t = end_of(scenario.time);
@@ -112,12 +126,9 @@ void build(const Node& root, TreePart part, const MeshSource& files, Scenario& s
     scenario.outlines = std::move(builder.outlines());
     scenario.parts = std::move(builder.parts());
     scenario.meshes = sources.meshes.kept() + sources.texts.kept();
-    scenario.mesh_files = sources.meshes.files();
-    scenario.mesh_files.insert(scenario.mesh_files.end(), sources.texts.files().begin(),
-                               sources.texts.files().end());
 }
 
-void parse(Scenario& scenario, const MeshSource& meshes, Findings& findings)
+void parse(Scenario& scenario, const MeshSource& meshes, const ParameterValues& values, Findings& findings)
 {
     const std::string_view text = scenario.text;
     if (text.size() > max_scenario_bytes) {
@@ -132,7 +143,7 @@ void parse(Scenario& scenario, const MeshSource& meshes, Findings& findings)
     }
     if (!scan(text, findings)) return;
     const std::optional<Node> root = parse_toml(text, findings);
-    if (root) build(*root, TreePart::whole, meshes, scenario, findings);
+    if (root) build(*root, TreePart::whole, meshes, values, scenario, findings);
 }
 
 /// Reads a file to its end or to one byte over the limit. False after an error.
@@ -180,15 +191,17 @@ void shield(Findings& findings, Work work)
 
 }   // namespace
 
-ScenarioResult parse_scenario(std::string text, const std::string& file_name, const MeshSource& meshes)
+ScenarioResult parse_scenario(std::string text, const std::string& file_name, const MeshSource& meshes,
+                              const ParameterValues& values)
 {
     Findings findings;
     ScenarioResult result;
     Scenario scenario;
     scenario.file = file_name;
     scenario.text = std::move(text);
-    shield(findings, [&] { parse(scenario, meshes, findings); });
     result.text = scenario.text;
+    shield(findings, [&] { parse(scenario, meshes, values, findings); });
+    result.mesh_files = scenario.mesh_files;
     if (findings.n_errors() == 0) result.scenario = std::move(scenario);
     result.diagnostics = findings.take(file_name);
     return result;
@@ -201,20 +214,20 @@ ScenarioResult io_internal::read_tree(const Node& root, std::string text, const 
     ScenarioResult result;
     Scenario scenario;
     scenario.text = std::move(text);
-    shield(findings, [&] { build(root, part, meshes, scenario, findings); });
+    shield(findings, [&] { build(root, part, meshes, {}, scenario, findings); });
     if (findings.n_errors() == 0 && part == TreePart::whole) result.scenario = std::move(scenario);
     result.diagnostics = findings.take("");
     return result;
 }
 
-ScenarioResult read_scenario(const std::filesystem::path& file)
+ScenarioResult read_scenario(const std::filesystem::path& file, const ParameterValues& values)
 {
     Findings findings;
     ScenarioResult result;
     std::string text;
     bool is_read = false;
     shield(findings, [&] { is_read = read_text(file, text, findings); });
-    if (is_read) return parse_scenario(std::move(text), file.string(), {file.parent_path()});
+    if (is_read) return parse_scenario(std::move(text), file.string(), {file.parent_path()}, values);
     result.diagnostics = findings.take(file.string());
     return result;
 }

@@ -11,6 +11,7 @@
 namespace livens::inline time_internal {
 
 /// Throws InputError as Expression does.
-std::vector<Expression::Step> read_expression(std::string_view text, const std::vector<std::string>& symbols);
+std::vector<Expression::Step> read_expression(std::string_view text, const std::vector<std::string>& symbols,
+                                              const ExpressionWords& words);
 
 }   // namespace livens::inline time_internal

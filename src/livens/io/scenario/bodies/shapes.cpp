@@ -142,6 +142,36 @@ Outline outline_of(const ReducedMesh& mesh, double unit)
     return outline;
 }
 
+/// With the numbers of parameters, by which meshes are kept.
+std::string density_field_of(const Section& shape)
+{
+    for (const std::string_view place : {"x", "y", "z"})
+        if (shape.parameters().find(place) != nullptr)
+            throw InputError({"parameter-name", "body.shape",
+                              "a density field reads the place " + std::string(place) +
+                                  ", and a parameter has this name, too",
+                              "", "", "", "call the parameter otherwise"});
+    return with_numbers(shape.text("density_field"), shape.parameters());
+}
+
+double density_of_region(const Section& shape, const std::string& region, const std::string& text)
+{
+    const Parameters& parameters = shape.parameters();
+    Quantity density;
+    if (is_computed(text, parameters)) {
+        const Computed found = compute(text, "kg/m^3", parameters);
+        density = {found.amount.value, found.error, found.help};
+        if (!found.code.empty() && found.error.empty()) density.error = "a parameter is wrong";
+    } else {
+        density = parse_quantity(text, "kg/m^3");
+    }
+    if (density.error.empty() && density.value > 0) return density.value;
+    throw InputError({"unit", "body.shape",
+                      "the density of '" + region + "' cannot be \"" + text + "\"" +
+                          (density.error.empty() ? "" : ": " + density.error),
+                      "", "> 0 kg/m^3", "", density.help});
+}
+
 /// With the densities of its regions, which must all be stated.
 Moments weighted(const Section& shape, const ReducedMesh& mesh, double unit)
 {
@@ -155,17 +185,12 @@ Moments weighted(const Section& shape, const ReducedMesh& mesh, double unit)
         known += (known.empty() ? "'" : ", '") + name + "'";
     }
     for (std::size_t i = 0; i < entries.size(); ++i) {
-        const Quantity density = parse_quantity(value.texts[i], "kg/m^3");
-        if (!density.error.empty() || !(density.value > 0))
-            throw InputError({"unit", "body.shape",
-                              "the density of '" + entries[i].key + "' cannot be \"" + value.texts[i] + "\"" +
-                                  (density.error.empty() ? "" : ": " + density.error),
-                              "", "> 0 kg/m^3", "", density.help});
+        const double density = density_of_region(shape, entries[i].key, value.texts[i]);
         // Names of regions are those of the file; both misspelt and forgotten ones are errors, since a region
         // without a density would weigh nothing.
         bool is_found = false;
         for (std::size_t r = 0; r < mesh.regions.size(); ++r)
-            if (mesh.regions[r].first == entries[i].key) densities[r] = density.value, is_found = true;
+            if (mesh.regions[r].first == entries[i].key) densities[r] = density, is_found = true;
         if (!is_found)
             throw InputError({"mesh-region", "body.shape",
                               "the mesh has no region of volume '" + entries[i].key + "'", "", "",
@@ -186,8 +211,7 @@ Part read_mesh_part(const Section& shape, MeshStore& meshes)
     const Moments whole = scaled(mesh.whole, unit);
     Part part{whole, whole, outline_of(mesh, unit), surfaces_of(mesh, unit)};
     if (shape.has("density_field"))
-        part.weighted =
-            meshes.weighted(shape.text("mesh"), shape.has("turn"), unit, shape.text("density_field"));
+        part.weighted = meshes.weighted(shape.text("mesh"), shape.has("turn"), unit, density_field_of(shape));
     else if (shape.takes("densities") && shape.has("densities"))
         part.weighted = weighted(shape, mesh, unit);
     return part;
@@ -201,7 +225,7 @@ Part read_part(const Section& shape, MeshStore& meshes, bool with_surfaces)
     const Moments whole = moments(p.make(1, shape));
     Part part{whole, whole, p.outline(shape)};
     if (shape.has("density_field"))
-        part.weighted = weighted_by_field(p.solid(shape), shape.text("density_field"));
+        part.weighted = weighted_by_field(p.solid(shape), density_field_of(shape));
     if (with_surfaces) part.surfaces = {{"", surface_moments(p.solid(shape), whole)}};
     return part;
 }

@@ -173,16 +173,36 @@ Inputs read_inputs(const Builder& builder, const Section& section, const std::st
     return inputs;
 }
 
+/// Of a word that nothing has: a parameter that is spelled almost so.
+static void propose_parameter(Complaint& complaint, const Parameters& parameters)
+{
+    const std::size_t open = complaint.value.find('\''), close = complaint.value.find('\'', open + 1);
+    if (close == std::string::npos) return;
+    const std::vector<std::string_view> names = parameters.names();
+    const std::string near(closest(complaint.value.substr(open + 1, close - open - 1), names));
+    if (!near.empty()) complaint.help = "did you mean '" + near + "'? " + complaint.help;
+}
+
 std::vector<Expression> read_expressions(const Section& section, const Inputs& inputs,
                                          const std::string& path)
 {
     std::vector<Expression> all;
+    const Parameters& parameters = section.parameters();
+    for (const std::string& symbol : inputs.symbols)
+        if (parameters.find(symbol) != nullptr)
+            refuse_input("parameter-name", path, symbol, "", "a parameter has this name, too",
+                         "call one of them otherwise");
+    const ExpressionWords words{[&](std::string_view name, int) -> std::optional<double> {
+        const Parameters::One* one = parameters.find(name);
+        return one == nullptr ? std::nullopt : std::optional(one->amount.value);
+    }};
     for (const std::string& text : texts_of(*section.find("expression"))) {
         try {
-            all.emplace_back(text, inputs.symbols);
+            all.emplace_back(text, inputs.symbols, words);
         } catch (const InputError& error) {
             Complaint complaint = error.complaint();
             complaint.path = path + ".expression";
+            if (complaint.code == "expression-name") propose_parameter(complaint, parameters);
             throw InputError(complaint);
         }
     }

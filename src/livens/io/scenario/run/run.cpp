@@ -17,6 +17,11 @@ std::string resolve(const Builder& builder, const Section& time, const Scenario&
     JsonWriter json;
     json.begin_object().member("format", 1).member("title", scenario.title);
     json.member("gravity", std::span<const double>(gravity.a));
+    if (const Parameters& parameters = builder.top().parameters(); !parameters.is_empty()) {
+        json.key("parameters").begin_object();
+        for (const Parameters::One& one : parameters.all()) json.member(one.name, one.amount.value);
+        json.end_object();
+    }
     json.key("time").begin_object();
     json.member("start", start_of(scenario.time)).member("end", end_of(scenario.time));
     if (const auto* mesh = std::get_if<TimeMesh>(&scenario.time))

@@ -39,6 +39,29 @@ Table time_table()
              .within({0, 0.1, true})}};
 }
 
+}   // namespace
+
+Table repeat_table()
+{
+    return {"[[repeat]]",
+            "Tables that stand `count` times, as if each copy were written behind those of the file: all of "
+            "the first index, then all of the next. In their strings `{i}`, `{i-1}` and the like are whole "
+            "numbers, computed from the index and parameters; in numbers and formulas the index is a number, "
+            "too: `position = [\"(i-0.5)*L\", 0, 0]`.",
+            {Key{"index", types::text, "What the index is called.", "", "i"},
+             Key{"count", types::integer, "How often."}.needed().within({1, max_bodies}),
+             Key{"first", types::integer, "The first index.", "", "1"}.within({-1000000, 1000000}),
+             Key{"body", types::templates, "Of bodies: `[[repeat.body]]`."},
+             Key{"point", types::templates, "Of points: `[[repeat.point]]`."},
+             Key{"include", types::templates, "Of includes: `[[repeat.include]]`."},
+             Key{"joint", types::templates, "Of joints: `[[repeat.joint]]`."},
+             Key{"drive", types::templates, "Of drives: `[[repeat.drive]]`."},
+             Key{"load", types::templates, "Of loads: `[[repeat.load]]`."},
+             Key{"sensor", types::templates, "Of sensors: `[[repeat.sensor]]`."}}};
+}
+
+namespace {
+
 void collect(const Table& table, std::vector<const Table*>& all)
 {
     if (std::ranges::find(all, &table) != all.end()) return;   // kinds share tables
@@ -64,6 +87,9 @@ const Table& root_table()
         {Key{"format", types::integer, "Version of this file format."}.needed().within({1, 1}),
          Key{"title", types::text, "One line for people; copied to results."},
          Key{"gravity", types::vector3, "Acceleration of free fall, world axes.", "m/s^2", "[0, 0, 0]"},
+         Key{"parameters", types::named_numbers,
+             "Names for numbers, each a number, a string with a unit or an expression of other parameters; "
+             "see [parameters](#parameters)."},
          Key{"body", types::tables, "Bodies, at least one, here or in what is included."}
              .needed_without("include")
              .holding(body_table()),
@@ -75,6 +101,8 @@ const Table& root_table()
              drive_table()),
          Key{"load", types::tables, "Forces, torques and springs."}.holding(load_table()),
          Key{"sensor", types::tables, "What is read of the motion."}.holding(sensor_table()),
+         Key{"repeat", types::tables, "Bodies, joints, drives, loads and sensors that stand many times."}
+             .holding(repeat_table()),
          Key{"time", types::table, "Interval, elements and output."}.needed().holding(time_table()),
          Key{"method", types::table, "Discretisation and its tolerances."}.holding(method_table()),
          Key{"start", types::table, "Conditions at the start."}.holding(start_table()),

@@ -26,8 +26,10 @@ enum class Form : std::uint8_t {
     row,           ///< `count` numbers
     rows,          ///< `count` rows of 3 numbers
     table,
-    tables,   ///< array of tables
-    model     ///< a table that holds what a file would, read by itself
+    tables,         ///< array of tables
+    model,          ///< a table that holds what a file would, read by itself
+    templates,      ///< array of tables of the root's key of that name, with braces: see without_repeats()
+    named_numbers   ///< a table of numbers and expressions under names of the user's choice: see Parameters
 };
 
 struct KeyType {
@@ -59,6 +61,7 @@ inline constexpr KeyType two_points{"two names of points or two rows of three nu
 inline constexpr KeyType names{"two strings", Form::names, 2};
 inline constexpr KeyType text_or_list{"a string or a list of strings", Form::text, 0, Form::names};
 inline constexpr KeyType named_texts{"a table of strings", Form::named_texts};
+inline constexpr KeyType named_numbers{"a table of numbers and strings", Form::named_numbers};
 inline constexpr KeyType list{"a list of numbers", Form::row};
 inline constexpr KeyType rows{"rows of three numbers", Form::rows};
 inline constexpr KeyType number_or_list{"a number or a list of numbers", Form::number, 0, Form::row};
@@ -66,6 +69,7 @@ inline constexpr KeyType number_or_table{"a number or a table", Form::number, 0,
 inline constexpr KeyType table{"a table", Form::table};
 inline constexpr KeyType model{"a table", Form::model};
 inline constexpr KeyType tables{"tables", Form::tables};
+inline constexpr KeyType templates{"tables", Form::templates};
 inline constexpr KeyType table_or_tables{"a table or a list of tables", Form::table, 0, Form::tables};
 inline constexpr KeyType color{"a string or three numbers", Form::text, 3, Form::row};
 inline constexpr KeyType later{"", Form::none};   ///< known, but not part of this version
@@ -171,6 +175,7 @@ Table include_table();
 Table start_table();
 Table end_table();
 Table method_table();
+Table repeat_table();
 const Table& root_table();
 /// The same of what is included, where nothing is needed.
 const Table& part_table();

@@ -49,16 +49,15 @@ void write_words(JsonWriter& json, const Key& key)
 }
 
 /// The names of JSON for a form; a number with a unit is a string.
-std::vector<std::string_view> types_of(const Key& key, Form form)
+std::vector<std::string_view> types_of(Form form)
 {
     switch (form) {
     case Form::flag:
     case Form::truth:
         return {"boolean"};
     case Form::integer:
-        return {"integer"};
+        return {"integer", "string"};
     case Form::number:
-        if (!key.takes_units()) return {"number"};
         return {"number", "string"};
     case Form::text:
     case Form::choice:
@@ -67,8 +66,10 @@ std::vector<std::string_view> types_of(const Key& key, Form form)
     case Form::row:
     case Form::rows:
     case Form::tables:
+    case Form::templates:
         return {"array"};
     case Form::named_texts:
+    case Form::named_numbers:
     case Form::table:
     case Form::model:
         return {"object"};
@@ -95,6 +96,19 @@ void write_list(JsonWriter& json, const Key& key, const std::vector<Form>& lists
     if (count > 0) json.member("maxItems", count);
 }
 
+/// Of a number that is a text: a quantity with its unit, or an expression. Names, units and dimensions are
+/// for the reader to check; what no expression can be is refused: "3 kg 5", "kg 3", "0.5" alone.
+void write_pattern(JsonWriter& json)
+{
+    const std::string number = R"((?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?)",
+                      word = R"((?:[A-Za-z_]|[^ -~\t])(?:[A-Za-z0-9_]|[^ -~\t])*)",
+                      words = word + R"((?:[ \t]+)" + word + ")*", before = R"([-+({ \t]*)",
+                      operand = "(?:" + number + R"((?:[ \t]*)" + words + ")?|" + words + ")",
+                      more = R"((?:[ \t)}]*[-+*/^,({])" + before + operand + ")";
+    json.member("pattern", "^" + before + "(?:" + number + R"([ \t]*)" + words + more + "*|" + words + more +
+                               "*|" + number + more + R"(+)[ \t)}]*$)");
+}
+
 /// The keywords of one form, beside its type.
 void write_keywords(JsonWriter& json, const Key& key, Form form)
 {
@@ -103,11 +117,11 @@ void write_keywords(JsonWriter& json, const Key& key, Form form)
         json.member("const", true);
         break;
     case Form::number:
-        // The unit itself is for the reader to check.
-        if (key.takes_units()) json.member("pattern", "^[ \\t]*([-+]|\xe2\x88\x92)?[0-9.].*[A-Za-z\xc2\xb0]");
+        write_pattern(json);
         write_range(json, key);
         break;
     case Form::integer:
+        write_pattern(json);
         write_range(json, key);
         break;
     case Form::choice:
@@ -115,6 +129,14 @@ void write_keywords(JsonWriter& json, const Key& key, Form form)
         break;
     case Form::named_texts:
         json.key("additionalProperties").begin_object().member("type", "string").end_object();
+        break;
+    case Form::named_numbers:
+        json.key("propertyNames").begin_object().member("pattern", "^[A-Za-z_][A-Za-z0-9_]*$").end_object();
+        json.key("additionalProperties").begin_object();
+        json.key("type").begin_array().value("number").value("string").end_array().end_object();
+        break;
+    case Form::templates:
+        json.member("$ref", "#/properties/" + std::string(key.name));
         break;
     case Form::table:
         write_members(json, *key.child);
@@ -135,7 +157,7 @@ void write_body(JsonWriter& json, const Key& key, std::vector<Form> forms, int c
     std::vector<std::string_view> names;
     std::vector<Form> lists;
     for (const Form form : forms) {
-        for (const std::string_view name : types_of(key, form))
+        for (const std::string_view name : types_of(form))
             if (std::ranges::find(names, name) == names.end()) names.push_back(name);
         if (form == Form::names || form == Form::row || form == Form::rows) lists.push_back(form);
     }

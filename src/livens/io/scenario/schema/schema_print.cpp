@@ -26,8 +26,10 @@ std::vector<Row> rows_of(const Table& table)
                 return row.key->name == key.name && row.key->doc == key.doc && row.key->unit == key.unit &&
                        row.key->type == key.type;
             });
-            if (same == rows.end()) rows.push_back({&key, {kind.word}});
-            else same->kinds.push_back(kind.word);
+            if (same == rows.end())
+                rows.push_back({&key, {kind.word}});
+            else
+                same->kinds.push_back(kind.word);
         }
     return rows;
 }
@@ -43,7 +45,7 @@ std::string markdown_row(const Row& row)
            " | " + key.doc + " |\n";
 }
 
-constexpr std::string_view introduction = R"(# Scenario files
+constexpr std::string_view introduction = R"md(# Scenario files
 
 A scenario is one TOML 1.0 file that describes bodies, joints, loads, time and method. This page is printed
 by `livens schema --md`; `livens schema --json` prints a JSON Schema for editors. The folder `examples/` holds
@@ -86,6 +88,56 @@ angles for angles and lengths for lengths: `rate = "60 rpm"`, `rise = "90 deg"`,
   parenthesis: `kg/(m s)`; `J/kg m` could mean two things and is refused.
 - Every number must be finite.
 
+## Parameters
+
+`[parameters]` gives names to numbers. Each is a number, a string with a unit or an expression of other
+parameters, in any order; and every number of the file may be a string with an expression of them.
+
+```toml
+format = 1
+gravity = [0, 0, "-g"]
+
+[parameters]
+L = "400 mm"
+width = "L/10"
+g = "9.81 m/s^2"
+
+[[body]]
+name = "arm"
+shape = { box = ["L", "width", "width"] }
+density = 7850
+position = ["L/2", 0, 0]
+
+[[joint]]
+type = "revolute"
+between = ["world", "arm"]
+at = [0, 0, 0]
+axis = [0, 1, 0]
+
+[time]
+end = "5*2*pi*sqrt(2*L/(3*g))"
+```
+
+- Expressions have numbers, `+ - * / ^`, parentheses, `pi` and the functions of [those of
+  loads](joints.md#expressions), but no time: `"2*L"`, `"L/2 + 30 mm"`, `"sqrt(2)*L"`, `"2*0.5 m"`. Whole
+  numbers may be computed, too, as in `elements = "4*n"`.
+- Units are checked through: each number carries its dimension, unlike ones cannot be added, and what
+  comes out has to be what the key measures. What has no unit anywhere is in SI units, as plain numbers
+  are; beside numbers with units it is a plain number: with `L = 0.4` it is `"L/2 + 0.03"`, with `L =
+  "400 mm"` `"L/2 + 30 mm"`.
+- Angles are ratios, so that `"v/R"` is an angular velocity; but 3 Hz is none without its `2*pi`, and 30
+  deg no ratio.
+- Behind a number stands its unit, as long as it can be read: `"2 m"` are two metres even if `m` is a
+  parameter, and `"2*m"` is twice that.
+- In the formulas of loads and drives parameters are numbers in SI units.
+- `livens solve FILE --set L=0.3` (or `--set "L=300 mm"`) solves with another value, as do `check`,
+  `mass`, `equilibrium` and `modes`. A plain number there is in SI units of what the parameter measures.
+  The result holds the scenario with the values that were set. In Python: `m.parameters["L"] = 0.3`.
+- A name has letters, digits and `_`; it is not that of a function, `pi` or `t`. A parameter that nothing
+  uses is warned of.
+
+## Lists and limits
+
 Lists of rows are lists of lists: `directors = [[1, 0, 0], [0, 1, 0], [0, 0, 1]]` lists d1, d2, d3.
 
 What is wrong with a file is reported with line and column, all of it in one run (a syntax error ends it);
@@ -95,7 +147,7 @@ Limits: 16 MiB, 2 000 000 values, nesting of 64, 10 000 bodies, joints and loads
 elements, a motion of 8 GiB, and with the family mixed 8 GiB for the system of one block, at 72 kB a rigid
 body and time node (where joints tie bodies together 36 kB times their number, if that is more): 100 000
 linear elements of one body fit, and any number of them in blocks.
-)";
+)md";
 
 }   // namespace
 
@@ -108,8 +160,10 @@ std::string schema_markdown()
         section += "| key | value | default | meaning |\n| --- | --- | --- | --- |\n";
         std::string later;
         for (const Row& row : rows_of(*table))
-            if (row.key->type != types::later) section += markdown_row(row);
-            else later += (later.empty() ? "`" : ", `") + std::string(row.key->name) + "`";
+            if (row.key->type != types::later)
+                section += markdown_row(row);
+            else
+                later += (later.empty() ? "`" : ", `") + std::string(row.key->name) + "`";
         if (!later.empty()) section += "\nNot part of this version: " + later + ".\n";
         if (out.find(section) == std::string::npos) out += section;   // tables that several kinds have
     }

@@ -12,6 +12,7 @@
 #include "livens/io/scenario/schema/schema.h"
 #include "livens/io/scenario/text/document.h"
 #include "livens/io/scenario/text/findings.h"
+#include "livens/io/scenario/text/parameters.h"
 
 namespace livens::inline io_internal {
 
@@ -34,13 +35,17 @@ struct Value {
 class Section {
 public:
     /// Applies the schema: unknown, misplaced, mistyped, missing keys and values out of range go to
-    /// `findings`. `label` names the table in messages: "body 'upper'".
-    Section(const Node& node, const Table& table, std::string label, Findings& findings);
+    /// `findings`. `label` names the table in messages: "body 'upper'". Its numbers may be computed from
+    /// `parameters`, which outlive it.
+    Section(const Node& node, const Table& table, std::string label, Findings& findings,
+            const Parameters& parameters = no_parameters());
 
     const std::string& label() const { return label_; }
     SourceLocation place() const { return node_->place; }
     /// Nothing was wrong with this table and those inside it.
     bool is_valid() const { return is_valid_; }
+    /// Of the file that it stands in.
+    const Parameters& parameters() const { return *parameters_; }
     /// Index of its kind in the schema's table, or of the kind that a word of another program means; any_kind
     /// if there is none.
     int kind() const { return kind_; }
@@ -106,6 +111,7 @@ private:
     const Node* node_;
     std::string label_;
     Findings* findings_;
+    const Parameters* parameters_;
     int kind_;
     std::vector<Value> values_;
     Words meant_;   ///< keys that unknown ones stand for: what lacks them has been told of

@@ -28,12 +28,17 @@ void Section::report_unknown(const Entry& entry, const std::vector<const Key*>& 
     Words names;
     for (const Key* key : keys)
         if (key->type != types::later && index_of(names, key->name) < 0) names.push_back(key->name);
-    if (other.help.empty()) {
+    std::string help = other.help;
+    if (help.empty()) {
         const std::string_view misspelt = closest(entry.key, names);
         if (!misspelt.empty()) meant_.push_back(misspelt);
+        const bool is_number =
+            entry.value.kind == Node::Kind::number || entry.value.kind == Node::Kind::integer;
+        if (misspelt.empty() && is_number && is_plain_name(entry.key))
+            help = "numbers with names of your own stand in [parameters]; ";
+        help += suggest(entry.key, names);
     }
-    findings_->error(entry.place, "unknown-key", "unknown key '" + entry.key + "' in " + label_,
-                     {"", other.help.empty() ? suggest(entry.key, names) : other.help});
+    findings_->error(entry.place, "unknown-key", "unknown key '" + entry.key + "' in " + label_, {"", help});
 }
 
 }   // namespace livens::inline io_internal

@@ -59,6 +59,11 @@ void Findings::add(Severity severity, const SourceLocation& place, std::string_v
 {
     assert(!explain(code).empty() && "every code has a page");
     if (severity == Severity::error) ++n_errors_;
+    if (place.origin > 0) {
+        if (!told_of_copies_.emplace(place.file, place.line, place.column, code).second) return;
+        const std::string& words = origins_[static_cast<std::size_t>(place.origin) - 1];
+        advice.note += (advice.note.empty() ? "" : "; ") + words;
+    }
     if (found_.size() >= most_kept) {
         ++n_dropped_;
         return;
@@ -89,6 +94,12 @@ void Findings::adopt(const Findings& of_file, int file)
         one.file = file;
         found_.push_back(std::move(one));
     }
+}
+
+int Findings::add_origin(std::string words)
+{
+    origins_.push_back(std::move(words));
+    return static_cast<int>(origins_.size());
 }
 
 bool Findings::error(const SourceLocation& place, std::string_view code, std::string message, Advice advice)

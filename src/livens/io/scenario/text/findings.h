@@ -2,9 +2,11 @@
 // Collecting what is wrong with a file, all of it, and putting it in order.
 #pragma once
 
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <vector>
 
 #include "livens/io/diagnostic.h"
@@ -16,7 +18,8 @@ struct SourceLocation {
     int line = 0;
     int column = 0;
     int length = 1;
-    int file = 0;   ///< 0: the one that is read, or else one that it includes, by Findings::add_file()
+    int file = 0;     ///< 0: the one that is read, or else one that it includes, by Findings::add_file()
+    int origin = 0;   ///< of a copy: see Findings::add_origin()
 };
 
 /// What to say beside the message.
@@ -35,6 +38,9 @@ public:
     int add_file(const std::string& name, std::string_view text);
     /// What was found of that file before its places knew it.
     void adopt(const Findings& of_file, int file);
+    /// A copy of what stands in the file: findings at places of this origin have the words as a note, and
+    /// those that other copies of the place have as well are told once.
+    int add_origin(std::string words);
 
     /// Errors so far: a reader compares before and after to learn whether a part was in order.
     int n_errors() const { return n_errors_; }
@@ -56,6 +62,8 @@ private:
     };
     std::vector<Found> found_;
     std::vector<File> files_;
+    std::vector<std::string> origins_;
+    std::set<std::tuple<int, int, int, std::string>> told_of_copies_;   ///< file, line, column, code
     int n_errors_ = 0;
     int n_dropped_ = 0;
 };

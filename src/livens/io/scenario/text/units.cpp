@@ -4,6 +4,7 @@
 // rounded once.
 #include "livens/io/scenario/text/units.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -84,7 +85,8 @@ constexpr std::array signs{
     Sign{"\xe2\x81\xb6", "6", true}, Sign{"\xe2\x81\xb7", "7", true}, Sign{"\xe2\x81\xb8", "8", true},
     Sign{"\xe2\x81\xb9", "9", true}};
 
-/// "N m^-1" for "N m" and a raised "-1". Other bytes stay, and are refused where they stand.
+}   // namespace
+
 std::string in_ascii(std::string_view text)
 {
     std::string plain;
@@ -100,6 +102,8 @@ std::string in_ascii(std::string_view text)
     }
     return plain;
 }
+
+namespace {
 
 /// A symbol that people write otherwise.
 std::string other_spelling(std::string_view name)
@@ -280,15 +284,15 @@ private:
     std::string reason_;
 };
 
-double to_si(double number, const Unit& unit)
+}   // namespace
+
+double in_si(double number, const Unit& unit)
 {
     // Dividing by 10^3 rounds once; multiplying with 1e-3, which is no double, rounds twice.
     const double ten = std::pow(10.0, std::abs(unit.power_of_ten));   // exact up to 10^22
     return unit.power_of_ten < 0 ? number * unit.numerator / (unit.denominator * ten)
                                  : number * unit.numerator * ten / unit.denominator;
 }
-
-}   // namespace
 
 std::optional<Unit> parse_unit(std::string_view text, std::string& reason)
 {
@@ -315,8 +319,6 @@ Quantity parse_quantity(std::string_view given, std::string_view si_unit)
         return {0, "the unit is missing",
                 "leave out the quotes for " + wanted + ", or write \"" + to_text(number) + " " + wanted +
                     "\""};
-    if (rest[0] == '*' || rest[0] == '+' || rest[0] == '-')
-        return {0, "numbers are not computed here", "write the result, or compute it in Python"};
     std::string reason;
     const std::optional<Unit> unit = parse_unit(rest, reason);
     if (!unit) return {0, reason, std::string(known_units)};
@@ -326,7 +328,7 @@ Quantity parse_quantity(std::string_view given, std::string_view si_unit)
         return {0, "'" + std::string(rest) + "' is not a unit of this quantity",
                 "it is measured in " + wanted + (hint.empty() ? "" : "; " + std::string(hint))};
     }
-    const double value = to_si(number, *unit);
+    const double value = in_si(number, *unit);
     if (!std::isfinite(value)) return {0, "the number does not fit into 64 bits", ""};
     return {value, "", ""};
 }

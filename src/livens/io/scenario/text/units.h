@@ -27,6 +27,12 @@ struct Unit {
 /// Empty for what is no unit; `reason` then says why.
 std::optional<Unit> parse_unit(std::string_view text, std::string& reason);
 
+/// "N m^-1" for "N m" and a raised "-1". Other bytes stay, and are refused where they stand.
+std::string in_ascii(std::string_view text);
+
+/// So many of a unit, in SI units.
+double in_si(double number, const Unit& unit);
+
 struct Quantity {
     double value = 0;    ///< SI, finite
     std::string error;   ///< empty if it could be read

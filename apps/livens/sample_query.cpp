@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sample_query.h"
+
+#include <cmath>
+#include <limits>
+
+#include "exact.h"
+#include "failure.h"
+
+namespace livens::program {
+
+namespace {
+
+constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+
+/// Not converged: it cannot be had.
+ExactSample solved_at(const Query& q, double t)
+{
+    ExactSample none;
+    none.report.status = SolveStatus::not_converged;
+    if (std::holds_alternative<Mixed>(q.scenario.method)) return none;   // all elements of a block are one
+    return sample_exactly(q.scenario.model, q.run.motion, q.scenario.method, t, q.scenario.options);
+}
+
+/// Where the polynomial is what is shown, its own distance from the solution adds to the error of both ends.
+bool is_interpolated(const Query& q, double t)
+{
+    return !q.arguments.exact && element_end_at(q.run.motion.mesh, t) < 0;
+}
+
+}   // namespace
+
+BodySample body_at(const Query& q, double t)
+{
+    if (!q.arguments.exact)
+        return sample_bodies(q.scenario.model, q.run.motion, t)[static_cast<std::size_t>(q.index)];
+    const ExactSample exact = exact_sample(q.run, q.scenario, t);
+    const Body& body = q.scenario.model.bodies()[q.index];
+    const Matrix34 &X = exact.state.X[q.index], &V = exact.state.V[q.index];
+    return sample_body(body, X, V, V * body.mass);
+}
+
+BodyGap body_error(const Query& q, double t)
+{
+    const ErrorEstimate& e = q.run.estimate;
+    const auto at = [&](const std::vector<double>& errors) {
+        return ErrorEstimate::at(errors, e.n_bodies, q.index, q.run.motion.mesh, t);
+    };
+    BodyGap error{at(e.position), at(e.orientation), at(e.velocity)};
+    if (e.empty() || !is_interpolated(q, t)) return error;
+    const ExactSample exact = solved_at(q, t);
+    if (!exact.report.converged()) return {unknown, unknown, unknown};
+    const BodyGap gap = gap_between(sample_state(q.run.motion, t), exact.state,
+                                    q.scenario.model.bodies()[q.index], q.index, e.length);
+    return {error.position + gap.position, error.orientation + gap.orientation,
+            error.velocity + gap.velocity};
+}
+
+std::optional<bool> beyond_horizon(const Query& q, double t)
+{
+    if (std::isnan(q.run.verdict.growth)) return {};
+    return q.run.verdict.is_beyond_horizon(t);
+}
+
+BodyAcceleration acceleration_at(const Query& q, double t)
+{
+    const AcceleratedState at = accelerated_at(q.run, q.scenario, t, q.arguments.exact);
+    const bool is_point = q.scenario.model.bodies()[q.index].is_point;
+    return {at.A[q.index].column(0), is_point ? Vector3{unknown, unknown, unknown}
+                                              : angular_acceleration(at.X[q.index], at.A[q.index])};
+}
+
+JointSample joint_at(const Query& q, double t)
+{
+    const std::vector<JointSample> samples = q.arguments.exact
+                                                 ? exact_sample(q.run, q.scenario, t).joints
+                                                 : sample_joints(q.scenario.model, q.run.motion, t);
+    if (samples.empty())
+        throw failure(exit_input_output, "the run has no multipliers, so reactions are not known");
+    return samples[static_cast<std::size_t>(q.index)];
+}
+
+double joint_error(const Query& q, double t)
+{
+    const ErrorEstimate& e = q.run.estimate;
+    const double error = ErrorEstimate::at(e.reaction, e.n_joints, q.index, q.run.motion.mesh, t);
+    if (e.reaction.empty() || !is_interpolated(q, t)) return error;
+    const ExactSample exact = solved_at(q, t);
+    if (!exact.report.converged() || exact.joints.empty()) return unknown;
+    const JointSample here = joint_at(q, t), &there = exact.joints[static_cast<std::size_t>(q.index)];
+    return e.largest_reaction > 0 ? error + gap_between(here, there, e.length) / e.largest_reaction : error;
+}
+
+std::vector<CoordinateAt> coordinates_at(const Query& q, double t)
+{
+    std::vector<CoordinateAt> all;
+    const bool is_exact = q.arguments.exact;
+    const State state = is_exact ? exact_sample(q.run, q.scenario, t).state : sample_state(q.run.motion, t);
+    const AcceleratedState at = accelerated_at(q.run, q.scenario, t, is_exact);
+    const std::vector<CoordinateValue> values = q.coordinates->at(state, &at);
+    for (std::size_t i = 0; i < values.size(); ++i)
+        if (q.coordinates->places()[i].joint == q.index) {
+            const NamedCoordinate& of = q.coordinates->coordinate(static_cast<int>(i));
+            all.push_back({of.name, &of.coordinate, values[i]});
+        }
+    return all;
+}
+
+}   // namespace livens::program
